@@ -145,12 +145,12 @@ $(BUILD)/gen/commands/complete_%.h: src/commands/complete.%
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
-$(BUILD)/obj/src/base/methods.o: SRC_FLAGS += $(if $(GSL),-DLAGC_WITH_GSL)
+$(BUILD)/obj/src/base/method_table.o: SRC_FLAGS += $(if $(GSL),-DLAGC_WITH_GSL)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
-$(BUILD)/obj/src/emit/cmath.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen/emit/lag_kkt.h
+$(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen/emit/lag_kkt.h
 $(BUILD)/obj/src/toolchain/compiler_probe.o: $(BUILD)/gen/toolchain/probe_text.h
-$(BUILD)/obj/src/commands/reference.o: $(BUILD)/gen/commands/language.h
-$(BUILD)/obj/src/commands/shells.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
+$(BUILD)/obj/src/commands/language_reference.o: $(BUILD)/gen/commands/language.h
+$(BUILD)/obj/src/commands/completion_scripts.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
 $(BUILD)/gen/base/visible.h: runtime/io/visible.h
 	@mkdir -p $(@D)
 	cp $< $@

@@ -115,11 +115,11 @@ stmt: single[x]                       { $$ = stmts_one($x); }
     | "input" inputs[l]               { $$ = $l; }
     | "state" states[l]               { $$ = $l; }
     | "let" lets[l]                   { $$ = $l; }
-    | "flow" assigns[l]               { $$ = stmts_retag(ast, $l, STMT_FLOW, 0); }
+    | "flow" assigns[l]               { $$ = stmts_set_kind(ast, $l, STMT_FLOW, 0); }
     | "requires" requires[l]          { $$ = $l; }
     | "excludes" excludes[l]          { $$ = $l; }
-    | "start" exactly[x] assigns[l]   { $$ = stmts_retag(ast, $l, STMT_START, $x); }
-    | "exact" assigns[l]              { $$ = stmts_retag(ast, $l, STMT_EXACT, 0); }
+    | "start" exactly[x] assigns[l]   { $$ = stmts_set_kind(ast, $l, STMT_START, $x); }
+    | "exact" assigns[l]              { $$ = stmts_set_kind(ast, $l, STMT_EXACT, 0); }
     | "use" uses[l]                   { $$ = $l; }
     | "monitor" monitors[l]           { $$ = $l; }
     ;
@@ -276,7 +276,7 @@ direction: %empty     { $$ = CROSS_BOTH; }
          | "rising"   { $$ = CROSS_RISING; }
          | "falling"  { $$ = CROSS_FALLING; }
          ;
-gap: arith[a] ">="[op] arith[b] { $$ = ast_gap(ast, @$, @op, $a, $b); };
+gap: arith[a] ">="[op] arith[b] { $$ = ast_contact_gap(ast, @$, @op, $a, $b); };
 every: %empty          { $$ = 0; }
      | "every" arith[e] { $$ = $e; }
      ;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "analysis/perturbation_noise.h"
-#include "analysis/pivot.h"
+#include "analysis/complete_pivoting.h"
 #include "analysis/regularity.h"
 
 enum { MOST_STEPS = 200, MOST_DESCENT = 200 };
@@ -17,7 +17,7 @@ static const double NEAR = 1e-9;
 /* A force up to this many times its perturbation noise counts as 0: it takes a few more operations. */
 static const double CERTAIN = 8;
 
-static const lag_var *unknown(const Rest *r, int i)
+static const lag_var *unknown(const Equilibrium *r, int i)
 {
   const lag_model *m = r->sim->scene->model;
 
@@ -29,7 +29,7 @@ static int is_angle(const lag_var *v)
   return v->periodic || strcmp(v->unit, "rad") == 0 || strcmp(v->unit, "deg") == 0 || strcmp(v->unit, "rev") == 0;
 }
 
-static void choose_scales(Rest *r)
+static void choose_scales(Equilibrium *r)
 {
   for (int i = 0; i < r->n; i++) {
     const lag_var *v = unknown(r, i);
@@ -42,7 +42,7 @@ static void choose_scales(Rest *r)
 }
 
 /* Forces as a whole, and rates as a whole, get the size 1: what they are made of may differ by any factor. */
-static int choose_rows(Rest *r)
+static int choose_rows(Equilibrium *r)
 {
   int nq = r->sim->pb.nq, n = r->n;
   double largest[2] = {0, 0};
@@ -50,7 +50,7 @@ static int choose_rows(Rest *r)
   for (int i = 0; i < n; i++) {
     r->row[i] = 1;
   }
-  int rc = lag_rest_equations(r, r->x, r->f, r->J);
+  int rc = lag_equilibrium_equations(r, r->x, r->f, r->J);
   if (rc) {
     return rc;
   }
@@ -70,16 +70,16 @@ static int choose_rows(Rest *r)
 
 /* ---- Test for a root */
 
-static int forces(Rest *r, const double *x, double *out)
+static int forces(Equilibrium *r, const double *x, double *out)
 {
-  return lag_rest_equations(r, x, out, out + r->n);
+  return lag_equilibrium_equations(r, x, out, out + r->n);
 }
 
 /* r->f, r->J and their noise, r->noise[n | n * n], at x[n]. */
-static int forces_and_noise(Rest *r, const double *x)
+static int forces_and_noise(Equilibrium *r, const double *x)
 {
   size_t n = (size_t)r->n;
-  int rc = lag_blur(r, forces, x, n + n * n, r->values, r->noise, r->scratch);
+  int rc = lag_perturbation_noise(r, forces, x, n + n * n, r->values, r->noise, r->scratch);
 
   if (rc || lag_not_finite((int)(n + n * n), r->values) >= 0) {
     return rc ? rc : LAG_ENAN;
@@ -94,12 +94,12 @@ static int forces_and_noise(Rest *r, const double *x)
     }
     r->noise[i] += i < nq ? DBL_EPSILON * sum * r->scale[i] * r->row[i] : 0;
   }
-  return lag_rest_equations(r, x, r->f, NULL); /* r->rate at x */
+  return lag_equilibrium_equations(r, x, r->f, NULL); /* r->rate at x */
 }
 
 /* Solves J dx = -b, where b[n] has the given noise; destroys all but dx. noise NULL: J is taken as exact. Returns the rank; b[i] for i >= rank
  * is the unbalanced force, 0 if it is noise. */
-static int solve(Rest *r, double *b, const double *noise)
+static int solve(Equilibrium *r, double *b, const double *noise)
 {
   int n = r->n;
   double *size = r->scratch, *error = size + n * n, *work = error + n;
@@ -111,7 +111,7 @@ static int solve(Rest *r, double *b, const double *noise)
     b[i] = -b[i];
     error[i] = noise ? noise[i] : 0;
   }
-  int rank = lag_pivot_solve(n, r->J, size, b, error, r->dx, work);
+  int rank = lag_complete_pivot_solve(n, r->J, size, b, error, r->dx, work);
   for (int i = rank; i < n && noise; i++) {
     b[i] = fabs(b[i]) <= CERTAIN * error[i] ? 0 : b[i];
   }
@@ -119,7 +119,7 @@ static int solve(Rest *r, double *b, const double *noise)
 }
 
 /* Length of dx, relative to the state and its scale. */
-static double reach(const Rest *r, const double *x, const double *dx)
+static double reach(const Equilibrium *r, const double *x, const double *dx)
 {
   double most = 0;
 
@@ -130,7 +130,7 @@ static double reach(const Rest *r, const double *x, const double *dx)
 }
 
 /* Whether Newton's method would stay at x, and no force pulls along directions that it cannot move. */
-static int stays(Rest *r, const double *x)
+static int newton_stays(Equilibrium *r, const double *x)
 {
   int n = r->n;
   double *b = r->step;
@@ -145,7 +145,7 @@ static int stays(Rest *r, const double *x)
 }
 
 /* Whether the forces computed last are noise. Sets the worst. */
-static int none_pulls(Rest *r)
+static int none_pulls(Equilibrium *r)
 {
   double most = 0;
 
@@ -160,20 +160,20 @@ static int none_pulls(Rest *r)
 }
 
 /* Whether all forces vanish at x[n]. */
-static int vanish(Rest *r, const double *x)
+static int vanish(Equilibrium *r, const double *x)
 {
   return forces_and_noise(r, x) == 0 && none_pulls(r);
 }
 
 /* Whether x[n] is a root: all forces vanish there, or within a Newton step of rounding size. The size of a force alone says little, as stiff
  * ones stand beside soft ones. */
-static int holds(Rest *r, const double *x)
+static int is_root(Equilibrium *r, const double *x)
 {
-  return forces_and_noise(r, x) == 0 && (none_pulls(r) || stays(r, x));
+  return forces_and_noise(r, x) == 0 && (none_pulls(r) || newton_stays(r, x));
 }
 
 /* Rounds small components of x to 0 where forces vanish there, too. */
-static void clean(Rest *r)
+static void round_to_zero(Equilibrium *r)
 {
   static const double small[] = {1e-4, 1e-8, 1e-12};
 
@@ -192,7 +192,7 @@ static void clean(Rest *r)
 }
 
 /* Moves undetermined unknowns back to the start where forces vanish there, too. */
-static void restore(Rest *r)
+static void restore_undetermined(Equilibrium *r)
 {
   size_t bytes = (size_t)r->n * sizeof(double);
 
@@ -212,7 +212,7 @@ static void restore(Rest *r)
 
 /* Newton's method without step control: along the floor of a steep valley its steps are large where a method that must reduce forces at each
  * step is slow. 1: x[n] has converged. */
-static int newton(Rest *r, lag_equations *zero, double *x, int most)
+static int newton(Equilibrium *r, lag_equations *zero, double *x, int most)
 {
   double last = HUGE_VAL;
 
@@ -237,7 +237,7 @@ static int newton(Rest *r, lag_equations *zero, double *x, int most)
 /* ---- Downhill */
 
 /* Largest component of x - y, in scales. */
-static double distance(const Rest *r, const double *x, const double *y)
+static double distance(const Equilibrium *r, const double *x, const double *y)
 {
   double most = 0;
 
@@ -248,10 +248,10 @@ static double distance(const Rest *r, const double *x, const double *y)
 }
 
 /* Equations of an implicit Euler step of length delta of the overdamped motion M q' = f: f(x) - W (x - from)/delta. */
-static int friction(void *context, const double *x, double *f, double *J)
+static int overdamped_step(void *context, const double *x, double *f, double *J)
 {
-  Rest *r = context;
-  int n = r->n, rc = lag_rest_equations(r, x, f, J);
+  Equilibrium *r = context;
+  int n = r->n, rc = lag_equilibrium_equations(r, x, f, J);
 
   for (int i = 0; i < n && rc == 0; i++) {
     for (int j = 0; j < n; j++) {
@@ -265,12 +265,12 @@ static int friction(void *context, const double *x, double *f, double *J)
 }
 
 /* W := the mass matrix in the units of the equations, and the identity for rates; delta: a first step of 0.3 of a scale. */
-static void prepare_friction(Rest *r)
+static void prepare_overdamped(Equilibrium *r)
 {
   int n = r->n, nq = r->sim->pb.nq;
   double fastest = 0;
 
-  lag_rest_equations(r, r->x, r->f, r->J);
+  lag_equilibrium_equations(r, r->x, r->f, r->J);
   for (int i = 0; i < n; i++) {
     fastest = fmax(fastest, fabs(r->rate[nq + i]) / r->scale[i]);
     for (int j = 0; j < n; j++) {
@@ -282,14 +282,14 @@ static void prepare_friction(Rest *r)
 }
 
 /* Follows the overdamped motion from x[n] until hardly anything moves. */
-static void descend(Rest *r)
+static void follow_overdamped(Equilibrium *r)
 {
   size_t bytes = (size_t)r->n * sizeof(double);
 
-  prepare_friction(r);
+  prepare_overdamped(r);
   for (int k = 0; k < MOST_DESCENT; k++) {
     memcpy(r->from, r->x, bytes);
-    int found = newton(r, friction, r->x, 20);
+    int found = newton(r, overdamped_step, r->x, 20);
     double moved = distance(r, r->x, r->from);
     if (!found || !(moved < 0.5)) {
       memcpy(r->x, r->from, bytes);
@@ -304,18 +304,18 @@ static void descend(Rest *r)
 
 /* ---- The search */
 
-static double largest_force(Rest *r, const double *x)
+static double largest_force(Equilibrium *r, const double *x)
 {
   double most = 0;
 
-  for (int i = 0; i < r->n && (i > 0 || lag_rest_equations(r, x, r->f, NULL) == 0); i++) {
+  for (int i = 0; i < r->n && (i > 0 || lag_equilibrium_equations(r, x, r->f, NULL) == 0); i++) {
     most = fmax(most, fabs(r->f[i]));
   }
   return most;
 }
 
 /* Whether x has run away, or left nearly all of the force at the start: forces that fade have no root there. */
-static int ran_away(Rest *r)
+static int ran_away(Equilibrium *r)
 {
   double start = 1;
 
@@ -326,15 +326,15 @@ static int ran_away(Rest *r)
 }
 
 /* x := the root to which Newton's method leads from there[n], if it is a root and within `farthest`; else x is unchanged. */
-static int polish(Rest *r, const double *there, double farthest)
+static int newton_polish(Equilibrium *r, const double *there, double farthest)
 {
   size_t bytes = (size_t)r->n * sizeof(double);
 
   memcpy(r->kept, r->x, bytes);
   memcpy(r->x, there, bytes);
-  if (newton(r, lag_rest_equations, r->x, MOST_STEPS) && distance(r, r->x, there) <= farthest) {
-    clean(r);
-    if (holds(r, r->x)) {
+  if (newton(r, lag_equilibrium_equations, r->x, MOST_STEPS) && distance(r, r->x, there) <= farthest) {
+    round_to_zero(r);
+    if (is_root(r, r->x)) {
       return 1;
     }
   }
@@ -343,27 +343,27 @@ static int polish(Rest *r, const double *there, double farthest)
 }
 
 /* Finds a root from x: by a trust region; if that gets stuck, by Newton's method. */
-static int find_root(Rest *r, const lag_algebra *algebra)
+static int find_root(Equilibrium *r, const lag_algebra *algebra)
 {
   size_t bytes = (size_t)r->n * sizeof(double);
   int steps = 0;
 
   memcpy(r->from, r->x, bytes);
-  int rc = algebra->root(r->n, r->x, lag_rest_equations, r, MOST_STEPS, &steps);
+  int rc = algebra->root(r->n, r->x, lag_equilibrium_equations, r, MOST_STEPS, &steps);
   r->steps += steps;
   if (rc) {
     return rc;
   }
-  clean(r);
+  round_to_zero(r);
   if (vanish(r, r->x)) {
     return 1;
   }
   memcpy(r->near, r->x, bytes);
-  return polish(r, r->near, 0.1) || holds(r, r->x) || polish(r, r->from, 10) || holds(r, r->x);
+  return newton_polish(r, r->near, 0.1) || is_root(r, r->x) || newton_polish(r, r->from, 10) || is_root(r, r->x);
 }
 
 /* Searches a root near the start, stable or not; else one downhill; else any. */
-static int search(Rest *r, const lag_algebra *algebra)
+static int search(Equilibrium *r, const lag_algebra *algebra)
 {
   size_t bytes = (size_t)r->n * sizeof(double);
   int rc = find_root(r, algebra);
@@ -375,17 +375,17 @@ static int search(Rest *r, const lag_algebra *algebra)
   r->away = rc == 0 && ran_away(r);
   int first = rc;
   memcpy(r->x, r->begin, bytes);
-  descend(r);
+  follow_overdamped(r);
   rc = find_root(r, algebra);
   if (rc != 0) {
     return rc;
   }
   memcpy(r->x, r->first, bytes);
-  holds(r, r->x);
+  is_root(r, r->x);
   return first;
 }
 
-static int allocate(Rest *r)
+static int allocate(Equilibrium *r)
 {
   const lag_model *m = r->sim->scene->model;
   size_t n = (size_t)r->n, nq = (size_t)m->nq, ny = (size_t)r->sim->pb.n;
@@ -396,14 +396,14 @@ static int allocate(Rest *r)
                           n * ny, nq * nq, lag_linear_work(m)};
 
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    *parts[i] = pool_doubles(&r->pool, sizes[i]);
+    *parts[i] = lag_pool_doubles(&r->pool, sizes[i]);
   }
   return r->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 
 /* spread := uncertainty of the root: Newton steps for noise of the forces with two patterns of signs, and for the rest of the forces. Leaves all
  * values at x. */
-static int settle(Rest *r)
+static int estimate_uncertainty(Equilibrium *r)
 {
   int n = r->n, rc = 0;
 
@@ -419,17 +419,17 @@ static int settle(Rest *r)
       r->spread[i] = fmax(r->spread[i], fmin(fabs(r->dx[i]), 0.1));
     }
   }
-  r->pole = lag_place_is_pole(r);
-  r->rough = rc == 0 && lag_place_is_rough(r);
-  rc = rc ? rc : lag_rest_equations(r, r->x, r->f, r->J);
+  r->pole = lag_is_coordinate_pole(r);
+  r->rough = rc == 0 && lag_is_nonsmooth(r);
+  rc = rc ? rc : lag_equilibrium_equations(r, r->x, r->f, r->J);
   return rc ? (rc < 0 ? rc : LAG_EDOMAIN) : 1;
 }
 
-int lag_rest_find(Rest *r, lag_sim *sim, const lag_algebra *algebra)
+int lag_equilibrium_find(Equilibrium *r, lag_sim *sim, const lag_algebra *algebra)
 {
   int nq = sim->pb.nq, n = nq + sim->pb.nz;
 
-  *r = (Rest){.sim = sim, .n = n};
+  *r = (Equilibrium){.sim = sim, .n = n};
   int rc = allocate(r);
   if (rc) {
     return rc;
@@ -444,31 +444,31 @@ int lag_rest_find(Rest *r, lag_sim *sim, const lag_algebra *algebra)
   if ((rc = choose_rows(r)) != 0) {
     return rc < 0 ? rc : LAG_EDOMAIN;
   }
-  rc = holds(r, r->x) ? 1 : search(r, algebra);
+  rc = is_root(r, r->x) ? 1 : search(r, algebra);
   if (rc == 1) {
-    clean(r);
-    restore(r);
-    clean(r);
-    return settle(r);
+    round_to_zero(r);
+    restore_undetermined(r);
+    round_to_zero(r);
+    return estimate_uncertainty(r);
   }
   if (rc == 0) {
-    r->pole = lag_place_is_pole(r);
-    holds(r, r->x);
+    r->pole = lag_is_coordinate_pole(r);
+    is_root(r, r->x);
   }
   return rc;
 }
 
-int lag_rest_holds(Rest *r, const double *dx, double c)
+int lag_equilibrium_holds(Equilibrium *r, const double *dx, double c)
 {
   for (int i = 0; i < r->n; i++) {
     r->trial[i] = r->x[i] + c * dx[i] / r->scale[i];
   }
-  int good = holds(r, r->trial);
-  lag_rest_place(r, r->x);
+  int good = is_root(r, r->trial);
+  lag_equilibrium_state(r, r->x);
   return good;
 }
 
-int lag_rest_continues(Rest *r, const lag_algebra *algebra, const double *dx, double c)
+int lag_equilibrium_continues(Equilibrium *r, const lag_algebra *algebra, const double *dx, double c)
 {
   double off = 0, far = 0;
   int steps;
@@ -476,22 +476,22 @@ int lag_rest_continues(Rest *r, const lag_algebra *algebra, const double *dx, do
   for (int i = 0; i < r->n; i++) {
     r->from[i] = r->x[i] + c * dx[i] / r->scale[i];
   }
-  int found = algebra->root(r->n, r->from, lag_rest_equations, r, MOST_STEPS, &steps) == LAG_OK;
+  int found = algebra->root(r->n, r->from, lag_equilibrium_equations, r, MOST_STEPS, &steps) == LAG_OK;
   if (found) {
     memcpy(r->trial, r->from, (size_t)r->n * sizeof(double));
-    found = newton(r, lag_rest_equations, r->trial, MOST_STEPS) && distance(r, r->trial, r->from) <= 0.1 * fabs(c) && holds(r, r->trial);
-    found = found || holds(r, r->from);
+    found = newton(r, lag_equilibrium_equations, r->trial, MOST_STEPS) && distance(r, r->trial, r->from) <= 0.1 * fabs(c) && is_root(r, r->trial);
+    found = found || is_root(r, r->from);
   }
   for (int i = 0; i < r->n; i++) {
     double step = c * dx[i] / r->scale[i];
     off = fmax(off, fabs(r->from[i] - r->x[i] - step));
     far = fmax(far, fabs(step));
   }
-  lag_rest_place(r, r->x);
+  lag_equilibrium_state(r, r->x);
   return found && off < 0.4 * far;
 }
 
-void lag_rest_free(Rest *r)
+void lag_equilibrium_free(Equilibrium *r)
 {
-  pool_free(&r->pool);
+  lag_pool_free(&r->pool);
 }

@@ -2,19 +2,19 @@
 #ifndef LAG_ANALYSIS_EQUILIBRIUM_H
 #define LAG_ANALYSIS_EQUILIBRIUM_H
 
-#include "analysis/rest.h"
+#include "analysis/equilibrium_state.h"
 
 /* Finds an equilibrium from the simulation's start (velocities do not matter) by algebra->root, stable or not. If none is within one scale of
  * the start, it follows the overdamped motion, with all inertia replaced by friction, to rest; it takes any other root last. Unknowns that no
  * force determines keep their start. The model must not depend on time. 1: found. 0: not found, see worst and rate. < 0: a status; LAG_EDOMAIN
- * and others from the model: no values at the start. Call lag_rest_free in every case. */
-int lag_rest_find(Rest *rest, lag_sim *sim, const lag_algebra *algebra);
-void lag_rest_free(Rest *rest);
+ * and others from the model: no values at the start. Call lag_equilibrium_free in every case. */
+int lag_equilibrium_find(Equilibrium *rest, lag_sim *sim, const lag_algebra *algebra);
+void lag_equilibrium_free(Equilibrium *rest);
 
 /* Whether a root is at, or so near that it cannot be told from, the state at rest moved by c times dx[n] (in SI). */
-int lag_rest_holds(Rest *rest, const double *dx, double c);
+int lag_equilibrium_holds(Equilibrium *rest, const double *dx, double c);
 
 /* Whether another equilibrium lies near that place, nearer to it than to the first one: then they form a curve. */
-int lag_rest_continues(Rest *rest, const lag_algebra *algebra, const double *dx, double c);
+int lag_equilibrium_continues(Equilibrium *rest, const lag_algebra *algebra, const double *dx, double c);
 
 #endif

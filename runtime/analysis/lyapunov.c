@@ -14,7 +14,7 @@ static const double resolution = 0.1;
 
 void lag_lyapunov_free(Lyapunov *l)
 {
-  pool_free(&l->pool);
+  lag_pool_free(&l->pool);
 }
 
 static double dot(const Lyapunov *l, int a, int b)
@@ -52,7 +52,7 @@ static int orthonormalise(Lyapunov *l, int counts)
 
 /* Pseudo-random vectors, the same in every run: axes of a model may be directions that its flow never leaves. Generator: D.E. Knuth, MMIX; the
  * upper bits of its states. */
-static void scatter(Lyapunov *l)
+static void random_vectors(Lyapunov *l)
 {
   uint64_t x = 1;
 
@@ -68,19 +68,19 @@ int lag_lyapunov_begin(Lyapunov *l, lag_sim *sim, int k, double from, double unt
   size_t kk = (size_t)k, nn = (size_t)(2 * m->nq + m->nz) * (size_t)(2 * m->nq + m->nz);
 
   *l = (Lyapunov){.n = 2 * m->nq + m->nz, .k = k, .from = from, .until = until, .begun = NAN, .t = NAN, .half = NAN};
-  l->sum = pool_doubles(&l->pool, kk);
-  l->at_half = pool_doubles(&l->pool, kk);
-  l->block_sum = pool_doubles(&l->pool, kk);
-  l->block = pool_doubles(&l->pool, (size_t)LAG_LYAPUNOV_BLOCKS * (kk + 1));
-  l->Y = pool_doubles(&l->pool, (size_t)l->n * kk);
-  l->J = pool_doubles(&l->pool, nn);
-  l->A = pool_doubles(&l->pool, nn);
-  l->B = pool_doubles(&l->pool, nn);
-  l->work = pool_doubles(&l->pool, lag_linear_work(m) + 1);
+  l->sum = lag_pool_doubles(&l->pool, kk);
+  l->at_half = lag_pool_doubles(&l->pool, kk);
+  l->block_sum = lag_pool_doubles(&l->pool, kk);
+  l->block = lag_pool_doubles(&l->pool, (size_t)LAG_LYAPUNOV_BLOCKS * (kk + 1));
+  l->Y = lag_pool_doubles(&l->pool, (size_t)l->n * kk);
+  l->J = lag_pool_doubles(&l->pool, nn);
+  l->A = lag_pool_doubles(&l->pool, nn);
+  l->B = lag_pool_doubles(&l->pool, nn);
+  l->work = lag_pool_doubles(&l->pool, lag_linear_work(m) + 1);
   if (l->pool.failed) {
     return LAG_ENOMEM;
   }
-  scatter(l);
+  random_vectors(l);
   orthonormalise(l, 0);
   return lag_sim_set_tangent(sim, k, l->Y);
 }
@@ -134,7 +134,7 @@ static double fastest(Lyapunov *l)
 }
 
 /* Df at y, t: adds its trace to the divergence since the last call, once that counts, and sets the longest next step. */
-static int look(Lyapunov *l, lag_sim *sim, double t, const double *y)
+static int examine_jacobian(Lyapunov *l, lag_sim *sim, double t, const double *y)
 {
   lag_problem *pb = &sim->pb;
   int n = l->n, nq = pb->nq;
@@ -164,7 +164,7 @@ static int look(Lyapunov *l, lag_sim *sim, double t, const double *y)
 
 void lag_lyapunov_event(Lyapunov *l, lag_sim *sim, double t, const double *before)
 {
-  look(l, sim, t, before); /* a failure shows at the end of this step, too */
+  examine_jacobian(l, sim, t, before); /* a failure shows at the end of this step, too */
 }
 
 int lag_lyapunov_step(Lyapunov *l, lag_sim *sim)
@@ -176,7 +176,7 @@ int lag_lyapunov_step(Lyapunov *l, lag_sim *sim)
   l->t = lag_sim_time(sim);
   l->divergence += counts ? sim->tangent_log : 0;
   sim->tangent_log = 0;
-  rc = rc ? rc : look(l, sim, l->t, sim->now);
+  rc = rc ? rc : examine_jacobian(l, sim, l->t, sim->now);
   if (rc) {
     return rc;
   }

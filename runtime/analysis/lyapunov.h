@@ -4,7 +4,7 @@
 #ifndef LAG_ANALYSIS_LYAPUNOV_H
 #define LAG_ANALYSIS_LYAPUNOV_H
 
-#include "analysis/pool.h"
+#include "analysis/memory_pool.h"
 #include "lag.h"
 
 enum { LAG_LYAPUNOV_BLOCKS = 20 };

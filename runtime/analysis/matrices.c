@@ -5,13 +5,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "analysis/blocks.h"
+#include "analysis/decoupled_blocks.h"
 #include "analysis/perturbation_noise.h"
 
 /* ---- Entries */
 
 /* noise[count] := at least the changes of values when the root moves to four corners of its uncertainty. */
-static void add_spread(Rest *r, lag_values *values, size_t count, const double *base, double *noise, double *scratch)
+static void add_spread(Equilibrium *r, lag_values *values, size_t count, const double *base, double *noise, double *scratch)
 {
   double *at = scratch + count;
 
@@ -30,17 +30,17 @@ static void add_spread(Rest *r, lag_values *values, size_t count, const double *
 }
 
 /* Values at the state at rest and their noise: of the model's numbers, of the values themselves, and of the state. */
-static int with_noise(Pool *pool, Rest *r, lag_values *values, size_t count, double **base, double **noise)
+static int with_noise(Pool *pool, Equilibrium *r, lag_values *values, size_t count, double **base, double **noise)
 {
   size_t more = (size_t)(r->sim->pb.model->np + r->sim->pb.model->nderived) + (size_t)r->n;
-  double *scratch = pool_doubles(pool, count + more);
+  double *scratch = lag_pool_doubles(pool, count + more);
 
-  *base = pool_doubles(pool, count);
-  *noise = pool_doubles(pool, count);
+  *base = lag_pool_doubles(pool, count);
+  *noise = lag_pool_doubles(pool, count);
   if (pool->failed) {
     return LAG_ENOMEM;
   }
-  int rc = lag_blur(r, values, r->x, count, *base, *noise, scratch);
+  int rc = lag_perturbation_noise(r, values, r->x, count, *base, *noise, scratch);
   if (rc) {
     return rc;
   }
@@ -48,24 +48,24 @@ static int with_noise(Pool *pool, Rest *r, lag_values *values, size_t count, dou
     (*noise)[i] += DBL_EPSILON * fabs((*base)[i]);
   }
   add_spread(r, values, count, *base, *noise, scratch);
-  lag_rest_place(r, r->x);
+  lag_equilibrium_state(r, r->x);
   return LAG_OK;
 }
 
 /* out := dr, then M. */
-static int linearisation(Rest *r, const double *x, double *out)
+static int linearisation(Equilibrium *r, const double *x, double *out)
 {
   size_t rows = (size_t)r->n * (size_t)r->sim->pb.n;
 
-  lag_rest_place(r, x);
+  lag_equilibrium_state(r, x);
   return lag_linearise(&r->sim->pb, r->sim->run->t, r->y, NULL, out, out + rows, r->work);
 }
 
-static int jacobian(Rest *r, const double *x, double *A)
+static int jacobian(Equilibrium *r, const double *x, double *A)
 {
   lag_problem *pb = &r->sim->pb;
 
-  lag_rest_place(r, x);
+  lag_equilibrium_state(r, x);
   memset(A, 0, (size_t)pb->nq * (size_t)pb->n * sizeof *A);
   for (int i = 0; i < pb->nq; i++) {
     A[i * pb->n + pb->nq + i] = 1;
@@ -73,7 +73,7 @@ static int jacobian(Rest *r, const double *x, double *A)
   return lag_jacobian(pb, r->sim->run->t, r->y, A + pb->nq * pb->n, r->work);
 }
 
-int lag_state_matrix(Pool *pool, Rest *rest, double **A, double **noise)
+int lag_state_matrix(Pool *pool, Equilibrium *rest, double **A, double **noise)
 {
   size_t n = (size_t)rest->sim->pb.n;
 
@@ -91,7 +91,7 @@ static double row_size(const double *row, int n)
 }
 
 /* K, C, M := entries divided by the weights of row and column. */
-static void weigh(Matrices *m, int ny, const double *dr, double *K, double *C, double *M)
+static void divide_by_weights(Matrices *m, int ny, const double *dr, double *K, double *C, double *M)
 {
   int nq = m->nq;
   const double *mass = dr + (size_t)(ny - nq) * (size_t)ny;
@@ -107,7 +107,7 @@ static void weigh(Matrices *m, int ny, const double *dr, double *K, double *C, d
 }
 
 /* Whether K is symmetric, and C zero, to rounding. */
-static void look_at(Matrices *m)
+static void classify(Matrices *m)
 {
   int nq = m->nq;
 
@@ -122,16 +122,16 @@ static void look_at(Matrices *m)
   }
 }
 
-static int entries(Matrices *m, Pool *pool, Rest *r)
+static int entries(Matrices *m, Pool *pool, Equilibrium *r)
 {
   int nq = m->nq, ny = r->sim->pb.n;
   size_t nn = (size_t)nq * (size_t)nq, rows = (size_t)r->n * (size_t)ny;
   double **const parts[] = {&m->K, &m->C, &m->M, &m->noise_K, &m->noise_C, &m->noise_M}, *values, *noise;
   int rc = with_noise(pool, r, linearisation, rows + nn, &values, &noise);
 
-  m->weight = pool_doubles(pool, (size_t)nq);
+  m->weight = lag_pool_doubles(pool, (size_t)nq);
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    *parts[i] = pool_doubles(pool, nn);
+    *parts[i] = lag_pool_doubles(pool, nn);
   }
   if (rc || pool->failed) {
     return rc ? rc : LAG_ENOMEM;
@@ -143,9 +143,9 @@ static int entries(Matrices *m, Pool *pool, Rest *r)
     m->definite &= own > 0;
     m->weight[i] = own > 0 ? sqrt(own) : size > 0 ? sqrt(size) : 1;
   }
-  weigh(m, ny, values, m->K, m->C, m->M);
-  weigh(m, ny, noise, m->noise_K, m->noise_C, m->noise_M);
-  look_at(m);
+  divide_by_weights(m, ny, values, m->K, m->C, m->M);
+  divide_by_weights(m, ny, noise, m->noise_K, m->noise_C, m->noise_M);
+  classify(m);
   return LAG_OK;
 }
 
@@ -176,14 +176,14 @@ static void settle_value(Matrices *m, int k)
 static int solve_block(Matrices *m, Pool *pool, const lag_algebra *algebra, int count, const int *at, int done)
 {
   size_t c = (size_t)count;
-  double *K = pool_doubles(pool, c * c), *M = pool_doubles(pool, c * c), *value = pool_doubles(pool, c);
-  double *x = pool_doubles(pool, c * c);
+  double *K = lag_pool_doubles(pool, c * c), *M = lag_pool_doubles(pool, c * c), *value = lag_pool_doubles(pool, c);
+  double *x = lag_pool_doubles(pool, c * c);
 
   if (pool->failed) {
     return LAG_ENOMEM;
   }
-  lag_block_take(m->nq, m->K, count, at, K);
-  lag_block_take(m->nq, m->M, count, at, M);
+  lag_block_copy(m->nq, m->K, count, at, K);
+  lag_block_copy(m->nq, m->M, count, at, M);
   int rc = algebra->symmetric(count, K, M, value, x);
   for (int k = 0; k < count && rc == LAG_OK; k++) {
     for (int i = 0; i < count; i++) {
@@ -229,15 +229,15 @@ static void sort_values(Matrices *m)
 static int signature(Matrices *m, Pool *pool, const lag_algebra *algebra)
 {
   size_t nq = (size_t)m->nq;
-  int *block = (int *)(void *)pool_doubles(pool, nq), *at = (int *)(void *)pool_doubles(pool, nq), rc = LAG_OK, done = 0;
+  int *block = (int *)(void *)lag_pool_doubles(pool, nq), *at = (int *)(void *)lag_pool_doubles(pool, nq), rc = LAG_OK, done = 0;
 
-  m->values = pool_doubles(pool, nq);
-  m->zero = pool_doubles(pool, nq);
-  m->vectors = pool_doubles(pool, nq * nq);
+  m->values = lag_pool_doubles(pool, nq);
+  m->zero = lag_pool_doubles(pool, nq);
+  m->vectors = lag_pool_doubles(pool, nq * nq);
   if (pool->failed) {
     return LAG_ENOMEM;
   }
-  lag_blocks(m->nq, m->K, m->M, block);
+  lag_decoupled_blocks(m->nq, m->K, m->M, block);
   for (int first = 0; first < m->nq && rc == LAG_OK; first++) {
     int count = lag_block_members(m->nq, block, first, at);
     rc = count > 0 ? solve_block(m, pool, algebra, count, at, done) : LAG_OK;
@@ -251,7 +251,7 @@ static int signature(Matrices *m, Pool *pool, const lag_algebra *algebra)
   return rc == LAG_EINVAL ? LAG_OK : rc;
 }
 
-int lag_matrices_find(Matrices *m, Pool *pool, Rest *rest, const lag_algebra *algebra)
+int lag_matrices_find(Matrices *m, Pool *pool, Equilibrium *rest, const lag_algebra *algebra)
 {
   *m = (Matrices){.nq = rest->sim->pb.nq, .lowering = -1};
   int rc = entries(m, pool, rest);

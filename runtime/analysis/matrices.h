@@ -18,9 +18,9 @@ typedef struct Matrices {
 } Matrices;
 
 /* Computes *m at the state at rest. Memory is the pool's. LAG_OK, LAG_ENOMEM, the model's status, LAG_EMETHOD. */
-int lag_matrices_find(Matrices *m, Pool *pool, Rest *rest, const lag_algebra *algebra);
+int lag_matrices_find(Matrices *m, Pool *pool, Equilibrium *rest, const lag_algebra *algebra);
 
 /* A[n * n] of y' = A y at rest, n = 2 nq + nz, and the noise of its entries. Memory and errors as above. */
-int lag_state_matrix(Pool *pool, Rest *rest, double **A, double **noise);
+int lag_state_matrix(Pool *pool, Equilibrium *rest, double **A, double **noise);
 
 #endif

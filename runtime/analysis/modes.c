@@ -10,9 +10,9 @@
 #include "analysis/matrices.h"
 #include "analysis/spectrum.h"
 
-typedef struct Work {
+typedef struct ModeSearch {
   Modes *out;
-  Rest *rest;
+  Equilibrium *rest;
   const lag_algebra *algebra;
   lag_problem *pb;
   int nq, n, ny;        /* n = nq + nz, ny = 2 nq + nz */
@@ -21,25 +21,25 @@ typedef struct Work {
   int conserves;        /* the model has a conserved energy, and no states beside it */
   double *kernel;       /* [n * nkernel] zero modes in SI, columns */
   int nkernel;
-} Work;
+} ModeSearch;
 
 /* ---- Shapes */
 
 /* Amplitude of component i of a shape (coordinates, then states), in scales. */
-static double extent(const Work *w, int i, double re, double im)
+static double amplitude(const ModeSearch *w, int i, double re, double im)
 {
   return hypot(re, im) / w->rest->scale[i];
 }
 
 /* The component to be normalised to 1: the coordinate with the largest kinetic energy; if only states move, the state with the largest
  * amplitude. */
-static int reference(const Work *w, const double *re, const double *im)
+static int reference(const ModeSearch *w, const double *re, const double *im)
 {
   int best = 0, state = w->nq;
   double most = -1, far = 0, state_far = 0;
 
   for (int i = 0; i < w->n; i++) {
-    double e = extent(w, i, re[i], im[i]);
+    double e = amplitude(w, i, re[i], im[i]);
     if (i < w->nq) {
       double kinetic = hypot(re[i], im[i]) * w->m.weight[i];
       far = fmax(far, e);
@@ -56,9 +56,9 @@ static int reference(const Work *w, const double *re, const double *im)
 }
 
 /* Adds a mode with the shape re + i im, [n] with a stride. */
-static int add_mode(Work *w, Mode mode, const double *re, const double *im, int stride)
+static int add_mode(ModeSearch *w, Mode mode, const double *re, const double *im, int stride)
 {
-  double *shape_re = pool_doubles(&w->out->pool, (size_t)w->n), *shape_im = pool_doubles(&w->out->pool, (size_t)w->n);
+  double *shape_re = lag_pool_doubles(&w->out->pool, (size_t)w->n), *shape_im = lag_pool_doubles(&w->out->pool, (size_t)w->n);
 
   if (w->out->pool.failed) {
     return LAG_ENOMEM;
@@ -92,7 +92,7 @@ static void swap(double *a, double *b)
 }
 
 /* A basis of the kernel with as many zeros as possible: Gauss-Jordan elimination of its vectors, measured in scales. */
-static void reduce_kernel(Work *w)
+static void reduce_kernel(ModeSearch *w)
 {
   int k = w->nkernel, n = w->n;
   double *v = w->kernel;
@@ -102,7 +102,7 @@ static void reduce_kernel(Work *w)
     double most = 0;
     for (int i = 0; i < n; i++) {
       for (int j = done; j < k; j++) {
-        double e = extent(w, i, v[i * k + j], 0);
+        double e = amplitude(w, i, v[i * k + j], 0);
         if (e > most * (1 + 1e-9)) {
           most = e;
           row = i;
@@ -128,17 +128,17 @@ static void reduce_kernel(Work *w)
 }
 
 /* Whether all forces stay 0 along x[n], or along a curve that begins so (a rotation): tested near and as far as `most` scales, on both sides. */
-static int is_free(Work *w, const double *x, double most)
+static int is_free(ModeSearch *w, const double *x, double most)
 {
   const double steps[] = {-most / 3, most / 3, -most, most};
   double far = 0;
 
   for (int i = 0; i < w->n; i++) {
-    far = fmax(far, extent(w, i, x[i], 0));
+    far = fmax(far, amplitude(w, i, x[i], 0));
   }
   for (size_t k = 0; k < sizeof steps / sizeof *steps && far > 0; k++) {
     double c = steps[k] / far;
-    if (!lag_rest_holds(w->rest, x, c) && !lag_rest_continues(w->rest, w->algebra, x, c)) {
+    if (!lag_equilibrium_holds(w->rest, x, c) && !lag_equilibrium_continues(w->rest, w->algebra, x, c)) {
       return 0;
     }
   }
@@ -147,7 +147,7 @@ static int is_free(Work *w, const double *x, double most)
 
 /* Whether zero modes that are free one by one are free together, which x^2 y^2 is not along x and y: a few sums are tried, with coefficients in
  * no simple ratio. */
-static int free_together(Work *w, double *x)
+static int free_together(ModeSearch *w, double *x)
 {
   int k = w->nkernel;
 
@@ -166,9 +166,9 @@ static int free_together(Work *w, double *x)
   return 1;
 }
 
-static int add_zero_modes(Work *w)
+static int add_zero_modes(ModeSearch *w)
 {
-  double *x = pool_doubles(&w->out->pool, (size_t)w->n);
+  double *x = lag_pool_doubles(&w->out->pool, (size_t)w->n);
   int rc = x ? LAG_OK : LAG_ENOMEM, all = 1;
 
   if (rc == LAG_OK) {
@@ -177,7 +177,7 @@ static int add_zero_modes(Work *w)
   for (int k = 0; k < w->nkernel && rc == LAG_OK; k++) {
     for (int i = 0; i < w->n; i++) {
       x[i] = w->kernel[i * w->nkernel + k];
-      x[i] = extent(w, i, x[i], 0) < 1e-12 ? 0 : x[i]; /* after reduction the largest is about 1 */
+      x[i] = amplitude(w, i, x[i], 0) < 1e-12 ? 0 : x[i]; /* after reduction the largest is about 1 */
     }
     Mode mode = {.repeats = 1};
     mode.free = is_free(w, x, 0.3);
@@ -191,13 +191,13 @@ static int add_zero_modes(Work *w)
 /* ---- Two ways to the modes */
 
 /* Modes from the eigenvalues w^2 of the symmetric problem: a negative one is a pair +-s. */
-static int modes_of_values(Work *w)
+static int modes_of_values(ModeSearch *w)
 {
   const Matrices *m = &w->m;
   int nq = w->nq, rc = LAG_OK;
 
   w->nkernel = m->flat;
-  w->kernel = pool_doubles(&w->out->pool, (size_t)w->n * (size_t)w->nkernel);
+  w->kernel = lag_pool_doubles(&w->out->pool, (size_t)w->n * (size_t)w->nkernel);
   if (!w->kernel) {
     return LAG_ENOMEM;
   }
@@ -219,7 +219,7 @@ static int modes_of_values(Work *w)
 }
 
 /* Whether the eigenvalue is the conjugate, or the negative, of one that is listed. */
-static int is_second_half(const Work *w, const Spectrum *s, int k)
+static int is_second_half(const ModeSearch *w, const Spectrum *s, int k)
 {
   return s->im[k] < 0 || (w->out->pairs && s->re[k] < 0);
 }
@@ -235,12 +235,12 @@ static int is_first(const Spectrum *s, int k)
   return 1;
 }
 
-static int modes_of_matrix(Work *w)
+static int modes_of_matrix(ModeSearch *w)
 {
   Pool *pool = &w->out->pool;
   Spectrum s;
   size_t n = (size_t)w->n;
-  double *A, *noise, *re = pool_doubles(pool, n), *im = pool_doubles(pool, n);
+  double *A, *noise, *re = lag_pool_doubles(pool, n), *im = lag_pool_doubles(pool, n);
   int rc = lag_state_matrix(pool, w->rest, &A, &noise);
 
   rc = rc ? rc : pool->failed ? LAG_ENOMEM : lag_spectrum(&s, pool, w->algebra, w->ny, A, noise);
@@ -250,7 +250,7 @@ static int modes_of_matrix(Work *w)
   int minimum = w->conserves && w->m.lowering == 0 && w->m.flat == 0; /* then real parts are rounding */
   w->nkernel = s.nkernel;
   w->out->drifts = s.zeros > s.nkernel;
-  w->kernel = pool_doubles(pool, n * (size_t)s.nkernel);
+  w->kernel = lag_pool_doubles(pool, n * (size_t)s.nkernel);
   for (int i = 0; i < w->n && w->kernel; i++) {
     int row = i < w->nq ? i : w->nq + i;
     for (int k = 0; k < s.nkernel; k++) {
@@ -272,7 +272,7 @@ static int modes_of_matrix(Work *w)
 
 /* ---- Stability */
 
-static Verdict judge(const Work *w)
+static Verdict decide_stability(const ModeSearch *w)
 {
   const Modes *out = w->out;
   int grows = 0, stays = 0, zeros = 0, bound = 0, defective = 0;
@@ -290,10 +290,10 @@ static Verdict judge(const Work *w)
     return LAG_UNSTABLE;
   }
   if (w->rest->pole) {
-    return LAG_POLE;
+    return LAG_COORDINATE_POLE;
   }
   if (w->rest->rough) {
-    return LAG_ROUGH;
+    return LAG_NONSMOOTH;
   }
   if (stays == 0 && zeros == 0) {
     return LAG_DECAYS;
@@ -302,16 +302,16 @@ static Verdict judge(const Work *w)
     return LAG_DEFECTIVE;
   }
   if (bound) {
-    return LAG_FLAT;
+    return LAG_DEGENERATE;
   }
   if (zeros && !out->together) {
-    return LAG_CROSSED;
+    return LAG_FREE_SEPARATELY;
   }
   if (w->conserves && out->lowering == 0) {
-    return zeros != w->m.flat ? LAG_FLAT : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
+    return zeros != w->m.flat ? LAG_DEGENERATE : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
   }
   if (w->loses && out->lowering == 0 && zeros == 0 && w->m.flat == 0) {
-    return LAG_BRAKED;
+    return LAG_DISSIPATIVE_MINIMUM;
   }
   if (w->conserves && out->lowering > 0) {
     return LAG_GYROSCOPIC;
@@ -324,9 +324,9 @@ const char *lag_verdict_name(Verdict verdict)
   switch (verdict) {
   case LAG_UNSTABLE: return "unstable";
   case LAG_DECAYS: return "asymptotically stable";
-  case LAG_MINIMUM: case LAG_BRAKED: return "stable";
+  case LAG_MINIMUM: case LAG_DISSIPATIVE_MINIMUM: return "stable";
   case LAG_NEUTRAL: return "neutral";
-  case LAG_GYROSCOPIC: case LAG_FLAT: case LAG_CROSSED: case LAG_POLE: case LAG_ROUGH: case LAG_DEFECTIVE: case LAG_CENTRE: break;
+  case LAG_GYROSCOPIC: case LAG_DEGENERATE: case LAG_FREE_SEPARATELY: case LAG_COORDINATE_POLE: case LAG_NONSMOOTH: case LAG_DEFECTIVE: case LAG_CENTRE: break;
   }
   return "undecided";
 }
@@ -350,10 +350,10 @@ static int by_class(const void *a, const void *b)
   return (x->re < y->re) - (x->re > y->re);
 }
 
-int lag_modes_find(Modes *out, Rest *rest, const lag_algebra *algebra)
+int lag_modes_find(Modes *out, Equilibrium *rest, const lag_algebra *algebra)
 {
   lag_problem *pb = &rest->sim->pb;
-  Work w = {.out = out, .rest = rest, .algebra = algebra, .pb = pb, .nq = pb->nq, .n = rest->n, .ny = pb->n};
+  ModeSearch w = {.out = out, .rest = rest, .algebra = algebra, .pb = pb, .nq = pb->nq, .n = rest->n, .ny = pb->n};
 
   w.conserves = (pb->model->flags & LAG_CONSERVES_ENERGY) != 0 && pb->nz == 0;
   w.loses = (pb->model->flags & LAG_LOSES_ENERGY) != 0 && pb->nz == 0;
@@ -366,12 +366,12 @@ int lag_modes_find(Modes *out, Rest *rest, const lag_algebra *algebra)
   out->lowering = w.m.lowering;
   rc = pb->nz == 0 && w.m.undamped && out->lowering >= 0 ? modes_of_values(&w) : modes_of_matrix(&w);
   qsort(out->mode, (size_t)out->n, sizeof *out->mode, by_class);
-  out->verdict = judge(&w);
+  out->verdict = decide_stability(&w);
   return rc;
 }
 
 void lag_modes_free(Modes *modes)
 {
   free(modes->mode);
-  pool_free(&modes->pool);
+  lag_pool_free(&modes->pool);
 }

@@ -18,13 +18,13 @@ typedef enum Verdict {
   LAG_UNSTABLE,    /* a mode grows */
   LAG_DECAYS,      /* all modes decay: asymptotically stable */
   LAG_MINIMUM,     /* a strict minimum of a conserved energy: stable (Lagrange, Dirichlet) */
-  LAG_BRAKED,      /* a strict minimum of an energy that nothing raises: stable (Thomson & Tait; Chetaev) */
+  LAG_DISSIPATIVE_MINIMUM,      /* a strict minimum of an energy that nothing raises: stable (Thomson & Tait; Chetaev) */
   LAG_NEUTRAL,     /* free motions; otherwise a minimum, or all modes decay */
   LAG_GYROSCOPIC,  /* not decided: all modes oscillate, but the energy has no minimum */
-  LAG_FLAT,        /* not decided: a zero mode that is no free motion */
-  LAG_CROSSED,     /* not decided: zero modes that are free one by one, but not together */
-  LAG_POLE,        /* not decided: a coordinate loses its meaning here */
-  LAG_ROUGH,       /* not decided: derivatives of forces jump here, or have no limit */
+  LAG_DEGENERATE,        /* not decided: a zero mode that is no free motion */
+  LAG_FREE_SEPARATELY,     /* not decided: zero modes that are free one by one, but not together */
+  LAG_COORDINATE_POLE,        /* not decided: a coordinate loses its meaning here */
+  LAG_NONSMOOTH,       /* not decided: derivatives of forces jump here, or have no limit */
   LAG_DEFECTIVE,   /* not decided: a multiple imaginary eigenvalue that lacks shapes */
   LAG_CENTRE       /* not decided: some modes neither grow nor decay, and no energy is known to be conserved */
 } Verdict;
@@ -42,7 +42,7 @@ typedef struct Modes {
 
 /* The modes about the state at rest. LAG_OK, LAG_ENOMEM, LAG_ESINGULAR, LAG_EMETHOD: eigenvalues did not
  * converge. Call lag_modes_free in every case. */
-int lag_modes_find(Modes *modes, Rest *rest, const lag_algebra *algebra);
+int lag_modes_find(Modes *modes, Equilibrium *rest, const lag_algebra *algebra);
 void lag_modes_free(Modes *modes);
 
 /* "unstable", "asymptotically stable", "stable", "neutral", "undecided". */

@@ -11,7 +11,7 @@ enum { MOST_TURNS = 32 };
 static const double MOVE = 1.0 / (1 << 26);
 
 /* Perturbs every MOST_TURNS-th element, of those whose turn it is, of z[n], the part from `first` on of one list. */
-static void move(double *z, int n, int first, int turn)
+static void perturb(double *z, int n, int first, int turn)
 {
   for (int i = 0; i < n; i++) {
     int at = first + i;
@@ -21,7 +21,7 @@ static void move(double *z, int n, int first, int turn)
   }
 }
 
-int lag_blur(Rest *r, lag_values *values, const double *x, size_t count, double *base, double *noise, double *scratch)
+int lag_perturbation_noise(Equilibrium *r, lag_values *values, const double *x, size_t count, double *base, double *noise, double *scratch)
 {
   lag_problem *pb = &r->sim->pb;
   const double *given = pb->p;
@@ -33,11 +33,11 @@ int lag_blur(Rest *r, lag_values *values, const double *x, size_t count, double 
   for (int turn = 0; turn < turns && rc == 0; turn++) {
     memcpy(p, given, (size_t)np * sizeof *p);
     memcpy(at, x, (size_t)n * sizeof *at);
-    move(p, np, 0, turn);
+    perturb(p, np, 0, turn);
     if (pb->model->derive) {
       pb->model->derive(p);
     }
-    move(at, n, np, turn);
+    perturb(at, n, np, turn);
     pb->p = p;
     if (values(r, at, out) == 0 && lag_not_finite((int)count, out) < 0) {
       for (size_t i = 0; i < count; i++) {

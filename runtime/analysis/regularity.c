@@ -21,7 +21,7 @@ static double least_pivot(int n, double *M, const double *size)
   return least;
 }
 
-int lag_place_is_pole(Rest *r)
+int lag_is_coordinate_pole(Equilibrium *r)
 {
   int n = r->n, nq = r->sim->pb.nq;
   double *size = r->dx;
@@ -29,25 +29,25 @@ int lag_place_is_pole(Rest *r)
   for (int i = 0; i < n; i++) { /* a tenth of a scale away, along no diagonal */
     r->trial[i] = r->x[i] + 0.1 / (1 + 0.3 * (i % 3));
   }
-  if (lag_rest_equations(r, r->trial, r->f, NULL)) {
+  if (lag_equilibrium_equations(r, r->trial, r->f, NULL)) {
     return 0;
   }
   for (int i = 0; i < nq; i++) {
     size[i] = fabs(r->M[i * nq + i]);
   }
   double beside = least_pivot(nq, r->M, size);
-  double here = lag_rest_equations(r, r->x, r->f, NULL) ? 0 : least_pivot(nq, r->M, size);
+  double here = lag_equilibrium_equations(r, r->x, r->f, NULL) ? 0 : least_pivot(nq, r->M, size);
   return here < 1e-9 * beside;
 }
 
 /* to[n * n] := derivatives of the forces with each unknown displaced by +-c. */
-static int moved(Rest *r, int pattern, double c, double *to)
+static int displaced_derivatives(Equilibrium *r, int pattern, double c, double *to)
 {
   for (int i = 0; i < r->n; i++) {
     double sign = (pattern & 1 ? -1 : 1) * (pattern & 2 && i % 2 ? -1 : 1);
     r->trial[i] = r->x[i] + sign * c;
   }
-  return lag_rest_equations(r, r->trial, r->f, to);
+  return lag_equilibrium_equations(r, r->trial, r->f, to);
 }
 
 /* Whether derivatives change within 1e-9 of a scale as much as within 1e-3; smooth ones change a million times less. */
@@ -68,13 +68,13 @@ static int changes_at_once(int n, const double *here, const double *near, const 
   return 0;
 }
 
-int lag_place_is_rough(Rest *r)
+int lag_is_nonsmooth(Equilibrium *r)
 {
   double *here = r->J, *near = r->W, *far = r->scratch;
   int rough = 0;
 
   for (int pattern = 0; pattern < 4 && !rough; pattern++) {
-    rough = moved(r, pattern, 0, here) == 0 && moved(r, pattern, 1e-9, near) == 0 && moved(r, pattern, 1e-3, far) == 0 &&
+    rough = displaced_derivatives(r, pattern, 0, here) == 0 && displaced_derivatives(r, pattern, 1e-9, near) == 0 && displaced_derivatives(r, pattern, 1e-3, far) == 0 &&
             changes_at_once(r->n, here, near, far);
   }
   return rough;

@@ -2,12 +2,12 @@
 #ifndef LAG_ANALYSIS_REGULARITY_H
 #define LAG_ANALYSIS_REGULARITY_H
 
-#include "analysis/rest.h"
+#include "analysis/equilibrium_state.h"
 
 /* Whether the mass matrix is nearly singular here and not nearby: a coordinate loses its meaning, as longitude does at a pole. */
-int lag_place_is_pole(Rest *rest);
+int lag_is_coordinate_pole(Equilibrium *rest);
 
 /* Whether derivatives of forces jump here, or have no limit. */
-int lag_place_is_rough(Rest *rest);
+int lag_is_nonsmooth(Equilibrium *rest);
 
 #endif

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "analysis/blocks.h"
+#include "analysis/decoupled_blocks.h"
 
 enum { MOST_STAGES = 8 };
 
@@ -19,7 +19,7 @@ typedef struct Stage {
   double *Q, *C;
 } Stage;
 
-typedef struct Work {
+typedef struct SpectrumSearch {
   Spectrum *s;
   Pool *pool;
   const lag_algebra *algebra;
@@ -30,7 +30,7 @@ typedef struct Work {
   int m;
   Stage stage[MOST_STAGES];
   int nstages;
-} Work;
+} SpectrumSearch;
 
 static double frobenius(int n, const double *A)
 {
@@ -45,10 +45,10 @@ static double frobenius(int n, const double *A)
 /* ---- Zeros */
 
 /* B := Q'A Q of m rows. */
-static int rotate(Work *w, const double *Q, double *B)
+static int rotate(SpectrumSearch *w, const double *Q, double *B)
 {
   int m = w->m;
-  double *AQ = pool_doubles(w->pool, (size_t)m * (size_t)m);
+  double *AQ = lag_pool_doubles(w->pool, (size_t)m * (size_t)m);
 
   if (!AQ) {
     return LAG_ENOMEM;
@@ -71,18 +71,18 @@ static int rotate(Work *w, const double *Q, double *B)
 }
 
 /* Deflates the kernel; *more = 0 when there is none. */
-static int deflate(Work *w, int *more)
+static int deflate(SpectrumSearch *w, int *more)
 {
   int m = w->m, rank = m;
   size_t mm = (size_t)m * (size_t)m;
-  double *Q = pool_doubles(w->pool, mm);
+  double *Q = lag_pool_doubles(w->pool, mm);
   int rc = Q ? w->algebra->kernel(m, w->A, 8 * sqrt(m) * w->noise, Q, &rank) : LAG_ENOMEM;
 
   *more = rc == LAG_OK && rank < m;
   if (!*more) {
     return rc;
   }
-  double *B = pool_doubles(w->pool, mm), *rest = pool_doubles(w->pool, mm), *C = pool_doubles(w->pool, mm);
+  double *B = lag_pool_doubles(w->pool, mm), *rest = lag_pool_doubles(w->pool, mm), *C = lag_pool_doubles(w->pool, mm);
   if (w->pool->failed || (rc = rotate(w, Q, B)) != 0) {
     return LAG_ENOMEM;
   }
@@ -96,7 +96,7 @@ static int deflate(Work *w, int *more)
   return LAG_OK;
 }
 
-static int take_zeros(Work *w)
+static int take_zeros(SpectrumSearch *w)
 {
   Spectrum *s = w->s;
   int more = 1, rc = LAG_OK;
@@ -109,7 +109,7 @@ static int take_zeros(Work *w)
   }
   const Stage *first = &w->stage[0];
   s->nkernel = s->n - first->rank;
-  s->kernel = pool_doubles(w->pool, (size_t)s->n * (size_t)s->nkernel);
+  s->kernel = lag_pool_doubles(w->pool, (size_t)s->n * (size_t)s->nkernel);
   for (int i = 0; i < s->n && s->kernel; i++) {
     for (int k = 0; k < s->nkernel; k++) {
       s->kernel[i * s->nkernel + k] = w->scale[i] * first->Q[i * s->n + first->rank + k];
@@ -143,10 +143,10 @@ static void find_clusters(int m, const double *re, const double *im, const doubl
 }
 
 /* *count := number of eigenvectors of the eigenvalue re + i im: the kernel of A - re - i im as a real matrix of 2m rows. */
-static int eigenvectors(Work *w, double re, double im, int *count)
+static int eigenvectors(SpectrumSearch *w, double re, double im, int *count)
 {
   int m = w->m, m2 = 2 * m, rank = m2;
-  double *E = pool_doubles(w->pool, 4 * (size_t)m * (size_t)m), *Q = pool_doubles(w->pool, 4 * (size_t)m * (size_t)m);
+  double *E = lag_pool_doubles(w->pool, 4 * (size_t)m * (size_t)m), *Q = lag_pool_doubles(w->pool, 4 * (size_t)m * (size_t)m);
 
   if (w->pool->failed) {
     return LAG_ENOMEM;
@@ -165,7 +165,7 @@ static int eigenvectors(Work *w, double re, double im, int *count)
 }
 
 /* Replaces the members of a cluster by their mean; repeats := their number where eigenvectors are missing. */
-static int settle_cluster(Work *w, int first, const double *cluster, double *uncertain)
+static int settle_cluster(SpectrumSearch *w, int first, const double *cluster, double *uncertain)
 {
   Spectrum *s = w->s;
   double re = 0, im = 0;
@@ -197,11 +197,11 @@ static int settle_cluster(Work *w, int first, const double *cluster, double *unc
 
 /* ---- All of them */
 
-static int solve(Work *w)
+static int solve(SpectrumSearch *w)
 {
   Spectrum *s = w->s;
   size_t m = (size_t)w->m;
-  double *A = pool_doubles(w->pool, m * m), *uncertain = pool_doubles(w->pool, m), *cluster = pool_doubles(w->pool, m);
+  double *A = lag_pool_doubles(w->pool, m * m), *uncertain = lag_pool_doubles(w->pool, m), *cluster = lag_pool_doubles(w->pool, m);
 
   if (w->pool->failed) {
     return LAG_ENOMEM;
@@ -226,10 +226,10 @@ static int solve(Work *w)
 }
 
 /* Eigenvector k of the stage's matrix from that of its block: x[m] := Q [x; C x/lambda], in place. */
-static int lift(Work *w, const Stage *st, int k)
+static int extend_eigenvector(SpectrumSearch *w, const Stage *st, int k)
 {
   Spectrum *s = w->s;
-  double l2 = s->re[k] * s->re[k] + s->im[k] * s->im[k], *x = pool_doubles(w->pool, 4 * (size_t)st->m);
+  double l2 = s->re[k] * s->re[k] + s->im[k] * s->im[k], *x = lag_pool_doubles(w->pool, 4 * (size_t)st->m);
   double *y = x + 2 * st->m;
 
   if (!x) {
@@ -261,14 +261,14 @@ static int lift(Work *w, const Stage *st, int k)
 }
 
 /* Extends eigenvectors of the deflated matrix to those of the whole, and undoes balancing. */
-static int lift_all(Work *w)
+static int extend_eigenvectors(SpectrumSearch *w)
 {
   Spectrum *s = w->s;
   int rc = LAG_OK;
 
   for (int k = 0; k < s->count; k++) {
     for (int i = w->nstages; i-- > 0 && rc == LAG_OK;) {
-      rc = lift(w, &w->stage[i], k);
+      rc = extend_eigenvector(w, &w->stage[i], k);
     }
     for (int i = 0; i < s->n; i++) {
       s->vre[i * s->count + k] *= w->scale[i];
@@ -284,18 +284,18 @@ static int allocate(Spectrum *s, Pool *pool, int n, int count)
   size_t c = (size_t)count, size = (size_t)n * c;
 
   s->count = count;
-  s->re = pool_doubles(pool, c);
-  s->im = pool_doubles(pool, c);
-  s->repeats = pool_doubles(pool, c);
-  s->vre = pool_doubles(pool, size);
-  s->vim = pool_doubles(pool, size);
+  s->re = lag_pool_doubles(pool, c);
+  s->im = lag_pool_doubles(pool, c);
+  s->repeats = lag_pool_doubles(pool, c);
+  s->vre = lag_pool_doubles(pool, size);
+  s->vim = lag_pool_doubles(pool, size);
   return pool->failed ? LAG_ENOMEM : LAG_OK;
 }
 
 /* A := D^-1 A D, and noise likewise, with the D that balances the terms of the entries. */
-static int balance(Work *w, int n, double *A, double *noise)
+static int balance(SpectrumSearch *w, int n, double *A, double *noise)
 {
-  double *terms = pool_doubles(w->pool, (size_t)n * (size_t)n);
+  double *terms = lag_pool_doubles(w->pool, (size_t)n * (size_t)n);
 
   for (int i = 0; i < n * n && terms; i++) {
     terms[i] = fmax(fabs(A[i]), noise[i] / DBL_EPSILON);
@@ -312,10 +312,10 @@ static int balance(Work *w, int n, double *A, double *noise)
 /* Spectrum of one block A[n * n], which is destroyed, as is noise. */
 static int solve_block(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise)
 {
-  Work w = {.s = s, .pool = pool, .algebra = algebra, .A = A, .m = n};
+  SpectrumSearch w = {.s = s, .pool = pool, .algebra = algebra, .A = A, .m = n};
 
   *s = (Spectrum){.n = n};
-  w.scale = pool_doubles(pool, (size_t)n);
+  w.scale = lag_pool_doubles(pool, (size_t)n);
   int rc = w.scale ? balance(&w, n, A, noise) : LAG_ENOMEM;
   if (rc) {
     return rc;
@@ -327,7 +327,7 @@ static int solve_block(Spectrum *s, Pool *pool, const lag_algebra *algebra, int 
     return rc ? rc : LAG_ENOMEM;
   }
   rc = w.m > 0 ? solve(&w) : LAG_OK;
-  return rc ? rc : lift_all(&w);
+  return rc ? rc : extend_eigenvectors(&w);
 }
 
 /* Copies the columns of a block, over its n rows at[], to columns of the whole from `to` on. */
@@ -351,7 +351,7 @@ static int join(Spectrum *s, Pool *pool, int nparts, const Spectrum *part, const
     s->zeros += part[b].zeros;
   }
   s->nkernel = nkernel;
-  s->kernel = pool_doubles(pool, (size_t)s->n * (size_t)nkernel);
+  s->kernel = lag_pool_doubles(pool, (size_t)s->n * (size_t)nkernel);
   if (allocate(s, pool, s->n, count) || pool->failed) {
     return LAG_ENOMEM;
   }
@@ -375,25 +375,25 @@ static int join(Spectrum *s, Pool *pool, int nparts, const Spectrum *part, const
 int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, const double *A, const double *noise)
 {
   size_t size = (size_t)n;
-  int *block = (int *)(void *)pool_doubles(pool, size), *member = (int *)(void *)pool_doubles(pool, size), nparts = 0, done = 0;
-  Spectrum *part = (Spectrum *)(void *)pool_doubles(pool, size * (sizeof *part / sizeof(double) + 1));
+  int *block = (int *)(void *)lag_pool_doubles(pool, size), *member = (int *)(void *)lag_pool_doubles(pool, size), nparts = 0, done = 0;
+  Spectrum *part = (Spectrum *)(void *)lag_pool_doubles(pool, size * (sizeof *part / sizeof(double) + 1));
 
   *s = (Spectrum){.n = n};
   if (pool->failed) {
     return LAG_ENOMEM;
   }
-  lag_blocks(n, A, NULL, block);
+  lag_decoupled_blocks(n, A, NULL, block);
   for (int first = 0; first < n; first++) {
     int m = lag_block_members(n, block, first, member + done);
-    double *a = pool_doubles(pool, (size_t)m * (size_t)m), *e = pool_doubles(pool, (size_t)m * (size_t)m);
+    double *a = lag_pool_doubles(pool, (size_t)m * (size_t)m), *e = lag_pool_doubles(pool, (size_t)m * (size_t)m);
     if (pool->failed) {
       return LAG_ENOMEM;
     }
     if (m == 0) {
       continue;
     }
-    lag_block_take(n, A, m, member + done, a);
-    lag_block_take(n, noise, m, member + done, e);
+    lag_block_copy(n, A, m, member + done, a);
+    lag_block_copy(n, noise, m, member + done, e);
     int rc = solve_block(&part[nparts++], pool, algebra, m, a, e);
     if (rc) {
       return rc;

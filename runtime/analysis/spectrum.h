@@ -3,7 +3,7 @@
 #ifndef LAG_ANALYSIS_SPECTRUM_H
 #define LAG_ANALYSIS_SPECTRUM_H
 
-#include "analysis/pool.h"
+#include "analysis/memory_pool.h"
 #include "lag.h"
 
 typedef struct Spectrum {

@@ -28,7 +28,7 @@ static double seconds_since(const struct timespec *t)
 }
 
 /* After each step: tests for signals, updates the progress line (on a terminal, after 1 s, at most 5 times a second). */
-int app_after_step(void *context, const lag_sim *sim)
+int lag_app_after_step(void *context, const lag_sim *sim)
 {
   App *app = context;
 
@@ -49,11 +49,11 @@ static int choose_end(App *app)
   double t = lag_sim_time(app->sim);
 
   if (app->until == t) {
-    return app_error(a, "nothing to compute: the run is at t = %g s and ends at %g s; write --until with a later time", t,
+    return lag_app_error(a, "nothing to compute: the run is at t = %g s and ends at %g s; write --until with a later time", t,
                      app->until);
   }
   if (app->resumed && (app->until - t) * (t - app->scene->t0) < 0) {
-    return app_error(a, "%s stands at t = %g s; --until %g would go back", a->resume, t, app->until);
+    return lag_app_error(a, "%s stands at t = %g s; --until %g would go back", a->resume, t, app->until);
   }
   return 0;
 }
@@ -82,7 +82,7 @@ static int same_file(const char *a, const char *b)
   return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino && S_ISREG(x.st_mode);
 }
 
-int app_check_outputs(const App *app)
+int lag_app_check_outputs(const App *app)
 {
   const Args *a = &app->args;
   const char *const to[] = {a->out, a->svg, a->html, a->save, a->events}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume};
@@ -91,13 +91,13 @@ int app_check_outputs(const App *app)
   for (int i = 0; i < N; i++) {
     for (int k = 0; to[i] && k < KEPT; k++) {
       if (keep[k] && same_file(to[i], keep[k]) && !(to[i] == a->save && keep[k] == a->resume)) {
-        return app_error(a, "%s would be overwritten: it is %s; write to another file", to[i],
+        return lag_app_error(a, "%s would be overwritten: it is %s; write to another file", to[i],
                          k == 0 ? "the model" : k == 1 ? "this program" : "the state to go on from");
       }
     }
     for (int k = 0; to[i] && k < i; k++) {
       if (to[k] && (strcmp(to[i], to[k]) == 0 ? strcmp(to[i], "/dev/null") != 0 : same_file(to[i], to[k]))) {
-        return app_error(a, "%s would be written twice; give each result a file of its own", to[i]);
+        return lag_app_error(a, "%s would be written twice; give each result a file of its own", to[i]);
       }
     }
   }
@@ -108,15 +108,15 @@ int app_check_outputs(const App *app)
 static int choose_grid(App *app)
 {
   const Args *a = &app->args;
-  double *grid = lag_sim_rows(app->sim), every = app->resumed ? grid[1] : app->scene->every;
+  double *grid = lag_sim_output_grid(app->sim), every = app->resumed ? grid[1] : app->scene->every;
   double t = lag_sim_time(app->sim), origin = app->resumed && every > 0 ? grid[0] : t;
 
   if (a->every) {
-    if (!args_number(a, "--every", a->every, "--every 0.01", &every)) {
+    if (!lag_args_number(a, "--every", a->every, "--every 0.01", &every)) {
       return EXIT_USAGE;
     }
     if (every <= 0) {
-      return app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
+      return lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
     }
     origin = app->scene->t0;
   }
@@ -125,7 +125,7 @@ static int choose_grid(App *app)
     origin = t;
   }
   if (app->section < 0 && (a->out || ((a->every || a->tangent) && (a->svg || a->html || a->sketch))) && fabs(app->until - t) / every > 1e9) {
-    return app_error(a, "a row every %g s for %g s is %.3g rows; write a larger --every", every, fabs(app->until - t),
+    return lag_app_error(a, "a row every %g s for %g s is %.3g rows; write a larger --every", every, fabs(app->until - t),
                      fabs(app->until - t) / every);
   }
   grid[0] = origin;
@@ -162,29 +162,29 @@ static void note_empty(App *app, double t)
   }
 }
 
-int app_put_row(App *app)
+int lag_app_put_row(App *app)
 {
   double t = lag_sim_time(app->sim);
 
   app->row[0] = app->last_row = t;
   int rc = lag_sim_outputs(app->sim, app->row + 1);
-  rc = rc ? rc : tangent_row(app);
+  rc = rc ? rc : lag_tangent_columns_row(app);
   if (rc) {
     return rc;
   }
   note_empty(app, t);
-  if (app->rows.open && rows_write(&app->rows, app->row)) {
+  if (app->rows.open && lag_rows_write(&app->rows, app->row)) {
     app->bad_file = app->args.out;
     return LAG_EIO;
   }
-  int drawn = app->args.every || !app->film.on; /* otherwise film.c chooses the rows of pictures */
-  return drawn && table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
+  int drawn = app->args.every || !app->sampling.on; /* otherwise picture_sampling.c chooses the rows of pictures */
+  return drawn && lag_table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
 
 /* Advances along the grid and writes a row at each time up to app->until. */
 static int run_rows(App *app)
 {
-  double *grid = lag_sim_rows(app->sim), dir = app->until < app->scene->t0 ? -1 : 1;
+  double *grid = lag_sim_output_grid(app->sim), dir = app->until < app->scene->t0 ? -1 : 1;
   int rc = 0;
 
   while (rc == 0) {
@@ -195,8 +195,8 @@ static int run_rows(App *app)
     if (fabs(rest) <= 1e-9 * grid[1]) {
       app->until = t; /* same time up to rounding */
     }
-    rc = interrupted ? LAG_INTERRUPTED : film_advance(app, t);
-    rc = rc ? rc : app_put_row(app);
+    rc = interrupted ? LAG_INTERRUPTED : lag_sampling_advance(app, t);
+    rc = rc ? rc : lag_app_put_row(app);
     grid[2] += rc == 0;
   }
   return rc;
@@ -204,34 +204,34 @@ static int run_rows(App *app)
 
 static void run(App *app)
 {
-  int rows = app->section < 0 && (app->args.out || (app->table.keep && (app->args.every || !app->film.on))), rc = rows ? run_rows(app) : 0;
+  int rows = app->section < 0 && (app->args.out || (app->table.keep && (app->args.every || !app->sampling.on))), rc = rows ? run_rows(app) : 0;
 
   if (rc == 0) {
-    rc = film_advance(app, app->until);
-    rc = rc ? rc : lag_sim_watch(app->sim);
+    rc = lag_sampling_advance(app, app->until);
+    rc = rc ? rc : lag_sim_judge(app->sim);
   }
   if (rows && rc >= 0 && app->last_row != lag_sim_time(app->sim)) {
-    int bad = app_put_row(app);
+    int bad = lag_app_put_row(app);
     rc = bad ? bad : rc;
   }
-  if (film_close(app)) {
+  if (lag_sampling_close(app)) {
     rc = LAG_ENOMEM;
   }
   app->status = app->bad_file ? LAG_EIO : app->section_rc && rc >= 0 ? app->section_rc : rc;
-  app_unwatch(app);
+  lag_app_stop_clock(app);
 }
 
 static void on_event(void *context, int k, double t, const double *before, const double *after)
 {
-  events_note(context, k, t, before, after);
-  section_note(context, k);
+  lag_event_log_note(context, k, t, before, after);
+  lag_section_note(context, k);
 }
 
 /* ---- Files */
 
-int app_io_error(const App *app, const char *path)
+int lag_app_io_error(const App *app, const char *path)
 {
-  return app_error(&app->args, "cannot write %s: %s", path, strerror(errno));
+  return lag_app_error(&app->args, "cannot write %s: %s", path, strerror(errno));
 }
 
 /* Tests before a long run whether a file can be written. */
@@ -239,30 +239,30 @@ static int try_file(const App *app, const char *path)
 {
   Outfile o;
 
-  return path && (outfile_open(&o, path) || outfile_close(&o, OUTFILE_DROP)) ? app_io_error(app, path) : 0;
+  return path && (lag_outfile_open(&o, path) || lag_outfile_close(&o, OUTFILE_DROP)) ? lag_app_io_error(app, path) : 0;
 }
 
 static int open_output(App *app)
 {
   const Args *a = &app->args;
 
-  if (table_init(&app->table, app->sim, a->svg || a->sketch || a->html) ||
+  if (lag_table_init(&app->table, app->sim, a->svg || a->sketch || a->html) ||
       !(app->row = calloc((size_t)app->table.ncols, sizeof *app->row))) {
-    return app_error(a, "out of memory");
+    return lag_app_error(a, "out of memory");
   }
   app->table.points = app->section >= 0;
-  if (tangent_open(app) || app_choose_drawn(app)) {
+  if (lag_tangent_columns_open(app) || lag_app_choose_curves(app)) {
     return EXIT_USAGE;
   }
-  if (a->html && app_choose_points(app)) {
+  if (a->html && lag_app_choose_points(app)) {
     return EXIT_USAGE;
   }
   if (try_file(app, a->svg) || try_file(app, a->html) || try_file(app, a->save)) {
     return EXIT_USAGE;
   }
-  int rc = film_open(app);
-  rc = rc ? rc : events_open(app);
-  return rc ? rc : a->out && rows_open(&app->rows, a->out, &app->table) ? app_io_error(app, a->out) : 0;
+  int rc = lag_sampling_open(app);
+  rc = rc ? rc : lag_event_log_open(app);
+  return rc ? rc : a->out && lag_rows_open(&app->rows, a->out, &app->table) ? lag_app_io_error(app, a->out) : 0;
 }
 
 static int save_state(const App *app)
@@ -280,9 +280,9 @@ static int save_state(const App *app)
   st.n = lag_sim_save_size(app->sim);
   st.data = malloc(st.n * sizeof(double));
   if (!st.data || lag_sim_save(app->sim, st.data)) {
-    rc = app_error(&app->args, "%s", st.data ? lag_sim_message(app->sim) : "out of memory");
-  } else if (state_write(path, &st)) {
-    rc = app_io_error(app, path);
+    rc = lag_app_error(&app->args, "%s", st.data ? lag_sim_message(app->sim) : "out of memory");
+  } else if (lag_state_write(path, &st)) {
+    rc = lag_app_io_error(app, path);
   }
   free(st.data);
   return rc;
@@ -318,34 +318,34 @@ static void tell_last_state(const App *app)
 static int finish(App *app)
 {
   const Args *a = &app->args;
-  int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? app_interrupted() : EXIT_FINE, bad = 0;
+  int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? lag_app_interrupted() : EXIT_FINE, bad = 0;
   int on_stdout = (a->out && strcmp(a->out, "-") == 0) || (a->events && strcmp(a->events, "-") == 0);
   FILE *f = on_stdout ? stderr : stdout;
   char title[300], note[300];
 
   if (app->status == LAG_EINVAL || app->status == LAG_ENOMEM || app->status == LAG_EIO) {
-    rows_close(&app->rows, 0);
-    rows_close(&app->log_rows, 0);
-    return app->status == LAG_EIO ? app_io_error(app, app->bad_file) : app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
+    lag_rows_close(&app->rows, 0);
+    lag_rows_close(&app->log_rows, 0);
+    return app->status == LAG_EIO ? lag_app_io_error(app, app->bad_file) : lag_app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
   }
-  if (app->rows.open && rows_close(&app->rows, 1)) {
-    bad = app_io_error(app, a->out);
+  if (app->rows.open && lag_rows_close(&app->rows, 1)) {
+    bad = lag_app_io_error(app, a->out);
   } else {
     app->written = 1;
   }
-  if (rows_close(&app->log_rows, 1)) {
-    bad = app_io_error(app, a->events);
+  if (lag_rows_close(&app->log_rows, 1)) {
+    bad = lag_app_io_error(app, a->events);
   }
-  film_warn(app, note, sizeof note);
+  lag_sampling_warn(app, note, sizeof note);
   app->show.note = note;
   snprintf(title, sizeof title, "%s: %s%s%s", app->scene->model->name, app->scene->name, app->section < 0 ? "" : ", ",
            app->section < 0 ? "" : app->scene->model->ev[app->section].name);
-  if (a->html && html_write(a->html, &app->table, title, &app->show)) {
-    bad = app_io_error(app, a->html);
+  if (a->html && lag_html_write(a->html, &app->table, title, &app->show)) {
+    bad = lag_app_io_error(app, a->html);
   }
-  table_long_time(&app->table);
-  if (a->svg && svg_write(a->svg, &app->table, title, &app->drawn)) {
-    bad = app_io_error(app, a->svg);
+  lag_table_scale_time(&app->table);
+  if (a->svg && lag_svg_write(a->svg, &app->table, title, &app->drawn)) {
+    bad = lag_app_io_error(app, a->svg);
   }
   if (a->save && app->status >= 0 && save_state(app)) {
     bad = EXIT_USAGE;
@@ -355,21 +355,21 @@ static int finish(App *app)
     sketch(to, &app->table, &app->drawn);
   }
   if (a->json) {
-    report_json(app, stdout);
+    lag_report_json(app, stdout);
   } else if (!a->quiet) {
-    report_text(app, f);
+    lag_report_text(app, f);
   }
   if (app->status < 0 && (a->json || a->quiet)) {
-    app_error(a, "%s", lag_sim_message(app->sim));
+    lag_app_error(a, "%s", lag_sim_message(app->sim));
   }
   if (fflush(stdout) != 0) {
-    bad = app_io_error(app, "standard output");
+    bad = lag_app_io_error(app, "standard output");
   }
   tell_last_state(app);
   return bad ? bad : rc;
 }
 
-void app_catch_interrupt(void)
+void lag_app_catch_interrupt(void)
 {
   static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
   struct sigaction action = {0}, before;
@@ -385,15 +385,15 @@ void app_catch_interrupt(void)
   }
 }
 
-void app_watch(App *app)
+void lag_app_start_clock(App *app)
 {
-  app_catch_interrupt();
+  lag_app_catch_interrupt();
   app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
   clock_gettime(CLOCK_MONOTONIC, &app->begun);
   app->shown = app->begun;
 }
 
-void app_unwatch(App *app)
+void lag_app_stop_clock(App *app)
 {
   app->wall = seconds_since(&app->begun);
   if (app->progress > 0) {
@@ -401,23 +401,23 @@ void app_unwatch(App *app)
   }
 }
 
-int app_interrupted(void)
+int lag_app_interrupted(void)
 {
   return EXIT_SIGNAL + interrupted;
 }
 
 static int simulate(App *app)
 {
-  int rc = app_choose(app);
+  int rc = lag_app_set_up(app);
 
-  if (rc || (rc = section_choose(app)) != 0 || (rc = app_check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
+  if (rc || (rc = lag_section_choose(app)) != 0 || (rc = lag_app_check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
     return rc;
   }
   if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {
-    return app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",
+    return lag_app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",
                      lag_sim_method(app->sim)->name);
   }
-  app_catch_interrupt();
+  lag_app_catch_interrupt();
   if ((rc = open_output(app)) != 0) {
     return rc;
   }
@@ -425,9 +425,9 @@ static int simulate(App *app)
     lag_sim_balance(app->sim); /* no effect on a resumed run, which keeps its setting */
   }
   note_tables(app);
-  lag_sim_on_step(app->sim, app_after_step, app);
+  lag_sim_on_step(app->sim, lag_app_after_step, app);
   lag_sim_on_event(app->sim, on_event, app);
-  app_watch(app);
+  lag_app_start_clock(app);
   run(app);
   return finish(app);
 }
@@ -435,29 +435,29 @@ static int simulate(App *app)
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras)
 {
   App app = {.program = program, .extras = extras ? *extras : (lag_extras){0}, .last_row = NAN};
-  int rc = args_parse(&app.args, argc, argv);
+  int rc = lag_args_parse(&app.args, argc, argv);
 
   if (rc == 0 && app.args.help) {
-    app_help(&app, stdout);
+    lag_app_help(&app, stdout);
   } else if (rc == 0 && app.args.method && strcmp(app.args.method, "help") == 0) {
-    app_list_methods(&app, stdout);
-  } else if (rc == 0 && app.args.method && strncmp(app.args.method, "help ", 5) == 0 && app_explain_method(&app, app.args.method + 5, stdout)) {
+    lag_app_list_methods(&app, stdout);
+  } else if (rc == 0 && app.args.method && strncmp(app.args.method, "help ", 5) == 0 && lag_app_explain_method(&app, app.args.method + 5, stdout)) {
     rc = 0;
   } else if (rc == 0 && app.args.modes) {
-    rc = app_modes(&app);
+    rc = lag_app_modes(&app);
   } else if (rc == 0 && app.args.lyapunov) {
-    rc = app_lyapunov(&app);
+    rc = lag_app_lyapunov(&app);
   } else if (rc == 0 && app.args.effects) {
-    rc = app_effects(&app);
+    rc = lag_app_effects(&app);
   } else if (rc == 0 && (app.args.cost || app.args.reference)) {
-    rc = app_cost(&app);
+    rc = lag_app_cost(&app);
   } else if (rc == 0) {
     rc = simulate(&app);
   }
   lag_sim_free(app.sim);
-  table_free(&app.table);
-  events_free(&app);
-  film_free(&app);
+  lag_table_free(&app.table);
+  lag_event_log_free(&app);
+  lag_sampling_free(&app);
   free(app.show.cols);
   free(app.drawn.x);
   free(app.row);

@@ -11,7 +11,7 @@
 enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
 enum { MOST_OPTIONS = 16 };
 enum { OWN_OPTIONS = 3 }; /* method options that are also options of the command line */
-extern const char *const args_own_options[OWN_OPTIONS];
+extern const char *const lag_args_method_options[OWN_OPTIONS];
 
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
@@ -25,14 +25,14 @@ typedef struct Args {
   int nsets;
 } Args;
 
-/* The rows that pictures show, chosen while the run goes on (film.c). */
-typedef struct Film {
+/* The rows that pictures show, chosen while the run goes on (picture_sampling.c). */
+typedef struct PictureSampling {
   int on, places;   /* 1: rows are chosen here; number of samples in the last step */
-  Thin rows;
+  RowThinning rows;
   double soonest;   /* steps that end within this time after the last sampled one are not sampled [s] */
   double seen_to, length; /* end of the last sampled step; for STEPS_TO methods the longest step that few samples resolve */
   double *y, *seen; /* [n] scratch; samples of a step, [MOST_PLACES + 1][ncols] */
-} Film;
+} PictureSampling;
 
 typedef struct App {
   const lag_program *program;
@@ -43,10 +43,10 @@ typedef struct App {
   State state;      /* the saved state of --resume */
   int resumed;      /* 1: the run continues from `state` */
   Table table;
-  Film film;
+  PictureSampling sampling;
   Rows rows;
   Animation show;
-  Drawn drawn;
+  PlottedCurves drawn;
   double *row;      /* [ncols] */
   double last_row;  /* time of the last row, NaN before the first */
   long long rows_put, empty_rows; /* rows written; rows with an output that is not finite */
@@ -69,113 +69,113 @@ typedef struct App {
 } App;
 
 /* args.c: parses and checks the command line. 0, or EXIT_USAGE after a message. */
-int args_parse(Args *a, int argc, char **argv);
+int lag_args_parse(Args *a, int argc, char **argv);
 /* *x := the number that is the whole text; returns 1. Else a message with the name `what` and an example; returns 0. */
-int args_number(const Args *a, const char *what, const char *text, const char *example, double *x);
+int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x);
 /* Prints an error to standard error after the program's name; returns EXIT_USAGE. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif
-int app_error(const Args *a, const char *format, ...);
+int lag_app_error(const Args *a, const char *format, ...);
 
-/* choose.c: app->scene and app->sim with values and method; app_choose_start: without the method. 0, or EXIT_USAGE after a message. */
-int app_choose(App *app);
-int app_choose_start(App *app);
+/* simulation_setup.c: app->scene and app->sim with values and method; lag_app_set_up_start: without the method. 0, or EXIT_USAGE after a message. */
+int lag_app_set_up(App *app);
+int lag_app_set_up_start(App *app);
 /* app->until := end of the run, from --until or the scene; called by both above. 0, or EXIT_USAGE after a message. */
-int app_read_until(App *app);
+int lag_app_read_until(App *app);
 /* Sets one name=value, or all of the command line, in app->sim. */
-int app_set_value(App *app, const char *text);
-int app_set_values(App *app);
+int lag_app_set_value(App *app, const char *text);
+int lag_app_set_values(App *app);
 /* Sets tolerance and method of a new app->sim. 0, or EXIT_USAGE after a message. */
-int app_choose_method(App *app);
+int lag_app_choose_method(App *app);
 /* Method i of this program; NULL past the last. */
-const lag_method *app_method_at(const App *app, int i);
-const lag_method *app_find_method(const App *app, const char *name);
+const lag_method *lag_app_method_at(const App *app, int i);
+const lag_method *lag_app_find_method(const App *app, const char *name);
 /* Prints that there is no such method; returns EXIT_USAGE. */
-int app_unknown_method(const App *app, const char *name);
+int lag_app_unknown_method(const App *app, const char *name);
 
-/* automatic.c: chooses a method with these options for app->sim, whose values are set; app->why := the reason. 0, or EXIT_USAGE after a
+/* automatic_method.c: chooses a method with these options for app->sim, whose values are set; app->why := the reason. 0, or EXIT_USAGE after a
  * message. */
-int app_choose_automatically(App *app, const lag_option *opt, int n);
+int lag_app_choose_automatically(App *app, const lag_option *opt, int n);
 
-/* methods.c: the table of all methods; */
-void app_list_methods(const App *app, FILE *f);
+/* method_help.c: the table of all methods; */
+void lag_app_list_methods(const App *app, FILE *f);
 /* the description of one. 0: there is no method of this name. */
-int app_explain_method(const App *app, const char *name, FILE *f);
+int lag_app_explain_method(const App *app, const char *name, FILE *f);
 
-/* columns.c: app->drawn := columns of --plot-x and --plot-y, or all. 0, or EXIT_USAGE after a message. */
-int app_choose_drawn(App *app);
+/* column_lookup.c: app->drawn := columns of --plot-x and --plot-y, or all. 0, or EXIT_USAGE after a message. */
+int lag_app_choose_curves(App *app);
 /* app->show := points of --points and --from. 0, or EXIT_USAGE after a message. */
-int app_choose_points(App *app);
+int lag_app_choose_points(App *app);
 
-/* film.c: rows of pictures. film_open comes after app_choose_drawn and app_choose_points. film_advance is lag_sim_advance that samples the
- * motion on the way. film_close thins the rows at the end. film_warn: note := a warning about the picture, or ""; also printed. */
-int film_open(App *app);
-int film_advance(App *app, double until);
-int film_close(App *app);
-void film_warn(App *app, char *note, size_t size);
-void film_free(App *app);
+/* picture_sampling.c: rows of pictures. lag_sampling_open comes after lag_app_choose_curves and lag_app_choose_points. lag_sampling_advance is lag_sim_advance that samples the
+ * motion on the way. lag_sampling_close thins the rows at the end. lag_sampling_warn: note := a warning about the picture, or ""; also printed. */
+int lag_sampling_open(App *app);
+int lag_sampling_advance(App *app, double until);
+int lag_sampling_close(App *app);
+void lag_sampling_warn(App *app, char *note, size_t size);
+void lag_sampling_free(App *app);
 
 /* app.c: writes a row of the present state. LAG_OK, or a failure. */
-int app_put_row(App *app);
+int lag_app_put_row(App *app);
 /* Signals that end a run (Ctrl-C, SIGTERM, SIGHUP) let it finish its step and write its files; nohup is respected. Called before files are
  * opened, so that none is left over. */
-void app_catch_interrupt(void);
-/* Clock and progress line: app_watch before a run, app_unwatch at its end, app_after_step as the function of lag_sim_on_step.
- * app_interrupted: the exit status after a signal. */
-void app_watch(App *app);
-int app_after_step(void *app, const lag_sim *sim);
-void app_unwatch(App *app);
-int app_interrupted(void);
+void lag_app_catch_interrupt(void);
+/* Clock and progress line: lag_app_start_clock before a run, lag_app_stop_clock at its end, lag_app_after_step as the function of lag_sim_on_step.
+ * lag_app_interrupted: the exit status after a signal. */
+void lag_app_start_clock(App *app);
+int lag_app_after_step(void *app, const lag_sim *sim);
+void lag_app_stop_clock(App *app);
+int lag_app_interrupted(void);
 /* Refuses outputs that would overwrite the model, this program, the resumed state or each other. 0, or EXIT_USAGE after a message. */
-int app_check_outputs(const App *app);
+int lag_app_check_outputs(const App *app);
 
-/* section.c: --section. 0, or EXIT_USAGE after a message. section_note: event k has happened. */
-int section_choose(App *app);
-void section_note(App *app, int k);
+/* poincare_section.c: --section. 0, or EXIT_USAGE after a message. lag_section_note: event k has happened. */
+int lag_section_choose(App *app);
+void lag_section_note(App *app, int k);
 
-/* tangent.c: --tangent. tangent_open adds its columns to the table; 0, or EXIT_USAGE after a message. tangent_row: their values in
+/* tangent_columns.c: --tangent. lag_tangent_columns_open adds its columns to the table; 0, or EXIT_USAGE after a message. lag_tangent_columns_row: their values in
  * app->row; LAG_OK, or a failure. */
-int tangent_open(App *app);
-int tangent_row(App *app);
-void report_tangent(App *app, FILE *f);
-void report_tangent_json(App *app, FILE *f);
+int lag_tangent_columns_open(App *app);
+int lag_tangent_columns_row(App *app);
+void lag_report_tangent(App *app, FILE *f);
+void lag_report_tangent_json(App *app, FILE *f);
 
-/* charges.c: the report on energy and other charges; in JSON also on monitors. */
-void report_charges(const App *app, FILE *f);
-void report_charges_json(const App *app, FILE *f);
+/* charges_report.c: the report on energy and other charges; in JSON also on monitors. */
+void lag_report_charges(const App *app, FILE *f);
+void lag_report_charges_json(const App *app, FILE *f);
 /* Whether the energy error exceeds the tolerance by far because the mass matrix was almost singular. */
-int report_lost_digits(const App *app, const lag_charge_stats *energy);
+int lag_report_lost_digits(const App *app, const lag_charge_stats *energy);
 
 /* lyapunov.c: --lyapunov. Returns the exit status. */
-int app_lyapunov(App *app);
+int lag_app_lyapunov(App *app);
 
 /* modes.c: --modes. Returns the exit status. */
-int app_modes(App *app);
+int lag_app_modes(App *app);
 
 /* effects.c: --effects. Returns the exit status. */
-int app_effects(App *app);
+int lag_app_effects(App *app);
 
 /* cost.c: --cost and --reference. Returns the exit status. */
-int app_cost(App *app);
+int lag_app_cost(App *app);
 
 /* help.c */
-void app_help(const App *app, FILE *f);
+void lag_app_help(const App *app, FILE *f);
 
 /* Prints that a file cannot be written, with errno; returns EXIT_USAGE. */
-int app_io_error(const App *app, const char *path);
+int lag_app_io_error(const App *app, const char *path);
 
-/* events.c: the log of --events. 0, or EXIT_USAGE after a message. events_note: as the function of lag_sim_on_event. */
-int events_open(App *app);
-void events_note(void *app, int k, double t, const double *before, const double *after);
-void events_free(App *app);
-void report_events(const App *app, FILE *f);
-void report_events_json(const App *app, FILE *f);
+/* event_log.c: the log of --events. 0, or EXIT_USAGE after a message. lag_event_log_note: as the function of lag_sim_on_event. */
+int lag_event_log_open(App *app);
+void lag_event_log_note(void *app, int k, double t, const double *before, const double *after);
+void lag_event_log_free(App *app);
+void lag_report_events(const App *app, FILE *f);
+void lag_report_events_json(const App *app, FILE *f);
 
 /* report.c */
-void report_text(App *app, FILE *f);
-void report_json(App *app, FILE *f);
+void lag_report_text(App *app, FILE *f);
+void lag_report_json(App *app, FILE *f);
 /* s[n] := method with the options that differ from their defaults, "rk45(tol=1e-09)". */
-void report_method(const App *app, char *s, size_t n);
+void lag_report_method(const App *app, char *s, size_t n);
 
 #endif

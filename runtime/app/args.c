@@ -12,7 +12,7 @@
 #include "io/visible.h"
 #include "core/core.h"
 
-int app_error(const Args *a, const char *format, ...)
+int lag_app_error(const Args *a, const char *format, ...)
 {
   char text[4096];
   va_list args;
@@ -28,22 +28,22 @@ int app_error(const Args *a, const char *format, ...)
 }
 
 /* Decimal numbers only; other forms that strtod takes (inf, nan, 0x1p3) are refused. */
-int args_number(const Args *a, const char *what, const char *text, const char *example, double *x)
+int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x)
 {
   char *end;
   size_t plain = strspn(text, "+-.0123456789eE");
 
   *x = strtod(text, &end);
   if (strchr(text, '[')) {
-    app_error(a, "%s: \"%s\" has a unit, and a simulator takes numbers in the units that --help shows, times in s; lagc run converts", what, text);
+    lag_app_error(a, "%s: \"%s\" has a unit, and a simulator takes numbers in the units that --help shows, times in s; lagc run converts", what, text);
     return 0;
   }
   if (end == text || *end || plain != strlen(text)) {
-    app_error(a, "%s: \"%s\" is not a number; write for example %s", what, text, example);
+    lag_app_error(a, "%s: \"%s\" is not a number; write for example %s", what, text, example);
     return 0;
   }
   if (!isfinite(*x)) {
-    app_error(a, "%s: %s is too large for " LAG_PRECISION " precision", what, text);
+    lag_app_error(a, "%s: %s is too large for " LAG_PRECISION " precision", what, text);
     return 0;
   }
   return 1;
@@ -55,7 +55,7 @@ typedef struct Option {
   int is_flag;
 } Option;
 
-const char *const args_own_options[OWN_OPTIONS] = {"quadrature", "order", "stages"};
+const char *const lag_args_method_options[OWN_OPTIONS] = {"quadrature", "order", "stages"};
 
 static const Option options[] = {
     {"method", offsetof(Args, method), 0}, {"tol", offsetof(Args, tol), 0},
@@ -95,18 +95,18 @@ static int unknown_option(const Args *a, const char *text, size_t n)
 {
   char name[64];
   const char *best = NULL;
-  int least = LAG_FAR;
+  int least = LAG_NO_TYPO;
 
   snprintf(name, sizeof name, "%.*s", (int)(n < 60 ? n : 60), text);
   for (int i = 0; i < NOPTIONS; i++) {
-    int d = lag_near(name, options[i].name);
+    int d = lag_typo_distance(name, options[i].name);
     if (d < least) {
       least = d;
       best = options[i].name;
     }
   }
-  return best ? app_error(a, "unknown option --%s; did you mean --%s?", name, best)
-              : app_error(a, "unknown option --%s; see --help", name);
+  return best ? lag_app_error(a, "unknown option --%s; did you mean --%s?", name, best)
+              : lag_app_error(a, "unknown option --%s; see --help", name);
 }
 
 /* Parses the long option at argv[*i]; its value follows "=" or is the next argument. */
@@ -122,14 +122,14 @@ static int long_option(Args *a, int argc, char **argv, int *i)
   void *field = (char *)a + o->offset;
   if (o->is_flag) {
     if (eq) {
-      return app_error(a, "--%s takes no value", o->name);
+      return lag_app_error(a, "--%s takes no value", o->name);
     }
     *(int *)field = 1;
     return 0;
   }
   const char *value = eq ? eq + 1 : *i + 1 < argc ? argv[++*i] : NULL;
   if (!value || !*value) {
-    return app_error(a, "--%s needs a value; see --help", o->name);
+    return lag_app_error(a, "--%s needs a value; see --help", o->name);
   }
   *(const char **)field = value;
   return 0;
@@ -143,17 +143,17 @@ static int one_argument(Args *a, int argc, char **argv, int *i)
     a->help = 1;
   } else if (strcmp(s, "-o") == 0) {
     if (*i + 1 >= argc) {
-      return app_error(a, "-o needs a file name, or - for standard output");
+      return lag_app_error(a, "-o needs a file name, or - for standard output");
     }
     a->out = argv[++*i];
   } else if (strncmp(s, "--", 2) == 0) {
     return long_option(a, argc, argv, i);
   } else if (s[0] == '-') {
-    return app_error(a, "unknown option %s; see --help", s);
+    return lag_app_error(a, "unknown option %s; see --help", s);
   } else if (strchr(s, '=')) {
     a->sets[a->nsets++] = s;
   } else if (a->scene) {
-    return app_error(a, "two scenes are named: %s and %s; to set a value write name=value", a->scene, s);
+    return lag_app_error(a, "two scenes are named: %s and %s; to set a value write name=value", a->scene, s);
   } else {
     a->scene = s;
   }
@@ -178,7 +178,7 @@ static int check_analysis(const Args *a)
 
   for (size_t i = 0; what && i < sizeof others / sizeof *others; i++) {
     if (others[i].given && !(others[i].takes & what)) {
-      return app_error(a, "%s has no meaning for %s", others[i].name,
+      return lag_app_error(a, "%s has no meaning for %s", others[i].name,
                        what == COST ? "what accuracy costs: all methods are run, at many tolerances and steps; --methods NAME,NAME takes some of them"
                        : what == MODES ? "modes of small motion: they take name=value and --json"
                        : what == EFFECTS ? "what effects do: it takes name=value, --until and a method"
@@ -186,10 +186,10 @@ static int check_analysis(const Args *a)
     }
   }
   if (!a->cost && (a->target || a->longest || a->methods || a->against)) {
-    return app_error(a, "--target, --longest, --methods and --against are for --cost");
+    return lag_app_error(a, "--target, --longest, --methods and --against are for --cost");
   }
   if (!a->lyapunov && (a->transient || a->exponents)) {
-    return app_error(a, "--transient and --exponents are for --lyapunov");
+    return lag_app_error(a, "--transient and --exponents are for --lyapunov");
   }
   return 0;
 }
@@ -200,8 +200,8 @@ static int check_npy(const Args *a)
   const char *const files[] = {a->out, a->events};
 
   for (int i = 0; i < 2 && strcmp(LAG_PRECISION, "double") != 0; i++) {
-    if (files[i] && outfile_is(files[i], "npy")) {
-      return app_error(a, "%s: .npy files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", files[i]);
+    if (files[i] && lag_outfile_has_suffix(files[i], "npy")) {
+      return lag_app_error(a, "%s: .npy files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", files[i]);
     }
   }
   return 0;
@@ -216,9 +216,9 @@ static int check_kinds(const Args *a)
                {"--svg", a->svg, "svg", "SVG"}, {"--html", a->html, "html htm", "HTML"}};
 
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-    const char *path = files[i].path, *other = path ? outfile_other_kind(path, files[i].suffixes) : NULL;
+    const char *path = files[i].path, *other = path ? lag_outfile_other_type(path, files[i].suffixes) : NULL;
     if (other) {
-      return app_error(a, "%s %s: it writes %s; write %s %.*s%.*s", files[i].option, path, files[i].writes, files[i].option, (int)(other - path), path,
+      return lag_app_error(a, "%s %s: it writes %s; write %s %.*s%.*s", files[i].option, path, files[i].writes, files[i].option, (int)(other - path), path,
                        (int)strcspn(files[i].suffixes, " "), files[i].suffixes);
     }
   }
@@ -230,47 +230,47 @@ static int check(const Args *a)
   int on_stdout = a->out && strcmp(a->out, "-") == 0;
 
   if (on_stdout && a->json) {
-    return app_error(a, "-o - and --json both write to standard output; give -o a file name");
+    return lag_app_error(a, "-o - and --json both write to standard output; give -o a file name");
   }
   if (a->events && strcmp(a->events, "-") == 0 && a->json) {
-    return app_error(a, "--events - and --json both write to standard output; give --events a file name");
+    return lag_app_error(a, "--events - and --json both write to standard output; give --events a file name");
   }
   if ((a->plot_x || a->plot_y) && !a->svg && !a->sketch) {
-    return app_error(a, "--plot-x and --plot-y say what --svg FILE or --sketch draws; add one of them");
+    return lag_app_error(a, "--plot-x and --plot-y say what --svg FILE or --sketch draws; add one of them");
   }
   if (a->plot_x && !a->plot_y) {
-    return app_error(a, "--plot-x %s: against what? add --plot-y NAME", a->plot_x);
+    return lag_app_error(a, "--plot-x %s: against what? add --plot-y NAME", a->plot_x);
   }
   if ((a->points || a->from || a->trace || a->no_rods) && !a->html) {
-    return app_error(a, "--points, --from, --trace and --no-rods say what --html FILE shows; add it");
+    return lag_app_error(a, "--points, --from, --trace and --no-rods say what --html FILE shows; add it");
   }
   if (a->html && !a->points) {
-    return app_error(a, "--html %s: which points? add --points 'X,Y X,Y ...' with the names of outputs", a->html);
+    return lag_app_error(a, "--html %s: which points? add --points 'X,Y X,Y ...' with the names of outputs", a->html);
   }
   if (a->section && a->html) {
-    return app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
+    return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
   }
   if (a->tangent && (a->save || a->resume)) {
-    return app_error(a, "--tangent and --%s: a saved state holds no tangent; run it in one piece", a->save ? "save-state" : "resume");
+    return lag_app_error(a, "--tangent and --%s: a saved state holds no tangent; run it in one piece", a->save ? "save-state" : "resume");
   }
   if (a->section && a->every) {
-    return app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
+    return lag_app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
   }
   return check_kinds(a) || check_npy(a) || check_analysis(a) ? EXIT_USAGE : 0;
 }
 
-int args_parse(Args *a, int argc, char **argv)
+int lag_args_parse(Args *a, int argc, char **argv)
 {
   const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
 
   *a = (Args){.self = slash ? slash + 1 : argc > 0 ? argv[0] : "simulator"};
   a->sets = calloc((size_t)argc + 1, sizeof *a->sets);
   if (!a->sets) {
-    return app_error(a, "out of memory");
+    return lag_app_error(a, "out of memory");
   }
   for (int i = 1; i < argc; i++) {
     if (strpbrk(argv[i], "\n\t")) { /* messages show each argument on one line */
-      return app_error(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i);
+      return lag_app_error(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i);
     }
   }
   for (int i = 1; i < argc; i++) {

@@ -15,19 +15,19 @@
 enum { SAMPLES = 16 };
 
 /* The scene without monitors and closed forms, which would end a rough run early or cost time besides the method. */
-typedef struct Bare {
+typedef struct BareScene {
   App *app;
   lag_scene scene;
-} Bare;
+} BareScene;
 
 /* A new simulation of the bare scene with the values of the command line; NULL: no memory, or a message. */
-static lag_sim *fresh(void *context)
+static lag_sim *new_simulation(void *context)
 {
-  Bare *b = context;
+  BareScene *b = context;
   App *app = b->app;
 
   app->sim = lag_sim_new(&b->scene);
-  if (app->sim && app_set_values(app)) {
+  if (app->sim && lag_app_set_values(app)) {
     lag_sim_free(app->sim);
     app->sim = NULL;
   }
@@ -39,26 +39,26 @@ static lag_sim *fresh(void *context)
 /* ---- The reference */
 
 /* s := samples of a run by `method` at a tolerance. 0, or an exit status after a message. */
-static int take(Bare *b, const lag_method *method, double tol, Samples *s)
+static int record_samples(BareScene *b, const lag_method *method, double tol, Samples *s)
 {
   const Args *a = &b->app->args;
-  lag_sim *sim = fresh(b);
+  lag_sim *sim = new_simulation(b);
 
   if (!sim) {
-    return app_error(a, "out of memory");
+    return lag_app_error(a, "out of memory");
   }
   int rc = lag_sim_set_method(sim, method, NULL, 0);
   rc = rc ? rc : lag_sim_set_tolerance(sim, tol);
   rc = rc ? rc : lag_samples_take(s, sim);
   if (rc) {
-    app_error(a, "no reference, by %s(tol=%g): %s", method->name, tol, lag_sim_message(sim));
+    lag_app_error(a, "no reference, by %s(tol=%g): %s", method->name, tol, lag_sim_message(sim));
   }
   lag_sim_free(sim);
   return rc ? EXIT_RUN : 0;
 }
 
 /* Reference by taylor, or by dop853 where the model has no Taylor series, at two tolerances; their difference is its uncertainty. */
-static int compute_reference(Bare *b, Cost *c)
+static int compute_reference(BareScene *b, Cost *c)
 {
   App *app = b->app;
   const lag_model *m = b->scene.model;
@@ -68,15 +68,15 @@ static int compute_reference(Bare *b, Cost *c)
   double rough_enough = app->args.reference ? 1e-22 : 0;
   double tol = series ? 9 * DBL_EPSILON : fmax(pow(DBL_EPSILON, 0.75), rough_enough), *scale = calloc((size_t)n + 1, sizeof *scale);
   Samples rough;
-  int rc = lag_samples_init(&rough, c->reference.rows, n) || !scale ? app_error(&app->args, "out of memory") : 0;
+  int rc = lag_samples_init(&rough, c->reference.rows, n) || !scale ? lag_app_error(&app->args, "out of memory") : 0;
 
   if (rc == 0) {
     memcpy(rough.t, c->reference.t, (size_t)rough.rows * sizeof(double));
-    rc = take(b, method, tol, &c->reference);
-    rc = rc ? rc : take(b, method, 10 * tol, &rough);
+    rc = record_samples(b, method, tol, &c->reference);
+    rc = rc ? rc : record_samples(b, method, 10 * tol, &rough);
   }
   if (rc == 0) {
-    lag_sim *sim = fresh(b);
+    lag_sim *sim = new_simulation(b);
     if (sim) {
       lag_cost_scales(&c->reference, sim, scale);
       c->reference.uncertainty = fmax(lag_cost_error(&rough, &c->reference, scale), DBL_EPSILON);
@@ -95,7 +95,7 @@ static int choose_times(App *app, Cost *c)
   double t0 = app->scene->t0, t1 = app->until;
 
   if (t1 == t0) {
-    return app_error(&app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0);
+    return lag_app_error(&app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0);
   }
   for (int i = 0; i < SAMPLES; i++) {
     c->reference.t[i] = t0 + (t1 - t0) * (i + 1) / SAMPLES;
@@ -137,7 +137,7 @@ static int read_reference(App *app, Cost *c)
   int rows, n, good;
 
   if (!f) {
-    return app_error(a, "cannot read %s: %s", a->against, strerror(errno));
+    return lag_app_error(a, "cannot read %s: %s", a->against, strerror(errno));
   }
   good = fscanf(f, "samples %d %d by %95[^\n]", &rows, &n, c->reference_name) == 3 && rows > 0 && rows <= s->rows && n == s->n;
   good = good && fscanf(f, " uncertainty") == 0 && read_number(f, &s->uncertainty);
@@ -151,7 +151,7 @@ static int read_reference(App *app, Cost *c)
   if (f != stdin) {
     fclose(f);
   }
-  return good ? 0 : app_error(a, "%s holds no reference for this scene; `--reference` of a simulator of the same model writes one",
+  return good ? 0 : lag_app_error(a, "%s holds no reference for this scene; `--reference` of a simulator of the same model writes one",
                               strcmp(a->against, "-") == 0 ? "standard input" : a->against);
 }
 
@@ -164,7 +164,7 @@ static const struct {
 } families[] = {{"variational", "order", 2, 8, 2}, {"gauss", "stages", 1, 4, 1}};
 
 /* Whether --methods names the method, or is not given. */
-static int wanted(const Args *a, const lag_method *m)
+static int is_selected(const Args *a, const lag_method *m)
 {
   size_t n = strlen(m->name);
 
@@ -193,22 +193,22 @@ static int list_methods(App *app, Cost *c)
   const lag_method *m;
   int bad = 0;
 
-  for (int i = 0; (m = app_method_at(app, i)) != NULL; i++) {
+  for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) {
     int plain = 1;
-    for (size_t k = 0; wanted(&app->args, m) && k < sizeof families / sizeof *families; k++) {
+    for (size_t k = 0; is_selected(&app->args, m) && k < sizeof families / sizeof *families; k++) {
       for (int x = families[k].from; strcmp(families[k].method, m->name) == 0 && x <= families[k].to; x += families[k].by) {
         bad |= add(c, m, (lag_option){.name = families[k].option, .value = x});
         plain = 0;
       }
     }
-    if (plain && wanted(&app->args, m)) {
+    if (plain && is_selected(&app->args, m)) {
       bad |= add(c, m, (lag_option){0});
     }
   }
   if (c->nmethods == 0) {
-    return app_error(&app->args, "--methods %s: none of them is a method; --method help lists them", app->args.methods);
+    return lag_app_error(&app->args, "--methods %s: none of them is a method; --method help lists them", app->args.methods);
   }
-  return bad ? app_error(&app->args, "out of memory") : 0;
+  return bad ? lag_app_error(&app->args, "out of memory") : 0;
 }
 
 /* Refuses unknown names in --methods. */
@@ -219,20 +219,20 @@ static int check_methods(App *app)
 
   for (const char *s = a->methods; s && *s; s += strcspn(s, ", "), s += strspn(s, ", ")) {
     snprintf(name, sizeof name, "%.*s", (int)strcspn(s, ", "), s);
-    if (!app_find_method(app, name)) {
-      return app_unknown_method(app, name);
+    if (!lag_app_find_method(app, name)) {
+      return lag_app_unknown_method(app, name);
     }
   }
   return 0;
 }
 
-static int measure(Bare *b, Cost *c, double longest)
+static int measure(BareScene *b, Cost *c, double longest)
 {
   App *app = b->app;
   double *scale = calloc((size_t)c->reference.n + 1, sizeof *scale);
-  lag_sim *sim = fresh(b);
+  lag_sim *sim = new_simulation(b);
   int rc = scale && sim ? LAG_OK : LAG_ENOMEM;
-  CostScene scene = {fresh, b, b->scene.t0};
+  CostScene scene = {new_simulation, b, b->scene.t0};
 
   if (rc == LAG_OK) {
     lag_cost_scales(&c->reference, sim, scale);
@@ -249,8 +249,8 @@ static int measure(Bare *b, Cost *c, double longest)
   }
   lag_sim_free(sim);
   free(scale);
-  lag_cost_front(c->method, c->nmethods);
-  return rc ? app_error(&app->args, "out of memory") : 0;
+  lag_pareto_front(c->method, c->nmethods);
+  return rc ? lag_app_error(&app->args, "out of memory") : 0;
 }
 
 static int show(App *app, const Cost *c)
@@ -259,15 +259,15 @@ static int show(App *app, const Cost *c)
   const CostRun *run;
 
   if (a->json) {
-    cost_json(stdout, app, c);
+    lag_cost_json(stdout, app, c);
   } else if (!a->quiet) {
-    cost_text(stdout, app, c);
+    lag_cost_text(stdout, app, c);
   }
-  if (a->svg && cost_picture(a->svg, app, c)) {
-    return app_io_error(app, a->svg);
+  if (a->svg && lag_cost_picture(a->svg, app, c)) {
+    return lag_app_io_error(app, a->svg);
   }
   if (fflush(stdout)) {
-    return app_io_error(app, "standard output");
+    return lag_app_io_error(app, "standard output");
   }
   if (c->target > 0 && !lag_cost_cheapest(c->method, c->nmethods, c->target, &run)) {
     return EXIT_RUN;
@@ -275,22 +275,22 @@ static int show(App *app, const Cost *c)
   return EXIT_FINE;
 }
 
-static int run_cost(Bare *b, Cost *c)
+static int run_cost(BareScene *b, Cost *c)
 {
   App *app = b->app;
   const Args *a = &app->args;
   double longest = 0.5;
   int rc = check_methods(app);
 
-  if (rc == 0 && a->target && (!args_number(a, "--target", a->target, "--target 1e-8", &c->target) || c->target <= 0)) {
-    rc = app_error(a, "--target %s: an error to reach, relative and positive; for example --target 1e-8", a->target);
+  if (rc == 0 && a->target && (!lag_args_number(a, "--target", a->target, "--target 1e-8", &c->target) || c->target <= 0)) {
+    rc = lag_app_error(a, "--target %s: an error to reach, relative and positive; for example --target 1e-8", a->target);
   }
-  if (rc == 0 && a->longest && (!args_number(a, "--longest", a->longest, "--longest 10", &longest) || longest <= 0)) {
-    rc = app_error(a, "--longest %s: a time in seconds, for example --longest 10", a->longest);
+  if (rc == 0 && a->longest && (!lag_args_number(a, "--longest", a->longest, "--longest 10", &longest) || longest <= 0)) {
+    rc = lag_app_error(a, "--longest %s: a time in seconds, for example --longest 10", a->longest);
   }
   rc = rc ? rc : a->against ? read_reference(app, c) : compute_reference(b, c);
   if (rc == 0 && c->reference.rows == 0) {
-    rc = app_error(a, "an event ends the run before t = %g s, the first time of comparison; write --until with an earlier time", c->reference.t[0]);
+    rc = lag_app_error(a, "an event ends the run before t = %g s, the first time of comparison; write --until with an earlier time", c->reference.t[0]);
   }
   rc = rc ? rc : list_methods(app, c);
   app->progress = isatty(2) && !a->quiet ? 0 : -1;
@@ -298,25 +298,25 @@ static int run_cost(Bare *b, Cost *c)
   return rc ? rc : show(app, c);
 }
 
-int app_cost(App *app)
+int lag_app_cost(App *app)
 {
   Cost cost = {0};
-  int rc = app_choose_start(app);
-  Bare b = {.app = app};
+  int rc = lag_app_set_up_start(app);
+  BareScene b = {.app = app};
 
   if (rc == 0) {
     b.scene = *app->scene;
     b.scene.nmonitors = b.scene.nexact = 0;
     lag_sim_free(app->sim);
     app->sim = NULL;
-    rc = lag_samples_init(&cost.reference, SAMPLES, 2 * b.scene.model->nq + b.scene.model->nz) ? app_error(&app->args, "out of memory") : 0;
+    rc = lag_samples_init(&cost.reference, SAMPLES, 2 * b.scene.model->nq + b.scene.model->nz) ? lag_app_error(&app->args, "out of memory") : 0;
   }
   rc = rc ? rc : choose_times(app, &cost);
   if (rc == 0 && app->args.reference) {
     rc = compute_reference(&b, &cost);
     if (rc == 0) {
       write_reference(stdout, &cost);
-      rc = fflush(stdout) ? app_io_error(app, "standard output") : EXIT_FINE;
+      rc = fflush(stdout) ? lag_app_io_error(app, "standard output") : EXIT_FINE;
     }
   } else if (rc == 0) {
     rc = run_cost(&b, &cost);

@@ -2,7 +2,7 @@
 #ifndef LAG_APP_COST_H
 #define LAG_APP_COST_H
 
-#include "analysis/cost.h"
+#include "analysis/work_precision.h"
 #include "app/app.h"
 
 typedef struct Cost {
@@ -14,13 +14,13 @@ typedef struct Cost {
 } Cost;
 
 /* text[n] := the setting of a run, "rk45(tol=1e-06)", "variational(order=4, step=0.01)". */
-void cost_setting(const CostMethod *m, const CostRun *run, char *text, size_t n);
+void lag_cost_setting(const CostMethod *m, const CostRun *run, char *text, size_t n);
 /* text[n] := the same as options of a run, "--method rk45 --tol 1e-06". */
-void cost_options(const CostMethod *m, const CostRun *run, char *text, size_t n);
+void lag_cost_options(const CostMethod *m, const CostRun *run, char *text, size_t n);
 
-void cost_text(FILE *f, const App *app, const Cost *c);
-void cost_json(FILE *f, const App *app, const Cost *c);
+void lag_cost_text(FILE *f, const App *app, const Cost *c);
+void lag_cost_json(FILE *f, const App *app, const Cost *c);
 /* Writes the SVG picture, time against error. -1 with errno set. */
-int cost_picture(const char *path, const App *app, const Cost *c);
+int lag_cost_picture(const char *path, const App *app, const Cost *c);
 
 #endif

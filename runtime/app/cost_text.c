@@ -21,7 +21,7 @@ static void name_of(const CostMethod *m, char *text, size_t n)
   }
 }
 
-void cost_setting(const CostMethod *m, const CostRun *run, char *text, size_t n)
+void lag_cost_setting(const CostMethod *m, const CostRun *run, char *text, size_t n)
 {
   char option[64] = "";
 
@@ -31,7 +31,7 @@ void cost_setting(const CostMethod *m, const CostRun *run, char *text, size_t n)
   snprintf(text, n, "%s(%s%s=%.9g)", m->method->name, option, adaptive(m) ? "tol" : "step", run->knob);
 }
 
-void cost_options(const CostMethod *m, const CostRun *run, char *text, size_t n)
+void lag_cost_options(const CostMethod *m, const CostRun *run, char *text, size_t n)
 {
   char option[64] = "";
 
@@ -56,7 +56,7 @@ static void table(FILE *f, const Cost *c)
     const CostMethod *m = &c->method[i];
     for (int k = 0; k < m->nruns; k++) {
       const CostRun *r = &m->run[k];
-      cost_setting(m, r, setting, sizeof setting);
+      lag_cost_setting(m, r, setting, sizeof setting);
       snprintf(spread, sizeof spread, "%.0f %%", 50 * r->spread);
       fprintf(f, "%c %-44s %-9.2e %12.4g %6s %10lld %11lld%s%s\n", r->best ? '*' : ' ', setting, r->error, 1e3 * r->time,
               isnan(r->spread) ? "-" : spread, r->steps, r->calls, k == 0 ? "  " : "", k == 0 ? order_of(m, order, sizeof order) : "");
@@ -75,7 +75,7 @@ static const CostRun *fastest(const CostMethod *m, double error)
 }
 
 /* A line for each method: its time for errors of 1e-2, 1e-4, ... */
-static void digest(FILE *f, const Cost *c)
+static void print_time_table(FILE *f, const Cost *c)
 {
   enum { COLUMNS = 7 };
   char name[96];
@@ -107,7 +107,7 @@ static void digest(FILE *f, const Cost *c)
   }
 }
 
-static void left_out(FILE *f, const Cost *c)
+static void print_omitted(FILE *f, const Cost *c)
 {
   char name[96];
 
@@ -127,7 +127,7 @@ static void target(FILE *f, const App *app, const Cost *c)
   char options[160];
 
   if (m) {
-    cost_options(m, run, options, sizeof options);
+    lag_cost_options(m, run, options, sizeof options);
     fprintf(f, "\nan error of %g at least cost: %s (error %.2e, %.4g ms)\n  lagc run %s %s %s\n", c->target, options, run->error,
             1e3 * run->time, app->program->source, app->scene->name, options);
   } else {
@@ -135,7 +135,7 @@ static void target(FILE *f, const App *app, const Cost *c)
   }
 }
 
-void cost_text(FILE *f, const App *app, const Cost *c)
+void lag_cost_text(FILE *f, const App *app, const Cost *c)
 {
   const Samples *s = &c->reference;
 
@@ -143,8 +143,8 @@ void cost_text(FILE *f, const App *app, const Cost *c)
   fprintf(f, "error: the largest difference from the reference at %d times, relative to the largest value of its kind and unit\n", s->rows);
   fprintf(f, "reference: %s, itself uncertain by %.1e\n\n", c->reference_name, s->uncertainty);
   table(f, c);
-  digest(f, c);
-  left_out(f, c);
+  print_time_table(f, c);
+  print_omitted(f, c);
   if (c->target > 0) {
     target(f, app, c);
   }
@@ -152,7 +152,7 @@ void cost_text(FILE *f, const App *app, const Cost *c)
 
 /* ---- JSON */
 
-void cost_json(FILE *f, const App *app, const Cost *c)
+void lag_cost_json(FILE *f, const App *app, const Cost *c)
 {
   const Samples *s = &c->reference;
   const CostRun *cheapest = NULL;
@@ -161,39 +161,39 @@ void cost_json(FILE *f, const App *app, const Cost *c)
     lag_cost_cheapest(c->method, c->nmethods, c->target, &cheapest);
   }
   fputs("{\"model\": ", f);
-  json_string(f, app->scene->model->name);
+  lag_json_string(f, app->scene->model->name);
   fputs(", \"scene\": ", f);
-  json_string(f, app->scene->name);
+  lag_json_string(f, app->scene->name);
   fputs(", \"until\": ", f);
-  json_number(f, s->t[s->rows - 1]);
+  lag_json_number(f, s->t[s->rows - 1]);
   fputs(", \"reference\": ", f);
-  json_string(f, c->reference_name);
+  lag_json_string(f, c->reference_name);
   fputs(", \"uncertainty\": ", f);
-  json_number(f, s->uncertainty);
+  lag_json_number(f, s->uncertainty);
   fputs(", \"target\": ", f);
-  json_number(f, c->target > 0 ? c->target : NAN);
+  lag_json_number(f, c->target > 0 ? c->target : NAN);
   fputs(", \"methods\": [", f);
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
     char name[96];
     name_of(m, name, sizeof name);
     fputs(i ? ", {\"method\": " : "{\"method\": ", f);
-    json_string(f, name);
+    lag_json_string(f, name);
     fputs(", \"order\": ", f);
-    json_number(f, m->order);
+    lag_json_number(f, m->order);
     fputs(", \"refused\": ", f);
-    json_string(f, m->why[0] ? m->why : NULL);
+    lag_json_string(f, m->why[0] ? m->why : NULL);
     fputs(", \"runs\": [", f);
     for (int k = 0; k < m->nruns; k++) {
       const CostRun *r = &m->run[k];
       fprintf(f, k ? ", {\"%s\": " : "{\"%s\": ", adaptive(m) ? "tolerance" : "step");
-      json_number(f, r->knob);
+      lag_json_number(f, r->knob);
       fputs(", \"error\": ", f);
-      json_number(f, r->error);
+      lag_json_number(f, r->error);
       fputs(", \"seconds\": ", f);
-      json_number(f, r->time);
+      lag_json_number(f, r->time);
       fputs(", \"spread\": ", f);
-      json_number(f, r->spread);
+      lag_json_number(f, r->spread);
       fprintf(f, ", \"steps\": %lld, \"calls\": %lld, \"front\": %s, \"cheapest\": %s}", r->steps, r->calls, r->best ? "true" : "false",
               r == cheapest ? "true" : "false");
     }
@@ -204,7 +204,7 @@ void cost_json(FILE *f, const App *app, const Cost *c)
 
 /* ---- Picture */
 
-int cost_picture(const char *path, const App *app, const Cost *c)
+int lag_cost_picture(const char *path, const App *app, const Cost *c)
 {
   Series *series = calloc((size_t)c->nmethods + 1, sizeof *series);
   double *values = calloc((size_t)c->nmethods * LAG_COST_MOST_RUNS * 2 + 1, sizeof *values);
@@ -230,7 +230,7 @@ int cost_picture(const char *path, const App *app, const Cost *c)
   }
   snprintf(title, sizeof title, "%s, %s: what accuracy costs", app->scene->model->name, app->scene->name);
   if (series && values) {
-    rc = svg_chart(path, title, "error", "processor time [s]", series, n);
+    rc = lag_svg_chart(path, title, "error", "processor time [s]", series, n);
   }
   free(series);
   free(values);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/variants.h"
+#include "analysis/effect_variants.h"
 #include "app/app.h"
 #include "core/core.h"
 
@@ -30,7 +30,7 @@ static int knows(const lag_scene *scene, const char *text)
   int index;
 
   snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
-  return lag_find(scene->model, name, &index, &var) != LAG_IS_NOTHING || lag_part(scene->model, name, 0, part, sizeof part);
+  return lag_find_name(scene->model, name, &index, &var) != LAG_IS_NOTHING || lag_family_member(scene->model, name, 0, part, sizeof part);
 }
 
 /* Sets the values of the command line; those of effects that are off in this variant and on in another are left out. */
@@ -43,7 +43,7 @@ static int set_values(Trial *k)
     for (int s = 0; s < k->program->nscenes && !anywhere; s++) {
       anywhere = knows(k->program->scenes[s], app->args.sets[i]);
     }
-    int rc = here || !anywhere ? app_set_value(app, app->args.sets[i]) : 0;
+    int rc = here || !anywhere ? lag_app_set_value(app, app->args.sets[i]) : 0;
     if (rc) {
       return rc;
     }
@@ -53,14 +53,14 @@ static int set_values(Trial *k)
 
 /* Gives a variant the parameter values and the start of the first scene, for all names that it has, since its own text may compute them
  * without the effects that are off. */
-static void take_start(const lag_sim *first, lag_sim *sim)
+static void copy_start(const lag_sim *first, lag_sim *sim)
 {
   const lag_model *m = first->scene->model, *own = sim->scene->model;
   const lag_var *var;
   int at;
 
   for (int i = 0; i < m->np; i++) {
-    if (lag_find(own, m->p[i].name, &at, &var) == LAG_IS_P && strcmp(var->name, m->p[i].name) == 0) {
+    if (lag_find_name(own, m->p[i].name, &at, &var) == LAG_IS_P && strcmp(var->name, m->p[i].name) == 0) {
       sim->p[at] = first->p[i];
       sim->fixed[at] = 1;
     }
@@ -71,7 +71,7 @@ static void take_start(const lag_sim *first, lag_sim *sim)
   for (int i = 0; i < first->pb.n; i++) {
     char name[128];
     lag_sim_state_info(first, i, name, sizeof name, NULL, 0);
-    int kind = lag_find(own, name, &at, &var), place = kind == LAG_IS_V ? own->nq + at : kind == LAG_IS_Z ? 2 * own->nq + at : at;
+    int kind = lag_find_name(own, name, &at, &var), place = kind == LAG_IS_V ? own->nq + at : kind == LAG_IS_Z ? 2 * own->nq + at : at;
     if ((kind == LAG_IS_Q || kind == LAG_IS_V || kind == LAG_IS_Z) && sim->now[place] != first->now[i]) {
       sim->start[place] = first->now[i];
     }
@@ -79,7 +79,7 @@ static void take_start(const lag_sim *first, lag_sim *sim)
 }
 
 /* k->options := the method options of the first scene, with the step multiplied by `shorter`. */
-static void take_options(Trial *k, double shorter)
+static void copy_options(Trial *k, double shorter)
 {
   const double *value = lag_sim_options(k->v[0].sim);
 
@@ -97,7 +97,7 @@ static int set_method(Trial *k, lag_sim *sim, double tol)
   if (lag_sim_set_method(sim, k->method, k->options, k->method->noptions) == LAG_OK && lag_sim_set_tolerance(sim, tol) == LAG_OK) {
     return 0;
   }
-  return app_choose_method(k->app);
+  return lag_app_choose_method(k->app);
 }
 
 /* app->sim := a simulation of scene number `scene` with the values of the command line. */
@@ -107,16 +107,16 @@ static int make(Trial *k, int scene)
 
   app->scene = k->program->scenes[scene];
   app->sim = lag_sim_new(app->scene);
-  return !app->sim ? app_error(&app->args, "out of memory") : app_read_until(app) ? EXIT_USAGE : set_values(k);
+  return !app->sim ? lag_app_error(&app->args, "out of memory") : lag_app_read_until(app) ? EXIT_USAGE : set_values(k);
 }
 
 /* Moves app->sim into a variant. */
-static int take(Trial *k, Variant *v)
+static int adopt_simulation(Trial *k, Variant *v)
 {
   int rc = lag_variant_init(v, k->app->sim);
 
   k->app->sim = NULL;
-  return rc ? app_error(&k->app->args, "out of memory") : 0;
+  return rc ? lag_app_error(&k->app->args, "out of memory") : 0;
 }
 
 static int prepare_first(Trial *k)
@@ -125,15 +125,15 @@ static int prepare_first(Trial *k)
   char method[256];
   int rc = make(k, 0);
 
-  rc = rc ? rc : app_choose_method(app);
+  rc = rc ? rc : lag_app_choose_method(app);
   if (rc) {
     return rc;
   }
-  report_method(app, method, sizeof method);
+  lag_report_method(app, method, sizeof method);
   printf("method %s\n", method);
   k->method = lag_sim_method(app->sim);
   k->tol = lag_sim_tolerance(app->sim);
-  return take(k, &k->v[0]);
+  return adopt_simulation(k, &k->v[0]);
 }
 
 static int choose_times(Trial *k)
@@ -141,7 +141,7 @@ static int choose_times(Trial *k)
   k->t0 = k->app->scene->t0;
   k->t1 = k->app->until;
   if (k->t1 == k->t0) {
-    return app_error(&k->app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", k->t0);
+    return lag_app_error(&k->app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", k->t0);
   }
   printf("span %.17g\n", k->t1 - k->t0);
   return 0;
@@ -151,14 +151,14 @@ static int prepare_others(Trial *k)
 {
   int rc = 0;
 
-  take_options(k, 1);
+  copy_options(k, 1);
   for (int i = 1; i < k->program->nscenes && rc == 0; i++) {
     rc = make(k, i);
     if (rc == 0) {
-      take_start(k->v[0].sim, k->app->sim);
+      copy_start(k->v[0].sim, k->app->sim);
     }
     rc = rc ? rc : set_method(k, k->app->sim, k->tol);
-    rc = rc ? rc : take(k, &k->v[i]);
+    rc = rc ? rc : adopt_simulation(k, &k->v[i]);
   }
   return rc;
 }
@@ -174,14 +174,14 @@ static int measure_error(Trial *k)
   double error = 0, tol = k->tol > 10 * least ? fmax(k->tol / 100, least) : 10 * k->tol;
   int rc = make(k, 0);
 
-  take_options(k, 0.5);
+  copy_options(k, 0.5);
   rc = rc ? rc : set_method(k, app->sim, tol);
-  rc = rc ? rc : take(k, &k->finer);
+  rc = rc ? rc : adopt_simulation(k, &k->finer);
   if (rc == 0 && lag_variant_run(&k->finer, k->t0, k->t1) < 0) {
     printf("error nan\n");
     return 0;
   }
-  rc = rc ? rc : lag_variant_difference(&k->v[0], &k->finer, &error) ? app_error(&app->args, "out of memory") : 0;
+  rc = rc ? rc : lag_variant_difference(&k->v[0], &k->finer, &error) ? lag_app_error(&app->args, "out of memory") : 0;
   printf("error %.17g\n", error);
   return rc;
 }
@@ -210,10 +210,10 @@ static int has_all_coordinates(const lag_model *m, const lag_model *other)
   int index, all = 1;
 
   for (int i = 0; i < other->nq; i++) {
-    all &= lag_find(m, other->q[i].name, &index, &var) == LAG_IS_Q;
+    all &= lag_find_name(m, other->q[i].name, &index, &var) == LAG_IS_Q;
   }
   for (int i = 0; i < other->nz; i++) {
-    all &= lag_find(m, other->z[i].name, &index, &var) == LAG_IS_Z;
+    all &= lag_find_name(m, other->z[i].name, &index, &var) == LAG_IS_Z;
   }
   return all;
 }
@@ -235,7 +235,7 @@ static int measure(Trial *k)
   int all = strcmp(a->effects, "runs") != 0, n = k->program->nscenes, rc;
 
   if (lag_variant_run(&k->v[0], k->t0, k->t1) < 0) {
-    app_error(a, "%s", k->v[0].why);
+    lag_app_error(a, "%s", k->v[0].why);
     return EXIT_RUN;
   }
   if (all && (rc = measure_error(k)) != 0) {
@@ -248,10 +248,10 @@ static int measure(Trial *k)
       bad = lag_variant_difference(&k->v[0], &k->v[i], &k->v[i].difference);
     }
     if (bad || (all && weigh(&k->v[0], &k->v[i]))) {
-      return app_error(a, "out of memory");
+      return lag_app_error(a, "out of memory");
     }
   }
-  return all && lag_variants_time(k->v, n) ? app_error(a, "out of memory") : 0;
+  return all && lag_variants_time(k->v, n) ? lag_app_error(a, "out of memory") : 0;
 }
 
 static void print(const Trial *k)
@@ -265,11 +265,11 @@ static void print(const Trial *k)
   }
 }
 
-int app_effects(App *app)
+int lag_app_effects(App *app)
 {
   int n = app->program->nscenes;
   Trial k = {.app = app, .program = app->program, .v = calloc((size_t)n + 1, sizeof *k.v)};
-  int rc = k.v ? prepare_first(&k) : app_error(&app->args, "out of memory");
+  int rc = k.v ? prepare_first(&k) : lag_app_error(&app->args, "out of memory");
 
   rc = rc ? rc : choose_times(&k);
   rc = rc ? rc : prepare_others(&k);
@@ -284,5 +284,5 @@ int app_effects(App *app)
   lag_sim_free(k.finer.sim);
   lag_variant_free(&k.finer);
   free(k.v);
-  return rc ? rc : fflush(stdout) ? app_io_error(app, "standard output") : EXIT_FINE;
+  return rc ? rc : fflush(stdout) ? lag_app_io_error(app, "standard output") : EXIT_FINE;
 }

@@ -60,7 +60,7 @@ static void list(FILE *f, const char *head, int n, const lag_var *vars, const do
   }
 }
 
-void app_help(const App *app, FILE *f)
+void lag_app_help(const App *app, FILE *f)
 {
   const lag_program *p = app->program;
 

@@ -28,14 +28,14 @@ static int choose_times(App *app, double *from)
   double t0 = app->scene->t0;
 
   if (!(app->until > t0)) {
-    return app_error(a, "--until %s: exponents are means over a long time from t = %g s on; write a later one", a->until ? a->until : "", t0);
+    return lag_app_error(a, "--until %s: exponents are means over a long time from t = %g s on; write a later one", a->until ? a->until : "", t0);
   }
   double turning = (app->until - t0) / TURNING;
-  if (a->transient && !args_number(a, "--transient", a->transient, "--transient 100", &turning)) {
+  if (a->transient && !lag_args_number(a, "--transient", a->transient, "--transient 100", &turning)) {
     return EXIT_USAGE;
   }
   if (turning < 0 || turning >= app->until - t0) {
-    return app_error(a, "--transient %g: it is what is left out at the beginning, between 0 and %g s", turning, app->until - t0);
+    return lag_app_error(a, "--transient %g: it is what is left out at the beginning, between 0 and %g s", turning, app->until - t0);
   }
   *from = t0 + turning;
   return 0;
@@ -48,11 +48,11 @@ static int choose_number(const App *app, int *k)
   int n = 2 * m->nq + m->nz;
   double x = n;
 
-  if (a->exponents && !args_number(a, "--exponents", a->exponents, "--exponents 1", &x)) {
+  if (a->exponents && !lag_args_number(a, "--exponents", a->exponents, "--exponents 1", &x)) {
     return EXIT_USAGE;
   }
   if (x < 1 || x > n || x != floor(x)) {
-    return app_error(a, "--exponents %s: write a whole number from 1 to %d, the coordinates, velocities and states of the model", a->exponents, n);
+    return lag_app_error(a, "--exponents %s: write a whole number from 1 to %d, the coordinates, velocities and states of the model", a->exponents, n);
   }
   *k = (int)x;
   return 0;
@@ -66,7 +66,7 @@ static int make_table(App *app, int k)
   *t = (Table){.ncols = k + 1, .keep = 1, .cols = calloc((size_t)k + 1, sizeof *t->cols)};
   app->row = calloc((size_t)k + 1, sizeof *app->row);
   if (!t->cols || !app->row) {
-    return app_error(&app->args, "out of memory");
+    return lag_app_error(&app->args, "out of memory");
   }
   for (int i = 0; i <= k; i++) {
     snprintf(t->cols[i].name, sizeof t->cols[i].name, i ? "exponent %d" : "t", i);
@@ -85,11 +85,11 @@ static int put_estimates(Job *job)
   for (int i = 0; i < job->l.k; i++) {
     app->row[i + 1] = lag_lyapunov_exponent(&job->l, i);
   }
-  if (app->rows.open && rows_write(&app->rows, app->row)) {
+  if (app->rows.open && lag_rows_write(&app->rows, app->row)) {
     app->bad_file = app->args.out;
     return LAG_EIO;
   }
-  return table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
+  return lag_table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
 
 static void at_event(void *context, int k, double t, const double *before, const double *after)
@@ -115,7 +115,7 @@ static int after_step(void *context, const lag_sim *sim)
     job->rc = put_estimates(job);
     job->next_row = l->t + (l->until - l->from) / ROWS;
   }
-  return app_after_step(job->app, sim) || job->rc != 0;
+  return lag_app_after_step(job->app, sim) || job->rc != 0;
 }
 
 /* ---- The report */
@@ -160,7 +160,7 @@ static void put_text(FILE *f, App *app, const Lyapunov *l)
 {
   char method[256];
 
-  report_method(app, method, sizeof method);
+  lag_report_method(app, method, sizeof method);
   fprintf(f, "model %s, scene %s, method %s\n", app->scene->model->name, app->scene->name, method);
   if (app->why[0]) {
     fprintf(f, "chosen: %s\n", app->why);
@@ -194,7 +194,7 @@ static void json_list(FILE *f, const char *name, const Lyapunov *l, double (*val
   fprintf(f, ", \"%s\": [", name);
   for (int i = 0; i < l->k; i++) {
     fputs(i ? ", " : "", f);
-    json_number(f, value(l, i));
+    lag_json_number(f, value(l, i));
   }
   putc(']', f);
 }
@@ -207,7 +207,7 @@ static double at_half(const Lyapunov *l, int i)
 static void json_field(FILE *f, const char *name, double x)
 {
   fprintf(f, ", \"%s\": ", name);
-  json_number(f, x);
+  lag_json_number(f, x);
 }
 
 static void put_json(FILE *f, const App *app, const Lyapunov *l)
@@ -215,15 +215,15 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l)
   int all = l->k == l->n;
 
   fputs("{\"model\": ", f);
-  json_string(f, app->scene->model->name);
+  lag_json_string(f, app->scene->model->name);
   fputs(", \"scene\": ", f);
-  json_string(f, app->scene->name);
+  lag_json_string(f, app->scene->name);
   fputs(", \"method\": ", f);
-  json_string(f, lag_sim_method(app->sim)->name);
+  lag_json_string(f, lag_sim_method(app->sim)->name);
   fputs(", \"chosen\": ", f);
-  json_string(f, app->why[0] ? app->why : NULL);
+  lag_json_string(f, app->why[0] ? app->why : NULL);
   fputs(", \"status\": ", f);
-  json_string(f, app->status < 0 ? "failed" : lag_status_name(app->status));
+  lag_json_string(f, app->status < 0 ? "failed" : lag_status_name(app->status));
   json_field(f, "from", l->begun);
   json_field(f, "until", l->t);
   fprintf(f, ", \"steps\": %lld, \"blocks\": %d", l->steps, l->nblocks);
@@ -253,19 +253,19 @@ static int failed(App *app, const Job *job)
   const Args *a = &app->args;
 
   if (app->bad_file) {
-    return app_io_error(app, app->bad_file);
+    return lag_app_io_error(app, app->bad_file);
   }
   if (job->rc == LAG_EDOMAIN) {
-    app_error(a, "at t = %g s neighbouring motions become one within a step, an exponent of minus infinity; take fewer: --exponents %d, or "
+    lag_app_error(a, "at t = %g s neighbouring motions become one within a step, an exponent of minus infinity; take fewer: --exponents %d, or "
                  "smaller steps", lag_sim_time(app->sim), job->l.k > 1 ? job->l.k - 1 : 1);
     return EXIT_RUN;
   }
   if (job->rc || app->status < 0) {
-    app_error(a, "%s", job->rc == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
+    lag_app_error(a, "%s", job->rc == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
     return EXIT_RUN;
   }
   if (app->status == LAG_STOPPED) {
-    app_error(a, "an event stopped the run at t = %g s: exponents are means over a motion that goes on; take another start, or an earlier "
+    lag_app_error(a, "an event stopped the run at t = %g s: exponents are means over a motion that goes on; take another start, or an earlier "
                  "--until", lag_sim_time(app->sim));
     return EXIT_RUN;
   }
@@ -280,15 +280,15 @@ static int finish(App *app, Job *job)
 
   lag_lyapunov_end(&job->l);
   if (rc) {
-    rows_close(&app->rows, 0);
+    lag_rows_close(&app->rows, 0);
     return rc;
   }
   snprintf(title, sizeof title, "%s: %s, Lyapunov exponents so far", app->scene->model->name, app->scene->name);
-  if (rows_close(&app->rows, 1)) {
-    rc = app_io_error(app, a->out);
+  if (lag_rows_close(&app->rows, 1)) {
+    rc = lag_app_io_error(app, a->out);
   }
-  if (a->svg && (app_choose_drawn(app) || svg_write(a->svg, &app->table, title, &app->drawn))) {
-    rc = app_io_error(app, a->svg);
+  if (a->svg && (lag_app_choose_curves(app) || lag_svg_write(a->svg, &app->table, title, &app->drawn))) {
+    rc = lag_app_io_error(app, a->svg);
   }
   if (a->json) {
     put_json(stdout, app, &job->l);
@@ -296,31 +296,31 @@ static int finish(App *app, Job *job)
     put_text(on_stdout ? stderr : stdout, app, &job->l);
   }
   if (fflush(stdout) != 0) {
-    rc = app_io_error(app, "standard output");
+    rc = lag_app_io_error(app, "standard output");
   }
-  return rc ? rc : app->status == LAG_INTERRUPTED ? app_interrupted() : EXIT_FINE;
+  return rc ? rc : app->status == LAG_INTERRUPTED ? lag_app_interrupted() : EXIT_FINE;
 }
 
 static int run(App *app, Job *job)
 {
   const Args *a = &app->args;
 
-  app_catch_interrupt();
-  if (a->out && rows_open(&app->rows, a->out, &app->table)) {
-    return app_io_error(app, a->out);
+  lag_app_catch_interrupt();
+  if (a->out && lag_rows_open(&app->rows, a->out, &app->table)) {
+    return lag_app_io_error(app, a->out);
   }
   lag_sim_on_step(app->sim, after_step, job);
   lag_sim_on_event(app->sim, at_event, job);
-  app_watch(app);
+  lag_app_start_clock(app);
   app->status = lag_sim_advance(app->sim, app->until);
-  app_unwatch(app);
+  lag_app_stop_clock(app);
   return finish(app, job);
 }
 
 /* app->sim := the scene without monitors and closed forms, with values and method of the command line. */
 static int choose(App *app, Job *job)
 {
-  int rc = app_choose_start(app);
+  int rc = lag_app_set_up_start(app);
 
   if (rc) {
     return rc;
@@ -331,24 +331,24 @@ static int choose(App *app, Job *job)
   lag_sim_free(app->sim);
   app->sim = lag_sim_new(app->scene);
   if (!app->sim) {
-    return app_error(&app->args, "out of memory");
+    return lag_app_error(&app->args, "out of memory");
   }
-  rc = app_set_values(app);
-  return rc ? rc : app_choose_method(app);
+  rc = lag_app_set_values(app);
+  return rc ? rc : lag_app_choose_method(app);
 }
 
-int app_lyapunov(App *app)
+int lag_app_lyapunov(App *app)
 {
   Job job = {.app = app};
   double from = 0;
   int k = 0, rc = choose(app, &job);
 
-  rc = rc ? rc : app_check_outputs(app);
+  rc = rc ? rc : lag_app_check_outputs(app);
   rc = rc ? rc : choose_times(app, &from);
   rc = rc ? rc : choose_number(app, &k);
   rc = rc ? rc : make_table(app, k);
   if (rc == 0 && lag_lyapunov_begin(&job.l, app->sim, k, from, app->until)) {
-    rc = app_error(&app->args, "%s", job.l.pool.failed ? "out of memory" : lag_sim_message(app->sim));
+    rc = lag_app_error(&app->args, "%s", job.l.pool.failed ? "out of memory" : lag_sim_message(app->sim));
   }
   job.next_row = from + (app->until - from) / ROWS;
   rc = rc ? rc : run(app, &job);

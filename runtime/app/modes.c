@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-const lag_var *modes_variable(const lag_model *m, int i)
+const lag_var *lag_modes_variable(const lag_model *m, int i)
 {
   return i < m->nq ? &m->q[i] : &m->z[i - m->nq];
 }
 
-void modes_unknowns(const Rest *r, double *x)
+void lag_modes_unknowns(const Equilibrium *r, double *x)
 {
   int nq = r->sim->pb.nq;
 
@@ -52,36 +52,36 @@ static int refuse(const App *app)
   const char *source = app->program->source;
 
   if (!app->extras.algebra) {
-    return app_error(a, "this simulator was built without GSL, which finds roots and eigenvalues; install GSL (libgsl-dev), make "
+    return lag_app_error(a, "this simulator was built without GSL, which finds roots and eigenvalues; install GSL (libgsl-dev), make "
                         "lagc anew, and leave out --no-gsl");
   }
   if (m->constraints) {
-    return app_error(a, "modes with %s are not computed yet (%s): %s", m->ncontacts ? "contacts" : "constraints", m->constraints->of[0].name,
+    return lag_app_error(a, "modes with %s are not computed yet (%s): %s", m->ncontacts ? "contacts" : "constraints", m->constraints->of[0].name,
                      m->ncontacts ? "take a model without them" : "give the model coordinates that need none, such as angles");
   }
   if (!m->linear) {
-    return app_error(a, "this simulator was built without the model's linearisation; write lagc modes %s, or build it with: lagc "
+    return lag_app_error(a, "this simulator was built without the model's linearisation; write lagc modes %s, or build it with: lagc "
                         "build %s --with linear", source, source);
   }
   if (m->nq + m->nz == 0) {
-    return app_error(a, "model %s has neither coordinates nor states", m->name);
+    return lag_app_error(a, "model %s has neither coordinates nor states", m->name);
   }
   if (m->flags & LAG_AUTONOMOUS) {
     return 0;
   }
   if (!(m->flags & LAG_TIMELESS)) {
-    return app_error(a, "scene %s depends on time: t stands in its equations, so nothing stays at rest; take a scene without "
+    return lag_app_error(a, "scene %s depends on time: t stands in its equations, so nothing stays at rest; take a scene without "
                         "what drives it, or put a parameter in place of t", app->scene->name);
   }
   const char *input = changing_input(app);
-  return input ? app_error(a, "scene %s depends on time by its input %s, so nothing stays at rest; hold it: %s=0", app->scene->name,
+  return input ? lag_app_error(a, "scene %s depends on time by its input %s, so nothing stays at rest; hold it: %s=0", app->scene->name,
                            input, input)
                : 0;
 }
 
 /* ---- Caution and reason of a result */
 
-const char *modes_caution(const App *app, const Rest *r)
+const char *lag_modes_caution(const App *app, const Equilibrium *r)
 {
   if (r->pole) {
     return "the mass matrix is nearly singular here: a coordinate has lost its meaning";
@@ -92,7 +92,7 @@ const char *modes_caution(const App *app, const Rest *r)
   return NULL;
 }
 
-void modes_reason(const Modes *s, char *text, size_t n)
+void lag_modes_reason(const Modes *s, char *text, size_t n)
 {
   const Mode *m = s->mode;
   int last = s->n - 1;
@@ -121,7 +121,7 @@ void modes_reason(const Modes *s, char *text, size_t n)
   case LAG_MINIMUM:
     snprintf(text, n, "the energy, which is conserved, has a minimum here (Lagrange, Dirichlet)");
     return;
-  case LAG_BRAKED:
+  case LAG_DISSIPATIVE_MINIMUM:
     snprintf(text, n, "the energy, less the work of constant forces, has a minimum here, and nothing raises it (Lagrange, Dirichlet, Kelvin)");
     return;
   case LAG_NEUTRAL:
@@ -135,17 +135,17 @@ void modes_reason(const Modes *s, char *text, size_t n)
                       "it, and damping in all directions would make it unstable (Thomson, Tait, Chetaev)",
              s->lowering, s->lowering == 1 ? "" : "s");
     return;
-  case LAG_FLAT:
+  case LAG_DEGENERATE:
     snprintf(text, n, "a zero mode: to second order there is no force along it, and what comes after is not linear");
     return;
-  case LAG_CROSSED:
+  case LAG_FREE_SEPARATELY:
     snprintf(text, n, "no force along each zero mode alone, but along some together, and what comes after the second order is not linear");
     return;
-  case LAG_POLE:
+  case LAG_COORDINATE_POLE:
     snprintf(text, n, "a coordinate has lost its meaning here, as a longitude does at a pole; these are the modes of the others, and "
                       "coordinates without a pole here would show all");
     return;
-  case LAG_ROUGH:
+  case LAG_NONSMOOTH:
     snprintf(text, n, "the forces' derivatives jump here, or have no limit, so that no motion is small enough to be linear");
     return;
   case LAG_DEFECTIVE:
@@ -165,14 +165,14 @@ static void json_vector(FILE *f, const lag_model *m, const double *re, const dou
 {
   putc('{', f);
   for (int i = 0; i < m->nq + m->nz; i++) {
-    const lag_var *v = modes_variable(m, i);
+    const lag_var *v = lag_modes_variable(m, i);
     fputs(i ? ", " : "", f);
-    json_string(f, v->name);
+    lag_json_string(f, v->name);
     fputs(im ? ": [" : ": ", f);
-    json_number(f, (re[i] - (im ? 0 : v->offset)) / v->factor);
+    lag_json_number(f, (re[i] - (im ? 0 : v->offset)) / v->factor);
     if (im) {
       fputs(", ", f);
-      json_number(f, im[i] / v->factor);
+      lag_json_number(f, im[i] / v->factor);
       putc(']', f);
     }
   }
@@ -182,38 +182,38 @@ static void json_vector(FILE *f, const lag_model *m, const double *re, const dou
 static void json_head(FILE *f, const App *app, const char *status)
 {
   fputs("{\"model\": ", f);
-  json_string(f, app->scene->model->name);
+  lag_json_string(f, app->scene->model->name);
   fputs(", \"scene\": ", f);
-  json_string(f, app->scene->name);
+  lag_json_string(f, app->scene->name);
   fputs(", \"status\": ", f);
-  json_string(f, status);
+  lag_json_string(f, status);
 }
 
-static void json_modes(FILE *f, const App *app, const Rest *r, const Modes *s, double *x)
+static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Modes *s, double *x)
 {
   const lag_model *m = app->scene->model;
   char text[300];
 
-  modes_reason(s, text, sizeof text);
+  lag_modes_reason(s, text, sizeof text);
   json_head(f, app, "ok");
   fputs(", \"verdict\": ", f);
-  json_string(f, lag_verdict_name(s->verdict));
+  lag_json_string(f, lag_verdict_name(s->verdict));
   fputs(", \"reason\": ", f);
-  json_string(f, text);
+  lag_json_string(f, text);
   fputs(", \"note\": ", f);
-  json_string(f, modes_caution(app, r));
+  lag_json_string(f, lag_modes_caution(app, r));
   fprintf(f, ", \"steps\": %d, \"start\": ", r->steps);
   json_vector(f, m, r->start, NULL);
   fputs(", \"equilibrium\": ", f);
-  modes_unknowns(r, x);
+  lag_modes_unknowns(r, x);
   json_vector(f, m, x, NULL);
   fprintf(f, ", \"pairs\": %s, \"modes\": [", s->pairs ? "true" : "false");
   for (int i = 0; i < s->n; i++) {
     const Mode *k = &s->mode[i];
     fputs(i ? ", {\"re\": " : "{\"re\": ", f);
-    json_number(f, k->re);
+    lag_json_number(f, k->re);
     fputs(", \"im\": ", f);
-    json_number(f, k->im);
+    lag_json_number(f, k->im);
     fprintf(f, ", \"free\": %s, \"repeats\": %d, \"shape\": ", k->free ? "true" : "false", k->repeats);
     json_vector(f, m, k->shape_re, k->shape_im);
     putc('}', f);
@@ -223,11 +223,11 @@ static void json_modes(FILE *f, const App *app, const Rest *r, const Modes *s, d
 
 /* ---- The command */
 
-static int not_found(const App *app, const Rest *r)
+static int not_found(const App *app, const Equilibrium *r)
 {
   const lag_model *m = app->scene->model;
   int i = r->worst, nq = m->nq, at = i < nq ? nq + i : nq + i;
-  const lag_var *v = modes_variable(m, i);
+  const lag_var *v = lag_modes_variable(m, i);
   char unit[80] = "";
 
   if (v->unit[0]) {
@@ -238,11 +238,11 @@ static int not_found(const App *app, const Rest *r)
     fputs("}\n", stdout);
   }
   if (r->away) {
-    app_error(&app->args, "no equilibrium found from the start of scene %s: forces only fade, far away. Where the model has one, start near it: %s=VALUE",
+    lag_app_error(&app->args, "no equilibrium found from the start of scene %s: forces only fade, far away. Where the model has one, start near it: %s=VALUE",
               app->scene->name, v->name);
     return EXIT_RUN;
   }
-  app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s. A force "
+  lag_app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s. A force "
                         "that vanishes nowhere has none: add what holds it, such as a spring; where it vanishes, start near there: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : nq + i] - v->offset) / v->factor,
             v->unit[0] ? " " : "", v->unit, v->name, i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
             r->pole ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
@@ -250,57 +250,57 @@ static int not_found(const App *app, const Rest *r)
 }
 
 /* Message for a failure of the analysis; returns the exit status. */
-static int failed(const App *app, int rc, const char *where)
+static int analysis_failed(const App *app, int rc, const char *where)
 {
   const Args *a = &app->args;
 
   if (rc == LAG_ENOMEM) {
-    return app_error(a, "out of memory");
+    return lag_app_error(a, "out of memory");
   }
   if (rc == LAG_ESINGULAR) {
-    app_error(a, "the %s is singular %s: choose other coordinates there, or another start: name=VALUE",
+    lag_app_error(a, "the %s is singular %s: choose other coordinates there, or another start: name=VALUE",
               app->scene->model->flags & LAG_FIRST_ORDER ? "two-form of L" : "mass matrix", where);
   } else {
-    app_error(a, "%s %s; another start: name=VALUE", rc == LAG_EMETHOD ? "the eigenvalues do not converge" : "the model has no values", where);
+    lag_app_error(a, "%s %s; another start: name=VALUE", rc == LAG_EMETHOD ? "the eigenvalues do not converge" : "the model has no values", where);
   }
   return EXIT_RUN;
 }
 
-static int analyse(const App *app, Rest *r, Modes *s)
+static int analyse(const App *app, Equilibrium *r, Modes *s)
 {
-  int rc = lag_rest_find(r, app->sim, app->extras.algebra);
+  int rc = lag_equilibrium_find(r, app->sim, app->extras.algebra);
 
   if (rc == 0) {
     return not_found(app, r);
   }
   if (rc < 0) {
-    return failed(app, rc, "at the start");
+    return analysis_failed(app, rc, "at the start");
   }
   rc = lag_modes_find(s, r, app->extras.algebra);
-  double *x = rc ? NULL : pool_doubles(&s->pool, (size_t)r->n);
+  double *x = rc ? NULL : lag_pool_doubles(&s->pool, (size_t)r->n);
   if (rc || !x) {
-    return failed(app, rc ? rc : LAG_ENOMEM, "at the equilibrium");
+    return analysis_failed(app, rc ? rc : LAG_ENOMEM, "at the equilibrium");
   }
   if (app->args.json) {
     json_modes(stdout, app, r, s, x);
   } else {
-    modes_text(stdout, app, r, s, x);
+    lag_modes_text(stdout, app, r, s, x);
   }
-  return fflush(stdout) ? app_error(&app->args, "cannot write standard output") : EXIT_FINE;
+  return fflush(stdout) ? lag_app_error(&app->args, "cannot write standard output") : EXIT_FINE;
 }
 
-int app_modes(App *app)
+int lag_app_modes(App *app)
 {
-  Rest rest = {0};
+  Equilibrium rest = {0};
   Modes modes = {0};
-  int rc = app_choose_start(app);
+  int rc = lag_app_set_up_start(app);
 
   if (rc == 0 && lag_sim_advance(app->sim, app->scene->t0)) {
-    rc = app_error(&app->args, "%s", lag_sim_message(app->sim));
+    rc = lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
   }
   rc = rc ? rc : refuse(app);
   rc = rc ? rc : analyse(app, &rest, &modes);
   lag_modes_free(&modes);
-  lag_rest_free(&rest);
+  lag_equilibrium_free(&rest);
   return rc;
 }

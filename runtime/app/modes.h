@@ -6,18 +6,18 @@
 #include "app/app.h"
 
 /* Description of coordinate or state i of x. */
-const lag_var *modes_variable(const lag_model *m, int i);
+const lag_var *lag_modes_variable(const lag_model *m, int i);
 
 /* x := the coordinates and states at the equilibrium. */
-void modes_unknowns(const Rest *r, double *x);
+void lag_modes_unknowns(const Equilibrium *r, double *x);
 
 /* A caution about the result; NULL: none. */
-const char *modes_caution(const App *app, const Rest *r);
+const char *lag_modes_caution(const App *app, const Equilibrium *r);
 
 /* text[n] := the reason of the verdict on stability. */
-void modes_reason(const Modes *s, char *text, size_t n);
+void lag_modes_reason(const Modes *s, char *text, size_t n);
 
 /* Prints the table of modes. x[nq + nz] is scratch. */
-void modes_text(FILE *f, const App *app, const Rest *r, const Modes *s, double *x);
+void lag_modes_text(FILE *f, const App *app, const Equilibrium *r, const Modes *s, double *x);
 
 #endif

@@ -27,10 +27,10 @@ static int same_family(const char *a, const char *b)
 static Group group_at(const lag_model *m, int first, int n)
 {
   Group g = {.first = first, .count = 1};
-  const char *name = modes_variable(m, first)->name, *last = name;
+  const char *name = lag_modes_variable(m, first)->name, *last = name;
 
-  while (first + g.count < n && same_family(name, modes_variable(m, first + g.count)->name)) {
-    last = modes_variable(m, first + g.count++)->name;
+  while (first + g.count < n && same_family(name, lag_modes_variable(m, first + g.count)->name)) {
+    last = lag_modes_variable(m, first + g.count++)->name;
   }
   const char *from = strchr(name, '['), *to = strchr(last, '[');
   if (g.count == 1 || !from || !to) {
@@ -87,7 +87,7 @@ typedef struct Vector {
 static int units_differ(const lag_model *m)
 {
   for (int i = 1; i < m->nq + m->nz; i++) {
-    if (strcmp(modes_variable(m, i)->unit, modes_variable(m, 0)->unit) != 0) {
+    if (strcmp(lag_modes_variable(m, i)->unit, lag_modes_variable(m, 0)->unit) != 0) {
       return 1;
     }
   }
@@ -97,7 +97,7 @@ static int units_differ(const lag_model *m)
 /* Component i in its declared unit. */
 static double part(const double *x, const Vector *v, int i)
 {
-  const lag_var *var = modes_variable(v->m, i);
+  const lag_var *var = lag_modes_variable(v->m, i);
 
   return x ? (x[i] - (v->state ? var->offset : 0)) / var->factor : 0;
 }
@@ -116,7 +116,7 @@ static int is_zero(const Vector *v, const Group *g)
 static void put_group(Line *l, const Vector *v, const Group *g)
 {
   int every = g->count > LISTED ? (g->count + LISTED - 2) / (LISTED - 1) : 1;
-  const char *unit = v->state || units_differ(v->m) ? modes_variable(v->m, g->first)->unit : "";
+  const char *unit = v->state || units_differ(v->m) ? lag_modes_variable(v->m, g->first)->unit : "";
   unit = strcmp(unit, "1") == 0 ? "" : unit;
 
   for (int i = 0; i < g->count; i += every) {
@@ -150,7 +150,7 @@ static void put_vector(Line *l, Vector v)
 }
 
 /* Index of the variable farthest from its start, relative to its scale; -1: none moved. */
-static int farthest(const Rest *r, const double *x)
+static int farthest(const Equilibrium *r, const double *x)
 {
   int best = -1;
   double most = 0;
@@ -165,13 +165,13 @@ static int farthest(const Rest *r, const double *x)
   return most > 1e-12 ? best : -1;
 }
 
-static void put_equilibrium(FILE *f, const App *app, const Rest *r, double *x)
+static void put_equilibrium(FILE *f, const App *app, const Equilibrium *r, double *x)
 {
   const lag_model *m = app->scene->model;
   Line line = {f, 0, 4};
   int far = 0, moving = 0;
 
-  modes_unknowns(r, x);
+  lag_modes_unknowns(r, x);
   far = farthest(r, x);
   for (int i = 0; i < m->nq; i++) {
     moving |= r->sim->now[m->nq + i] != 0;
@@ -180,7 +180,7 @@ static void put_equilibrium(FILE *f, const App *app, const Rest *r, double *x)
   if (far < 0) {
     fputs("the start itself", f);
   } else {
-    const lag_var *v = modes_variable(m, far);
+    const lag_var *v = lag_modes_variable(m, far);
     fprintf(f, "from the start %s moved by %.6g%s%s", v->name, (x[far] - r->start[far]) / v->factor, v->unit[0] ? " " : "", v->unit);
   }
   fprintf(f, "%s\n ", moving ? ", at rest" : "");
@@ -240,7 +240,7 @@ static int has_phases(const lag_model *m, const Modes *s)
   for (int k = 0; k < s->n && k < MOST_MODES; k++) {
     for (int i = 0; i < m->nq + m->nz; i++) {
       double re = s->mode[k].shape_re[i], im = s->mode[k].shape_im[i];
-      if (fabs(im) > 1e-9 * modes_variable(m, i)->factor && fabs(im) > 1e-9 * hypot(re, im)) {
+      if (fabs(im) > 1e-9 * lag_modes_variable(m, i)->factor && fabs(im) > 1e-9 * hypot(re, im)) {
         return 1;
       }
     }
@@ -256,7 +256,7 @@ static void put_modes(FILE *f, const App *app, const Modes *s)
   for (int i = 0; i < s->n; i++) {
     damped |= s->mode[i].re != 0;
   }
-  modes_reason(s, text, sizeof text);
+  lag_modes_reason(s, text, sizeof text);
   Line line = {f, fprintf(f, "%s%s:", lag_verdict_name(s->verdict), s->verdict >= LAG_GYROSCOPIC ? " by the linearisation" : ""), 2};
   for (char *word = strtok(text, " "); word; word = strtok(NULL, " ")) {
     put_word(&line, word);
@@ -280,9 +280,9 @@ static void put_modes(FILE *f, const App *app, const Modes *s)
   }
 }
 
-void modes_text(FILE *f, const App *app, const Rest *r, const Modes *s, double *x)
+void lag_modes_text(FILE *f, const App *app, const Equilibrium *r, const Modes *s, double *x)
 {
-  const char *note = modes_caution(app, r);
+  const char *note = lag_modes_caution(app, r);
 
   put_equilibrium(f, app, r, x);
   if (note) {

@@ -13,7 +13,7 @@ static double state_var(const App *app, int i, Column *c)
   return lag_sim_state_value(app->sim, i);
 }
 
-void report_method(const App *app, char *s, size_t n)
+void lag_report_method(const App *app, char *s, size_t n)
 {
   const lag_method *m = lag_sim_method(app->sim);
   const double *opt = lag_sim_options(app->sim);
@@ -69,9 +69,9 @@ static void singular(const App *app, FILE *f)
 {
   int n = 0;
 
-  fprintf(f, "; singular: %d beside it", lag_sim_rank_beside(app->sim));
+  fprintf(f, "; singular: %d beside it", lag_sim_nearby_rank(app->sim));
   for (int i = 0; i < app->scene->model->nq; i++) {
-    if (lag_sim_is_loose(app->sim, i) && n++ < MOST_LINES) {
+    if (lag_sim_is_undetermined(app->sim, i) && n++ < MOST_LINES) {
       fprintf(f, "%s%s'", n == 1 ? ", and what the start says of " : ", ", app->scene->model->q[i].name);
     }
   }
@@ -87,7 +87,7 @@ static void constraints(const App *app, const lag_stats *st, FILE *f)
 
   for (int i = 0; of && i < n; i++) {
     Column c;
-    double asked = lag_sim_asked(app->sim, i), begin = lag_sim_begin(app->sim, i);
+    double asked = lag_sim_requested_start(app->sim, i), begin = lag_sim_actual_start(app->sim, i);
     if (asked != begin && moved++ < MOST_LINES) {
       state_var(app, i, &c);
       fprintf(f, "%s %s from %.15g to %.15g%s%s (by %.3g)\n", moved == 1 ? "start moved to the constraints:" : "  and", c.name, asked, begin,
@@ -108,7 +108,7 @@ static void constraints(const App *app, const lag_stats *st, FILE *f)
       fprintf(f, "%s%s", redundant == 1 ? "; redundant: " : ", ", of->of[k].name);
     }
   }
-  if (lag_sim_rank_beside(app->sim) > lag_sim_rank(app->sim)) {
+  if (lag_sim_nearby_rank(app->sim) > lag_sim_rank(app->sim)) {
     singular(app, f);
   }
   fprintf(f, "%s%sconstraint residual: %.3g, of rates %.3g (the largest, in SI)\n", redundant > MOST_LINES ? ", ..." : "", of->n > m->ncontacts ? "\n" : "",
@@ -213,11 +213,11 @@ static void exact_json(const App *app, FILE *f)
     state_var(app, c->exact_of[k], &v);
     lag_sim_exact(app->sim, k, &largest, &now);
     fputs(k ? ", " : "", f);
-    json_string(f, v.name);
+    lag_json_string(f, v.name);
     fputs(": {\"largest\": ", f);
-    json_number(f, largest);
+    lag_json_number(f, largest);
     fputs(", \"final\": ", f);
-    json_number(f, now);
+    lag_json_number(f, now);
     putc('}', f);
   }
   fputs("}, ", f);
@@ -235,14 +235,14 @@ static void arithmetic(const App *app, FILE *f)
   }
 }
 
-void report_text(App *app, FILE *f)
+void lag_report_text(App *app, FILE *f)
 {
   const lag_scene *c = app->scene;
   lag_stats st;
   char method[256];
 
   lag_sim_stats(app->sim, &st);
-  report_method(app, method, sizeof method);
+  lag_report_method(app, method, sizeof method);
   fprintf(f, "model %s, scene %s, method %s\n", c->model->name, c->name, method);
   if (app->why[0]) {
     fprintf(f, "chosen: %s\n", app->why);
@@ -252,7 +252,7 @@ void report_text(App *app, FILE *f)
   fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
   arithmetic(app, f);
   newton(app, &st, f);
-  report_charges(app, f);
+  lag_report_charges(app, f);
   constraints(app, &st, f);
   caveat(app, &st, f);
   for (int i = 0; i < c->nmonitors; i++) {
@@ -263,8 +263,8 @@ void report_text(App *app, FILE *f)
     fprintf(f, "note: the output %s has no finite value at t = %.9g s; so it is in %lld of %lld rows\n", app->table.cols[app->empty_column].name, app->empty_t,
             app->empty_rows, app->rows_put);
   }
-  report_events(app, f);
-  report_tangent(app, f);
+  lag_report_events(app, f);
+  lag_report_tangent(app, f);
   if (app->written && app->args.out) {
     fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
   }
@@ -294,9 +294,9 @@ static void final_outputs(App *app, FILE *f)
     }
     if (!seen) {
       fputs(", ", f);
-      json_string(f, o->name);
+      lag_json_string(f, o->name);
       fputs(": ", f);
-      json_number(f, app->row[i + 1]);
+      lag_json_number(f, app->row[i + 1]);
     }
   }
 }
@@ -304,14 +304,14 @@ static void final_outputs(App *app, FILE *f)
 static void field_string(FILE *f, const char *name, const char *value)
 {
   fprintf(f, "\"%s\": ", name);
-  json_string(f, value);
+  lag_json_string(f, value);
   fputs(", ", f);
 }
 
 static void field_number(FILE *f, const char *name, double x)
 {
   fprintf(f, "\"%s\": ", name);
-  json_number(f, x);
+  lag_json_number(f, x);
   fputs(", ", f);
 }
 
@@ -328,28 +328,28 @@ static void constraints_json(const App *app, FILE *f)
   for (int k = 0; k < of->n; k++) {
     if (is_redundant(app, k)) {
       fputs(redundant++ ? ", " : "", f);
-      json_string(f, of->of[k].name);
+      lag_json_string(f, of->of[k].name);
     }
   }
-  fprintf(f, "], \"rank_beside\": %d, \"start_moved\": {", lag_sim_rank_beside(app->sim));
+  fprintf(f, "], \"rank_beside\": %d, \"start_moved\": {", lag_sim_nearby_rank(app->sim));
   for (int i = 0; i < 2 * m->nq; i++) {
     Column c;
-    double asked = lag_sim_asked(app->sim, i), begin = lag_sim_begin(app->sim, i);
+    double asked = lag_sim_requested_start(app->sim, i), begin = lag_sim_actual_start(app->sim, i);
     if (asked != begin) {
       state_var(app, i, &c);
       fputs(moved++ ? ", " : "", f);
-      json_string(f, c.name);
+      lag_json_string(f, c.name);
       fputs(": [", f);
-      json_number(f, asked);
+      lag_json_number(f, asked);
       fputs(", ", f);
-      json_number(f, begin);
+      lag_json_number(f, begin);
       putc(']', f);
     }
   }
   fputs("}, ", f);
 }
 
-void report_json(App *app, FILE *f)
+void lag_report_json(App *app, FILE *f)
 {
   const lag_model *m = app->scene->model;
   int n = 2 * m->nq + m->nz;
@@ -377,19 +377,19 @@ void report_json(App *app, FILE *f)
   field_number(f, "energy_drift_absolute", m->flags & LAG_CONSERVES_ENERGY ? energy.absolute : NAN);
   field_number(f, "unresolved_period", st.unresolved);
   fprintf(f, "\"rows_without_value\": %lld, ", app->empty_rows);
-  if (report_lost_digits(app, &energy)) {
+  if (lag_report_lost_digits(app, &energy)) {
     fputs("\"digits_lost\": {", f);
-    field_number(f, "t", energy.jolt_t);
-    field_number(f, "energy_step", energy.jolt);
-    field_string(f, "coordinate", energy.strain_of);
+    field_number(f, "t", energy.energy_jump_t);
+    field_number(f, "energy_step", energy.energy_jump);
+    field_string(f, "coordinate", energy.mass_condition_of);
     fputs("\"condition\": ", f);
-    json_number(f, energy.strain);
+    lag_json_number(f, energy.mass_condition);
     fputs("}, ", f);
   }
-  report_charges_json(app, f);
-  report_events_json(app, f);
+  lag_report_charges_json(app, f);
+  lag_report_events_json(app, f);
   exact_json(app, f);
-  report_tangent_json(app, f);
+  lag_report_tangent_json(app, f);
   field_string(f, "math", m->math);
   field_string(f, "build", app->program->build);
   field_number(f, "constraint_residual", st.constraint); /* null without constraints */
@@ -400,9 +400,9 @@ void report_json(App *app, FILE *f)
     Column c;
     double x = state_var(app, i, &c);
     fputs(i ? ", " : "", f);
-    json_string(f, c.name);
+    lag_json_string(f, c.name);
     fputs(": ", f);
-    json_number(f, x);
+    lag_json_number(f, x);
   }
   final_outputs(app, f);
   fputs("}}\n", f);

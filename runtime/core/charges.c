@@ -18,7 +18,7 @@
 
 #include "core/core.h"
 #include "core/rhs.h"
-#include "core/gauss.h"
+#include "numeric/quadrature.h"
 
 int lag_sim_ncharges(const lag_sim *s)
 {
@@ -62,7 +62,7 @@ static void values_at(lag_sim *s, double t, const double *y)
   if (n == 0) {
     return;
   }
-  if (lag_inputs_here(&s->pb, t)) {
+  if (lag_inputs_inline(&s->pb, t)) {
     no_values(s, 0);
     return;
   }
@@ -101,7 +101,7 @@ int lag_method_balances(const lag_method *m)
   return m->order_most > 0 || m->order <= m->dense_order + 2;
 }
 
-int lag_charges_balance(const lag_sim *s)
+int lag_can_balance(const lag_sim *s)
 {
   return has_powers(s) && lag_method_balances(s->method);
 }
@@ -165,7 +165,7 @@ static void add_work(lag_sim *s, double t)
 }
 
 /* Merges neighbouring bins in pairs. */
-static void merge(Charge *c)
+static void merge_bins(Charge *c)
 {
   for (int i = 0; i < LAG_BINS / 2; i++) {
     c->t[i] = (c->t[2 * i] + c->t[2 * i + 1]) / 2;
@@ -217,7 +217,7 @@ static void add_to_trend(Charge *c, double t, double d, double size)
   c->m[(int)c->bins] = c->m[open] / c->width;
   c->t[open] = c->d[open] = c->m[open] = c->in_bin = 0;
   if (++c->bins >= LAG_BINS) {
-    merge(c);
+    merge_bins(c);
   }
   c->scale = median_size(c);
 }
@@ -226,14 +226,14 @@ void lag_charges_begin(lag_sim *s, double t, const double *y)
 {
   values_at(s, t, y);
   s->run->watched = t;
-  s->run->balanced = lag_charges_balance(s) && (s->balances || watches_charges(s->scene));
+  s->run->balanced = lag_can_balance(s) && (s->balances || watches_charges(s->scene));
   for (int k = 0; k < lag_sim_ncharges(s); k++) {
     s->charges[k] = (Charge){.begin = s->charge_now[2 * k], .first = s->charge_now[2 * k], .scale = fmax(s->charge_now[2 * k + 1], 0), .width = 1};
     s->charges[k].balanced = (lag_charge_flags(s, k) & LAG_BALANCED) != 0;
   }
 }
 
-int lag_charges_lost(lag_sim *s, double t, const double *y)
+int lag_energy_undefined(lag_sim *s, double t, const double *y)
 {
   int n = lag_sim_ncharges(s);
 
@@ -254,7 +254,7 @@ static int is_lost(const lag_model *m, const Charge *c, double d, double size)
   return c->balanced != 0.0 && !driven && c->bins >= few && fabs(d) > fmax(times * of, least) && fabs(d) > part * fmax(size, c->through);
 }
 
-int lag_charges_kept(lag_sim *s)
+int lag_energy_retained(lag_sim *s)
 {
   const double half = 0.5, least = 1e-12;
   const lag_model *m = s->scene->model;
@@ -295,20 +295,20 @@ static void note_jolt(lag_sim *s, double t, const double *y, double change)
   Run *r = s->run;
   int which;
 
-  if (m->nq == 0 || m->nq > MANY || m->flags & (LAG_FIRST_ORDER | LAG_CONSTANT_MASS) || !(change > fmax(2 * r->jolt, 64 * DBL_EPSILON * fmax(fabs(c->begin), c->scale)))) {
+  if (m->nq == 0 || m->nq > MANY || m->flags & (LAG_FIRST_ORDER | LAG_CONSTANT_MASS) || !(change > fmax(2 * r->energy_jump, 64 * DBL_EPSILON * fmax(fabs(c->begin), c->scale)))) {
     return;
   }
-  r->jolt = change;
-  r->jolt_t = t;
-  r->strain = lag_mass_condition(&s->pb, t, y, &which);
-  r->strain_of = which;
+  r->energy_jump = change;
+  r->energy_jump_t = t;
+  r->mass_condition = lag_mass_condition(&s->pb, t, y, &which);
+  r->mass_condition_of = which;
 }
 
-int lag_charges_see(lag_sim *s, double t, const double *y)
+int lag_charges_record(lag_sim *s, double t, const double *y)
 {
   int lost = 0;
 
-  if (lag_charges_lost(s, t, y)) {
+  if (lag_energy_undefined(s, t, y)) {
     return LAG_ENAN;
   }
   add_work(s, t);
@@ -389,7 +389,7 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
   if (!st) {
     return;
   }
-  *st = (lag_charge_stats){.name = "", .unit = "", .begin = NAN, .now = NAN, .drift = NAN, .slope = NAN, .slope_error = NAN, .strain = NAN, .strain_of = ""};
+  *st = (lag_charge_stats){.name = "", .unit = "", .begin = NAN, .now = NAN, .drift = NAN, .slope = NAN, .slope_error = NAN, .mass_condition = NAN, .mass_condition_of = ""};
   if (!s || k < 0 || k >= lag_sim_ncharges(s)) {
     return;
   }
@@ -399,7 +399,7 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
   double since = 0;
 
   *st = (lag_charge_stats){.name = m->charges ? m->charges->of[k].name : "energy", .unit = m->charges ? m->charges->of[k].unit : "",
-                           .flags = lag_charge_flags(s, k), .begin = c->begin, .strain = NAN, .strain_of = ""};
+                           .flags = lag_charge_flags(s, k), .begin = c->begin, .mass_condition = NAN, .mass_condition_of = ""};
   if (r->begun != 0.0 && r->have_step != 0.0 && r->balanced != 0.0) { /* the run's end is within a step */
     work_over(s, r->watched, r->t, s->charge_gain);
     since = c->balanced * s->charge_gain[k];
@@ -417,10 +417,10 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
   st->trend = trend_of(c, r->steps, &st->slope, &st->slope_error);
   st->slope = relative(c, st->slope);
   st->slope_error = relative(c, st->slope_error);
-  if (k == 0 && r->jolt > 0) {
-    st->jolt = relative(c, r->jolt);
-    st->jolt_t = r->jolt_t;
-    st->strain = r->strain;
-    st->strain_of = m->q[(int)r->strain_of].name;
+  if (k == 0 && r->energy_jump > 0) {
+    st->energy_jump = relative(c, r->energy_jump);
+    st->energy_jump_t = r->energy_jump_t;
+    st->mass_condition = r->mass_condition;
+    st->mass_condition_of = m->q[(int)r->mass_condition_of].name;
   }
 }

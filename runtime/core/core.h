@@ -24,11 +24,11 @@ typedef struct Run {
   double balanced;       /* 1: the work of forces on charges is integrated along the run */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
   double rank, beside;   /* rank of the constraints at the start; and, at a singular start, their rank a hundredth away from it */
-  double apart, since_apart, unlooked; /* independence of the weakest constraint when last computed; steps since then; steps until the next time */
+  double apart, steps_since_rank, steps_until_rank; /* independence of the weakest constraint when last computed; steps since then; steps until the next time */
   double looks, coarse, period; /* steps of equal size: period estimates made; estimates shorter than two steps; the last such period [s] */
   double stall_since;    /* time when the stall detector last judged the pace of steps */
-  double jolt, jolt_t;   /* largest energy change in one step, and its time; replaced only by a change more than twice as large */
-  double strain, strain_of; /* condition of the mass matrix at jolt_t, and the coordinate of least inertia */
+  double energy_jump, energy_jump_t;   /* largest energy change in one step, and its time; replaced only by a change more than twice as large */
+  double mass_condition, mass_condition_of; /* condition of the mass matrix at energy_jump_t, and the coordinate of least inertia */
   double chatter, chatter_since; /* impacts that follow another at once and leave the gap open, and the time of the first of them */
   double row_origin, row_every, row_next;  /* output grid, kept here for app/ */
 } Run;
@@ -70,8 +70,8 @@ struct lag_sim {
   double *start;         /* [n] start values set by the caller; NaN: the scene's */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
   double *sides;         /* [3 nswitch] switching functions, scratch of stall_detector.c */
-  double *paces;         /* [3 n] force_pole.c: rate of change of the state over the last two steps, and its fading peak; NaN: not known */
-  double *contact_room, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
+  double *rate_history;         /* [3 n] force_pole.c: rate of change of the state over the last two steps, and its fading peak; NaN: not known */
+  double *contact_scratch, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
   double *saved;         /* one block: Run and the arrays below; it lies in `room`, which is freed */
   char *room;
@@ -114,7 +114,7 @@ struct lag_sim {
   char message[512];
 };
 
-/* One array of the saved block behind Run, in the order in which they lie there, and the numbers that it may hold: saved.c refuses others. */
+/* One array of the saved block behind Run, in the order in which they lie there, and the numbers that it may hold: saved_state.c refuses others. */
 enum {
   LAG_SAVED_NUMBER, /* any */
   LAG_SAVED_FINITE,
@@ -123,25 +123,25 @@ enum {
   LAG_SAVED_SIGN,   /* -1, 0, 1 */
   LAG_SAVED_COUNT   /* integer, 0 to 2^53 */
 };
-enum { LAG_PARTS = 25 };
-typedef struct lag_saved_part {
+enum { LAG_SAVED_ARRAYS = 25 };
+typedef struct lag_saved_array {
   double **at;
   size_t n;
   int kind;
-} lag_saved_part;
-/* setup.c: part[LAG_PARTS] := the arrays of the saved block. */
-void lag_parts(lag_sim *sim, lag_saved_part *part);
+} lag_saved_array;
+/* setup.c: part[LAG_SAVED_ARRAYS] := the arrays of the saved block. */
+void lag_saved_arrays(lag_sim *sim, lag_saved_array *part);
 /* Whether all parameters have the signs that the model declares. */
 int lag_signs_hold(const lag_sim *sim);
 /* charges.c: whether the work of forces on charges can be integrated with this model and method. */
-int lag_charges_balance(const lag_sim *sim);
+int lag_can_balance(const lag_sim *sim);
 
 /* An SI value converted to the declared unit of its variable. */
 static inline double lag_declared(const lag_var *v, double si) { return (si - v->offset) / v->factor; }
 
 /* setup.c: whether the option is a step size; why x [s] cannot be the step size of this scene, NULL: it can. */
-int lag_is_step(const char *option);
-const char *lag_wrong_step(const lag_sim *s, double x);
+int lag_is_step_option(const char *option);
+const char *lag_step_error(const lag_sim *s, double x);
 /* The common size of the steps [s]; 0 where the method adapts it. */
 double lag_equal_step(const lag_sim *s);
 
@@ -158,39 +158,39 @@ int lag_fail(lag_sim *sim, int status, const char *format, ...);
 int lag_explain(lag_sim *sim, int status);
 
 /* sim.c: y[n] := the dense output at t in the last step, projected onto the constraints. LAG_OK, or a failure with its message. */
-int lag_between(lag_sim *sim, double t, double *y);
+int lag_dense_state(lag_sim *sim, double t, double *y);
 
 /* consistent.c: now[n], the requested start, becomes the nearest start on the constraints; sets asked, redundant, loose, run->rank and
  * run->beside. */
-int lag_consistent(lag_sim *sim);
+int lag_consistent_start(lag_sim *sim);
 /* agreement.c: whether constraints that are dependent at the start `now` are compatible soon after it, too; else a failure that names one. */
-int lag_agreement(lag_sim *sim);
-/* forces.c: out[nout] := outputs of the scene [SI] at y, t. Near a singular position of the constraints, multipliers and accelerations are
+int lag_constraint_compatibility(lag_sim *sim);
+/* scene_outputs.c: out[nout] := outputs of the scene [SI] at y, t. Near a singular position of the constraints, multipliers and accelerations are
  * extrapolated along the last step; NaN where there is no step. LAG_OK, or the status of the failed function. */
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);
 /* project.c: [2 n], sizes of the terms of rates and of constraints where these were last met. */
-double *lag_kept_terms(const lag_problem *pb);
+double *lag_last_term_sizes(const lag_problem *pb);
 /* rank.c: A[n nq] := Jacobian of all constraints by the coordinates at y, t, row-major; unit[nq] := coordinate scales (lag_scales of lag_kkt.h);
  * mass[nq nq] := M unless NULL. 0, or the model's status; then they are undefined. */
-int lag_constraint_rows(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass);
-/* The part of pb->ranks that lag_constraint_rows does not use: [n nq + nq + n]. */
-double *lag_independence_room(const lag_problem *pb);
+int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass);
+/* The part of pb->ranks that lag_constraint_jacobian does not use: [n nq + nq + n]. */
+double *lag_independence_scratch(const lag_problem *pb);
 /* The fraction of row[n] of A that is independent of the orthonormal rows Q[r n], 0 to 1. If more than `least`, its direction becomes row r of
  * Q. -1: the row is zero. Destroys row, which may be row r of Q, or a later one. */
-double lag_own_part(int n, int r, double least, const double *unit, double *Q, double *row);
-/* weightless.c: estimate of the condition of the scaled mass matrix at y, t, on the directions that constraints allow; NAN: not known; a value
+double lag_independent_part(int n, int r, double least, const double *unit, double *Q, double *row);
+/* massless_direction.c: estimate of the condition of the scaled mass matrix at y, t, on the directions that constraints allow; NAN: not known; a value
  * above 1e15 means above 1e15. *which: the coordinate with the largest part in the direction of least inertia. */
 double lag_mass_condition(lag_problem *pb, double t, const double *y, int *which);
 /* Gaussian elimination of K[n n] with complete pivoting: returns the coordinate that moves most along the direction of least inertia; *part:
  * last pivot over the first. Destroys K; x[n] and column[n] are scratch. */
-int lag_weightless(int n, double *K, double *x, int *column, double *part);
+int lag_massless_direction(int n, double *K, double *x, int *column, double *part);
 /* pb.redundant := whether any constraint is marked redundant (just found, or loaded). */
 void lag_note_redundant(lag_sim *sim);
 
 /* setup.c: sets the state at the start of a run. */
 int lag_setup_start(lag_sim *sim);
 
-/* events.c and locate.c. arm: signs of g at the start of a chain of steps. locate: the first event in (run->from, step_t1]; sets limit and
+/* events.c and event_location.c. arm: signs of g at the start of a chain of steps. locate: the first event in (run->from, step_t1]; sets limit and
  * pending. spread: variation of g[nev] about limit within the last digits of the time, which the dense output cannot resolve. fire: applies the
  * events at limit. eval: g[nev] at y, t. */
 int lag_events_arm(lag_sim *sim);
@@ -201,21 +201,21 @@ int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 
 /* landing.c: one step of the method from `now` at *t, into y and *t, resized where it would end at a singular position of the constraints.
  * Returns the method's status; after a failure y and *t are unchanged or undefined. */
-int lag_step_of_method(lag_sim *sim, double *t, double t_stop);
+int lag_resized_step(lag_sim *sim, double *t, double t_stop);
 
 /* stall_detector.c: judges the step from `now` to y at t. LAG_OK; LAG_ESTALL or LAG_ESTEP where the motion makes no progress, with the reason in
  * pb. */
-int lag_stalls(lag_sim *sim, double t);
+int lag_detect_stall(lag_sim *sim, double t);
 
 /* force_pole.c: whether the step of equal size from `now` to y at t crosses a pole of a derivative. LAG_OK, or LAG_EDOMAIN with the derivative
  * in pb. */
-int lag_over_force_pole(lag_sim *sim, double t);
-void lag_forget_paces(lag_sim *sim);
+int lag_crosses_force_pole(lag_sim *sim, double t);
+void lag_reset_rate_history(lag_sim *sim);
 
 /* project.c: constraints on velocities that are the rate of a function of positions. keep_nothing: their positions are free. keep: holds the
  * functions at their values at y, t. Returns the model's status. */
-void lag_keep_nothing(lag_sim *sim);
-int lag_keep(lag_sim *sim, double t, const double *y);
+void lag_release_integrals(lag_sim *sim);
+int lag_hold_integrals(lag_sim *sim, double t, const double *y);
 
 /* contact.c. of: the contact to which the event belongs, or NULL. open: opens all contacts, before the state is replaced.
  * settle: applies impacts to y and closes the contacts that rest. event: the contact event that led there, or -1; ends: its series of impacts
@@ -225,7 +225,7 @@ int lag_keep(lag_sim *sim, double t, const double *y);
 const lag_contact *lag_contact_of(const lag_model *m, int event);
 int lag_contact_is_closed(const lag_sim *sim, const lag_contact *contact);
 void lag_contact_open(lag_sim *sim);
-int lag_contact_settle(lag_sim *sim, double *y, const char *who, int event, int ends);
+int lag_contact_resolve(lag_sim *sim, double *y, const char *who, int event, int ends);
 int lag_contact_begin(lag_sim *sim);
 int lag_contact_arm(lag_sim *sim, const double *g);
 
@@ -235,54 +235,50 @@ int lag_tangent_pass(lag_sim *sim);
 int lag_tangent_jump(lag_sim *sim, int k, int more);
 void lag_tangent_free(lag_sim *sim);
 
-/* exact.c. at: the closed forms at t, stored behind the inputs in s->u; call lag_inputs first. see: as in watch.c. */
-int lag_exact_at(lag_sim *sim, double t);
-int lag_exact_see(lag_sim *sim, double t, const double *y);
+/* closed_form.c. at: the closed forms at t, stored behind the inputs in s->u; call lag_inputs first. see: as in monitors.c. */
+int lag_closed_form_at(lag_sim *sim, double t);
+int lag_closed_form_record(lag_sim *sim, double t, const double *y);
 
-/* charges.c: begin, see and jump as in watch.c. method: chooses quadrature nodes for the method of the steps. drift: of charge k so far,
+/* charges.c: begin, see and jump as in monitors.c. method: chooses quadrature nodes for the method of the steps. drift: of charge k so far,
  * relative to its size. flags: what is known of its rate, given the inputs that are set. _see returns LAG_EDRIFT, with a message, where the
  * energy has drifted past its size. */
 void lag_charges_method(lag_sim *sim, const lag_method *method);
 void lag_charges_begin(lag_sim *sim, double t, const double *y);
-int lag_charges_see(lag_sim *sim, double t, const double *y);
+int lag_charges_record(lag_sim *sim, double t, const double *y);
 /* Whether the energy, finite at the start, is not finite at t. _see then adds nothing and returns LAG_ENAN. */
-int lag_charges_lost(lag_sim *sim, double t, const double *y);
+int lag_energy_undefined(lag_sim *sim, double t, const double *y);
 void lag_charges_jump(lag_sim *sim, double t, const double *ya, const double *yb);
 double lag_charge_drift(const lag_sim *sim, int k);
 unsigned lag_charge_flags(const lag_sim *sim, int k);
 
 /* charges.c: LAG_EDRIFT with a message where half of an energy that is known to be conserved or balanced is lost; else LAG_OK. */
-int lag_charges_kept(lag_sim *sim);
+int lag_energy_retained(lag_sim *sim);
 
-/* watch.c: charges and monitors. begin: first values. see: records the state `y` at t of the run. jump: an event changed the state from ya to
+/* monitors.c: charges and monitors. begin: first values. see: records the state `y` at t of the run. jump: an event changed the state from ya to
  * yb. */
-int lag_watch_begin(lag_sim *sim);
-int lag_watch_see(lag_sim *sim, double t, const double *y);
-int lag_watch_jump(lag_sim *sim, double t, const double *ya, const double *yb);
-
-/* The root of f in [a, b] (a > b allowed), where f(a) and f(b) differ in sign. Returns the end of the last bracket on b's side, so the sign has
- * changed there. ITP method: I.F.D. Oliveira, R.H.C. Takahashi, ACM Trans. Math. Softw. 47 (2020) 5, DOI 10.1145/3423597. */
-double lag_root(double (*f)(void *context, double x), void *context, double a, double fa, double b, double fb);
+int lag_monitors_begin(lag_sim *sim);
+int lag_monitors_record(lag_sim *sim, double t, const double *y);
+int lag_monitors_jump(lag_sim *sim, double t, const double *ya, const double *yb);
 
 /* Kinds of names in a scene. */
 enum { LAG_IS_NOTHING, LAG_IS_P, LAG_IS_Q, LAG_IS_V, LAG_IS_Z, LAG_IS_U };
 /* Finds name; returns its kind, *index within that kind and *var, its description. LAG_IS_NOTHING: unknown. */
-int lag_find(const lag_model *model, const char *name, int *index, const lag_var **var);
+int lag_find_name(const lag_model *model, const char *name, int *index, const lag_var **var);
 /* The name inside its effect: c of drag.c, v.x of wind.v.x; NULL where there is no dot. */
-const char *lag_own_name(const char *var);
+const char *lag_name_in_effect(const char *var);
 /* Whether var is a member of the family: th[2] of th, r[1].x of r.x; length is strlen(family). */
 int lag_is_member(const char *var, const char *family, size_t length);
 /* best := the known name nearest to `name`; 0 when none is near. */
-int lag_nearest(const lag_model *model, const char *name, char *best, size_t nbest);
+int lag_nearest_name(const lag_model *model, const char *name, char *best, size_t nbest);
 /* part := member or component k of the family `name` ("th": "th[1]", "th'": "th[1]'", "r": "r.x"); 0 past the last. */
-int lag_part(const lag_model *model, const char *name, int k, char *part, size_t npart);
+int lag_family_member(const lag_model *model, const char *name, int k, char *part, size_t npart);
 /* Edit distance (insert, delete, replace, swap) of two words. */
-int lag_distance(const char *a, const char *b);
-/* Edit distance where `name` may be a typing error for `known`; LAG_FAR where it is another name: too many edits, or a single letter replaced. */
-enum { LAG_FAR = 1000 };
-int lag_near(const char *name, const char *known);
+int lag_edit_distance(const char *a, const char *b);
+/* Edit distance where `name` may be a typing error for `known`; LAG_NO_TYPO where it is another name: too many edits, or a single letter replaced. */
+enum { LAG_NO_TYPO = 1000 };
+int lag_typo_distance(const char *name, const char *known);
 
 /* For app/: the output grid that is saved with the run: row_origin, row_every, row_next. */
-double *lag_sim_rows(lag_sim *sim);
+double *lag_sim_output_grid(lag_sim *sim);
 
 #endif

@@ -1,4 +1,4 @@
-/* Firing of events, where g changes its sign (locate.c finds the time). Enters: the time; leaves: the state after the actions. Holds: sign[k] is
+/* Firing of events, where g changes its sign (event_location.c finds the time). Enters: the time; leaves: the state after the actions. Holds: sign[k] is
  * the sign of g_k just after `from`; an event that has just fired has sign 0 ("not known yet") until g has clearly left zero, so it never fires
  * twice for one crossing. */
 #include <float.h>
@@ -115,19 +115,19 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
     lag_contact_open(s); /* bodies at rest may have been lifted or thrown */
   }
   if (elsewhere) {
-    lag_keep_nothing(s);
+    lag_release_integrals(s);
   }
   if (moved && lag_project(&s->pb, r->t, s->yb, NULL) != 0) {
     return lag_fail(s, LAG_EMODEL, "event %s: its action at t = %s s leaves the constraints: %s", m->ev[k].name, LAG_TEXT(r->t),
                     s->pb.detail ? s->pb.detail : "");
   }
   if (elsewhere) {
-    rc = lag_keep(s, r->t, s->yb);
+    rc = lag_hold_integrals(s, r->t, s->yb);
   }
   if (rc == 0 && (contact || moved)) {
     char who[128];
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
-    rc = lag_contact_settle(s, s->yb, contact ? NULL : who, contact ? k : -1, ends);
+    rc = lag_contact_resolve(s, s->yb, contact ? NULL : who, contact ? k : -1, ends);
   }
   if (rc == 0 && contact) {
     rc = fail_chatter(s, k, contact, since);
@@ -145,7 +145,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
       return rc;
     }
     *changed = 1;
-    rc = lag_watch_jump(s, r->t, s->now, s->yb);
+    rc = lag_monitors_jump(s, r->t, s->now, s->yb);
     memcpy(s->now, s->yb, bytes);
   }
   return rc ? rc : ends && !contact ? fail_zeno(s, k) : LAG_OK;

@@ -22,7 +22,7 @@ static int find_rough(lag_sim *s, double t)
 {
   const double rough = 0.1, rounding = 1e-9, steep = 4, fading = 0.99;
   int nq = s->pb.nq, n = s->pb.n, which = -1;
-  double most = 0, dt = t - s->run->t, *one = s->paces, *two = one + n, *peak = two + n;
+  double most = 0, dt = t - s->run->t, *one = s->rate_history, *two = one + n, *peak = two + n;
 
   for (int i = nq; i < n; i++) {
     double pace = (s->y[i] - s->now[i]) / dt, size = fabs(pace), bend = fabs(pace - 2 * one[i] + two[i]), faded = fading * peak[i];
@@ -40,10 +40,10 @@ static int find_rough(lag_sim *s, double t)
   return which;
 }
 
-void lag_forget_paces(lag_sim *s)
+void lag_reset_rate_history(lag_sim *s)
 {
   for (int i = 0; i < 3 * s->pb.n; i++) {
-    s->paces[i] = NAN;
+    s->rate_history[i] = NAN;
   }
 }
 
@@ -93,7 +93,7 @@ static double find_pole(lag_sim *s, double t, int i)
   return turn > LEAST_TURNS ? from : NAN;
 }
 
-int lag_over_force_pole(lag_sim *s, double t)
+int lag_crosses_force_pole(lag_sim *s, double t)
 {
   lag_problem *pb = &s->pb;
   int i = s->steps_equal && !pb->model->constraints ? find_rough(s, t) : -1;

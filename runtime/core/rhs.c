@@ -51,7 +51,7 @@ int lag_rhs_prepare(lag_problem *pb, double t, const double **y)
   if (!pb->redundant) {
     return lag_inputs(pb, t);
   }
-  double *at = pb->held + lag_held_room(pb->model) - pb->n;
+  double *at = pb->held + lag_constraint_scratch_size(pb->model) - pb->n;
   memcpy(at, *y, (size_t)pb->n * sizeof *at);
   int rc = lag_project(pb, t, at, NULL);
   *y = at;
@@ -60,7 +60,7 @@ int lag_rhs_prepare(lag_problem *pb, double t, const double **y)
 
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy)
 {
-  return lag_rhs_here(pb, pb->nq, t, y, dy);
+  return lag_rhs_inline(pb, pb->nq, t, y, dy);
 }
 
 /* The first row after t in direction dir; -1: none. */

@@ -8,13 +8,13 @@
 #include "lag.h"
 
 #ifdef __GNUC__
-#define LAG_HERE static inline __attribute__((always_inline))
+#define LAG_ALWAYS_INLINE static inline __attribute__((always_inline))
 #else
-#define LAG_HERE static inline
+#define LAG_ALWAYS_INLINE static inline
 #endif
 
 /* to[n] := from[n]. */
-LAG_HERE void lag_copy(int n, const double *from, double *to)
+LAG_ALWAYS_INLINE void lag_copy(int n, const double *from, double *to)
 {
   int i = 0;
 
@@ -32,18 +32,18 @@ LAG_HERE void lag_copy(int n, const double *from, double *to)
 int lag_rhs_prepare(lag_problem *pb, double t, const double **y);
 
 /* Inline lag_inputs and lag_next_row. */
-LAG_HERE int lag_inputs_here(lag_problem *pb, double t)
+LAG_ALWAYS_INLINE int lag_inputs_inline(lag_problem *pb, double t)
 {
   return pb->model->nu ? lag_inputs(pb, t) : 0;
 }
 
-LAG_HERE double lag_next_row_here(const lag_problem *pb, double t, double *row)
+LAG_ALWAYS_INLINE double lag_next_row_inline(const lag_problem *pb, double t, double *row)
 {
   return pb->model->ntables ? lag_next_row(pb, t, row) : HUGE_VAL;
 }
 
 /* Inline lag_rhs; nq is the model's, perhaps a compile-time constant. */
-LAG_HERE int lag_rhs_here(lag_problem *pb, int nq, double t, const double *y, double *dy)
+LAG_ALWAYS_INLINE int lag_rhs_inline(lag_problem *pb, int nq, double t, const double *y, double *dy)
 {
   const lag_model *m = pb->model;
 

@@ -8,16 +8,16 @@
 #include <string.h>
 
 #include "core/core.h"
-#include "core/room.h"
+#include "numeric/workspace.h"
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
 
-void lag_parts(lag_sim *s, lag_saved_part *part)
+void lag_saved_arrays(lag_sim *s, lag_saved_array *part)
 {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nq = (size_t)s->pb.nq, nev = (size_t)m->nev, nmon = (size_t)s->scene->nmonitors;
   size_t nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  const lag_saved_part all[LAG_PARTS] = {
+  const lag_saved_array all[LAG_SAVED_ARRAYS] = {
       {&s->p, (size_t)m->np, LAG_SAVED_FINITE}, {&s->derived, (size_t)m->nderived, LAG_SAVED_NUMBER}, {&s->hold, (size_t)m->nu, LAG_SAVED_HELD},
       {&s->begin, n, LAG_SAVED_FINITE}, {&s->asked, n, LAG_SAVED_FINITE}, {&s->redundant, nc, LAG_SAVED_FLAG}, {&s->loose, nq, LAG_SAVED_FLAG},
       {&s->kept, nc, LAG_SAVED_FINITE}, {&s->y, n, LAG_SAVED_FINITE}, {&s->y0, n, LAG_SAVED_FINITE}, {&s->now, n, LAG_SAVED_FINITE},
@@ -35,10 +35,10 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
 {
   const lag_model *m = s->scene->model;
   size_t np = (size_t)(m->np + m->nderived), nu = (size_t)m->nu, fixed = RUN_DOUBLES;
-  lag_saved_part part[LAG_PARTS];
+  lag_saved_array part[LAG_SAVED_ARRAYS];
   lag_problem sized = s->pb;
-  lag_parts(s, part);
-  for (int i = 0; i < LAG_PARTS; i++) {
+  lag_saved_arrays(s, part);
+  for (int i = 0; i < LAG_SAVED_ARRAYS; i++) {
     fixed += part[i].n;
   }
   sized.opt = opt;
@@ -59,7 +59,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  for (int i = 0; i < LAG_PARTS; i++) {
+  for (int i = 0; i < LAG_SAVED_ARRAYS; i++) {
     *part[i].at = x;
     x += part[i].n;
   }
@@ -81,13 +81,13 @@ static int alloc_scratch(lag_sim *s)
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
-  size_t held = lag_held_room(m), ranks = lag_ranks_room(m), sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
+  size_t held = lag_constraint_scratch_size(m), ranks = lag_rank_scratch_size(m), sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
   size_t nc = (size_t)lag_sim_ncharges(s);
-  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->pb.ranks, &s->contact_room,
-                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->paces};
+  double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->pb.ranks, &s->contact_scratch,
+                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->rate_history};
   const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch, 3 * n};
 
-  s->scratch = lag_room(sizeof sizes / sizeof *sizes, parts, sizes);
+  s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
   s->signal = calloc(nu + 1, sizeof *s->signal);
@@ -97,7 +97,7 @@ static int alloc_scratch(lag_sim *s)
   for (size_t i = 0; i < n; i++) {
     s->start[i] = NAN;
   }
-  lag_forget_paces(s);
+  lag_reset_rate_history(s);
   s->pb.u = s->u;
   s->pb.signal = s->signal;
   s->pb.work = s->work;
@@ -126,7 +126,7 @@ static double *default_options(const lag_method *method)
 }
 
 /* Sets the state to the start as it is set now, so that a simulation can be inspected before it runs. */
-static void place(lag_sim *s)
+static void set_start_state(lag_sim *s)
 {
   int nq = s->pb.nq, n = s->pb.n;
 
@@ -174,7 +174,7 @@ lag_sim *lag_sim_new(const lag_scene *scene)
   if (scene->params) {
     scene->params(s->p, s->fixed);
   }
-  place(s);
+  set_start_state(s);
   return s;
 }
 
@@ -201,12 +201,12 @@ static int begun(lag_sim *s)
   return s->run->begun != 0.0 ? lag_fail(s, LAG_EINVAL, "the run has begun: set this before the first step") : 0;
 }
 
-int lag_is_step(const char *option)
+int lag_is_step_option(const char *option)
 {
   return strcmp(option, "step") == 0 || strcmp(option, "max_step") == 0;
 }
 
-const char *lag_wrong_step(const lag_sim *s, double x)
+const char *lag_step_error(const lag_sim *s, double x)
 {
   const lag_scene *c = s->scene;
 
@@ -253,7 +253,7 @@ static int option_value(lag_sim *s, const lag_method *m, const lag_method_option
     return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"; it is %s", m->name, o->name, given->text,
                     o->choices ? words : "a number");
   }
-  const char *wrong = lag_is_step(o->name) && *value != 0.0 ? lag_wrong_step(s, *value) : isfinite(*value) ? NULL : "it must be finite";
+  const char *wrong = lag_is_step_option(o->name) && *value != 0.0 ? lag_step_error(s, *value) : isfinite(*value) ? NULL : "it must be finite";
   if (wrong) {
     return lag_fail(s, LAG_EINVAL, "method %s: %s = %g: %s", m->name, o->name, *value, wrong);
   }
@@ -380,7 +380,7 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
   free(s->options);
   s->options = values;
   s->steps_equal = lag_equal_step(s) > 0;
-  place(s);
+  set_start_state(s);
   return LAG_OK;
 }
 
@@ -434,10 +434,10 @@ static int unknown_name(lag_sim *s, const char *name)
   const lag_model *m = s->scene->model;
   char near[64];
 
-  if (lag_part(m, name, 0, near, sizeof near)) {
+  if (lag_family_member(m, name, 0, near, sizeof near)) {
     return lag_fail(s, LAG_EINVAL, "%s has parts: set %s, and so on", name, near);
   }
-  return lag_nearest(m, name, near, sizeof near)
+  return lag_nearest_name(m, name, near, sizeof near)
              ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name, m->name,
                         near)
              : lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s", name, m->name);
@@ -514,7 +514,7 @@ static int effects_family(const lag_model *m, const char *name, char *full, size
   int known = 0;
 
   for (int i = 0; i < m->np; i++) {
-    const char *var = m->p[i].name, *own = lag_own_name(var);
+    const char *var = m->p[i].name, *own = lag_name_in_effect(var);
     if (!own || !lag_is_member(own, name, strlen(name))) {
       continue;
     }
@@ -538,7 +538,7 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
   }
   const lag_model *m = s->scene->model;
   const lag_var *var = NULL;
-  int i, rc = begun(s), kind = lag_find(m, name, &i, &var);
+  int i, rc = begun(s), kind = lag_find_name(m, name, &i, &var);
 
   if (rc == 0 && kind == LAG_IS_NOTHING) {
     char full[128];
@@ -556,7 +556,7 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
   if (s->scene->params) {
     s->scene->params(s->p, s->fixed); /* parameters may depend on this one */
   }
-  place(s);
+  set_start_state(s);
   return LAG_OK;
 }
 
@@ -569,7 +569,7 @@ int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *cont
     return lag_fail(s, LAG_EINVAL, "an input without a name");
   }
   const lag_var *var = NULL;
-  int i, rc = begun(s), kind = lag_find(s->scene->model, name, &i, &var);
+  int i, rc = begun(s), kind = lag_find_name(s->scene->model, name, &i, &var);
 
   if (rc) {
     return rc;
@@ -604,12 +604,12 @@ int lag_setup_start(lag_sim *s)
                       m->p[i].name, sign_text(m->p[i].sign));
     }
   }
-  place(s);
+  set_start_state(s);
   if (lag_not_finite(n, s->now) >= 0) {
     return lag_fail(s, LAG_ENAN, "the start is not finite");
   }
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */
-  if ((rc = lag_consistent(s)) != 0) {
+  if ((rc = lag_consistent_start(s)) != 0) {
     return rc;
   }
   memcpy(s->begin, s->now, (size_t)n * sizeof(double));

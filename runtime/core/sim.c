@@ -141,7 +141,7 @@ static int begin(lag_sim *s, double t)
     return lag_explain(s, rc);
   }
   s->run->begun = 1;
-  rc = lag_watch_begin(s);
+  rc = lag_monitors_begin(s);
   return rc ? rc : lag_events_arm(s);
 }
 
@@ -151,7 +151,7 @@ static void pass_jump(lag_sim *s)
   Run *r = s->run;
   double row;
 
-  if (lag_next_row_here(&s->pb, r->t, &row) < HUGE_VAL && row == nextafter(r->t, r->dir * HUGE_VAL)) {
+  if (lag_next_row_inline(&s->pb, r->t, &row) < HUGE_VAL && row == nextafter(r->t, r->dir * HUGE_VAL)) {
     r->t = row;
     s->method->reset(s->method_work, &s->pb);
   }
@@ -165,15 +165,15 @@ static int take(lag_sim *s, double t_stop)
   pass_jump(s);
   double t = r->t, row = t_stop;
 
-  if (lag_next_row_here(&s->pb, t, &row) < fabs(t_stop - t)) {
+  if (lag_next_row_inline(&s->pb, t, &row) < fabs(t_stop - t)) {
     t_stop = row;
   }
   lag_copy(s->pb.n, s->now, s->y0);
   s->pb.detail = NULL;
   s->pb.bad_t = t;
-  int rc = lag_step_of_method(s, &t, t_stop);
-  rc = rc ? rc : lag_stalls(s, t);
-  rc = rc ? rc : lag_over_force_pole(s, t);
+  int rc = lag_resized_step(s, &t, t_stop);
+  rc = rc ? rc : lag_detect_stall(s, t);
+  rc = rc ? rc : lag_crosses_force_pole(s, t);
   if (rc) {
     return lag_explain(s, rc);
   }
@@ -184,7 +184,7 @@ static int take(lag_sim *s, double t_stop)
   return lag_events_locate(s);
 }
 
-int lag_between(lag_sim *s, double t, double *y)
+int lag_dense_state(lag_sim *s, double t, double *y)
 {
   s->method->dense(s->method_work, &s->pb, t, y);
   s->pb.detail = NULL;
@@ -193,14 +193,14 @@ int lag_between(lag_sim *s, double t, double *y)
 }
 
 /* `now` := the state at time t of the present step. */
-static int settle(lag_sim *s, double t)
+static int move_to(lag_sim *s, double t)
 {
   const Run *r = s->run;
 
   if (t == r->step_t1) {
     lag_copy(s->pb.n, s->y, s->now);
   } else if (t != r->t) {
-    int rc = lag_between(s, t, s->yc);
+    int rc = lag_dense_state(s, t, s->yc);
     if (rc) {
       return rc;
     }
@@ -211,13 +211,13 @@ static int settle(lag_sim *s, double t)
 }
 
 /* Moves to the next event, or to the end of the step. */
-static int pass(lag_sim *s)
+static int pass_limit(lag_sim *s)
 {
   Run *r = s->run;
 
-  int rc = settle(s, r->limit);
+  int rc = move_to(s, r->limit);
 
-  rc = rc ? rc : lag_watch_see(s, r->t, s->now);
+  rc = rc ? rc : lag_monitors_record(s, r->t, s->now);
   if (rc) {
     return rc;
   }
@@ -230,7 +230,7 @@ static int pass(lag_sim *s)
 }
 
 /* Begins the run if needed; whether it can advance to t. */
-static int ready(lag_sim *s, double t)
+static int begin_or_check(lag_sim *s, double t)
 {
   const Run *r = s->run;
   int rc = 0;
@@ -245,12 +245,12 @@ static int ready(lag_sim *s, double t)
 }
 
 /* Ends the present step, or makes a new one. */
-static int go_on(lag_sim *s, double t)
+static int continue_run(lag_sim *s, double t)
 {
   int rc;
 
   if (s->run->have_step != 0.0) {
-    rc = pass(s);
+    rc = pass_limit(s);
     int bad = rc < 0 || !s->tangent ? rc : lag_tangent_pass(s);
     rc = bad ? bad : rc;
   } else {
@@ -268,30 +268,30 @@ int lag_sim_advance(lag_sim *s, double t)
     return LAG_EINVAL;
   }
   const Run *r = s->run;
-  int rc = ready(s, t);
+  int rc = begin_or_check(s, t);
 
   while (rc == 0) {
     if (r->have_step != 0.0 && (r->limit - t) * r->dir >= 0) {
-      return settle(s, t);
+      return move_to(s, t);
     }
     if (r->have_step == 0.0 && r->t == t) {
       return LAG_OK;
     }
-    rc = go_on(s, t);
+    rc = continue_run(s, t);
   }
   return rc;
 }
 
-int lag_sim_reach(lag_sim *s, double t, double *reach)
+int lag_sim_ensure_step(lag_sim *s, double t, double *reach)
 {
   if (!s || !reach) {
     return LAG_EINVAL;
   }
   const Run *r = s->run;
-  int rc = ready(s, t);
+  int rc = begin_or_check(s, t);
 
   while (rc == 0 && r->t != t && (r->have_step == 0.0 || r->limit == r->t)) {
-    rc = go_on(s, t);
+    rc = continue_run(s, t);
   }
   *reach = r->t == t || rc ? r->t : (r->limit - t) * r->dir < 0 ? r->limit : t;
   return rc;
@@ -316,5 +316,5 @@ int lag_sim_eval(lag_sim *s, double t, double *y)
     memcpy(y, s->y, bytes);
     return LAG_OK;
   }
-  return lag_between(s, t, y);
+  return lag_dense_state(s, t, y);
 }

@@ -59,7 +59,7 @@ static double rate_of(lag_sim *s, int k, double t, double dt, const double *y)
 
 /* Whether a step of equal size has stayed on one side of a surface although its first derivative leads across and the derivative there leads
  * back: its path is not that of the derivatives at its ends, r0 and r1. */
-static int hovers(lag_sim *s, int k, double t, double dt)
+static int equal_step_sticks(lag_sim *s, int k, double t, double dt)
 {
   const double part = 0.25;
   double first = s->sides[k], last = s->sides[k + s->scene->model->nswitch], whole = t - s->run->t, r0, r1;
@@ -87,7 +87,7 @@ static int stays(lag_sim *s, int k, double t)
     return r0 < 0 && r1 < 0 && first[k] < -r0 * fabs(t - s->run->t) && r1 < near * r0;
   }
   if (!(first[k] * last[k] < 0)) {
-    return first[k] * last[k] > 0 && hovers(s, k, t, dt);
+    return first[k] * last[k] > 0 && equal_step_sticks(s, k, t, dt);
   }
   for (int turn = 0, on_it = 0; turn < 60 && on_it < 4; turn++) {
     double mid = a + (b - a) * (on_it ? 0.3 + 0.1 * on_it : 0.5);
@@ -122,7 +122,7 @@ static void say_switch(lag_sim *s, int k, double t)
 }
 
 /* Criterion 1: a sliding motion. */
-static int slides(lag_sim *s, double t)
+static int is_sliding(lag_sim *s, double t)
 {
   const lag_model *m = s->scene->model;
 
@@ -150,7 +150,7 @@ static int hangs_at(lag_sim *s, double t, double led)
 }
 
 /* Criterion 2: shrinking steps. */
-static int creeps(lag_sim *s, double t)
+static int has_shrinking_steps(lag_sim *s, double t)
 {
   const double pace = 1e-5, mean = 1e-2, dependent = 1e-2;
   Run *r = s->run;
@@ -179,7 +179,7 @@ static int creeps(lag_sim *s, double t)
     const lag_constraint *weakest = &pb->model->constraints->of[k];
     snprintf(pb->words, sizeof pb->words, "the last %d steps led on by %.3g s only: constraint %s%s is within %.1g of following from the others, "
              "and no step is accurate to the tolerance; a larger one, or steps of equal size (adapt=off, rk4, variational), may pass", MOST, led,
-             weakest->name, lag_line_of(weakest, line), apart);
+             weakest->name, lag_line_text(weakest, line), apart);
   }
   pb->detail = pb->words;
   pb->bad_t = t;
@@ -212,7 +212,7 @@ static void look_for_period(lag_sim *s, double t)
 }
 
 /* Criterion 4: coordinates whose last digit is more than a thousandth and changes the derivatives by a tenth. */
-static int is_too_coarse(lag_sim *s, double t)
+static int is_below_resolution(lag_sim *s, double t)
 {
   const double small = 1e-3, part = 0.1;
   lag_problem *pb = &s->pb;
@@ -245,21 +245,21 @@ static int is_too_coarse(lag_sim *s, double t)
   return 1;
 }
 
-int lag_stalls(lag_sim *s, double t)
+int lag_detect_stall(lag_sim *s, double t)
 {
   Run *r = s->run;
   long long steps = (long long)r->steps + 1;
   int rc = 0;
 
-  if (s->scene->model->nswitch && slides(s, t)) {
+  if (s->scene->model->nswitch && is_sliding(s, t)) {
     return LAG_ESTALL;
   }
-  if (steps % MOST == 0 && (rc = creeps(s, t)) != 0) {
+  if (steps % MOST == 0 && (rc = has_shrinking_steps(s, t)) != 0) {
     return rc;
   }
   if ((steps & (steps - 1)) != 0) { /* criteria 3 and 4 are tested after 1, 2, 4, 8, ... steps */
     return LAG_OK;
   }
   look_for_period(s, t);
-  return is_too_coarse(s, t) ? LAG_ESTALL : LAG_OK;
+  return is_below_resolution(s, t) ? LAG_ESTALL : LAG_OK;
 }

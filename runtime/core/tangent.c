@@ -113,7 +113,7 @@ int lag_sim_set_tangent(lag_sim *s, int k, const double *Y)
 }
 
 /* Y := D Y, with D the derivative of the last step up to t. */
-static int carry(lag_sim *s, double t, double *Y)
+static int advance_tangent(lag_sim *s, double t, double *Y)
 {
   lag_problem *pb = &s->pb;
   double rhs_calls = pb->rhs_calls, systems = pb->systems, iterations = pb->iterations;
@@ -133,7 +133,7 @@ int lag_tangent_pass(lag_sim *s)
     s->tangent_at_event = 0;
     return LAG_OK;
   }
-  return carry(s, s->run->t, s->tangent);
+  return advance_tangent(s, s->run->t, s->tangent);
 }
 
 /* ---- Events that change the state */
@@ -148,7 +148,7 @@ typedef struct Jump {
   double *d, *S, *g, *Rt, *before, *after, *Y, *copy; /* entries; S[n n]; gradient of g and g_t; R_t; f and f+; copies of the tangent and of S */
 } Jump;
 
-static Jump parts(const lag_sim *s)
+static Jump jump_layout(const lag_sim *s)
 {
   int n = s->pb.n;
   double *x = s->tangent_jump;
@@ -165,7 +165,7 @@ static Jump parts(const lag_sim *s)
 }
 
 /* S := R_y, and R_t, gradient of g and g_t of event k. 0: the model lists none. */
-static int gather(const lag_sim *s, int k, const Jump *j)
+static int collect_derivatives(const lag_sim *s, int k, const Jump *j)
 {
   const lag_linear *l = s->scene->model->linear;
   int n = s->pb.n, listed = 0;
@@ -188,7 +188,7 @@ static int gather(const lag_sim *s, int k, const Jump *j)
 }
 
 /* Y := S Y; returns whether it is finite. */
-static int apply(lag_sim *s, const Jump *j)
+static int apply_saltation(lag_sim *s, const Jump *j)
 {
   int n = s->pb.n, k = s->tangent_columns;
 
@@ -262,14 +262,14 @@ int lag_tangent_jump(lag_sim *s, int k, int more)
   if (more) {
     return refuse(s, k, "another one does at the same time, and neighbouring motions may meet them in either order");
   }
-  Jump j = parts(s);
+  Jump j = jump_layout(s);
   if (njump(s) && (lag_inputs(pb, t) || m->linear->jumps(t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, j.d, s->work))) {
     return refuse(s, k, "its derivatives cannot be computed");
   }
-  if (!njump(s) || !gather(s, k, &j)) {
+  if (!njump(s) || !collect_derivatives(s, k, &j)) {
     return refuse(s, k, "it depends on an input, whose rate a model does not have"); /* the compiler lists all others */
   }
-  int rc = s->run->have_step != 0.0 && t != s->run->step_t0 ? carry(s, t, s->tangent) : LAG_OK;
+  int rc = s->run->have_step != 0.0 && t != s->run->step_t0 ? advance_tangent(s, t, s->tangent) : LAG_OK;
   if (rc || lag_rhs(pb, t, s->now, j.before) || lag_rhs(pb, t, s->yb, j.after)) {
     return rc ? rc : refuse(s, k, "the rates there cannot be computed");
   }
@@ -290,7 +290,7 @@ int lag_tangent_jump(lag_sim *s, int k, int more)
   }
   s->tangent_at_event = 1;
   s->tangent_log += log_det(n, j.S, j.copy);
-  return apply(s, &j) && !touches ? LAG_OK : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
+  return apply_saltation(s, &j) && !touches ? LAG_OK : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
 }
 
 int lag_sim_tangent(lag_sim *s, double *Y)
@@ -304,5 +304,5 @@ int lag_sim_tangent(lag_sim *s, double *Y)
     return lag_fail(s, LAG_EINVAL, "this run has no tangent: lag_sim_set_tangent");
   }
   memcpy(Y, s->tangent, block(s) * sizeof *Y);
-  return r->have_step != 0.0 && r->t != r->step_t0 ? carry(s, r->t, Y) : LAG_OK;
+  return r->have_step != 0.0 && r->t != r->step_t0 ? advance_tangent(s, r->t, Y) : LAG_OK;
 }

@@ -64,8 +64,8 @@ typedef struct lag_problem {
   const double *hold;  /* [nu] constants that replace inputs; NaN where an input is not replaced */
   const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
-  double *held;        /* [lag_held_room] scratch of the constraint functions below */
-  double *ranks;       /* [lag_ranks_room] scratch of the functions that judge ranks of constraints */
+  double *held;        /* [lag_constraint_scratch_size] scratch of the constraint functions below */
+  double *ranks;       /* [lag_rank_scratch_size] scratch of the functions that judge ranks of constraints */
   const double *begin; /* [n] start of the run, the scale of quantities that are 0 now; NULL: not known */
   const double *kept;  /* [nholonomic] value at which c is held, NaN: free so far; NULL: all at 0 */
   int redundant;       /* 1: constraints are redundant; f is evaluated on the constraints only, see lag_rhs */
@@ -124,8 +124,8 @@ int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, d
 /* ---- Constraints: for models that have them (model->constraints, in lag_model.h). Functions return the model's status. */
 
 /* Sizes of pb->held and pb->ranks in doubles; 0 without constraints. */
-size_t lag_held_room(const lag_model *model);
-size_t lag_ranks_room(const lag_model *model);
+size_t lag_constraint_scratch_size(const lag_model *model);
+size_t lag_rank_scratch_size(const lag_model *model);
 
 /* c[nholonomic], less the value at which it is held, and r[n] of the state y[n] at t. */
 int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r);
@@ -147,27 +147,27 @@ int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, dou
 /* The test of lag_project_step, for a step from y0 to y that led by led[nq] and was corrected by moved[nq]: the first coordinate whose
  * correction is more than twice the larger of its own led and of that of coordinates of its unit that share a constraint with it; -1: none.
  * Corrections below a millionth of the coordinate's largest distance from 0 are rounding near a singular position, and pass. */
-int lag_leaps(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led);
+int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led);
 /* pb->detail := the constraint on positions that y breaks most at t, and that meeting it moves coordinate i by `moved`. Returns LAG_ERETRY. */
-int lag_say_leap(lag_problem *pb, double t, const double *y, int i, double moved);
+int lag_report_leap(lag_problem *pb, double t, const double *y, int i, double moved);
 
 /* > 0: the motion that the constraints prescribe goes through infinity between the ends of a step, y0 at t0 and y1 at t1, both on the
  * constraints; pb says which constraint, and when. Finite motions, however steep, give 0; so does a pole that changes neither the ends nor the
- * middle of the step. (core/pole.c) */
-int lag_over_pole(lag_problem *pb, double t0, const double *y0, double t1, const double *y1);
+ * middle of the step. (constraints/constraint_pole.c) */
+int lag_crosses_constraint_pole(lag_problem *pb, double t0, const double *y0, double t1, const double *y1);
 
 /* Independence of the weakest constraint at y, t, from 1 to 0: the part of its gradient that is orthogonal to those before it, times the ratio
- * of its derivatives to its terms. *weakest: its index, or -1. Constraints that are always redundant are left out. (core/forces.c) */
+ * of its derivatives to its terms. *weakest: its index, or -1. Constraints that are always redundant are left out. (core/scene_outputs.c) */
 double lag_independence(lag_problem *pb, double t, const double *y, int *weakest);
 
 /* The largest |x[j]| over the coordinates (or velocities) j with the unit of coordinate i: the scale of its rounding where x[i] itself is small. */
-double lag_size_like(const lag_problem *pb, const double *x, int i);
+double lag_unit_magnitude(const lag_problem *pb, const double *x, int i);
 /* Typical magnitude of component i of q (holonomic) or of v: the largest of that unit; of an angle at least 1. In a run that began at 0, where
  * there is no length, at least 1e-6; 1 where all are 0. Of a velocity at least that of a motion through such a distance in the time of the run,
  * as at rest the velocity itself is rounding. */
-double lag_reach(const lag_problem *pb, const double *y, int holonomic, int i);
+double lag_typical_magnitude(const lag_problem *pb, const double *y, int holonomic, int i);
 /* Projects a small change e[n] of the state y onto the tangent space of the constraints: lag_project to first order. */
-int lag_along_constraints(lag_problem *pb, double t, const double *y, double *e);
+int lag_project_tangent(lag_problem *pb, double t, const double *y, double *e);
 
 /* size[nholonomic] (holonomic), or size[n] of the rates: sum of the sizes of the terms that make c, or r, at y, t. */
 int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonomic, double *size);
@@ -177,13 +177,13 @@ int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonom
 int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonomic, double *size);
 
 /* Whether the residuals of y at t, c (holonomic) or r, are rounding: at most 2^10 DBL_EPSILON times their terms. */
-int lag_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual);
+int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual);
 
 /* text := the line of a constraint, " (line 7)", or "" where the emitted C does not say. Returns text. */
-const char *lag_line_of(const lag_constraint *c, char text[32]);
+const char *lag_line_text(const lag_constraint *c, char text[32]);
 /* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; for a residual of NaN "is not met". holonomic: a residual of c, else of
  * r. */
-void lag_say_constraint(lag_problem *pb, int k, int holonomic, double residual, const char *words);
+void lag_report_residual(lag_problem *pb, int k, int holonomic, double residual, const char *words);
 
 /* The step [s] of a method with equal steps: the option, or where that is 0 a 10000th of the scene's span. */
 double lag_step_size(const lag_problem *pb, double option);
@@ -340,10 +340,10 @@ typedef struct lag_charge_stats {
   double absolute;      /* drift in `unit` */
   double slope, slope_error; /* slope of a line fitted to Q - int P dt, relative as drift [1/s], and its standard error; NaN: too few steps */
   int trend;
-  double jolt, jolt_t;  /* of the energy: largest change in one step, relative as drift, and its time; 0: rounding, or not computed (constant
+  double energy_jump, energy_jump_t;  /* of the energy: largest change in one step, relative as drift, and its time; 0: rounding, or not computed (constant
                          * mass matrix, more than 64 coordinates) */
-  double strain;        /* estimated condition of the mass matrix there; NaN: not known */
-  const char *strain_of; /* the coordinate of least inertia there */
+  double mass_condition;        /* estimated condition of the mass matrix there; NaN: not known */
+  const char *mass_condition_of; /* the coordinate of least inertia there */
 } lag_charge_stats;
 
 /* Number of charges of the model; 0 without a Lagrangian. *stats := the monitor of charge k so far. */
@@ -374,15 +374,15 @@ int lag_sim_set(lag_sim *sim, const char *name, double value);
  * moves the start to the nearest position in the mass metric, then to the nearest velocity, changing first what was not set, and everything only
  * where that does not suffice. LAG_EINVAL then: no start is near, or the scene says `exactly` and its start is another; the message names the
  * worst constraint. */
-double lag_sim_asked(const lag_sim *sim, int i);
-double lag_sim_begin(const lag_sim *sim, int i);
+double lag_sim_requested_start(const lag_sim *sim, int i);
+double lag_sim_actual_start(const lag_sim *sim, int i);
 /* Rank of the constraints at the start; whether constraint k follows from others there (not before the first advance). */
 int lag_sim_rank(const lag_sim *sim);
 int lag_sim_is_redundant(const lag_sim *sim, int k);
 /* Rank of the constraints a hundredth away from the start, if larger: a singular start, as of bars in one line. is_loose: whether the velocity
  * of coordinate i is free at the start but determined nearby; the start then chooses the branch of the motion. */
-int lag_sim_rank_beside(const lag_sim *sim);
-int lag_sim_is_loose(const lag_sim *sim, int i);
+int lag_sim_nearby_rank(const lag_sim *sim);
+int lag_sim_is_undetermined(const lag_sim *sim, int i);
 /* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units unlike lag_sim_set; fn
  * NULL: as the model says again. It must be a function of t alone: methods, events and outputs call it for times that go back and forth, more
  * than once for some. A quantity that depends on the motion is a force of the model. For full accuracy fn has two continuous derivatives, or
@@ -404,7 +404,7 @@ int lag_sim_advance(lag_sim *sim, double t);
 /* Makes the next step towards t, unless it is made: up to *reach, lag_sim_eval and lag_sim_outputs_at know the motion. *reach is t, the step's
  * end or the next event, whichever is first. An event at the present time happens here. Returns what lag_sim_advance would; after an error or
  * stop *reach is lag_sim_time(). */
-int lag_sim_reach(lag_sim *sim, double t, double *reach);
+int lag_sim_ensure_step(lag_sim *sim, double t, double *reach);
 
 /* y[n] at time t within the last step and not after the next event, else LAG_EINVAL. Does not change the present state; may call the model. */
 int lag_sim_eval(lag_sim *sim, double t, double *y);
@@ -455,7 +455,7 @@ double lag_sim_monitor_drift(lag_sim *sim, int i);
 /* Judges monitors and the energy at the present time; advancing judges them only at ends of steps, whatever times are asked for. LAG_OK;
  * LAG_EMONITOR; LAG_EDRIFT where half of an energy that is conserved or balanced is lost or created; both with a message. The run itself can
  * continue unchanged. */
-int lag_sim_watch(lag_sim *sim);
+int lag_sim_judge(lag_sim *sim);
 /* Closed form k of the scene (k < lag_sim_scene(sim)->nexact): the largest |motion - closed form| at the ends of steps so far, and the
  * difference now, both in the declared unit (of degC: K); of angles modulo 2 pi. NaN: the closed form is not finite. */
 void lag_sim_exact(lag_sim *sim, int k, double *largest, double *now);

@@ -1,5 +1,4 @@
-/* Section `sincos` of lag_math.h, which includes it; others must not. Sine and cosine of a double by a table of multiples of pi/32, of vectors
- * of lanes by longer polynomials. */
+/* Section `sincos` of lag_math.h, its only includer: sine and cosine by a table of multiples of pi/32, of lanes by longer polynomials. */
 #if LAG_OWN
 /* Payne and Hanek's reduction: returns y, with x modulo pi/2 = y - *lo, |y| <= pi/4, and *quarter, the number of quarter turns modulo 4, for x
  * of any size and next to a multiple of pi/2. Bits of 2/pi whose products with x are multiples of 4 are left out; the next 192 suffice, as no

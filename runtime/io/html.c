@@ -8,7 +8,7 @@
 #include "io/io.h"
 #include "io/page.h"
 
-enum { GRAINS = 100000, TICKS = 1000000000 };
+enum { RESOLUTION = 100000, TICKS = 1000000000 };
 
 static double cell(const Table *t, size_t row, int col)
 {
@@ -30,8 +30,8 @@ static void script_string(FILE *f, const char *s)
   putc('"', f);
 }
 
-/* Offset and unit of the integers that coordinates are written as: the middle of all, and extent/GRAINS. */
-static void choose_grain(const Table *t, const Animation *a, double *zero, double *scale)
+/* Offset and unit of the integers that coordinates are written as: the middle of all, and extent/RESOLUTION. */
+static void choose_resolution(const Table *t, const Animation *a, double *zero, double *scale)
 {
   double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
 
@@ -46,7 +46,7 @@ static void choose_grain(const Table *t, const Animation *a, double *zero, doubl
   }
   double least = fmin(lo[0], lo[1]), most = fmax(hi[0], hi[1]), extent = fmax(hi[0] - lo[0], hi[1] - lo[1]);
   *zero = least <= most ? least / 2 + most / 2 : 0;
-  double grain = extent > 0 && isfinite(extent) ? extent / GRAINS : fmax(fabs(*zero), 1) / GRAINS;
+  double grain = extent > 0 && isfinite(extent) ? extent / RESOLUTION : fmax(fabs(*zero), 1) / RESOLUTION;
   *zero = nearbyint(*zero / grain) * grain; /* coordinate 0 stays exact */
   *scale = grain;
 }
@@ -62,24 +62,24 @@ static double choose_speed(double span)
   }
   for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
     if (span >= 2 * units[i]) {
-      return units[i] * nice_step(0, span / units[i], 20);
+      return units[i] * lag_tick_step(0, span / units[i], 20);
     }
   }
-  return nice_step(0, span, 20);
+  return lag_tick_step(0, span, 20);
 }
 
 /* choose_speed, limited to 280 frames a second: frames are as dense as the motion needs, some seventy a swing, and the eye follows
  * about four swings a second. */
-static double watchable(const Table *t, double span)
+static double followable_speed(const Table *t, double span)
 {
   enum { FRAMES_A_SECOND = 280 };
   double speed = choose_speed(span), most = t->nrows ? FRAMES_A_SECOND * span / (double)t->nrows : 0;
 
-  return most > 0 && speed > most ? nice_step(0, most / 1.6, 1) : speed;
+  return most > 0 && speed > most ? lag_tick_step(0, most / 1.6, 1) : speed;
 }
 
 /* Whether x is an index, not a length: numbers without a unit, constant and not all equal, as of the masses of a string. */
-static int counts(const Table *t, const Animation *a)
+static int x_is_index(const Table *t, const Animation *a)
 {
   int differ = 0;
 
@@ -130,13 +130,13 @@ static void put_data(FILE *f, const Table *t, const Animation *a)
   size_t n = t->nrows;
   double t0 = n ? cell(t, 0, 0) : 0, t1 = n ? cell(t, n - 1, 0) : 0, tick = t1 != t0 ? (t1 - t0) / TICKS : 1, zero, scale;
 
-  choose_grain(t, a, &zero, &scale);
+  choose_resolution(t, a, &zero, &scale);
   fprintf(f, "{\"t0\": %.17g, \"tick\": %.17g, \"t1\": %.17g, \"speed\": %.6g, \"zero\": %.17g, \"scale\": %.17g,\n", t0, tick, t1,
-          watchable(t, fabs(t1 - t0)), zero, scale);
+          followable_speed(t, fabs(t1 - t0)), zero, scale);
   fprintf(f, "\"rods\": %s, \"trace\": %s, \"from\": %s, \"unit\": ", a->rods ? "true" : "false", a->trace ? "true" : "false",
           a->from ? "true" : "false");
   script_string(f, a->unit);
-  fprintf(f, ", \"free\": %s, \"note\": ", counts(t, a) ? "true" : "false");
+  fprintf(f, ", \"free\": %s, \"note\": ", x_is_index(t, a) ? "true" : "false");
   script_string(f, a->note ? a->note : "");
   fputs(", ", f);
   put_names(f, t, a);
@@ -156,11 +156,11 @@ static void put_data(FILE *f, const Table *t, const Animation *a)
   fputs("]}\n", f);
 }
 
-int html_write(const char *path, const Table *t, const char *title, const Animation *a)
+int lag_html_write(const char *path, const Table *t, const char *title, const Animation *a)
 {
   Outfile o;
 
-  if (outfile_open(&o, path)) {
+  if (lag_outfile_open(&o, path)) {
     return -1;
   }
   for (size_t i = 0; i < sizeof page / sizeof *page; i++) {
@@ -169,11 +169,11 @@ int html_write(const char *path, const Table *t, const char *title, const Animat
       put_data(o.f, t, a);
     } else if (mark) {
       fwrite(page[i], 1, (size_t)(mark - page[i]), o.f);
-      io_markup(o.f, title);
+      lag_write_markup(o.f, title);
       fputs(mark + strlen("@TITLE@"), o.f);
     } else {
       fputs(page[i], o.f);
     }
   }
-  return outfile_close(&o, OUTFILE_KEEP);
+  return lag_outfile_close(&o, OUTFILE_KEEP);
 }

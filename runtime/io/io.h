@@ -24,12 +24,12 @@ typedef struct Table {
   size_t nrows, capacity;
 } Table;
 
-/* Columns from the outputs of the simulation. -1: no memory, as of table_add. */
-int table_init(Table *t, const lag_sim *sim, int keep);
-void table_free(Table *t);
-int table_add(Table *t, const double *row);
+/* Columns from the outputs of the simulation. -1: no memory, as of lag_table_add. */
+int lag_table_init(Table *t, const lag_sim *sim, int keep);
+void lag_table_free(Table *t);
+int lag_table_add(Table *t, const double *row);
 /* For pictures: converts the time to years, days or hours where the rows span two or more of these; not where no column has a unit. */
-void table_long_time(Table *t);
+void lag_table_scale_time(Table *t);
 
 /* A file of rows: .npy by its suffix, else CSV. The CSV header is written with the first row, so a run that fails before writes nothing. */
 typedef struct Rows {
@@ -41,14 +41,14 @@ typedef struct Rows {
   const Column *cols;
 } Rows;
 
-/* -1 with errno set. rows_close: keep 0 removes the file. */
-int rows_open(Rows *r, const char *path, const Table *t);
-int rows_write(Rows *r, const double *row);
-int rows_close(Rows *r, int keep);
+/* -1 with errno set. lag_rows_close: keep 0 removes the file. */
+int lag_rows_open(Rows *r, const char *path, const Table *t);
+int lag_rows_write(Rows *r, const double *row);
+int lag_rows_close(Rows *r, int keep);
 
 /* Selects the rows that a picture needs: straight lines between kept rows miss no row by more than a part of the range of each
  * drawn column. */
-typedef struct Thin {
+typedef struct RowThinning {
   Table *table;    /* receives the kept rows */
   int store;       /* 0: kept rows are counted, not stored */
   double part;     /* deviation allowed, as a part of the range */
@@ -58,34 +58,34 @@ typedef struct Thin {
   int ndrawn, *drawn;   /* [ncols] indices of the drawn columns */
   double *memory, *low, *high, *least, *most, *from, *last, *width; /* [ncols] each */
   int have_last;
-} Thin;
+} RowThinning;
 
-/* -1: no memory. thin_free must be called in any case. */
-int thin_init(Thin *w, Table *t, int store, double part, double longest);
-void thin_free(Thin *w);
+/* -1: no memory. lag_thin_free must be called in any case. */
+int lag_thin_init(RowThinning *w, Table *t, int store, double part, double longest);
+void lag_thin_free(RowThinning *w);
 /* Adds a column to the drawn ones. */
-void thin_draw(Thin *w, int col);
-/* Widens the ranges by a row; called before thin_add of the row. */
-void thin_see(Thin *w, const double *row);
+void lag_thin_add_column(RowThinning *w, int col);
+/* Widens the ranges by a row; called before lag_thin_add of the row. */
+void lag_thin_extend_range(RowThinning *w, const double *row);
 /* Whether the row `between` lies on the line from a to b, within the allowed deviation. */
-int thin_straight(const Thin *w, const double *a, const double *b, const double *between);
-/* Adds a row; rows come in order of time. thin_end keeps the last row; more may follow. -1: no memory. */
-int thin_add(Thin *w, const double *row);
-int thin_end(Thin *w);
+int lag_thin_is_straight(const RowThinning *w, const double *a, const double *b, const double *between);
+/* Adds a row; rows come in order of time. lag_thin_flush keeps the last row; more may follow. -1: no memory. */
+int lag_thin_add(RowThinning *w, const double *row);
+int lag_thin_flush(RowThinning *w);
 /* Thins the kept rows: doubles `part` until at most `most` rows are left or part is 1/2. -1: no memory. */
-int thin_again(Thin *w, size_t most);
+int lag_thin_reduce(RowThinning *w, size_t most);
 
 /* Step of axis ticks: 1, 2 or 5 times a power of ten, about n of them from lo to hi. */
-double nice_step(double lo, double hi, int n);
+double lag_tick_step(double lo, double hi, int n);
 
 /* The curves of a picture: column y[i] against column x[i]; column 0 is the time. */
-typedef struct Drawn {
+typedef struct PlottedCurves {
   int n, *x, *y;
   const char *xname, *yname; /* axis labels where several columns are drawn; NULL: all columns against time */
-} Drawn;
+} PlottedCurves;
 
 /* Writes the picture as SVG. -1 with errno set. */
-int svg_write(const char *path, const Table *t, const char *title, const Drawn *d);
+int lag_svg_write(const char *path, const Table *t, const char *title, const PlottedCurves *d);
 
 /* A curve through points (x, y), all positive. */
 typedef struct Series {
@@ -95,10 +95,10 @@ typedef struct Series {
 } Series;
 
 /* Writes n named curves on two logarithmic axes as SVG. -1 with errno set. */
-int svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n);
+int lag_svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n);
 
 /* Prints the first few curves as text (braille dots). */
-void sketch(FILE *f, const Table *t, const Drawn *d);
+void sketch(FILE *f, const Table *t, const PlottedCurves *d);
 
 /* An animation: points whose x and y are columns of the table, all in one unit. */
 typedef struct Animation {
@@ -111,13 +111,13 @@ typedef struct Animation {
 } Animation;
 
 /* Writes an HTML page that plays the table. -1 with errno set. */
-int html_write(const char *path, const Table *t, const char *title, const Animation *a);
+int lag_html_write(const char *path, const Table *t, const char *title, const Animation *a);
 
 /* JSON: s in quotes, or null for NULL; x with the digits to read back exactly, or null where it is not finite. */
-void json_string(FILE *f, const char *s);
-void json_number(FILE *f, double x);
+void lag_json_string(FILE *f, const char *s);
+void lag_json_number(FILE *f, double x);
 
-/* A saved state: its head and the n doubles of lag_sim_save. state_parse and state_read allocate data; the caller frees it. */
+/* A saved state: its head and the n doubles of lag_sim_save. lag_state_parse and lag_state_read allocate data; the caller frees it. */
 typedef struct State {
   char program[128], scene[128], method[64];
   double tol;
@@ -130,13 +130,13 @@ typedef struct State {
 } State;
 
 /* -1 with errno set. */
-int state_write(const char *path, const State *s);
+int lag_state_write(const char *path, const State *s);
 /* Parses the text of a state file, which may be any bytes. NULL, or the reason why it is no saved state; data is then NULL. */
-const char *state_parse(char *text, State *s);
+const char *lag_state_parse(char *text, State *s);
 /* 0; -1 with errno set; 1: not a saved state, or damaged, with the reason in *why. */
-int state_read(const char *path, State *s, const char **why);
+int lag_state_read(const char *path, State *s, const char **why);
 
 /* Writes s with & < > " escaped for XML and HTML, and hidden characters made visible. */
-void io_markup(FILE *f, const char *s);
+void lag_write_markup(FILE *f, const char *s);
 
 #endif

@@ -4,7 +4,7 @@
 #include "io/io.h"
 #include "io/visible.h"
 
-void json_string(FILE *f, const char *s)
+void lag_json_string(FILE *f, const char *s)
 {
   if (!s) {
     fputs("null", f);
@@ -28,7 +28,7 @@ void json_string(FILE *f, const char *s)
   putc('"', f);
 }
 
-void json_number(FILE *f, double x)
+void lag_json_number(FILE *f, double x)
 {
   if (isfinite(x)) {
     fputs(lag_number_text(x, (char[64]){0}), f);

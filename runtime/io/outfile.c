@@ -34,7 +34,7 @@ static const char *suffix_of(const char *path)
   return dot ? dot + 1 : "";
 }
 
-int outfile_is(const char *path, const char *suffixes)
+int lag_outfile_has_suffix(const char *path, const char *suffixes)
 {
   const char *suffix = suffix_of(path);
   const size_t length = strlen(suffix);
@@ -49,12 +49,12 @@ int outfile_is(const char *path, const char *suffixes)
   return 0;
 }
 
-const char *outfile_other_kind(const char *path, const char *suffixes)
+const char *lag_outfile_other_type(const char *path, const char *suffixes)
 {
   static const char known[] = "csv tsv npy npz json xml yaml h5 hdf5 nc mat parquet pkl xls xlsx ods svg png jpg jpeg gif webp bmp tif tiff "
                               "pdf eps ps html htm mp4 webm avi mov c h hpp o so a py tex zip gz";
 
-  return outfile_is(path, known) && !outfile_is(path, suffixes) ? suffix_of(path) : NULL;
+  return lag_outfile_has_suffix(path, known) && !lag_outfile_has_suffix(path, suffixes) ? suffix_of(path) : NULL;
 }
 
 /* Removes temporary files of `path` left from killed runs: regular files of the user that no process has locked. */
@@ -142,7 +142,7 @@ static int make_part(Outfile *o)
   return -1;
 }
 
-int outfile_open(Outfile *o, const char *path)
+int lag_outfile_open(Outfile *o, const char *path)
 {
   struct stat st;
 
@@ -164,7 +164,7 @@ int outfile_open(Outfile *o, const char *path)
   return o->f ? 0 : -1;
 }
 
-int outfile_close(Outfile *o, int keep)
+int lag_outfile_close(Outfile *o, int keep)
 {
   int bad = ferror(o->f) != 0, error;
 

@@ -29,14 +29,14 @@ typedef struct Panel {
   int powers;                /* 1: data are exponents of ten, labelled 1e.. */
 } Panel;
 
-double nice_step(double lo, double hi, int n)
+double lag_tick_step(double lo, double hi, int n)
 {
   double raw = (hi - lo) / n, power = pow(10, floor(log10(raw))), f = raw / power;
 
   return power * (f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10);
 }
 
-void io_markup(FILE *f, const char *s)
+void lag_write_markup(FILE *f, const char *s)
 {
   char shown[VISIBLE_SIZE];
 
@@ -57,7 +57,7 @@ void io_markup(FILE *f, const char *s)
 static void text(FILE *f, double x, double y, const char *attributes, const char *s)
 {
   fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, attributes);
-  io_markup(f, s);
+  lag_write_markup(f, s);
   fputs("</text>\n", f);
 }
 
@@ -111,13 +111,13 @@ static void tick_label(char *s, size_t n, const Panel *p, double value, double s
 
 static double tick_step(const Panel *p, double lo, double hi, int n)
 {
-  double step = nice_step(lo, hi, n);
+  double step = lag_tick_step(lo, hi, n);
 
   return p->powers ? fmax(step, 1) : step;
 }
 
 /* Offset subtracted from y labels where y varies so little that labels of all ticks would be equal; else 0. */
-static double base_of(const Panel *p, double dy)
+static double label_offset(const Panel *p, double dy)
 {
   double size = fmax(fabs(p->y0), fabs(p->y1));
   return size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0;
@@ -141,7 +141,7 @@ static double label_stride(const Panel *p, double dx)
 static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
 {
   char s[32];
-  double dx = tick_step(p, p->x0, p->x1, 8), dy = tick_step(p, p->y0, p->y1, p->h > 220 ? 7 : 4), base = base_of(p, dy);
+  double dx = tick_step(p, p->x0, p->x1, 8), dy = tick_step(p, p->y0, p->y1, p->h > 220 ? 7 : 4), base = label_offset(p, dy);
   double stride = label_stride(p, dx);
 
   fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y, p->w, p->h);
@@ -166,7 +166,7 @@ static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
     text(f, p->x + p->w / 2, p->y + p->h + 40, "text-anchor=\"middle\" class=\"l\"", p->xlabel);
   }
   fprintf(f, "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\" class=\"l\">", 18.0, p->y + p->h / 2);
-  io_markup(f, ylabel);
+  lag_write_markup(f, ylabel);
   fputs("</text>\n", f);
 }
 
@@ -197,7 +197,7 @@ static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, co
 }
 
 /* A curve against time: minimum and maximum of each pixel column. */
-static void graph(FILE *f, const Panel *p, const Table *t, int ycol)
+static void min_max_curve(FILE *f, const Panel *p, const Table *t, int ycol)
 {
   size_t per = t->nrows / (size_t)(2 * p->w);
   int pen = 0;
@@ -217,12 +217,12 @@ static void graph(FILE *f, const Panel *p, const Table *t, int ycol)
 }
 
 /* The sector of directions from a corner (in pixels) whose lines pass near all points since; farthest: of these from the corner. */
-typedef struct Sight {
+typedef struct Sector {
   double x, y, first, low, high, farthest;
-} Sight;
+} Sector;
 
 /* Whether a line from the corner to (x, y) passes near all points since; if so, narrows the sector to lines near (x, y). */
-static int in_sight(Sight *s, double x, double y)
+static int in_sector(Sector *s, double x, double y)
 {
   const double near = 0.25, turn = 2 * acos(-1);
   double r = hypot(x - s->x, y - s->y), way = atan2(y - s->y, x - s->x);
@@ -248,22 +248,22 @@ static int in_sight(Sight *s, double x, double y)
 /* One column against another, or few rows: a path through the corners only. */
 static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol)
 {
-  Sight s = {0};
+  Sector s = {0};
   size_t last = 0, drawn = 0;
   int pen = 0;
 
   for (size_t i = 0; i < t->nrows; i++) {
     double x = px(p, cell(t, i, xcol)), y = py(p, cell(t, i, ycol));
     int gap = !isfinite(x) || !isfinite(y), begins = !pen;
-    if (pen && (gap || !in_sight(&s, x, y)) && drawn < last) {
+    if (pen && (gap || !in_sector(&s, x, y)) && drawn < last) {
       point(f, p, cell(t, last, xcol), cell(t, last, ycol), &pen);
-      s = (Sight){.x = px(p, cell(t, last, xcol)), .y = py(p, cell(t, last, ycol))};
+      s = (Sector){.x = px(p, cell(t, last, xcol)), .y = py(p, cell(t, last, ycol))};
       drawn = last;
-      in_sight(&s, x, y);
+      in_sector(&s, x, y);
     }
     if (gap || begins) {
       point(f, p, cell(t, i, xcol), cell(t, i, ycol), &pen);
-      s = (Sight){.x = x, .y = y};
+      s = (Sector){.x = x, .y = y};
       drawn = i;
     }
     last = i;
@@ -284,7 +284,7 @@ static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, i
   stroke_of(k, stroke, sizeof stroke);
   fprintf(f, "<path fill=\"none\" %s stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"", stroke);
   if (xcol == 0 && t->nrows > (size_t)(2 * p->w)) {
-    graph(f, p, t, ycol);
+    min_max_curve(f, p, t, ycol);
   } else {
     path(f, p, t, xcol, ycol);
   }
@@ -292,7 +292,7 @@ static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, i
 }
 
 /* s[n] := `from`, shortened to at most `most` characters with "..." at the end. */
-static void cut(const char *from, int most, char *s, size_t n)
+static void truncate_text(const char *from, int most, char *s, size_t n)
 {
   int chars = 0;
   size_t i = 0;
@@ -315,7 +315,7 @@ static void label_of(const char *name, const char *unit, double room, char *s, s
   const double width_of_character = 8;
   char short_name[96];
 
-  cut(name, (int)(room / width_of_character) - (int)strlen(unit) - 3, short_name, sizeof short_name);
+  truncate_text(name, (int)(room / width_of_character) - (int)strlen(unit) - 3, short_name, sizeof short_name);
   snprintf(s, n, unit[0] ? "%s [%s]" : "%s", short_name, unit);
 }
 
@@ -328,7 +328,7 @@ static void legend(FILE *f, const Panel *p, int i, int total, int room, int k, c
   if (i + 1 < room || (i + 1 == room && total == room)) {
     stroke_of(k, stroke, sizeof stroke);
     fprintf(f, "<path d=\"M%.1f %.1fh20\" %s stroke-width=\"2.5\"/>\n", x, y, stroke);
-    cut(name, MOST_NAME, s, sizeof s);
+    truncate_text(name, MOST_NAME, s, sizeof s);
     text(f, x + 27, y + 4, "", s);
   } else if (i + 1 == room) {
     snprintf(s, sizeof s, "and %d more", total - i);
@@ -342,7 +342,7 @@ static int legend_room(const Panel *p)
 }
 
 /* The panel of one unit, with all its series and their legend. */
-static void unit_panel(FILE *f, const Table *t, const Drawn *d, Panel *p, const char *unit, int last)
+static void unit_panel(FILE *f, const Table *t, const PlottedCurves *d, Panel *p, const char *unit, int last)
 {
   char s[176];
   int shown = 0, total = 0;
@@ -368,14 +368,14 @@ static void unit_panel(FILE *f, const Table *t, const Drawn *d, Panel *p, const 
 }
 
 /* Width of the legend right of the panels, in pixels. */
-static int legend_width(const Table *t, const Drawn *d)
+static int legend_width(const Table *t, const PlottedCurves *d)
 {
   enum { KEY = 41, CHARACTER = 8 };
   int most = (RIGHT - KEY) / CHARACTER;
   char s[sizeof t->cols->name];
 
   for (int i = 0; i < d->n; i++) {
-    cut(t->cols[d->y[i]].name, MOST_NAME, s, sizeof s);
+    truncate_text(t->cols[d->y[i]].name, MOST_NAME, s, sizeof s);
     most = (int)strlen(s) > most ? (int)strlen(s) : most;
   }
   return KEY + CHARACTER * most;
@@ -387,7 +387,7 @@ static void head(FILE *f, int width, int height, const char *title)
           "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" "
           "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"12\" fill=\"#333\">\n<title>",
           width, height, width, height);
-  io_markup(f, title);
+  lag_write_markup(f, title);
   fprintf(f,
           "</title>\n<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:13px}</style>\n"
           "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
@@ -396,7 +396,7 @@ static void head(FILE *f, int width, int height, const char *title)
 }
 
 /* units := distinct units of the drawn columns, in order of first use, at most MOST_PANELS. Returns their number. */
-static int units_of(const Table *t, const Drawn *d, const char *units[MOST_PANELS])
+static int units_of(const Table *t, const PlottedCurves *d, const char *units[MOST_PANELS])
 {
   int n = 0;
 
@@ -413,7 +413,7 @@ static int units_of(const Table *t, const Drawn *d, const char *units[MOST_PANEL
   return n;
 }
 
-static void against_time(FILE *f, const Table *t, const char *title, const Drawn *d)
+static void against_time(FILE *f, const Table *t, const char *title, const PlottedCurves *d)
 {
   const char *units[MOST_PANELS];
   char xlabel[176];
@@ -497,7 +497,7 @@ static void axis_label(const Table *t, int n, const int *cols, const char *name,
   label_of(n == 1 ? t->cols[cols[0]].name : name, unit, room, s, size);
 }
 
-static void paths(FILE *f, const Table *t, const char *title, const Drawn *d)
+static void paths(FILE *f, const Table *t, const char *title, const PlottedCurves *d)
 {
   char xlabel[176], ylabel[176];
   int x = d->x[0];
@@ -546,7 +546,7 @@ static void series_curve(FILE *f, const Panel *p, const Series *s, int k)
   }
 }
 
-int svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n)
+int lag_svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n)
 {
   enum { LINE = 18, NAMES = 190 };
   double high = n * LINE + 12;
@@ -554,7 +554,7 @@ int svg_chart(const char *path, const char *title, const char *xlabel, const cha
              .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL, .xlabel = xlabel, .powers = 1};
   Outfile o;
 
-  if (outfile_open(&o, path)) {
+  if (lag_outfile_open(&o, path)) {
     return -1;
   }
   for (int k = 0; k < n; k++) {
@@ -578,14 +578,14 @@ int svg_chart(const char *path, const char *title, const char *xlabel, const cha
     text(o.f, x + 27, y + 4, "", s[k].name);
   }
   fputs("</svg>\n", o.f);
-  return outfile_close(&o, OUTFILE_KEEP);
+  return lag_outfile_close(&o, OUTFILE_KEEP);
 }
 
-int svg_write(const char *path, const Table *t, const char *title, const Drawn *d)
+int lag_svg_write(const char *path, const Table *t, const char *title, const PlottedCurves *d)
 {
   Outfile o;
 
-  if (outfile_open(&o, path)) {
+  if (lag_outfile_open(&o, path)) {
     return -1;
   }
   if (!d->yname || (d->n > 1 && d->x[0] == 0)) {
@@ -594,5 +594,5 @@ int svg_write(const char *path, const Table *t, const char *title, const Drawn *
     paths(o.f, t, title, d);
   }
   fputs("</svg>\n", o.f);
-  return outfile_close(&o, OUTFILE_KEEP);
+  return lag_outfile_close(&o, OUTFILE_KEEP);
 }

@@ -21,15 +21,15 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "methods/band.h"
-#include "methods/history.h"
-#include "methods/rule.h"
+#include "methods/band_matrix.h"
+#include "methods/predictor.h"
+#include "methods/galerkin_rule.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
 
 enum { MOST_CORRECTIONS = 25, STAGES_WITH_CUBIC = 2 };
 
-/* Saved state of the method, doubles only; Arrays has pointers into x. */
+/* Saved state of the method, doubles only; CollocationArrays has pointers into x. */
 typedef struct Collocation {
   double h;      /* the step, > 0 */
   double t0, dt; /* the last step */
@@ -39,18 +39,18 @@ typedef struct Collocation {
   double x[];
 } Collocation;
 
-typedef struct Arrays {
+typedef struct CollocationArrays {
   double *comp, *y0, *y1, *f0, *f1, *Y; /* [n] compensation of y; y and f at both ends of the last step; a stage */
   double *u, *other;                    /* [stages n] slopes at the stages of the last step, and of a shorter one */
   double *R, *scale;                    /* [stages n] residuals, then corrections; scratch */
   double *jacobian, *linear;            /* [n n]; scratch of lag_jacobian */
   double *history;
-  lag_band J;
-} Arrays;
+  lag_band_matrix J;
+} CollocationArrays;
 
-static Arrays arrays(Collocation *w, const lag_problem *pb)
+static CollocationArrays arrays(Collocation *w, const lag_problem *pb)
 {
-  Arrays a;
+  CollocationArrays a;
   double *x = w->x;
   int n = pb->n, m = n * (int)w->rule.free;
   double **const of_n[] = {&a.comp, &a.y0, &a.y1, &a.f0, &a.f1, &a.Y}, **const of_m[] = {&a.u, &a.other, &a.R, &a.scale, &a.J.pivot};
@@ -66,7 +66,7 @@ static Arrays arrays(Collocation *w, const lag_problem *pb)
   a.history = a.linear + lag_linear_work(pb->model);
   a.J.n = m;
   a.J.band = m - 1;
-  a.J.a = a.history + lag_history_size(m);
+  a.J.a = a.history + lag_predictor_size(m);
   return a;
 }
 
@@ -74,19 +74,19 @@ size_t lag_collocation_size(const lag_problem *pb, int stages)
 {
   size_t n = (size_t)pb->n, m = n * (size_t)stages;
 
-  return sizeof(Collocation) / sizeof(double) + 6 * n + 5 * m + n * n + lag_linear_work(pb->model) + lag_history_size((int)m) +
-         (size_t)lag_band_size((int)m, (int)m - 1);
+  return sizeof(Collocation) / sizeof(double) + 6 * n + 5 * m + n * n + lag_linear_work(pb->model) + lag_predictor_size((int)m) +
+         (size_t)lag_band_matrix_size((int)m, (int)m - 1);
 }
 
 void lag_collocation_reset(void *work, lag_problem *pb)
 {
   Collocation *w = work;
-  Arrays a = arrays(w, pb);
+  CollocationArrays a = arrays(w, pb);
   int m = pb->n * (int)w->rule.free;
 
   w->tc = w->ends = 0;
   memset(a.comp, 0, (size_t)pb->n * sizeof(double));
-  memset(a.history, 0, lag_history_size(m) * sizeof(double));
+  memset(a.history, 0, lag_predictor_size(m) * sizeof(double));
 }
 
 void lag_collocation_init(void *work, lag_problem *pb, double h, int stages)
@@ -104,7 +104,7 @@ int lag_collocation_sound(const void *work, const void *fresh, const lag_problem
   size_t settings = sizeof(lag_rule) / sizeof(double);
 
   return w->h == f->h && lag_same_numbers(&w->rule.points, &f->rule.points, settings) && lag_is_sign(w->ends) && isfinite(w->t0) &&
-         isfinite(w->dt) && isfinite(w->tc) && lag_history_is_sound(arrays((Collocation *)w, pb).history);
+         isfinite(w->dt) && isfinite(w->tc) && lag_predictor_is_sound(arrays((Collocation *)w, pb).history);
 }
 
 /* ---- The equations u_i = f(t + c_i h, y0 + h sum_k a_ik u_k) */
@@ -135,7 +135,7 @@ static double time_of(const Collocation *w, const Step *s, int i)
 }
 
 /* R := f - u at all stages. LAG_OK, or a failure. */
-static int residual(const Collocation *w, const Arrays *a, lag_problem *pb, const Step *s)
+static int residual(const Collocation *w, const CollocationArrays *a, lag_problem *pb, const Step *s)
 {
   int n = pb->n;
 
@@ -153,7 +153,7 @@ static int residual(const Collocation *w, const Arrays *a, lag_problem *pb, cons
 }
 
 /* Factors Newton's matrix 1 - h a_ik J_i at the present stages. */
-static int matrix(const Collocation *w, Arrays *a, lag_problem *pb, const Step *s)
+static int matrix(const Collocation *w, CollocationArrays *a, lag_problem *pb, const Step *s)
 {
   int n = pb->n, stages = (int)w->rule.free;
 
@@ -165,14 +165,14 @@ static int matrix(const Collocation *w, Arrays *a, lag_problem *pb, const Step *
     }
     for (int j = 0; j < n; j++) {
       for (int k = 0; k < stages; k++) {
-        double *row = lag_band_at(&a->J, i * n + j, k * n), c = s->h * w->rule.integral[i][k];
+        double *row = lag_band_matrix_at(&a->J, i * n + j, k * n), c = s->h * w->rule.integral[i][k];
         for (int l = 0; l < n; l++) {
           row[l] = (i == k && j == l ? 1 : 0) - c * a->jacobian[j * n + l];
         }
       }
     }
   }
-  if (lag_band_factor(&a->J, a->scale)) {
+  if (lag_band_matrix_factor(&a->J, a->scale)) {
     pb->detail = "the matrix of Newton's method is singular; take another step size";
     return lag_step_failed(pb, LAG_EMETHOD, s->t);
   }
@@ -180,12 +180,12 @@ static int matrix(const Collocation *w, Arrays *a, lag_problem *pb, const Step *
 }
 
 /* One Newton correction of u. Returns its largest component, relative to the change of that component over the step. */
-static double correct(const Collocation *w, const Arrays *a, int n, const Step *s)
+static double correct(const Collocation *w, const CollocationArrays *a, int n, const Step *s)
 {
   int m = n * (int)w->rule.free;
   double part = 0, h = fabs(w->h);
 
-  lag_band_solve(&a->J, a->R);
+  lag_band_matrix_solve(&a->J, a->R);
   for (int i = 0; i < m; i++) {
     double du = a->R[i];
     s->u[i] += du;
@@ -195,8 +195,8 @@ static double correct(const Collocation *w, const Arrays *a, int n, const Step *
   return part;
 }
 
-/* Whether the next correction would be below rounding, or this one is rounding itself; the rule of discrete.c. */
-static int is_settled(double now, double before, int fresh, int turn)
+/* Whether the next correction would be below rounding, or this one is rounding itself; the rule of discrete_lagrangian.c. */
+static int has_converged(double now, double before, int fresh, int turn)
 {
   double next = fresh ? 1000 * now * now : now * (now / before);
 
@@ -207,7 +207,7 @@ static int is_settled(double now, double before, int fresh, int turn)
 }
 
 /* Newton's method for u, from the guess in u. */
-static int solve(const Collocation *w, Arrays *a, lag_problem *pb, const Step *s)
+static int solve(const Collocation *w, CollocationArrays *a, lag_problem *pb, const Step *s)
 {
   double before = 1;
 
@@ -220,7 +220,7 @@ static int solve(const Collocation *w, Arrays *a, lag_problem *pb, const Step *s
     }
     double now = correct(w, a, pb->n, s);
     pb->iterations += s->counted;
-    if (is_settled(now, before, fresh, turn)) {
+    if (has_converged(now, before, fresh, turn)) {
       return LAG_OK;
     }
     before = now;
@@ -232,7 +232,7 @@ static int solve(const Collocation *w, Arrays *a, lag_problem *pb, const Step *s
 }
 
 /* Initial guess: u := the slope at the start of the step, for all stages. */
-static int straight(const Collocation *w, const Arrays *a, lag_problem *pb, const Step *s)
+static int constant_slope_guess(const Collocation *w, const CollocationArrays *a, lag_problem *pb, const Step *s)
 {
   int n = pb->n, rc = lag_step_rhs(pb, s->t, s->y0, a->Y);
 
@@ -245,33 +245,33 @@ static int straight(const Collocation *w, const Arrays *a, lag_problem *pb, cons
 int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y)
 {
   Collocation *w = work;
-  Arrays a = arrays(w, pb);
+  CollocationArrays a = arrays(w, pb);
   int n = pb->n, m = n * (int)w->rule.free, rc = LAG_EMETHOD;
-  double dt = w->h * pb->dir, tc = w->tc, tb = lag_sum(*t, dt, &tc);
+  double dt = w->h * pb->dir, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
   Step s = {.t = *t, .h = dt, .y0 = y, .comp = a.comp, .u = a.u, .counted = 1};
 
   pb->bad_index = -1;
   if (tb == *t) {
     return lag_step_failed(pb, LAG_ESTEP, *t);
   }
-  if (lag_history_guess(a.history, m, a.u)) {
+  if (lag_predictor_guess(a.history, m, a.u)) {
     rc = solve(w, &a, pb, &s);
   }
-  if (rc != 0 && (rc = straight(w, &a, pb, &s)) == 0) {
+  if (rc != 0 && (rc = constant_slope_guess(w, &a, pb, &s)) == 0) {
     rc = solve(w, &a, pb, &s);
   }
   if (rc) {
     return rc;
   }
   pb->detail = NULL;
-  lag_history_add(a.history, m, a.u);
+  lag_predictor_add(a.history, m, a.u);
   memcpy(a.y0, y, (size_t)n * sizeof *y);
   for (int j = 0; j < n; j++) {
     double moved = 0;
     for (int k = 0; k < (int)w->rule.free; k++) {
       moved += w->rule.whole[k] * a.u[k * n + j];
     }
-    y[j] = lag_sum(y[j], dt * moved, &a.comp[j]);
+    y[j] = lag_compensated_sum(y[j], dt * moved, &a.comp[j]);
   }
   memcpy(a.y1, y, (size_t)n * sizeof *y);
   w->ends = 0;
@@ -285,16 +285,16 @@ int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y)
 /* ---- Between steps */
 
 /* Solves a step of length dt from the start of the last one; slopes into a->other. */
-static int shorter(const Collocation *w, Arrays *a, lag_problem *pb, double dt)
+static int shorter(const Collocation *w, CollocationArrays *a, lag_problem *pb, double dt)
 {
   Step s = {.t = w->t0, .h = dt, .y0 = a->y0, .u = a->other};
-  int rc = straight(w, a, pb, &s);
+  int rc = constant_slope_guess(w, a, pb, &s);
 
   return rc ? rc : solve(w, a, pb, &s);
 }
 
 /* y at s in [0, 1] of the last step: Hermite cubic, or linear where the model has no value at an end. */
-static void cubic(Collocation *w, const Arrays *a, lag_problem *pb, double s, double *y)
+static void cubic(Collocation *w, const CollocationArrays *a, lag_problem *pb, double s, double *y)
 {
   int n = pb->n;
 
@@ -314,7 +314,7 @@ static void cubic(Collocation *w, const Arrays *a, lag_problem *pb, double s, do
 void lag_collocation_dense(void *work, lag_problem *pb, double t, double *y)
 {
   Collocation *w = work;
-  Arrays a = arrays(w, pb);
+  CollocationArrays a = arrays(w, pb);
   int n = pb->n, stages = (int)w->rule.free;
   double dt = t - w->t0, s = dt / w->dt;
 
@@ -344,7 +344,7 @@ size_t lag_collocation_tangent_size(const lag_problem *pb, int k)
 int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
 {
   Collocation *w = work;
-  Arrays a = arrays(w, pb);
+  CollocationArrays a = arrays(w, pb);
   int n = pb->n, stages = (int)w->rule.free, all = stages + 1;
   double A[WITH_END * WITH_END] = {0}, c[WITH_END], step = w->h * pb->dir, dt = lag_tangent_span(w->t0, t, step);
   Step s = {.t = w->t0, .h = dt, .y0 = a.y0, .u = a.u};

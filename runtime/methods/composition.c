@@ -3,7 +3,7 @@
  * Choice of the tables for separable models: the smallest error at equal number of evaluations, measured by their test against the
  * compositions of Verlet steps by Suzuki, Yoshida, McLachlan, Kahan and Li. They solve the order conditions of q'' = f(t, q), where
  * [B, [B, [B, A]]] = 0 (A drift, B kick): fewer than for any two flows, which leaves parameters to reduce the error. They need
- * constant M: separable here means that. Choice of the tables for any two flows: the smallest error at equal number of links on the
+ * constant M: separable here means that. Choice of the tables for any two flows: the smallest error at equal number of substeps on the
  * double pendulum, a fifth of Suzuki's composition of order 4, a fortieth of Kahan and Li's of order 6.
  *
  * Digits beyond the 15 to 30 published solve the order conditions (words in A and B up to the order, without [B, [B, [B, A]]]
@@ -149,7 +149,7 @@ const lag_composition lag_compose_any8 = {
              0.345682732431999232720391019898425545, 0.0651012415444450404394088160483502612},
 };
 
-int lag_compose_links(const lag_composition *c, double *part)
+int lag_composition_substeps(const lag_composition *c, double *part)
 {
   double before = 0;
   int n = 2 * c->stages;

@@ -1,7 +1,7 @@
 /* Splitting methods as data: kicks v += kick_i h f and drifts q += drift_i h v in turn, a kick first and last.
  *
  * For an L that is not separable a kick with the drift after it becomes symplectic Euler, a drift with the kick after it its
- * adjoint, both implicit. With links of lengths a_0, b_0, a_1, b_1, ... and kick_0 = a_0, drift_i = a_i + b_i, kick_i = b_(i-1) + a_i
+ * adjoint, both implicit. With substeps of lengths a_0, b_0, a_1, b_1, ... and kick_0 = a_0, drift_i = a_i + b_i, kick_i = b_(i-1) + a_i
  * the composition has the order that the splitting has for any two flows: R.I. McLachlan, SIAM J. Sci. Comput. 16 (1995) 151, DOI
  * 10.1137/0916010; Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), III.3.4. */
 #ifndef LAG_METHODS_COMPOSITION_H
@@ -11,7 +11,7 @@ enum { LAG_MAX_DRIFTS = 19 };
 
 typedef struct lag_composition {
   int order;
-  int refine;   /* refinement level of dense output (path.h) */
+  int refine;   /* refinement level of dense output (step_interpolant.h) */
   int stages;   /* number of drifts, and of evaluations of f a step: the last one serves the next step, too */
   double drift[LAG_MAX_DRIFTS];
   double kick[LAG_MAX_DRIFTS + 1];
@@ -23,7 +23,7 @@ extern const lag_composition lag_compose_euler, lag_compose_verlet, lag_compose_
 /* For any two flows. */
 extern const lag_composition lag_compose_any4, lag_compose_any6, lag_compose_any8;
 
-/* part[2 LAG_MAX_DRIFTS] := lengths of the links a_0, b_0, a_1, ...; a last one of length 0 is left out. Returns their number. */
-int lag_compose_links(const lag_composition *c, double *part);
+/* part[2 LAG_MAX_DRIFTS] := lengths of the substeps a_0, b_0, a_1, ...; a last one of length 0 is left out. Returns their number. */
+int lag_composition_substeps(const lag_composition *c, double *part);
 
 #endif

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "core/rhs.h"
-#include "methods/control.h"
+#include "methods/step_control.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
 
@@ -108,21 +108,21 @@ static double longest(const Embedded *w, const lag_problem *pb, double t)
     return HUGE_VAL;
   }
   double seen = fabs(t - w->t_begin), most = w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
-  return pb->longest > 0 ? lag_lesser(most, pb->longest) : most;
+  return pb->longest > 0 ? lag_min(most, pb->longest) : most;
 }
 
 /* PI controller: the size of the next step from err2, the squared error. One power serves the error and its memory. */
 static void next_size(const EmbeddedPair *pair, Embedded *w, double err2, int retried)
 {
   const double least = 1e-8; /* floor of the remembered squared error, and its value where none is known */
-  double power = lag_rough_power(lag_greater(err2, 1e-24), -pair->beta / 2), f = pair->safety;
+  double power = lag_rough_power(lag_max(err2, 1e-24), -pair->beta / 2), f = pair->safety;
   double memory = err2 > least ? power : lag_rough_power(least, -pair->beta / 2);
 
   f /= w->err_power > 0 ? w->err_power : lag_rough_power(least, -pair->beta / 2);
   for (int i = 0; i < pair->ratio; i++) {
     f *= power;
   }
-  w->h *= lag_greater(pair->shrink_most, lag_lesser(retried ? 1 : pair->grow_most, f));
+  w->h *= lag_max(pair->shrink_most, lag_min(retried ? 1 : pair->grow_most, f));
   w->err_power = memory;
 }
 
@@ -161,7 +161,7 @@ static double square_along(Embedded *w, lag_problem *pb, double tb, int count, c
       e[i] += coef[j] * k[j * row + i];
     }
   }
-  if (lag_along_constraints(pb, tb, y1, e)) {
+  if (lag_project_tangent(pb, tb, y1, e)) {
     return NAN;
   }
   for (int i = 0; i < n; i++) {
@@ -180,15 +180,15 @@ double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, l
   return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
 }
 
-int lag_embedded_turns(Embedded *w, lag_problem *pb, double tb)
+int lag_embedded_reversal(Embedded *w, lag_problem *pb, double tb)
 {
   const double *y0 = lag_embedded_array(w, pb, EMBEDDED_Y0), *y1 = lag_embedded_array(w, pb, EMBEDDED_Y1);
   int nq = pb->nq;
 
   for (int i = 0; i < nq && !(pb->model->flags & LAG_AUTONOMOUS); i++) {
     double moved = y1[i] - y0[i], v0 = pb->dir * y0[nq + i], v1 = pb->dir * y1[nq + i];
-    if (((v0 > 0 && v1 > 0 && moved < 0) || (v0 < 0 && v1 < 0 && moved > 0)) && fabs(moved) > 1e-3 * lag_reach(pb, y0, 1, i)) {
-      return lag_say_leap(pb, tb, y1, i, moved);
+    if (((v0 > 0 && v1 > 0 && moved < 0) || (v0 < 0 && v1 < 0 && moved > 0)) && fabs(moved) > 1e-3 * lag_typical_magnitude(pb, y0, 1, i)) {
+      return lag_report_leap(pb, tb, y1, i, moved);
     }
   }
   return LAG_OK;
@@ -197,17 +197,17 @@ int lag_embedded_turns(Embedded *w, lag_problem *pb, double tb)
 /* Search for a step size that passes a singular position, where constraints become dependent. Near one a step leaves the constraints far,
  * and its end gives the next step a poor derivative. Where the step ends there a shorter one passes better, where it begins there a longer
  * one. The first good size is taken, or else the least bad of those with a small error along the constraints: shrinking alone never passes. */
-typedef struct Landing {
+typedef struct SizeSearch {
   double base, base_err; /* size before the search, and its squared error */
-  double best, least;    /* size of least badness among those with a small error, and that badness */
+  double best, least;    /* size of least singularity_penalty among those with a small error, and that singularity_penalty */
   int tries;
-} Landing;
+} SizeSearch;
 
-enum { LANDING_TRIES = 8 };
+enum { SEARCH_TRIES = 8 };
 
 /* Badness of a step with respect to singular positions; above 1 another size should be tried. 0 where the step came near none
  * (w->across = 0). */
-static double badness(const Embedded *w, lag_problem *pb, double tb)
+static double singularity_penalty(const Embedded *w, lag_problem *pb, double tb)
 {
   const double factor = 100;  /* estimates across the constraints are some ten times too small there; squared */
   const double weight = 1e-2; /* weight of the derivative at the end, whose error is rounding/s^2 */
@@ -217,46 +217,46 @@ static double badness(const Embedded *w, lag_problem *pb, double tb)
     return 0;
   }
   double across = factor * w->across * pb->tol, s = lag_independence(pb, tb, lag_embedded_array((Embedded *)w, pb, EMBEDDED_Y1), &weakest);
-  return lag_greater(across, weight * DBL_EPSILON / (pb->tol * s * s));
+  return lag_max(across, weight * DBL_EPSILON / (pb->tol * s * s));
 }
 
 /* 1: try again with the step w->h; *err is the squared error of the step to tb, or NaN. 0: keep the step. After the last try without success
  * w->h and *err are those of the first. */
-static int land_elsewhere(Landing *l, Embedded *w, lag_problem *pb, double tb, double *err)
+static int try_other_size(SizeSearch *l, Embedded *w, lag_problem *pb, double tb, double *err)
 {
-  double bad = l->tries <= LANDING_TRIES ? badness(w, pb, tb) : 0;
+  double bad = l->tries <= SEARCH_TRIES ? singularity_penalty(w, pb, tb) : 0;
 
-  if (!(bad > 1) && (l->tries == 0 || l->tries > LANDING_TRIES || *err <= 1)) {
+  if (!(bad > 1) && (l->tries == 0 || l->tries > SEARCH_TRIES || *err <= 1)) {
     return 0;
   }
   if (l->tries == 0) {
-    *l = (Landing){.base = w->h, .base_err = *err, .least = HUGE_VAL};
+    *l = (SizeSearch){.base = w->h, .base_err = *err, .least = HUGE_VAL};
   }
   if (*err <= 1 && bad < l->least) {
     l->best = w->h;
     l->least = bad;
   }
   int k = l->tries++; /* 1/1.25, 1.25, 1/1.25^2, 1.25^2, ... */
-  if (k == LANDING_TRIES && l->best == 0.0) {
+  if (k == SEARCH_TRIES && l->best == 0.0) {
     w->h = l->base;
     *err = l->base_err;
     return 0;
   }
-  w->h = k < LANDING_TRIES ? l->base * pow(1.25, k % 2 ? (k + 1) / 2 : -(k + 2) / 2) : l->best;
+  w->h = k < SEARCH_TRIES ? l->base * pow(1.25, k % 2 ? (k + 1) / 2 : -(k + 2) / 2) : l->best;
   return 1;
 }
 
 int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y)
 {
   Embedded *w = work;
-  Landing landing = {.tries = 0};
+  SizeSearch search = {.tries = 0};
   int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
 
   while (rc == 0) {
-    double wanted = lag_lesser(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row_here(pb, *t, &row);
+    double wanted = lag_min(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
     int clipped = wanted * (1 + 1e-4) >= gap; /* the rest after this step would be too short */
     w->h = clipped ? gap : wanted;
-    double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
+    double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
     if (clipped) {
       tb = row;
       tc = 0;
@@ -269,7 +269,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
     if (rc < 0) {
       return rc;
     }
-    if (w->fixed == 0.0 && land_elsewhere(&landing, w, pb, tb, &err)) {
+    if (w->fixed == 0.0 && try_other_size(&search, w, pb, tb, &err)) {
       pb->rejected++;
       rc = 0;
       continue;
@@ -277,7 +277,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
     if (err <= 1 || (w->fixed != 0.0 && !isnan(err))) {
       if (w->fixed == 0.0) {
         next_size(pair, w, err, retried);
-        w->h = clipped ? lag_greater(w->h, wanted) : w->h;
+        w->h = clipped ? lag_max(w->h, wanted) : w->h;
       }
       accept(w, pb, t, y, dt, tb, tc);
       return LAG_OK;

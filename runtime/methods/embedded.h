@@ -68,7 +68,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
 
 /* > 0: a coordinate moved against its velocities at both ends of the step to tb, in a model whose constraints contain time. The step led over
  * a pole, as of x = tan(t), or is too long; the error estimate does not see it, because constraints determine the coordinate. */
-int lag_embedded_turns(Embedded *w, lag_problem *pb, double tb);
+int lag_embedded_reversal(Embedded *w, lag_problem *pb, double tb);
 /* Squared error of the step just computed, along the constraints only: the part that projection removes is large near singular positions
  * and says nothing of the result. whole: squared error including that part, kept in w->across. */
 double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt, double whole);

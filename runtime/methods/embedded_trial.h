@@ -14,7 +14,7 @@ typedef struct EmbeddedShape {
   int nq, n, row;
 } EmbeddedShape;
 
-LAG_HERE EmbeddedShape embedded_shape(const lag_problem *pb)
+LAG_ALWAYS_INLINE EmbeddedShape embedded_shape(const lag_problem *pb)
 {
   EmbeddedShape as = {pb->nq, pb->n, lag_embedded_row(pb)};
 
@@ -32,19 +32,19 @@ typedef double embedded_part;
 #endif
 enum { EMBEDDED_WIDTH = sizeof(embedded_part) / sizeof(double) };
 
-LAG_HERE embedded_part embedded_at(const double *x)
+LAG_ALWAYS_INLINE embedded_part embedded_at(const double *x)
 {
   return *(const embedded_part *)(const void *)x;
 }
 
-LAG_HERE void embedded_set(double *x, embedded_part s)
+LAG_ALWAYS_INLINE void embedded_set(double *x, embedded_part s)
 {
   *(embedded_part *)(void *)x = s;
 }
 
 /* Loads two numbers that the model has just stored one by one. They are loaded one by one, too: processors forward a store only to a load
  * of the same size. */
-LAG_HERE embedded_part embedded_newest(const volatile double *k)
+LAG_ALWAYS_INLINE embedded_part embedded_newest(const volatile double *k)
 {
 #if EMBEDDED_VECTORS
   return (embedded_part){k[0], k[1]};
@@ -59,7 +59,7 @@ LAG_HERE embedded_part embedded_newest(const volatile double *k)
   }
 
 /* sum_j coef[j] k_j over j < count, for the components of one part; coef[0] is not 0. */
-LAG_HERE embedded_part embedded_sum(const double *coef, int count, const double *k, int row)
+LAG_ALWAYS_INLINE embedded_part embedded_sum(const double *coef, int count, const double *k, int row)
 {
   embedded_part s = coef[0] * embedded_at(k);
 
@@ -70,7 +70,7 @@ LAG_HERE embedded_part embedded_sum(const double *coef, int count, const double 
 }
 
 /* out[row] := sum_j coef[j] k_j over j < count. */
-LAG_HERE void embedded_combine(const double *coef, int count, EmbeddedShape as, const double *k, double *out)
+LAG_ALWAYS_INLINE void embedded_combine(const double *coef, int count, EmbeddedShape as, const double *k, double *out)
 {
   for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
     embedded_set(out + i, embedded_sum(coef, count, k + i, as.row));
@@ -78,9 +78,9 @@ LAG_HERE void embedded_combine(const double *coef, int count, EmbeddedShape as, 
 }
 
 /* k := f(t, y). > 0: a smaller step may help. */
-LAG_HERE int embedded_call(lag_problem *pb, int nq, double t, const double *y, double *k)
+LAG_ALWAYS_INLINE int embedded_call(lag_problem *pb, int nq, double t, const double *y, double *k)
 {
-  int rc = lag_rhs_here(pb, nq, t, y, k);
+  int rc = lag_rhs_inline(pb, nq, t, y, k);
 
   if (rc) {
     pb->bad_t = t;
@@ -89,7 +89,7 @@ LAG_HERE int embedded_call(lag_problem *pb, int nq, double t, const double *y, d
 }
 
 /* K_s := f(t0 + c_s dt, y0 + dt sum a_sj K_j). The newest stage is added last, so that other terms need not wait for it. */
-LAG_HERE int embedded_stage(const lag_tableau *tab, lag_problem *pb, EmbeddedShape as, int s, double t0, double dt, const double *y0, double *k,
+LAG_ALWAYS_INLINE int embedded_stage(const lag_tableau *tab, lag_problem *pb, EmbeddedShape as, int s, double t0, double dt, const double *y0, double *k,
                                    double *ys)
 {
   int row = as.row;
@@ -106,7 +106,7 @@ LAG_HERE int embedded_stage(const lag_tableau *tab, lag_problem *pb, EmbeddedSha
 }
 
 /* Y1 := the result of the step, COMP1 := its compensation. */
-LAG_HERE void embedded_result(const lag_tableau *tab, Embedded *w, EmbeddedShape as, double dt)
+LAG_ALWAYS_INLINE void embedded_result(const lag_tableau *tab, Embedded *w, EmbeddedShape as, double dt)
 {
   int row = as.row, last = tab->stages - 1;
   double newest = tab->a[last][last - 1];
@@ -115,14 +115,14 @@ LAG_HERE void embedded_result(const lag_tableau *tab, Embedded *w, EmbeddedShape
 
   for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
     embedded_part sum = embedded_sum(tab->a[last], last - 1, k + i, row) + newest * embedded_newest(k + i + (last - 1) * row);
-    embedded_part y = embedded_at(y0 + i), x = dt * sum + embedded_at(comp + i), r = y + x, b = r - y; /* as lag_sum */
+    embedded_part y = embedded_at(y0 + i), x = dt * sum + embedded_at(comp + i), r = y + x, b = r - y; /* as lag_compensated_sum */
     embedded_set(y1 + i, r);
     embedded_set(comp1 + i, (y - (r - b)) + (x - b));
   }
 }
 
 /* Scale of the error of a component: atol + tol max(|y0|, |y1|). */
-LAG_HERE double embedded_scale(const Embedded *w, const lag_problem *pb, double y0, double y1)
+LAG_ALWAYS_INLINE double embedded_scale(const Embedded *w, const lag_problem *pb, double y0, double y1)
 {
   double a = fabs(y0), b = fabs(y1);
 
@@ -130,7 +130,7 @@ LAG_HERE double embedded_scale(const Embedded *w, const lag_problem *pb, double 
 }
 
 /* Sum of the squares of the components. */
-LAG_HERE double embedded_square(embedded_part x)
+LAG_ALWAYS_INLINE double embedded_square(embedded_part x)
 {
 #if EMBEDDED_VECTORS
   return x[0] * x[0] + x[1] * x[1];
@@ -140,7 +140,7 @@ LAG_HERE double embedded_square(embedded_part x)
 }
 
 /* Squared norm of the error of the step just computed; NaN where it is not finite. */
-LAG_HERE double embedded_error(const lag_tableau *tab, int late, Embedded *w, const lag_problem *pb, EmbeddedShape as, double dt)
+LAG_ALWAYS_INLINE double embedded_error(const lag_tableau *tab, int late, Embedded *w, const lag_problem *pb, EmbeddedShape as, double dt)
 {
   int row = as.row;
   const double *y0 = w->x + EMBEDDED_Y0 * row, *y1 = w->x + EMBEDDED_Y1 * row, *k = w->x + EMBEDDED_K1 * row;
@@ -162,14 +162,14 @@ LAG_HERE double embedded_error(const lag_tableau *tab, int late, Embedded *w, co
 }
 
 /* The last stage: projects the end of the step to the constraints, then k := f there. > 0: a smaller step may help. */
-LAG_HERE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double tb, double dt, double *k)
+LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double tb, double dt, double *k)
 {
   double *y1 = w->x + EMBEDDED_Y1 * as.row;
   int rc = pb->model->constraints ? lag_project_step(pb, tb, w->x + EMBEDDED_Y0 * as.row, y1, w->x + EMBEDDED_COMP1 * as.row) : 0;
 
   if (pb->model->constraints && rc == 0) {
-    rc = w->fixed == 0.0 ? lag_embedded_turns(w, pb, tb) : 0;
-    rc = rc ? rc : lag_over_pole(pb, tb - dt, w->x + EMBEDDED_Y0 * as.row, tb, y1);
+    rc = w->fixed == 0.0 ? lag_embedded_reversal(w, pb, tb) : 0;
+    rc = rc ? rc : lag_crosses_constraint_pole(pb, tb - dt, w->x + EMBEDDED_Y0 * as.row, tb, y1);
   }
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
 }
@@ -179,7 +179,7 @@ LAG_HERE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double
     return NAN;                                                           \
   }
 
-LAG_HERE double embedded_trial(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, EmbeddedShape as, double t, double tb,
+LAG_ALWAYS_INLINE double embedded_trial(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, EmbeddedShape as, double t, double tb,
                                       double dt, int *rc)
 {
   int row = as.row, last = tab->stages - 1;

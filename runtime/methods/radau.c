@@ -14,8 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "methods/band.h"
-#include "methods/control.h"
+#include "methods/band_matrix.h"
+#include "methods/step_control.h"
 #include "methods/embedded.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
@@ -48,7 +48,7 @@ static const double inverse_T[STAGES][STAGES] = {
 /* Weights of z/h in the error estimate, (-13 -+ 7 sqrt 6)/3 and -1/3. */
 static const double error_weight[STAGES] = {-10.0488093998274155624603295076470799, 1.38214273316074889579366284098041325, -1.0 / 3};
 
-/* Saved state of the method, doubles only; Arrays has pointers into x. */
+/* Saved state of the method, doubles only; RadauArrays has pointers into x. */
 typedef struct Radau {
   double h;            /* the next step to try, > 0; 0: not chosen yet */
   double h_option, h_max, rtol, atol;
@@ -66,18 +66,18 @@ typedef struct Radau {
   double x[];
 } Radau;
 
-typedef struct Arrays {
+typedef struct RadauArrays {
   double *f0, *y0, *y1, *comp, *comp1, *scale, *ys, *fs, *err; /* [n] */
   double *z, *w, *dw, *path;     /* [3 n] z = stages - y; w = T^-1 z; its correction; differences of the collocation polynomial */
   double *jacobian;              /* [(nq + nz) n] */
   double *row;                   /* [2 n] scratch */
   double *linear;                /* scratch of lag_jacobian */
-  lag_band real, complex;        /* gamma/h - J, and the real form [alpha/h - J, -beta/h; beta/h, alpha/h - J] of the complex one */
-} Arrays;
+  lag_band_matrix real, complex;        /* gamma/h - J, and the real form [alpha/h - J, -beta/h; beta/h, alpha/h - J] of the complex one */
+} RadauArrays;
 
-static Arrays arrays(Radau *w, const lag_problem *pb)
+static RadauArrays arrays(Radau *w, const lag_problem *pb)
 {
-  Arrays a;
+  RadauArrays a;
   size_t n = (size_t)pb->n;
   double *x = w->x;
   double **const of_n[] = {&a.f0, &a.y0, &a.y1, &a.comp, &a.comp1, &a.scale, &a.ys, &a.fs, &a.err, &a.real.pivot};
@@ -138,7 +138,7 @@ static int init(void *work, lag_problem *pb, const double *opt)
 static int sound(const void *work, const void *fresh, const lag_problem *pb)
 {
   const Radau *w = work, *f = fresh;
-  Arrays a = arrays((Radau *)w, pb);
+  RadauArrays a = arrays((Radau *)w, pb);
   int most = pb->n - 1, i = 0;
 
   while (i < pb->n && lag_is_count(a.real.pivot[i], most) && lag_is_count(a.complex.pivot[i], 2 * most + 1) &&
@@ -153,7 +153,7 @@ static int sound(const void *work, const void *fresh, const lag_problem *pb)
 /* ---- Linear systems */
 
 /* a->jacobian := df/dy at (t, y); the LU factors become invalid. */
-static int take_jacobian(Radau *w, const Arrays *a, lag_problem *pb, double t, const double *y)
+static int update_jacobian(Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y)
 {
   int rc = lag_jacobian(pb, t, y, a->jacobian, a->linear);
 
@@ -166,12 +166,12 @@ static int take_jacobian(Radau *w, const Arrays *a, lag_problem *pb, double t, c
 }
 
 /* m := c 1 - J in the block of rows and columns from `at` on. */
-static void put_minus_jacobian(const Arrays *a, const lag_problem *pb, const lag_band *m, int at, double c)
+static void put_minus_jacobian(const RadauArrays *a, const lag_problem *pb, const lag_band_matrix *m, int at, double c)
 {
   int n = pb->n, nq = pb->nq;
 
   for (int i = 0; i < n; i++) {
-    double *row = lag_band_at(m, at + i, at);
+    double *row = lag_band_matrix_at(m, at + i, at);
     const double *j = i < nq ? NULL : a->jacobian + (i - nq) * n;
     for (int k = 0; k < n; k++) {
       row[k] = (i == k ? c : 0) - (j ? j[k] : k == nq + i);
@@ -180,7 +180,7 @@ static void put_minus_jacobian(const Arrays *a, const lag_problem *pb, const lag
 }
 
 /* Builds and factors both matrices for steps of signed size h. -1: singular. */
-static int factor(Radau *w, Arrays *a, const lag_problem *pb, double h)
+static int factor(Radau *w, RadauArrays *a, const lag_problem *pb, double h)
 {
   int n = pb->n;
 
@@ -189,11 +189,11 @@ static int factor(Radau *w, Arrays *a, const lag_problem *pb, double h)
   put_minus_jacobian(a, pb, &a->complex, 0, eigenvalue[0] / h);
   put_minus_jacobian(a, pb, &a->complex, n, eigenvalue[0] / h);
   for (int i = 0; i < n; i++) {
-    *lag_band_at(&a->complex, i, n + i) = -eigenvalue[1] / h;
-    *lag_band_at(&a->complex, n + i, i) = eigenvalue[1] / h;
+    *lag_band_matrix_at(&a->complex, i, n + i) = -eigenvalue[1] / h;
+    *lag_band_matrix_at(&a->complex, n + i, i) = eigenvalue[1] / h;
   }
   w->factored = 0;
-  if (lag_band_factor(&a->real, a->row) || lag_band_factor(&a->complex, a->row)) {
+  if (lag_band_matrix_factor(&a->real, a->row) || lag_band_matrix_factor(&a->complex, a->row)) {
     return -1;
   }
   w->factored = h;
@@ -201,7 +201,7 @@ static int factor(Radau *w, Arrays *a, const lag_problem *pb, double h)
 }
 
 /* out := (m (x) 1) in, for three stages of n components. */
-static void mix(const double (*m)[STAGES], int n, const double *in, double *out)
+static void apply_to_stages(const double (*m)[STAGES], int n, const double *in, double *out)
 {
   for (int i = 0; i < n; i++) {
     for (int s = 0; s < STAGES; s++) {
@@ -213,7 +213,7 @@ static void mix(const double (*m)[STAGES], int n, const double *in, double *out)
 /* ---- Newton's method */
 
 /* Start values: z, w := the last collocation polynomial, extrapolated; zero where there is none. */
-static void guess(const Radau *w, const Arrays *a, int n, double dt)
+static void guess(const Radau *w, const RadauArrays *a, int n, double dt)
 {
   memset(a->z, 0, (size_t)(STAGES * n) * sizeof(double));
   for (int s = 0; s < STAGES && w->have_path != 0.0; s++) {
@@ -222,11 +222,11 @@ static void guess(const Radau *w, const Arrays *a, int n, double dt)
       a->z[s * n + i] = c * (a->path[i] + (c - (node[1] - 1)) * (a->path[n + i] + (c - (node[0] - 1)) * a->path[2 * n + i]));
     }
   }
-  mix(inverse_T, n, a->z, a->w);
+  apply_to_stages(inverse_T, n, a->z, a->w);
 }
 
 /* dw := f at the stages. > 0: a smaller step may help. */
-static int stages(const Arrays *a, lag_problem *pb, double t, const double *y, double dt)
+static int stages(const RadauArrays *a, lag_problem *pb, double t, const double *y, double dt)
 {
   int n = pb->n;
 
@@ -248,7 +248,7 @@ static int stages(const Arrays *a, lag_problem *pb, double t, const double *y, d
 }
 
 /* One Newton correction dw of w; z := T w. Returns its norm relative to the tolerance. */
-static double correct(const Arrays *a, int n, double h)
+static double correct(const RadauArrays *a, int n, double h)
 {
   double g = real_eigenvalue / h, re = eigenvalue[0] / h, im = eigenvalue[1] / h, sum = 0;
 
@@ -261,14 +261,14 @@ static double correct(const Arrays *a, int n, double h)
     a->dw[n + i] = r[1] - (re * a->w[n + i] - im * a->w[2 * n + i]);
     a->dw[2 * n + i] = r[2] - (re * a->w[2 * n + i] + im * a->w[n + i]);
   }
-  lag_band_solve(&a->real, a->dw);
-  lag_band_solve(&a->complex, a->dw + n);
+  lag_band_matrix_solve(&a->real, a->dw);
+  lag_band_matrix_solve(&a->complex, a->dw + n);
   for (int i = 0; i < STAGES * n; i++) {
     double e = a->dw[i] / a->scale[i % n];
     a->w[i] += a->dw[i];
     sum += e * e;
   }
-  mix(T, n, a->w, a->z);
+  apply_to_stages(T, n, a->w, a->z);
   return sqrt(sum / (STAGES * n));
 }
 
@@ -279,7 +279,7 @@ typedef struct Outcome {
   int corrections;
 } Outcome;
 
-static Outcome newton(Radau *w, const Arrays *a, lag_problem *pb, double t, const double *y, double dt)
+static Outcome newton(Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y, double dt)
 {
   double goal = fmax(10 * DBL_EPSILON / w->rtol, fmin(0.03, sqrt(w->rtol))), last = 0, last_rate = 0;
   Outcome o = {0, 0.5, 0};
@@ -328,7 +328,7 @@ static Outcome newton(Radau *w, const Arrays *a, lag_problem *pb, double t, cons
 /* ---- Error estimate and step size */
 
 /* a->err := (gamma/h - J)^-1 (f + sum error_weight_k z_k/h). Returns its norm, at least 1e-10. */
-static double estimate(const Arrays *a, const lag_problem *pb, const double *f, double dt)
+static double estimate(const RadauArrays *a, const lag_problem *pb, const double *f, double dt)
 {
   int n = pb->n;
   double s = 0;
@@ -339,7 +339,7 @@ static double estimate(const Arrays *a, const lag_problem *pb, const double *f, 
       a->err[i] += error_weight[k] / dt * a->z[k * n + i];
     }
   }
-  lag_band_solve(&a->real, a->err);
+  lag_band_matrix_solve(&a->real, a->err);
   for (int i = 0; i < n; i++) {
     double e = a->err[i] / a->scale[i];
     s += e * e;
@@ -348,7 +348,7 @@ static double estimate(const Arrays *a, const lag_problem *pb, const double *f, 
 }
 
 /* The error estimate; where it is large in the first step or after a rejected one, a second estimate, filtered for stiff f. */
-static double error_of(const Radau *w, const Arrays *a, lag_problem *pb, double t, const double *y, double dt)
+static double error_of(const Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y, double dt)
 {
   double err = estimate(a, pb, a->f0, dt);
 
@@ -365,7 +365,7 @@ static double error_of(const Radau *w, const Arrays *a, lag_problem *pb, double 
 }
 
 /* Factor by which h is divided for this error and this number of corrections. */
-static double quotient(const Radau *w, double err, int corrections, int accepted)
+static double step_divisor(const Radau *w, double err, int corrections, int accepted)
 {
   double slow = fmin(safety, safety * (1 + 2 * MOST_CORRECTIONS) / (corrections + 2 * MOST_CORRECTIONS));
   double quot = fmax(1 / grow_most, fmin(1 / shrink_most, sqrt(sqrt(err)) / slow));
@@ -398,7 +398,7 @@ static void next_size(Radau *w, double quot, double err)
 /* ---- Step */
 
 /* a->path := divided differences of the collocation polynomial from the end of the step (code RADAU5, CONT). */
-static void remember(const Arrays *a, int n)
+static void store_polynomial(const RadauArrays *a, int n)
 {
   double c1 = node[0], c2 = node[1];
 
@@ -410,11 +410,11 @@ static void remember(const Arrays *a, int n)
   }
 }
 
-static void accept(Radau *w, const Arrays *a, lag_problem *pb, double *t, double *y, double dt, double tb, double tc)
+static void accept(Radau *w, const RadauArrays *a, lag_problem *pb, double *t, double *y, double dt, double tb, double tc)
 {
   size_t bytes = (size_t)pb->n * sizeof(double);
 
-  remember(a, pb->n);
+  store_polynomial(a, pb->n);
   memcpy(a->y0, y, bytes);
   memcpy(y, a->y1, bytes);
   memcpy(a->comp, a->comp1, bytes);
@@ -427,13 +427,13 @@ static void accept(Radau *w, const Arrays *a, lag_problem *pb, double *t, double
 }
 
 /* y1 := end of the step, projected to the constraints; fs := f there. > 0: a smaller step may help. */
-static int finish(const Arrays *a, lag_problem *pb, double tb, const double *y)
+static int finish(const RadauArrays *a, lag_problem *pb, double tb, const double *y)
 {
   int n = pb->n, rc;
 
   for (int i = 0; i < n; i++) {
     a->comp1[i] = a->comp[i];
-    a->y1[i] = lag_sum(y[i], a->z[2 * n + i], &a->comp1[i]);
+    a->y1[i] = lag_compensated_sum(y[i], a->z[2 * n + i], &a->comp1[i]);
   }
   rc = lag_project_step(pb, tb, y, a->y1, a->comp1);
   rc = rc ? rc : lag_rhs(pb, tb, a->y1, a->fs);
@@ -445,7 +445,7 @@ static int finish(const Arrays *a, lag_problem *pb, double tb, const double *y)
 }
 
 /* Before a step: f0, scale of errors, and w->h, the step to try. */
-static int prepare(Radau *w, const Arrays *a, lag_problem *pb, double t, const double *y)
+static int prepare(Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y)
 {
   lag_tolerance tol = {w->atol, w->rtol};
   int rc = w->ready != 0.0 ? 0 : lag_step_rhs(pb, t, y, a->f0);
@@ -476,7 +476,7 @@ static double longest(const Radau *w, const lag_problem *pb, double t)
 }
 
 /* Computes the end of an accepted step and the size of the next. > 0: a smaller step may help. */
-static int conclude(Radau *w, const Arrays *a, lag_problem *pb, double tb, const double *y, double err, int corrections)
+static int conclude(Radau *w, const RadauArrays *a, lag_problem *pb, double tb, const double *y, double err, int corrections)
 {
   int rc = finish(a, pb, tb, y);
 
@@ -485,15 +485,15 @@ static int conclude(Radau *w, const Arrays *a, lag_problem *pb, double tb, const
   } else if (w->fixed != 0.0) {
     w->jacobian_age = 0;
   } else {
-    next_size(w, quotient(w, err, corrections, 1), err);
+    next_size(w, step_divisor(w, err, corrections, 1), err);
   }
   return rc;
 }
 
 /* One attempt at a step of dt. 0: it can be accepted. > 0: rejected, and w->h is the next size to try. */
-static int attempt(Radau *w, Arrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
+static int attempt(Radau *w, RadauArrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
 {
-  int rc = w->jacobian_age == 0.0 ? take_jacobian(w, a, pb, t, y) : 0;
+  int rc = w->jacobian_age == 0.0 ? update_jacobian(w, a, pb, t, y) : 0;
 
   if (rc) {
     return rc;
@@ -512,12 +512,12 @@ static int attempt(Radau *w, Arrays *a, lag_problem *pb, double t, double tb, co
   if (err < 1) {
     return conclude(w, a, pb, tb, y, err, o.corrections);
   }
-  w->h = w->h_accepted == 0.0 ? 0.1 * w->h : w->h / (isfinite(err) ? quotient(w, err, o.corrections, 0) : 2);
+  w->h = w->h_accepted == 0.0 ? 0.1 * w->h : w->h / (isfinite(err) ? step_divisor(w, err, o.corrections, 0) : 2);
   return REJECTED;
 }
 
 /* Status after the last attempt failed for `why`: h is at its minimum, or steps are of fixed size. */
-static int gave_up(const Radau *w, lag_problem *pb, double t, int why)
+static int failure_status(const Radau *w, lag_problem *pb, double t, int why)
 {
   if (why == LAG_ERETRY) {
     return pb->bad_index >= 0 ? LAG_ENAN : LAG_EDOMAIN; /* bad_t is set */
@@ -532,16 +532,16 @@ static int gave_up(const Radau *w, lag_problem *pb, double t, int why)
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
 {
   Radau *w = work;
-  Arrays a = arrays(w, pb);
+  RadauArrays a = arrays(w, pb);
   int rc = prepare(w, &a, pb, *t, y), why = REJECTED;
 
   (void)t_stop;
   w->h = (w->fixed != 0.0 ? w->h_option : w->h) * (1 + pb->stretch);
   while (rc == 0) {
     w->h = w->fixed != 0.0 ? w->h : fmin(w->h, longest(w, pb, *t));
-    double dt = pb->dir * w->h, tc = w->tc, tb = lag_sum(*t, dt, &tc);
+    double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
     if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) {
-      return gave_up(w, pb, *t, why);
+      return failure_status(w, pb, *t, why);
     }
     pb->bad_index = -1;
     why = attempt(w, &a, pb, *t, tb, y, dt);
@@ -553,7 +553,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
       return why;
     }
     if (w->fixed != 0.0) {
-      return gave_up(w, pb, *t, why);
+      return failure_status(w, pb, *t, why);
     }
     w->jacobian_age = w->jacobian_age == 1.0 ? 1 : 0;
     w->again = 1;
@@ -565,7 +565,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
 static void dense(void *work, lag_problem *pb, double t, double *y)
 {
   Radau *w = work;
-  Arrays a = arrays(w, pb);
+  RadauArrays a = arrays(w, pb);
   int n = pb->n;
   double s = (t - (w->t0 + w->dt)) / w->dt;
 

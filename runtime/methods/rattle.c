@@ -2,7 +2,7 @@
  * end, on the constraints. Algorithm: a constraint impulse at the start of a block brings its end to c = 0, and the momentum at
  * the end is projected to r = 0: RATTLE where L is separable.
  *
- * Sources: H.C. Andersen, J. Comput. Phys. 52 (1983) 24, DOI 10.1016/0021-9991(83)90014-1; J.E. Marsden, M. West (rule.h), section 3.5;
+ * Sources: H.C. Andersen, J. Comput. Phys. 52 (1983) 24, DOI 10.1016/0021-9991(83)90014-1; J.E. Marsden, M. West (galerkin_rule.h), section 3.5;
  * Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VII.1. A constraint on velocities holds for the chord of the
  * block, in the mean of its two ends, a symmetric rule: J. Cortes, S. Martinez, Nonlinearity 14 (2001) 1365, DOI
  * 10.1088/0951-7715/14/5/322; R. McLachlan, M. Perlmutter, J. Nonlinear Sci. 16 (2006) 283, DOI 10.1007/s00332-005-0698-1. */
@@ -10,19 +10,19 @@
 #include <math.h>
 #include <string.h>
 
-#include "methods/history.h"
-#include "methods/links.h"
+#include "methods/predictor.h"
+#include "methods/substeps.h"
 #include "methods/steps.h"
 
 enum { MOST_IMPULSES = 60, MOST_PROJECTIONS = 8 };
 #define LEAST 1e-6
 
-/* Links in a block: 2, the halves of a Verlet step, where the composition is one of Verlet steps; else 1. */
+/* Substeps in a block: 2, the halves of a Verlet step, where the composition is one of Verlet steps; else 1. */
 static int block_length(const Implicit *w)
 {
-  int whole = (int)w->links % 2 == 0;
+  int whole = (int)w->substeps % 2 == 0;
 
-  for (int k = 0; k + 1 < (int)w->links; k += 2) {
+  for (int k = 0; k + 1 < (int)w->substeps; k += 2) {
     whole &= w->part[k] == w->part[k + 1];
   }
   return whole ? 2 : 1;
@@ -30,13 +30,13 @@ static int block_length(const Implicit *w)
 
 /* b->to := [q|v], the present q and the velocity of the chord, at t1 = t0 + h, where t0 is the start of the block. b->g := minus the
  * constraint defect there. Returns the model's status. */
-static int off(const Arrays *a, lag_problem *pb, double t0, double t1, double h, const double *y)
+static int constraint_defect(const ImplicitArrays *a, lag_problem *pb, double t0, double t1, double h, const double *y)
 {
-  const Block *b = &a->block;
+  const ConstraintBlock *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, rc;
 
-  lag_links_gather(a, nq);
+  lag_substeps_gather(a, nq);
   for (int i = 0; i < nq; i++) {
     b->to[i] = y[i] + a->ql[i];
     b->to[nq + i] = (a->dq[i] - b->dq[i]) / h;
@@ -60,27 +60,27 @@ static int off(const Arrays *a, lag_problem *pb, double t0, double t1, double h,
 }
 
 /* The largest |d_i| of d[nq] relative to the largest |x| or |y| of the same unit. */
-static double part_of(const lag_problem *pb, const double *d, const double *x, const double *y)
+static double relative_size(const lag_problem *pb, const double *d, const double *x, const double *y)
 {
   double most = 0;
 
   for (int i = 0; i < pb->nq; i++) {
-    most = fmax(most, d[i] == 0.0 ? 0 : fabs(d[i]) / fmax(lag_size_like(pb, x, i), lag_size_like(pb, y, i)));
+    most = fmax(most, d[i] == 0.0 ? 0 : fabs(d[i]) / fmax(lag_unit_magnitude(pb, x, i), lag_unit_magnitude(pb, y, i)));
   }
   return most;
 }
 
 /* Relative size of the correction b->d of the end of a block of length h; or of its impulse relative to the whole impulse, if smaller:
  * coordinates held at 0 have no size, but the force that holds them has one. */
-static double part_of_block(const lag_problem *pb, const Block *b, double h)
+static double relative_size_of_block(const lag_problem *pb, const ConstraintBlock *b, double h)
 {
   double most = 0;
 
   for (int i = 0; i < pb->nq; i++) {
-    double far = fmax(lag_size_like(pb, b->from, i), lag_size_like(pb, b->to, i)), whole = fabs(h) * lag_size_like(pb, b->impulse, i);
-    double part = b->d[i] == 0.0 ? 0 : fabs(b->d[i]) / (far > 0 ? far : lag_reach(pb, b->from, 1, i));
+    double far = fmax(lag_unit_magnitude(pb, b->from, i), lag_unit_magnitude(pb, b->to, i)), whole = fabs(h) * lag_unit_magnitude(pb, b->impulse, i);
+    double part = b->d[i] == 0.0 ? 0 : fabs(b->d[i]) / (far > 0 ? far : lag_typical_magnitude(pb, b->from, 1, i));
     if (part > 0 && whole > 0) {
-      part = far > 0 ? fmin(part, lag_size_like(pb, b->force, i) / whole) : lag_size_like(pb, b->force, i) / whole;
+      part = far > 0 ? fmin(part, lag_unit_magnitude(pb, b->force, i) / whole) : lag_unit_magnitude(pb, b->force, i) / whole;
     }
     most = fmax(most, part);
   }
@@ -88,9 +88,9 @@ static double part_of_block(const lag_problem *pb, const Block *b, double h)
 }
 
 /* b->change := for each constraint, the least change at the start of the block that changes it by 1. */
-static int find_changes(const Arrays *a, lag_problem *pb, double t0)
+static int find_changes(const ImplicitArrays *a, lag_problem *pb, double t0)
 {
-  const Block *b = &a->block;
+  const ConstraintBlock *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
   int rc = 0;
 
@@ -104,7 +104,7 @@ static int find_changes(const Arrays *a, lag_problem *pb, double t0)
 
 /* x[n] := B^-1 x by Gauss-Jordan elimination of B[n * n] with full pivoting, for pivots above `least`; x of the remaining equations holds
  * their residuals. r[n] := column of the pivot of each row, -1: none. */
-static void solve(double *B, double *x, double *r, int n, double least)
+static void gauss_jordan(double *B, double *x, double *r, int n, double least)
 {
   for (int i = 0; i < n; i++) {
     r[i] = -1; /* column of the pivot of row i */
@@ -138,11 +138,11 @@ static void solve(double *B, double *x, double *r, int n, double least)
   }
 }
 
-/* Adds to b->turned the derivatives of the coefficients of velocity constraints by the end of the block. These coefficients vanish at the
+/* Adds to b->end_jacobian the derivatives of the coefficients of velocity constraints by the end of the block. These coefficients vanish at the
  * origin for x*y' = y*x'; a block over that place, where they change sign, is found only by the full Newton matrix. */
-static int turn_rates(const Arrays *a, lag_problem *pb, double t1, double h)
+static int add_rate_derivatives(const ImplicitArrays *a, lag_problem *pb, double t1, double h)
 {
-  const Block *b = &a->block;
+  const ConstraintBlock *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
   const double small = 1e-3; /* of the length of the block's motion; quadratic terms cancel in the central difference */
   int nq = pb->nq, n = of->n, rc = 0;
@@ -152,7 +152,7 @@ static int turn_rates(const Arrays *a, lag_problem *pb, double t1, double h)
     const double *change = b->change + k * nq;
     double part = HUGE_VAL;
     for (int i = 0; i < nq; i++) {
-      double way = fabs(h) * lag_size_like(pb, b->to + nq, i);
+      double way = fabs(h) * lag_unit_magnitude(pb, b->to + nq, i);
       part = change[i] != 0.0 && way > 0 ? fmin(part, small * way / fabs(change[i])) : part;
     }
     for (int side = 1; side >= -1 && part < HUGE_VAL && rc == 0; side -= 2) {
@@ -161,7 +161,7 @@ static int turn_rates(const Arrays *a, lag_problem *pb, double t1, double h)
       }
       rc = lag_residuals(pb, t1, b->to, b->c, b->r);
       for (int j = of->nholonomic; j < n && rc == 0; j++) {
-        b->turned[j * n + k] += h / 2 * side * b->r[j] / (2 * part);
+        b->end_jacobian[j * n + k] += h / 2 * side * b->r[j] / (2 * part);
       }
     }
   }
@@ -171,28 +171,28 @@ static int turn_rates(const Arrays *a, lag_problem *pb, double t1, double h)
 
 /* b->g: from the change of constraints wanted at the end of a block, t1, to the change at its start that causes it; pivots below `least` are
  * left out. The two differ near a singular position, even in sign, as of a stretched linkage. Needs b->change. */
-static int steer(const Arrays *a, lag_problem *pb, double t1, double h, double least)
+static int end_to_start_change(const ImplicitArrays *a, lag_problem *pb, double t1, double h, double least)
 {
-  const Block *b = &a->block;
+  const ConstraintBlock *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, n = of->n, rc = lag_inputs(pb, t1);
 
   rc = rc ? rc : of->matrices(t1, b->to, b->to + nq, b->to + 2 * nq, pb->p, pb->u, b->A, b->M, pb->work);
-  memset(b->turned, 0, (size_t)(n * n) * sizeof(double));
+  memset(b->end_jacobian, 0, (size_t)(n * n) * sizeof(double));
   for (int e = 0; e < of->njacobian && rc == 0; e++) {
     int row = of->jacobian[e].row;
     double part = row < of->nholonomic ? 1 : 0.5;
     for (int k = 0; k < n; k++) {
-      b->turned[row * n + k] += part * b->A[e] * b->change[k * nq + of->jacobian[e].col];
+      b->end_jacobian[row * n + k] += part * b->A[e] * b->change[k * nq + of->jacobian[e].col];
     }
   }
   for (int k = of->nholonomic; k < n; k++) {
-    b->turned[k * n + k] += 0.5;
+    b->end_jacobian[k * n + k] += 0.5;
   }
-  rc = rc == 0 && of->nholonomic < n ? turn_rates(a, pb, t1, h) : rc;
+  rc = rc == 0 && of->nholonomic < n ? add_rate_derivatives(a, pb, t1, h) : rc;
   if (rc == 0) {
     memcpy(b->c, b->g, (size_t)n * sizeof(double));
-    solve(b->turned, b->c, b->r, n, least);
+    gauss_jordan(b->end_jacobian, b->c, b->r, n, least);
     memset(b->g, 0, (size_t)n * sizeof(double));
     for (int i = 0; i < n; i++) {
       if (b->r[i] >= 0) {
@@ -204,18 +204,18 @@ static int steer(const Arrays *a, lag_problem *pb, double t1, double h, double l
 }
 
 /* LAG_EMETHOD: no small change meets all constraints; pb->detail names the worst. */
-static int unmet(lag_problem *pb, double t, const double *y, int holonomic)
+static int contradiction(lag_problem *pb, double t, const double *y, int holonomic)
 {
   int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
 
   if (k >= 0) {
-    lag_say_constraint(pb, k, holonomic, NAN, ", and no small change meets it: it contradicts others, or depends on them here");
+    lag_report_residual(pb, k, holonomic, NAN, ", and no small change meets it: it contradicts others, or depends on them here");
   }
   return lag_step_failed(pb, LAG_EMETHOD, t);
 }
 
 /* Adds the impulse at the start of a block of length h for the change b->d of its end, and g to its sum. */
-static void add_impulse(const Block *b, int nq, int nc, double h)
+static void add_impulse(const ConstraintBlock *b, int nq, int nc, double h)
 {
   for (int i = 0; i < nq; i++) {
     b->impulse[i] += b->force[i] / h;
@@ -225,17 +225,17 @@ static void add_impulse(const Block *b, int nq, int nc, double h)
   }
 }
 
-/* Solves the block of links k to k + length - 1 for its impulse. The defects of constraints on positions must end as rounding. Those on
+/* Solves the block of substeps k to k + length - 1 for its impulse. The defects of constraints on positions must end as rounding. Those on
  * velocities need not: of two equivalent ones with different factors the chord meets one, and misses the other by O(h^2); project() finds
  * contradictions at the end of the block. */
-static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, double t1, const double *y, double dt, int k, int length,
+static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double t1, const double *y, double dt, int k, int length,
                 double at)
 {
-  const Block *b = &a->block;
+  const ConstraintBlock *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, m = nq * (int)w->rule[0].free, steered = 0, known = 0, rc, holonomic = of->nholonomic == of->n;
   size_t bytes = (size_t)nq * sizeof(double);
-  double h = 0, before = HUGE_VAL, least = 0.1, *history = b->history + (size_t)k * lag_history_size(of->n);
+  double h = 0, before = HUGE_VAL, least = 0.1, *history = b->history + (size_t)k * lag_predictor_size(of->n);
 
   for (int j = 0; j < length; j++) {
     h += w->part[k + j] * dt;
@@ -244,8 +244,8 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
   memcpy(b->dp, a->dp, bytes);
   memset(b->impulse, 0, bytes);
   memset(b->sum, 0, (size_t)of->n * sizeof(double));
-  if (lag_history_guess(history, of->n, b->g) && lag_least_change(pb, t + at * dt, b->from, holonomic, b->g, b->d, b->force) == 0 &&
-      part_of(pb, b->d, b->from + nq, b->from + nq) <= fabs(h)) { /* no guess where a singular position magnifies its error */
+  if (lag_predictor_guess(history, of->n, b->g) && lag_least_change(pb, t + at * dt, b->from, holonomic, b->g, b->d, b->force) == 0 &&
+      relative_size(pb, b->d, b->from + nq, b->from + nq) <= fabs(h)) { /* no guess where a singular position magnifies its error */
     add_impulse(b, nq, of->n, h);
   }
   for (int turn = 0; turn < MOST_IMPULSES; turn++) {
@@ -255,15 +255,15 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
       a->dp[i] = b->dp[i] + b->impulse[i];
     }
     for (int j = 0; j < length; j++) {
-      if ((rc = lag_link(w, a, pb, t, y, dt, k + j, from, a->u + j * m, known)) != 0) {
+      if ((rc = lag_substep(w, a, pb, t, y, dt, k + j, from, a->u + j * m, known)) != 0) {
         return rc;
       }
       from += w->part[k + j];
     }
     known = 1;
-    rc = off(a, pb, t + at * dt, t1, h, y);
+    rc = constraint_defect(a, pb, t + at * dt, t1, h, y);
     if (rc == 0 && steered) {
-      rc = steer(a, pb, t1, h, least);
+      rc = end_to_start_change(a, pb, t1, h, least);
     }
     rc = rc ? rc : lag_least_change(pb, t + at * dt, b->from, holonomic, b->g, b->d, b->force);
     if (rc) {
@@ -272,11 +272,11 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
     if (lag_not_finite(nq, b->d) >= 0) {
       break;
     }
-    double part = part_of_block(pb, b, h);
+    double part = relative_size_of_block(pb, b, h);
     double rounding = DBL_EPSILON * (steered ? 0x1p12 : 4); /* rounding is magnified near a singular position */
     int settled = part <= DBL_EPSILON / 4 || (part <= rounding && part >= before / 2);
     if (!settled && steered && part >= before / 2 && lag_residuals(pb, t1, b->to, b->c, b->r) == 0) {
-      settled = lag_is_met(pb, t1, b->to, 1, b->c); /* rounding of terms that no coordinate has the size of, as at 0 */
+      settled = lag_constraint_is_met(pb, t1, b->to, 1, b->c); /* rounding of terms that no coordinate has the size of, as at 0 */
     }
     if (settled) {
       if (steered && least > LEAST) {
@@ -284,9 +284,9 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
         before = HUGE_VAL;
         continue;
       }
-      lag_history_add(history, of->n, b->sum);
+      lag_predictor_add(history, of->n, b->sum);
       rc = lag_residuals(pb, t1, b->to, b->c, b->r);
-      return rc ? lag_step_refused(pb, rc, t1) : lag_is_met(pb, t1, b->to, 1, b->c) ? LAG_OK : unmet(pb, t1, b->to, 1);
+      return rc ? lag_step_refused(pb, rc, t1) : lag_constraint_is_met(pb, t1, b->to, 1, b->c) ? LAG_OK : contradiction(pb, t1, b->to, 1);
     }
     if (!steered && turn > 0 && part > before / 16) { /* converges too slowly: use the changes at the end */
       steered = 1;
@@ -306,13 +306,13 @@ static int push(const Implicit *w, const Arrays *a, lag_problem *pb, double t, d
 }
 
 /* Projects the momentum at the end of a block, tb, to r = 0; a->v := its velocity. */
-static int project(const Implicit *w, const Arrays *a, lag_problem *pb, double tb, const double *y, int last)
+static int project(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double tb, const double *y, int last)
 {
-  const Block *b = &a->block;
+  const ConstraintBlock *b = &a->block;
   int nq = pb->nq, rc = 0, done = 0;
 
   for (int turn = 0; turn < MOST_PROJECTIONS && !done; turn++) {
-    if ((rc = lag_links_velocity(w, a, pb, tb, y, turn > 0 || !last)) != 0) {
+    if ((rc = lag_substeps_velocity(w, a, pb, tb, y, turn > 0 || !last)) != 0) {
       return rc;
     }
     memcpy(b->to + nq, a->v, (size_t)nq * sizeof(double));
@@ -328,46 +328,46 @@ static int project(const Implicit *w, const Arrays *a, lag_problem *pb, double t
       a->dp[i] += b->force[i];
       a->v[i] += b->d[i];
     }
-    done = part_of(pb, b->d, b->to + nq, a->v) <= 1e-8;
+    done = relative_size(pb, b->d, b->to + nq, a->v) <= 1e-8;
   }
   memcpy(b->to + nq, a->v, (size_t)nq * sizeof(double));
   rc = lag_residuals(pb, tb, b->to, b->c, b->r);
-  return rc ? lag_step_refused(pb, rc, tb) : lag_is_met(pb, tb, b->to, 0, b->r) ? LAG_OK : unmet(pb, tb, b->to, 0);
+  return rc ? lag_step_refused(pb, rc, tb) : lag_constraint_is_met(pb, tb, b->to, 0, b->r) ? LAG_OK : contradiction(pb, tb, b->to, 0);
 }
 
 /* A failure where a block of length h moved a coordinate farther than the velocities at its ends explain: a constraint jumps there. */
-static int check_leap(const Arrays *a, lag_problem *pb, double t1, double h)
+static int check_leap(const ImplicitArrays *a, lag_problem *pb, double t1, double h)
 {
-  const Block *b = &a->block;
+  const ConstraintBlock *b = &a->block;
   int nq = pb->nq;
 
   for (int i = 0; i < nq; i++) {
     b->d[i] = b->to[i] - b->from[i];
     b->force[i] = 2 * h * fmax(fabs(b->from[nq + i]), fabs(a->v[i])); /* factor 2: it may be faster in between */
   }
-  int i = lag_leaps(pb, b->from, b->to, b->d, b->force);
-  return i < 0 ? LAG_OK : lag_step_unmet(pb, lag_say_leap(pb, t1, b->from, i, b->d[i]), t1);
+  int i = lag_projection_leap(pb, b->from, b->to, b->d, b->force);
+  return i < 0 ? LAG_OK : lag_step_not_projected(pb, lag_report_leap(pb, t1, b->from, i, b->d[i]), t1);
 }
 
-int lag_rattle(const Implicit *w, const Arrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
+int lag_rattle(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
 {
-  const Block *b = &a->block;
-  int nq = pb->nq, m = nq * (int)w->rule[0].free, length = block_length(w), links = (int)w->links, rc = 0;
+  const ConstraintBlock *b = &a->block;
+  int nq = pb->nq, m = nq * (int)w->rule[0].free, length = block_length(w), substeps = (int)w->substeps, rc = 0;
   double at = 0;
 
   memcpy(b->from, y, (size_t)pb->n * sizeof(double));
-  for (int k = 0; k < links && rc == 0; k += length) {
-    int last = k + length == links;
+  for (int k = 0; k < substeps && rc == 0; k += length) {
+    int last = k + length == substeps;
     double begin = at;
     for (int j = 0; j < length; j++) {
       at += w->part[k + j];
     }
     double t1 = last ? tb : t + at * dt;
-    if ((rc = push(w, a, pb, t, t1, y, dt, k, length, begin)) != 0) {
+    if ((rc = find_impulse(w, a, pb, t, t1, y, dt, k, length, begin)) != 0) {
       return rc;
     }
     for (int j = 0; j < length; j++) {
-      lag_link_note(w, a, pb, k + j, a->u + j * m);
+      lag_substep_record(w, a, pb, k + j, a->u + j * m);
     }
     if (!last) {
       memcpy(a->v, b->to + nq, (size_t)nq * sizeof(double));

@@ -88,7 +88,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int n = pb->n, rc;
   size_t bytes = (size_t)n * sizeof(double);
   double *y1 = w->x + Y1 * n, *comp = w->x + COMP * n, *ys = w->x + YS * n;
-  double dt = w->h * (1 + pb->stretch) * pb->dir, tc = w->tc, tb = lag_sum(*t, dt, &tc);
+  double dt = w->h * (1 + pb->stretch) * pb->dir, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
 
   (void)t_stop;
   pb->bad_index = -1;
@@ -105,11 +105,11 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   memcpy(w->x + F0 * n, w->x + K1 * n, bytes);
   memcpy(w->x + Y0 * n, y, bytes);
   for (int i = 0; i < n; i++) {
-    y1[i] = lag_sum(y[i], dt * ys[i], &comp[i]);
+    y1[i] = lag_compensated_sum(y[i], dt * ys[i], &comp[i]);
   }
   w->ready = 0;
   if ((rc = lag_project_step(pb, tb, y, y1, comp)) != 0) {
-    return lag_step_unmet(pb, rc, tb);
+    return lag_step_not_projected(pb, rc, tb);
   }
   rc = lag_step_rhs(pb, tb, y1, w->x + K1 * n);
   if (rc) {

@@ -8,7 +8,7 @@
 
 /* s + d with compensation: *c is the rounding lost so far (two-sum, for operands of any size). A. Neumaier, ZAMM 54
  * (1974) 39, DOI 10.1002/zamm.19740540106. Rounding then grows at most with the root of the number of steps. */
-static inline double lag_sum(double s, double d, double *c)
+static inline double lag_compensated_sum(double s, double d, double *c)
 {
   double x = d + *c, r = s + x, b = r - s;
 
@@ -33,7 +33,7 @@ static inline int lag_step_refused(lag_problem *pb, int rc, double t)
 }
 
 /* Status of a step whose projection (lag_project) returned rc != 0. */
-static inline int lag_step_unmet(lag_problem *pb, int rc, double t)
+static inline int lag_step_not_projected(lag_problem *pb, int rc, double t)
 {
   return rc > 0 ? lag_step_failed(pb, LAG_EMETHOD, t) : lag_step_refused(pb, rc, t);
 }

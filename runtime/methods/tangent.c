@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "methods/band.h"
+#include "methods/band_matrix.h"
 #include "methods/steps.h"
 
 lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double **rest)
@@ -97,14 +97,14 @@ size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k)
 }
 
 /* Sets the rows of stage s of m = 1 - dt A (x) J; a[stages]: row s of A. */
-static void put_stage(const lag_tangent *w, const lag_band *m, int stages, int s, double dt, const double *a)
+static void put_stage(const lag_tangent *w, const lag_band_matrix *m, int stages, int s, double dt, const double *a)
 {
   int n = w->pb->n, nq = w->pb->nq;
 
   for (int i = 0; i < n; i++) {
     const double *J = i < nq ? NULL : w->jacobian + (i - nq) * n;
     for (int q = 0; q < stages; q++) {
-      double *row = lag_band_at(m, s * n + i, q * n);
+      double *row = lag_band_matrix_at(m, s * n + i, q * n);
       for (int j = 0; j < n; j++) {
         row[j] = (q == s && i == j ? 1 : 0) - dt * a[q] * (J ? J[j] : j == nq + i);
       }
@@ -120,7 +120,7 @@ int lag_tangent_implicit(int stages, const double *A, const double *c, lag_probl
   double *rest;
   lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
   double *K = rest, *column = K + big * k, *scale = column + big;
-  lag_band m = {big, big - 1, scale + 2 * big, scale + big};
+  lag_band_matrix m = {big, big - 1, scale + 2 * big, scale + big};
 
   for (int s = 0; s < stages; s++) {
     if ((rc = lag_tangent_at(&w, t0 + c[s] * dt, ys + s * n, NULL)) != 0) {
@@ -129,7 +129,7 @@ int lag_tangent_implicit(int stages, const double *A, const double *c, lag_probl
     put_stage(&w, &m, stages, s, dt, A + s * stages);
     lag_tangent_times(&w, Y, K + s * n * k);
   }
-  if (lag_band_factor(&m, scale)) {
+  if (lag_band_matrix_factor(&m, scale)) {
     pb->detail = "the equations of the tangent are singular; take smaller steps";
     return lag_step_failed(pb, LAG_EMETHOD, t0);
   }
@@ -137,7 +137,7 @@ int lag_tangent_implicit(int stages, const double *A, const double *c, lag_probl
     for (int i = 0; i < big; i++) {
       column[i] = K[i * k + j];
     }
-    lag_band_solve(&m, column);
+    lag_band_matrix_solve(&m, column);
     for (int i = 0; i < big; i++) {
       Y[i % n * k + j] += dt * A[(stages - 1) * stages + i / n] * column[i];
     }

@@ -2,7 +2,7 @@
  * accepted t, y. Holds: a step takes the series at its start and one evaluation at its end, which is order 0 of the next
  * series; M is factored once a step.
  *
- * Source of the recurrences: the compiler's ir/series.h. Source of the step size: A. Jorba, M. Zou, Experimental Mathematics
+ * Source of the recurrences: the compiler's series/series.h. Source of the step size: A. Jorba, M. Zou, Experimental Mathematics
  * 14 (2005) 99, DOI 10.1080/10586458.2005.10128904, section 3: with x_k the coefficient of order k the root test of the
  * radius of convergence gives h = c min(|x_(p-1)|^(-1/(p-1)), |x_p|^(-1/p)). Here |x| = max |x_i| / (|y_i| + |T y_i'| +
  * atol/rtol), T about the last step, so that a component may pass through zero. Motions with symmetries have series with
@@ -20,7 +20,7 @@
 
 #include "core/rhs.h"
 #include "lag.h"
-#include "methods/near.h"
+#include "methods/rough_math.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
 
@@ -40,7 +40,7 @@ static const lag_method_option options[NOPTIONS] = {
 
 /* Saved state of the method, doubles only; x holds the arrays named below. */
 typedef struct Taylor {
-  double order, bits; /* bits: -log2 of the relative error of a step, from aim() */
+  double order, bits; /* bits: -log2 of the relative error of a step, from target_bits() */
   double per_order[WINDOW]; /* 1/k of the orders in the root test, from the highest down */
   double h_option, h_max, fixed;
   double floor;     /* absolute/relative tolerance, the least size of a component in error norms */
@@ -101,11 +101,11 @@ static void reset(void *work, lag_problem *pb)
 
 /* The relative error aimed at in a step, as -log2: a fraction of the tolerance, and far below rounding where the tolerance is near
  * rounding. Errors of one sign add up as the number of steps, rounding as its root. */
-static double aim(const lag_problem *pb)
+static double target_bits(const lag_problem *pb)
 {
-  double left = 1.5 * (9 - lag_log2_near(pb->tol / DBL_EPSILON)); /* extra bits: 10 at 1e-15, 0 at 1e-13 */
+  double left = 1.5 * (9 - lag_rough_log2(pb->tol / DBL_EPSILON)); /* extra bits: 10 at 1e-15, 0 at 1e-13 */
 
-  return AIM - lag_log2_near(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
+  return AIM - lag_rough_log2(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
 }
 
 /* Costs in operations of `next`: of a step besides its series, of an operation of order 0, of a term in the sums over lower orders, and of
@@ -123,7 +123,7 @@ static double best_order(const lag_problem *pb)
   enum { ROUNDING = 16 };
   const lag_taylor *ty = pb->model->taylor;
   double product = pb->tol < ROUNDING * DBL_EPSILON ? fmax(per_product, 1) : per_product;
-  double bits = aim(pb), least = HUGE_VAL, term = per_term + product * ty->sums;
+  double bits = target_bits(pb), least = HUGE_VAL, term = per_term + product * ty->sums;
   int best = LEAST_ORDER;
 
   for (int p = LEAST_ORDER; p <= ty->order; p++) {
@@ -139,7 +139,7 @@ static int init(void *work, lag_problem *pb, const double *opt)
 {
   Taylor *w = work;
 
-  w->bits = aim(pb);
+  w->bits = target_bits(pb);
   w->order = fmin(pb->model->taylor->order, opt[OPT_ORDER] > 0 ? opt[OPT_ORDER] : best_order(pb));
   for (int i = 0; i < WINDOW; i++) {
     w->per_order[i] = 1 / fmax(w->order - i, 1);
@@ -168,7 +168,7 @@ static int sound(const void *work, const void *fresh, const lag_problem *pb)
 /* Order 0 of series[which] at t, y. Returns 0 or the model's status; > 0 with pb->bad_index >= 0 where a rate is not finite. */
 static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y)
 {
-  int nq = pb->nq, rc = lag_inputs_here(pb, t);
+  int nq = pb->nq, rc = lag_inputs_inline(pb, t);
   double *x = series(w, pb, which);
 
   pb->rhs_calls++;
@@ -234,7 +234,7 @@ static int prepare(Taylor *w, lag_problem *pb, double t, const double *y)
 }
 
 /* Step size by the root test, item 1 above. HUGE_VAL where the last coefficients are zero. */
-static double allowed(Taylor *w, lag_problem *pb, const double *y)
+static double root_test_step(Taylor *w, lag_problem *pb, const double *y)
 {
   int n = pb->n, order = (int)w->order, columns = pb->model->taylor->columns;
   const double *x = series(w, pb, w->now);
@@ -250,13 +250,13 @@ static double allowed(Taylor *w, lag_problem *pb, const double *y)
       double size = fabs(row[i]) * scale[i];
       most = size > most ? size : most;
     }
-    double here = most > 0 ? lag_log2_near(most) * w->per_order[order - k] : -HUGE_VAL;
+    double here = most > 0 ? lag_rough_log2(most) * w->per_order[order - k] : -HUGE_VAL;
     root = here > root ? here : root;
   }
   if (root == -HUGE_VAL) {
     return HUGE_VAL;
   }
-  return fabs(w->unit[w->now > 0]) * lag_exp2_near(-w->bits / (order + 1) - root);
+  return fabs(w->unit[w->now > 0]) * lag_rough_exp2(-w->bits / (order + 1) - root);
 }
 
 /* Error of a step of dt that ends at Y1, in tolerances: item 2 above. If the polynomial omits c t^(p+1) + ..., its defect at the
@@ -293,7 +293,7 @@ static void advance(Taylor *w, lag_problem *pb, const double *y, double dt)
   pb->model->taylor->at((int)w->order, dt / w->unit[w->now > 0], series(w, pb, w->now), sum, array(w, pb, SLOPE));
   for (int i = 0; i < pb->n; i++) {
     comp1[i] = comp[i];
-    y1[i] = lag_sum(y[i], sum[i], &comp1[i]);
+    y1[i] = lag_compensated_sum(y[i], sum[i], &comp1[i]);
   }
 }
 
@@ -311,7 +311,7 @@ static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, 
   w->dt = dt;
   *t = tb;
   w->now = 1 - w->now;
-  w->ready = expand(w, pb, w->now, lag_binade(dt));
+  w->ready = expand(w, pb, w->now, lag_floor_power_of_two(dt));
 }
 
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
@@ -323,11 +323,11 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   if (rc) {
     return rc;
   }
-  double h = allowed(w, pb, y), most = longest(w, *t), last = HUGE_VAL;
+  double h = root_test_step(w, pb, y), most = longest(w, *t), last = HUGE_VAL;
   h = w->fixed != 0.0 ? w->h_option : h < most ? h : most;
   h = isfinite(h) ? h : 1;
   for (;;) {
-    double tc = w->tc, tb = w->fixed != 0.0 ? lag_sum(*t, pb->dir * h, &tc) : *t + pb->dir * h;
+    double tc = w->tc, tb = w->fixed != 0.0 ? lag_compensated_sum(*t, pb->dir * h, &tc) : *t + pb->dir * h;
     double dt = tb - *t; /* the step between two times as rounded */
     if (!(fabs(dt) > 4 * DBL_EPSILON * fabs(*t)) || h < DBL_MIN / DBL_EPSILON) {
       return cause == LAG_ESTEP || cause == LAG_ESINGULAR ? lag_step_failed(pb, cause, *t) : cause;
@@ -353,7 +353,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
       return cause;
     }
     last = rc ? HUGE_VAL : error;
-    h *= rc ? 0.5 : fmax(0.5, lag_exp2_near(-(lag_log2_near(error) + AIM) / (w->order + 1)));
+    h *= rc ? 0.5 : fmax(0.5, lag_rough_exp2(-(lag_rough_log2(error) + AIM) / (w->order + 1)));
     pb->rejected++;
   }
 }

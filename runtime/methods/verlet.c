@@ -1,6 +1,6 @@
 /* symplectic_euler, verlet, verlet4, verlet6, verlet8: kicks and drifts (composition.c). Explicit, in this file, for models whose
  * accelerations depend on t and q only. For other models a composition of symplectic Euler and its adjoint in q and p, by Newton's
- * method (implicit.c); two halves make the generalised Stoermer-Verlet method, the Lobatto IIIA-IIIB pair: Hairer, Lubich, Wanner,
+ * method (implicit_symplectic.c); two halves make the generalised Stoermer-Verlet method, the Lobatto IIIA-IIIB pair: Hairer, Lubich, Wanner,
  * Geometric Numerical Integration, 2nd ed. (2006), VI.3 and II.2.2. Enters: t, y; leaves: t + h, y one step later. Holds: sums over
  * steps of q, v and t are compensated (steps.h); the acceleration at the end of a step is the first of the next.
  *
@@ -12,12 +12,12 @@
 #include <string.h>
 
 #include "methods/composition.h"
-#include "methods/implicit.h"
-#include "methods/path.h"
+#include "methods/implicit_symplectic.h"
+#include "methods/step_interpolant.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
 
-/* Saved state of the explicit methods, doubles only; x holds the arrays of n named below, then the path of path.h. */
+/* Saved state of the explicit methods, doubles only; x holds the arrays of n named below, then the path of step_interpolant.h. */
 typedef struct Verlet {
   double h;         /* the step, > 0 */
   double ready;     /* 1: F1 = f(t, y) is known */
@@ -47,7 +47,7 @@ static size_t work_size(const Member *m, const lag_problem *pb)
   if (!is_explicit(pb)) {
     return lag_implicit_composed_size(pb, m->any);
   }
-  return sizeof(Verlet) / sizeof(double) + NARRAYS * (size_t)pb->n + lag_path_size(pb->nq);
+  return sizeof(Verlet) / sizeof(double) + NARRAYS * (size_t)pb->n + lag_interpolant_size(pb->nq);
 }
 
 static void reset(void *work, lag_problem *pb)
@@ -120,7 +120,7 @@ static void add(Verlet *w, const lag_problem *pb, const double *y, int i0)
 
   for (int i = i0; i < i0 + pb->nq; i++) {
     comp1[i] = comp[i];
-    y1[i] = lag_sum(y[i], dy[i], &comp1[i]);
+    y1[i] = lag_compensated_sum(y[i], dy[i], &comp1[i]);
   }
 }
 
@@ -160,7 +160,7 @@ static int step(const lag_composition *c, void *work, lag_problem *pb, double *t
   Verlet *w = work;
   int n = pb->n, rc;
   size_t bytes = (size_t)n * sizeof(double);
-  double dt = w->h * pb->dir, tc = w->tc, tb = lag_sum(*t, dt, &tc);
+  double dt = w->h * pb->dir, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
 
   pb->bad_index = -1;
   if (tb == *t) {
@@ -193,13 +193,13 @@ static void dense(const lag_composition *c, void *work, lag_problem *pb, double 
   double *path = w->x + NARRAYS * n;
 
   if (c->order == 1) {
-    lag_path_cubic(pb->nq, &ends, (t - w->t0) / w->dt, y);
+    lag_interpolant_cubic(pb->nq, &ends, (t - w->t0) / w->dt, y);
     return;
   }
   if (c->refine > 0 && w->have_path == 0.0) {
-    w->have_path = lag_path_make(path, pb, &ends, c->refine, 1) == 0 ? 1 : -1;
+    w->have_path = lag_interpolant_make(path, pb, &ends, c->refine, 1) == 0 ? 1 : -1;
   }
-  lag_path_at(path, pb, &ends, w->have_path > 0 ? c->refine : 0, (t - w->t0) / w->dt, y);
+  lag_interpolant_at(path, pb, &ends, w->have_path > 0 ? c->refine : 0, (t - w->t0) / w->dt, y);
 }
 
 static size_t tangent_size(const lag_problem *pb, int k)

@@ -15,12 +15,12 @@ static void exchange(long double *x, long double *y, uint32_t n, size_t stride) 
   }
 }
 
-uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double *b, long double rest, long double *null) {
+uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double *b, long double tolerance, long double *null) {
   ArenaMark before = arena_mark(arena);
   SparseElements all = {0};
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t j = 0; j < n; j++) sparse_put(arena, &all, i, j, a[(size_t)i * n + j]);
-  uint32_t rank = sparse_solve(arena, n, &all, b, rest, null);
+  uint32_t rank = sparse_solve(arena, n, &all, b, tolerance, null);
   arena_forget(arena, before);
   return rank;
 }
@@ -32,7 +32,7 @@ typedef struct {
 } Basis;
 
 /* Subtracts from the row its projection onto row k of the basis. */
-static void take_off(const Basis *b, uint32_t k, long double *row) {
+static void subtract_projection(const Basis *b, uint32_t k, long double *row) {
   const long double *q = b->at + (size_t)k * b->width;
   uint32_t from = b->begin ? b->begin[k] : 0, to = b->begin ? b->begin[k + 1] : b->width;
   const uint32_t *column = b->column;
@@ -47,18 +47,18 @@ static void take_off(const Basis *b, uint32_t k, long double *row) {
   }
 }
 
-static long double reduce(const Basis *b, long double *row) {
+static long double gram_schmidt(const Basis *b, long double *row) {
   long double was = 0, left = 0;
   for (uint32_t j = 0; j < b->width; j++) was += row[j] * row[j];
-  for (uint32_t k = 0; k < 2 * b->n; k++) take_off(b, k % b->n, row);
+  for (uint32_t k = 0; k < 2 * b->n; k++) subtract_projection(b, k % b->n, row);
   for (uint32_t j = 0; j < b->width; j++) left += row[j] * row[j];
   left = sqrtl(left);
   for (uint32_t j = 0; j < b->width && left > 0; j++) row[j] /= left;
   return was > 0 ? left / sqrtl(was) : 0;
 }
 
-long double dense_reduce(uint32_t n, long double *row, const long double *before, uint32_t rank) {
-  return reduce(&(Basis){.at = before, .n = rank, .width = n}, row);
+long double dense_gram_schmidt(uint32_t n, long double *row, const long double *before, uint32_t rank) {
+  return gram_schmidt(&(Basis){.at = before, .n = rank, .width = n}, row);
 }
 
 /* --- kernels --- */
@@ -71,15 +71,15 @@ typedef struct {
   long double *length; /* [columns] squared length below the triangle, updated; */
   long double *sure;   /* [columns] its value when last computed afresh */
   uint32_t *from;      /* [columns] original index of the column now here */
-} Triangle;
+} PivotedQR;
 
-static long double squared_below(const Triangle *t, uint32_t row, uint32_t column) {
+static long double squared_below(const PivotedQR *t, uint32_t row, uint32_t column) {
   long double s = 0;
   for (size_t i = row; i < t->rows; i++) s += t->m[i * t->columns + column] * t->m[i * t->columns + column];
   return s;
 }
 
-static void exchange_columns(Triangle *t, uint32_t one, uint32_t other) {
+static void exchange_columns(PivotedQR *t, uint32_t one, uint32_t other) {
   uint32_t from = t->from[one];
   t->from[one] = t->from[other];
   t->from[other] = from;
@@ -88,8 +88,8 @@ static void exchange_columns(Triangle *t, uint32_t one, uint32_t other) {
   exchange(t->sure + one, t->sure + other, 1, 1);
 }
 
-static Triangle triangle_new(Arena *a, uint32_t rows, uint32_t columns, long double *m) {
-  Triangle t = {rows, columns, columns, m, ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, long double, columns + 1),
+static PivotedQR pivoted_qr_new(Arena *a, uint32_t rows, uint32_t columns, long double *m) {
+  PivotedQR t = {rows, columns, columns, m, ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, long double, columns + 1),
                 ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, long double, columns + 1), ARENA_ARRAY(a, uint32_t, columns + 1)};
   long double largest = 0;
   for (uint32_t j = 0; j < columns; j++) largest = fmaxl(largest, t.length[j] = sqrtl(squared_below(&t, 0, j)));
@@ -107,7 +107,7 @@ static Triangle triangle_new(Arena *a, uint32_t rows, uint32_t columns, long dou
 }
 
 /* Exchanges the longest remaining column into place k and returns its length below row k. */
-static long double bring_longest(Triangle *t, uint32_t k) {
+static long double bring_pivot_column(PivotedQR *t, uint32_t k) {
   uint32_t best = k;
   for (uint32_t j = k; j < t->active; j++) {
     if (t->length[j] < 1e-6L * t->sure[j]) t->sure[j] = t->length[j] = squared_below(t, k, j);
@@ -118,7 +118,7 @@ static long double bring_longest(Triangle *t, uint32_t k) {
 }
 
 /* Householder reflection of rows k..: column k keeps one element -+length there; applied to the columns after it. */
-static void reflect(Triangle *t, uint32_t k, long double length) {
+static void reflect(PivotedQR *t, uint32_t k, long double length) {
   size_t w = t->columns, to = t->active;
   long double *m = t->m, alpha = m[k * w + k] > 0 ? -length : length;
   m[k * w + k] -= alpha;
@@ -133,13 +133,13 @@ static void reflect(Triangle *t, uint32_t k, long double length) {
   for (size_t j = k + 1; j < to; j++) t->length[j] -= m[k * w + j] * m[k * w + j];
 }
 
-DenseRows dense_kernel(Arena *a, uint32_t rows, uint32_t columns, long double *m, long double rest) {
-  Triangle t = triangle_new(a, rows, columns, m);
+DenseRows dense_kernel(Arena *a, uint32_t rows, uint32_t columns, long double *m, long double tolerance) {
+  PivotedQR t = pivoted_qr_new(a, rows, columns, m);
   uint32_t rank = 0;
   long double taken = 1, left = 0;
   for (; rank < t.active && rank < rows; rank++) {
-    long double length = bring_longest(&t, rank);
-    if (!(length > rest)) {
+    long double length = bring_pivot_column(&t, rank);
+    if (!(length > tolerance)) {
       left = length;
       break;
     }
@@ -161,14 +161,14 @@ DenseRows dense_kernel(Arena *a, uint32_t rows, uint32_t columns, long double *m
   return null;
 }
 
-uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long double rest, uint32_t *pivot) {
+uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long double tolerance, uint32_t *pivot) {
   size_t w = columns;
   uint32_t rank = 0;
   for (size_t c = 0; c < w && rank < rows; c++) {
     size_t best = rank;
     for (size_t i = rank; i < rows; i++)
       if (fabsl(m[i * w + c]) > fabsl(m[best * w + c])) best = i;
-    if (!(fabsl(m[best * w + c]) > rest)) continue;
+    if (!(fabsl(m[best * w + c]) > tolerance)) continue;
     exchange(m + rank * w, m + best * w, columns, 1);
     long double p = m[rank * w + c];
     for (size_t j = c; j < w; j++) m[rank * w + j] /= p;
@@ -180,12 +180,12 @@ uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long dou
   }
   for (size_t i = 0; i < rows; i++)
     for (size_t j = 0; j < w; j++)
-      if (i >= rank || fabsl(m[i * w + j]) <= rest) m[i * w + j] = 0;
+      if (i >= rank || fabsl(m[i * w + j]) <= tolerance) m[i * w + j] = 0;
   return rank;
 }
 
 /* Appends the row behind the basis to it: records its nonzeros. */
-static void join_basis(Basis *b) {
+static void append_to_basis(Basis *b) {
   uint32_t next = b->begin[b->n];
   for (uint32_t j = 0; j < b->width; j++)
     if (b->at[(size_t)b->n * b->width + j] != 0) b->column[next++] = j;
@@ -200,7 +200,7 @@ DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
     long double *row = o.at + (size_t)basis.n * columns, length = 0;
     memcpy(row, from->at + (size_t)k * from->width, columns * sizeof *row);
     for (uint32_t j = 0; j < columns; j++) length += row[j] * row[j];
-    if (length > 0 && reduce(&basis, row) > 1e-9L) join_basis(&basis); /* else the next row takes its place */
+    if (length > 0 && gram_schmidt(&basis, row) > 1e-9L) append_to_basis(&basis); /* else the next row takes its place */
   }
   o.n = basis.n;
   return o;

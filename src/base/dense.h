@@ -7,7 +7,7 @@
 #include "base/arena.h"
 
 /* Solves a x = b for a[n*n], row-major, as sparse_solve does. */
-uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double *b, long double rest, long double *null);
+uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double *b, long double tolerance, long double *null);
 
 /* Inverts a[n*n] into inverse[n*n] by Gauss-Jordan elimination with partial pivoting; a is destroyed. Returns 0 where a is singular. */
 int dense_invert(uint32_t n, long double *a, long double *inverse);
@@ -15,7 +15,7 @@ int dense_invert(uint32_t n, long double *a, long double *inverse);
 /* Gram-Schmidt step: subtracts from row[n] its projection onto the `rank` orthonormal rows of `before`, twice because of rounding, and
  * normalises the remainder. Returns the remainder's length relative to the row, from 0 to 1. Kahan's "twice is enough", in B. Parlett, The
  * Symmetric Eigenvalue Problem (1980), 6.9, DOI 10.1137/1.9781611971163. */
-long double dense_reduce(uint32_t n, long double *row, const long double *before, uint32_t rank);
+long double dense_gram_schmidt(uint32_t n, long double *row, const long double *before, uint32_t rank);
 
 /* A basis, one vector a row, such as of the kernel of a matrix. */
 typedef struct {
@@ -25,14 +25,14 @@ typedef struct {
 } DenseRows;
 
 /* The kernel of m[rows*columns], row-major and destroyed, by Householder's QR with column pivoting (Golub & Van Loan, 5.4.2). Columns are scaled
- * to length 1; a remaining column whose length is not above `rest` counts as zero. */
-DenseRows dense_kernel(Arena *a, uint32_t rows, uint32_t columns, long double *m, long double rest);
+ * to length 1; a remaining column whose length is not above `tolerance` counts as zero. */
+DenseRows dense_kernel(Arena *a, uint32_t rows, uint32_t columns, long double *m, long double tolerance);
 
 /* Orthonormal basis of the rows of `from`, cut to their first `columns` columns; dependent rows are left out. */
 DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns);
 
-/* Brings m[rows*columns] to reduced row echelon form and returns the rank; elements not above `rest`, and rows past the rank, become 0.
+/* Brings m[rows*columns] to reduced row echelon form and returns the rank; elements not above `tolerance`, and rows past the rank, become 0.
  * pivot[rows] gets the columns of the pivots. */
-uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long double rest, uint32_t *pivot);
+uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long double tolerance, uint32_t *pivot);
 
 #endif

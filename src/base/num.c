@@ -120,8 +120,8 @@ int num_is_zero(Num a) { return a.den ? a.num == 0 : a.approx == 0 && a.error ==
 int num_is_one(Num a) { return a.num == 1 && a.den == 1; }
 double num_value(Num a) { return a.den ? (double)a.num / (double)a.den : a.approx; }
 double num_error(Num a) { return a.den ? 0 : a.error; }
-int num_is_lost(Num a) { return !a.den && !(a.error <= 1e-6 * fabs(a.approx)); }
-Num num_rounded(Num a) { return a.den ? a : (Num){.error = 0, .den = 0, .approx = a.approx}; }
+int num_is_imprecise(Num a) { return !a.den && !(a.error <= 1e-6 * fabs(a.approx)); }
+Num num_drop_error(Num a) { return a.den ? a : (Num){.error = 0, .den = 0, .approx = a.approx}; }
 
 int num_sign(Num a) {
   if (a.den) return (a.num > 0) - (a.num < 0);

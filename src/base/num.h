@@ -39,8 +39,8 @@ int num_equal(Num a, Num b); /* certainly */
 int num_cmp(Num a, Num b);   /* compares values; sure where num_sign_is_sure(num_sub(a, b)) */
 double num_value(Num a);
 double num_error(Num a); /* bound of the error of the value, as a long double; 0 where a is exact */
-int num_is_lost(Num a);  /* fewer than six digits of the value are known */
-Num num_rounded(Num a);  /* drops error bound and residue: equal where the values are */
+int num_is_imprecise(Num a);  /* fewer than six digits of the value are known */
+Num num_drop_error(Num a);  /* drops error bound and residue: equal where the values are */
 
 Num num_add(Num a, Num b);
 Num num_sub(Num a, Num b);

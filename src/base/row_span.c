@@ -40,7 +40,7 @@ static void along(RowSpan *s, const long double *x) {
 }
 
 /* x -= A^T R^-1 y = Q y; y is destroyed. */
-static void take_off(RowSpan *s, long double *x) {
+static void subtract_projection(RowSpan *s, long double *x) {
   for (uint32_t k = s->rank; k-- > 0;) {
     const SparseVector *row = &s->rows[k], *above = &s->triangle[k];
     if (s->y[k] == 0) continue;
@@ -61,7 +61,7 @@ long double row_span_add(RowSpan *s, const RowElement *row, uint32_t n, long dou
     along(s, s->left);
     for (uint32_t k = 0; k < s->rank && turn == 0; k++)
       if (s->y[k] != 0) vec_push(s->arena, &above, ((RowElement){k, s->y[k]}));
-    take_off(s, s->left);
+    subtract_projection(s, s->left);
   }
   long double left = length_of(s->left, s->width);
   for (uint32_t j = 0; j < s->width && left > 0; j++) s->left[j] /= left;

@@ -146,7 +146,7 @@ static size_t add_parts(char *out, size_t n, const char *path) {
   return n;
 }
 
-const char *path_beside(Arena *a, const char *from, const char *path) {
+const char *path_relative_to(Arena *a, const char *from, const char *path) {
   char *out = arena_alloc(a, strlen(from) + strlen(path) + 3);
   size_t n = 0;
   const char *slash = strrchr(from, '/');

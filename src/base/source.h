@@ -63,6 +63,6 @@ FILE *source_open(const char *path, const char **error);
 Place source_place(const Sources *s, uint32_t offset);
 
 /* `path` as written in the file `from`: relative to its folder, in one spelling for each file. */
-const char *path_beside(Arena *a, const char *from, const char *path);
+const char *path_relative_to(Arena *a, const char *from, const char *path);
 
 #endif

@@ -89,7 +89,7 @@ static Exponents exponents_of(Arena *arena, const Matrix *m) {
   return e;
 }
 
-static void scale_matrix(Arena *arena, const Matrix *m, int *row, int *column) {
+static void equilibrate(Arena *arena, const Matrix *m, int *row, int *column) {
   uint32_t n = m->n;
   Exponents e = exponents_of(arena, m);
   long double *scale = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 1), moved = 1;
@@ -108,10 +108,10 @@ static void scale_matrix(Arena *arena, const Matrix *m, int *row, int *column) {
   }
 }
 
-void sparse_scales(Arena *arena, uint32_t n, const SparseElements *a, int *row, int *column) {
+void sparse_equilibrate(Arena *arena, uint32_t n, const SparseElements *a, int *row, int *column) {
   ArenaMark before = arena_mark(arena);
   Matrix m = matrix_of(arena, n, a);
-  scale_matrix(arena, &m, row, column);
+  equilibrate(arena, &m, row, column);
   arena_forget(arena, before);
 }
 
@@ -138,7 +138,7 @@ typedef struct {
   uint32_t *place;    /* [n] scratch: 1 + index of the column in the current row */
 } Elimination;
 
-static void set_most(Elimination *x, uint32_t i, const Row *r) {
+static void update_largest(Elimination *x, uint32_t i, const Row *r) {
   size_t k = x->n + (size_t)i;
   long double most = 0;
   for (uint32_t j = 0; j < r->n; j++)
@@ -178,7 +178,7 @@ static Elimination elimination_new(Arena *arena, const Matrix *m, const int *by_
       x.count[col]++;
     }
     list_row(&x, i);
-    set_most(&x, i, &x.rows[i]);
+    update_largest(&x, i, &x.rows[i]);
   }
   return x;
 }
@@ -201,14 +201,14 @@ static void bring_pivot(const Elimination *x, Row *r, long double least) {
 }
 
 /* Chooses the next pivot row, with a pivot of at least a tenth of the largest element. Returns 0 where no element is above `least`. */
-static int take_row(Elimination *x, long double least, uint32_t *row) {
+static int choose_pivot_row(Elimination *x, long double least, uint32_t *row) {
   static const Row none;
   long double largest = x->n ? x->most[1] : 0;
   if (!(largest > least)) return 0;
   uint32_t i = *row = shortest_row(x, largest / 10);
   bring_pivot(x, &x->rows[i], largest / 10);
   unlist_row(x, i);
-  set_most(x, i, &none);
+  update_largest(x, i, &none);
   x->is_taken[i] = 1;
   x->taken[x->rank++] = i;
   for (uint32_t k = 0; k < x->rows[i].n; k++) x->count[x->rows[i].at[k].col]--;
@@ -216,7 +216,7 @@ static int take_row(Elimination *x, long double least, uint32_t *row) {
 }
 
 /* Subtracts the multiple of the pivot row that eliminates the pivot's column from row i, and returns the multiple. */
-static long double take_off(Elimination *x, const Row *pivot, uint32_t i) {
+static long double subtract_pivot_row(Elimination *x, const Row *pivot, uint32_t i) {
   Row *r = &x->rows[i];
   unlist_row(x, i);
   for (uint32_t k = 0; k < r->n; k++) x->place[r->at[k].col] = k + 1;
@@ -235,18 +235,18 @@ static long double take_off(Elimination *x, const Row *pivot, uint32_t i) {
   for (uint32_t k = 0; k < r->n; k++) x->place[r->at[k].col] = 0;
   r->at[out] = r->at[--r->n];
   list_row(x, i);
-  set_most(x, i, r);
+  update_largest(x, i, r);
   return f;
 }
 
 static void eliminate(Elimination *x, long double *b, long double least) {
-  for (uint32_t row; take_row(x, least, &row);) {
+  for (uint32_t row; choose_pivot_row(x, least, &row);) {
     const Row *pivot = &x->rows[row];
     const Lines *below = &x->columns[pivot->at[0].col];
     for (uint32_t k = 0; k < below->n; k++) {
       uint32_t i = below->at[k];
       if (x->is_taken[i]) continue;
-      long double f = take_off(x, pivot, i);
+      long double f = subtract_pivot_row(x, pivot, i);
       if (b) b[i] -= f * b[row];
     }
   }
@@ -271,15 +271,15 @@ static uint32_t first_free(const Elimination *e) {
   return free;
 }
 
-uint32_t sparse_solve(Arena *arena, uint32_t n, const SparseElements *a, long double *b, long double rest, long double *null) {
+uint32_t sparse_solve(Arena *arena, uint32_t n, const SparseElements *a, long double *b, long double tolerance, long double *null) {
   ArenaMark before = arena_mark(arena);
   Matrix m = matrix_of(arena, n, a);
   int *by_row = ARENA_ARRAY(arena, int, n + 1), *by_column = ARENA_ARRAY(arena, int, n + 1);
-  scale_matrix(arena, &m, by_row, by_column);
+  equilibrate(arena, &m, by_row, by_column);
   Elimination e = elimination_new(arena, &m, by_row, by_column);
   long double *x = ARENA_ARRAY(arena, long double, n + 1);
   for (uint32_t i = 0; b && i < n; i++) b[i] = ldexpl(b[i], by_row[i]);
-  eliminate(&e, b, rest * e.most[1]);
+  eliminate(&e, b, tolerance * e.most[1]);
   if (b) substitute_back(&e, b, x);
   for (uint32_t i = 0; b && i < n; i++) b[i] = ldexpl(x[i], by_column[i]);
   if (null && e.rank < n) {
@@ -301,7 +301,7 @@ int sparse_is_regular_on_kernel(Arena *arena, uint32_t n, uint32_t m, const Spar
   for (uint32_t k = 0; k < a->n; k++)
     if (isfinite(a->at[k].value)) vec_push(arena, &finite, a->at[k]);
   Matrix x = matrix_of(arena, w, &finite);
-  scale_matrix(arena, &x, row, column);
+  equilibrate(arena, &x, row, column);
   for (uint32_t k = 0; k < x.from[w]; k++) x.at[k].value = ldexpl(x.at[k].value, row[x.at[k].row] + column[x.at[k].col]);
   for (uint32_t k = 0; k < x.from[n]; k++)
     if (x.at[k].col < n) sparse_put(arena, &K, x.at[k].row, x.at[k].col, x.at[k].value);

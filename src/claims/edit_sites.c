@@ -90,7 +90,7 @@ static void walk_side(const Model *m, AstId root, int left, SiteList *out) {
   }
 }
 
-SiteList sites_of(const Model *m, const Expect *x) {
+SiteList edit_sites_of(const Model *m, const Expect *x) {
   uint32_t left = x->lhs_ast - ast_expr(m->ast, x->lhs_ast)->first + 1;
   uint32_t right = x->rhs_ast - ast_expr(m->ast, x->rhs_ast)->first + 1;
   SiteList l = {.at = ARENA_ARRAY(m->arena, Site, left + right)};

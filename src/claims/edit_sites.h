@@ -30,7 +30,7 @@ typedef struct {
 } SiteList;
 
 /* The sites of both sides, outer ones first, left side first. Operands of primes, exponents, conditions and indices are no sites. */
-SiteList sites_of(const Model *m, const Expect *x);
+SiteList edit_sites_of(const Model *m, const Expect *x);
 
 int site_is_sum(const Model *m, const Site *s);
 

@@ -2,11 +2,11 @@
  * are judged with all contacts open, and with each closed alone. */
 #include "claims/expect.h"
 
-#include "claims/cases.h"
+#include "claims/case_proofs.h"
 #include "symmetry/charges.h"
 #include "claims/suggest_correction.h"
 #include "claims/edit_sites.h"
-#include "claims/witness.h"
+#include "claims/counterexample.h"
 
 /* --- verdicts --- */
 
@@ -17,7 +17,7 @@ static const char *label_of(const Model *m, const Expect *x) {
 
 static void report_refuted(const Eqns *e, const Expect *x, const char *label, const char *difference) {
   const Model *m = e->m;
-  Mend mend = mend_find(e, x);
+  SuggestedEdit mend = suggest_correction(e, x);
   if (mend.edit) diag_error(m->diags, mend.caret, "expect %s is false: %s", label, mend.edit);
   else diag_error(m->diags, mend.caret, "expect %s is false, and no single edit found makes it true; the fault seems to be here", label);
   diag_help(m->diags, "%s", difference);
@@ -55,14 +55,14 @@ static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r,
 static ExpectResult judge(const Eqns *e, const CaseSymbols *symbols, const Expect *x) {
   enum { FEW_UNKNOWNS = 12 };
   ExpectResult r = {.label = label_of(e->m, x), .span = x->span};
-  Verdict v = mend_verdict(e, x->lhs, x->rhs);
-  Witness w = {0};
+  Verdict v = prove_by_motion(e, x->lhs, x->rhs);
+  Counterexample w = {0};
   int proved = v == PROVED_ZERO;
-  if (!proved || e->n + e->constraints.n <= FEW_UNKNOWNS) w = witness_find(e, x, proved);
+  if (!proved || e->n + e->constraints.n <= FEW_UNKNOWNS) w = counterexample_find(e, x, proved);
   r.difference = w.text;
   r.digits = w.digits;
   r.states = w.states;
-  proved = !w.text && (proved || (w.states && cases_prove(e, symbols, x->lhs, x->rhs, x->domain)));
+  proved = !w.text && (proved || (w.states && prove_by_cases(e, symbols, x->lhs, x->rhs, x->domain)));
   if (proved) return r; /* EXPECT_PROVED */
   r.inexact = !numbers_are_exact(e, x);
   int somewhere_false = v == PROVED_NONZERO && !e->constraints.n; /* constraints exclude states */
@@ -90,7 +90,7 @@ static int is_param(const Symbol *s, const void *data) {
 
 /* Substitutions for parameters that are given by others (param I = m*l^2 follows m and l), and for contacts: open and without force, but for
  * number `closed` (-1: none). NULL: there are none. */
-static const Expr *definitions(const Model *m, int closed) {
+static const Expr *parameter_substitutions(const Model *m, int closed) {
   Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(m->g) + 2 + m->expects.n); /* each expectation may declare one more symbol */
   int some = 0;
   for (uint32_t i = 0; i < m->params.n; i++) {
@@ -111,20 +111,20 @@ static const Expr *definitions(const Model *m, int closed) {
 typedef struct {
   const Expr *with;
   const Eqns *e;
-} Case;
+} ContactCase;
 
-static Case *cases_of(const Eqns *e) {
+static ContactCase *contact_cases(const Eqns *e) {
   uint32_t n = e->m->contacts.n;
-  Case *cases = ARENA_ARRAY(e->m->arena, Case, (size_t)n + 1);
+  ContactCase *cases = ARENA_ARRAY(e->m->arena, ContactCase, (size_t)n + 1);
   for (uint32_t i = 0; i <= n; i++) {
-    cases[i].with = definitions(e->m, (int)i - 1);
-    cases[i].e = cases_with(e, cases[i].with);
+    cases[i].with = parameter_substitutions(e->m, (int)i - 1);
+    cases[i].e = equations_with(e, cases[i].with);
   }
   return cases;
 }
 
 /* Verdict in the first case in which the expectation is not proved, or in the last. */
-static ExpectResult judge_cases(const Case *cases, const CaseSymbols *symbols, const Expect *x, Expect *shown, const Eqns **e) {
+static ExpectResult judge_cases(const ContactCase *cases, const CaseSymbols *symbols, const Expect *x, Expect *shown, const Eqns **e) {
   const Model *m = cases[0].e->m;
   ExpectResult r = {0};
   for (uint32_t i = 0; i <= m->contacts.n; i++) {
@@ -147,7 +147,7 @@ static ExpectResult judge_cases(const Case *cases, const CaseSymbols *symbols, c
 /* Domain of an expectation: that of its text and, if it uses accelerations, multipliers, rates or the energy, that of the equations of motion. */
 static Expr domain_of(const Eqns *e, const Expect *x) {
   const unsigned solved = 1u << SYM_ACC | 1u << SYM_MULTIPLIER | 1u << SYM_RATE | 1u << SYM_LOCAL;
-  Expr domain = x->domain ? charges_fill(e, x->domain) : 0, motion = e->m->domain;
+  Expr domain = x->domain ? charges_substitute(e, x->domain) : 0, motion = e->m->domain;
   int uses = ((expr_kinds(e->g, x->lhs) | expr_kinds(e->g, x->rhs)) & solved) != 0;
   return !uses || !motion ? domain : domain ? expr_fn2(e->g, EX_AND, domain, motion) : motion;
 }
@@ -155,13 +155,13 @@ static Expr domain_of(const Eqns *e, const Expect *x) {
 void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults *out) {
   const Model *m = e->m;
   const CaseSymbols symbols = cases_symbols(m);
-  const Case *cases = cases_of(e);
+  const ContactCase *cases = contact_cases(e);
   for (uint32_t i = 0; i < m->expects.n; i++) {
     Expect x = m->expects.at[i], shown;
     const Eqns *at;
     if (x.effect != effect) continue;
-    x.lhs = charges_fill(e, x.lhs);
-    x.rhs = charges_fill(e, x.rhs);
+    x.lhs = charges_substitute(e, x.lhs);
+    x.rhs = charges_substitute(e, x.rhs);
     x.domain = domain_of(e, &x);
     ExpectResult r = judge_cases(cases, &symbols, &x, &shown, &at);
     if (r.verdict == EXPECT_REFUTED) report_refuted(at, &shown, r.label, r.difference);

@@ -9,7 +9,7 @@
 #include "mech/frobenius.h"
 #include "mech/constrain.h"
 #include "symmetry/noether.h"
-#include "mech/start.h"
+#include "mech/consistent_start.h"
 #include "sym/print.h"
 
 /* Whether the rank is the same without constraint k: its multiplier is then not unique. */
@@ -50,7 +50,7 @@ static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, 
 /* A line if the start is singular: the rank is larger near it. */
 static void show_singular(const Eqns *e, StateSolver *s, const long double *symbols, uint32_t rank, StrBuf *out) {
   unsigned char *loose = ARENA_ARRAY(e->m->arena, unsigned char, e->n + 1);
-  uint32_t beside = rank_beside(e, s, symbols, loose), shown = 0;
+  uint32_t beside = nearby_rank(e, s, symbols, loose), shown = 0;
   if (beside <= rank) return;
   sb_printf(out, "  singular start: the rank is %u beside it", beside);
   for (uint32_t i = 0; i < e->n; i++)
@@ -85,7 +85,7 @@ static uint32_t contradicting(const Eqns *e, StateSolver *s, const long double *
   StateValues v = states_at(s, symbols);
   long double *size = ARENA_ARRAY(arena, long double, k->n + 1), most = 0;
   long double span = scene->has_span && scene->t1 != scene->t0 ? fabsl((long double)scene->t1 - scene->t0) : 1;
-  const int *scale = states_scale(s);
+  const int *scale = states_column_scale(s);
   for (uint32_t i = 0; i < k->A.n; i++) size[k->A.at[i].row] += ldexpl(v.A[i] * v.A[i], 2 * scale[k->A.at[i].col]);
   for (uint32_t i = 0; i < k->n; i++) {
     size[i] = sqrtl(size[i]);
@@ -123,7 +123,7 @@ static int check_agreement(const Eqns *e, StateSolver *s, const long double *sym
   later[m->time] += (m->scene.has_span ? (long double)m->scene.t1 - m->scene.t0 : 1) / 1024;
   StartResult r = start_find(e, s, later);
   if (r.kind == START_NONE || r.kind == START_BROKEN)
-    return report_contradiction(e, r.constraint, arena_printf(m->arena, "at t = %.3Lg s no state obeys them%s", later[m->time], start_off_by(e, &r)));
+    return report_contradiction(e, r.constraint, arena_printf(m->arena, "at t = %.3Lg s no state obeys them%s", later[m->time], start_residual_text(e, &r)));
   return 1;
 }
 
@@ -179,7 +179,7 @@ static int check_mass(const Eqns *e) {
   if (!e->n || !e->mass_known || e->constant_mass) return 1;
   long double *null = ARENA_ARRAY(m->arena, long double, e->n + 1);
   StateSolver *s = states_new(e);
-  StateValues v = states_at(s, start_asked(e));
+  StateValues v = states_at(s, start_requested(e));
   for (uint32_t k = 0; k < e->mass.n; k++)
     if (!isfinite(v.mass[k])) return 1; /* the run says where */
   if (sparse_is_regular_on_kernel(m->arena, e->n, 0, states_system(s), null)) return 1;
@@ -190,16 +190,16 @@ static int check_mass(const Eqns *e) {
   return 0;
 }
 
-int freedom_show(const Eqns *e, StrBuf *out) {
+int mobility_show(const Eqns *e, StrBuf *out) {
   const Constraints *all = &e->constraints;
   if (!all->n) return !says_start(e->m) || check_mass(e);
   StateSolver *s = states_new(e);
-  long double *symbols = start_asked(e);
+  long double *symbols = start_requested(e);
   StartResult start = start_find(e, s, symbols);
   if (start.kind != START_FOUND) {
     if (says_start(e->m)) start_report(e, &start);
     else sb_printf(out, "scene %s: %u constraint%s; it gives no start, and from 0 none is found that obeys `%s`%s\n", e->m->scene.name, all->n,
-                   plural(all->n), all->of[start.constraint]->name, start_off_by(e, &start));
+                   plural(all->n), all->of[start.constraint]->name, start_residual_text(e, &start));
     return !says_start(e->m);
   }
   states_at(s, symbols);

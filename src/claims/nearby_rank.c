@@ -1,10 +1,10 @@
 /* Singular starts: constraints that are dependent at a state but not a hundredth away, as for bars in one line. Ranks by orthogonalising
- * the scaled rows of A. runtime/core/consistent.c does the same for the report of a run. */
+ * the scaled rows of A. runtime/constraints/consistent_start.c does the same for the report of a run. */
 #include "claims/nearby_rank.h"
 
 #include <math.h>
 
-#include "mech/start.h"
+#include "mech/consistent_start.h"
 
 /* Rank of the constraints at the state evaluated last. held[n]: squared length of each coordinate direction's projection on the rows of A. */
 static uint32_t rank_of(const Eqns *e, StateSolver *s, long double *held) {
@@ -20,7 +20,7 @@ static uint32_t rank_of(const Eqns *e, StateSolver *s, long double *held) {
   return span.rank;
 }
 
-uint32_t rank_beside(const Eqns *e, StateSolver *s, const long double *symbols, unsigned char *loose) {
+uint32_t nearby_rank(const Eqns *e, StateSolver *s, const long double *symbols, unsigned char *loose) {
   const long double part = 0.05L; /* least change of held: twice what moving by a hundredth turns a direction */
   Arena *arena = e->m->arena;
   uint32_t n = e->n, all = expr_symbol_count(e->g) + 1;
@@ -29,9 +29,9 @@ uint32_t rank_beside(const Eqns *e, StateSolver *s, const long double *symbols, 
   states_at(s, symbols);
   uint32_t here = rank_of(e, s, held), rank = here;
   for (uint32_t i = 0; i < all; i++) there[i] = symbols[i];
-  start_steps_beside(e, there, 0.01L, step);
+  start_nearby_steps(e, there, 0.01L, step);
   for (uint32_t i = 0; i < n; i++) there[e->m->coords.at[i].q] += step[i];
-  if (n > 1 && states_obey(s, there)) {
+  if (n > 1 && states_project(s, there)) {
     states_at(s, there);
     rank = rank_of(e, s, held_beside);
   }

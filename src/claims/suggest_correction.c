@@ -45,7 +45,7 @@ static Verdict proof(const Eqns *e, Expr difference) {
   return prove_solves(g, w, M, f, acc, difference, NULL);
 }
 
-Verdict mend_verdict(const Eqns *e, Expr lhs, Expr rhs) {
+Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs) {
   Expr difference = expr_sub(e->g, lhs, rhs);
   Expr closed = states_substitute(e, with_definitions(e, difference));
   return proof(e, closed);
@@ -53,14 +53,14 @@ Verdict mend_verdict(const Eqns *e, Expr lhs, Expr rhs) {
 
 /* --- states --- */
 
-int mend_add_state(Mender *md) {
+int edit_add_state(EditSearch *md) {
   enum { ATTEMPTS = 400 };
   Expr sides[2] = {md->x->lhs, md->x->rhs};
   uint32_t count = expr_symbol_count(md->g) + 1;
   long double *symbols = ARENA_ARRAY(md->arena, long double, count), out[2];
   EvalTape *tape = eval_tape(md->g, sides, 2);
   while (md->tried < ATTEMPTS) {
-    prove_state(md->g, ++md->tried, symbols);
+    sample_state(md->g, ++md->tried, symbols);
     if (!states_complete(md->solver, symbols)) continue;
     eval_run(tape, symbols, out);
     long double r = out[0] - out[1];
@@ -72,7 +72,7 @@ int mend_add_state(Mender *md) {
   return 0;
 }
 
-long double mend_residual(Mender *md, Spot *p, uint32_t state, long double value) {
+long double edit_residual(EditSearch *md, Spot *p, uint32_t state, long double value) {
   long double out[2], *symbols = md->state[state];
   symbols[md->stand_in] = value;
   if (p->at == (int)state) eval_rerun(p->tape, symbols, md->stand_in, out);
@@ -81,10 +81,10 @@ long double mend_residual(Mender *md, Spot *p, uint32_t state, long double value
   return out[0] - out[1];
 }
 
-int mend_holds(Mender *md, Spot *p, const long double *values) {
+int edit_holds(EditSearch *md, Spot *p, const long double *values) {
   for (uint32_t i = 0; i < FEW; i++) {
     if (!isfinite(values[i])) return 0;
-    long double r = mend_residual(md, p, i, values[i]);
+    long double r = edit_residual(md, p, i, values[i]);
     if (!(fabsl(r) <= 1e-8L * fabsl(md->residual[i]))) return 0;
   }
   return 1;
@@ -93,20 +93,20 @@ int mend_holds(Mender *md, Spot *p, const long double *values) {
 /* --- spots --- */
 
 /* Site s with its value as written and its tape. */
-static void prepare_spot(Mender *md, Spot *p, const Site *s) {
+static void prepare_spot(EditSearch *md, Spot *p, const Site *s) {
   *p = (Spot){.site = s, .ast = ast_expr(md->m->ast, s->node), .at = -1};
   if (s->role == SITE_PART) return;
-  p->value = model_reresolve(md->m, md->x, s->node, 0, 0);
+  p->value = model_resolve_edited(md->m, md->x, s->node, 0, 0);
   AstId root = s->left ? md->x->lhs_ast : md->x->rhs_ast;
   Expr stand_in = expr_symbol(md->g, md->stand_in)->node;
-  Expr changed = model_reresolve(md->m, md->x, root, s->node, stand_in);
+  Expr changed = model_resolve_edited(md->m, md->x, root, s->node, stand_in);
   if (!p->value || !changed) return;
   Expr sides[2] = {s->left ? changed : md->x->lhs, s->left ? md->x->rhs : changed};
   p->tape = eval_tape(md->g, sides, 2);
 }
 
 /* Whether the formula is too long: with a tape for every place, the work grows with its square. */
-static int is_too_large(const Mender *md) {
+static int is_too_large(const EditSearch *md) {
   enum { PLACES_MAX = 2000, STEPS_MAX = 1000000 };
   const Ast *ast = md->m->ast;
   AstId left = md->x->lhs_ast, right = md->x->rhs_ast;
@@ -115,8 +115,8 @@ static int is_too_large(const Mender *md) {
   return places > PLACES_MAX || (uint64_t)places * expr_topo(md->g, sides, 2).n > STEPS_MAX;
 }
 
-static void prepare_spots(Mender *md) {
-  SiteList sites = sites_of(md->m, md->x);
+static void prepare_spots(EditSearch *md) {
+  SiteList sites = edit_sites_of(md->m, md->x);
   md->spots = ARENA_ARRAY(md->arena, Spot, sites.n + 1);
   md->nspots = sites.n;
   Expr *values = ARENA_ARRAY(md->arena, Expr, sites.n + 1);
@@ -134,25 +134,25 @@ static void prepare_spots(Mender *md) {
 
 /* --- guesses --- */
 
-void mend_guess(Mender *md, const Spot *p, Expr with, double cost, Span caret, const char *edit) {
+void edit_guess(EditSearch *md, const Spot *p, Expr with, double cost, Span caret, const char *edit) {
   /* Mistakes are likelier on the right side, where formulas stand. */
   Guess one = {p, with, cost + (p->site->left ? 0.05L : 0), caret, edit};
   vec_push(md->arena, &md->guesses, one);
 }
 
-double mend_product_cost(const Mender *md, const Spot *p) {
+double edit_product_cost(const EditSearch *md, const Spot *p) {
   int compound = site_is_sum(md->m, p->site) || p->ast->kind == AST_MUL || p->ast->kind == AST_DIV;
   if (p->site->role == SITE_NUMERATOR && !compound) return 0.1;
   return p->site->role == SITE_ROOT ? 0.05 : 0;
 }
 
-const char *mend_expr_text(const Mender *md, Expr e) {
+const char *edit_expr_text(const EditSearch *md, Expr e) {
   StrBuf b = strbuf(md->arena);
   expr_print(md->g, e, PRINT_TEXT, &b);
   return sb_text(&b);
 }
 
-const char *mend_spot_text(const Mender *md, const Spot *p) { return span_text(md->m, p->site->span); }
+const char *edit_spot_text(const EditSearch *md, const Spot *p) { return span_text(md->m, p->site->span); }
 
 static int by_cost(const void *a, const void *b) {
   const Guess *x = a, *y = b;
@@ -162,17 +162,17 @@ static int by_cost(const void *a, const void *b) {
   return (x->caret.begin > y->caret.begin) - (x->caret.begin < y->caret.begin);
 }
 
-static int guess_is_proved(Mender *md, const Guess *guess) {
+static int guess_is_proved(EditSearch *md, const Guess *guess) {
   const Site *s = guess->spot->site;
   AstId root = s->left ? md->x->lhs_ast : md->x->rhs_ast;
-  Expr side = model_reresolve(md->m, md->x, root, s->node, guess->with);
+  Expr side = model_resolve_edited(md->m, md->x, root, s->node, guess->with);
   if (!side) return 0;
   Expr lhs = s->left ? side : md->x->lhs, rhs = s->left ? md->x->rhs : side;
-  return mend_verdict(md->e, lhs, rhs) == PROVED_ZERO;
+  return prove_by_motion(md->e, lhs, rhs) == PROVED_ZERO;
 }
 
 /* The cheapest guess that is proved, or NULL; the list is empty afterwards. */
-static const Guess *best_guess(Mender *md) {
+static const Guess *best_guess(EditSearch *md) {
   enum { PROOFS = 12 };
   Guess *at = md->guesses.at;
   uint32_t n = md->guesses.n;
@@ -183,25 +183,25 @@ static const Guess *best_guess(Mender *md) {
   return NULL;
 }
 
-Mend mend_find(const Eqns *e, const Expect *x) {
+SuggestedEdit suggest_correction(const Eqns *e, const Expect *x) {
   const Model *m = e->m;
-  Mender md = {.e = e, .m = m, .x = x, .g = e->g, .arena = m->arena};
+  EditSearch md = {.e = e, .m = m, .x = x, .g = e->g, .arena = m->arena};
   Name name = intern(m->ast->names, "?");
   md.stand_in = expr_declare(e->g, SYM_LOCAL, 0, name, SIGN_UNKNOWN);
   md.solver = states_new(e);
-  Mend nowhere = {.caret = ast_expr(m->ast, x->rhs_ast)->span};
+  SuggestedEdit nowhere = {.caret = ast_expr(m->ast, x->rhs_ast)->span};
   if (is_too_large(&md)) return nowhere;
   while (md.nstates < FEW)
-    if (!mend_add_state(&md)) return nowhere;
+    if (!edit_add_state(&md)) return nowhere;
   prepare_spots(&md);
-  mend_guess_local(&md);
+  guess_local_edits(&md);
   const Guess *best = best_guess(&md);
   if (!best) {
     while (md.nstates < FEATURE_STATES)
-      if (!mend_add_state(&md)) return nowhere;
-    mend_guess_by_value(&md);
+      if (!edit_add_state(&md)) return nowhere;
+    guess_edits_by_value(&md);
     best = best_guess(&md);
   }
-  if (best) return (Mend){best->caret, best->edit};
-  return (Mend){mend_likeliest(&md), NULL};
+  if (best) return (SuggestedEdit){best->caret, best->edit};
+  return (SuggestedEdit){likeliest_place(&md), NULL};
 }

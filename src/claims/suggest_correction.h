@@ -8,12 +8,12 @@
 typedef struct {
   Span caret;
   const char *edit; /* "`sin(th1)` should be `cos(th1)`"; NULL: no single edit was found, and the caret is at the likeliest place */
-} Mend;
+} SuggestedEdit;
 
 /* Needs an expectation that does not hold. An edit that it returns is proved to correct it. */
-Mend mend_find(const Eqns *e, const Expect *x);
+SuggestedEdit suggest_correction(const Eqns *e, const Expect *x);
 
 /* Whether two sides are equal by the equations of motion: accelerations and multipliers solved for, rates and the energy substituted. */
-Verdict mend_verdict(const Eqns *e, Expr lhs, Expr rhs);
+Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs);
 
 #endif

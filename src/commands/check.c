@@ -8,7 +8,7 @@
 #include "claims/expect.h"
 #include "claims/mobility.h"
 #include "symmetry/noether_report.h"
-#include "report/show.h"
+#include "report/equation_listing.h"
 
 /* Judges symmetries and expectations for the model without effects, and those inside an effect with that effect and its requirements; no scene is
  * needed. */
@@ -65,7 +65,7 @@ static int check_print(Compiler *c, Ast *ast, const char *scene, int allow_numer
     }
     collect_units(e->m, &found);
     discontinuity_warn(e);
-    if (!freedom_show(e, out)) continue;
+    if (!mobility_show(e, out)) continue;
     sb_printf(out, "scene %s: ok%s\n", scenes.at[i], with_effects(e->m));
     if (e->m->effects.n || has_inputs(e->m) || e->energy_jumps) charges_show_broken(e, out);
   }

@@ -17,7 +17,7 @@ static const CommandRow commands[] = {
    "Hamilton's equations, where the mass matrix is inverted in closed form: blocks of up to three coordinates with short results."},
   {CMD_NOETHER, "noether", "symmetries", "MODEL [SCENE] [--format text|latex|json] [-o FILE]", "find symmetries and conserved quantities",
    "Searches for the symmetries of L: transformations of coordinates, affine in them with coefficients that depend on time, and of time, that change "
-   "L by a total derivative dF/dt at most. Each one that is listed is proved, with its generator, its F and its charge; then come the Poisson "
+   "L by a total derivative dF/dt at most. Each one that is comma_separated is proved, with its generator, its F and its charge; then come the Poisson "
    "brackets of the charges, declared symmetries, cyclic coordinates, and a scaling that maps solutions to solutions.\n\n"
    "Without a scene, of the model without effects, and what each effect alone makes of the charges: dQ/dt = 0 becomes a balance."},
   {CMD_RUN, "run", NULL, "MODEL [SCENE] [name=value ...] [options]", "simulate",
@@ -94,7 +94,7 @@ static const CommandRow commands[] = {
    "  source <(lagc completion zsh)     in ~/.zshrc, after compinit\n"
    "  lagc completion fish | source     in ~/.config/fish/config.fish"},
   {CMD_VERSION, "version", NULL, "", NULL, "Prints the version."},
-  {CMD_COMPLETE, "complete", NULL, "WORD...", NULL, NULL}, /* for completion scripts: see complete.h */
+  {CMD_COMPLETE, "complete", NULL, "WORD...", NULL, NULL}, /* for completion scripts: see completion.h */
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 

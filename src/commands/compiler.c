@@ -5,16 +5,16 @@
 #include <string.h>
 
 #include "base/diag.h"
-#include "base/methods.h"
+#include "base/method_table.h"
 #include "base/visible.h"
 #include "commands/required_derivatives.h"
 #include "commands/settings.h"
 #include "ir/hoist.h"
 #include "jets/self_check.h"
 #include "lower/lower.h"
-#include "mech/definite.h"
+#include "mech/mass_definiteness.h"
 #include "model/model.h"
-#include "report/show.h"
+#include "report/equation_listing.h"
 #include "symmetry/charges.h"
 #include "syntax/parse.h"
 #include "toolchain/files.h"
@@ -84,7 +84,7 @@ Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
   StrBuf listing = strbuf(c->arena);
   if (wants_dump(c, "model")) model_dump(m, &listing);
   Eqns *e = equations_of(m);
-  if (e && !choice->bare) mass_warn(e); /* claims are about all values */
+  if (e && !choice->bare) mass_warn_nonpositive(e); /* claims are about all values */
   if (e && wants_dump(c, "eqns")) dump_equations(e, &listing);
   if (listing.n) compiler_write(c, NULL, &listing);
   return e;
@@ -96,7 +96,7 @@ Eqns *compiler_derive_scene(Compiler *c, const char *scene) { return compiler_de
 /* For a method that finds velocities from momenta, what has no inertia of its own gets some. */
 Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice) {
   Eqns *e = compiler_derive(c, choice);
-  return e && e->singular_mass && (wants_of(e, &c->o) & WANT_VARIATION) ? equations_regularised(e) : e;
+  return e && e->singular_mass && (derivatives_required(e, &c->o) & WANT_VARIATION) ? equations_regularised(e) : e;
 }
 
 IrUnit *compiler_new_unit(Compiler *c, Eqns *e) {
@@ -112,7 +112,7 @@ int compiler_agrees(const Eqns *e, const IrUnit *u, uint32_t scene) {
 /* hoists: its derived parameters are taken out, as emitted models have them. NULL, with the reason in c->diags, when the program is wrong: a bug. */
 IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists) {
   IrUnit *u = compiler_new_unit(c, e);
-  unit_want(u, e, wants_of(e, &c->o));
+  unit_require(u, e, derivatives_required(e, &c->o));
   unit_add_scene(u, e);
   const char *wrong = prog_verify(u->accel);
   if (wrong) {
@@ -144,7 +144,7 @@ Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice) {
 /* Of `emit` and `build`, which emit what it needs. That of a run is the simulator's to judge. */
 int compiler_knows_method(Compiler *c) {
   size_t n = c->o.method ? strcspn(c->o.method, " (") : 0;
-  if (!n || method_find(c->o.method, n) || method_is_foreign(c->o.method)) return 1;
+  if (!n || method_find(c->o.method, n) || method_may_be_gsl(c->o.method)) return 1;
   const char *name = arena_strndup(c->arena, c->o.method, n), *near = method_suggest(c->arena, name);
   const char *help = near ? arena_printf(c->arena, "did you mean %s? ", near) : "";
   usage_error(arena_printf(c->arena, "unknown method %s; %s`lagc methods` lists them", name, help));

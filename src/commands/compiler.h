@@ -5,7 +5,7 @@
 #define LAGC_COMMANDS_COMPILER_H
 
 #include "commands/options.h"
-#include "commands/picture.h"
+#include "commands/run_request.h"
 #include "commands/settings.h"
 #include "ir/unit.h"
 #include "mech/eqns.h"
@@ -20,7 +20,7 @@ typedef struct {
   Sources *sources;
   Diags *diags;
   Ast *ast;
-  Picture picture; /* of run, plot and animate */
+  RunRequest picture; /* of run, plot and animate */
   GivenList given; /* values that the command line gives to names, for run, plot and animate */
   StrBuf told;     /* comparisons with the text, for check --verbose */
   const Eqns *run; /* equations of the scene that the command runs, */

@@ -11,8 +11,8 @@
 #include "toolchain/runtime_methods.h"
 #include "commands/options.h"
 #include "commands/commands.h"
-#include "commands/shells.h"
-#include "commands/reference.h"
+#include "commands/completion_scripts.h"
+#include "commands/language_reference.h"
 #include "commands/help.h"
 #include "model/model.h"
 #include "commands/settings.h"
@@ -30,9 +30,9 @@ typedef struct {
   const OptionRow *open; /* an option that waits for its value, or NULL */
   VEC(Define) defines;
   Ast *ast; /* the file's; NULL until it is needed, or where it cannot be read */
-} Line;
+} CommandLine;
 
-static void offer(Line *l, const char *candidate, const char *description) {
+static void offer(CommandLine *l, const char *candidate, const char *description) {
   const char *whole = arena_printf(l->arena, "%s%s", l->head, candidate);
   if (strncmp(whole, l->word, strlen(l->word)) != 0) return;
   sb_printf(l->out, "%s\t%.*s\n", whole, (int)strcspn(description, "\n\t"), description);
@@ -40,7 +40,7 @@ static void offer(Line *l, const char *candidate, const char *description) {
 
 /* ---- the model ---- */
 
-static Ast *read_ast(Line *l) {
+static Ast *read_ast(CommandLine *l) {
   if (l->ast || !l->file) return l->ast;
   Sources *sources = sources_new(l->arena);
   const char *why;
@@ -51,7 +51,7 @@ static Ast *read_ast(Line *l) {
   return l->ast;
 }
 
-static Model *read_model(Line *l) {
+static Model *read_model(CommandLine *l) {
   Ast *ast = read_ast(l);
   if (!ast) return NULL;
   if (!settings_defines(ast, l->defines.at, l->defines.n)) return NULL;
@@ -59,19 +59,19 @@ static Model *read_model(Line *l) {
   return model_build(ast, &choice);
 }
 
-static void offer_scenes(Line *l) {
+static void offer_scenes(CommandLine *l) {
   Ast *ast = read_ast(l);
   for (const AstStmt *s = ast ? ast->first : NULL; s; s = s->next)
     if (s->kind == STMT_SCENE && s->name) offer(l, s->name, s->doc ? s->doc : "scene");
 }
 
-static void offer_setting(Line *l, const char *name, const char *what, const Unit *unit) {
+static void offer_setting(CommandLine *l, const char *name, const char *what, const Unit *unit) {
   const char *in = unit && unit->text[0] ? arena_printf(l->arena, ", [%s]", unit->text) : "";
   offer(l, arena_printf(l->arena, "%s=", name), arena_printf(l->arena, "%s%s", what, in));
 }
 
 /* Names that `name=value` sets: parameters, starts, states, inputs. */
-static void offer_settings(Line *l) {
+static void offer_settings(CommandLine *l) {
   Model *m = read_model(l);
   if (!m) return;
   for (uint32_t i = 0; i < m->params.n; i++) offer_setting(l, m->params.at[i].name, "parameter", &m->params.at[i].unit);
@@ -98,7 +98,7 @@ static const char *quantity(AstStmtKind kind) {
   }
 }
 
-static void offer_names(Line *l, const AstStmt *list) {
+static void offer_names(CommandLine *l, const AstStmt *list) {
   for (const AstStmt *s = list; s; s = s->next) {
     const char *what = quantity(s->kind);
     if (s->name && what) offer(l, s->dims ? arena_printf(l->arena, "%s[", s->name) : s->name, what);
@@ -107,7 +107,7 @@ static void offer_names(Line *l, const AstStmt *list) {
 }
 
 /* Offers names for the identifier at the end of an expression; the text before it is kept. */
-static void offer_expression(Line *l) {
+static void offer_expression(CommandLine *l) {
   size_t n = strlen(l->word), head = strlen(l->head);
   while (n > head && (isalnum((unsigned char)l->word[n - 1]) || strchr("_.", l->word[n - 1]) || (unsigned char)l->word[n - 1] >= 0x80)) n--;
   if (isdigit((unsigned char)l->word[n])) return;
@@ -121,7 +121,7 @@ static void offer_expression(Line *l) {
 
 /* ---- values of options ---- */
 
-static void offer_methods(Line *l) {
+static void offer_methods(CommandLine *l) {
   Methods methods = {0};
   const char *error;
   offer(l, "help", "list them, with their options");
@@ -129,13 +129,13 @@ static void offer_methods(Line *l) {
   for (uint32_t i = 0; i < methods.n; i++) offer(l, methods.at[i].name, methods.at[i].does);
 }
 
-static void offer_choices(Line *l, const OptionRow *o) {
+static void offer_choices(CommandLine *l, const OptionRow *o) {
   const char *comma = o->takes == TAKES_CHOICES ? strrchr(l->word, ',') : NULL;
   if (comma) l->head = arena_strndup(l->arena, l->word, (size_t)(comma - l->word) + 1);
   for (size_t i = 0; word_at(l->arena, o->hint, i); i++) offer(l, word_at(l->arena, o->hint, i), "");
 }
 
-static void offer_params(Line *l, const OptionRow *o) {
+static void offer_params(CommandLine *l, const OptionRow *o) {
   const char *comma = strrchr(l->word, ',');
   if (comma) l->head = arena_strndup(l->arena, l->word, (size_t)(comma - l->word) + 1);
   offer(l, o->hint, "all parameters");
@@ -147,13 +147,13 @@ static void offer_params(Line *l, const OptionRow *o) {
   }
 }
 
-static void offer_constants(Line *l) {
+static void offer_constants(CommandLine *l) {
   Ast *ast = read_ast(l);
   for (const AstStmt *s = ast ? ast->first : NULL; s; s = s->next)
     if (s->kind == STMT_CONST && s->name) offer(l, arena_printf(l->arena, "%s=", s->name), "constant");
 }
 
-static void offer_value(Line *l, const OptionRow *o) {
+static void offer_value(CommandLine *l, const OptionRow *o) {
   switch (o->takes) {
     case TAKES_FILE: sb_printf(l->out, ":files%s%s\n", o->hint[0] ? " " : "", o->hint); break;
     case TAKES_METHOD: offer_methods(l); break;
@@ -167,14 +167,14 @@ static void offer_value(Line *l, const OptionRow *o) {
 
 /* ---- words ---- */
 
-static void offer_commands(Line *l) {
+static void offer_commands(CommandLine *l) {
   for (size_t i = 0; command_row(i); i++) {
     const CommandRow *row = command_row(i);
     if (row->help) offer(l, row->name, row->does ? row->does : row->help);
   }
 }
 
-static void offer_options(Line *l) {
+static void offer_options(CommandLine *l) {
   for (size_t i = 0; option_row(i); i++) {
     const OptionRow *o = option_row(i);
     if (!(o->commands & 1u << l->command)) continue;
@@ -183,7 +183,7 @@ static void offer_options(Line *l) {
   }
 }
 
-static void offer_topics(Line *l) {
+static void offer_topics(CommandLine *l) {
   Topics topics = {0};
   help_topics(l->arena, &topics);
   for (uint32_t i = 0; i < topics.n; i++) offer(l, topics.at[i], "");
@@ -191,7 +191,7 @@ static void offer_topics(Line *l) {
 }
 
 /* Records a word before the last one: an option, its value, the file or the scene. */
-static void take_word(Line *l, const char *word) {
+static void record_word(CommandLine *l, const char *word) {
   const char *value = NULL;
   if (l->open) {
     const char *eq = strchr(word, '=');
@@ -202,14 +202,14 @@ static void take_word(Line *l, const char *word) {
   const OptionRow *o = word[0] == '-' ? option_find(l->command, word, &value) : NULL;
   if (o && o->takes != TAKES_NOTHING) {
     l->open = o;
-    if (value) take_word(l, value);
+    if (value) record_word(l, value);
   } else if (word[0] != '-' && !strchr(word, '=')) {
     if (!l->file) l->file = word;
     else if (!l->scene) l->scene = word;
   }
 }
 
-static void offer_word(Line *l) {
+static void offer_word(CommandLine *l) {
   const char *value;
   const OptionRow *o = l->word[0] == '-' ? option_find(l->command, l->word, &value) : NULL;
   if (l->open) offer_value(l, l->open);
@@ -226,13 +226,13 @@ static void offer_word(Line *l) {
 
 static void complete(StrBuf *out, const char *const *words, size_t n, const char *argv0) {
   if (!n) return;
-  Line l = {.arena = out->arena, .out = out, .argv0 = argv0, .word = words[n - 1], .head = ""};
+  CommandLine l = {.arena = out->arena, .out = out, .argv0 = argv0, .word = words[n - 1], .head = ""};
   if (n == 1) {
     offer_commands(&l);
     return;
   }
   l.command = command_named(words[0]);
-  for (size_t i = 1; i + 1 < n && l.command; i++) take_word(&l, words[i]);
+  for (size_t i = 1; i + 1 < n && l.command; i++) record_word(&l, words[i]);
   if (l.command == CMD_HELP && n == 2) offer_topics(&l);
   else if (l.command == CMD_COMPLETION && n == 2) {
     for (size_t i = 0; word_at(l.arena, "bash zsh fish", i); i++) offer(&l, word_at(l.arena, "bash zsh fish", i), "");
@@ -243,6 +243,6 @@ static void complete(StrBuf *out, const char *const *words, size_t n, const char
 int command_completion(Compiler *c) {
   StrBuf out = strbuf(c->arena);
   if (c->o.command == CMD_COMPLETE) complete(&out, c->o.rest.at, c->o.rest.n, c->argv0);
-  else completion_script(&out, c->o.topic);
+  else completion_print_script(&out, c->o.topic);
   return compiler_write(c, NULL, &out);
 }

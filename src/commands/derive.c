@@ -6,7 +6,7 @@
 #include "emit/emit_model.h"
 #include "emit/cwriter.h"
 #include "lower/lower.h"
-#include "report/show.h"
+#include "report/equation_listing.h"
 
 static PrintStyle style_of(const char *format) { return format && strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT; }
 
@@ -30,7 +30,7 @@ static int print_hamiltonian(Compiler *c, Eqns *e) {
 /* What the operations would be without --fix. */
 static const char *unfixed_cost(Compiler *c) {
   Eqns *e = compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .unfixed = 1});
-  return e ? arena_printf(c->arena, "without --fix: %s\n", ops_text(compiler_new_unit(c, e)->accel, c->arena)) : "";
+  return e ? arena_printf(c->arena, "without --fix: %s\n", op_count_text(compiler_new_unit(c, e)->accel, c->arena)) : "";
 }
 
 int command_derive(Compiler *c) {
@@ -41,7 +41,7 @@ int command_derive(Compiler *c) {
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
   const char *format = c->o.format ? c->o.format : "text";
-  const char *cost = ops_text(u->accel, c->arena);
+  const char *cost = op_count_text(u->accel, c->arena);
   if (c->o.ops) sb_printf(&out, "%s\n%s", cost, c->o.fix ? unfixed_cost(c) : "");
   else if (strcmp(format, "c") == 0) emit_accel(u, &out);
   else show_equations(e, cost, style_of(format), &out);

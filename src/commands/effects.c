@@ -17,15 +17,15 @@ static IrUnit *lower_variant(Compiler *c, EffectList effects, unsigned *wants) {
   Eqns *e = compiler_derive_wanted(c, &(ModelChoice){.scene = c->o.scene, .only = &effects, .given = c->given.at, .ngiven = c->given.n});
   if (!e) return NULL;
   IrUnit *u = compiler_new_unit(c, e);
-  *wants |= wants_of(e, &c->o); /* all of them are to run by the first one's method */
-  unit_want(u, e, *wants);
+  *wants |= derivatives_required(e, &c->o); /* all of them are to run by the first one's method */
+  unit_require(u, e, *wants);
   unit_add_scene(u, e);
   unit_hoist(u);
   return compiler_agrees(e, u, 0) ? u : NULL;
 }
 
 /* Makes a program of these variants, runs it, and reads what it measured. */
-static int run_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, const char *what, Measured **measured) {
+static int run_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, const char *what, EffectMeasurement **measured) {
   Toolchain tools;
   Units units = {0};
   unsigned wants = 0;
@@ -54,17 +54,17 @@ static int run_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, con
 /* --accuracy: the smallest set of effects. */
 static int find_least(Compiler *c, EffectStudy *s) {
   char *end;
-  Measured *measured = NULL;
+  EffectMeasurement *measured = NULL;
   s->accuracy = strtod(c->o.accuracy, &end);
   if (*end || !(s->accuracy > 0)) return usage_error(arena_printf(c->arena, "--accuracy %s: a difference that does not matter, relative and positive; for example 1e-6", c->o.accuracy));
   if (!(s->error <= s->accuracy / 10)) {
     fprintf(stderr, "lagc: --accuracy %g: the error of integration, %.2g, is not well below it; add --tol with a smaller number, or --step\n", s->accuracy, s->error);
     return STATUS_RUN;
   }
-  for (EffectSets sets = effects_try(s, NULL, NULL); sets.n;) {
+  for (EffectSets sets = effects_next_sets(s, NULL, NULL); sets.n;) {
     int status = run_variants(c, s, &sets, "runs", &measured);
     if (status != STATUS_OK) return status;
-    EffectSets next = effects_try(s, &sets, measured);
+    EffectSets next = effects_next_sets(s, &sets, measured);
     sets = next;
   }
   return STATUS_OK;

@@ -16,7 +16,7 @@ static uint32_t count(EffectSet set) {
 }
 
 /* The effect and all effects that it requires, directly or not (up: all that require it). */
-static EffectSet reach(const EffectStudy *s, uint32_t effect, int up) {
+static EffectSet closure_of(const EffectStudy *s, uint32_t effect, int up) {
   uint8_t *in = ARENA_ARRAY(s->arena, uint8_t, s->graph.n);
   EffectSet set = 0;
   effect_reach(s->ast, &s->graph, effect, up, in);
@@ -32,7 +32,7 @@ EffectList effects_of(const EffectStudy *s, EffectSet set) {
 }
 
 /* Whether the set contains the requirements of each of its effects. */
-static int is_whole(const EffectStudy *s, EffectSet set) {
+static int meets_requirements(const EffectStudy *s, EffectSet set) {
   for (uint32_t i = 0; i < s->graph.n; i++)
     for (uint32_t k = 0; set & one(i) && k < s->graph.at[i].requires.n; k++)
       if (!(set & one(s->graph.at[i].requires.at[k]))) return 0;
@@ -40,7 +40,7 @@ static int is_whole(const EffectStudy *s, EffectSet set) {
 }
 
 /* Finds two effects of the set that exclude each other, and returns the one that the scene uses; NULL: no conflict. */
-static Name clash(const EffectStudy *s, EffectSet set) {
+static Name excluding_effect(const EffectStudy *s, EffectSet set) {
   for (uint32_t i = 0; i < s->graph.n; i++)
     for (uint32_t k = 0; set & one(i) && k < s->graph.at[i].excludes.n; k++) {
       uint32_t other = s->graph.at[i].excludes.at[k];
@@ -61,14 +61,14 @@ static uint32_t variant(EffectStudy *s, EffectSet set) {
 static void plan_row(EffectStudy *s, uint32_t effect) {
   EffectRow row = {.effect = effect, .on = (s->used & one(effect)) != 0};
   if (row.on) {
-    EffectSet gone = reach(s, effect, 1) & s->used;
+    EffectSet gone = closure_of(s, effect, 1) & s->used;
     row.together = gone & ~one(effect);
     row.upper = variant(s, s->used & ~row.together);
     row.lower = row.apart = variant(s, s->used & ~gone);
   } else {
-    EffectSet added = reach(s, effect, 0) & ~s->used;
+    EffectSet added = closure_of(s, effect, 0) & ~s->used;
     row.together = added & ~one(effect);
-    row.excluded_by = clash(s, s->used | added);
+    row.excluded_by = excluding_effect(s, s->used | added);
     row.upper = row.apart = row.excluded_by ? 0 : variant(s, s->used | added);
     row.lower = row.excluded_by ? 0 : variant(s, (s->used | added) & ~one(effect));
   }
@@ -99,12 +99,12 @@ EffectStudy *effects_plan(const Model *scene) {
 /* --- measurements --- */
 
 /* The text after `word` and a space at the beginning of the line; NULL: the line begins otherwise. */
-static char *behind(char *line, const char *word) {
+static char *text_after(char *line, const char *word) {
   size_t n = strlen(word);
   return strncmp(line, word, n) == 0 && line[n] == ' ' ? line + n + 1 : NULL;
 }
 
-static int read_variant(char *text, Measured *m, uint32_t n) {
+static int read_variant(char *text, EffectMeasurement *m, uint32_t n) {
   char *at = text;
   unsigned long i = strtoul(at, &at, 10);
   if (i >= n) return 0;
@@ -115,22 +115,22 @@ static int read_variant(char *text, Measured *m, uint32_t n) {
   return 1;
 }
 
-Measured *effects_read(EffectStudy *s, char *said, uint32_t n, const char **rest) {
-  Measured *m = ARENA_ARRAY(s->arena, Measured, n);
+EffectMeasurement *effects_read(EffectStudy *s, char *said, uint32_t n, const char **rest) {
+  EffectMeasurement *m = ARENA_ARRAY(s->arena, EffectMeasurement, n);
   StrBuf other = strbuf(s->arena);
   uint32_t found = 0;
   for (char *line = said, *next; line && *line; line = next) {
     char *end = strchr(line, '\n'), *text;
     next = end ? end + 1 : NULL;
     if (end) *end = '\0';
-    if ((text = behind(line, "variant")) != NULL) found += (uint32_t)read_variant(text, m, n);
-    else if ((text = behind(line, "failed")) != NULL) {
+    if ((text = text_after(line, "variant")) != NULL) found += (uint32_t)read_variant(text, m, n);
+    else if ((text = text_after(line, "failed")) != NULL) {
       unsigned long i = strtoul(text, &text, 10);
       if (i < n) m[i].why = text + 1;
     }
-    else if ((text = behind(line, "method")) != NULL) s->method = text;
-    else if ((text = behind(line, "span")) != NULL) s->span = strtod(text, NULL);
-    else if ((text = behind(line, "error")) != NULL) s->error = strtod(text, NULL);
+    else if ((text = text_after(line, "method")) != NULL) s->method = text;
+    else if ((text = text_after(line, "span")) != NULL) s->span = strtod(text, NULL);
+    else if ((text = text_after(line, "error")) != NULL) s->error = strtod(text, NULL);
     else sb_printf(&other, "%s\n", line);
   }
   *rest = sb_text(&other);
@@ -142,7 +142,7 @@ double effects_limit(const EffectStudy *s) { return s->accuracy > 0 ? s->accurac
 
 const char *effects_verdict(const EffectStudy *s, const EffectRow *row) {
   if (row->excluded_by) return "excluded";
-  const Measured *m = &s->measured[row->apart];
+  const EffectMeasurement *m = &s->measured[row->apart];
   int matters = m->why || !(m->difference <= effects_limit(s));
   if (row->on) return matters ? "needed" : s->accuracy > 0 ? "below the accuracy" : "below the scene's accuracy";
   return matters ? "would matter" : "would not matter";
@@ -151,7 +151,7 @@ const char *effects_verdict(const EffectStudy *s, const EffectRow *row) {
 /* --- the smallest set --- */
 
 /* Takes the set for the least so far if it meets the accuracy with fewer operations than the best one. */
-static void consider(EffectStudy *s, EffectSet set, const Measured *m, int *best_ops) {
+static void keep_if_better(EffectStudy *s, EffectSet set, const EffectMeasurement *m, int *best_ops) {
   if (m->why || !(m->difference <= s->accuracy) || m->ops >= *best_ops) return;
   *best_ops = m->ops;
   s->least = set;
@@ -162,7 +162,7 @@ static void consider(EffectStudy *s, EffectSet set, const Measured *m, int *best
 static void add_subsets(const EffectStudy *s, uint32_t k, EffectSets *sets) {
   for (EffectSet set = s->used; set; ) {
     set = (set - 1) & s->used; /* the next smaller subset */
-    if (count(set) == k && is_whole(s, set)) vec_push(s->arena, sets, set);
+    if (count(set) == k && meets_requirements(s, set)) vec_push(s->arena, sets, set);
   }
 }
 
@@ -177,13 +177,13 @@ static EffectSet least_alone(const EffectStudy *s, EffectSet set, EffectSet trie
   return least ? one(least->effect) | (least->together & set) : 0;
 }
 
-static EffectSets try_greedily(EffectStudy *s, const EffectSets *before, const Measured *measured) {
+static EffectSets try_greedily(EffectStudy *s, const EffectSets *before, const EffectMeasurement *measured) {
   EffectSets sets = {0};
   if (before) {
     int ops = 1 << 30;
     EffectSet gone = s->least & ~before->at[1];
     s->tried++;
-    consider(s, before->at[1], &measured[1], &ops);
+    keep_if_better(s, before->at[1], &measured[1], &ops);
     s->rejected |= s->least == before->at[1] ? 0 : gone;
   }
   EffectSet leave = least_alone(s, s->least, s->rejected);
@@ -193,7 +193,7 @@ static EffectSets try_greedily(EffectStudy *s, const EffectSets *before, const M
   return sets;
 }
 
-EffectSets effects_try(EffectStudy *s, const EffectSets *before, const Measured *measured) {
+EffectSets effects_next_sets(EffectStudy *s, const EffectSets *before, const EffectMeasurement *measured) {
   EffectSets sets = {0};
   uint32_t k = 0, all = count(s->used);
   int ops = 1 << 30;
@@ -201,7 +201,7 @@ EffectSets effects_try(EffectStudy *s, const EffectSets *before, const Measured 
   if (!before) s->least = s->used;
   if (!s->exhaustive) return try_greedily(s, before, measured);
   if (before) {
-    for (uint32_t i = 1; i < before->n; i++) consider(s, before->at[i], &measured[i], &ops);
+    for (uint32_t i = 1; i < before->n; i++) keep_if_better(s, before->at[i], &measured[i], &ops);
     s->tried += before->n - 1;
     if (s->least != s->used) return sets;
     k = count(before->at[1]) + 1;

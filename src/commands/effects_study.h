@@ -16,9 +16,9 @@ typedef VEC(EffectSet) EffectSets;
 /* Measurements of one variant. */
 typedef struct {
   int ops;
-  double time, difference, weight; /* time of a call [s]; the others: runtime/analysis/variants.h; NaN: not measured */
+  double time, difference, weight; /* time of a call [s]; the others: runtime/analysis/effect_variants.h; NaN: not measured */
   const char *why;                 /* why its run failed, or NULL */
-} Measured;
+} EffectMeasurement;
 
 /* One effect. The variants upper and lower differ by this effect alone; the variant apart is compared with the scene. */
 typedef struct {
@@ -41,7 +41,7 @@ typedef struct {
 
   const char *method, *chosen;
   double span, error; /* length of the run [s]; error of integration, NaN: not known */
-  Measured *measured; /* [variants.n] */
+  EffectMeasurement *measured; /* [variants.n] */
 
   double accuracy;    /* --accuracy; 0: not given */
   EffectSet least;    /* smallest set within the accuracy */
@@ -56,12 +56,12 @@ EffectStudy *effects_plan(const Model *scene);
 EffectList effects_of(const EffectStudy *s, EffectSet set);
 
 /* Parses the output of a run of n variants; lines that are no measurements go to *rest. NULL: fewer than n were measured. */
-Measured *effects_read(EffectStudy *s, char *said, uint32_t n, const char **rest);
+EffectMeasurement *effects_read(EffectStudy *s, char *said, uint32_t n, const char **rest);
 
 /* Next sets to run for --accuracy, the scene's own first; .n is 0 once s->least is known. measured[before->n] belongs to the sets run before; NULL at
  * first. Up to MOST_EXHAUSTIVE effects: all sets of 0, 1, 2, ... effects that contain their requirements, until one meets the accuracy;
  * with more, effects are left out one by one, the one with the least difference first. */
-EffectSets effects_try(EffectStudy *s, const EffectSets *before, const Measured *measured);
+EffectSets effects_next_sets(EffectStudy *s, const EffectSets *before, const EffectMeasurement *measured);
 
 /* Differences below this limit do not count: the accuracy asked for, or twice the error of integration. */
 double effects_limit(const EffectStudy *s);

@@ -9,7 +9,7 @@ static Name name_of(const EffectStudy *s, const EffectRow *row) { return s->grap
 static int ops_of(const EffectStudy *s, const EffectRow *row) { return s->measured[row->upper].ops - s->measured[row->lower].ops; }
 
 /* Operations as a fraction of the scene's right-hand side. */
-static double share(const EffectStudy *s, double part) { return part / s->measured[0].ops; }
+static double operation_fraction(const EffectStudy *s, double part) { return part / s->measured[0].ops; }
 
 static double time_share(const EffectStudy *s, const EffectRow *row) {
   return (s->measured[row->upper].time - s->measured[row->lower].time) / s->measured[0].time;
@@ -50,15 +50,15 @@ static void put_row(const EffectStudy *s, const EffectRow *row, int width, StrBu
     sb_printf(out, "  excluded by %s\n", row->excluded_by);
     return;
   }
-  const Measured *m = &s->measured[row->apart];
-  sb_printf(out, " %6s %6s %6s  %9s %11s  %s", arena_printf(a, "%s%d", sign, ops_of(s, row)), percent(a, share(s, ops_of(s, row))),
+  const EffectMeasurement *m = &s->measured[row->apart];
+  sb_printf(out, " %6s %6s %6s  %9s %11s  %s", arena_printf(a, "%s%d", sign, ops_of(s, row)), percent(a, operation_fraction(s, ops_of(s, row))),
             percent(a, time_share(s, row)), number(a, m->weight), m->why ? "run fails" : number(a, m->difference), effects_verdict(s, row));
   if (row->together) sb_printf(out, " (%s %s)", row->on ? "left out with" : "added with", joined(s, row->together));
   sb_putc(out, '\n');
 }
 
 static void put_total(const EffectStudy *s, const char *name, int ops, int width, StrBuf *out) {
-  sb_printf(out, "  %-*s      %6d %6s", width, name, ops, percent(s->arena, share(s, ops)));
+  sb_printf(out, "  %-*s      %6d %6s", width, name, ops, percent(s->arena, operation_fraction(s, ops)));
 }
 
 static void put_failures(const EffectStudy *s, StrBuf *out) {
@@ -84,7 +84,7 @@ static void put_least(const EffectStudy *s, StrBuf *out) {
 
 void effects_text(const EffectStudy *s, StrBuf *out) {
   int width = name_width(s);
-  const Measured *scene = &s->measured[0];
+  const EffectMeasurement *scene = &s->measured[0];
   sb_printf(out, "model %s, scene %s, %g s by %s\n", s->scene->name, s->scene->scene.name, s->span, s->method);
   sb_printf(out, "error of integration: %s\n\n", isnan(s->error) ? "not known" : number(s->arena, s->error));
   sb_printf(out, "  %-*s      %6s %6s %6s  %9s %11s\n", width, "effect", "ops", "", "time", "weight", "difference");
@@ -128,7 +128,7 @@ static void json_names(const EffectStudy *s, EffectSet set, StrBuf *out) {
 }
 
 static void json_row(const EffectStudy *s, const EffectRow *row, StrBuf *out) {
-  const Measured *m = &s->measured[row->apart];
+  const EffectMeasurement *m = &s->measured[row->apart];
   sb_printf(out, "{\"name\": \"%s\", \"on\": %s, \"verdict\": \"%s\"", name_of(s, row), row->on ? "true" : "false", effects_verdict(s, row));
   if (row->excluded_by) {
     sb_printf(out, ", \"excluded_by\": \"%s\"}", row->excluded_by);

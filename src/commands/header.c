@@ -5,8 +5,8 @@
 
 #include "emit/emit_header.h"
 #include "mech/constrain.h"
-#include "mech/start.h"
-#include "report/show.h"
+#include "mech/consistent_start.h"
+#include "report/equation_listing.h"
 
 /* A header is called by its file: pend.h has PEND_IMPLEMENTATION. On standard output, by its model. */
 static const char *header_name(Compiler *c, const char *model) {
@@ -20,7 +20,7 @@ static const char *header_name(Compiler *c, const char *model) {
 static int bake_start(Compiler *c, const Eqns *e, IrUnit *u) {
   long double *found = ARENA_ARRAY(c->arena, long double, 2 * (size_t)e->n + 1);
   unsigned char *moved = ARENA_ARRAY(c->arena, unsigned char, 2 * (size_t)e->n + 1);
-  if (!start_moves(e, found, moved)) return 0;
+  if (!start_of_scene(e, found, moved)) return 0;
   for (uint32_t i = 0; i < 2 * e->n; i++)
     if (moved[i]) vec_push(c->arena, &u->scenes.at[0].moves, ((IrMove){i, (double)found[i]}));
   return 1;

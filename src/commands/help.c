@@ -12,7 +12,7 @@
 #include "commands/command_table.h"
 #include "commands/options.h"
 #include "commands/terminal_page.h"
-#include "commands/reference.h"
+#include "commands/language_reference.h"
 #include "model/model.h"
 #include "syntax/parse.h"
 

@@ -1,6 +1,6 @@
 /* `lagc help`: pages on a command, a chapter or a word of the reference, a function, a unit, an option.
  *
- * Nothing is written twice: commands and options come from their tables (cli/commands.h), the language from its
+ * Nothing is written twice: commands and options come from their tables (commands/command_table.h), the language from its
  * reference (grammar/LANGUAGE.md), units from the compiler's own table. */
 #ifndef LAGC_COMMANDS_HELP_H
 #define LAGC_COMMANDS_HELP_H

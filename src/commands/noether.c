@@ -5,7 +5,7 @@
 
 #include "symmetry/charges.h"
 #include "symmetry/noether_report.h"
-#include "report/show.h"
+#include "report/equation_listing.h"
 
 static PrintStyle style_of(const char *format) { return format && strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT; }
 

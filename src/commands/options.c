@@ -1,4 +1,4 @@
-/* Parses the command line by the tables of commands.c; mistakes are answered with the nearest word or the right command. */
+/* Parses the command line by the tables of command_table.c; mistakes are answered with the nearest word or the right command. */
 #include "commands/options.h"
 
 #include <string.h>
@@ -36,7 +36,7 @@ static int add_define(Arena *a, Options *o, const char *text, const char **error
 }
 
 /* "text latex c" -> "text, latex, c" */
-static const char *listed(Arena *a, const char *choices) {
+static const char *comma_separated(Arena *a, const char *choices) {
   char *text = arena_alloc(a, 2 * strlen(choices) + 1), *to = text;
   for (const char *s = choices; *s; s++) {
     if (*s == ' ') *to++ = ',';
@@ -52,12 +52,12 @@ static int check_choices(Arena *a, const OptionRow *row, const char *value, cons
     ok = is_choice(row->hint, s, n);
     s += n + (s[n] == ',');
   }
-  if (!ok) *error = arena_printf(a, "%s takes %s%s, not `%s`", row->name, listed(a, row->hint), several ? ", with commas between several" : "", value);
+  if (!ok) *error = arena_printf(a, "%s takes %s%s, not `%s`", row->name, comma_separated(a, row->hint), several ? ", with commas between several" : "", value);
   return ok;
 }
 
 /* Advice: the command or option that writes files of this suffix. */
-static const char *way_to(Command c, const char *suffix) {
+static const char *advice_for_suffix(Command c, const char *suffix) {
   if (c == CMD_PLOT && is_choice("png pdf jpg jpeg gif webp eps ps", suffix, strlen(suffix))) return ", which browsers and `rsvg-convert` turn into other kinds";
   if (c == CMD_RUN && strcmp(suffix, "json") == 0) return "; --json prints the report as JSON";
   if (c == CMD_RUN && strcmp(suffix, "svg") == 0) return "; --svg FILE draws";
@@ -69,9 +69,9 @@ static const char *way_to(Command c, const char *suffix) {
 
 /* Reports a file name whose suffix is of another kind than the command writes. */
 static int check_kind(Arena *a, Command c, const OptionRow *row, const char *path, const char *suffixes, const char **error) {
-  const char *other = outfile_other_kind(path, suffixes), *name = row->brief ? row->brief : row->name;
+  const char *other = lag_outfile_other_type(path, suffixes), *name = row->brief ? row->brief : row->name;
   if (!other) return 1;
-  const char *writer = row->brief ? command_find(c)->name : row->name, *way = row->brief ? way_to(c, other) : "";
+  const char *writer = row->brief ? command_find(c)->name : row->name, *way = row->brief ? advice_for_suffix(c, other) : "";
   const char *kind = !*suffixes ? (c == CMD_BUILD ? "a program" : "text") : is_choice(suffixes, "npy", 3) ? "CSV, or NumPy where the name ends in .npy"
                    : is_choice(suffixes, "svg", 3) ? "SVG" : is_choice(suffixes, "html", 4) ? "HTML" : is_choice(suffixes, "h", 1) ? "a C header"
                    : is_choice(suffixes, "tex", 3) ? "LaTeX" : is_choice(suffixes, "json", 4) ? "JSON" : "C";
@@ -87,7 +87,7 @@ static int check_format(Arena *a, Options *o, const char **error) {
   if (!o->output || !output || !format) return 1;
   const char *suffixes = "";
   for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
-    if (!o->format && is_choice(format->hint, formats[i][0], strlen(formats[i][0])) && outfile_is(o->output, formats[i][1])) o->format = formats[i][0];
+    if (!o->format && is_choice(format->hint, formats[i][0], strlen(formats[i][0])) && lag_outfile_has_suffix(o->output, formats[i][1])) o->format = formats[i][0];
     if (o->format && strcmp(o->format, formats[i][0]) == 0) suffixes = formats[i][1];
   }
   return check_kind(a, o->command, output, o->output, suffixes, error);

@@ -17,7 +17,7 @@ static int warn_literal(const Ast *ast, const char *precision) {
   return 0;
 }
 
-void rounded_warn(const Ast *ast, const ExprGraph *g, const char *precision) {
+void precision_warn(const Ast *ast, const ExprGraph *g, const char *precision) {
   enum { SAFE = 15, ROOM = 32 };
   if (warn_literal(ast, precision)) return;
   for (Expr e = 1; e <= expr_count(g); e++) {

@@ -6,6 +6,6 @@
 #include "syntax/ast.h"
 
 /* Warns of the first literal that was rounded to a double, or, where there is none, of the first such number in the model's graph. */
-void rounded_warn(const Ast *ast, const ExprGraph *g, const char *precision);
+void precision_warn(const Ast *ast, const ExprGraph *g, const char *precision);
 
 #endif

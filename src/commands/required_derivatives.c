@@ -5,12 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/methods.h"
+#include "base/method_table.h"
 #include "base/source.h"
 #include "ir/unit.h"
 
 /* Flags of a method; one that splits T and V of separable models is implicit for others, and then needs derivatives of L. */
-static unsigned wants_of_info(const Eqns *e, const MethodInfo *m) {
+static unsigned required_by_info(const Eqns *e, const MethodInfo *m) {
   int splits = (m->flags & METHOD_SPLITS) && e->separable;
   if ((m->flags & METHOD_FLOWS) && !e->n) return WANT_LINEAR;
   return ((m->flags & METHOD_VARIATION) && !splits ? WANT_VARIATION : 0u) | (m->flags & METHOD_JACOBIAN ? WANT_LINEAR : 0u) |
@@ -18,9 +18,9 @@ static unsigned wants_of_info(const Eqns *e, const MethodInfo *m) {
 }
 
 /* Flags of a method written NAME or NAME(option=value, ...). */
-static unsigned wants_of_method(const Eqns *e, const char *text) {
+static unsigned required_by_method(const Eqns *e, const char *text) {
   const MethodInfo *m = text ? method_find(text, strcspn(text, " (")) : NULL;
-  return m ? wants_of_info(e, m) : 0;
+  return m ? required_by_info(e, m) : 0;
 }
 
 /* The method of a saved state, from the line `method NAME` near its head; NULL: none, and the simulator refuses the file. */
@@ -35,25 +35,25 @@ static const char *method_of_state(Arena *a, const char *path) {
 }
 
 /* Flags that all methods together need. */
-static unsigned wants_of_all(const Eqns *e) {
+static unsigned required_by_all(const Eqns *e) {
   unsigned wants = 0;
-  for (size_t i = 0; method_at(i); i++) wants |= wants_of_info(e, method_at(i));
+  for (size_t i = 0; method_at(i); i++) wants |= required_by_info(e, method_at(i));
   return wants;
 }
 
 /* Flags of the methods that the simulator may choose when none is named: taylor for small tolerances, radau where friction or flows may be
  * stiff. None for long models, whose series and Jacobians take long to compile. */
-static unsigned wants_of_choice(const Eqns *e, const Options *o) {
+static unsigned required_by_choice(const Eqns *e, const Options *o) {
   enum { LONG = 40 };
-  const double below_taylor = 1e-9; /* as in runtime/app/automatic.c */
+  const double below_taylor = 1e-9; /* as in runtime/app/automatic_method.c */
   double tol = o->tol ? strtod(o->tol, NULL) : e->m->scene.tolerance;
   int runs = command_simulates(o->command) || o->command == CMD_BUILD;
   if (!runs || e->m->scene.method || o->method || e->n + e->m->states.n > LONG) return 0;
   return (tol > 0 && tol < below_taylor ? WANT_TAYLOR : 0u) | (e->conserves_energy && !e->m->states.n ? 0u : WANT_LINEAR);
 }
 
-unsigned wants_of(const Eqns *e, const Options *o) {
-  if (o->command == CMD_COST) return wants_of_all(e);
-  unsigned wants = wants_of_method(e, e->m->scene.method) | wants_of_method(e, o->method) | wants_of_choice(e, o) | (o->with ? WANT_LINEAR : 0u);
-  return o->resume ? wants | wants_of_method(e, method_of_state(e->m->arena, o->resume)) : wants;
+unsigned derivatives_required(const Eqns *e, const Options *o) {
+  if (o->command == CMD_COST) return required_by_all(e);
+  unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) | required_by_choice(e, o) | (o->with ? WANT_LINEAR : 0u);
+  return o->resume ? wants | required_by_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

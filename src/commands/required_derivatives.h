@@ -8,6 +8,6 @@
 
 /* Flags WANT_... (ir/unit.h) for the scene of e: by its own method, by the method of --method or of the state of
  * --resume, and by --with. */
-unsigned wants_of(const Eqns *e, const Options *o);
+unsigned derivatives_required(const Eqns *e, const Options *o);
 
 #endif

@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "commands/cost.h"
-#include "jets/no_value.h"
-#include "toolchain/last_state.h"
+#include "jets/nonfinite.h"
+#include "toolchain/last_state_listener.h"
 
 enum { LARGE = 1000 }; /* coordinates: the memory of compiling them is not kept for the run */
 
@@ -24,7 +24,7 @@ static int writes_source(Compiler *c) {
 static void tell_last_state(void *compiler, const double *number, uint32_t n) {
   Compiler *c = compiler;
   c->diags->list.n = 0; /* they have been printed */
-  if (no_value_note(c->run, c->run_by, number, n)) compiler_print_messages(c);
+  if (nonfinite_note(c->run, c->run_by, number, n)) compiler_print_messages(c);
 }
 
 /* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
@@ -40,7 +40,7 @@ int command_run(Compiler *c) {
   fflush(stdout);
   compiler_print_messages(c); /* warnings: the simulator does not come back */
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
-  if (c->run && c->run->n <= LARGE) last_state_wait(c->arena, tell_last_state, c);
+  if (c->run && c->run->n <= LARGE) last_state_listen(c->arena, tell_last_state, c);
   execv(path, c->picture.argv.at);
   return usage_error(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
 }

@@ -5,7 +5,7 @@
 
 #include "commands/command_table.h"
 #include "toolchain/files.h"
-#include "commands/points.h"
+#include "commands/point_list.h"
 #include "syntax/parse.h"
 
 /* --- inputs with a formula or a table --- */
@@ -47,11 +47,11 @@ int settings_defines(Ast *ast, Define *defines, uint32_t n) {
   return ok;
 }
 
-static int take(Ast *ast, const char *setting, GivenList *given) {
+static int take_setting(Ast *ast, const char *setting, GivenList *given) {
   const char *eq = strchr(setting, '=');
   const char *name = arena_strndup(ast->arena, setting, (size_t)(eq - setting));
   const char *place = arena_strndup(ast->arena, setting, (size_t)(eq - setting) + 1); /* shown in messages: `u=` */
-  Given one = {parse_setting(ast, place, name), parse_setting(ast, place, quoted_file(ast->arena, eq + 1))};
+  CommandInput one = {parse_setting(ast, place, name), parse_setting(ast, place, quoted_file(ast->arena, eq + 1))};
   vec_push(ast->arena, given, one);
   return one.what && one.value;
 }
@@ -76,7 +76,7 @@ int settings_compiled(Ast *ast, Options *o, GivenList *given, const char **error
       return 0;
     }
     int formula = eq && eq[1] && !is_number(eq + 1) && find_declared(ast, STMT_INPUT, name);
-    if (formula || (eq && eq[1] && starts_rotation(ast, name))) ok &= take(ast, arg, given);
+    if (formula || (eq && eq[1] && starts_rotation(ast, name))) ok &= take_setting(ast, arg, given);
     else o->rest.at[kept++] = arg;
   }
   o->rest.n = kept;
@@ -100,7 +100,7 @@ static int needs_conversion(const char *value) {
 }
 
 /* The value as a plain number in the declared unit of `name` (NULL: a time [s]); NULL after a mistake. */
-static const char *converted(Converter *c, const char *name, const char *value) {
+static const char *converted_value(Converter *c, const char *name, const char *value) {
   enum { ROOM = 32 };
   if (!c->model) {
     ModelChoice choice = {.scene = c->o->scene, .defines = c->o->defines.at, .ndefines = c->o->defines.n};
@@ -110,7 +110,7 @@ static const char *converted(Converter *c, const char *name, const char *value) 
   AstId target = name ? parse_setting(c->ast, "command line", name) : 0, id = parse_setting(c->ast, "command line", value);
   double x;
   const char *digits;
-  if ((name && !target) || !id || !model_setting(c->model, target, id, &x, &digits)) return NULL;
+  if ((name && !target) || !id || !model_command_value(c->model, target, id, &x, &digits)) return NULL;
   if (options_more_digits(c->o) && digits) return digits;
   if (options_more_digits(c->o)) {
     diag_error(c->ast->diags, ast_expr(c->ast, id)->span, "--precision %s needs more digits of this than lagc computes", c->o->precision);
@@ -126,7 +126,7 @@ static const char *converted(Converter *c, const char *name, const char *value) 
 static int convert_setting(Converter *c, const char **arg) {
   const char *eq = strchr(*arg, '=');
   const char *name = text_trimmed(c->arena, *arg, (size_t)(eq - *arg)), *value = text_trimmed(c->arena, eq + 1, strlen(eq + 1));
-  if (needs_conversion(value) && !(value = converted(c, name, value))) return 0;
+  if (needs_conversion(value) && !(value = converted_value(c, name, value))) return 0;
   *arg = arena_printf(c->arena, "%s=%s", name, value);
   return 1;
 }
@@ -142,7 +142,7 @@ static int convert_time(Converter *c, uint32_t *i) {
     if (!joined && *i + 1 == c->o->rest.n) return 1;
     const char *value = joined ? at[*i] + n + 1 : at[++*i];
     if (!needs_conversion(value)) return 1;
-    if (!(value = converted(c, NULL, value))) return 0;
+    if (!(value = converted_value(c, NULL, value))) return 0;
     at[*i] = joined ? arena_printf(c->arena, "%s=%s", options[k], value) : value;
   }
   return 1;

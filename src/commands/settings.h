@@ -9,7 +9,7 @@
 /* Parses the values of constants. Returns 0 on a mistake, which is in ast->diags. */
 int settings_defines(Ast *ast, Define *defines, uint32_t n);
 
-typedef VEC(Given) GivenList;
+typedef VEC(CommandInput) GivenList;
 
 /* Moves inputs with a formula or a table, and starts of rotations, from o->rest to *given. Returns 0 on a mistake: see *error, else ast->diags. */
 int settings_compiled(Ast *ast, Options *o, GivenList *given, const char **error);

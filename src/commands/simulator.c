@@ -16,7 +16,7 @@
 
 /* With what the command line asks for besides the scene's outputs. */
 static Eqns *derive_asked(Compiler *c, const char *scene) {
-  return compiler_derive_wanted(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nasked = c->picture.asked.n,
+  return compiler_derive_wanted(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nextra_outputs = c->picture.asked.n,
                                   .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
 }
 
@@ -48,14 +48,14 @@ int simulator_lower(Compiler *c, Units *units) {
     if (runs) discontinuity_warn(e);
     IrUnit *fresh = compiler_new_unit(c, e), *home = NULL;
     for (uint32_t k = 0; k < units->n && !home; k++)
-      if (unit_shares(units->at[k], fresh)) home = units->at[k];
+      if (unit_accepts_scenes(units->at[k], fresh)) home = units->at[k];
     if (!home) vec_push(c->arena, units, home = fresh);
     home->lines = 1;
     if (runs) c->run = e, c->run_by = home;
-    unit_want(home, e, wants_of(e, &c->o));
+    unit_require(home, e, derivatives_required(e, &c->o));
     unit_add_scene(home, e);
     vec_push(c->arena, &all, ((Lowered){e, home, home->scenes.n - 1}));
-    if (options_more_digits(&c->o) && i + 1 == scenes.n) rounded_warn(c->ast, e->m->g, c->o.precision);
+    if (options_more_digits(&c->o) && i + 1 == scenes.n) precision_warn(c->ast, e->m->g, c->o.precision);
   }
   return finish_units(units, &all);
 }
@@ -64,7 +64,7 @@ int simulator_lower(Compiler *c, Units *units) {
 int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path) {
   const char *error = NULL;
   *path = output;
-  cache_remove_remains(c->arena);
+  cache_remove_stale_builds(c->arena);
   if (!output) *path = toolchain_simulator(c->arena, tools, texts->at, texts->n, &error);
   else if (!toolchain_build(c->arena, tools, texts->at, texts->n, output, &error)) *path = NULL;
   return *path ? STATUS_OK : usage_error(error);
@@ -111,6 +111,6 @@ int simulator_prepare(Compiler *c) {
   if (c->o.scene && !model_has_scene(c->ast, c->o.scene)) return STATUS_MODEL;
   if (!settings_compiled(c->ast, &c->o, &c->given, &error)) return error ? usage_error(error) : STATUS_MODEL;
   if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
-  if (!picture_prepare(&c->picture, c->ast, &c->o, &error)) return error ? usage_error(error) : STATUS_MODEL;
+  if (!run_request_prepare(&c->picture, c->ast, &c->o, &error)) return error ? usage_error(error) : STATUS_MODEL;
   return STATUS_OK;
 }

@@ -197,7 +197,7 @@ static const char *const multiplier =
   "  }\n"
   "}\n";
 
-void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out) {
+void csupport_expand(const char *text, const char *prefix, const char *lower, StrBuf *out) {
   for (const char *s = text; *s;) {
     int upper = strncmp(s, "LAG_", 4) == 0, is_lower = strncmp(s, "lag_", 4) == 0;
     if (upper || is_lower) {
@@ -210,16 +210,16 @@ void csupport_fill(const char *text, const char *prefix, const char *lower, StrB
 }
 
 void csupport_logic(const char *prefix, StrBuf *out) {
-  csupport_fill(logic, prefix, "", out);
-  csupport_fill(strcmp(prefix, "LAG") == 0 ? positive : positive_of_header, prefix, "", out);
+  csupport_expand(logic, prefix, "", out);
+  csupport_expand(strcmp(prefix, "LAG") == 0 ? positive : positive_of_header, prefix, "", out);
 }
-void csupport_factor(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(factorizer, prefix, lower, out); }
-void csupport_inverter(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(inverter, prefix, lower, out); }
+void csupport_factor(const char *prefix, const char *lower, StrBuf *out) { csupport_expand(factorizer, prefix, lower, out); }
+void csupport_inverter(const char *prefix, const char *lower, StrBuf *out) { csupport_expand(inverter, prefix, lower, out); }
 void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrBuf *out) {
   const char *const texts[] = {[SOLVE_PIVOTING] = solver, [SOLVE_DEFINITE] = definite_solver, [SOLVE_INVERSE] = multiplier};
-  csupport_fill(texts[kind], prefix, lower, out);
+  csupport_expand(texts[kind], prefix, lower, out);
 }
-void csupport_spline(const char *prefix, const char *lower, StrBuf *out) { csupport_fill(spline, prefix, lower, out); }
+void csupport_spline(const char *prefix, const char *lower, StrBuf *out) { csupport_expand(spline, prefix, lower, out); }
 
 /* Whether the program uses the parameter `name`: reads, writes, or needs it as workspace. */
 static int is_used(const Prog *p, const CStyle *st, const char *name) {
@@ -244,17 +244,17 @@ const char *cfunction_status(const Prog *p, const CStyle *style) {
 
 void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *out) {
   sb_putc(out, '\n');
-  if (style->indices) cindex_declare(style->indices, p, "", p->arena, out);
+  if (style->indices) index_tables_declare(style->indices, p, "", p->arena, out);
   if (f->comment) sb_printf(out, "/* %s */\n", comment_text(p->arena, f->comment));
   sb_printf(out, "%s {\n", f->head);
   write_unused(p, style, out);
-  if (f->own_work && p->solves.n) sb_printf(out, "  %s_REAL w[%u];\n", style->prefix, prog_work(p));
+  if (f->own_work && p->solves.n) sb_printf(out, "  %s_REAL w[%u];\n", style->prefix, prog_work_size(p));
   cwrite_body(p, style, p->arena, out);
   if (f->returns) sb_printf(out, "  return %s;\n", cfunction_status(p, style));
   sb_puts(out, "}\n");
 }
 
-const char *double_text(Arena *a, double x) {
+const char *shortest_double(Arena *a, double x) {
   char text[32];
   if (x > -1e9 && x < 1e9 && (double)(int)x == x) return arena_printf(a, "%d", (int)x); /* 10, not 1e+01 */
   num_format_double(text, x);

@@ -9,7 +9,7 @@
 void csupport_logic(const char *prefix, StrBuf *out);
 
 /* Function that solves linear systems of one kind in a loop: lower_solve, lower_solve_definite, or lower_multiply (w[2 n] =
- * right-hand side, solution). SOLVE_CONSTRAINED is not one of them: see cmath_kkt. */
+ * right-hand side, solution). SOLVE_CONSTRAINED is not one of them: see math_kkt_solver. */
 void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrBuf *out);
 
 /* `static LAG_REAL lower_spline(t, n, row)`, for inputs given by a table. */
@@ -23,7 +23,7 @@ void csupport_factor(const char *prefix, const char *lower, StrBuf *out);
 void csupport_inverter(const char *prefix, const char *lower, StrBuf *out);
 
 /* Appends text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
-void csupport_fill(const char *text, const char *prefix, const char *lower, StrBuf *out);
+void csupport_expand(const char *text, const char *prefix, const char *lower, StrBuf *out);
 
 typedef struct {
   const char *comment; /* text of the comment, or NULL */
@@ -42,6 +42,6 @@ void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *o
 void cwrite_guarded(const char *condition, const char *body, StrBuf *out);
 
 /* Shortest text that reads back as x; integers below 1e9 without exponent. */
-const char *double_text(Arena *a, double x);
+const char *shortest_double(Arena *a, double x);
 
 #endif

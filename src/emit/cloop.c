@@ -11,7 +11,7 @@ static Slot code_of(const Writer *w, const Loop *l, uint32_t turn, uint32_t offs
   return w->rolls.code[l->begin + turn * l->period + offset];
 }
 
-int cloop_together(const Writer *w, Slot a, Slot b) {
+int cloop_share_turn(const Writer *w, Slot a, Slot b) {
   uint32_t pa = w->rolls.place[a], pb = w->rolls.place[b];
   uint32_t la = pa ? w->rolls.loop[pa - 1] : 0, lb = pb ? w->rolls.loop[pb - 1] : 0;
   if (la != lb || !la) return la == lb;
@@ -22,7 +22,7 @@ int cloop_together(const Writer *w, Slot a, Slot b) {
   return x.kind == y.kind && x.step == y.step && x.back == y.back;
 }
 
-int cloop_holds(const Writer *w, Slot s) { return w->rolls.place[s] && w->rolls.loop[w->rolls.place[s] - 1]; }
+int cloop_contains(const Writer *w, Slot s) { return w->rolls.place[s] && w->rolls.loop[w->rolls.place[s] - 1]; }
 
 /* --- names and indices --- */
 
@@ -46,27 +46,27 @@ static const char *index_text(const Writer *w, int64_t first, int64_t step) {
 }
 
 /* Element of the kept array for the value at `place` of a loop, step turns further with each k; step 0: that element alone. */
-static Piece kept_value(const Writer *w, uint32_t place, int64_t step) {
+static CExpr kept_value(const Writer *w, uint32_t place, int64_t step) {
   uint32_t in = w->rolls.loop[place] - 1, offset, turn;
   const Loop *l = loop_at(w, in);
   offset = (place - l->begin) % l->period;
   turn = (place - l->begin) / l->period;
   int64_t first = (int64_t)(l->kept[offset] - 1) + turn;
   const char *index = step ? index_text(w, first, step) : arena_printf(w->a, "%lld", (long long)first);
-  return (Piece){arena_printf(w->a, "%s[%s]", w->kept[in][offset], index), C_ATOM, 1};
+  return (CExpr){arena_printf(w->a, "%s[%s]", w->kept[in][offset], index), C_ATOM, 1};
 }
 
 /* --- preparation --- */
 
 static void name_load(Writer *w, Slot s) {
-  if (s && w->p->ins.at[s].op == IR_LOAD) w->named_load[s] = 1;
+  if (s && w->p->ins.at[s].op == IR_LOAD) w->load_needs_name[s] = 1;
 }
 
-int cloop_names_load(const Writer *w, Slot s) { return w->named_load[s]; }
+int cloop_names_load(const Writer *w, Slot s) { return w->load_needs_name[s]; }
 
 void cloop_prepare(Writer *w) {
   const Rolls *r = &w->rolls;
-  w->named_load = ARENA_ARRAY(w->a, unsigned char, w->p->ins.n);
+  w->load_needs_name = ARENA_ARRAY(w->a, unsigned char, w->p->ins.n);
   w->kept = ARENA_ARRAY(w->a, const char **, r->loops.n);
   cnames_reserve(&w->names, "k");
   for (uint32_t k = 0; k < r->n; k++) {
@@ -183,14 +183,14 @@ static void name_turn_loads(Writer *w, Body *b) {
 }
 
 /* unit*index; a denominator that is not a power of two divides last, so that the result is rounded once. */
-static Piece multiple(const Writer *w, Num unit, const char *index) {
+static CExpr multiple(const Writer *w, Num unit, const char *index) {
   int dyadic = (unit.den & (unit.den - 1)) == 0;
   const char *up = c_number(w->a, w->style->prefix, dyadic ? unit : num_int(unit.num));
-  if (dyadic) return (Piece){arena_printf(w->a, "%s*(%s_LANE)(%s)", up, w->style->prefix, index), C_MUL, 0};
-  return (Piece){arena_printf(w->a, "%s*(%s_LANE)(%s)/%s", up, w->style->prefix, index, c_number(w->a, w->style->prefix, num_int(unit.den))), C_MUL, 0};
+  if (dyadic) return (CExpr){arena_printf(w->a, "%s*(%s_LANE)(%s)", up, w->style->prefix, index), C_MUL, 0};
+  return (CExpr){arena_printf(w->a, "%s*(%s_LANE)(%s)/%s", up, w->style->prefix, index, c_number(w->a, w->style->prefix, num_int(unit.den))), C_MUL, 0};
 }
 
-static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int which, Slot x) {
+static CExpr turn_operand(const Writer *w, const Body *b, uint32_t offset, int which, Slot x) {
   Step s = roll_step(&w->rolls, b->l, offset, which);
   uint32_t place = w->rolls.place[x] - 1; /* meaningless for loads and constants, where it is not used */
   switch (s.kind) {
@@ -202,12 +202,12 @@ static Piece turn_operand(const Writer *w, const Body *b, uint32_t offset, int w
       roll_number(&w->p->ins.at[x], &w->p->ins.at[y], &unit, &first);
       return multiple(w, unit, index_text(w, first, 1));
     }
-    case STEP_LOAD: return (Piece){turn_load(b, x, s.step)->name, C_ATOM, 0};
+    case STEP_LOAD: return (CExpr){turn_load(b, x, s.step)->name, C_ATOM, 0};
     case STEP_BEFORE: {
       uint32_t at = place + s.back * b->l->period - b->l->begin; /* offset of the same value inside the loop */
-      if (b->l->carried[at]) return (Piece){w->kept[b->number][at], C_ATOM, 1};
+      if (b->l->carried[at]) return (CExpr){w->kept[b->number][at], C_ATOM, 1};
       const char *index = index_text(w, (int64_t)(b->l->kept[at] - 1) - s.back, 1);
-      return (Piece){arena_printf(w->a, "%s[%s]", w->kept[b->number][at], index), C_ATOM, 1};
+      return (CExpr){arena_printf(w->a, "%s[%s]", w->kept[b->number][at], index), C_ATOM, 1};
     }
     case STEP_OTHER: return kept_value(w, place, s.step);
   }
@@ -226,10 +226,10 @@ static void write_value(Writer *w, const Body *b, uint32_t offset, Slot s, const
     cwriter_pivot(w, i);
     return;
   }
-  Piece x = cwriter_spell(w, i);
+  CExpr x = cwriter_spell(w, i);
   int carried = b->l->carried[offset];
   Ins named = named_by_stem(w, i), pair = named_by_stem(w, &w->p->ins.at[w->pair[s]]);
-  if (cwriter_pair(w, s, &named, &pair)) {
+  if (cwriter_declare_sincos(w, s, &named, &pair)) {
     x = w->piece[s];
   } else if (!kept && b->own_uses[offset] <= 1 && cwriter_is_short(w, x)) {
     w->piece[s] = x;
@@ -247,7 +247,7 @@ static void write_turn(Writer *w, const Body *b) {
   for (uint32_t k = 0; k < b->l->period; k++) {
     Slot s = code_of(w, b->l, 0, k);
     const Ins *i = &w->p->ins.at[s];
-    Piece before[3], now[3];
+    CExpr before[3], now[3];
     for (int which = 0; which < 3; which++) {
       Slot x = roll_operand(i, which);
       before[which] = w->piece[x];
@@ -296,7 +296,7 @@ void cloop_write(Writer *w, uint32_t loop) {
   for (uint32_t k = 0; k < b.l->period; k++)
     for (uint32_t t = 0; t < b.l->count && b.l->kept[k]; t++) {
       Slot s = code_of(w, b.l, t, k);
-      w->piece[s] = b.l->carried[k] ? (Piece){w->kept[loop][k], C_ATOM, 1} : kept_value(w, w->rolls.place[s] - 1, 0);
+      w->piece[s] = b.l->carried[k] ? (CExpr){w->kept[loop][k], C_ATOM, 1} : kept_value(w, w->rolls.place[s] - 1, 0);
     }
 }
 

@@ -56,7 +56,7 @@ static void put_letter(StrBuf *b, unsigned c) {
   } else sb_printf(b, "u%04x", c);
 }
 
-const char *cname_spelled(Arena *a, const char *name) {
+const char *cname_letters(Arena *a, const char *name) {
   StrBuf b = strbuf(a);
   static const char *const dots[] = {"", "_dot", "_ddot", "_dddot"};
   for (const unsigned char *s = (const unsigned char *)name; *s;) {
@@ -79,7 +79,7 @@ const char *cname_spelled(Arena *a, const char *name) {
 }
 
 const char *cname(Arena *a, const char *name) {
-  const char *text = cname_spelled(a, name);
+  const char *text = cname_letters(a, name);
   if (text[0] >= '0' && text[0] <= '9') text = arena_printf(a, "n%s", text);
   int taken = text[0] == '_' || strncmp(text, "lag_", 4) == 0 || strncmp(text, "LAG_", 4) == 0; /* the C library's, the runtime's */
   if (taken) text = arena_printf(a, "x%s", text);

@@ -31,7 +31,7 @@ const char *cnames_take(CNames *c, const char *name);
 const char *cname(Arena *a, const char *name);
 
 /* User's name in the letters of an identifier, for use after a prefix: may begin with a digit, and be a keyword. */
-const char *cname_spelled(Arena *a, const char *name);
+const char *cname_letters(Arena *a, const char *name);
 
 /* Whether id is a function of the C library, whose name an object with external linkage must not have. */
 int cname_is_library(const char *id);

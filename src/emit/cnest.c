@@ -26,10 +26,10 @@ static void put_term(StrBuf *b, int64_t factor, const char *counter) {
 
 /* The counter, or the table's element at the counter. */
 static const char *counted(const Nesting *x, const uint32_t *table, uint32_t n, const char *counter) {
-  return table ? arena_printf(x->body.a, "%s[%s]", cindex_name(x->body.indices, table, n), counter) : counter;
+  return table ? arena_printf(x->body.a, "%s[%s]", index_table_name(x->body.indices, table, n), counter) : counter;
 }
 
-static const char *index_text(const Nesting *x, IrPlace at) {
+static const char *index_text(const Nesting *x, IrSubscript at) {
   StrBuf b = strbuf(x->body.a);
   int64_t first = at.first;
   put_term(&b, has_rows(x->n) ? at.by_row : 0, counted(x, at.row_at, x->n->rows, x->i));
@@ -44,8 +44,8 @@ static const char *place(const Nesting *x, uint32_t k) { return index_text(x, x-
 /* First turn of row i + behind. */
 static const char *turn_of_row(const Nesting *x, int behind) {
   const Nest *n = x->n;
-  if (!n->begin) return index_text(x, (IrPlace){.first = behind ? n->turns : 0, .by_row = n->skew + (behind ? n->more : 0)});
-  return arena_printf(x->body.a, "%s[%s%s]", cindex_name(x->body.indices, n->begin, n->rows + 1), x->i, behind ? " + 1" : "");
+  if (!n->begin) return index_text(x, (IrSubscript){.first = behind ? n->turns : 0, .by_row = n->skew + (behind ? n->more : 0)});
+  return arena_printf(x->body.a, "%s[%s%s]", index_table_name(x->body.indices, n->begin, n->rows + 1), x->i, behind ? " + 1" : "");
 }
 
 static void line(Writer *w, const char *text) {
@@ -55,7 +55,7 @@ static void line(Writer *w, const char *text) {
 
 /* --- the turn --- */
 
-static void find_each(Nesting *x) {
+static void find_varying(Nesting *x) {
   const Prog *p = x->n->body;
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
@@ -70,12 +70,12 @@ static void write_load(Nesting *x, const Writer *around, Slot s) {
   if (i->array == ARR_OUTER) {
     w->piece[s] = cwriter_operand(around, x->n->outer[i->index]);
   } else if (ir_is_scalar(i->array)) {
-    w->piece[s] = (Piece){w->style->in[i->array], C_ATOM, 0};
+    w->piece[s] = (CExpr){w->style->in[i->array], C_ATOM, 0};
   } else {
     const char *name = cnames_take(&w->names, i->name ? i->name : "sum");
     line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,
                          i->array == ARR_P && w->parameters ? w->parameters : cwriter_array(w, i->array), place(x, i->index)));
-    w->piece[s] = (Piece){name, C_ATOM, 0};
+    w->piece[s] = (CExpr){name, C_ATOM, 0};
   }
 }
 
@@ -158,12 +158,12 @@ void cnest_write(Writer *w, const Ins *i) {
   x.body.p = named_by_stems(w, n->body);
   x.body.uses = prog_uses(n->body);
   x.body.stored = ARENA_ARRAY(w->a, const char *, n->body->ins.n);
-  cwriter_new_pieces(&x.body);
+  cwriter_init_pieces(&x.body);
   x.body.rolls = roll_find(n->body, 0, UINT32_MAX, 0);
   x.each = ARENA_ARRAY(w->a, unsigned char, n->body->ins.n);
   x.partial = ARENA_ARRAY(w->a, const char *, n->body->stores.n + 1);
-  cwriter_find_pairs(&x.body);
-  find_each(&x);
+  cwriter_find_sincos(&x.body);
+  find_varying(&x);
   cwriter_flush_title(w);
   x.body.title = NULL;
   write_rows(&x, w);
@@ -203,9 +203,9 @@ void cnest_prepare(Writer *w) {
   if (!w->p->nests.n) return;
   w->indices = w->style->indices;
   if (!w->indices) {
-    CIndices *own = ARENA_NEW(w->a, CIndices);
+    IndexTables *own = ARENA_NEW(w->a, IndexTables);
     own->stem = cnames_take(&w->names, "index");
-    cindex_declare(own, w->p, "  ", w->a, w->out);
+    index_tables_declare(own, w->p, "  ", w->a, w->out);
     w->indices = own;
   }
   if (w->style->params) copy_parameters(w);

@@ -2,7 +2,7 @@
 #include "emit/cwriter_impl.h"
 
 /* to[at], ... = the values; eight or more equal neighbours, such as zeros of a sparse matrix, by a loop. */
-static void write_room(Writer *w, const char *to, uint32_t at, const Slot *values, uint32_t n) {
+static void write_entries_from(Writer *w, const char *to, uint32_t at, const Slot *values, uint32_t n) {
   enum { MANY = 8 };
   for (uint32_t j = 0, end; j < n; j = end) {
     for (end = j + 1; end < n && values[end] == values[j];) end++;
@@ -33,8 +33,8 @@ static void write_constrained(Writer *w, const Solve *k) {
 static void write_matrix(Writer *w, const Solve *k) {
   uint32_t n = k->n;
   if (k->band < n / 2 - 1) write_entries(w, k, n * n);
-  else if (!k->definite) write_room(w, "w", 0, k->matrix, n * n);
-  else for (uint32_t i = 0; i < n; i++) write_room(w, "w", i * n + i, k->matrix + i * n + i, n - i);
+  else if (!k->definite) write_entries_from(w, "w", 0, k->matrix, n * n);
+  else for (uint32_t i = 0; i < n; i++) write_entries_from(w, "w", i * n + i, k->matrix + i * n + i, n - i);
 }
 
 void csolve_write(Writer *w, const Ins *i) {
@@ -47,14 +47,14 @@ void csolve_write(Writer *w, const Ins *i) {
     return;
   }
   if (k->inverse) {
-    write_room(w, "w", 0, k->rhs, n);
+    write_entries_from(w, "w", 0, k->rhs, n);
     sb_printf(w->out, "  %s(%u, %s + %u, w);\n", st->multiply, n, st->in[ARR_P], k->inverse);
     return;
   }
   if (k->matrix && !st->factor) write_matrix(w, k);
-  else if (k->matrix) write_room(w, "w", M, k->matrix, n * n);
+  else if (k->matrix) write_entries_from(w, "w", M, k->matrix, n * n);
   if (st->factor && k->matrix) sb_printf(w->out, "  %s_PIVOT(%s(%u, w + %u));\n", st->prefix, st->factor, n, M);
-  write_room(w, "w", b, k->rhs, n);
+  write_entries_from(w, "w", b, k->rhs, n);
   if (st->factor) sb_printf(w->out, "  %s(%u, w + %u);\n", st->substitute, n, M);
   else sb_printf(w->out, "  %s_PIVOT(%s%s(%u, %u, w, w + %u));\n", st->prefix, st->solve, k->definite ? "_definite" : "", n, k->band, b);
 }
@@ -62,6 +62,6 @@ void csolve_write(Writer *w, const Ins *i) {
 void csolve_write_inverse(Writer *w, const Ins *i) {
   const Solve *k = &w->p->solves.at[i->index];
   cwriter_flush_title(w);
-  write_room(w, w->style->in[ARR_P], k->place, k->matrix, solve_elements(k));
+  write_entries_from(w, w->style->in[ARR_P], k->place, k->matrix, solve_elements(k));
   sb_printf(w->out, "  %s(%u, %s + %u);\n", w->style->invert, k->n, w->style->in[ARR_P], k->place);
 }

@@ -83,13 +83,13 @@ const char *comment_text(Arena *a, const char *s) {
 
 /* --- expressions --- */
 
-Piece cwriter_operand(const Writer *w, Slot s) {
-  if (!s) return (Piece){arena_printf(w->a, "%s_C(0.0)", w->style->prefix), C_ATOM, 0};
+CExpr cwriter_operand(const Writer *w, Slot s) {
+  if (!s) return (CExpr){arena_printf(w->a, "%s_C(0.0)", w->style->prefix), C_ATOM, 0};
   return w->piece[s];
 }
 
 static const char *wrapped(Writer *w, Slot s, int prec) {
-  Piece x = cwriter_operand(w, s);
+  CExpr x = cwriter_operand(w, s);
   return x.prec < prec ? arena_printf(w->a, "(%s)", x.text) : x.text;
 }
 
@@ -100,44 +100,44 @@ static int is_power_of_two(const Ins *i) {
 }
 
 /* a op b, grouped as computed: the text rounds as the program does. */
-static Piece infix(Writer *w, const Ins *i, const char *op, int prec) {
-  Piece right = cwriter_operand(w, i->b);
+static CExpr infix(Writer *w, const Ins *i, const char *op, int prec) {
+  CExpr right = cwriter_operand(w, i->b);
   int flat = i->op == IR_MUL && right.prec == C_MUL && right.text[0] != '-' && is_power_of_two(&w->p->ins.at[i->a]);
   const char *a = wrapped(w, i->a, prec), *b = flat ? right.text : wrapped(w, i->b, prec == C_MUL ? C_ATOM : prec + 1);
-  return (Piece){arena_printf(w->a, "%s%s%s", a, op, b), prec, 0};
+  return (CExpr){arena_printf(w->a, "%s%s%s", a, op, b), prec, 0};
 }
 
-static Piece constant(Writer *w, const Ins *i) {
+static CExpr constant(Writer *w, const Ins *i) {
   const char *text = c_number(w->a, w->style->prefix, i->number);
-  return (Piece){text, strchr(text, '/') ? C_MUL : text[0] == '-' ? C_UNARY : C_ATOM, 0};
+  return (CExpr){text, strchr(text, '/') ? C_MUL : text[0] == '-' ? C_UNARY : C_ATOM, 0};
 }
 
 /* Negation: -a*b is (-a)*b, which rounds like -(a*b); and -(-a*b) is a*b. */
-static Piece negative(Writer *w, const Ins *i) {
-  Piece x = cwriter_operand(w, i->a);
+static CExpr negative(Writer *w, const Ins *i) {
+  CExpr x = cwriter_operand(w, i->a);
   int product = x.prec == C_MUL;
-  if (product && x.text[0] == '-') return (Piece){x.text + 1, C_MUL, 0};
-  return (Piece){arena_printf(w->a, "-%s", wrapped(w, i->a, product ? C_MUL : C_ATOM)), product ? C_MUL : C_UNARY, 0};
+  if (product && x.text[0] == '-') return (CExpr){x.text + 1, C_MUL, 0};
+  return (CExpr){arena_printf(w->a, "-%s", wrapped(w, i->a, product ? C_MUL : C_ATOM)), product ? C_MUL : C_UNARY, 0};
 }
 
-static Piece macro(Writer *w, const char *name, Slot a, Slot b, Slot c, int n) {
+static CExpr macro(Writer *w, const char *name, Slot a, Slot b, Slot c, int n) {
   const char *x = cwriter_operand(w, a).text, *y = cwriter_operand(w, b).text, *z = cwriter_operand(w, c).text, *m = w->style->prefix;
   const char *t = n == 1 ? arena_printf(w->a, "%s_%s(%s)", m, name, x) : n == 2 ? arena_printf(w->a, "%s_%s(%s, %s)", m, name, x, y)
                          : arena_printf(w->a, "%s_%s(%s, %s, %s)", m, name, x, y, z);
-  return (Piece){t, C_ATOM, 0};
+  return (CExpr){t, C_ATOM, 0};
 }
 
 /* Whether the function is embedded in the file. */
 static int is_own(const Writer *w, const char *fn) { return w->style->math && (strcmp(fn, "sin") == 0 || strcmp(fn, "cos") == 0); }
 
-static Piece call1(Writer *w, const char *fn, Slot a) {
-  if (is_own(w, fn)) return (Piece){arena_printf(w->a, "%s_%s(%s)", w->style->math, fn, cwriter_operand(w, a).text), C_ATOM, 0};
-  return (Piece){arena_printf(w->a, "%s_FN(%s)(%s)", w->style->prefix, fn, cwriter_operand(w, a).text), C_ATOM, 0};
+static CExpr call1(Writer *w, const char *fn, Slot a) {
+  if (is_own(w, fn)) return (CExpr){arena_printf(w->a, "%s_%s(%s)", w->style->math, fn, cwriter_operand(w, a).text), C_ATOM, 0};
+  return (CExpr){arena_printf(w->a, "%s_FN(%s)(%s)", w->style->prefix, fn, cwriter_operand(w, a).text), C_ATOM, 0};
 }
 
-static Piece call2(Writer *w, const char *fn, Slot a, Slot b) {
+static CExpr call2(Writer *w, const char *fn, Slot a, Slot b) {
   const char *x = cwriter_operand(w, a).text, *y = cwriter_operand(w, b).text; /* slot 0 is the number 0 */
-  return (Piece){arena_printf(w->a, "%s_FN(%s)(%s, %s)", w->style->prefix, fn, x, y), C_ATOM, 0};
+  return (CExpr){arena_printf(w->a, "%s_FN(%s)(%s, %s)", w->style->prefix, fn, x, y), C_ATOM, 0};
 }
 
 /* Element `index` of an array: p->m1 where the parameters are a struct. */
@@ -149,31 +149,31 @@ static const char *element(const Writer *w, const char *array, uint32_t index) {
 
 const char *cwriter_array(const Writer *w, IrArray array) { return array == ARR_CELL ? w->cells : w->style->in[array]; }
 
-static Piece load(const Writer *w, const Ins *i) {
+static CExpr load(const Writer *w, const Ins *i) {
   const char *array = cwriter_array(w, i->array);
-  return (Piece){ir_is_scalar(i->array) ? array : element(w, array, i->index), C_ATOM, 0};
+  return (CExpr){ir_is_scalar(i->array) ? array : element(w, array, i->index), C_ATOM, 0};
 }
 
 /* sign, min and max through SELECT: vectors have no ternary. */
-static Piece choose(Writer *w, const Ins *i) {
+static CExpr choose(Writer *w, const Ins *i) {
   const char *m = w->style->prefix, *a = wrapped(w, i->a, C_CMP + 1);
   if (i->op == IR_SIGN)
-    return (Piece){arena_printf(w->a, "%s_SELECT(%s > %s_C(0.0), %s_C(1.0), %s_SELECT(%s < %s_C(0.0), -%s_C(1.0), %s_C(0.0)))", m, a,
+    return (CExpr){arena_printf(w->a, "%s_SELECT(%s > %s_C(0.0), %s_C(1.0), %s_SELECT(%s < %s_C(0.0), -%s_C(1.0), %s_C(0.0)))", m, a,
                                 m, m, m, a, m, m, m), C_ATOM, 0};
   const char *b = wrapped(w, i->b, C_CMP + 1);
-  return (Piece){arena_printf(w->a, "%s_SELECT(%s %s %s, %s, %s)", m, a, i->op == IR_MIN ? "<" : ">", b, a, b), C_ATOM, 0};
+  return (CExpr){arena_printf(w->a, "%s_SELECT(%s %s %s, %s, %s)", m, a, i->op == IR_MIN ? "<" : ">", b, a, b), C_ATOM, 0};
 }
 
-static Piece solved(Writer *w, const Ins *i) {
+static CExpr solved(Writer *w, const Ins *i) {
   const Solve *k = &w->p->solves.at[w->p->ins.at[i->a].index];
-  return (Piece){arena_printf(w->a, "w[%u]", k->inverse ? k->n + i->index : k->place + (k->n + k->m) * k->n + i->index), C_ATOM, 0};
+  return (CExpr){arena_printf(w->a, "w[%u]", k->inverse ? k->n + i->index : k->place + (k->n + k->m) * k->n + i->index), C_ATOM, 0};
 }
 
-Piece cwriter_spell(Writer *w, const Ins *i) {
+CExpr cwriter_spell(Writer *w, const Ins *i) {
   const char *m = w->style->prefix;
   switch (i->op) {
     case IR_CONST: return constant(w, i);
-    case IR_PI: return (Piece){arena_printf(w->a, "%s_C(3.14159265358979323846264338327950288)", m), C_ATOM, 0};
+    case IR_PI: return (CExpr){arena_printf(w->a, "%s_C(3.14159265358979323846264338327950288)", m), C_ATOM, 0};
     case IR_LOAD: return load(w, i);
     case IR_ADD: return infix(w, i, " + ", C_ADD);
     case IR_SUB: return infix(w, i, " - ", C_ADD);
@@ -194,7 +194,7 @@ Piece cwriter_spell(Writer *w, const Ins *i) {
     case IR_SOLVED: return solved(w, i);
     case IR_PIVOT: case IR_SOLVE: case IR_INVERT: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }
-  return (Piece){"", C_ATOM, 0};
+  return (CExpr){"", C_ATOM, 0};
 }
 
 /* --- statements --- */
@@ -215,7 +215,7 @@ void cwriter_statement(Writer *w, const char *text) {
 }
 
 /* Whether the text is short enough to stand inside another expression; a long prefix counts as three letters. */
-int cwriter_is_short(const Writer *w, Piece x) {
+int cwriter_is_short(const Writer *w, CExpr x) {
   enum { INLINE_MAX = 64 };
   size_t n = strlen(x.text), prefix = strlen(w->style->prefix);
   for (const char *s = x.text; prefix > 3 && (s = strstr(s, w->style->prefix)) != NULL; s += prefix) n -= prefix - 3;
@@ -235,19 +235,19 @@ static int is_identifier(const char *s) {
 }
 
 /* Name of an operand if it is an identifier with a meaning (not w1); else NULL. */
-static const char *telling(const Piece *x) { return x->text && !x->counted && is_identifier(x->text) ? x->text : NULL; }
+static const char *meaningful_name(const CExpr *x) { return x->text && !x->counted && is_identifier(x->text) ? x->text : NULL; }
 
 static const char *made_name(Writer *w, const Ins *i) {
-  Piece x = cwriter_operand(w, i->a), y = cwriter_operand(w, i->b);
+  CExpr x = cwriter_operand(w, i->a), y = cwriter_operand(w, i->b);
   const Ins *top = &w->p->ins.at[i->a];
-  return ir_made_name(w->a, i, top->op == IR_CONST && num_is_one(top->number), telling(&x), telling(&y));
+  return ir_made_name(w->a, i, top->op == IR_CONST && num_is_one(top->number), meaningful_name(&x), meaningful_name(&y));
 }
 
-Piece cwriter_name(Writer *w, const Ins *i) {
+CExpr cwriter_name(Writer *w, const Ins *i) {
   const char *made = i->name ? i->name : made_name(w, i);
-  if (made) return (Piece){cnames_take(&w->names, made), C_ATOM, 0};
+  if (made) return (CExpr){cnames_take(&w->names, made), C_ATOM, 0};
   const char *stem = ir_is_condition(i->op) ? "is" : "w";
-  return (Piece){cnames_take(&w->names, arena_printf(w->a, "%s%u", stem, ++w->temps)), C_ATOM, 1};
+  return (CExpr){cnames_take(&w->names, arena_printf(w->a, "%s%u", stem, ++w->temps)), C_ATOM, 1};
 }
 
 /* Comment for a name that C cannot spell: x1', and the derivatives d_x1' and x1'_drift. */
@@ -261,7 +261,7 @@ static const char *meaning(Writer *w, const char *name) {
   return drifts ? arena_printf(w->a, "rate of %s, without q''", name) : by ? name + 4 : name;
 }
 
-void cwriter_declare(Writer *w, Slot s, Piece name, Piece x) {
+void cwriter_declare(Writer *w, Slot s, CExpr name, CExpr x) {
   const Ins *i = &w->p->ins.at[s];
   cwriter_flush_title(w);
   const char *type = ir_is_condition(i->op) ? "MASK" : "REAL";
@@ -306,7 +306,7 @@ static void write_table(Writer *w, Slot s, const Ins *i) {
   const IrTable *table = &w->p->tables.at[i->index];
   const char *name = w->style->rows ? w->style->rows[i->index] : cnames_take(&w->names, arena_printf(w->a, "%s_rows", table->name));
   if (!w->style->rows) cwrite_rows(table, name, "  ", w->a, w->out);
-  w->piece[s] = (Piece){arena_printf(w->a, "%s(%s, %u, %s)", w->style->spline, cwriter_operand(w, i->a).text, table->curve->n, name), C_ATOM, 0};
+  w->piece[s] = (CExpr){arena_printf(w->a, "%s(%s, %u, %s)", w->style->spline, cwriter_operand(w, i->a).text, table->curve->n, name), C_ATOM, 0};
 }
 
 /* Used loads of one array, by index; 0: none. */
@@ -330,7 +330,7 @@ static void write_array(Writer *w, int array) {
   const Slot *at = loads_of(w, array, &n);
   for (uint32_t k = 0; k < n; k++) {
     if (!at[k]) continue;
-    Piece x = load(w, &w->p->ins.at[at[k]]);
+    CExpr x = load(w, &w->p->ins.at[at[k]]);
     if (w->style->loads_inline || ir_is_scalar((IrArray)array) || array >= ARR_SUMS) {
       w->piece[at[k]] = x;
       continue;
@@ -344,7 +344,7 @@ static void write_array(Writer *w, int array) {
     const char *full = column ? arena_printf(w->a, ", %s", text) : arena_printf(w->a, "  const %s_REAL %s", w->style->prefix, text);
     sb_puts(w->out, full);
     column += strlen(full);
-    w->piece[at[k]] = (Piece){name, C_ATOM, 0};
+    w->piece[at[k]] = (CExpr){name, C_ATOM, 0};
   }
   if (column) sb_puts(w->out, ";\n");
 }
@@ -374,7 +374,7 @@ static void count_uses(Writer *w) {
 }
 
 /* Pairs the sine and cosine of the same value: one sincos call computes both. */
-void cwriter_find_pairs(Writer *w) {
+void cwriter_find_sincos(Writer *w) {
   const Prog *p = w->p;
   Slot *sine = ARENA_ARRAY(w->a, Slot, p->ins.n);
   w->pair = ARENA_ARRAY(w->a, Slot, p->ins.n);
@@ -383,14 +383,14 @@ void cwriter_find_pairs(Writer *w) {
       const Ins *i = &p->ins.at[s];
       if (i->op != IR_FN1 || strcmp(i->text, turn ? "cos" : "sin") != 0) continue;
       if (!turn) sine[i->a] = s;
-      else if (sine[i->a] && cloop_together(w, s, sine[i->a])) w->pair[w->pair[s] = sine[i->a]] = s;
+      else if (sine[i->a] && cloop_share_turn(w, s, sine[i->a])) w->pair[w->pair[s] = sine[i->a]] = s;
     }
 }
 
 /* Appends "sin_x, cos_x" to names and "x, &sin_x, &cos_x" to arguments. */
 static void declare_pair(Writer *w, Slot s, const Ins *first, const Ins *second, StrBuf *names, StrBuf *arguments) {
   const char *x = cwriter_operand(w, first->a).text;
-  Piece a = cwriter_name(w, first), b = cwriter_name(w, second);
+  CExpr a = cwriter_name(w, first), b = cwriter_name(w, second);
   int in_order = strcmp(first->text, "sin") == 0;
   sb_printf(names, "%s%s, %s", names->n ? ", " : "", a.text, b.text);
   sb_printf(arguments, "%s%s, &%s, &%s", arguments->n ? ", " : "", x, in_order ? a.text : b.text, in_order ? b.text : a.text);
@@ -398,7 +398,7 @@ static void declare_pair(Writer *w, Slot s, const Ins *first, const Ins *second,
   w->piece[w->pair[s]] = b;
 }
 
-int cwriter_pair(Writer *w, Slot s, const Ins *first, const Ins *second) {
+int cwriter_declare_sincos(Writer *w, Slot s, const Ins *first, const Ins *second) {
   Slot pair = w->pair[s];
   if (!pair || pair < s) return pair != 0;
   StrBuf names = strbuf(w->a), arguments = strbuf(w->a);
@@ -409,25 +409,25 @@ int cwriter_pair(Writer *w, Slot s, const Ins *first, const Ins *second) {
   return 1;
 }
 
-static int is_there(const Writer *w, Slot x, Slot s) { return x < s || w->p->ins.at[x].op == IR_LOAD; }
+static int is_computed_before(const Writer *w, Slot x, Slot s) { return x < s || w->p->ins.at[x].op == IR_LOAD; }
 
-/* Collects, from s on, up to ABREAST sines or cosines with a pair whose angles are known when s is computed; returns their number. */
-static uint32_t find_abreast(const Writer *w, Slot s, Slot *at) {
+/* Collects, from s on, up to SINCOS_BATCH sines or cosines with a pair whose angles are known when s is computed; returns their number. */
+static uint32_t collect_sincos(const Writer *w, Slot s, Slot *at) {
   enum { NEAR = 400 };
   uint32_t n = 0;
-  for (Slot k = s; k < w->p->ins.n && k < s + NEAR && n < ABREAST; k++)
-    if (w->pair[k] > k && !w->piece[k].text && !cloop_holds(w, k) && is_there(w, w->p->ins.at[k].a, s)) at[n++] = k;
+  for (Slot k = s; k < w->p->ins.n && k < s + NEAR && n < SINCOS_BATCH; k++)
+    if (w->pair[k] > k && !w->piece[k].text && !cloop_contains(w, k) && is_computed_before(w, w->p->ins.at[k].a, s)) at[n++] = k;
   return n;
 }
 
 /* Computes sines and cosines outside of loops by calls for two or four angles, which processors overlap. Returns 0 if s has no
  * pair, or fewer than two angles are left. */
-static int write_abreast(Writer *w, Slot s) {
+static int write_sincos_batch(Writer *w, Slot s) {
   if (!w->pair[s] || w->piece[s].text) return w->pair[s] != 0;
-  Slot at[ABREAST];
-  uint32_t n = find_abreast(w, s, at);
+  Slot at[SINCOS_BATCH];
+  uint32_t n = collect_sincos(w, s, at);
   if (n < 2) return 0;
-  n = n < ABREAST ? 2 : ABREAST;
+  n = n < SINCOS_BATCH ? 2 : SINCOS_BATCH;
   for (uint32_t k = 0; k < n; k++) write_arrays_of(w, at[k]);
   StrBuf names = strbuf(w->a), arguments = strbuf(w->a);
   for (uint32_t k = 0; k < n; k++) declare_pair(w, at[k], &w->p->ins.at[at[k]], &w->p->ins.at[w->pair[at[k]]], &names, &arguments);
@@ -464,8 +464,8 @@ void cwriter_instruction(Writer *w, Slot s) {
     cnest_write(w, i);
     return;
   }
-  if (ir_is_leaf(i->op) || write_abreast(w, s) || cwriter_pair(w, s, i, &w->p->ins.at[w->pair[s]])) return;
-  Piece x = cwriter_spell(w, i);
+  if (ir_is_leaf(i->op) || write_sincos_batch(w, s) || cwriter_declare_sincos(w, s, i, &w->p->ins.at[w->pair[s]])) return;
+  CExpr x = cwriter_spell(w, i);
   int told = !i->name || (w->stored[s] && strcmp(i->name, w->stored[s]) == 0); /* the store's comment says the name */
   int part = w->uses[s] <= 1 && told && cwriter_is_short(w, x) && i->op != IR_SOLVED;
   if (part) w->piece[s] = x;
@@ -482,20 +482,20 @@ static void write_store(Writer *w, const Store *st) {
 }
 
 /* Store k + 1 if its element follows that of store k in the same array; else NULL. */
-static const Store *beside(const Writer *w, uint32_t k) {
+static const Store *next_store(const Writer *w, uint32_t k) {
   const Store *st = &w->p->stores.at[k];
   return k + 1 < w->p->stores.n && st[1].array == st->array && st[1].index == st->index + 1 ? st + 1 : NULL;
 }
 
 /* Whether store k, at an even index, is written together with its neighbour. */
 static int is_paired(const Writer *w, uint32_t k) {
-  const Store *st = &w->p->stores.at[k], *other = beside(w, k);
+  const Store *st = &w->p->stores.at[k], *other = next_store(w, k);
   if (!(w->style->paired >> st->array & 1) || st->index % 2 != 0) return 0;
   return other ? !w->rolls.stored[k + 1] : (w->style->padded >> st->array & 1) != 0;
 }
 
 static uint32_t write_pair(Writer *w, uint32_t k) {
-  const Store *st = &w->p->stores.at[k], *other = beside(w, k);
+  const Store *st = &w->p->stores.at[k], *other = next_store(w, k);
   const char *x = cwriter_operand(w, st->slot).text, *y = cwriter_operand(w, other ? other->slot : 0).text;
   cwriter_statement(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
   sb_putc(w->out, '\n');
@@ -533,8 +533,8 @@ static int stores_apart(const Prog *p, const CStyle *style) {
   return 1;
 }
 
-void cwriter_new_pieces(Writer *w) {
-  w->piece = ARENA_ARRAY(w->a, Piece, w->p->ins.n);
+void cwriter_init_pieces(Writer *w) {
+  w->piece = ARENA_ARRAY(w->a, CExpr, w->p->ins.n);
   for (Slot s = 1; s < w->p->ins.n; s++) {
     const Ins *i = &w->p->ins.at[s];
     if (i->op == IR_CONST || i->op == IR_PI) w->piece[s] = cwriter_spell(w, i);
@@ -552,10 +552,10 @@ static void write_code(Writer *w) {
 
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   Writer w = {.p = p, .style = style, .a = a, .names = cnames_new(a), .out = out};
-  uint32_t from = p->nests.n ? 0 : style->seldom_called ? ROLL_SELDOM_FROM : ROLL_FROM; /* programs with nests are long */
+  uint32_t from = p->nests.n ? 0 : style->prefer_short_code ? ROLL_SELDOM_FROM : ROLL_FROM; /* programs with nests are long */
   w.rolls = roll_find(p, arrays_by_index(style), from, stores_apart(p, style));
   w.stored = ARENA_ARRAY(a, const char *, p->ins.n);
-  cwriter_new_pieces(&w);
+  cwriter_init_pieces(&w);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
   for (const char *const *g = style->globals; g && *g; g++) cnames_reserve(&w.names, *g);
   for (uint32_t k = 0; style->indices && k < style->indices->all.n; k++) cnames_reserve(&w.names, style->indices->all.at[k].name);
@@ -564,7 +564,7 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   cloop_prepare(&w);
   cnest_prepare(&w);
   if (prog_has_pivots(p)) sb_printf(out, "  %s_PIVOTS;\n", style->prefix);
-  cwriter_find_pairs(&w);
+  cwriter_find_sincos(&w);
   if (w.rolls.loops.n || p->nests.n) write_arrays(&w);
   write_code(&w);
   write_arrays(&w);
@@ -583,7 +583,7 @@ static void put_count(StrBuf *b, uint64_t n, const char *one, const char *many) 
   sb_printf(b, "%s%llu %s", b->n ? ", " : "", (unsigned long long)n, n == 1 ? one : many);
 }
 
-const char *ops_text(const Prog *p, Arena *a) {
+const char *op_count_text(const Prog *p, Arena *a) {
   OpCount c = prog_count(p);
   StrBuf b = strbuf(a);
   put_count(&b, c.add, "addition", "additions");

@@ -5,7 +5,7 @@
 #ifndef LAGC_CWRITER_H
 #define LAGC_CWRITER_H
 
-#include "emit/cindex.h"
+#include "emit/index_tables.h"
 #include "emit/cnames.h"
 #include "ir/prog.h"
 
@@ -25,8 +25,8 @@ typedef struct {
   const char *factor, *substitute;  /* functions used instead of `solve` where factors are kept; or NULL */
   const char *spline;               /* function that evaluates tables */
   const char *const *rows;          /* names of the arrays of table rows; NULL: the body declares them */
-  CIndices *indices;                /* index tables of the file, including the program's; NULL: the body declares them */
-  int seldom_called;                /* 1: prefer short code to fast code */
+  IndexTables *indices;                /* index tables of the file, including the program's; NULL: the body declares them */
+  int prefer_short_code;                /* 1: prefer short code to fast code */
   const char *math;                 /* prefix of the embedded sincos, sin and cos; NULL: LAG_FN(sin) */
   int loads_inline;                 /* 1: array elements are spelled at each use, not named at the top */
 } CStyle;
@@ -38,7 +38,7 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out);
 void cwrite_rows(const IrTable *table, const char *name, const char *indent, Arena *a, StrBuf *out);
 
 /* "36 operations: 12 additions, 18 multiplications, 2 divisions, 4 calls of sin, cos, ..." */
-const char *ops_text(const Prog *p, Arena *a);
+const char *op_count_text(const Prog *p, Arena *a);
 
 /* Whether the program, or a body of its nests, reads the array. */
 int prog_reads(const Prog *p, IrArray array);

@@ -5,14 +5,14 @@
 #include "emit/cwriter.h"
 #include "ir/roll.h"
 
-enum { ABREAST = 4 }; /* largest number of angles whose sines and cosines one call computes */
+enum { SINCOS_BATCH = 4 }; /* largest number of angles whose sines and cosines one call computes */
 enum { C_SELECT = 1, C_OR, C_AND, C_CMP, C_ADD, C_MUL, C_UNARY, C_ATOM };
 
 typedef struct {
   const char *text;
   int prec;
   int counted; /* 1: a generated name such as w1, without meaning */
-} Piece;
+} CExpr;
 
 typedef struct {
   const Prog *p;
@@ -21,7 +21,7 @@ typedef struct {
   CNames names;
   uint32_t *uses;
   const char **stored; /* by slot: comment of the store of its value */
-  Piece *piece; /* by slot: C text of its value */
+  CExpr *piece; /* by slot: C text of its value */
   Slot *pair;   /* by slot of a sine: the cosine of the same angle, and vice versa, where one call computes both; or 0 */
   StrBuf *out;
   uint32_t temps;
@@ -30,15 +30,15 @@ typedef struct {
   Rolls rolls;
   const char ***kept; /* [loops][period] arrays that hold a value of all turns; NULL if none does */
   unsigned char named[ARR_COUNT]; /* arrays whose loads have been declared */
-  unsigned char *named_load; /* by slot: a load used outside of loops, or by all turns of one */
+  unsigned char *load_needs_name; /* by slot: a load used outside of loops, or by all turns of one */
   const char *cells, *row, *turn; /* array of sums to which nests add, and the nests' counters */
-  const CIndices *indices; /* index tables of the nests */
+  const IndexTables *indices; /* index tables of the nests */
   const char *parameters; /* array copy of the parameters that nests read, if parameters are struct members; or NULL */
 } Writer;
 
-Piece cwriter_operand(const Writer *w, Slot s);
-Piece cwriter_spell(Writer *w, const Ins *i);
-int cwriter_is_short(const Writer *w, Piece x);
+CExpr cwriter_operand(const Writer *w, Slot s);
+CExpr cwriter_spell(Writer *w, const Ins *i);
+int cwriter_is_short(const Writer *w, CExpr x);
 
 /* Appends a statement, broken at spaces where it is long, without a line end. */
 void cwriter_statement(Writer *w, const char *text);
@@ -49,29 +49,29 @@ void cwriter_flush_title(Writer *w);
 const char *cwriter_array(const Writer *w, IrArray array);
 
 /* Clears the texts of all values and spells the constants, which need no statement and may be used in an earlier turn of a loop. */
-void cwriter_new_pieces(Writer *w);
+void cwriter_init_pieces(Writer *w);
 
 /* Writes an instruction outside the loops of cloop.c. */
 void cwriter_instruction(Writer *w, Slot s);
 
 /* Finds the pairs sin x, cos x that one sincos call computes. */
-void cwriter_find_pairs(Writer *w);
+void cwriter_find_sincos(Writer *w);
 
 /* Takes a name for a value: the user's, one derived from its operands, or w1, w2, ... */
-Piece cwriter_name(Writer *w, const Ins *i);
+CExpr cwriter_name(Writer *w, const Ins *i);
 
 /* Writes `const LAG_REAL name = x;`; slot s is spelled by that name from now on. */
-void cwriter_declare(Writer *w, Slot s, Piece name, Piece x);
+void cwriter_declare(Writer *w, Slot s, CExpr name, CExpr x);
 
 /* Declares a sine and its cosine by one sincos call, named after their instructions, unless done already. Returns 0 if slot s
  * has no pair. */
-int cwriter_pair(Writer *w, Slot s, const Ins *first, const Ins *second);
+int cwriter_declare_sincos(Writer *w, Slot s, const Ins *first, const Ins *second);
 
 /* Whether sin and cos of one operand can share a call: both outside of loops, or in the same turn of one loop in all turns. */
-int cloop_together(const Writer *w, Slot a, Slot b);
+int cloop_share_turn(const Writer *w, Slot a, Slot b);
 
 /* Whether slot s is computed in a loop. */
-int cloop_holds(const Writer *w, Slot s);
+int cloop_contains(const Writer *w, Slot s);
 
 /* Finds the loads that need a name; to be called before any text is written. */
 void cloop_prepare(Writer *w);

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "emit/cmath.h"
+#include "emit/embedded_math.h"
 #include "emit/header_impl.h"
 
 /* --- names --- */
@@ -25,7 +25,7 @@ static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTAT
 static const char **enumerators(Header *h, CNames *taken, const char *stem, const IrVar *v, uint32_t n) {
   const char **names = ARENA_ARRAY(h->a, const char *, n + 1);
   for (uint32_t i = 0; i < n; i++) {
-    const char *id = cased(h->a, cname_spelled(h->a, v[i].name), 1);
+    const char *id = cased(h->a, cname_letters(h->a, v[i].name), 1);
     names[i] = cnames_take(taken, arena_printf(h->a, "%s_%s%s", h->upper, stem, id));
   }
   return names;
@@ -58,8 +58,8 @@ static const char *const *globals_of(Header *h) {
 }
 
 static Header header_new(const IrUnit *u, const char *name, StrBuf *out) {
-  Header h = {.u = u, .scene = &u->scenes.at[0], .a = u->arena, .out = out, .file = name, .indices = ARENA_NEW(u->arena, CIndices)};
-  const char *id = cname_spelled(h.a, name);
+  Header h = {.u = u, .scene = &u->scenes.at[0], .a = u->arena, .out = out, .file = name, .indices = ARENA_NEW(u->arena, IndexTables)};
+  const char *id = cname_letters(h.a, name);
   if (id[0] == '_' || (id[0] >= '0' && id[0] <= '9')) id = arena_printf(h.a, "x%s", id);
   h.upper = cased(h.a, id, 1);
   h.lower = cased(h.a, id, 0);
@@ -128,7 +128,7 @@ static void write_usage(const Header *h) {
   sb_printf(h->out, " *   #define %s_IMPLEMENTATION\n *   #include \"%s.h\"\n *\n", m, h->file);
   sb_printf(h->out, " *   %s_params p;\n *   %s_state s;\n", f, f);
   sb_printf(h->out, " *   %s_defaults(&p); // as in scene %s\n *   %s_start(&p, &s);\n", f, h->scene->name, f);
-  const char *end = double_text(h->a, h->scene->t1), *step = double_text(h->a, (h->scene->t1 - h->scene->t0) / 1e4);
+  const char *end = shortest_double(h->a, h->scene->t1), *step = shortest_double(h->a, (h->scene->t1 - h->scene->t0) / 1e4);
   if (h->u->contacts.n) write_contact_loop(h, end, step);
   else sb_printf(h->out, " *   while (s.t < %s)\n *     if (%s_rk4_step(&p, &s, %s%s) != %s_OK) break;\n", end, f, step, in, m);
   const char *first = h->u->q.n ? arena_printf(h->a, "s.q[%s]", h->q[0]) : h->u->z.n ? arena_printf(h->a, "s.z[%s]", h->z[0]) : "s.t";
@@ -150,8 +150,8 @@ static void write_head(const Header *h, const char *equations) {
   sb_printf(h->out, "/* %s.h: %s\n *\n", comment_text(h->a, h->file), comment_text(h->a, u->doc[0] ? u->doc : u->name));
   sb_printf(h->out, " * Made by lagc from the model %s, scene %s; effects in use: %s.\n", u->name, h->scene->name, u->effects[0] ? u->effects : "none");
   if (u->fixed[0]) sb_printf(h->out, " * Parameters that are numbers here: %s.\n", u->fixed_values);
-  sb_printf(h->out, " * One evaluation of the equations of motion: %s.\n", ops_text(u->accel, h->a));
-  sb_printf(h->out, " * %s\n", cmath_text(u));
+  sb_printf(h->out, " * One evaluation of the equations of motion: %s.\n", op_count_text(u->accel, h->a));
+  sb_printf(h->out, " * %s\n", math_source_text(u));
   sb_puts(h->out, " * C99 or C++, <math.h> only; allocates nothing, keeps nothing. All values are in SI units.\n");
   sb_puts(h->out, " * This text may be used for any purpose without conditions (0BSD).\n");
   if (u->contacts.n)

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "emit/cmath.h"
-#include "emit/ctable.h"
+#include "emit/embedded_math.h"
+#include "emit/variable_tables.h"
 #include "emit/emit_impl.h"
 #include "emit/emit_taylor.h"
 
@@ -87,7 +87,7 @@ const char *const emit_state_args =
   "    const LAG_REAL *p, const LAG_REAL *u";
 
 CStyle emit_style(const File *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .invert = "lag_invert", .multiply = "lag_multiply", .kkt = "lag_kkt", .spline = "lag_spline", .math = cmath_prefix(f->u, "lag"),
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .invert = "lag_invert", .multiply = "lag_multiply", .kkt = "lag_kkt", .spline = "lag_spline", .math = math_prefix(f->u, "lag"),
                   .indices = f->indices};
 }
 
@@ -100,7 +100,7 @@ static int is_seldom_called(const IrUnit *u, const Prog *p) {
 
 void emit_function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *written) {
   CStyle st = emit_style(f, own, written);
-  st.seldom_called = is_seldom_called(f->u, p);
+  st.prefer_short_code = is_seldom_called(f->u, p);
   CFunction c = {.comment = comment, .head = head, .returns = 1};
   cfunction(p, &st, &c, f->out);
 }
@@ -108,7 +108,7 @@ void emit_function(const File *f, const Prog *p, const char *comment, const char
 static void accel(const File *f) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "a", "zd", "w", NULL}, *const written[] = {"a", "zd"};
   const char *what = !f->u->z.n ? "Accelerations" : f->u->q.n ? "Accelerations and rates" : "Rates";
-  const char *comment = arena_printf(f->a, "%s: %s.", what, ops_text(f->u->accel, f->a));
+  const char *comment = arena_printf(f->a, "%s: %s.", what, op_count_text(f->u->accel, f->a));
   const char *head = arena_printf(f->a, "static int accel(%s, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w)", emit_state_args);
   emit_function(f, f->u->accel, comment, head, own, written);
 }
@@ -132,7 +132,7 @@ static void emit_variation(const File *f) {
   const char *head = arena_printf(f->a, "static int variation(%s,\n    LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w)", emit_state_args);
   emit_function(f, u->variation, "dL/dq, the momenta dL/dq', and the generalised forces that are in no L.", head, own, written);
   head = arena_printf(f->a, "static int second(%s, LAG_REAL *h, LAG_REAL *w)", emit_state_args);
-  emit_function(f, u->second, arena_printf(f->a, "Their derivatives, those that are not zero: %s.", ops_text(u->second, f->a)), head, own2, written2);
+  emit_function(f, u->second, arena_printf(f->a, "Their derivatives, those that are not zero: %s.", op_count_text(u->second, f->a)), head, own2, written2);
 }
 
 static void emit_action(const File *f, uint32_t i) {
@@ -211,7 +211,7 @@ static void emit_linear(const File *f) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "a", "dr", "M", "w", NULL}, *const written[] = {"dr", "M"};
   const IrUnit *u = f->u;
   if (!u->linear) return;
-  const char *comment = arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.", ops_text(u->linear, f->a));
+  const char *comment = arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.", op_count_text(u->linear, f->a));
   const char *head = arena_printf(f->a, "static int linearise(%s, const LAG_REAL *a,\n    LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w)", emit_state_args);
   emit_function(f, u->linear, comment, head, own, written);
   entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
@@ -281,7 +281,7 @@ static void emit_start(const File *f, const IrScene *s, const char *id) {
   sb_puts(f->out, "  (void)p; (void)q; (void)v; (void)z;\n");
   if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
   if (f->u->z.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) z[i] = LAG_C(0.0);\n", f->u->z.n);
-  st.seldom_called = 1;
+  st.prefer_short_code = 1;
   st.indices = NULL;
   cwrite_body(s->start, &st, f->a, f->out);
   sb_puts(f->out, "}\n");
@@ -314,9 +314,9 @@ static void emit_exact(const File *f, const IrScene *s, const char *id) {
 
 /* Whether a table of the unit is written with macros. */
 static int has_long_tables(const IrUnit *u) {
-  int is_long = ctable_is_long(u->q.at, u->q.n) || ctable_is_long(u->z.at, u->z.n) || ctable_is_long(u->p.at, u->p.n) ||
-                ctable_is_long(u->u.at, u->u.n);
-  for (uint32_t i = 0; i < u->scenes.n; i++) is_long |= ctable_is_long(u->scenes.at[i].outputs.at, u->scenes.at[i].outputs.n);
+  int is_long = table_needs_macros(u->q.at, u->q.n) || table_needs_macros(u->z.at, u->z.n) || table_needs_macros(u->p.at, u->p.n) ||
+                table_needs_macros(u->u.at, u->u.n);
+  for (uint32_t i = 0; i < u->scenes.n; i++) is_long |= table_needs_macros(u->scenes.at[i].outputs.at, u->scenes.at[i].outputs.n);
   return is_long;
 }
 
@@ -324,11 +324,11 @@ static uint32_t work_size(const IrUnit *u) {
   uint32_t most = 0;
   const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->jumps, u->constraints.position, u->constraints.velocity, u->charge_values, u->charge_powers, u->switch_values};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    if (all[i] && prog_work(all[i]) > most) most = prog_work(all[i]);
+    if (all[i] && prog_work_size(all[i]) > most) most = prog_work_size(all[i]);
   for (uint32_t i = 0; i < u->events.n; i++)
-    if (prog_work(u->events.at[i].action) > most) most = prog_work(u->events.at[i].action);
+    if (prog_work_size(u->events.at[i].action) > most) most = prog_work_size(u->events.at[i].action);
   for (uint32_t i = 0; i < u->scenes.n; i++)
-    if (prog_work(u->scenes.at[i].observe) > most) most = prog_work(u->scenes.at[i].observe);
+    if (prog_work_size(u->scenes.at[i].observe) > most) most = prog_work_size(u->scenes.at[i].observe);
   return most;
 }
 
@@ -386,10 +386,10 @@ static void second_table(const IrUnit *u, StrBuf *out) {
 }
 
 static void emit_tables(const IrUnit *u, const char *name, const char *digest, StrBuf *out) {
-  ctable_vars("q_table", u->q.at, u->q.n, u->arena, out);
-  ctable_vars("z_table", u->z.at, u->z.n, u->arena, out);
-  ctable_vars("p_table", u->p.at, u->p.n, u->arena, out);
-  ctable_vars("u_table", u->u.at, u->u.n, u->arena, out);
+  table_vars("q_table", u->q.at, u->q.n, u->arena, out);
+  table_vars("z_table", u->z.at, u->z.n, u->arena, out);
+  table_vars("p_table", u->p.at, u->p.n, u->arena, out);
+  table_vars("u_table", u->u.at, u->u.n, u->arena, out);
   if (u->events.n) {
     sb_puts(out, "\nstatic const lag_event ev_table[] = {\n");
     for (uint32_t i = 0; i < u->events.n; i++)
@@ -425,12 +425,12 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
 }
 
 static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
-  ctable_vars(arena_printf(u->arena, "outputs_%s", id), s->outputs.at, s->outputs.n, u->arena, out);
+  table_vars(arena_printf(u->arena, "outputs_%s", id), s->outputs.at, s->outputs.n, u->arena, out);
   if (s->options.n) {
     sb_printf(out, "\nstatic const lag_option options_%s[] = {\n", id);
     for (uint32_t i = 0; i < s->options.n; i++) {
       const IrOption *o = &s->options.at[i];
-      sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, o->name), ctable_number(u->arena, o->value, NULL), o->text ? c_string(u->arena, o->text) : "NULL");
+      sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, o->name), table_number(u->arena, o->value, NULL), o->text ? c_string(u->arena, o->text) : "NULL");
     }
     sb_puts(out, "};\n");
   }
@@ -438,7 +438,7 @@ static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, 
     sb_printf(out, "\nstatic const lag_monitor monitors_%s[] = {\n", id);
     for (uint32_t i = 0; i < s->monitors.n; i++) {
       const IrMonitor *m = &s->monitors.at[i];
-      sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output, ctable_number(u->arena, m->limit, NULL), m->absolute);
+      sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output, table_number(u->arena, m->limit, NULL), m->absolute);
     }
     sb_puts(out, "};\n");
   }
@@ -483,13 +483,13 @@ static void emit_scene(const File *f, uint32_t index) {
   sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
   sb_printf(out, "  .model = &%s,\n  .params = params_%s, .start = start_%s,\n", name, id, id);
   if (u->constraints.of.n) sb_printf(out, "  .given = given_%s, .exactly = %d,\n", id, s->exactly);
-  sb_printf(out, "  .t0 = %s, .t1 = %s, .has_span = %d,\n", ctable_number(u->arena, s->t0, NULL), ctable_number(u->arena, s->t1, s->t1_digits), s->has_span);
+  sb_printf(out, "  .t0 = %s, .t1 = %s, .has_span = %d,\n", table_number(u->arena, s->t0, NULL), table_number(u->arena, s->t1, s->t1_digits), s->has_span);
   sb_printf(out, "  .method = %s, .noptions = %u, .options = %s,\n", s->method ? c_string(u->arena, s->method) : "NULL", s->options.n,
             list_name(u, s->options.n, "options", id));
-  sb_printf(out, "  .tolerance = %s,\n", ctable_number(u->arena, s->tolerance, NULL));
+  sb_printf(out, "  .tolerance = %s,\n", table_number(u->arena, s->tolerance, NULL));
   sb_printf(out, "  .nout = %u, .outputs = %s,\n", s->outputs.n, list_name(u, s->outputs.n, "outputs", id));
   if (has_forces(s)) sb_printf(out, "  .forces = forces_%s,\n", id);
-  sb_printf(out, "  .every = %s, .observe = observe_%s,\n", ctable_number(u->arena, s->every, NULL), id);
+  sb_printf(out, "  .every = %s, .observe = observe_%s,\n", table_number(u->arena, s->every, NULL), id);
   sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
   if (s->exact_of.n) sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
   sb_puts(out, "};\n");
@@ -499,27 +499,27 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
   sb_printf(out, "/* %s: %s\n", u->name, comment_text(u->arena, u->doc));
   sb_printf(out, " * Emitted by lagc; effects in use: %s.\n", u->effects[0] ? u->effects : "none");
   if (u->fixed[0]) sb_printf(out, " * Parameters that are numbers here: %s.\n", u->fixed_values);
-  sb_printf(out, " * Accelerations: %s.\n", ops_text(u->accel, u->arena));
-  if (u->nderived) sb_printf(out, " * Once for a set of parameters: %s.\n", ops_text(u->derived, u->arena));
-  sb_printf(out, " * %s\n", cmath_text(u));
+  sb_printf(out, " * Accelerations: %s.\n", op_count_text(u->accel, u->arena));
+  if (u->nderived) sb_printf(out, " * Once for a set of parameters: %s.\n", op_count_text(u->derived, u->arena));
+  sb_printf(out, " * %s\n", math_source_text(u));
   sb_puts(out, " * This text may be used for any purpose without conditions (0BSD). */\n");
   sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n\n");
 }
 
 void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
-  File f = {.u = u, .a = u->arena, .name = name, .globals = globals_of(u, name), .out = out, .indices = ARENA_NEW(u->arena, CIndices)};
+  File f = {.u = u, .a = u->arena, .name = name, .globals = globals_of(u, name), .out = out, .indices = ARENA_NEW(u->arena, IndexTables)};
   f.indices->stem = "lag_index";
   emit_head(u, out);
-  cmath_lanes("LAG", "lag", out);
+  math_lanes("LAG", "lag", out);
   sb_puts(out, prelude);
   csupport_logic("LAG", out);
   sb_putc(out, '\n');
-  cmath_functions(u, "LAG", "lag", out);
-  if (has_long_tables(u)) ctable_macros(out);
+  math_functions(u, "LAG", "lag", out);
+  if (has_long_tables(u)) table_macros(out);
   for (SolveKind kind = SOLVE_PIVOTING; kind <= SOLVE_INVERSE; kind++)
     if (kind != SOLVE_CONSTRAINED && needs_solver(u, kind)) csupport_solver(kind, "LAG", "lag", out);
   emit_inverses(&f);
-  cmath_kkt(u, "LAG", "lag", out);
+  math_kkt_solver(u, "LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
   size_t begin = out->n;
   emit_derive(&f);
@@ -532,7 +532,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_charges(&f);
   emit_switches(&f);
   emit_linear(&f); /* after the digest: a saved state depends on the equations, not on the methods' derivatives of them */
-  if (u->taylor) emit_taylor(u->taylor, f.globals, cmath_prefix(u, "lag"), out);
+  if (u->taylor) emit_taylor(u->taylor, f.globals, math_prefix(u, "lag"), out);
   emit_variation(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);

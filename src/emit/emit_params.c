@@ -13,8 +13,8 @@ void emit_derive(const File *f) {
   static const char *const own[] = {"p", NULL}, *const written[] = {"p"};
   if (!f->u->nderived) return;
   CStyle st = emit_style(f, own, written);
-  st.apart = st.seldom_called = 1;
-  CFunction c = {.comment = arena_printf(f->a, "Derived parameters, for the functions below: %s.", ops_text(f->u->derived, f->a)),
+  st.apart = st.prefer_short_code = 1;
+  CFunction c = {.comment = arena_printf(f->a, "Derived parameters, for the functions below: %s.", op_count_text(f->u->derived, f->a)),
                  .head = "static void derive(LAG_REAL *p)"};
   cfunction(f->u->derived, &st, &c, f->out);
 }

@@ -9,7 +9,7 @@
 enum { LANES = 4 };    /* row lengths are multiples of this */
 enum { CALL = 25 };    /* extra cost of a function call, in operations */
 enum { INLINE_MAX = 300 }; /* most operations of taylor_next that are inlined twice, for pairs and for fours */
-enum { NEAR_MAX = 12 };    /* most sums of one kind that stay in registers from one order to the next: see near_sums */
+enum { REGISTER_SUMS_MAX = 12 };    /* most sums of one kind that stay in registers from one order to the next: see register_sums */
 enum { LOOP_FROM = 9 }; /* statements that differ in an index only become a loop from this number on */
 
 static const char *const arrays[ARR_COUNT] = {
@@ -142,7 +142,7 @@ static const char *const squares =
 
 /* Convolution sums for few sums. Coefficients of order k - 1 come from registers, those of order k - 2 are loaded in pairs, as they
  * were stored: neither load waits for a store, and the sum over the other orders is ready early. */
-static const char *const near_sums =
+static const char *const register_sums =
   "\n@static TAYLOR_INLINE void taylor_sums$(int k, const taylor_work *w, const taylor_pair *a, const taylor_pair *b, taylor_pair *s) {\n"
   "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = TAYLOR_PAIRED*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
   "  const taylor_pair *const a1 = (const taylor_pair *)w->a[1], *const b1 = (const taylor_pair *)w->b[1];\n"
@@ -173,7 +173,7 @@ static const char *const near_sums =
   "  }\n"
   "}\n";
 
-static const char *const near_squares =
+static const char *const register_squares =
   "\n@static TAYLOR_INLINE void taylor_squares$(int k, const taylor_work *w, const taylor_pair *a, taylor_pair *s) {\n"
   "  enum { PARTS = TAYLOR_GROUP*sizeof(LAG_REAL)/sizeof(#), PAIRS = TAYLOR_SQUARED*sizeof(LAG_REAL)/sizeof(taylor_pair) };\n"
   "  const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + TAYLOR_SQUARES), *const a2 = (const taylor_pair *)(w->a[2] + TAYLOR_SQUARES);\n"
@@ -222,27 +222,27 @@ typedef struct {
   const char *math; /* as in CStyle */
   Arena *a;
   StrBuf *out;
-} Writer;
+} TaylorWriter;
 
-static CStyle style_for(const Writer *w, const char *const *own, const char *const *written) {
+static CStyle style_for(const TaylorWriter *w, const char *const *own, const char *const *written) {
   return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = w->globals, .factor = "lag_factor", .substitute = "lag_substitute",
                   .math = w->math};
 }
 
 /* Whether the sums are few enough that the coefficients of the last order stay in registers. */
-static int is_near(const Series *s) {
-  return s->first_square <= s->group && s->width - s->first_square <= s->group && s->sums <= NEAR_MAX && s->squares <= NEAR_MAX &&
+static int sums_fit_registers(const Series *s) {
+  return s->first_square <= s->group && s->width - s->first_square <= s->group && s->sums <= REGISTER_SUMS_MAX && s->squares <= REGISTER_SUMS_MAX &&
          ops_total(prog_count(s->next)) <= INLINE_MAX;
 }
 
 static uint32_t even(uint32_t n) { return (n + 1) / 2 * 2; }
 
-static void work(const Writer *w) {
+static void work(const TaylorWriter *w) {
   const Series *s = w->s;
   uint32_t width = (2 * s->nq + s->nz + LANES - 1) / LANES * LANES;
   sb_printf(w->out, "enum { TAYLOR_COLUMNS = %u, TAYLOR_WIDTH = %u, TAYLOR_GROUP = %u, TAYLOR_SQUARES = %u, TAYLOR_SUMS = %u, TAYLOR_CONSTANTS = %u };\n",
             s->columns, width, s->group, s->first_square, s->width, s->constants ? s->constants : 1);
-  if (is_near(s)) sb_printf(w->out, "enum { TAYLOR_STATE = %u, TAYLOR_PAIRED = %u, TAYLOR_SQUARED = %u, TAYLOR_PER_PAIR = sizeof(taylor_pair)/sizeof(LAG_REAL) };\n",
+  if (sums_fit_registers(s)) sb_printf(w->out, "enum { TAYLOR_STATE = %u, TAYLOR_PAIRED = %u, TAYLOR_SQUARED = %u, TAYLOR_PER_PAIR = sizeof(taylor_pair)/sizeof(LAG_REAL) };\n",
                             even(2 * s->nq + s->nz), even(s->sums), even(s->squares));
   sb_puts(w->out, "typedef struct {\n"
     "  LAG_REAL a[LAG_TAYLOR_ORDER][TAYLOR_SUMS]; /* by order: what sums are made of  */\n"
@@ -253,17 +253,17 @@ static void work(const Writer *w) {
   sb_puts(w->out, "} taylor_work;\n");
 }
 
-static void copy(const Writer *w, const char *name, uint32_t n, uint32_t from) {
+static void copy(const TaylorWriter *w, const char *name, uint32_t n, uint32_t from) {
   for (uint32_t i = 0; i < n && n < LOOP_FROM; i++) sb_printf(w->out, "  x[%u] = %s[%u];\n", from + i, name, i);
   if (n >= LOOP_FROM) sb_printf(w->out, from ? "  for (int i = 0; i < %u; i++) x[i + %u] = %s[i];\n" : "  for (int i = 0; i < %u; i++) x[i%.0u] = %s[i];\n", n, from, name);
 }
 
-static void first(const Writer *w) {
+static void first(const TaylorWriter *w) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "follows", "x", "c", "w", "work", NULL};
   static const char *const written[] = {"x", "c"};
   const Series *s = w->s;
   CStyle st = style_for(w, own, written);
-  sb_printf(w->out, "\n/* Order 0: %s. */\n", ops_text(s->first, w->a));
+  sb_printf(w->out, "\n/* Order 0: %s. */\n", op_count_text(s->first, w->a));
   sb_puts(w->out, "static int taylor_first(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,\n"
                   "    const LAG_REAL *u, const LAG_REAL *follows, LAG_REAL *x, LAG_REAL *work) {\n"
                   "  LAG_REAL *const c = ((taylor_work *)(void *)work)->c;\n");
@@ -276,15 +276,15 @@ static void first(const Writer *w) {
   sb_printf(w->out, "  return %s;\n}\n", cfunction_status(s->first, &st));
 }
 
-static void next(const Writer *w) {
+static void next(const TaylorWriter *w) {
   static const char *const own[] = {"x", "x1", "y", "a", "b", "s", "c", "order", "per_order", "up", "w", NULL};
   static const char *const written[] = {"x", "x1", "a", "b"};
   const Series *s = w->s;
   CStyle st = style_for(w, own, written);
   st.paired = 1u << 0 | 1u << 1 | 1u << 2 | 1u << 3;
-  st.padded = 1u << 2 | 1u << 3 | (unsigned)is_near(s) << 1;
+  st.padded = 1u << 2 | 1u << 3 | (unsigned)sums_fit_registers(s) << 1;
   st.apart = 1; /* y may be x: it reads the state and t, and writes the rates */
-  sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n", ops_text(s->next, w->a));
+  sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n", op_count_text(s->next, w->a));
   sb_printf(w->out, "static %svoid taylor_next(", ops_total(prog_count(s->next)) <= INLINE_MAX ? "TAYLOR_INLINE " : "");
   sb_puts(w->out, "LAG_REAL order, LAG_REAL per_order, LAG_REAL up, const LAG_REAL *s, const LAG_REAL *c, const LAG_REAL *y,\n"
                   "    LAG_REAL *x, LAG_REAL *x1, LAG_REAL *a, LAG_REAL *b");
@@ -295,15 +295,15 @@ static void next(const Writer *w) {
 }
 
 /* Column of order 0 that holds the rate of column i of the state. */
-static uint32_t order_0_of(const Series *s, uint32_t i) { return i < s->nq ? s->nq + i : s->nq + s->nz + i; }
+static uint32_t rate_column(const Series *s, uint32_t i) { return i < s->nq ? s->nq + i : s->nq + s->nz + i; }
 
 /* Writes x[to + i] of order 1 = T times x[from + i] of order 0, for i < n. */
-static void rate(const Writer *w, uint32_t to, uint32_t from, uint32_t n) {
+static void rate(const TaylorWriter *w, uint32_t to, uint32_t from, uint32_t n) {
   if (n) sb_printf(w->out, "  for (int i = %u; i < %u; i++) x[TAYLOR_COLUMNS + i] = T*x[i + %u];\n", to, to + n, from - to);
 }
 
 /* Clears the padding of the last groups. Up to 15 sums are stored in pairs, an odd last one together with a zero. */
-static void fill_groups(const Writer *w) {
+static void clear_padding(const TaylorWriter *w) {
   const Series *s = w->s;
   uint32_t filled = s->sums < 16 ? even(s->sums) : s->sums;
   if (filled < s->first_square)
@@ -315,7 +315,7 @@ static void fill_groups(const Writer *w) {
 }
 
 /* Loop over orders with rows in memory. */
-static void far_orders(const Writer *w, const char *suffix) {
+static void orders_in_memory(const TaylorWriter *w, const char *suffix) {
   const Series *s = w->s;
   sb_puts(w->out, "  for (int k = 1; k < n; k++) {\n"
                   "    LAG_REAL *const row = x + k*TAYLOR_COLUMNS;\n"
@@ -328,7 +328,7 @@ static void far_orders(const Writer *w, const char *suffix) {
 
 /* Loop over orders with the state and the factors of sums in registers: the arrays of pairs y1, a and b, which compilers keep in
  * registers because no single element is addressed; y and s are copies whose elements are. */
-static void near_orders(const Writer *w, const char *suffix) {
+static void orders_in_registers(const TaylorWriter *w, const char *suffix) {
   const Series *s = w->s;
   uint32_t state = 2 * s->nq + s->nz;
   int reads_row = s->uses_time; /* t stands behind the state, in the row */
@@ -341,8 +341,8 @@ static void near_orders(const Writer *w, const char *suffix) {
                   "  TAYLOR_UNROLL\n"
                   "  for (int g = 0; g < (int)PAIRS; g++) b[g] = zero;\n");
   for (uint32_t i = 0; i < state; i += 2) {
-    sb_printf(w->out, "  LAG_PAIR(y1, %u, T*x[%u], ", i, order_0_of(s, i));
-    if (i + 1 < state) sb_printf(w->out, "T*x[%u]);\n", order_0_of(s, i + 1));
+    sb_printf(w->out, "  LAG_PAIR(y1, %u, T*x[%u], ", i, rate_column(s, i));
+    if (i + 1 < state) sb_printf(w->out, "T*x[%u]);\n", rate_column(s, i + 1));
     else sb_puts(w->out, "LAG_C(0.0));\n");
   }
   sb_puts(w->out, "  TAYLOR_UNROLL\n"
@@ -368,27 +368,27 @@ static void near_orders(const Writer *w, const char *suffix) {
                   "    for (int g = 0; g < (int)PAIRS; g++) ((taylor_pair *)w->b[k])[g] = b[g];\n");
 }
 
-static void rest(const Writer *w, const char *suffix, const char *attribute) {
+static void rest(const TaylorWriter *w, const char *suffix, const char *attribute) {
   const Series *s = w->s;
   uint32_t nq = s->nq, nz = s->nz, t = 3 * nq + 2 * nz;
   sb_printf(w->out, "\n%sstatic void taylor_rest%s(int n, LAG_REAL T, LAG_REAL *x, LAG_REAL *work) {\n"
                     "  taylor_work *const w = (taylor_work *)(void *)work;\n"
                     "  LAG_REAL per_k = LAG_C(1.0);\n", attribute, suffix);
   if (s->uses_time) sb_printf(w->out, "  x[TAYLOR_COLUMNS + %u] = T;\n", t);
-  fill_groups(w);
-  if (is_near(s)) {
-    near_orders(w, suffix);
+  clear_padding(w);
+  if (sums_fit_registers(s)) {
+    orders_in_registers(w, suffix);
   } else {
     rate(w, 0, nq, nq);
     rate(w, nq, 2 * nq + nz, nq + nz);
-    far_orders(w, suffix);
+    orders_in_memory(w, suffix);
   }
   if (s->uses_time) sb_printf(w->out, "    row[TAYLOR_COLUMNS + %u] = LAG_C(0.0);\n", t);
   sb_puts(w->out, "    per_k = per_next;\n  }\n}\n");
 }
 
 /* Appends a template with its marks filled in. The loop over orders is unrolled where there is a single group of sums. */
-static void fill(const Writer *w, const char *text, const char *suffix, const char *type, const char *attribute) {
+static void fill(const TaylorWriter *w, const char *text, const char *suffix, const char *type, const char *attribute) {
   StrBuf *out = w->out;
   for (; *text; text++) {
     if (*text == '$') sb_puts(out, suffix);
@@ -401,10 +401,10 @@ static void fill(const Writer *w, const char *text, const char *suffix, const ch
 }
 
 /* Writes the row operations: sums, squares, all orders, evaluation of the series. */
-static void along_rows(const Writer *w, const char *suffix, const char *type, const char *attribute) {
-  int near = is_near(w->s);
-  if (w->s->sums) fill(w, near ? near_sums : sums, suffix, type, attribute);
-  if (w->s->squares) fill(w, near ? near_squares : squares, suffix, type, attribute);
+static void row_operations(const TaylorWriter *w, const char *suffix, const char *type, const char *attribute) {
+  int near = sums_fit_registers(w->s);
+  if (w->s->sums) fill(w, near ? register_sums : sums, suffix, type, attribute);
+  if (w->s->squares) fill(w, near ? register_squares : squares, suffix, type, attribute);
   rest(w, suffix, attribute);
   fill(w, at, suffix, type, attribute);
 }
@@ -434,21 +434,21 @@ static void choose_width(StrBuf *out) {
 }
 
 void emit_taylor(const Series *s, const char *const *globals, const char *math, StrBuf *out) {
-  Writer w = {.s = s, .globals = globals, .math = math, .a = s->first->arena, .out = out};
+  TaylorWriter w = {.s = s, .globals = globals, .math = math, .a = s->first->arena, .out = out};
   int wide = is_wide(s);
   sb_puts(out, head);
   if (wide) sb_puts(out, wide_head);
-  if (is_near(s)) sb_puts(out, part);
+  if (sums_fit_registers(s)) sb_puts(out, part);
   sb_putc(out, '\n');
   work(&w);
   first(&w);
   next(&w);
   sb_puts(out, along_rows_comment);
-  along_rows(&w, "", "taylor_pair", "");
+  row_operations(&w, "", "taylor_pair", "");
   if (wide) {
     sb_puts(out, "\n#ifdef TAYLOR_WIDE\n/* The same four at a time. */");
-    if (is_near(s)) sb_printf(out, "\n%s", wide_part);
-    along_rows(&w, "_wide", "taylor_four", "TAYLOR_WIDE ");
+    if (sums_fit_registers(s)) sb_printf(out, "\n%s", wide_part);
+    row_operations(&w, "_wide", "taylor_four", "TAYLOR_WIDE ");
     sb_puts(out, "#endif\n");
     choose_width(out);
   }

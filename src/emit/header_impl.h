@@ -1,4 +1,4 @@
-/* State and parts of an emitted header, shared by emit_header.c (names, head comment), header_decl.c and header_body.c. */
+/* State and parts of an emitted header, shared by emit_header.c (names, head comment), header_declarations.c and header_definitions.c. */
 #ifndef LAGC_HEADER_IMPL_H
 #define LAGC_HEADER_IMPL_H
 
@@ -16,7 +16,7 @@ typedef struct {
   const char **q, **z, **p, **in, **ev, **outputs; /* enumerators by index */
   const char *const *fields;   /* members of the struct of parameters */
   const char *const *globals;
-  CIndices *indices;           /* index tables written to the file so far */
+  IndexTables *indices;           /* index tables written to the file so far */
 } Header;
 
 /* Append the declarations (macros, enums, structs, prototypes) and the definitions. */

@@ -25,7 +25,7 @@ static Slot without_sign(Prog *p, Slot s, int *minus) {
 
 /* For numbers a, b, c: a + b, a - b, a*b, a/b, exact for fractions; x/b becomes x*(1/b), c*(b*x) becomes (c*b)*x. Signs move in front of
  * products, where a sum absorbs them. */
-Slot prog_reckon(Prog *p, const Ins *i) {
+Slot prog_constant_fold(Prog *p, const Ins *i) {
   if (i->op == IR_SQRT || i->op == IR_FN1) return reckon_function(p, i);
   if ((i->op != IR_ADD && i->op != IR_SUB && i->op != IR_MUL && i->op != IR_DIV) || !i->a || !i->b) return NOT_A_SLOT;
   if (i->op == IR_MUL || i->op == IR_DIV) {
@@ -36,7 +36,7 @@ Slot prog_reckon(Prog *p, const Ins *i) {
       return minus ? prog_op(p, IR_NEG, size, 0) : size;
     }
   }
-  if (i->op == IR_MUL && prog_is_number(p, i->a) && !prog_is_number(p, i->b)) return prog_reckon(p, &(Ins){.op = IR_MUL, .a = i->b, .b = i->a});
+  if (i->op == IR_MUL && prog_is_number(p, i->a) && !prog_is_number(p, i->b)) return prog_constant_fold(p, &(Ins){.op = IR_MUL, .a = i->b, .b = i->a});
   if (!prog_is_number(p, i->b)) return NOT_A_SLOT;
   Num b = p->ins.at[i->b].number;
   if (i->op == IR_MUL && num_is_zero(b)) return 0;

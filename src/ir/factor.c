@@ -42,11 +42,11 @@ static Slot factored_sum(Factor *f, const Ins *i) {
 }
 
 static Prog *factor_once(const Prog *p) {
-  Factor f = {.from = p, .to = prog_like(p), .map = ARENA_ARRAY(p->arena, Slot, p->ins.n), .uses = prog_uses(p)};
+  Factor f = {.from = p, .to = prog_new_like(p), .map = ARENA_ARRAY(p->arena, Slot, p->ins.n), .uses = prog_uses(p)};
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     Slot sum = i->op == IR_ADD || i->op == IR_SUB ? factored_sum(&f, i) : 0;
-    f.map[s] = sum ? sum : prog_ins(f.to, prog_moved(f.to, p, f.map, *i));
+    f.map[s] = sum ? sum : prog_ins(f.to, prog_import(f.to, p, f.map, *i));
     prog_name(f.to, f.map[s], i->name);
   }
   for (uint32_t k = 0; k < p->stores.n; k++) {

@@ -13,14 +13,14 @@ static Slot plus_product(Prog *p, Slot x, Slot a, Slot b) {
   return op(p, IR_ADD, x, ab);
 }
 
-static Slot divided(Prog *p, const Factored *f, uint32_t i, Slot x, Slot divisor) {
+static Slot divided(Prog *p, const FactorRecord *f, uint32_t i, Slot x, Slot divisor) {
   return f->inverse ? op(p, IR_MUL, x, f->inverse[i]) : op(p, IR_DIV, x, divisor);
 }
 
 /* --- straight-line --- */
 
 /* Eliminates variable v from b. A definition: with w' = C u' + s in u'^T H u'/2 - b^T u', b += C (b_v - h s) - r s. */
-static void forward(Prog *p, const Factored *f, uint32_t v, Slot *b, const Slot *s) {
+static void forward(Prog *p, const FactorRecord *f, uint32_t v, Slot *b, const Slot *s) {
   if (v < f->n) {
     for (uint32_t k = 0; k < f->below[v].n; k++) {
       SparseEntry l = f->below[v].at[k];
@@ -38,7 +38,7 @@ static void forward(Prog *p, const Factored *f, uint32_t v, Slot *b, const Slot 
   }
 }
 
-static void backward(Prog *p, const Factored *f, uint32_t v, const Slot *b, const Slot *s, Slot *x) {
+static void backward(Prog *p, const FactorRecord *f, uint32_t v, const Slot *b, const Slot *s, Slot *x) {
   if (v < f->n) {
     x[v] = divided(p, f, v, b[v], f->pivot[v]);
     for (uint32_t k = 0; k < f->below[v].n; k++) x[v] = minus_product(p, x[v], f->below[v].at[k].value, x[f->below[v].at[k].col]);
@@ -50,8 +50,8 @@ static void backward(Prog *p, const Factored *f, uint32_t v, const Slot *b, cons
 
 /* --- blocks --- */
 
-static void solve_pair(Prog *p, const Factored *f, uint32_t k, const Slot *b, Slot *x) {
-  const FactoredBlock *m = &f->blocks.at[k];
+static void solve_pair(Prog *p, const FactorRecord *f, uint32_t k, const Slot *b, Slot *x) {
+  const FactorBlock *m = &f->blocks.at[k];
   const uint32_t i = m->at[0], j = m->at[1];
   const Slot m11 = m->M[0], m12 = m->M[2], m22 = m->M[3];
   Slot top1 = op(p, IR_MUL, b[i], m22), top2 = op(p, IR_MUL, m11, b[j]);
@@ -61,7 +61,7 @@ static void solve_pair(Prog *p, const Factored *f, uint32_t k, const Slot *b, Sl
 }
 
 /* By the matrix that another function left factored at its place. */
-static void solve_loop(Prog *p, const FactoredBlock *m, const Slot *b, Slot *x) {
+static void solve_loop(Prog *p, const FactorBlock *m, const Slot *b, Slot *x) {
   Slot *rhs = ARENA_ARRAY(p->arena, Slot, m->n);
   for (uint32_t i = 0; i < m->n; i++) rhs[i] = b[m->at[i]];
   vec_push(p->arena, &p->solves, ((Solve){.n = m->n, .place = m->place, .rhs = rhs}));
@@ -69,12 +69,12 @@ static void solve_loop(Prog *p, const FactoredBlock *m, const Slot *b, Slot *x) 
   for (uint32_t i = 0; i < m->n; i++) x[m->at[i]] = prog_ins(p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
 
-void factored_solve(Prog *p, const Factored *f, Slot *b, const Slot *s, Slot *x) {
+void factor_record_solve(Prog *p, const FactorRecord *f, Slot *b, const Slot *s, Slot *x) {
   uint32_t total = f->n + f->ndefs;
   for (uint32_t k = 0; f->straight && k < total; k++) forward(p, f, f->order[k], b, s);
   for (uint32_t k = total; f->straight && k-- > 0;) backward(p, f, f->order[k], b, s, x);
   for (uint32_t k = 0; k < f->blocks.n; k++) {
-    const FactoredBlock *m = &f->blocks.at[k];
+    const FactorBlock *m = &f->blocks.at[k];
     if (m->n == 1) x[m->at[0]] = divided(p, f, k, b[m->at[0]], m->divisor);
     else if (m->n == 2) solve_pair(p, f, k, b, x);
     else solve_loop(p, m, b, x);

@@ -3,7 +3,7 @@
 #ifndef LAGC_IR_FACTORIZATION_RECORD_H
 #define LAGC_IR_FACTORIZATION_RECORD_H
 
-#include "base/sparse.h"
+#include "base/sparse_pattern.h"
 #include "ir/prog.h"
 
 /* A block: n = 1: M and its divisor M; n = 2: m11, m12, m22, divisor det M; n > 2: factored by a loop. */
@@ -13,7 +13,7 @@ typedef struct {
   const Slot *M;      /* [n*n] row-major, lower triangle filled */
   Slot divisor;
   uint32_t place;     /* n > 2: of the factored matrix in the work space */
-} FactoredBlock;
+} FactorBlock;
 
 /* Variables are those of LinearSystem in mech/eqns.h: 0 .. n-1 accelerations, n + k the rate of definition k. */
 typedef struct {
@@ -24,15 +24,15 @@ typedef struct {
   const SparseRow *below;  /* [n] columns of the unit lower factor */
   const SparseRow *C;      /* [n + ndefs] coefficients of each definition, */
   const SparseRow *row;    /* and its row of the quadratic form, as at its step of elimination */
-  VEC(FactoredBlock) blocks; /* without blocks whose forces are all zero */
+  VEC(FactorBlock) blocks; /* without blocks whose forces are all zero */
   const Slot *inverse;     /* reciprocals of pivots [n], or of divisors of blocks [blocks.n]; NULL: divide */
-} Factored;
+} FactorRecord;
 
 /* Size of a factored matrix in the work space, in reals: M[n*n], right-hand side [n], order of rows [n]. */
-static inline uint32_t factored_room(uint32_t n) { return n * n + 2 * n; }
+static inline uint32_t factor_record_size(uint32_t n) { return n * n + 2 * n; }
 
 /* Appends to p, of which f has the slots, the solution x[n + ndefs] for the right-hand side b[n + ndefs], where the rate of definition k is
  * C u' + s[n + k] (s NULL: 0). b is destroyed. */
-void factored_solve(Prog *p, const Factored *f, Slot *b, const Slot *s, Slot *x);
+void factor_record_solve(Prog *p, const FactorRecord *f, Slot *b, const Slot *s, Slot *x);
 
 #endif

@@ -86,7 +86,7 @@ static unsigned char *mark_needed(const Prog *p, const unsigned char *constant, 
 static int is_derived(const unsigned char *worthy, const unsigned char *mark, Slot s) { return worthy[s] && mark[s] & 1; }
 
 /* Whether the operations saved are worth the derived parameters that they take. */
-static int pays(const Prog *p, const unsigned char *constant, const unsigned char *worthy, const unsigned char *mark) {
+static int is_profitable(const Prog *p, const unsigned char *constant, const unsigned char *worthy, const unsigned char *mark) {
   Prog once = {.arena = p->arena};
   uint64_t taken = 0;
   vec_push(p->arena, &once.ins, ((Ins){0}));
@@ -133,12 +133,12 @@ typedef struct {
   Prog *left;
   const Slot *map, *once; /* by slot of `from`: slot of `left`, slot of `derived` */
   Slot **solved;          /* by slot of `from`: solution of a solve that became a product with an inverse; or NULL */
-} Rest;
+} Split;
 
-static Slot load_at(const Rest *r, uint32_t index, Name name) { return prog_ins(r->left, (Ins){.op = IR_LOAD, .array = ARR_P, .index = index, .name = name}); }
+static Slot load_at(const Split *r, uint32_t index, Name name) { return prog_ins(r->left, (Ins){.op = IR_LOAD, .array = ARR_P, .index = index, .name = name}); }
 
 /* x = M^-1 f in straight-line code, from the lower triangle of M^-1 at parameter `inverse`. */
-static Slot *multiplied(const Rest *r, const Solve *k, uint32_t inverse) {
+static Slot *multiplied(const Split *r, const Solve *k, uint32_t inverse) {
   Arena *a = r->left->arena;
   Slot *x = ARENA_ARRAY(a, Slot, k->n);
   for (uint32_t i = 0; i < k->n; i++)
@@ -152,7 +152,7 @@ static Slot *multiplied(const Rest *r, const Solve *k, uint32_t inverse) {
   return x;
 }
 
-static Slot *multiplied_by_loop(const Rest *r, const Solve *k, uint32_t inverse) {
+static Slot *multiplied_by_loop(const Split *r, const Solve *k, uint32_t inverse) {
   Arena *a = r->left->arena;
   Slot *x = ARENA_ARRAY(a, Slot, k->n), *rhs = ARENA_ARRAY(a, Slot, k->n);
   for (uint32_t i = 0; i < k->n; i++) rhs[i] = r->map[k->rhs[i]];
@@ -164,7 +164,7 @@ static Slot *multiplied_by_loop(const Rest *r, const Solve *k, uint32_t inverse)
 
 /* Turns a solve with a constant matrix into an inverse in `derived`, symmetric to the last bit, and a product with it. The forward error
  * is as small as with factors, the residual is not: N. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 14.1. */
-static Slot *invert(Hoist *h, const Rest *r, const Solve *k) {
+static Slot *invert(Hoist *h, const Split *r, const Solve *k) {
   Prog *p = h->derived;
   Slot *matrix = ARENA_ARRAY(p->arena, Slot, solve_elements(k));
   Solve inverted = {.n = k->n, .place = h->first + h->n, .matrix = matrix};
@@ -179,16 +179,16 @@ static Slot *invert(Hoist *h, const Rest *r, const Solve *k) {
   return k->n <= STRAIGHT_UP_TO ? multiplied(r, k, inverse) : multiplied_by_loop(r, k, inverse);
 }
 
-static Prog *taken_from(Hoist *h, const Prog *p) {
+static Prog *split_program(Hoist *h, const Prog *p) {
   unsigned char *constant = find_constant(p), *worthy = find_worthy(p, constant), *mark = mark_needed(p, constant, worthy);
-  if (!pays(p, constant, worthy, mark)) return NULL;
-  Prog *left = prog_like(p);
+  if (!is_profitable(p, constant, worthy, mark)) return NULL;
+  Prog *left = prog_new_like(p);
   Slot *map = ARENA_ARRAY(p->arena, Slot, p->ins.n), *once = ARENA_ARRAY(p->arena, Slot, p->ins.n);
-  Rest rest = {p, left, map, once, ARENA_ARRAY(p->arena, Slot *, p->ins.n)};
+  Split rest = {p, left, map, once, ARENA_ARRAY(p->arena, Slot *, p->ins.n)};
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     if (mark[s] & 2 || is_derived(worthy, mark, s)) {
-      once[s] = derive(h, prog_moved(h->derived, p, once, *i));
+      once[s] = derive(h, prog_import(h->derived, p, once, *i));
     }
     if (is_derived(worthy, mark, s)) {
       map[s] = once[s] ? prog_ins(left, load_derived(h, once[s])) : 0;
@@ -198,7 +198,7 @@ static Prog *taken_from(Hoist *h, const Prog *p) {
       map[s] = rest.solved[i->a][i->index];
       prog_name(left, map[s], i->name);
     } else if (mark[s] & 1) {
-      map[s] = prog_ins(left, prog_moved(left, p, map, *i));
+      map[s] = prog_ins(left, prog_import(left, p, map, *i));
       prog_name(left, map[s], i->name);
     }
   }
@@ -210,7 +210,7 @@ static Prog *taken_from(Hoist *h, const Prog *p) {
 }
 
 static void hoist_from(Hoist *h, const Prog **p) {
-  Prog *left = *p ? taken_from(h, *p) : NULL;
+  Prog *left = *p ? split_program(h, *p) : NULL;
   if (left) *p = prog_tidy(left); /* removes sign changes that products with an inverse took in */
 }
 

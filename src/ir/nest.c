@@ -13,27 +13,27 @@ enum { FEWEST_PIECES = 8, MOST_VALUES = 2000 };
 
 /* A group: pieces with one canonical form. */
 typedef struct {
-  Tape tape;
+  CanonicalForm tape;
   uint64_t hash;
   VEC(int64_t) columns; /* indices of all pieces, one after the other */
   VEC(uint32_t) pieces;
-} Alike;
+} PieceGroup;
 
 typedef struct {
   Nest nest;
   const uint32_t *class_of; /* by position in nest.at: class of the hub, from 1; 0: an array */
-} Found;
+} FoundNest;
 
 typedef struct {
-  Cut c;
+  Partition c;
   Local *local;
-  Tape tape;
-  VEC(Alike) alike;     /* groups of one wave */
-  uint32_t *table;      /* hash table of `alike`, from 1; open addressing */
+  CanonicalForm tape;
+  VEC(PieceGroup) groups;     /* groups of one wave */
+  uint32_t *table;      /* hash table of `groups`, from 1; open addressing */
   uint32_t table_cap;
   VEC(uint32_t) ready;  /* pieces, from 1, whose hubs are complete */
   VEC(Slot) complete;   /* hubs whose terms are all known, to be processed */
-  VEC(Found) found;
+  VEC(FoundNest) found;
   uint32_t *nested;     /* by piece: its nest, from 1 */
   uint32_t *terms;      /* by slot of hubs: number of terms that nests add, */
   uint32_t *last;       /* and the last nest that adds one, from 1 */
@@ -41,27 +41,27 @@ typedef struct {
 
 /* --- groups --- */
 
-static uint64_t hash_words(const Tape *t) {
+static uint64_t hash_words(const CanonicalForm *t) {
   uint64_t h = t->words.n;
   for (uint32_t k = 0; k < t->words.n; k++) h = (h ^ t->words.at[k]) * 0x100000001b3u;
   return h ^ h >> 29;
 }
 
-static int same_words(const Tape *x, const Tape *y) {
+static int same_words(const CanonicalForm *x, const CanonicalForm *y) {
   return x->words.n == y->words.n && x->columns.n == y->columns.n && memcmp(x->words.at, y->words.at, x->words.n * sizeof *x->words.at) == 0;
 }
 
 static void table_insert(Search *s, uint32_t number) {
-  uint32_t k = (uint32_t)s->alike.at[number - 1].hash & (s->table_cap - 1);
+  uint32_t k = (uint32_t)s->groups.at[number - 1].hash & (s->table_cap - 1);
   while (s->table[k]) k = (k + 1) & (s->table_cap - 1);
   s->table[k] = number;
 }
 
 static void grow_table(Search *s) {
-  if (2 * (s->alike.n + 1) < s->table_cap) return;
+  if (2 * (s->groups.n + 1) < s->table_cap) return;
   s->table_cap *= 2;
   s->table = ARENA_ARRAY(s->c.a, uint32_t, s->table_cap);
-  for (uint32_t k = 1; k <= s->alike.n; k++) table_insert(s, k);
+  for (uint32_t k = 1; k <= s->groups.n; k++) table_insert(s, k);
 }
 
 #define COPY(a, v) \
@@ -70,8 +70,8 @@ static void grow_table(Search *s) {
     (v).cap = (v).n; \
   } while (0)
 
-static Tape copy_tape(Arena *a, const Tape *t) {
-  Tape r = *t;
+static CanonicalForm copy_tape(Arena *a, const CanonicalForm *t) {
+  CanonicalForm r = *t;
   COPY(a, r.nodes);
   COPY(a, r.links);
   COPY(a, r.gives);
@@ -81,28 +81,28 @@ static Tape copy_tape(Arena *a, const Tape *t) {
   return r;
 }
 
-static Alike *group_of(Search *s, const Tape *t) {
+static PieceGroup *group_of(Search *s, const CanonicalForm *t) {
   uint64_t hash = hash_words(t);
   grow_table(s);
   for (uint32_t k = (uint32_t)hash & (s->table_cap - 1); s->table[k]; k = (k + 1) & (s->table_cap - 1)) {
-    Alike *x = &s->alike.at[s->table[k] - 1];
+    PieceGroup *x = &s->groups.at[s->table[k] - 1];
     if (x->hash == hash && same_words(&x->tape, t)) return x;
   }
-  vec_push(s->c.a, &s->alike, ((Alike){.tape = copy_tape(s->c.a, t), .hash = hash}));
-  table_insert(s, s->alike.n);
-  return &s->alike.at[s->alike.n - 1];
+  vec_push(s->c.a, &s->groups, ((PieceGroup){.tape = copy_tape(s->c.a, t), .hash = hash}));
+  table_insert(s, s->groups.n);
+  return &s->groups.at[s->groups.n - 1];
 }
 
 /* --- nests --- */
 
-static void add_nest(Search *s, const Alike *x, const Fit *f) {
+static void add_nest(Search *s, const PieceGroup *x, const Fit *f) {
   Arena *a = s->c.a;
   Nest n = {.rows = f->rows, .skew = f->skew, .turns = f->turns, .more = f->more, .begin = f->begin, .at = f->at, .n = x->tape.columns.n, .count = f->count};
   n.body = nest_body(&s->c, &x->tape, f, &n.outer, &n.nouter);
-  vec_push(a, &s->found, ((Found){n, x->tape.class_of.at}));
+  vec_push(a, &s->found, ((FoundNest){n, x->tape.class_of.at}));
   for (uint32_t k = 0; k < f->count; k++) {
     uint32_t piece = x->pieces.at[f->pieces[k]];
-    const Shares *gives = &s->c.pieces.at[piece - 1].gives;
+    const HubTerms *gives = &s->c.pieces.at[piece - 1].gives;
     s->nested[piece] = s->found.n;
     for (uint32_t j = 0; j < gives->n; j++) {
       s->terms[gives->at[j].hub]++;
@@ -111,36 +111,36 @@ static void add_nest(Search *s, const Alike *x, const Fit *f) {
   }
 }
 
-static void find_nests(Search *s, const Alike *x) {
+static void find_nests(Search *s, const PieceGroup *x) {
   Arena *a = s->c.a;
   uint32_t n = x->pieces.n, *order = ARENA_ARRAY(a, uint32_t, n);
   Fits fits = {0};
   for (uint32_t k = 0; k < n; k++) order[k] = k;
   Indices all = {a, x->columns.at, x->tape.array.at, x->tape.columns.n, x->tape.nodes.n};
-  nest_fit(&all, order, n, &fits);
+  nest_affine(&all, order, n, &fits);
   for (uint32_t k = 0; k < fits.n; k++) add_nest(s, x, &fits.at[k]);
 }
 
 /* Finds the nests of one wave: the pieces ready.at[from] ... */
 static void search_wave(Search *s, uint32_t from) {
-  s->alike.n = 0;
+  s->groups.n = 0;
   memset(s->table, 0, s->table_cap * sizeof *s->table);
   for (uint32_t k = from; k < s->ready.n; k++) {
     Piece *q = &s->c.pieces.at[s->ready.at[k] - 1];
     if (!q->apart || !q->gives.n || q->n > MOST_VALUES) continue;
-    nest_tape(&s->c, q, s->local, s->ready.at[k], &s->tape);
-    Alike *x = group_of(s, &s->tape);
+    nest_canonical_form(&s->c, q, s->local, s->ready.at[k], &s->tape);
+    PieceGroup *x = group_of(s, &s->tape);
     for (uint32_t j = 0; j < s->tape.columns.n; j++) vec_push(s->c.a, &x->columns, s->tape.columns.at[j]);
     vec_push(s->c.a, &x->pieces, s->ready.at[k]);
   }
-  for (uint32_t k = 0; k < s->alike.n; k++)
-    if (s->alike.at[k].pieces.n >= FEWEST_PIECES) find_nests(s, &s->alike.at[k]);
+  for (uint32_t k = 0; k < s->groups.n; k++)
+    if (s->groups.at[k].pieces.n >= FEWEST_PIECES) find_nests(s, &s->groups.at[k]);
 }
 
 /* --- waves: pieces that are ready, then pieces that those make ready --- */
 
 static void complete_hubs(Search *s) {
-  Cut *c = &s->c;
+  Partition *c = &s->c;
   while (s->complete.n) {
     Slot hub = s->complete.at[--s->complete.n];
     c->celled[hub] = s->terms[hub] == 0 ? 0 : s->terms[hub] == c->terms_of[hub] ? 2 : 1;
@@ -153,7 +153,7 @@ static void complete_hubs(Search *s) {
 }
 
 static void search_all(Search *s) {
-  Cut *c = &s->c;
+  Partition *c = &s->c;
   for (uint32_t k = 1; k <= c->pieces.n; k++)
     if (!c->pieces.at[k - 1].waits) vec_push(c->a, &s->ready, k);
   for (uint32_t k = 0; k < c->hubs.n; k++)
@@ -163,7 +163,7 @@ static void search_all(Search *s) {
     uint32_t end = s->ready.n;
     if (end - from >= FEWEST_PIECES) search_wave(s, from);
     for (; from < end; from++) {
-      const Shares *gives = &c->pieces.at[s->ready.at[from] - 1].gives;
+      const HubTerms *gives = &c->pieces.at[s->ready.at[from] - 1].gives;
       for (uint32_t k = 0; k < gives->n; k++)
         if (--c->waits[gives->at[k].hub] == 0) vec_push(c->a, &s->complete, gives->at[k].hub);
     }
@@ -185,7 +185,7 @@ typedef struct {
 
 static void number_cells(Rebuild *r) {
   const Search *s = r->s;
-  const Cut *c = &s->c;
+  const Partition *c = &s->c;
   uint32_t *size = ARENA_ARRAY(c->a, uint32_t, c->classes + 1);
   for (uint32_t k = 0; k < c->hubs.n; k++) {
     Slot hub = c->hubs.at[k];
@@ -206,13 +206,13 @@ static int is_nested(const Rebuild *r, Slot term) {
   return piece && r->s->nested[piece];
 }
 
-static void want(Rebuild *r, uint32_t item) {
+static void push_needed(Rebuild *r, uint32_t item) {
   if (item && !r->done[item]) vec_push(r->to->arena, &r->open, item);
 }
 
 /* The terms of a hub that no nest adds. */
-static void other_terms(const Rebuild *r, Slot hub, Shares *terms) {
-  const Cut *c = &r->s->c;
+static void other_terms(const Rebuild *r, Slot hub, HubTerms *terms) {
+  const Partition *c = &r->s->c;
   terms->n = 0;
   if (c->hub[hub] == HUB_SUM) nest_terms(c, hub, terms);
   uint32_t n = 0, leaves = 0;
@@ -224,29 +224,29 @@ static void other_terms(const Rebuild *r, Slot hub, Shares *terms) {
   terms->n = n;
 }
 
-static void want_operands(Rebuild *r, uint32_t item) {
+static void push_operands(Rebuild *r, uint32_t item) {
   const Search *s = r->s;
   uint32_t n = r->from->ins.n;
   if (item >= n) {
     const Nest *x = &s->found.at[item - n].nest;
-    for (uint32_t k = x->nouter; k-- > 0;) want(r, x->outer[k]);
-    if (item > n) want(r, item - 1);
+    for (uint32_t k = x->nouter; k-- > 0;) push_needed(r, x->outer[k]);
+    if (item > n) push_needed(r, item - 1);
   } else if (has_cell(r, item)) {
     other_terms(r, item, s->c.terms);
-    for (uint32_t k = s->c.terms->n; k-- > 0;) want(r, s->c.terms->at[k].value);
-    want(r, n + s->last[item] - 1);
+    for (uint32_t k = s->c.terms->n; k-- > 0;) push_needed(r, s->c.terms->at[k].value);
+    push_needed(r, n + s->last[item] - 1);
   } else {
     const Ins *i = &r->from->ins.at[item];
-    want(r, i->c);
-    want(r, i->b);
-    want(r, i->a);
+    push_needed(r, i->c);
+    push_needed(r, i->b);
+    push_needed(r, i->a);
   }
 }
 
 static Slot make_nest(Rebuild *r, uint32_t k) {
-  const Found *f = &r->s->found.at[k];
+  const FoundNest *f = &r->s->found.at[k];
   Nest n = f->nest;
-  IrPlace *at = ARENA_ARRAY(r->to->arena, IrPlace, n.n + 1);
+  IrSubscript *at = ARENA_ARRAY(r->to->arena, IrSubscript, n.n + 1);
   for (uint32_t j = 0; j < n.n; j++) {
     at[j] = n.at[j];
     if (f->class_of[j]) at[j].first += r->base[f->class_of[j] - 1];
@@ -277,16 +277,16 @@ static Slot make_hub(Rebuild *r, Slot hub) {
 /* Appends the item after its operands. */
 static void rebuild(Rebuild *r, uint32_t item) {
   uint32_t n = r->from->ins.n;
-  want(r, item);
+  push_needed(r, item);
   while (r->open.n) {
     uint32_t x = r->open.at[r->open.n - 1], before = r->open.n;
-    if (!r->done[x]) want_operands(r, x);
+    if (!r->done[x]) push_operands(r, x);
     if (r->open.n > before) continue;
     r->open.n--;
     if (r->done[x]) continue;
     r->done[x] = 1;
     r->map[x] = x >= n ? make_nest(r, x - n)
-                : has_cell(r, x) ? make_hub(r, x) : prog_ins(r->to, prog_moved(r->to, r->from, r->map, r->from->ins.at[x]));
+                : has_cell(r, x) ? make_hub(r, x) : prog_ins(r->to, prog_import(r->to, r->from, r->map, r->from->ins.at[x]));
     if (x < n) prog_name(r->to, r->map[x], r->from->ins.at[x].name);
   }
 }
@@ -295,7 +295,7 @@ static void rebuild(Rebuild *r, uint32_t item) {
 static const uint32_t *empty_cells(const Rebuild *r) {
   enum { FEW = 16 };
   const Prog *p = r->from;
-  const Cut *c = &r->s->c;
+  const Partition *c = &r->s->c;
   uint32_t *cell = ARENA_ARRAY(c->a, uint32_t, p->stores.n + 1), zeros = 0, known = 0;
   for (uint32_t k = 0; k < p->stores.n; k++) {
     Slot x = p->stores.at[k].slot;
@@ -346,8 +346,8 @@ static uint32_t table_entries(const Nest *n) {
 
 /* Number of instructions that nests replace; 0 where all nests are single loops without tables, which are left to ir/roll.h: there they
  * share values with the code around. */
-static uint32_t taken_in(const Search *s, int *tables) {
-  const Cut *c = &s->c;
+static uint32_t instructions_replaced(const Search *s, int *tables) {
+  const Partition *c = &s->c;
   uint32_t inside = 0;
   int deep = *tables = 0;
   for (uint32_t k = 0; k < s->found.n; k++) {
@@ -365,7 +365,7 @@ static uint32_t taken_in(const Search *s, int *tables) {
 }
 
 /* Whether store k continues a run: of zeros, or of consecutive elements of an array. */
-static int goes_on(const Prog *p, uint32_t k) {
+static int continues_run(const Prog *p, uint32_t k) {
   const Store *st = &p->stores.at[k];
   const Ins *i = &p->ins.at[st->slot], *last = k ? &p->ins.at[st[-1].slot] : NULL;
   if (!k || st->array != st[-1].array || !st->slot != !st[-1].slot) return 0;
@@ -379,14 +379,14 @@ static uint32_t length(const Prog *p) {
   Rolls r = roll_find(p, by_index, 0, 1);
   uint32_t n = r.n;
   for (uint32_t k = 0; k < r.loops.n; k++) n -= r.loops.at[k].period * (r.loops.at[k].count - 1);
-  for (uint32_t k = 0; k < p->stores.n; k++) n += !r.stored[k] && !goes_on(p, k);
+  for (uint32_t k = 0; k < p->stores.n; k++) n += !r.stored[k] && !continues_run(p, k);
   for (uint32_t k = 0; k < p->nests.n; k++) n += p->nests.at[k].body->ins.n + table_entries(&p->nests.at[k]) / 8;
   return n;
 }
 
 static Search search(const Prog *p, unsigned ends) {
   Arena *a = p->arena;
-  Search s = {.c = nest_cut(p, ends), .table_cap = 256};
+  Search s = {.c = nest_partition(p, ends), .table_cap = 256};
   s.local = ARENA_ARRAY(a, Local, p->ins.n);
   s.table = ARENA_ARRAY(a, uint32_t, s.table_cap);
   s.nested = ARENA_ARRAY(a, uint32_t, s.c.pieces.n + 1);
@@ -397,7 +397,7 @@ static Search search(const Prog *p, unsigned ends) {
 }
 
 /* With tables: the program of the shortest text, of partitions that replace about as many instructions. */
-static Prog *scattered(Prog *p) {
+static Prog *shortest_with_tables(Prog *p) {
   static const unsigned tried[] = {0, CUT_COMMON_TERMS, CUT_STORES, CUT_COMMON_TERMS | CUT_STORES, CUT_LEAVES, CUT_LEAVES | CUT_STORES};
   Prog *best = p;
   uint32_t least = UINT32_MAX, most = p->ins.n / 2;
@@ -406,7 +406,7 @@ static Prog *scattered(Prog *p) {
     if (tried[k] & CUT_LEAVES && most > p->ins.n - p->ins.n / 8) break;
     ArenaMark before = arena_mark(p->arena);
     Search s = search(p, tried[k]);
-    uint32_t inside = taken_in(&s, &tables);
+    uint32_t inside = instructions_replaced(&s, &tables);
     int enough = inside + p->ins.n / 16 > most;
     if (enough && inside > most) most = inside;
     Prog *now = enough ? with_nests(&s) : NULL;
@@ -417,7 +417,7 @@ static Prog *scattered(Prog *p) {
   return best;
 }
 
-Prog *prog_nest(Prog *p, uint32_t from) {
+Prog *prog_find_nests(Prog *p, uint32_t from) {
   static const unsigned tried[] = {0, CUT_COMMON_TERMS, CUT_STORES, CUT_COMMON_TERMS | CUT_STORES, CUT_LEAVES};
   if (p->ins.n < from || p->solves.n || p->nests.n) return p;
   Search best = {0};
@@ -426,10 +426,10 @@ Prog *prog_nest(Prog *p, uint32_t from) {
     int tables;
     ArenaMark before = arena_mark(p->arena);
     Search s = search(p, tried[k]);
-    uint32_t inside = taken_in(&s, &tables);
+    uint32_t inside = instructions_replaced(&s, &tables);
     if (inside <= most || tables) arena_forget(p->arena, before);
     if (inside <= most) continue;
-    if (tables) return scattered(p);
+    if (tables) return shortest_with_tables(p);
     most = inside;
     best = s;
   }
@@ -442,8 +442,8 @@ static int has_tables(const Prog *p) {
   return 0;
 }
 
-Prog *prog_nest_either(Prog *factored, Prog *tidy, uint32_t from) {
-  Prog *first = prog_nest(factored, from), *second = has_tables(first) ? prog_nest(tidy, from) : tidy;
+Prog *prog_find_shorter_nests(Prog *factored, Prog *tidy, uint32_t from) {
+  Prog *first = prog_find_nests(factored, from), *second = has_tables(first) ? prog_find_nests(tidy, from) : tidy;
   if (second == tidy) return first;
   second = prog_factor(second);
   return length(second) < length(first) ? second : first;

@@ -11,10 +11,10 @@
 
 /* The program with nests; p itself where there are none, p has fewer than `from` instructions, or it has solves. Needs a tidy
  * program and leaves one; adds sums in another order. */
-Prog *prog_nest(Prog *p, uint32_t from);
+Prog *prog_find_nests(Prog *p, uint32_t from);
 
 /* The shorter of the nests of a program before and after prog_factor, which may make rows alike, or break up sums of single pieces.
  * `factored` itself where neither has nests. */
-Prog *prog_nest_either(Prog *factored, Prog *tidy, uint32_t from);
+Prog *prog_find_shorter_nests(Prog *factored, Prog *tidy, uint32_t from);
 
 #endif

@@ -15,8 +15,8 @@ typedef struct {
 } Pair;
 
 typedef struct {
-  const Cut *c;
-  const Tape *t;
+  const Partition *c;
+  const CanonicalForm *t;
   const Fit *f;
   Prog *body;
   Slot *slot;            /* by id */
@@ -26,15 +26,15 @@ typedef struct {
   VEC(uint32_t) products; /* ids of products with factors */
   VEC(Pair) pairs;
   VEC(Slot) outer;
-} Making;
+} BodyBuilder;
 
-static uint32_t id_of_pair(const Making *m, uint32_t k) { return m->t->nodes.n + k; }
+static uint32_t id_of_pair(const BodyBuilder *m, uint32_t k) { return m->t->nodes.n + k; }
 
-static int changes(const Making *m, uint32_t column) { return m->f->at[column].by_turn ? EACH_TURN : m->f->at[column].by_row ? EACH_ROW : ONCE; }
+static int changes(const BodyBuilder *m, uint32_t column) { return m->f->at[column].by_turn ? EACH_TURN : m->f->at[column].by_row ? EACH_ROW : ONCE; }
 
-static int is_product(const Making *m, const Node *n) { return n->kind == NODE_OP && m->c->p->ins.at[n->slot].op == IR_MUL; }
+static int is_product(const BodyBuilder *m, const Node *n) { return n->kind == NODE_OP && m->c->p->ins.at[n->slot].op == IR_MUL; }
 
-static void find_factors(Making *m) {
+static void find_factors(BodyBuilder *m) {
   for (uint32_t id = 0; id < m->t->nodes.n; id++) {
     const Node *n = &m->t->nodes.at[id];
     int often = n->kind == NODE_CELL ? changes(m, n->column)
@@ -52,18 +52,18 @@ static void find_factors(Making *m) {
 
 /* --- pairs of factors --- */
 
-static int has_factor(const Making *m, uint32_t id, uint32_t x, uint32_t after) {
+static int has_factor(const BodyBuilder *m, uint32_t id, uint32_t x, uint32_t after) {
   for (uint32_t k = after; k < m->nfactors[id]; k++)
     if (m->factors[id][k] == x) return (int)k + 1;
   return 0;
 }
 
-static int has_pair(const Making *m, uint32_t id, Pair p) {
+static int has_pair(const BodyBuilder *m, uint32_t id, Pair p) {
   int first = has_factor(m, id, p.a, 0);
   return first && has_factor(m, id, p.b, p.a == p.b ? (uint32_t)first : 0);
 }
 
-static void replace_pair(Making *m, uint32_t id, Pair p, uint32_t by) {
+static void replace_pair(BodyBuilder *m, uint32_t id, Pair p, uint32_t by) {
   uint32_t *f = m->factors[id];
   for (int k = 0; k < 2; k++) {
     uint32_t at = (uint32_t)has_factor(m, id, k ? p.b : p.a, 0) - 1;
@@ -74,7 +74,7 @@ static void replace_pair(Making *m, uint32_t id, Pair p, uint32_t by) {
 }
 
 /* The pair in most products; ties go to the one that changes least often. 0 when no pair is in two products. */
-static int best_pair(const Making *m, Pair *best) {
+static int best_pair(const BodyBuilder *m, Pair *best) {
   uint32_t most = 1;
   int rare = 0;
   for (uint32_t i = 0; i < m->products.n; i++) {
@@ -94,7 +94,7 @@ static int best_pair(const Making *m, Pair *best) {
   return most > 1;
 }
 
-static void share_pairs(Making *m) {
+static void share_pairs(BodyBuilder *m) {
   for (Pair p; m->pairs.n < MOST_PRODUCTS && best_pair(m, &p);) {
     uint32_t id = id_of_pair(m, m->pairs.n);
     vec_push(m->c->a, &m->pairs, p);
@@ -106,7 +106,7 @@ static void share_pairs(Making *m) {
 
 /* --- instructions --- */
 
-static Slot leaf(Making *m, const Node *n) {
+static Slot leaf(BodyBuilder *m, const Node *n) {
   Ins i = m->c->p->ins.at[n->slot];
   if (n->kind == NODE_CONST) return prog_ins(m->body, (Ins){.op = i.op, .number = i.number});
   if (n->kind == NODE_LOAD && ir_is_scalar(i.array)) return prog_ins(m->body, i);
@@ -119,14 +119,14 @@ static Slot leaf(Making *m, const Node *n) {
 }
 
 /* Adds or multiplies: operands that change less often come first, otherwise in their order. */
-static Slot fold(Making *m, IrOp op, Slot sum, const uint32_t *ids, uint32_t n) {
+static Slot fold(BodyBuilder *m, IrOp op, Slot sum, const uint32_t *ids, uint32_t n) {
   for (int often = ONCE; often <= EACH_TURN; often++)
     for (uint32_t k = 0; k < n; k++)
       if (m->often[ids[k]] == often) sum = sum ? prog_op(m->body, op, sum, m->slot[ids[k]]) : m->slot[ids[k]];
   return sum;
 }
 
-static Slot sum_of(Making *m, const Node *n) {
+static Slot sum_of(BodyBuilder *m, const Node *n) {
   uint32_t *ids = ARENA_ARRAY(m->c->a, uint32_t, n->n), up = 0, down = 0;
   for (uint32_t k = 0; k < n->n; k++)
     if (!m->t->links.at[n->first + k].minus) ids[up++] = m->t->links.at[n->first + k].id;
@@ -138,7 +138,7 @@ static Slot sum_of(Making *m, const Node *n) {
 }
 
 /* Computes the pairs whose factors are known, nodes up to `done`. */
-static void make_pairs(Making *m, uint32_t done) {
+static void make_pairs(BodyBuilder *m, uint32_t done) {
   for (uint32_t k = 0; k < m->pairs.n; k++) {
     uint32_t id = id_of_pair(m, k);
     Pair p = m->pairs.at[k];
@@ -147,7 +147,7 @@ static void make_pairs(Making *m, uint32_t done) {
   }
 }
 
-static Slot value(Making *m, uint32_t id) {
+static Slot value(BodyBuilder *m, uint32_t id) {
   const Node *n = &m->t->nodes.at[id];
   const Ins *i = &m->c->p->ins.at[n->slot];
   if (n->kind != NODE_OP) return leaf(m, n);
@@ -168,14 +168,14 @@ static Slot value(Making *m, uint32_t id) {
   return prog_ins(m->body, (Ins){.op = i->op, .a = x[0], .b = x[1], .c = x[2], .index = i->index, .text = i->text});
 }
 
-static int same_place(const Making *m, uint32_t x, uint32_t y) {
-  const IrPlace *a = &m->f->at[x], *b = &m->f->at[y];
+static int same_place(const BodyBuilder *m, uint32_t x, uint32_t y) {
+  const IrSubscript *a = &m->f->at[x], *b = &m->f->at[y];
   return m->t->array.at[x] == m->t->array.at[y] && a->first == b->first && a->by_row == b->by_row && a->by_turn == b->by_turn &&
          a->row_at == b->row_at && a->turn_at == b->turn_at;
 }
 
 /* Stores the shares; shares of one sum are added first. */
-static void store_gives(Making *m) {
+static void store_gives(BodyBuilder *m) {
   uint32_t n = m->t->gives.n, first = m->t->columns.n - n;
   unsigned char *done = ARENA_ARRAY(m->c->a, unsigned char, n + 1);
   for (uint32_t k = 0; k < n; k++) {
@@ -191,10 +191,10 @@ static void store_gives(Making *m) {
   }
 }
 
-const Prog *nest_body(const Cut *c, const Tape *t, const Fit *f, const Slot **outer, uint32_t *nouter) {
+const Prog *nest_body(const Partition *c, const CanonicalForm *t, const Fit *f, const Slot **outer, uint32_t *nouter) {
   Arena *a = c->a;
   uint32_t n = t->nodes.n;
-  Making m = {.c = c, .t = t, .f = f, .body = prog_new(a)};
+  BodyBuilder m = {.c = c, .t = t, .f = f, .body = prog_new(a)};
   m.slot = ARENA_ARRAY(a, Slot, n + MOST_PRODUCTS);
   m.often = ARENA_ARRAY(a, unsigned char, n + MOST_PRODUCTS);
   m.factors = ARENA_ARRAY(a, uint32_t *, n);

@@ -1,5 +1,5 @@
-/* Shared by nest.c (search, and the program with nests), nest_cut.c (hubs and pieces), nest_tape.c (canonical form of a piece),
- * nest_fit.c (indices affine in two counters), nest_scatter.c (indices from tables) and nest_body.c (the body of a nest). */
+/* Shared by nest.c (search, and the program with nests), nest_partition.c (hubs and pieces), nest_canonical_form.c (canonical form of a piece),
+ * nest_affine.c (indices affine in two counters), nest_tables.c (indices from tables) and nest_body.c (the body of a nest). */
 #ifndef LAGC_NEST_IMPL_H
 #define LAGC_NEST_IMPL_H
 
@@ -9,9 +9,9 @@
 typedef struct {
   Slot value, hub;
   int minus;
-} Share;
+} HubTerm;
 
-typedef VEC(Share) Shares;
+typedef VEC(HubTerm) HubTerms;
 
 /* HUB_COMMON: a sum that shares terms with another; becomes HUB_SUM, or no hub, when pieces are known. */
 typedef enum { HUB_NO, HUB_SUM, HUB_SHARED, HUB_STORED, HUB_COMMON } HubKind;
@@ -21,7 +21,7 @@ typedef struct {
   uint32_t n;
   int apart;    /* may be a turn of a loop: has only operations that loops allow, and only hubs use it */
   uint32_t waits; /* number of uses of hubs that are not complete yet */
-  Shares gives;
+  HubTerms gives;
 } Piece;
 
 /* A user of a hub: a piece, from 1, or a sum; before: the previous entry in the hub's list, from 1. */
@@ -54,8 +54,8 @@ typedef struct {
   VEC(Waiting) waiting;  /* lists of users of hubs */
   uint32_t *last_waiting; /* by slot of hubs: last entry of its list, from 1 */
   unsigned char *celled; /* by slot of hubs: 1: nests add some of its terms; 2: all */
-  Shares *open, *terms;  /* scratch */
-} Cut;
+  HubTerms *open, *terms;  /* scratch */
+} Partition;
 
 int nest_is_sum(IrOp op);
 
@@ -63,13 +63,13 @@ int nest_is_sum(IrOp op);
 enum { CUT_COMMON_TERMS = 1, CUT_STORES = 2, CUT_LEAVES = 4 };
 
 /* Partitions the program into hubs and pieces; `celled` is left 0. ends: CUT_... bits. */
-Cut nest_cut(const Prog *p, unsigned ends);
+Partition nest_partition(const Prog *p, unsigned ends);
 
 /* Whether a term of a sum is an array element, which may be a piece by itself. */
-int nest_is_leaf(const Cut *c, Slot term);
+int nest_is_leaf(const Partition *c, Slot term);
 
 /* Appends the terms of a sum, through joined partial sums; hub is the sum. */
-void nest_terms(const Cut *c, Slot sum, Shares *terms);
+void nest_terms(const Partition *c, Slot sum, HubTerms *terms);
 
 /* An operand of a node with its sort keys, whose order is the same in all pieces of a group. */
 typedef struct {
@@ -81,7 +81,7 @@ typedef struct {
 typedef VEC(Child) Children;
 
 /* Operands of a node: terms of a sum or factors of a product in canonical order, else the instruction's operands. */
-void nest_children(const Cut *c, Slot s, Children *children);
+void nest_children(const Partition *c, Slot s, Children *children);
 
 typedef enum { NODE_LOAD, NODE_CELL, NODE_OUTER, NODE_CONST, NODE_OP } NodeKind;
 
@@ -93,7 +93,7 @@ typedef struct {
 typedef struct {
   NodeKind kind;
   Slot slot;        /* in the first piece of the group */
-  uint32_t column;  /* of loads and cells: position in Tape.columns */
+  uint32_t column;  /* of loads and cells: position in CanonicalForm.columns */
   uint32_t first, n; /* its operands: links first ... first + n - 1 */
 } Node;
 
@@ -108,21 +108,21 @@ typedef struct {
   VEC(uint32_t) array;       /* by column: the array, or ARR_COUNT + class of the hub */
   Children children, given;  /* scratch */
   VEC(Slot) open;
-} Tape;
+} CanonicalForm;
 
 /* Node number of a slot in the piece `stamp`. */
 typedef struct {
   uint32_t stamp, id;
 } Local;
 /* Writes the piece to `tape`, which is reused. stamp: number of the piece, from 1; local: by slot, zeroed before the first piece. */
-void nest_tape(const Cut *c, Piece *piece, Local *local, uint32_t stamp, Tape *tape);
+void nest_canonical_form(const Partition *c, Piece *piece, Local *local, uint32_t stamp, CanonicalForm *tape);
 
 /* A nest of loops over pieces of a group. */
 typedef struct {
   uint32_t rows;
   int64_t skew, turns, more; /* as in Nest */
   const uint32_t *begin;
-  const IrPlace *at;         /* by column */
+  const IrSubscript *at;         /* by column */
   const uint32_t *pieces;    /* [count] their numbers */
   uint32_t count;
 } Fit;
@@ -139,15 +139,15 @@ typedef struct {
 
 /* Sorts `order`, the numbers of n pieces, and appends nests with affine indices; remaining pieces become a nest with tables where
  * that is shorter than their text. */
-void nest_fit(const Indices *x, uint32_t *order, uint32_t n, Fits *fits);
+void nest_affine(const Indices *x, uint32_t *order, uint32_t n, Fits *fits);
 
 /* Greatest common divisor; gcd(0, b) = |b|. */
 int64_t nest_gcd(int64_t a, int64_t b);
 
 /* One loop over n pieces, or two over rows of them, with indices from tables. */
-Fit nest_scatter(const Indices *x, const uint32_t *pieces, uint32_t n);
+Fit nest_tables(const Indices *x, const uint32_t *pieces, uint32_t n);
 
 /* The body of a nest; outer[nouter]: slots of the program around it that the body reads. */
-const Prog *nest_body(const Cut *c, const Tape *t, const Fit *f, const Slot **outer, uint32_t *nouter);
+const Prog *nest_body(const Partition *c, const CanonicalForm *t, const Fit *f, const Slot **outer, uint32_t *nouter);
 
 #endif

@@ -1,4 +1,4 @@
-/* Common subproducts, see prog_share. Products become lists of factors; the pair of factors in most lists is replaced by a new factor until
+/* Common subproducts, see prog_product_cse. Products become lists of factors; the pair of factors in most lists is replaced by a new factor until
  * no pair is in two; then the program is built again with the pairs. */
 #include "ir/product.h"
 
@@ -13,7 +13,7 @@ typedef struct {
 typedef struct {
   Slot root;
   Product of;
-} Whole;
+} ProductAt;
 
 typedef struct {
   Factor a, b;
@@ -24,21 +24,21 @@ typedef struct {
   const Prog *from;
   Prog *to;
   const uint32_t *uses;
-  VEC(Whole) products;
+  VEC(ProductAt) products;
   VEC(Pair) pairs;
   Tally *table;           /* hashed, empty where count is 0 */
   uint32_t room;
   unsigned char *inside;  /* by slot: part of a larger product */
   uint32_t *product;      /* by slot: number of the product, from 1; 0: none */
   Slot *map, *made;       /* slots of `to`: by slot, by pair */
-} Share;
+} ProductCse;
 
 /* --- products --- */
 
-static void find_products(Share *s) {
+static void find_products(ProductCse *s) {
   for (Slot k = s->from->ins.n; k-- > 1;) {
     if (s->from->ins.at[k].op != IR_MUL || s->inside[k]) continue;
-    Whole w = {k, product_of(s->from, s->uses, k)};
+    ProductAt w = {k, product_of(s->from, s->uses, k)};
     product_mark_inside(s->from, s->uses, k, &w.of, s->inside);
     vec_push(s->from->arena, &s->products, w);
     s->product[k] = s->products.n;
@@ -47,7 +47,7 @@ static void find_products(Share *s) {
 
 /* --- the most frequent pair --- */
 
-static Tally *tally(Share *s, Factor a, Factor b) {
+static Tally *tally(ProductCse *s, Factor a, Factor b) {
   uint32_t k = (a * 0x9e3779b9u ^ b * 0x85ebca6bu) & (s->room - 1);
   while (s->table[k].count && (s->table[k].a != a || s->table[k].b != b)) k = (k + 1) & (s->room - 1);
   return &s->table[k];
@@ -59,7 +59,7 @@ static int is_better(const Tally *x, const Tally *y) {
 }
 
 /* The pair in most products, each of which counts once; ties go to earlier factors. */
-static Tally most_frequent(Share *s) {
+static Tally most_frequent(ProductCse *s) {
   Tally best = {0};
   for (uint32_t k = 0; k < s->room; k++) s->table[k] = (Tally){0};
   for (uint32_t w = 0; w < s->products.n; w++) {
@@ -78,7 +78,7 @@ static Tally most_frequent(Share *s) {
 
 /* --- replacing it --- */
 
-static Slot last_of(const Share *s, Factor f) { return f < s->from->ins.n ? f : s->pairs.at[f - s->from->ins.n].last; }
+static Slot last_of(const ProductCse *s, Factor f) { return f < s->from->ins.n ? f : s->pairs.at[f - s->from->ins.n].last; }
 
 /* Replaces factors a and b by `pair`, at the position of the later one. */
 static void take_out(Product *p, Factor a, Factor b, Factor pair) {
@@ -92,7 +92,7 @@ static void take_out(Product *p, Factor a, Factor b, Factor pair) {
   for (uint32_t k = first; k < p->n; k++) p->at[k] = p->at[k + 1];
 }
 
-static void take_out_everywhere(Share *s, const Tally *t) {
+static void take_out_everywhere(ProductCse *s, const Tally *t) {
   Slot x = last_of(s, t->a), y = last_of(s, t->b);
   Factor pair = s->from->ins.n + s->pairs.n;
   vec_push(s->from->arena, &s->pairs, ((Pair){t->a, t->b, x > y ? x : y}));
@@ -101,16 +101,16 @@ static void take_out_everywhere(Share *s, const Tally *t) {
 
 /* --- the program with pairs --- */
 
-static Slot slot_of(const Share *s, Factor f) { return f < s->from->ins.n ? s->map[f] : s->made[f - s->from->ins.n]; }
+static Slot slot_of(const ProductCse *s, Factor f) { return f < s->from->ins.n ? s->map[f] : s->made[f - s->from->ins.n]; }
 
-static Slot multiply(Share *s, const Product *p) {
+static Slot multiply(ProductCse *s, const Product *p) {
   Slot r = slot_of(s, p->at[0]);
   for (uint32_t k = 1; k < p->n; k++) r = prog_op(s->to, IR_MUL, r, slot_of(s, p->at[k]));
   return r;
 }
 
 /* By slot: list of the pairs that are computed after it, in the order in which they were found. */
-static uint32_t *lists_of_pairs(const Share *s, uint32_t *next) {
+static uint32_t *lists_of_pairs(const ProductCse *s, uint32_t *next) {
   uint32_t *first = ARENA_ARRAY(s->from->arena, uint32_t, s->from->ins.n);
   for (uint32_t k = s->pairs.n; k-- > 0;) {
     next[k] = first[s->pairs.at[k].last];
@@ -119,14 +119,14 @@ static uint32_t *lists_of_pairs(const Share *s, uint32_t *next) {
   return first;
 }
 
-static void rebuild(Share *s) {
+static void rebuild(ProductCse *s) {
   const Prog *p = s->from;
   uint32_t *next = ARENA_ARRAY(p->arena, uint32_t, s->pairs.n + 1), *first = lists_of_pairs(s, next);
   s->made = ARENA_ARRAY(p->arena, Slot, s->pairs.n + 1);
   for (Slot k = 1; k < p->ins.n; k++) {
     if (s->inside[k]) continue;
     const Ins *i = &p->ins.at[k];
-    s->map[k] = s->product[k] ? multiply(s, &s->products.at[s->product[k] - 1].of) : prog_ins(s->to, prog_moved(s->to, p, s->map, *i));
+    s->map[k] = s->product[k] ? multiply(s, &s->products.at[s->product[k] - 1].of) : prog_ins(s->to, prog_import(s->to, p, s->map, *i));
     prog_name(s->to, s->map[k], i->name);
     for (uint32_t at = first[k]; at; at = next[at - 1]) {
       const Pair *pair = &s->pairs.at[at - 1];
@@ -139,9 +139,9 @@ static void rebuild(Share *s) {
   }
 }
 
-Prog *prog_share(Prog *p) {
+Prog *prog_product_cse(Prog *p) {
   Arena *a = p->arena;
-  Share s = {.from = p, .to = prog_like(p), .uses = prog_uses(p), .inside = ARENA_ARRAY(a, unsigned char, p->ins.n),
+  ProductCse s = {.from = p, .to = prog_new_like(p), .uses = prog_uses(p), .inside = ARENA_ARRAY(a, unsigned char, p->ins.n),
              .product = ARENA_ARRAY(a, uint32_t, p->ins.n), .map = ARENA_ARRAY(a, Slot, p->ins.n)};
   find_products(&s);
   uint32_t pairs = 0;

@@ -12,10 +12,10 @@ Prog *prog_new(Arena *a) {
   return p;
 }
 
-Prog *prog_like(const Prog *p) {
+Prog *prog_new_like(const Prog *p) {
   Prog *r = ARENA_NEW(p->arena, Prog);
   r->arena = p->arena;
-  r->reckons = p->reckons;
+  r->folds_constants = p->folds_constants;
   r->ins.cap = p->ins.n + 1;
   r->ins.at = ARENA_ARRAY(p->arena, Ins, r->ins.cap);
   r->stores.cap = p->stores.n + 1;
@@ -105,7 +105,7 @@ static Slot fold(Prog *p, const Ins *i) {
 }
 
 Slot prog_ins(Prog *p, Ins i) {
-  Slot folded = p->reckons ? prog_reckon(p, &i) : NOT_A_SLOT;
+  Slot folded = p->folds_constants ? prog_constant_fold(p, &i) : NOT_A_SLOT;
   if (folded == NOT_A_SLOT) folded = fold(p, &i);
   if (folded != NOT_A_SLOT) return folded;
   if (!is_pure(i.op)) return append(p, i);
@@ -121,7 +121,7 @@ Slot prog_ins(Prog *p, Ins i) {
 }
 
 Slot prog_op(Prog *p, IrOp op, Slot a, Slot b) { return prog_ins(p, (Ins){.op = op, .a = a, .b = b}); }
-Slot prog_num(Prog *p, Num n) { return num_value(n) == 0 ? 0 : prog_ins(p, (Ins){.op = IR_CONST, .number = num_rounded(n)}); }
+Slot prog_num(Prog *p, Num n) { return num_value(n) == 0 ? 0 : prog_ins(p, (Ins){.op = IR_CONST, .number = num_drop_error(n)}); }
 void prog_title(Prog *p, const char *text) { prog_ins(p, (Ins){.op = IR_TITLE, .text = text}); }
 
 void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *comment) {
@@ -175,7 +175,7 @@ static const Slot *moved(Arena *a, const Slot *map, const Slot *from, uint32_t n
   return to;
 }
 
-Ins prog_moved(Prog *to, const Prog *from, const Slot *map, Ins i) {
+Ins prog_import(Prog *to, const Prog *from, const Slot *map, Ins i) {
   i.a = map[i.a];
   i.b = map[i.b];
   i.c = map[i.c];
@@ -221,7 +221,7 @@ uint32_t *prog_uses(const Prog *p) {
 
 Prog *prog_tidy(const Prog *p) {
   Arena *arena = p->arena;
-  Prog *r = prog_like(p);
+  Prog *r = prog_new_like(p);
   unsigned char *need = ARENA_ARRAY(arena, unsigned char, p->ins.n);
   uint32_t *divisions = ARENA_ARRAY(arena, uint32_t, p->ins.n);
   Slot *map = ARENA_ARRAY(arena, Slot, p->ins.n);
@@ -232,7 +232,7 @@ Prog *prog_tidy(const Prog *p) {
   for (Slot s = 1; s < p->ins.n; s++) {
     if (!need[s]) continue;
     uint32_t shared = p->ins.at[s].op == IR_DIV ? divisions[p->ins.at[s].b] : 0;
-    Ins i = prog_moved(r, p, map, p->ins.at[s]);
+    Ins i = prog_import(r, p, map, p->ins.at[s]);
     if (shared > 1) {
       one = prog_num(r, num_int(1));
       Slot inverse = prog_op(r, IR_DIV, one, i.b);
@@ -346,7 +346,7 @@ int prog_solves(const Prog *p, SolveKind kind) {
   return 0;
 }
 
-uint32_t prog_work(const Prog *p) {
+uint32_t prog_work_size(const Prog *p) {
   uint32_t most = 0;
   for (uint32_t i = 0; i < p->solves.n; i++) {
     const Solve *k = &p->solves.at[i];

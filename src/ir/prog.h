@@ -46,7 +46,7 @@ typedef enum {
 
 /* Arrays that a function reads.
  * Line 1: time, state, parameters, inputs; accelerations (linearisation only); right-hand side g of A d = g (state corrections only).
- * Line 2, Taylor coefficients (ir/series.h): flags of inputs that follow their formulas (0: held constant), coefficients x[k], sums over
+ * Line 2, Taylor coefficients (series/series.h): flags of inputs that follow their formulas (0: held constant), coefficients x[k], sums over
  * lower coefficients, constants of order 0; the scalars k, 1/k and T/(k + 1).
  * Line 3, nests: accumulated sums, whose loads have the nest as operand a; values that a body reads from the program around its nest. */
 typedef enum {
@@ -109,7 +109,7 @@ static inline SolveKind solve_kind(const Solve *k) {
 typedef struct {
   int64_t first, by_row, by_turn;
   const uint32_t *row_at, *turn_at;
-} IrPlace;
+} IrSubscript;
 
 /* Two loops that accumulate sums: for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1, or in begin[i] .. begin[i + 1] - 1.
  * Sums (ARR_CELL) are 0 before the first nest. A sum that stays the same in all turns of the inner (or only) loop gets their total at once,
@@ -122,7 +122,7 @@ typedef struct {
   int64_t skew, turns, more;
   const uint32_t *begin; /* [rows + 1] first turn of each row where lengths follow no rule; or NULL */
   const struct Prog *body;
-  const IrPlace *at;    /* [n] */
+  const IrSubscript *at;    /* [n] */
   const Slot *outer;    /* [nouter] values of the program that the nest is in */
   uint32_t n, nouter;
 } Nest;
@@ -139,7 +139,7 @@ static inline int64_t nest_to(const Nest *n, int64_t i) { return n->begin ? n->b
 
 /* Value of the index at[k] in turn j of row i. */
 static inline int64_t nest_index(const Nest *n, uint32_t k, int64_t i, int64_t j) {
-  const IrPlace *x = &n->at[k];
+  const IrSubscript *x = &n->at[k];
   return x->first + x->by_row*(x->row_at ? x->row_at[i] : i) + x->by_turn*(x->turn_at ? x->turn_at[j] : j);
 }
 
@@ -157,7 +157,7 @@ typedef struct Prog {
   VEC(IrTable) tables;
   VEC(Nest) nests;
   uint32_t cells;     /* number of sums of ARR_CELL */
-  int reckons;        /* constants are folded at once, and x/number becomes x*(1/number) */
+  int folds_constants;        /* constants are folded at once, and x/number becomes x*(1/number) */
   uint32_t *table;    /* hash table of value numbering */
   uint32_t table_cap;
 } Prog;
@@ -169,7 +169,7 @@ typedef struct {
 Prog *prog_new(Arena *a);
 
 /* An empty program with room for as many instructions as p has: growing would take twice the memory. */
-Prog *prog_like(const Prog *p);
+Prog *prog_new_like(const Prog *p);
 
 /* Appends an instruction, or returns an equal earlier one; operands of a sum or product match in either order.
  * Simplifies x + 0, 1*x and the like. */
@@ -194,8 +194,8 @@ const char *ir_made_name(Arena *a, const Ins *i, int of_one, const char *x, cons
 /* Whether a value is a number or a load, which takes no instruction of its own. */
 int ir_is_leaf(IrOp op);
 
-/* reckon.c: the folded or simplified form of an instruction with numbers among its operands, appended; NOT_A_SLOT: there is none. */
-Slot prog_reckon(Prog *p, const Ins *i);
+/* constant_fold.c: the folded or simplified form of an instruction with numbers among its operands, appended; NOT_A_SLOT: there is none. */
+Slot prog_constant_fold(Prog *p, const Ins *i);
 int prog_is_number(const Prog *p, Slot s);
 
 /* eval.c: value at x of the C library's function `name`; NaN for unknown names. */
@@ -213,16 +213,16 @@ Prog *prog_factor(Prog *p);
  * again (M. Breuer, Generation of optimal code for expressions via factorization, Comm. ACM 12 (1969) 333, doi:10.1145/363011.363153).
  * Time grows as products times pairs, so only for short programs. Needs a tidy program and leaves one with at most as many operations;
  * changes rounding. */
-Prog *prog_share(Prog *p);
+Prog *prog_product_cse(Prog *p);
 
 /* Schedule store by store, pivots first, without titles: the instructions that one store needs stand together, and form a loop with
  * those of its neighbours. Not for programs with solves. */
-Prog *prog_by_demand(const Prog *p);
+Prog *prog_schedule_by_store(const Prog *p);
 
 /* Schedule by critical path: the longest path of latencies to the end comes first, late values stand where they are needed.
  * calls_first: functions are calls and come first, since values in registers would have to be saved before them. Without titles;
  * programs with solves keep their order. */
-Prog *prog_by_deadline(const Prog *p, int calls_first);
+Prog *prog_schedule_by_path(const Prog *p, int calls_first);
 
 /* Approximate latency of an operation, in cycles. */
 uint32_t ir_latency(IrOp op);
@@ -231,7 +231,7 @@ uint32_t ir_latency(IrOp op);
 int prog_same(const Prog *a, const Prog *b);
 
 /* Instruction i of `from` for `to`: operands renumbered by map[slot]; its solve, table or nest is copied. Does not append it. */
-Ins prog_moved(Prog *to, const Prog *from, const Slot *map, Ins i);
+Ins prog_import(Prog *to, const Prog *from, const Slot *map, Ins i);
 
 /* All programs with instructions: part 0 is p itself, parts 1 ... prog_parts - 1 are the bodies of its nests. */
 uint32_t prog_parts(const Prog *p);
@@ -242,11 +242,11 @@ uint32_t *prog_uses(const Prog *p);
 
 /* Reassociates sums: terms are added in the order in which they are ready, so that a late one passes through few additions.
  * ready[p->ins.n]: time at which each load has its value, in cycles. Changes rounding; drops names of partial sums. */
-Prog *prog_balance(const Prog *p, const uint32_t *ready);
+Prog *prog_reassociate(const Prog *p, const uint32_t *ready);
 
 /* Reassociates sums and products for fused multiply-add, all loads being ready at the start: terms in a row, earliest first, so that
  * each addition takes in a product. Of two equally fast orders it takes the one with fewer instructions. Keeps names and operations. */
-Prog *prog_in_time(const Prog *p);
+Prog *prog_reassociate_fma(const Prog *p);
 
 /* Checks that operands precede their uses, conditions feed only conditions and selections, and stores and operands of nests exist.
  * NULL, or the first fault. */
@@ -262,9 +262,9 @@ int prog_has_pivots(const Prog *p);
 int prog_solves(const Prog *p, SolveKind kind);
 
 /* Size of the work space that IR_SOLVE needs, in reals. */
-uint32_t prog_work(const Prog *p);
+uint32_t prog_work_size(const Prog *p);
 
-/* solve_ops.c: operations of a system that a loop solves, and of an inversion. With constraints, counted for independent ones and a
+/* solve_cost.c: operations of a system that a loop solves, and of an inversion. With constraints, counted for independent ones and a
  * positive definite M, where zeros outside of envelopes cost nothing. */
 OpCount solve_count(Arena *a, const Solve *k);
 OpCount invert_count(const Solve *k);

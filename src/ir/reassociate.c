@@ -1,4 +1,4 @@
-/* Reassociation of sums and products by the times at which their operands are ready (prog_balance, prog_in_time). A sum, or product, whose
+/* Reassociation of sums and products by the times at which their operands are ready (prog_reassociate, prog_reassociate_fma). A sum, or product, whose
  * parts have no other use is gathered into a list of terms, or factors, and built again in the new order. */
 #include <stdlib.h>
 
@@ -20,16 +20,16 @@ typedef struct {
   int fused;              /* for fused multiply-add; named sums stay whole */
   VEC(uint32_t) ready;    /* by slot of `to` */
   VEC(Term) terms, sums, open;
-} Balance;
+} Reassociation;
 
 static int is_sum(IrOp op) { return op == IR_ADD || op == IR_SUB || op == IR_NEG; }
 
-static uint32_t ready(const Balance *b, Slot s) { return s < b->ready.n ? b->ready.at[s] : 0; }
+static uint32_t ready(const Reassociation *b, Slot s) { return s < b->ready.n ? b->ready.at[s] : 0; }
 
 static uint32_t latest(uint32_t x, uint32_t y) { return x > y ? x : y; }
 
 /* Records when slot s is ready; was: its slot in the old program, for loads. */
-static Slot timed(Balance *b, Slot s, Slot was) {
+static Slot timed(Reassociation *b, Slot s, Slot was) {
   while (b->ready.n <= s) vec_push(b->to->arena, &b->ready, 0);
   const Ins *i = &b->to->ins.at[s];
   uint32_t t = latest(ready(b, i->a), latest(ready(b, i->b), ready(b, i->c)));
@@ -42,7 +42,7 @@ static Slot timed(Balance *b, Slot s, Slot was) {
 }
 
 /* Marks sums whose only use is in a larger sum. */
-static void mark_inside(Balance *b) {
+static void mark_inside(Reassociation *b) {
   const Prog *p = b->from;
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
@@ -55,7 +55,7 @@ static void mark_inside(Balance *b) {
   }
 }
 
-static Term term(const Balance *b, Slot s, int minus, int once) {
+static Term term(const Reassociation *b, Slot s, int minus, int once) {
   const Ins *i = &b->to->ins.at[s];
   Term t = {s, minus, b->fused && once && i->op == IR_MUL, ready(b, s), b->terms.n};
   if (t.product) t.ready = latest(ready(b, i->a), ready(b, i->b));
@@ -63,7 +63,7 @@ static Term term(const Balance *b, Slot s, int minus, int once) {
 }
 
 /* Lists the terms of the sum s, through the parts inside it. */
-static void gather(Balance *b, Slot s) {
+static void gather(Reassociation *b, Slot s) {
   Arena *a = b->to->arena;
   b->terms.n = 0;
   vec_push(a, &b->open, ((Term){.slot = s}));
@@ -86,7 +86,7 @@ static int by_time(const void *x, const void *y) {
   return s->rank < t->rank ? -1 : s->rank > t->rank;
 }
 
-static Term add(Balance *b, Term x, Term y) {
+static Term add(Reassociation *b, Term x, Term y) {
   Slot s;
   if (x.minus == y.minus) s = prog_op(b->to, IR_ADD, x.slot, y.slot);
   else s = x.minus ? prog_op(b->to, IR_SUB, y.slot, x.slot) : prog_op(b->to, IR_SUB, x.slot, y.slot);
@@ -97,7 +97,7 @@ static Term add(Balance *b, Term x, Term y) {
 
 /* The term to begin with: a product in first place takes a multiplication of its own, so the first term that is none, if it is ready
  * within a multiplication's time. */
-static uint32_t first_of(const Balance *b) {
+static uint32_t first_of(const Reassociation *b) {
   const Term *t = b->terms.at;
   for (uint32_t k = 0; k < b->terms.n; k++)
     if (!t[k].product && (t[k].ready <= t[0].ready + ir_latency(IR_MUL))) return k;
@@ -105,7 +105,7 @@ static uint32_t first_of(const Balance *b) {
 }
 
 /* The sum as a chain, earliest term first: each product is one fused multiply-add. */
-static Slot add_in_a_row(Balance *b) {
+static Slot add_in_a_row(Reassociation *b) {
   Term *t = b->terms.at;
   qsort(t, b->terms.n, sizeof *t, by_time);
   if (!b->terms.n) return 0;
@@ -118,7 +118,7 @@ static Slot add_in_a_row(Balance *b) {
 
 /* The sum as a tree: adds the two earliest of terms and partial sums, again and again. Both are queues in order of time (Huffman's tree
  * by two queues; J. van Leeuwen, ICALP 1976, p. 382). */
-static Slot add_up(Balance *b) {
+static Slot add_up(Reassociation *b) {
   uint32_t t = 0, u = 0;
   b->sums.n = 0;
   qsort(b->terms.at, b->terms.n, sizeof *b->terms.at, by_time);
@@ -137,7 +137,7 @@ static Slot add_up(Balance *b) {
 
 /* --- products --- */
 
-static void mark_factors(Balance *b) {
+static void mark_factors(Reassociation *b) {
   for (Slot s = b->from->ins.n; s-- > 1;) {
     if (b->from->ins.at[s].op != IR_MUL || b->inside[s]) continue;
     Product of = product_of(b->from, b->uses, s);
@@ -146,7 +146,7 @@ static void mark_factors(Balance *b) {
 }
 
 /* The product as a tree: multiplies the two earliest factors, again and again. */
-static Slot multiply(Balance *b, Slot s) {
+static Slot multiply(Reassociation *b, Slot s) {
   Product of = product_of(b->from, b->uses, s);
   Term t[MOST_FACTORS];
   for (uint32_t k = 0; k < of.n; k++) t[k] = (Term){.slot = b->map[of.at[k]], .ready = ready(b, b->map[of.at[k]]), .rank = k};
@@ -159,9 +159,9 @@ static Slot multiply(Balance *b, Slot s) {
   return t[0].slot;
 }
 
-static Prog *balance(const Prog *p, const uint32_t *loads, int fused) {
+static Prog *reassociate(const Prog *p, const uint32_t *loads, int fused) {
   Arena *a = p->arena;
-  Balance b = {.from = p, .to = prog_like(p), .map = ARENA_ARRAY(a, Slot, p->ins.n), .uses = prog_uses(p),
+  Reassociation b = {.from = p, .to = prog_new_like(p), .map = ARENA_ARRAY(a, Slot, p->ins.n), .uses = prog_uses(p),
                .inside = ARENA_ARRAY(a, unsigned char, p->ins.n), .loads = loads, .fused = fused};
   mark_inside(&b);
   if (fused) mark_factors(&b);
@@ -174,7 +174,7 @@ static Prog *balance(const Prog *p, const uint32_t *loads, int fused) {
     } else if (fused && i->op == IR_MUL) {
       b.map[s] = multiply(&b, s);
     } else {
-      b.map[s] = timed(&b, prog_ins(b.to, prog_moved(b.to, p, b.map, *i)), s);
+      b.map[s] = timed(&b, prog_ins(b.to, prog_import(b.to, p, b.map, *i)), s);
     }
     prog_name(b.to, b.map[s], i->name);
   }
@@ -185,5 +185,5 @@ static Prog *balance(const Prog *p, const uint32_t *loads, int fused) {
   return b.to;
 }
 
-Prog *prog_balance(const Prog *p, const uint32_t *ready) { return balance(p, ready, 0); }
-Prog *prog_in_time(const Prog *p) { return balance(p, NULL, 1); }
+Prog *prog_reassociate(const Prog *p, const uint32_t *ready) { return reassociate(p, ready, 0); }
+Prog *prog_reassociate_fma(const Prog *p) { return reassociate(p, NULL, 1); }

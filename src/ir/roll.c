@@ -26,7 +26,7 @@ typedef struct {
   Rolls *r;
   const uint32_t *cls; /* by place */
   unsigned by_index;
-  uint32_t *alike_to;  /* by period: end of the run of classes that are equal a period later, as last computed by alike */
+  uint32_t *equal_until;  /* by period: end of the run of classes that are equal a period later, as last computed by equal_classes */
   uint32_t *failed;    /* by period: place, from 1, of an instruction that ended a group: all groups with it fail */
 } Search;
 
@@ -115,8 +115,8 @@ static int same_sharing(const Rolls *r, uint32_t begin, uint32_t period, uint32_
 
 /* Number of instructions from `begin` on whose classes equal those a period later. The search only moves forward, so that each period
  * is compared once. */
-static uint32_t alike(const Search *f, uint32_t begin, uint32_t period) {
-  uint32_t *to = &f->alike_to[period];
+static uint32_t equal_classes(const Search *f, uint32_t begin, uint32_t period) {
+  uint32_t *to = &f->equal_until[period];
   if (*to <= begin)
     for (*to = begin; *to + period < f->r->n && f->cls[*to] == f->cls[*to + period];) ++*to;
   return *to - begin;
@@ -125,7 +125,7 @@ static uint32_t alike(const Search *f, uint32_t begin, uint32_t period) {
 /* Number of turns, at most `most`, in which all instructions of the group go on; records failures. */
 static uint32_t turns_within(const Search *f, uint32_t begin, uint32_t period, uint32_t most) {
   const Rolls *r = f->r;
-  uint32_t turns = alike(f, begin, period) / period + 1;
+  uint32_t turns = equal_classes(f, begin, period) / period + 1;
   if (turns > most) turns = most;
   for (uint32_t k = 0; k < period && turns >= FEWEST_TURNS; k++) {
     if (!same_sharing(r, begin, period, k)) turns = 1;
@@ -139,7 +139,7 @@ static uint32_t turns_within(const Search *f, uint32_t begin, uint32_t period, u
 /* Whether the classes and the group's first instruction go on for the fewest turns: most groups fail here. */
 static int may_begin(const Search *f, uint32_t begin, uint32_t period) {
   const Rolls *r = f->r;
-  if (alike(f, begin, period) < (FEWEST_TURNS - 1) * period) return 0;
+  if (equal_classes(f, begin, period) < (FEWEST_TURNS - 1) * period) return 0;
   for (int which = 0; which < 3; which++)
     if (roll_operand(code_at(r, begin), which) && turns_of(f, begin, period, 0, which, FEWEST_TURNS) < FEWEST_TURNS) return 0;
   return 1;
@@ -163,7 +163,7 @@ static uint32_t carried(const Rolls *r, const Loop *l) {
 }
 
 /* The loop rotated so that the fewest values pass between turns, which may cost one turn. */
-static Loop well_cut(const Search *f, Loop l) {
+static Loop best_rotation(const Search *f, Loop l) {
   Loop best = l;
   uint32_t least = carried(f->r, &l);
   for (uint32_t k = 1; k < l.period && l.count > FEWEST_TURNS; k++) {
@@ -310,7 +310,7 @@ Rolls roll_find(const Prog *p, unsigned by_index, uint32_t from, int early) {
       i++;
       continue;
     }
-    l = well_cut(&f, l);
+    l = best_rotation(&f, l);
     i = l.begin;
     l.kept = ARENA_ARRAY(a, uint32_t, l.period);
     l.carried = ARENA_ARRAY(a, unsigned char, l.period);

@@ -5,7 +5,7 @@
 
 /* --- evaluation of the text at a state --- */
 
-static void moving(Jet *out, Real x, Real rate, Real second, Real direction) {
+static void input_jet(Jet *out, Real x, Real rate, Real second, Real direction) {
   *out = (Jet){.planes = direction != 0 ? JET_PLANES : 1};
   out->c[0][0].v = x;
   out->c[0][1].v = rate;
@@ -17,13 +17,13 @@ static void moving(Jet *out, Real x, Real rate, Real second, Real direction) {
 void check_input(void *data, InputKind kind, uint32_t i, Jet *out) {
   const Check *c = data;
   switch (kind) {
-    case INPUT_TIME: moving(out, c->t, 1, 0, 0); return;
+    case INPUT_TIME: input_jet(out, c->t, 1, 0, 0); return;
     case INPUT_COORD:
-      moving(out, c->q[i], c->v[i], c->a[i], c->c[i]);
+      input_jet(out, c->q[i], c->v[i], c->a[i], c->c[i]);
       out->c[0][2].e = c->error + c->a_error[i];
       return;
     case INPUT_STATE:
-      moving(out, c->z[i], c->zd[i], c->zdd[i], c->m->first_order && c->m->states.at[i].coordinate ? c->c[i] : 0);
+      input_jet(out, c->z[i], c->zd[i], c->zdd[i], c->m->first_order && c->m->states.at[i].coordinate ? c->c[i] : 0);
       out->c[0][1].e = c->error + c->zd_error[i];
       return;
     case INPUT_PARAM: *out = jet_exact(c->given[i]); return;
@@ -61,55 +61,55 @@ static Bounded torque_work(const Check *c, const TextForce *f) {
 }
 
 /* r += sign Q.c, forces and dissipation. */
-static void add_forces(const Check *c, Real sign, Total *r) {
+static void add_forces(const Check *c, Real sign, BoundedSum *r) {
   const TextDynamics *d = c->dynamics;
   for (uint32_t i = 0; i < d->forces.n; i++) {
     const TextForce *f = &d->forces.at[i];
-    if (f->torque) total_add(r, sign, torque_work(c, f));
-    else total_add(r, sign, bounded_mul(check_coefficient(d->tape, c->at, f->f[0], 0, 0), check_coefficient(d->tape, c->at, f->point[0], 1, 0)));
+    if (f->torque) bounded_sum_add(r, sign, torque_work(c, f));
+    else bounded_sum_add(r, sign, bounded_mul(check_coefficient(d->tape, c->at, f->f[0], 0, 0), check_coefficient(d->tape, c->at, f->point[0], 1, 0)));
   }
-  total_add(r, -sign, check_coefficient(d->tape, c->at, d->dissipation, 2, 0));
+  bounded_sum_add(r, -sign, check_coefficient(d->tape, c->at, d->dissipation, 2, 0));
 }
 
-static void add_multipliers(const Check *c, Total *r) {
+static void add_multipliers(const Check *c, BoundedSum *r) {
   const Constraints *k = &c->e->constraints;
   for (uint32_t i = 0; i < k->n; i++) {
     uint32_t place = (uint32_t)(k->of[i] - c->m->constraints.at);
     if (k->of[i]->inside) continue; /* displacements satisfy it: keep_rotations */
-    total_add(r, -1, bounded_mul((Bounded){c->lambda[place], c->lambda_error[place]}, check_coefficient(c->dynamics->tape, c->at, c->dynamics->constraints[place], i < k->nholonomic ? 1 : 2, 0)));
+    bounded_sum_add(r, -1, bounded_mul((Bounded){c->lambda[place], c->lambda_error[place]}, check_coefficient(c->dynamics->tape, c->at, c->dynamics->constraints[place], i < k->nholonomic ? 1 : 2, 0)));
   }
 }
 
-Total check_residual(const Check *c) {
+BoundedSum check_residual(const Check *c) {
   const TextDynamics *d = c->dynamics;
-  Total r = {0};
-  total_add(&r, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 1));
-  total_add(&r, -2, check_coefficient(d->tape, c->at, d->lagrangian, 1, 0));
+  BoundedSum r = {0};
+  bounded_sum_add(&r, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 1));
+  bounded_sum_add(&r, -2, check_coefficient(d->tape, c->at, d->lagrangian, 1, 0));
   add_forces(c, -1, &r);
   add_multipliers(c, &r);
   Bounded L = check_coefficient(d->tape, c->at, d->lagrangian, 0, 0);
-  r.around = isfinite(L.e) ? fabsl(L.v) : NAN; /* NAN where L has no derivative: no comparison */
-  r.around += fabsl(check_coefficient(d->tape, c->at, d->lagrangian, 2, 0).v);
+  r.inner_magnitude = isfinite(L.e) ? fabsl(L.v) : NAN; /* NAN where L has no derivative: no comparison */
+  r.inner_magnitude += fabsl(check_coefficient(d->tape, c->at, d->lagrangian, 2, 0).v);
   return r;
 }
 
 /* Along c->c: compares the residual with 0, and, with `variation`, dL/dq, momentum and force with the program's. */
-static Verdict check_direction(Check *c, const char *name, Span span, const Real *const *variation) {
+static CheckVerdict check_direction(Check *c, const char *name, Span span, const Real *const *variation) {
   const TextDynamics *d = c->dynamics;
-  Total momentum = {0}, slope = {0}, force = {0};
+  BoundedSum momentum = {0}, slope = {0}, force = {0};
   if (!check_run_text(c)) return DISMISSED;
-  Total residual = check_residual(c);
-  Verdict v = check_compare(c, &residual, 0, span, "what is left of the equation of motion of", name);
+  BoundedSum residual = check_residual(c);
+  CheckVerdict v = check_compare(c, &residual, 0, span, "what is left of the equation of motion of", name);
   if (!variation || v != AGREES) return v;
   Real of[3] = {0};
   for (int k = 0; k < 3; k++)
     for (uint32_t i = 0; i < c->n; i++) of[k] += variation[k][i] * c->c[i];
-  total_add(&slope, 1, check_coefficient(d->tape, c->at, d->lagrangian, 1, 0));
-  total_add(&momentum, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 0));
+  bounded_sum_add(&slope, 1, check_coefficient(d->tape, c->at, d->lagrangian, 1, 0));
+  bounded_sum_add(&momentum, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 0));
   add_forces(c, 1, &force);
   for (int k = 0; k < 3; k++) { /* terms of each may cancel in it */
-    Total *t = k == 0 ? &slope : k == 1 ? &momentum : &force;
-    t->around += residual.size + residual.around;
+    BoundedSum *t = k == 0 ? &slope : k == 1 ? &momentum : &force;
+    t->inner_magnitude += residual.size + residual.inner_magnitude;
   }
   v = worse(v, check_compare(c, &slope, of[0], span, "dL/dq of", name));
   v = worse(v, check_compare(c, &momentum, of[1], span, "the momentum of", name));
@@ -128,7 +128,7 @@ static void keep_rotations(Check *c) {
 
 uint32_t check_components(const Check *c) { return c->m->first_order ? c->m->states.n : c->n; }
 
-static Verdict check_coordinate(Check *c, uint32_t i, const Real *const *variation) {
+static CheckVerdict check_coordinate(Check *c, uint32_t i, const Real *const *variation) {
   const Model *m = c->m;
   if (m->first_order && !m->states.at[i].coordinate) return AGREES;
   for (uint32_t k = 0; k < check_components(c); k++) c->c[k] = k == i;
@@ -137,7 +137,7 @@ static Verdict check_coordinate(Check *c, uint32_t i, const Real *const *variati
 }
 
 /* Checks one random combination of all coordinates; on disagreement, each coordinate, to name the wrong one. */
-static Verdict check_together(Check *c, const Real *const *variation) {
+static CheckVerdict check_combination(Check *c, const Real *const *variation) {
   for (uint32_t k = 0; k < check_components(c); k++) c->c[k] = check_random(c, 0.3L, 1) * (check_random(c, 0, 1) < 0.5L ? -1 : 1);
   if (c->m->first_order)
     for (uint32_t k = 0; k < check_components(c); k++) c->c[k] *= c->m->states.at[k].coordinate;
@@ -146,16 +146,16 @@ static Verdict check_together(Check *c, const Real *const *variation) {
   Diags *heard = c->m->diags;
   Model *m = (Model *)c->m; /* only its diags: the combination's message is dropped */
   m->diags = diags_new(c->arena, c->m->ast->sources);
-  Verdict v = check_direction(c, "all coordinates", m->lagrangian_span, variation);
+  CheckVerdict v = check_direction(c, "all coordinates", m->lagrangian_span, variation);
   m->diags = heard;
   for (uint32_t i = 0; v == DISAGREES && i < check_components(c) && m->diags->errors == errors; i++) check_coordinate(c, i, variation);
   if (v == DISAGREES && m->diags->errors == errors) check_direction(c, "all coordinates", m->lagrangian_span, variation);
   return v;
 }
 
-Verdict check_equations(Check *c) {
+CheckVerdict check_equations(Check *c) {
   const Real *variation[3] = {0};
-  Verdict v = AGREES;
+  CheckVerdict v = AGREES;
   if (!c->n && !c->m->first_order) return check_run_text(c) ? AGREES : DISMISSED;
   if (c->u->variation) {
     Real *out[3];
@@ -164,9 +164,9 @@ Verdict check_equations(Check *c) {
   }
   const Real *const *given = variation[0] ? variation : NULL;
   uint32_t n = check_components(c), length = c->dynamics->tape->ins.n, singles = length >= LONG_TAPE ? 0 : n <= FEW ? n : 1;
-  if (n > FEW || !singles) v = check_together(c, given);
+  if (n > FEW || !singles) v = check_combination(c, given);
   for (uint32_t i = 0; i < singles && v == AGREES; i++) v = worse(v, check_coordinate(c, n <= FEW ? i : (uint32_t)(check_random(c, 0, 1) * n), given));
-  c->told->directions = singles + (n > FEW || !singles);
+  c->statistics->directions = singles + (n > FEW || !singles);
   return v;
 }
 
@@ -207,13 +207,13 @@ static int text_is_finite(Check *c) {
   const TextDynamics *d = c->dynamics;
   for (uint32_t k = 0; k < c->n; k++) c->c[k] = 1;
   int sure = check_run_text(c);
-  Total r = check_residual(c);
+  BoundedSum r = check_residual(c);
   for (uint32_t i = 0; i < c->m->states.n; i++) sure &= isfinite(check_coefficient(d->tape, c->at, d->flows[i], 0, 0).v);
-  return sure && isfinite(r.sum.v) && isfinite(r.around) && isfinite(check_coefficient(d->tape, c->at, d->dissipation, 0, 0).v) && r.size < 1e150L;
+  return sure && isfinite(r.sum.v) && isfinite(r.inner_magnitude) && isfinite(check_coefficient(d->tape, c->at, d->dissipation, 0, 0).v) && r.size < 1e150L;
 }
 
 /* The program has no finite accelerations: an error if the text's equations are finite with a positive definite mass matrix. */
-Verdict check_failure(Check *c) {
+CheckVerdict check_failure(Check *c) {
   if (!c->n || c->n > FEW || c->dynamics->why || c->dynamics->tape->ins.n > LONG_TAPE || c->m->constraints.n) return DISMISSED;
   c->error = 0;
   for (uint32_t i = 0; i < c->n; i++) c->a[i] = 0;

@@ -8,7 +8,7 @@
 /* A saved state. */
 typedef struct {
   Real t, *q, *v, *z, *zd;
-} Kept;
+} SavedState;
 
 static Real *copied(const Check *c, const Real *x, uint32_t n) {
   Real *r = ARENA_ARRAY(c->arena, Real, n + 1);
@@ -16,13 +16,13 @@ static Real *copied(const Check *c, const Real *x, uint32_t n) {
   return r;
 }
 
-static Kept keep(const Check *c) {
+static SavedState copy_state(const Check *c) {
   uint32_t nz = c->m->states.n;
-  return (Kept){c->t, copied(c, c->q, c->n), copied(c, c->v, c->n), copied(c, c->z, nz), copied(c, c->zd, nz)};
+  return (SavedState){c->t, copied(c, c->q, c->n), copied(c, c->v, c->n), copied(c, c->z, nz), copied(c, c->zd, nz)};
 }
 
 /* Sets the state to the saved one plus s times (dq, dv, dz, dt). */
-static void move_to(Check *c, const Kept *k, Real s, const Real *dq, const Real *dv, const Real *dz, Real dt) {
+static void move_to(Check *c, const SavedState *k, Real s, const Real *dq, const Real *dv, const Real *dz, Real dt) {
   for (uint32_t i = 0; i < c->n; i++) {
     c->q[i] = k->q[i] + s * dq[i];
     c->v[i] = k->v[i] + s * dv[i];
@@ -31,7 +31,7 @@ static void move_to(Check *c, const Kept *k, Real s, const Real *dq, const Real 
   c->t = k->t + s * dt;
 }
 
-static void put_back(Check *c, const Kept *k) {
+static void restore_state(Check *c, const SavedState *k) {
   for (uint32_t i = 0; i < c->m->states.n; i++) c->zd[i] = k->zd[i];
   move_to(c, k, 0, k->q, k->v, k->z, 0);
 }
@@ -46,21 +46,21 @@ static Real short_time(const Check *c) {
 
 /* Derivative by Richardson extrapolation of central differences, at = f(-h), f(h), f(-2h), f(2h). Error: a quarter of their
  * difference, plus rounding of values of magnitude `size` and the known error `rounding`, over h. */
-static Total derivative(const Real at[4], Real h, Real size, Real rounding) {
+static BoundedSum derivative(const Real at[4], Real h, Real size, Real rounding) {
   Real near = (at[1] - at[0]) / (2 * h), far = (at[3] - at[2]) / (4 * h), spread = fabsl(near - far);
   Real error = spread / 4 + (1024 * jet_unit * size + rounding) / h;
-  return (Total){{near + (near - far) / 3, error}, size, fabsl(near) + 1};
+  return (BoundedSum){{near + (near - far) / 3, error}, size, fabsl(near) + 1};
 }
 
 /* d/dt of each charge against the program of its power. */
-static Verdict check_charges(Check *c) {
+static CheckVerdict check_charges(Check *c) {
   const IrUnit *u = c->u;
   uint32_t n = u->charges.n;
   Real *value = ARENA_ARRAY(c->arena, Real, 2 * n + 4), *power = ARENA_ARRAY(c->arena, Real, n + 1), h = short_time(c);
   Real(*at)[4] = arena_alloc(c->arena, (n + 1) * sizeof *at), *size = ARENA_ARRAY(c->arena, Real, n + 1);
-  Verdict v = AGREES;
+  CheckVerdict v = AGREES;
   if (n < 2 || !u->charge_values || c->m->inputs.n > 0 || (u->charge_powers && !check_run(c, u->charge_powers, (Real *const[]){power}))) return AGREES;
-  Kept kept = keep(c);
+  SavedState kept = copy_state(c);
   for (int k = 0; k < 4; k++) { /* -h, h, -2h, 2h; q to second order in s */
     Real s = (k % 2 ? h : -h) * (k < 2 ? 1 : 2);
     move_to(c, &kept, s, kept.v, c->a, c->zd, 1);
@@ -69,10 +69,10 @@ static Verdict check_charges(Check *c) {
     for (uint32_t i = 1; i < n; i++) at[i][k] = ran ? value[2 * (i - 1)] : NAN;
     for (uint32_t i = 1; i < n; i++) size[i] = fabsl(value[2 * (i - 1) + 1]);
   }
-  put_back(c, &kept);
+  restore_state(c, &kept);
   for (uint32_t i = 1; i < n; i++) {
     if (!(u->charges.at[i].flags & 2) || u->charges.at[i].flags & 8) continue;
-    Total t = derivative(at[i], h, size[i], 0);
+    BoundedSum t = derivative(at[i], h, size[i], 0);
     t.sum.e /= 64; /* an estimate, not a rounding bound: offsets SLACK */
     v = worse(v, check_compare(c, &t, power[i], c->m->span, "the rate of the charge", u->charges.at[i].name));
   }
@@ -85,19 +85,19 @@ static int residual_beside(Check *c, Real *out, Real *size, Real *rounding) {
   if (!check_run_text(c)) return 0;
   for (uint32_t i = 0; i < c->m->states.n; i++) c->zd[i] = check_coefficient(d->tape, c->at, d->flows[i], 0, 0).v;
   if (!check_run_text(c)) return 0;
-  Total r = check_residual(c);
+  BoundedSum r = check_residual(c);
   *out = r.sum.v;
-  *size += r.size + r.around;
+  *size += r.size + r.inner_magnitude;
   *rounding += r.sum.e;
   return isfinite(r.sum.v);
 }
 
 /* Linearisation: sum c_i dr_i/dy_j d_j for random c, d, against finite differences of the text's residual c.r along d. */
-static Verdict check_linear(Check *c) {
+static CheckVerdict check_linear(Check *c) {
   const IrUnit *u = c->u;
   uint32_t n = c->n, nz = c->m->states.n;
   Real *dr = ARENA_ARRAY(c->arena, Real, u->linear_dr.n + 1), *M = ARENA_ARRAY(c->arena, Real, u->linear_mass.n + 1);
-  Real *d = ARENA_ARRAY(c->arena, Real, 2 * n + nz + 1), at[4], h = 1e-5L, said = 0, size = 0, around = 0, rounding = 0;
+  Real *d = ARENA_ARRAY(c->arena, Real, 2 * n + nz + 1), at[4], h = 1e-5L, said = 0, size = 0, inner_magnitude = 0, rounding = 0;
   if (!n || !check_run(c, u->linear, (Real *const[]){dr, M})) return AGREES;
   for (uint32_t i = 0; i < n; i++) c->c[i] = check_random(c, -1, 1);
   for (uint32_t i = 0; i < 2 * n + nz; i++) {
@@ -112,15 +112,15 @@ static Verdict check_linear(Check *c) {
     said -= c->c[e.row] * dr[k] * d[e.col];
     size += fabsl(c->c[e.row] * dr[k] * d[e.col]);
   }
-  Kept kept = keep(c);
+  SavedState kept = copy_state(c);
   int ran = 1;
   for (int k = 0; k < 4 && ran; k++) {
     move_to(c, &kept, (k % 2 ? h : -h) * (k < 2 ? 1 : 2), d, d + n, d + 2 * n, 0);
-    ran = residual_beside(c, &at[k], &around, &rounding);
+    ran = residual_beside(c, &at[k], &inner_magnitude, &rounding);
   }
-  put_back(c, &kept);
+  restore_state(c, &kept);
   if (!ran) return AGREES;
-  Total t = derivative(at, h, around, rounding);
+  BoundedSum t = derivative(at, h, inner_magnitude, rounding);
   t.size = size;
   t.sum.e /= 64;
   return check_compare(c, &t, said, c->m->lagrangian_span, "the linearisation", NULL);
@@ -130,7 +130,7 @@ static Verdict check_linear(Check *c) {
 
 enum { ORDERS = 10 };
 
-/* Taylor coefficients up to ORDERS in x[order][column], by the recurrences of ir/series.h as emitted code runs them, with T = 1. */
+/* Taylor coefficients up to ORDERS in x[order][column], by the recurrences of series/series.h as emitted code runs them, with T = 1. */
 static int taylor_rows(Check *c, const Series *s, Real *x) {
   uint32_t columns = s->columns, nq = s->nq, nz = s->nz, time = 3 * nq + 2 * nz, wide = s->width + s->group + 4;
   Real *constants = ARENA_ARRAY(c->arena, Real, s->constants + 1), *sum = ARENA_ARRAY(c->arena, Real, wide), *follows = ARENA_ARRAY(c->arena, Real, c->m->inputs.n + 1);
@@ -166,14 +166,14 @@ static Real polynomial(const Real *x, uint32_t columns, uint32_t i, Real s, int 
 }
 
 /* Runs the accelerations at the state of the polynomials of degree `orders` at h. */
-static int run_at(Check *c, const Series *s, Real *x, int orders, Real h, const Kept *kept, Real *a, Real *zd) {
+static int run_at(Check *c, const Series *s, Real *x, int orders, Real h, const SavedState *kept, Real *a, Real *zd) {
   Real *top = x + (size_t)(orders + 1) * s->columns, *cut = copied(c, top, s->columns * (uint32_t)(ORDERS - orders));
   for (uint32_t i = 0; i < s->columns * (uint32_t)(ORDERS - orders); i++) top[i] = 0;
   for (uint32_t i = 0; i < s->nq; i++) c->q[i] = polynomial(x, s->columns, i, h, 0), c->v[i] = polynomial(x, s->columns, s->nq + i, h, 0);
   for (uint32_t i = 0; i < s->nz; i++) c->z[i] = polynomial(x, s->columns, 2 * s->nq + i, h, 0);
   c->t = kept->t + h;
   int ran = check_run(c, c->u->accel, (Real *const[]){a, zd});
-  put_back(c, kept);
+  restore_state(c, kept);
   for (uint32_t i = 0; i < s->columns * (uint32_t)(ORDERS - orders); i++) top[i] = cut[i];
   return ran;
 }
@@ -191,30 +191,30 @@ static Real taylor_step(const Series *s, const Real *x) {
 
 /* |rate i of the program at h - derivative of polynomial i|. *t: that derivative with its truncation error, from a run with two terms
  * fewer; off: rounding error of the rate; *said: the program's rate. */
-static Real taylor_difference(const Series *s, const Real *x, Real h, uint32_t i, Real off, const Real *a, const Real *zd, Total *t, Real *said) {
+static Real taylor_difference(const Series *s, const Real *x, Real h, uint32_t i, Real off, const Real *a, const Real *zd, BoundedSum *t, Real *said) {
   const Real *at = i < s->nq ? a + i : zd + (i - s->nq), less = at[i < s->nq ? s->nq : s->nz];
   Real slope = polynomial(x, s->columns, s->nq + i, h, 1), last = fabsl(x[(size_t)ORDERS * s->columns + s->nq + i]) * ORDERS * powl(h, ORDERS - 1);
   Real rounding = 1e12L * jet_unit * fabsl(x[s->nq + i]) / h;
-  *t = (Total){{slope, (fabsl(*at - less) + last) / 1024 + off}, fabsl(slope) + rounding, 0};
+  *t = (BoundedSum){{slope, (fabsl(*at - less) + last) / 1024 + off}, fabsl(slope) + rounding, 0};
   *said = *at;
   return fabsl(slope - *at);
 }
 
 /* At time h, the derivative of the velocities' Taylor polynomials must be the program's acceleration at the polynomials' state, up to
  * truncation. As a step may cross a corner or a jump, a difference counts only if a step 64 times shorter shows it, too. */
-static Verdict check_taylor(Check *c) {
+static CheckVerdict check_taylor(Check *c) {
   const Series *s = c->u->taylor;
   Real *x = ARENA_ARRAY(c->arena, Real, (size_t)s->columns * (ORDERS + 2));
   Real *a = ARENA_ARRAY(c->arena, Real, 2 * s->nq + 1), *zd = ARENA_ARRAY(c->arena, Real, 2 * s->nz + 1);
-  Kept kept = keep(c);
-  Verdict v = AGREES;
+  SavedState kept = copy_state(c);
+  CheckVerdict v = AGREES;
   if (!taylor_rows(c, s, x)) return AGREES;
   Real h = taylor_step(s, x);
   for (int shorter = 0; shorter < 2; shorter++, h /= 64) {
     int differs = 0;
     if (!run_at(c, s, x, ORDERS - 2, h, &kept, a + s->nq, zd + s->nz) || !run_at(c, s, x, ORDERS, h, &kept, a, zd)) return AGREES;
     for (uint32_t i = 0; i < s->nq + s->nz; i++) {
-      Total t;
+      BoundedSum t;
       Real said, difference = taylor_difference(s, x, h, i, i < s->nq ? c->a_error[i] : c->zd_error[i - s->nq], a, zd, &t, &said);
       differs |= difference > 64 * 1024 * t.sum.e + 1e-9L * t.size;
       if (shorter) v = worse(v, check_compare(c, &t, said, c->m->span, "what follows from Taylor coefficients of", i < s->nq ? c->m->coords.at[i].name : c->m->states.at[i - s->nq].name));
@@ -224,8 +224,8 @@ static Verdict check_taylor(Check *c) {
   return v;
 }
 
-Verdict check_motion(Check *c) {
-  Verdict v = c->far ? AGREES : check_charges(c);
+CheckVerdict check_motion(Check *c) {
+  CheckVerdict v = c->far ? AGREES : check_charges(c);
   if (v != DISAGREES && !c->far && c->u->linear && c->dynamics->lagrangian && !c->m->first_order) v = worse(v, check_linear(c));
   if (v != DISAGREES && !c->far && c->u->taylor && c->e->smooth && !c->u->taylor->room && c->n <= LONG_TAPE / 100) v = worse(v, check_taylor(c));
   return v == DISAGREES ? v : AGREES;

@@ -61,7 +61,7 @@ static int choose_parameters(Check *c) {
 }
 
 /* Random value within reach * 0.8 of `start` (reach * |start|/2 where |start| > 1); far: of any magnitude up to 1000. */
-static Real beside(Check *c, Real start) {
+static Real random_near(Check *c, Real start) {
   Real size = fabsl(start) > 1 ? fabsl(start) / 2 : 0.8L;
   if (c->far) return check_random(c, -1, 1) * powl(10, check_random(c, -1, 3));
   return start + c->reach * size * check_random(c, -1, 1);
@@ -86,7 +86,7 @@ static Real largest(const Real *x, uint32_t n) {
 }
 
 /* Newton's method onto the constraints, by the program's own projection. 0: no convergence, or contradictory constraints. */
-static int project(Check *c, int velocities) {
+static int project_constraints(Check *c, int velocities) {
   enum { ROUNDS = 40, HOPELESS = 6 }; /* no progress after HOPELESS rounds: give up, the next state is nearer to the start */
   const IrConstraints *k = &c->u->constraints;
   uint32_t rows = velocities ? k->of.n : k->nkept;
@@ -112,9 +112,9 @@ int check_choose_state(Check *c, int attempt) {
   c->far = attempt % 3 == 2 && c->reach == 1;
   if (!choose_parameters(c)) return 0;
   c->t = u->scenes.at[c->scene].t0 + check_random(c, -0.5L, 2);
-  for (uint32_t i = 0; i < m->coords.n; i++) c->q[i] = beside(c, c->q0[i]);
-  for (uint32_t i = 0; i < m->coords.n; i++) c->v[i] = beside(c, c->v0[i]);
-  for (uint32_t i = 0; i < m->states.n; i++) c->z[i] = beside(c, c->z0[i]);
+  for (uint32_t i = 0; i < m->coords.n; i++) c->q[i] = random_near(c, c->q0[i]);
+  for (uint32_t i = 0; i < m->coords.n; i++) c->v[i] = random_near(c, c->v0[i]);
+  for (uint32_t i = 0; i < m->states.n; i++) c->z[i] = random_near(c, c->z0[i]);
   for (uint32_t i = 0; i < m->states.n; i++) c->zdd[i] = check_random(c, -1, 1);
   if (!check_run(c, u->inputs, (Real *const[]){c->signal})) return 0;
   for (uint32_t i = 0; i < m->inputs.n; i++) c->signal[i] += check_random(c, -0.5L, 0.5L);
@@ -122,7 +122,7 @@ int check_choose_state(Check *c, int attempt) {
   project_rotations(c);
   Real before = largest(c->q, c->n);
   if (!u->constraints.of.n) return 1;
-  int obeys = project(c, 0) && project(c, 1) && largest(c->q, c->n) > 1e-6L * before; /* refuses collapse to 0 */
+  int obeys = project_constraints(c, 0) && project_constraints(c, 1) && largest(c->q, c->n) > 1e-6L * before; /* refuses collapse to 0 */
   if (!obeys && !c->far) c->reach /= 16; /* long chains of constraints converge from nearby only */
   return obeys;
 }
@@ -178,22 +178,22 @@ int check_solve_motion(Check *c) {
 
 /* --- allocation --- */
 
-static Real *room(const Check *c, uint32_t n) { return ARENA_ARRAY(c->arena, Real, n + 1); }
+static Real *alloc_reals(const Check *c, uint32_t n) { return ARENA_ARRAY(c->arena, Real, n + 1); }
 
 void check_prepare(Check *c) {
   const Model *m = c->m;
   uint32_t n = m->coords.n, nz = m->states.n;
   Real **const all[] = {&c->q, &c->v, &c->a, &c->q0, &c->v0, &c->c}, **const of_states[] = {&c->z, &c->zd, &c->zdd, &c->z0};
-  for (size_t k = 0; k < sizeof all / sizeof *all; k++) *all[k] = room(c, n + nz);
-  for (size_t k = 0; k < sizeof of_states / sizeof *of_states; k++) *of_states[k] = room(c, nz);
-  c->p = room(c, m->params.n + c->u->nderived);
-  c->given = room(c, m->params.n);
-  c->signal = room(c, m->inputs.n + m->scene.exacts.n);
-  c->lambda = room(c, m->constraints.n);
-  c->lambda_error = room(c, m->constraints.n);
-  c->a_error = room(c, n + nz);
-  c->zd_error = room(c, nz);
-  c->gap = room(c, m->constraints.n);
+  for (size_t k = 0; k < sizeof all / sizeof *all; k++) *all[k] = alloc_reals(c, n + nz);
+  for (size_t k = 0; k < sizeof of_states / sizeof *of_states; k++) *of_states[k] = alloc_reals(c, nz);
+  c->p = alloc_reals(c, m->params.n + c->u->nderived);
+  c->given = alloc_reals(c, m->params.n);
+  c->signal = alloc_reals(c, m->inputs.n + m->scene.exacts.n);
+  c->lambda = alloc_reals(c, m->constraints.n);
+  c->lambda_error = alloc_reals(c, m->constraints.n);
+  c->a_error = alloc_reals(c, n + nz);
+  c->zd_error = alloc_reals(c, nz);
+  c->gap = alloc_reals(c, m->constraints.n);
   c->n = n;
   c->dynamics = text_dynamics(m, c->arena);
   c->outputs = text_outputs(m, c->e->outputs, c->e->noutputs, c->arena);

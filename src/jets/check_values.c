@@ -5,23 +5,23 @@
 
 /* --- dynamics: values from the last check_run_text, whatever its direction --- */
 
-static Verdict check_flows(Check *c) {
+static CheckVerdict check_flows(Check *c) {
   const TextDynamics *d = c->dynamics;
-  Verdict v = AGREES;
+  CheckVerdict v = AGREES;
   for (uint32_t i = 0; i < c->m->states.n; i++)
     if (d->flows[i]) v = worse(v, check_value(c, check_coefficient(d->tape, c->at, d->flows[i], 0, 0), c->zd[i], c->m->states.at[i].span, "the rate of", c->m->states.at[i].name));
   return v;
 }
 
 /* c'' of holonomic constraints and c' of velocity constraints must be 0. */
-static Verdict check_constraints(Check *c) {
+static CheckVerdict check_constraints(Check *c) {
   const Constraints *k = &c->e->constraints;
-  Verdict v = AGREES;
+  CheckVerdict v = AGREES;
   for (uint32_t i = 0; i < k->n; i++) {
     Ref r = c->dynamics->constraints[k->of[i] - c->m->constraints.at];
     if (!r) continue;
     Bounded rate = check_coefficient(c->dynamics->tape, c->at, r, 0, i < k->nholonomic ? 2 : 1);
-    Total t = {rate, 0, 0};
+    BoundedSum t = {rate, 0, 0};
     for (uint32_t j = 0; j < c->n; j++) t.size += fabsl(c->a[j]) + c->v[j] * c->v[j]; /* magnitude of the terms: accelerations, */
     for (uint32_t j = 0; j < c->m->constraints.n; j++) t.size += fabsl(c->lambda[j]); /* and the multipliers' forces in them */
     v = worse(v, check_compare(c, &t, 0, k->of[i]->span, "the rate of the constraint", k->of[i]->name));
@@ -30,25 +30,25 @@ static Verdict check_constraints(Check *c) {
 }
 
 /* Energy p q' - L; p q' is the change of L under the displacement along the velocity. */
-static Verdict check_energy(Check *c) {
+static CheckVerdict check_energy(Check *c) {
   const TextDynamics *d = c->dynamics;
   Real value[2] = {0};
-  Total t = {0};
+  BoundedSum t = {0};
   if (!c->u->energy || !d->lagrangian) return AGREES;
   for (uint32_t i = 0; i < check_components(c); i++) c->c[i] = c->m->first_order ? c->zd[i] * c->m->states.at[i].coordinate : c->v[i];
   if (!check_run_text(c) || !check_run(c, c->u->energy, (Real *const[]){value})) return DISMISSED;
-  total_add(&t, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 0));
-  total_add(&t, -1, check_coefficient(d->tape, c->at, d->lagrangian, 0, 0));
+  bounded_sum_add(&t, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 0));
+  bounded_sum_add(&t, -1, check_coefficient(d->tape, c->at, d->lagrangian, 0, 0));
   c->energy = t;
   c->has_energy = 1;
   return check_compare(c, &t, value[0], c->m->lagrangian_span, "the energy", NULL);
 }
 
-static Verdict check_events(Check *c) {
+static CheckVerdict check_events(Check *c) {
   const TextOutputs *o = c->outputs;
   const Model *m = c->m;
   Real *g = ARENA_ARRAY(c->arena, Real, m->events.n + 1), *set[3];
-  Verdict v = AGREES;
+  CheckVerdict v = AGREES;
   if (!m->events.n || !check_run(c, c->u->event_values, (Real *const[]){g})) return AGREES;
   for (uint32_t i = 0; i < m->events.n; i++)
     if (o->events[i]) v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, o->events[i], 0, 0), g[i], m->events.at[i].span, "the event", m->events.at[i].name));
@@ -62,12 +62,12 @@ static Verdict check_events(Check *c) {
   return v;
 }
 
-static Verdict check_outputs(Check *c) {
+static CheckVerdict check_outputs(Check *c) {
   const TextOutputs *o = c->outputs;
   const Eqns *e = c->e;
   const IrScene *scene = &c->u->scenes.at[c->scene];
   Real *value = ARENA_ARRAY(c->arena, Real, e->noutputs + 1);
-  Verdict v = AGREES;
+  CheckVerdict v = AGREES;
   if (!e->noutputs || !check_run(c, scene->observe, (Real *const[]){value})) return AGREES;
   for (uint32_t i = 0; i < e->noutputs; i++) {
     if (o->outputs[i]) v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, o->outputs[i], 0, 0), value[i], e->outputs[i].span, "the output", e->outputs[i].name));
@@ -76,23 +76,23 @@ static Verdict check_outputs(Check *c) {
   return v;
 }
 
-static Verdict check_signals(Check *c) {
+static CheckVerdict check_signals(Check *c) {
   const TextOutputs *o = c->outputs;
   Real *value = ARENA_ARRAY(c->arena, Real, c->m->inputs.n + 1);
-  Verdict v = AGREES;
+  CheckVerdict v = AGREES;
   if (!c->m->inputs.n || !check_run(c, c->u->inputs, (Real *const[]){value})) return AGREES;
   for (uint32_t i = 0; i < c->m->inputs.n; i++)
     if (o->signals[i]) v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, o->signals[i], 0, 0), value[i], c->m->inputs.at[i].span, "the input", c->m->inputs.at[i].name));
   return v;
 }
 
-Verdict check_dynamic_values(Check *c) {
-  Verdict v = worse(check_flows(c), check_constraints(c));
+CheckVerdict check_dynamic_values(Check *c) {
+  CheckVerdict v = worse(check_flows(c), check_constraints(c));
   if (v != DISAGREES) v = check_energy(c);
   return v == DISAGREES ? v : AGREES; /* DISMISSED values decide nothing */
 }
 
-Verdict check_other_values(Check *c) {
+CheckVerdict check_other_values(Check *c) {
   int unsure = 0;
   for (uint32_t i = 0; i < check_components(c); i++) c->c[i] = 0; /* no displacement */
   tape_run(c->outputs->tape, check_input, c, c->at_outputs, &unsure);

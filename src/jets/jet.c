@@ -10,15 +10,15 @@ const JetReal jet_unit = LDBL_EPSILON / 2;
 
 /* --- values with their error --- */
 
-static Bounded rounded(JetReal v, JetReal e) { return (Bounded){v, e + jet_unit * fabsl(v)}; }
+static Bounded with_rounding(JetReal v, JetReal e) { return (Bounded){v, e + jet_unit * fabsl(v)}; }
 
-Bounded bounded_add(Bounded x, Bounded y) { return rounded(x.v + y.v, x.e + y.e); }
-Bounded bounded_sub(Bounded x, Bounded y) { return rounded(x.v - y.v, x.e + y.e); }
-Bounded bounded_mul(Bounded x, Bounded y) { return rounded(x.v * y.v, fabsl(x.v) * y.e + x.e * fabsl(y.v) + x.e * y.e); }
+Bounded bounded_add(Bounded x, Bounded y) { return with_rounding(x.v + y.v, x.e + y.e); }
+Bounded bounded_sub(Bounded x, Bounded y) { return with_rounding(x.v - y.v, x.e + y.e); }
+Bounded bounded_mul(Bounded x, Bounded y) { return with_rounding(x.v * y.v, fabsl(x.v) * y.e + x.e * fabsl(y.v) + x.e * y.e); }
 
 Bounded bounded_div(Bounded x, Bounded y) {
   JetReal q = x.v / y.v;
-  return rounded(q, (x.e + fabsl(q) * y.e) / fabsl(y.v));
+  return with_rounding(q, (x.e + fabsl(q) * y.e) / fabsl(y.v));
 }
 
 static int is_zero(Bounded x) { return x.v == 0 && x.e == 0; }
@@ -40,7 +40,7 @@ static int most_planes(const Jet *x, const Jet *y) { return x->planes > y->plane
 static void add_signed(Jet *out, const Jet *x, const Jet *y, int sign) {
   Jet r = {.planes = most_planes(x, y)};
   for (int p = 0; p == 0 || p < r.planes; p++)
-    for (int k = 0; k < JET_ORDERS; k++) r.c[p][k] = rounded(x->c[p][k].v + sign * y->c[p][k].v, x->c[p][k].e + y->c[p][k].e);
+    for (int k = 0; k < JET_ORDERS; k++) r.c[p][k] = with_rounding(x->c[p][k].v + sign * y->c[p][k].v, x->c[p][k].e + y->c[p][k].e);
   *out = r;
 }
 
@@ -111,7 +111,7 @@ static void compose(Bounded out[JET_ORDERS], const JetReal d[DERIVATIVES], int f
   accumulate(&out[2], half, bounded_mul(x[1], x[1]));
 }
 
-static void apply(Jet *out, const Jet *x, const JetReal d[DERIVATIVES], JetReal lost) {
+static void compose_jet(Jet *out, const Jet *x, const JetReal d[DERIVATIVES], JetReal lost) {
   Jet r = {.planes = x->planes};
   r.c[0][0] = derivative(d, 0, x->c[0][0].e, lost);
   if (r.planes && !isfinite(d[1])) r.c[0][0].e = NAN; /* no derivative here: no comparison */
@@ -126,19 +126,19 @@ static void apply(Jet *out, const Jet *x, const JetReal d[DERIVATIVES], JetReal 
 
 /* --- derivatives of elementary functions --- */
 
-static void circular(JetReal d[DERIVATIVES], JetReal f, JetReal df) {
+static void sine_derivatives(JetReal d[DERIVATIVES], JetReal f, JetReal df) {
   JetReal cycle[DERIVATIVES] = {f, df, -f, -df, f};
   memcpy(d, cycle, sizeof cycle);
 }
 
 /* tan (sign 1) and tanh (sign -1): f' = 1 + sign f^2 = slope, which the caller computes without cancellation. */
-static void tangent(JetReal d[DERIVATIVES], JetReal f, JetReal slope, int sign) {
+static void tangent_derivatives(JetReal d[DERIVATIVES], JetReal f, JetReal slope, int sign) {
   JetReal cycle[DERIVATIVES] = {f, slope, 2 * sign * f * slope, slope * (2 * sign + 6 * f * f), slope * f * (16 + 24 * sign * f * f)};
   memcpy(d, cycle, sizeof cycle);
 }
 
 /* Derivatives of x^n at x, from its value f. */
-static void powers(JetReal d[DERIVATIVES], JetReal f, JetReal x, JetReal n) {
+static void power_derivatives(JetReal d[DERIVATIVES], JetReal f, JetReal x, JetReal n) {
   d[0] = f;
   for (int k = 1; k < DERIVATIVES; k++) d[k] = n - (k - 1) == 0 ? 0 : d[k - 1] * (n - (k - 1)) / x;
 }
@@ -167,10 +167,10 @@ static void absolute(JetReal d[DERIVATIVES], JetReal x) {
 
 int jet_function(Jet *out, const char *name, const Jet *of) {
   JetReal x = of->c[0][0].v, d[DERIVATIVES] = {0}, inverse_cosh = 1 / coshl(x), inverse_cos = 1 / cosl(x);
-  if (strcmp(name, "sin") == 0) circular(d, sinl(x), cosl(x));
-  else if (strcmp(name, "cos") == 0) circular(d, cosl(x), -sinl(x));
-  else if (strcmp(name, "tan") == 0) tangent(d, tanl(x), inverse_cos * inverse_cos, 1);
-  else if (strcmp(name, "tanh") == 0) tangent(d, tanhl(x), inverse_cosh * inverse_cosh, -1);
+  if (strcmp(name, "sin") == 0) sine_derivatives(d, sinl(x), cosl(x));
+  else if (strcmp(name, "cos") == 0) sine_derivatives(d, cosl(x), -sinl(x));
+  else if (strcmp(name, "tan") == 0) tangent_derivatives(d, tanl(x), inverse_cos * inverse_cos, 1);
+  else if (strcmp(name, "tanh") == 0) tangent_derivatives(d, tanhl(x), inverse_cosh * inverse_cosh, -1);
   else if (strcmp(name, "asin") == 0) arc_sine(d, x, asinl(x), 1);
   else if (strcmp(name, "acos") == 0) arc_sine(d, x, acosl(x), -1);
   else if (strcmp(name, "atan") == 0) arc_tangent(d, x);
@@ -180,7 +180,7 @@ int jet_function(Jet *out, const char *name, const Jet *of) {
   else if (strcmp(name, "exp") == 0) for (int k = 0; k < DERIVATIVES; k++) d[k] = expl(x);
   else if (strcmp(name, "log") == 0) logarithm(d, x);
   else return 0;
-  apply(out, of, d, strcmp(name, "tanh") == 0 ? ROUNDINGS * jet_unit : 0);
+  compose_jet(out, of, d, strcmp(name, "tanh") == 0 ? ROUNDINGS * jet_unit : 0);
   return 1;
 }
 
@@ -204,9 +204,9 @@ void jet_power(Jet *out, const Jet *of, JetReal n, int is_third) {
   if (x == 0 && whole && n >= 0) { /* a polynomial at 0: only derivative n is not 0 */
     for (int k = 0; k < DERIVATIVES; k++) d[k] = n == k ? tgammal(n + 1) : 0;
   } else {
-    powers(d, power(x, n, is_third), x, n);
+    power_derivatives(d, power(x, n, is_third), x, n);
   }
-  apply(out, of, d, 0);
+  compose_jet(out, of, d, 0);
 }
 
 void jet_div(Jet *out, const Jet *x, const Jet *y) {

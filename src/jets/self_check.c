@@ -15,7 +15,7 @@ static const Real NEAR_PART = 1e-9L, FAR_PART = 1e-4L;
 
 enum { STATES_WANTED = 5, STATES_FEW = 3, SHORT_TAPE = 300, ATTEMPTS = 24, ENDLESS_TAPE = 600000 };
 
-void total_add(Total *t, Real factor, Bounded x) {
+void bounded_sum_add(BoundedSum *t, Real factor, Bounded x) {
   Bounded term = bounded_mul((Bounded){factor, 0}, x);
   t->sum = bounded_add(t->sum, term);
   t->size += fabsl(term.v);
@@ -34,11 +34,11 @@ const char *check_state_text(const Check *c) {
 }
 
 /* Text: t->sum.v with error t->sum.e, a sum of terms of total size t->size; program: `program`. */
-Verdict check_compare(Check *c, const Total *t, Real program, Span span, const char *what, const char *name) {
-  Real difference = fabsl(t->sum.v - program), size = t->size + fabsl(program), bound = SLACK * (t->sum.e + jet_unit * t->around);
-  if (!isfinite(t->sum.v) || !isfinite(t->sum.e) || !isfinite(t->around) || t->size > DBL_MAX) return DISMISSED;
-  if (isfinite(program) && bound > 1e-3L * (size + t->around)) return DISMISSED; /* rounding left no digits */
-  c->told->values++;
+CheckVerdict check_compare(Check *c, const BoundedSum *t, Real program, Span span, const char *what, const char *name) {
+  Real difference = fabsl(t->sum.v - program), size = t->size + fabsl(program), bound = SLACK * (t->sum.e + jet_unit * t->inner_magnitude);
+  if (!isfinite(t->sum.v) || !isfinite(t->sum.e) || !isfinite(t->inner_magnitude) || t->size > DBL_MAX) return DISMISSED;
+  if (isfinite(program) && bound > 1e-3L * (size + t->inner_magnitude)) return DISMISSED; /* rounding left no digits */
+  c->statistics->values++;
   if (difference <= bound || difference <= (c->far ? FAR_PART : NEAR_PART) * size) return AGREES;
   diag_error(c->m->diags, span, "internal error: %s%s%s: the text gives %.12Lg, the compiled program %.12Lg", what, name ? " " : "", name ? name : "",
              t->sum.v, program);
@@ -46,8 +46,8 @@ Verdict check_compare(Check *c, const Total *t, Real program, Span span, const c
   return DISAGREES;
 }
 
-Verdict check_value(Check *c, Bounded text, Real program, Span span, const char *what, const char *name) {
-  Total t = {text, fabsl(text.v), 0};
+CheckVerdict check_value(Check *c, Bounded text, Real program, Span span, const char *what, const char *name) {
+  BoundedSum t = {text, fabsl(text.v), 0};
   return check_compare(c, &t, program, span, what, name);
 }
 
@@ -57,10 +57,10 @@ static int is_finite(const Real *x, uint32_t n) {
 }
 
 /* Long output formulas are compared at the first state and at far states only. */
-static int asks_outputs(const Check *c) { return c->outputs->tape->ins.n <= SHORT_TAPE || c->told->states == 0 || c->far; }
+static int asks_outputs(const Check *c) { return c->outputs->tape->ins.n <= SHORT_TAPE || c->statistics->states == 0 || c->far; }
 
-static Verdict check_state(Check *c, int dynamics) {
-  Verdict v = DISMISSED;
+static CheckVerdict check_state(Check *c, int dynamics) {
+  CheckVerdict v = DISMISSED;
   c->has_energy = 0;
   if (dynamics && !c->dynamics->why) v = worse(check_equations(c), AGREES);
   if (v == AGREES) v = check_dynamic_values(c);
@@ -86,20 +86,20 @@ static int check_states(Check *c, const void *data) {
   (void)data;
   check_prepare(c);
   uint32_t length = c->dynamics->tape->ins.n, wanted = length > LONG_TAPE ? 1 : length > SHORT_TAPE || c->m->constraints.n ? STATES_FEW : STATES_WANTED;
-  c->told->not_known = c->dynamics->why;
-  c->told->outputs = outputs_left_out(c);
-  for (int attempt = 0; attempt < ATTEMPTS && c->told->states < wanted; attempt++) {
+  c->statistics->unsupported = c->dynamics->why;
+  c->statistics->outputs = outputs_left_out(c);
+  for (int attempt = 0; attempt < ATTEMPTS && c->statistics->states < wanted; attempt++) {
     if (!check_choose_state(c, attempt)) continue;
     int solved = check_solve_motion(c) && is_finite(c->a, c->n) && is_finite(c->zd, c->m->states.n);
-    Verdict v = !solved ? check_failure(c) : check_state(c, length <= ENDLESS_TAPE);
+    CheckVerdict v = !solved ? check_failure(c) : check_state(c, length <= ENDLESS_TAPE);
     if (v == DISAGREES) return 0;
-    c->told->states += v == AGREES;
-    c->told->far += v == AGREES && c->far;
+    c->statistics->states += v == AGREES;
+    c->statistics->far += v == AGREES && c->far;
   }
   return 1;
 }
 
-int check_with(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *told, int (*run)(Check *c, const void *data), const void *data) {
+int check_with(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *statistics, int (*run)(Check *c, const void *data), const void *data) {
   jmp_buf out_of_memory;
   Arena *scratch = arena_new(NULL);
   if (!scratch) arena_fail(e->m->arena);
@@ -108,21 +108,21 @@ int check_with(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *told, 
     arena_fail(e->m->arena);
   }
   arena_guard(scratch, &out_of_memory);
-  *told = (SelfCheck){0};
-  Check c = {.e = e, .m = e->m, .u = u, .scene = scene, .arena = scratch, .random = 20261122, .reach = 1, .told = told};
+  *statistics = (SelfCheck){0};
+  Check c = {.e = e, .m = e->m, .u = u, .scene = scene, .arena = scratch, .random = 20261122, .reach = 1, .statistics = statistics};
   int result = run(&c, data);
   arena_free(scratch);
   return result;
 }
 
-int self_check(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *told) { return check_with(e, u, scene, told, check_states, NULL); }
+int self_check(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *statistics) { return check_with(e, u, scene, statistics, check_states, NULL); }
 
-void self_check_print(const Eqns *e, const SelfCheck *told, StrBuf *out) {
+void self_check_print(const Eqns *e, const SelfCheck *statistics, StrBuf *out) {
   const Model *m = e->m;
   sb_printf(out, "compared with the text%s%s: %u value%s at %u state%s, %u of them far from the start", m->scene.name ? ", scene " : "", m->scene.name ? m->scene.name : "",
-            told->values, told->values == 1 ? "" : "s", told->states, told->states == 1 ? "" : "s", told->far);
-  if (told->directions) sb_printf(out, "; equations of motion along %u displacement%s at each", told->directions, told->directions == 1 ? "" : "s");
-  sb_puts(out, told->states ? "\n" : ": nothing was decided\n");
-  if (told->not_known) sb_printf(out, "  not compared: the equations of motion, whose text has `%s`, which the comparison does not evaluate\n", told->not_known);
-  if (told->outputs) sb_printf(out, "  not compared: the outputs %s\n", told->outputs);
+            statistics->values, statistics->values == 1 ? "" : "s", statistics->states, statistics->states == 1 ? "" : "s", statistics->far);
+  if (statistics->directions) sb_printf(out, "; equations of motion along %u displacement%s at each", statistics->directions, statistics->directions == 1 ? "" : "s");
+  sb_puts(out, statistics->states ? "\n" : ": nothing was decided\n");
+  if (statistics->unsupported) sb_printf(out, "  not compared: the equations of motion, whose text has `%s`, which the comparison does not evaluate\n", statistics->unsupported);
+  if (statistics->outputs) sb_printf(out, "  not compared: the outputs %s\n", statistics->outputs);
 }

@@ -19,15 +19,15 @@ typedef struct {
   uint32_t far;         /* those of them far from the start */
   uint32_t directions;  /* virtual displacements at each state */
   uint32_t values;      /* values compared, in all */
-  const char *not_known; /* construct in the equations that is not evaluated here; NULL: none */
+  const char *unsupported; /* construct in the equations that is not evaluated here; NULL: none */
   const char *outputs;   /* names of outputs not compared, with commas; NULL: none */
 } SelfCheck;
 
 /* Compares the programs of u (hoisted or not) and of its scene number `scene`, whose equations are e, with the text. 1: no
  * disagreement; 0: an internal error in e->m->diags states the first one, with state and both values: write no output. */
-int self_check(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *told);
+int self_check(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *statistics);
 
 /* Appends the statistics, in a sentence or two. */
-void self_check_print(const Eqns *e, const SelfCheck *told, StrBuf *out);
+void self_check_print(const Eqns *e, const SelfCheck *statistics, StrBuf *out);
 
 #endif

@@ -13,8 +13,8 @@ enum { FEW = 6, LONG_TAPE = 30000 }; /* most coordinates checked one by one; tap
 typedef struct {
   Bounded sum;
   Real size;
-  Real around; /* magnitude of the quantities inside the terms, as far as known */
-} Total;
+  Real inner_magnitude; /* magnitude of the quantities inside the terms, as far as known */
+} BoundedSum;
 
 typedef struct {
   const Eqns *e;
@@ -35,24 +35,24 @@ typedef struct {
   uint32_t n, scene;
   int far;
   Real reach; /* relative distance of near states from the start: 1, reduced when projection on the constraints fails */
-  Total energy;     /* energy of the text at this state, if has_energy */
+  BoundedSum energy;     /* energy of the text at this state, if has_energy */
   int has_energy;
-  SelfCheck *told;  /* counts of what was compared */
+  SelfCheck *statistics;  /* counts of what was compared */
 } Check;
 
-typedef enum { AGREES, DISMISSED, DISAGREES } Verdict;
+typedef enum { AGREES, DISMISSED, DISAGREES } CheckVerdict;
 
-static inline Verdict worse(Verdict a, Verdict b) { return a > b ? a : b; }
+static inline CheckVerdict worse(CheckVerdict a, CheckVerdict b) { return a > b ? a : b; }
 
 /* Compares the text's value t with the program's; reports a difference beyond rounding as an internal error in `what` `name` (or
  * NULL). DISMISSED: rounding left no digits of the text's value. */
-Verdict check_compare(Check *c, const Total *t, Real program, Span span, const char *what, const char *name);
-Verdict check_value(Check *c, Bounded text, Real program, Span span, const char *what, const char *name);
+CheckVerdict check_compare(Check *c, const BoundedSum *t, Real program, Span span, const char *what, const char *name);
+CheckVerdict check_value(Check *c, Bounded text, Real program, Span span, const char *what, const char *name);
 
-void total_add(Total *t, Real factor, Bounded x);
+void bounded_sum_add(BoundedSum *t, Real factor, Bounded x);
 
 /* Calls run() with a new Check whose arena is freed on return: a file may have thousands of scenes. */
-int check_with(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *told, int (*run)(Check *c, const void *data), const void *data);
+int check_with(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *statistics, int (*run)(Check *c, const void *data), const void *data);
 
 /* The state as text, for messages. */
 const char *check_state_text(const Check *c);
@@ -71,15 +71,15 @@ int check_run_text(Check *c);
 Bounded check_coefficient(const Tape *tape, const Jet *at, Ref r, int plane, int k);
 void check_input(void *data, InputKind kind, uint32_t i, Jet *out);
 uint32_t check_components(const Check *c);
-Total check_residual(const Check *c); /* along c->c, from the last check_run_text */
-Verdict check_equations(Check *c);
-Verdict check_failure(Check *c);
+BoundedSum check_residual(const Check *c); /* along c->c, from the last check_run_text */
+CheckVerdict check_equations(Check *c);
+CheckVerdict check_failure(Check *c);
 
 /* check_values.c: flows, constraints, energy; events, outputs, inputs. */
-Verdict check_dynamic_values(Check *c);
-Verdict check_other_values(Check *c);
+CheckVerdict check_dynamic_values(Check *c);
+CheckVerdict check_other_values(Check *c);
 
 /* check_motion.c: charges, linearisation, Taylor coefficients, against finite differences. */
-Verdict check_motion(Check *c);
+CheckVerdict check_motion(Check *c);
 
 #endif

@@ -3,7 +3,7 @@
 
 /* Traversal of the active statements, with the indices of enclosing `for` loops. */
 typedef struct {
-  Text *text;
+  TextEval *text;
   IndexVars around;
   TextDynamics *dynamics;
   TextOutputs *outputs;
@@ -36,9 +36,9 @@ static void walk(Walk *w, Visit *fn) {
 }
 
 /* Value of an expression; without one, w->why has the reason. */
-static Meaning value(Walk *w, AstId id, Name effect) {
+static TextValue value(Walk *w, AstId id, Name effect) {
   w->text->why = NULL;
-  Meaning v = text_value(w->text, id, effect, &w->around);
+  TextValue v = text_value(w->text, id, effect, &w->around);
   if (!v.at[0] && !w->why) w->why = w->text->why ? w->text->why : "a name";
   return v;
 }
@@ -64,7 +64,7 @@ static void read_force(Walk *w, const AstStmt *st, Name effect) {
       push_force(w, value(w, i, effect).at[0], value(w, k, effect).at[0]);
     return;
   }
-  Meaning point = value(w, st->lhs, effect), f = value(w, st->rhs, effect);
+  TextValue point = value(w, st->lhs, effect), f = value(w, st->rhs, effect);
   if (point.n == ROTATION) {
     TextForce one = {.torque = 1};
     memcpy(one.point, point.at, sizeof one.point);
@@ -72,7 +72,7 @@ static void read_force(Walk *w, const AstStmt *st, Name effect) {
     vec_push(w->text->arena, &w->dynamics->forces, one);
     return;
   }
-  for (uint32_t k = 0; k < meaning_parts(&point); k++) push_force(w, point.at[k], f.at[k]);
+  for (uint32_t k = 0; k < text_components(&point); k++) push_force(w, point.at[k], f.at[k]);
 }
 
 static const Unit PER_SECOND_OF_SI = {.factor = {.num = 1, .den = 1}, .offset = {.num = 0, .den = 1}, .text = ""};
@@ -85,7 +85,7 @@ static Unit rate_unit(const Unit *u) {
 }
 
 /* Input instruction of a target (a coordinate or state), or NULL. */
-static const TapeIns *place(const Walk *w, Ref r) {
+static const TapeIns *target_input(const Walk *w, Ref r) {
   const TapeIns *i = &w->text->tape->ins.at[r];
   return i->op == TAPE_INPUT ? i : NULL;
 }
@@ -93,9 +93,9 @@ static const TapeIns *place(const Walk *w, Ref r) {
 static void read_flow(Walk *w, const AstStmt *st, Name effect) {
   const AstExpr *l = ast_expr(w->text->b->ast, st->lhs);
   if (l->kind != AST_PRIME) return;
-  Meaning of = value(w, l->a, effect), v = value(w, st->rhs, effect);
-  for (uint32_t k = 0; of.at[0] && v.at[0] && k < meaning_parts(&of); k++) {
-    const TapeIns *z = place(w, of.at[k]);
+  TextValue of = value(w, l->a, effect), v = value(w, st->rhs, effect);
+  for (uint32_t k = 0; of.at[0] && v.at[0] && k < text_components(&of); k++) {
+    const TapeIns *z = target_input(w, of.at[k]);
     if (!z || z->input != INPUT_STATE) return;
     uint32_t index = z->index;
     Unit unit = rate_unit(&w->text->m->states.at[index].unit);
@@ -112,7 +112,7 @@ static void push_constraint(Walk *w, Ref c) {
 
 static void read_constraint(Walk *w, const AstStmt *st, Name effect) {
   Tape *t = w->text->tape;
-  Meaning l = value(w, st->lhs, effect), r = value(w, st->rhs, effect);
+  TextValue l = value(w, st->lhs, effect), r = value(w, st->rhs, effect);
   uint32_t n = l.n ? l.n : r.n;
   for (uint32_t k = 0; k < (n ? n : 1); k++) push_constraint(w, tape_op(t, TAPE_SUB, l.at[k], r.at[k], 0));
 }
@@ -120,7 +120,7 @@ static void read_constraint(Walk *w, const AstStmt *st, Name effect) {
 /* A contact as a constraint: its input `closed` times the gap. */
 static void read_contact(Walk *w, const AstStmt *st, Name effect) {
   const Model *m = w->text->m;
-  Meaning gap = value(w, st->lhs, effect);
+  TextValue gap = value(w, st->lhs, effect);
   for (uint32_t i = 0; i < m->contacts.n; i++) {
     uint32_t place_of = m->contacts.at[i].constraint;
     while (w->constraint < m->constraints.n && m->constraints.at[w->constraint].inside) w->constraint++;
@@ -174,9 +174,9 @@ static void read_actions(Walk *w, const AstStmt *event, Name effect) {
     if (s->kind != STMT_SET || ast_expr(ast, s->lhs)->kind == AST_CALL) continue; /* omega(R) = ... */
     const AstExpr *l = ast_expr(ast, s->lhs);
     int rate = l->kind == AST_PRIME;
-    Meaning of = value(w, rate ? l->a : s->lhs, effect), v = value(w, s->rhs, effect);
-    for (uint32_t k = 0; of.at[0] && v.at[0] && of.n != ROTATION && k < meaning_parts(&of); k++) {
-      const TapeIns *q = place(w, of.at[k]);
+    TextValue of = value(w, rate ? l->a : s->lhs, effect), v = value(w, s->rhs, effect);
+    for (uint32_t k = 0; of.at[0] && v.at[0] && of.n != ROTATION && k < text_components(&of); k++) {
+      const TapeIns *q = target_input(w, of.at[k]);
       if (!q) break;
       int coord = q->input == INPUT_COORD;
       TextAction one = {.kind = !coord ? SYM_STATE : rate ? SYM_VEL : SYM_COORD, .index = q->index, .event = w->event};
@@ -202,27 +202,27 @@ static void read_output_statement(Walk *w, const AstStmt *st, Name effect) {
 
 static Ref signal_value(Walk *w, const Input *in) {
   if (!in->text) return 0;
-  Meaning v = value(w, in->text, in->effect);
+  TextValue v = value(w, in->text, in->effect);
   return v.at[0] ? text_component(w->text, &v, 0, &in->unit) : 0;
 }
 
 static Ref output_value(Walk *w, const OutputText *o) {
   if (!o->id) return 0;
   w->text->member = o->is_member ? o->member : NULL;
-  Meaning v = value(w, o->id, NULL);
+  TextValue v = value(w, o->id, NULL);
   w->text->member = NULL;
-  return o->component < meaning_parts(&v) ? v.at[o->component] : 0;
+  return o->component < text_components(&v) ? v.at[o->component] : 0;
 }
 
 /* 1 for the output `energy`, unless the model declares that name. */
-static int is_energy(const Text *t, const OutputText *o) {
+static int is_energy(const TextEval *t, const OutputText *o) {
   int ambiguous;
   const AstExpr *x = o->id ? ast_expr(t->b->ast, o->id) : NULL;
   return x && x->kind == AST_NAME && strcmp(x->name, "energy") == 0 && !scope_find(&t->b->scope, x->name, NULL, &ambiguous);
 }
 
 static void read_energies(Walk *w, const AstStmt *st, Name effect) {
-  Text *t = w->text;
+  TextEval *t = w->text;
   int plus = st->kind == STMT_LAGRANGIAN || st->kind == STMT_KINETIC;
   if (!plus && st->kind != STMT_POTENTIAL) return;
   Ref term = value(w, st->rhs, effect).at[0];
@@ -235,7 +235,7 @@ static void read_energies(Walk *w, const AstStmt *st, Name effect) {
 static void give_energies(Walk *w) {
   w->why = NULL;
   walk(w, read_energies);
-  Text *t = w->text;
+  TextEval *t = w->text;
   if (t->kinetic && !t->potential) t->potential = tape_number(t->tape, num_int(0));
   if (t->potential && !t->kinetic) t->kinetic = tape_number(t->tape, num_int(0));
   if (w->why) t->lagrangian = t->kinetic = t->potential = 0;
@@ -254,8 +254,8 @@ TextOutputs *text_outputs(const Model *m, const Output *outputs, uint32_t noutpu
     o->is_energy[i] = is_energy(w.text, &outputs[i].from) != 0;
     if (!o->is_energy[i]) o->outputs[i] = output_value(&w, &outputs[i].from);
   }
-  if (w.text->asks) give_energies(&w);
-  for (uint32_t i = 0; w.text->asks && i < noutputs; i++)
+  if (w.text->needs_energies) give_energies(&w);
+  for (uint32_t i = 0; w.text->needs_energies && i < noutputs; i++)
     if (!o->outputs[i] && !o->is_energy[i]) o->outputs[i] = output_value(&w, &outputs[i].from);
   o->tape = w.text->tape;
   VEC(Ref) roots = {0};

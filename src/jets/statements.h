@@ -2,7 +2,7 @@
 #ifndef LAGC_STATEMENTS_H
 #define LAGC_STATEMENTS_H
 
-#include "jets/text.h"
+#include "jets/text_eval.h"
 
 /* Force f along the displacement of `point`; or a torque (f: 3 components) on a rotation (point: 4). */
 typedef struct {

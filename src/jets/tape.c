@@ -33,7 +33,7 @@ int tape_is_number(const Tape *t, Ref a, Num *n) {
 }
 
 /* Folds an operation on exact numbers; 0: the result is not an exact number. */
-static int reckon(TapeOp op, Num x, Num y, Num *r) {
+static int fold_exact(TapeOp op, Num x, Num y, Num *r) {
   switch (op) {
     case TAPE_ADD: *r = num_add(x, y); break;
     case TAPE_SUB: *r = num_sub(x, y); break;
@@ -61,7 +61,7 @@ static int is_unary(TapeOp op) { return op == TAPE_NEG || op == TAPE_NOT || op =
 Ref tape_op(Tape *t, TapeOp op, Ref a, Ref b, Ref c) {
   Num x, y = num_int(0), r;
   if (!a || (!b && !is_unary(op)) || (op == TAPE_SELECT && !c)) return 0;
-  if (tape_is_number(t, a, &x) && (is_unary(op) || tape_is_number(t, b, &y)) && reckon(op, x, y, &r)) return tape_number(t, r);
+  if (tape_is_number(t, a, &x) && (is_unary(op) || tape_is_number(t, b, &y)) && fold_exact(op, x, y, &r)) return tape_number(t, r);
   return append(t, (TapeIns){.op = op, .a = a, .b = b, .c = c});
 }
 
@@ -107,10 +107,10 @@ static Jet number_jet(Num n) {
   return n.den == 1 ? jet_exact((JetReal)n.num) : jet_rounded((JetReal)n.num / (JetReal)n.den);
 }
 
-static Jet truth(int yes) { return jet_exact(yes != 0); }
+static Jet jet_of_bool(int yes) { return jet_exact(yes != 0); }
 
 /* Gives a value an infinite error bound (near: decided by rounding, or out of range); results computed from it inherit it. */
-static void decide(Jet *out, int near, int *unsure) {
+static void mark_unsure(Jet *out, int near, int *unsure) {
   if (!near) return;
   out->c[0][0].e = INFINITY;
   *unsure = 1;
@@ -146,18 +146,18 @@ static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, 
     case TAPE_ATAN2: jet_atan2(out, x, y); return;
     case TAPE_HYPOT: jet_hypot(out, x, y); return;
     case TAPE_SELECT: near = isinf(x->c[0][0].e); *out = value(x) != 0 ? *y : *z; break;
-    case TAPE_NOT: near = isinf(x->c[0][0].e); *out = truth(value(x) == 0); break;
-    case TAPE_AND: near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e); *out = truth(value(x) != 0 && value(y) != 0); break;
-    case TAPE_OR: near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e); *out = truth(value(x) != 0 || value(y) != 0); break;
+    case TAPE_NOT: near = isinf(x->c[0][0].e); *out = jet_of_bool(value(x) == 0); break;
+    case TAPE_AND: near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e); *out = jet_of_bool(value(x) != 0 && value(y) != 0); break;
+    case TAPE_OR: near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e); *out = jet_of_bool(value(x) != 0 || value(y) != 0); break;
     case TAPE_SIGN: near = is_near(x, &zero); *out = jet_exact((value(x) > 0) - (value(x) < 0)); break;
     case TAPE_MIN: near = is_near(x, y); *out = value(x) < value(y) ? *x : *y; break;
     case TAPE_MAX: near = is_near(x, y); *out = value(x) > value(y) ? *x : *y; break;
-    case TAPE_LT: near = is_near(x, y); *out = truth(value(x) < value(y)); break;
-    case TAPE_LE: near = is_near(x, y); *out = truth(value(x) <= value(y)); break;
-    case TAPE_EQ: near = is_near(x, y); *out = truth(value(x) == value(y)); break;
+    case TAPE_LT: near = is_near(x, y); *out = jet_of_bool(value(x) < value(y)); break;
+    case TAPE_LE: near = is_near(x, y); *out = jet_of_bool(value(x) <= value(y)); break;
+    case TAPE_EQ: near = is_near(x, y); *out = jet_of_bool(value(x) == value(y)); break;
     case TAPE_NUMBER: case TAPE_PI: case TAPE_INPUT: return; /* handled by run_any */
   }
-  decide(out, near, unsure);
+  mark_unsure(out, near, unsure);
 }
 
 static void run_any(const Tape *t, Ref r, TapeInput *input, void *data, Jet *at, int *unsure) {
@@ -172,7 +172,7 @@ static void run_any(const Tape *t, Ref r, TapeInput *input, void *data, Jet *at,
 void tape_run(const Tape *t, TapeInput *input, void *data, Jet *at, int *unsure) {
   for (Ref r = 1; r < t->ins.n; r++) {
     run_any(t, r, input, data, at, unsure);
-    decide(&at[t->ins.at[r].slot], fabsl(value(tape_value(t, at, r))) > DBL_MAX, unsure);
+    mark_unsure(&at[t->ins.at[r].slot], fabsl(value(tape_value(t, at, r))) > DBL_MAX, unsure);
   }
 }
 
@@ -183,7 +183,7 @@ static int is_finite(const Jet *x, int derivatives) {
   return finite;
 }
 
-Ref tape_first_not_finite(const Tape *t, TapeInput *input, void *data, int derivatives, Jet *at) {
+Ref tape_first_nonfinite(const Tape *t, TapeInput *input, void *data, int derivatives, Jet *at) {
   int unsure = 0;
   for (Ref r = 1; r < t->ins.n; r++) {
     const TapeIns *i = &t->ins.at[r];

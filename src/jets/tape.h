@@ -77,7 +77,7 @@ void tape_run(const Tape *t, TapeInput *input, void *data, Jet *at, int *unsure)
 
 /* First instruction with finite operands whose value exceeds the range of doubles (derivatives: or whose jet is not finite);
  * 0: none. Its value and its operands are in at[slots]. */
-Ref tape_first_not_finite(const Tape *t, TapeInput *input, void *data, int derivatives, Jet *at);
+Ref tape_first_nonfinite(const Tape *t, TapeInput *input, void *data, int derivatives, Jet *at);
 
 static inline const Jet *tape_value(const Tape *t, const Jet *at, Ref a) { return &at[t->ins.at[a].slot]; }
 

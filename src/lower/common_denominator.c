@@ -2,20 +2,20 @@
  * differ; over one denominator their numerators count up, and the members are turns of one loop. */
 #include "lower/lower_impl.h"
 
-enum { FEWEST = 32, OFTEN = 8, LARGEST = 1 << 20 };
+enum { FEWEST = 32, SHARED_BY = 8, LARGEST = 1 << 20 };
 
 /* Whether few terms have the coefficient, as one member's own. */
 static int is_own(Lower *l, Num c) {
   Expr x = expr_num(l->g, c);
-  return expr_map_get(&l->often, x) < OFTEN;
+  return expr_map_get(&l->term_count, x) < SHARED_BY;
 }
 
 typedef struct {
   Lower *l;
   VEC(Num) own; /* distinct coefficients whose denominators are no powers of 2 */
-} Grade;
+} OwnCoefficients;
 
-static void count(Grade *d, Expr sum) {
+static void count(OwnCoefficients *d, Expr sum) {
   ExprGraph *g = d->l->g;
   for (uint32_t i = 0; i < expr_pairs(g, sum, EX_SUM); i++) {
     Num c;
@@ -23,16 +23,16 @@ static void count(Grade *d, Expr sum) {
     c = num_abs(c);
     if (!num_is_exact(c)) continue;
     Expr x = expr_num(g, c);
-    uint32_t n = expr_map_get(&d->l->often, x);
-    expr_map_set(&d->l->often, x, n + 1);
+    uint32_t n = expr_map_get(&d->l->term_count, x);
+    expr_map_set(&d->l->term_count, x, n + 1);
     if (!n && (c.den & (c.den - 1)) != 0) vec_push(d->l->p->arena, &d->own, c);
   }
 }
 
-void lower_grade(Lower *l, const Expr *roots, uint32_t n) {
+void lower_find_denominator(Lower *l, const Expr *roots, uint32_t n) {
   if (l->denominator || l->e->n + l->e->m->states.n < FEWEST) return;
-  Grade d = {.l = l};
-  l->often = expr_map(l->p->arena);
+  OwnCoefficients d = {.l = l};
+  l->term_count = expr_map(l->p->arena);
   ExprList nodes = expr_topo(l->g, roots, n);
   for (uint32_t k = 0; k < nodes.n; k++)
     if (expr_op(l->g, nodes.at[k]) == EX_SUM) count(&d, nodes.at[k]);
@@ -50,7 +50,7 @@ void lower_grade(Lower *l, const Expr *roots, uint32_t n) {
   if (own >= FEWEST) l->denominator = all;
 }
 
-int64_t lower_grade_of(Lower *l, Num c) {
+int64_t lower_denominator_scale(Lower *l, Num c) {
   const int64_t most = 1LL << 40;
   if (!l->denominator || !num_is_exact(c) || l->denominator % c.den != 0 || c.num >= most || !is_own(l, c)) return 1;
   return l->denominator / c.den;

@@ -1,9 +1,9 @@
-/* M q'' = f by elimination without pivoting in straight-line code, in the order of mech/order.h.
+/* M q'' = f by elimination without pivoting in straight-line code, in the order of mech/elimination_order.h.
  *
  * A coordinate's step is that of L D L^T without pivoting (Golub & Van Loan, Matrix Computations, 4th
  * ed., algorithm 4.1.2); its pivot is checked. A definition's step puts w' = C u' into the quadratic
- * form u'^T H u'/2 - b^T u' (mech/lift.h). */
-#include "base/sparse.h"
+ * form u'^T H u'/2 - b^T u' (mech/augmented_system.h). */
+#include "base/sparse_pattern.h"
 #include "lower/lower_impl.h"
 
 typedef struct {
@@ -14,9 +14,9 @@ typedef struct {
   Slot *b, *x;       /* [n + ndefs] */
   SparseRow *factor; /* [n] the column of L below a coordinate's pivot */
   Slot *positive;    /* [n] diagonal entry before elimination, if proved positive by the declared signs; else 0 */
-} System;
+} Elimination;
 
-static Slot op(const System *y, IrOp o, Slot a, Slot b) { return prog_op(y->l->p, o, a, b); }
+static Slot op(const Elimination *y, IrOp o, Slot a, Slot b) { return prog_op(y->l->p, o, a, b); }
 
 Slot lower_minus_product(Lower *l, Slot x, Slot a, Slot b) {
   Slot ab = prog_op(l->p, IR_MUL, a, b);
@@ -29,11 +29,11 @@ void lower_pivot(Lower *l, Slot d, int positive) {
   prog_ins(l->p, (Ins){.op = IR_PIVOT, .a = d, .index = (uint32_t)positive});
 }
 
-static System system_new(Lower *l) {
+static Elimination system_new(Lower *l) {
   const LinearSystem *s = &l->e->system;
   Arena *a = l->p->arena;
   uint32_t total = s->n + s->ndefs;
-  System y = {.l = l, .s = s, .H = sparse_new(a, total)};
+  Elimination y = {.l = l, .s = s, .H = sparse_new(a, total)};
   y.C = ARENA_ARRAY(a, SparseRow, total + 1);
   y.b = ARENA_ARRAY(a, Slot, total + 1);
   y.x = ARENA_ARRAY(a, Slot, total + 1);
@@ -60,7 +60,7 @@ static System system_new(Lower *l) {
 /* --- elimination --- */
 
 /* H and b without coordinate v: H -= h h^T/d, b -= h b_v/d, with h its column. */
-static void eliminate_coordinate(System *y, uint32_t v) {
+static void eliminate_coordinate(Elimination *y, uint32_t v) {
   const SparseRow *row = &y->H.rows[v];
   Slot d = sparse_get(&y->H, v, v);
   prog_name(y->l->p, d, lower_numbered(y->l, "D", v, UINT32_MAX));
@@ -85,39 +85,39 @@ static void eliminate_coordinate(System *y, uint32_t v) {
 typedef struct {
   uint32_t col;
   Slot c, r, y;
-} Share;
+} StepEntry;
 
-static void share(System *y, const SparseRow *row, const SparseRow *c, Slot h, uint32_t v, uint32_t *n, Share *at) {
+static void step_entries(Elimination *y, const SparseRow *row, const SparseRow *c, Slot h, uint32_t v, uint32_t *n, StepEntry *at) {
   *n = 0;
   for (uint32_t i = 0; i < c->n; i++) {
     Slot hc = op(y, IR_MUL, h, c->at[i].value), r = sparse_get(&y->H, v, c->at[i].col);
-    at[(*n)++] = (Share){c->at[i].col, c->at[i].value, r, op(y, IR_ADD, r, hc)};
+    at[(*n)++] = (StepEntry){c->at[i].col, c->at[i].value, r, op(y, IR_ADD, r, hc)};
   }
   for (uint32_t k = 0; k < row->n; k++) {
     uint32_t col = row->at[k].col, inside = 0;
     for (uint32_t i = 0; i < c->n; i++) inside |= c->at[i].col == col;
-    if (col != v && !inside) at[(*n)++] = (Share){col, 0, row->at[k].value, row->at[k].value};
+    if (col != v && !inside) at[(*n)++] = (StepEntry){col, 0, row->at[k].value, row->at[k].value};
   }
 }
 
-static void add_product(System *y, const Share *s, const Share *t, Slot a, Slot b) {
+static void add_product(Elimination *y, const StepEntry *s, const StepEntry *t, Slot a, Slot b) {
   Slot ab = op(y, IR_MUL, a, b);
   sparse_set(&y->H, s->col, t->col, op(y, IR_ADD, sparse_get(&y->H, s->col, t->col), ab));
 }
 
 /* Substitutes w_v' = C_v u' into the quadratic form: H += c r^T + r c^T + h c c^T = c y^T + r c^T with
  * y = r + h c, computed once a variable; b += c b_v. */
-static void eliminate_definition(System *y, uint32_t v) {
+static void eliminate_definition(Elimination *y, uint32_t v) {
   const SparseRow *row = &y->H.rows[v], *c = &y->C[v];
   uint32_t n;
-  Share *at = ARENA_ARRAY(y->l->p->arena, Share, row->n + c->n + 1);
-  share(y, row, c, sparse_get(&y->H, v, v), v, &n, at);
+  StepEntry *at = ARENA_ARRAY(y->l->p->arena, StepEntry, row->n + c->n + 1);
+  step_entries(y, row, c, sparse_get(&y->H, v, v), v, &n, at);
   for (uint32_t i = 0; i < c->n; i++) { /* variables behind c->n have c = 0 */
-    const Share *s = &at[i];
+    const StepEntry *s = &at[i];
     Slot twice = op(y, IR_ADD, s->y, s->r);
     add_product(y, s, s, s->c, twice);
     for (uint32_t k = 0; k < n; k++) {
-      const Share *t = &at[k];
+      const StepEntry *t = &at[k];
       if (k <= i && k < c->n) continue; /* each pair of variables once */
       int turned = s->r == 0; /* then the entry is c_s y_t alone */
       add_product(y, s, t, turned ? s->c : t->c, turned ? t->y : s->y);
@@ -130,7 +130,7 @@ static void eliminate_definition(System *y, uint32_t v) {
 
 /* --- substitution --- */
 
-static void substitute(System *y, uint32_t v) {
+static void substitute(Elimination *y, uint32_t v) {
   if (v < y->s->n) {
     y->x[v] = op(y, IR_DIV, y->b[v], sparse_get(&y->H, v, v));
     for (uint32_t k = 0; k < y->factor[v].n; k++)
@@ -143,18 +143,18 @@ static void substitute(System *y, uint32_t v) {
   }
 }
 
-/* Records the factors for factored_solve. */
-static void keep_factors(const System *y) {
+/* Records the factors for factor_record_solve. */
+static void keep_factors(const Elimination *y) {
   Lower *l = y->l;
   Slot *pivot = ARENA_ARRAY(l->p->arena, Slot, y->s->n + 1);
   for (uint32_t v = 0; v < y->s->n; v++) pivot[v] = sparse_get(&y->H, v, v);
-  *l->factored = (Factored){.n = y->s->n, .ndefs = y->s->ndefs, .straight = 1, .order = y->s->order, .pivot = pivot, .below = y->factor,
+  *l->factored = (FactorRecord){.n = y->s->n, .ndefs = y->s->ndefs, .straight = 1, .order = y->s->order, .pivot = pivot, .below = y->factor,
                             .C = y->C, .row = y->H.rows};
   l->x = y->x;
 }
 
 void lower_elimination(Lower *l, Slot *acc) {
-  System y = system_new(l);
+  Elimination y = system_new(l);
   uint32_t total = y.s->n + y.s->ndefs;
   prog_title(l->p, "M q'' = f");
   for (uint32_t k = 0; k < total; k++) {

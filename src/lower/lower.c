@@ -74,7 +74,7 @@ static int by_rank(const void *a, const void *b) {
 static Slot multiply(Lower *l, Factor *f, uint32_t n) {
   if (!n) return 0;
   for (uint32_t i = 0; i < n; i++)
-    if (l->p->reckons && prog_is_number(l->p, f[i].slot)) f[i].rank = 0;
+    if (l->p->folds_constants && prog_is_number(l->p, f[i].slot)) f[i].rank = 0;
   qsort(f, n, sizeof *f, by_rank);
   Slot r = 0;
   for (uint32_t i = 0; i < n; i++) {
@@ -106,8 +106,8 @@ static Slot lower_prod(Lower *l, Expr e) {
 static Slot scaled(Lower *l, Slot t, Num c) {
   c = num_abs(c);
   if (num_is_one(c)) return t;
-  int64_t more = l->p->reckons ? 1 : lower_grade_of(l, c);
-  int dyadic = more == 1 && (l->p->reckons || !num_is_exact(c) || (c.den & (c.den - 1)) == 0);
+  int64_t more = l->p->folds_constants ? 1 : lower_denominator_scale(l, c);
+  int dyadic = more == 1 && (l->p->folds_constants || !num_is_exact(c) || (c.den & (c.den - 1)) == 0);
   Slot up = number(l, dyadic ? c : num_int(c.num * more)), down = dyadic ? 0 : number(l, num_int(c.den * more));
   const Ins *i = &l->p->ins.at[t];
   const Ins *top = &l->p->ins.at[i->a];
@@ -213,7 +213,7 @@ static Slot lower_symbol(Lower *l, Expr e) {
     case SYM_STATE: return load(l, ARR_Z, s);
     case SYM_PARAM: return load_param(l, s);
     case SYM_INPUT: return load(l, ARR_U, s);
-    case SYM_CONST: return l->p->reckons ? prog_num(l->p, num_double(3.14159265358979323846)) : prog_ins(l->p, (Ins){.op = IR_PI});
+    case SYM_CONST: return l->p->folds_constants ? prog_num(l->p, num_double(3.14159265358979323846)) : prog_ins(l->p, (Ins){.op = IR_PI});
     case SYM_ACC: case SYM_RATE: case SYM_MULTIPLIER: case SYM_LOCAL: break; /* slots are set before: see lower_with_accelerations */
   }
   return 0;
@@ -276,12 +276,12 @@ void lower_roots(Lower *l, const Expr *roots, uint32_t n) {
 Lower lower_new(const Eqns *e) {
   Arena *a = e->m->arena;
   Prog *p = prog_new(a);
-  p->reckons = e->m->nfixed > 0;
+  p->folds_constants = e->m->nfixed > 0;
   return (Lower){.e = e, .g = e->g, .p = p, .slots = expr_map(a), .circular = expr_map(a)};
 }
 
 /* The tidy program, with sums over pairs as nests when it has `from` instructions. */
-static Prog *finished(const Lower *l, uint32_t from) { return prog_nest(prog_tidy(l->p), from); }
+static Prog *finished(const Lower *l, uint32_t from) { return prog_find_nests(prog_tidy(l->p), from); }
 
 static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
 
@@ -306,11 +306,11 @@ Prog *lower_accel(const Eqns *e, int libm) {
   enum { PAGE = 200 }; /* instructions; shorter programs fit a processor's window in any order, and keep the readable one */
   Prog *tidy = prog_tidy(l.p), *p = prog_factor(tidy);
   if (p->ins.n <= ROLL_FROM) {
-    p = prog_in_time(prog_share(p));
-    return p->ins.n > PAGE ? prog_by_deadline(p, libm) : p;
+    p = prog_reassociate_fma(prog_product_cse(p));
+    return p->ins.n > PAGE ? prog_schedule_by_path(p, libm) : p;
   }
-  Prog *nested = prog_nest_either(p, tidy, ROLL_FROM);
-  return is_diagonal(e) ? prog_by_demand(nested) : nested;
+  Prog *nested = prog_find_shorter_nests(p, tidy, ROLL_FROM);
+  return is_diagonal(e) ? prog_schedule_by_store(nested) : nested;
 }
 
 /* Selects, by the flag ARR_FREE of each input, its formula or the constant at which it is held. */
@@ -328,7 +328,7 @@ static void lower_inputs_along(Lower *l) {
   }
 }
 
-static void take_entries(const Lower *l, const Entries *from, IrEntries *to) {
+static void slot_entries(const Lower *l, const Entries *from, IrEntries *to) {
   for (uint32_t k = 0; k < from->n; k++)
     vec_push(l->p->arena, to, ((IrSlotEntry){from->at[k].row, from->at[k].col, lower_slot(l, from->at[k].e)}));
 }
@@ -339,7 +339,7 @@ IrSystem lower_system(const Eqns *e) {
   Arena *a = m->arena;
   Slot *acc = ARENA_ARRAY(a, Slot, e->n + 1), *f = ARENA_ARRAY(a, Slot, e->n + 1), *flow = ARENA_ARRAY(a, Slot, m->states.n + 1);
   Name *rates = ARENA_ARRAY(a, Name, e->n + m->states.n + 1), *velocities = ARENA_ARRAY(a, Name, e->n + 1);
-  Factored *factored = ARENA_NEW(a, Factored);
+  FactorRecord *factored = ARENA_NEW(a, FactorRecord);
   IrSystem sys = {.p = l.p, .nq = e->n, .ndefs = e->n ? e->system.ndefs : 0, .nz = m->states.n, .f = f, .flow = flow, .rates = rates,
                   .velocities = velocities, .factored = factored};
   l.direct = 1;
@@ -357,8 +357,8 @@ IrSystem lower_system(const Eqns *e) {
     rates[e->n + i] = text_of_symbol(&l, m->states.at[i].rate);
   }
   if (e->n) {
-    take_entries(&l, &e->system.H, &sys.H);
-    take_entries(&l, &e->system.C, &sys.C);
+    slot_entries(&l, &e->system.H, &sys.H);
+    slot_entries(&l, &e->system.C, &sys.C);
   }
   sys.x = l.x;
   return sys;
@@ -367,7 +367,7 @@ IrSystem lower_system(const Eqns *e) {
 void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   const Model *m = l->e->m;
   int needed = 0;
-  lower_grade(l, roots, n);
+  lower_find_denominator(l, roots, n);
   for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_MULTIPLIER);
   if (needed) {
     Slot *acc = ARENA_ARRAY(m->arena, Slot, l->e->n + 1);
@@ -383,7 +383,7 @@ void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   lower_roots(l, roots, n);
 }
 
-Prog *lower_seldom(const Lower *l) { return finished(l, ROLL_SELDOM_FROM); }
+Prog *lower_finish_seldom(const Lower *l) { return finished(l, ROLL_SELDOM_FROM); }
 
 /* q'' is an argument of the function: its symbols become loads. */
 static void load_accelerations(Lower *l) {
@@ -422,12 +422,12 @@ Prog *lower_linear(const Eqns *e, Partials dr) {
   return finished(&l, ROLL_FROM);
 }
 
-Prog *lower_jumps(const Eqns *e, Jumps jumps) {
+Prog *lower_event_derivatives(const Eqns *e, EventPartials jumps) {
   Lower l = lower_new(e);
   Arena *a = e->m->arena;
   for (uint32_t k = 0; k < jumps.n; k++) lower_roots(&l, &jumps.at[k].e, 1);
   for (uint32_t k = 0; k < jumps.n; k++) {
-    const Jump *j = &jumps.at[k];
+    const EventPartial *j = &jumps.at[k];
     const char *event = e->m->events.at[j->event].name, *of = j->row < 0 ? "its function" : component(&l, (uint32_t)j->row);
     const char *by = j->col < 2 * e->n + e->m->states.n ? component(&l, j->col) : "t";
     prog_store(l.p, 0, k, lower_slot(&l, j->e), arena_printf(a, "event %s: %s by %s", event, of, by));
@@ -442,7 +442,7 @@ Prog *lower_energy(const Eqns *e) {
   lower_with_accelerations(&l, roots, 2); /* in first-order models velocities are rates */
   prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
   prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
-  return lower_seldom(&l);
+  return lower_finish_seldom(&l);
 }
 
 Prog *lower_variation(const Eqns *e, const Variation *x) {
@@ -466,7 +466,7 @@ static const char *second_text(const Lower *l, const SecondEntry *s) {
   return arena_printf(l->p->arena, force ? "dQ_%s/d%s" : "d2L/d%s d%s", of, by);
 }
 
-Prog *lower_second(const Eqns *e, const Variation *x) {
+Prog *lower_second_derivatives(const Eqns *e, const Variation *x) {
   Lower l = lower_new(e);
   Expr *roots = ARENA_ARRAY(e->m->arena, Expr, x->second.n + 1);
   for (uint32_t k = 0; k < x->second.n; k++) roots[k] = x->second.at[k].e;
@@ -491,7 +491,7 @@ Prog *lower_switches(const Eqns *e, SwitchingSurfaces all) {
   for (uint32_t i = 0; i < all.n; i++) roots[i] = all.at[i].side;
   lower_with_accelerations(&l, roots, all.n);
   for (uint32_t i = 0; i < all.n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), all.at[i].text);
-  return lower_seldom(&l);
+  return lower_finish_seldom(&l);
 }
 
 static uint32_t array_of_target(SymKind k) { return k == SYM_COORD ? 0 : k == SYM_VEL ? 1 : 2; }
@@ -547,13 +547,13 @@ static Prog *outputs(const Eqns *e, int plain_only) {
   }
   lower_with_accelerations(&l, roots, n);
   for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), of[i]->name);
-  return lower_seldom(&l);
+  return lower_finish_seldom(&l);
 }
 
 Prog *lower_outputs(const Eqns *e) { return outputs(e, 0); }
 Prog *lower_plain_outputs(const Eqns *e) { return outputs(e, 1); }
 
-Prog *lower_exact(const Eqns *e) {
+Prog *lower_closed_forms(const Eqns *e) {
   Lower l = lower_new(e);
   const Scene *sc = &e->m->scene;
   for (uint32_t i = 0; i < sc->exacts.n; i++) lower_roots(&l, &sc->exacts.at[i].value, 1);
@@ -574,7 +574,7 @@ Prog *lower_start(const Eqns *e) {
   const Scene *sc = &e->m->scene;
   VEC(Expr) values = {0};
   for (uint32_t i = 0; i < sc->starts.n; i++) vec_push(e->m->arena, &values, sc->starts.at[i].value);
-  lower_grade(&l, values.at, values.n);
+  lower_find_denominator(&l, values.at, values.n);
   for (uint32_t i = 0; i < sc->starts.n; i++) lower_roots(&l, &sc->starts.at[i].value, 1);
   for (uint32_t i = 0; i < sc->starts.n; i++) store_target(&l, sc->starts.at[i].target, sc->starts.at[i].value);
   return prog_tidy(l.p);

@@ -6,7 +6,7 @@
 #define LAGC_LOWER_LOWER_H
 
 #include "ir/prog.h"
-#include "mech/event_jumps.h"
+#include "mech/event_derivatives.h"
 #include "mech/linearise.h"
 #include "series/series.h"
 #include "series/series.h"
@@ -20,36 +20,36 @@ IrSystem lower_system(const Eqns *e); /* M, f and the rates of the states, with 
 IrSystem lower_system(const Eqns *e); /* both unsolved and solved */
 Prog *lower_energy(const Eqns *e);  /* out 0: e[2], the energy and its scale */
 Prog *lower_charges(const Eqns *e); /* out 0: value and scale of each charge but the energy */
-Prog *lower_powers(const Eqns *e);  /* out 0: time derivative of each charge, the energy first; NULL: all are conserved */
+Prog *lower_charge_rates(const Eqns *e);  /* out 0: time derivative of each charge, the energy first; NULL: all are conserved */
 Prog *lower_variation(const Eqns *e, const Variation *x); /* out 0, 1, 2: dL/dq[nq], dL/dq'[nq], Q[nq] */
-Prog *lower_second(const Eqns *e, const Variation *x);    /* out 0: h[number of entries] */
+Prog *lower_second_derivatives(const Eqns *e, const Variation *x);    /* out 0: h[number of entries] */
 Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
 Prog *lower_switches(const Eqns *e, SwitchingSurfaces all); /* out 0: value of each switching function */
 Prog *lower_action(const Eqns *e, uint32_t event); /* out 0, 1, 2: q1, v1, z1; only components that the event sets */
 Prog *lower_inputs(const Eqns *e);  /* out 0: u[nu] */
 Prog *lower_linear(const Eqns *e, Partials dr); /* out 0: entries of dr, out 1: entries of M, in their order; reads q'' */
-Prog *lower_jumps(const Eqns *e, Jumps jumps); /* out 0: entries of jumps, in their order */
+Prog *lower_event_derivatives(const Eqns *e, EventPartials jumps); /* out 0: entries of jumps, in their order */
 /* Models with constraints (lower_constraints.c). */
 Prog *lower_residuals(const Eqns *e); /* out 0: c[nkept], out 1: r: their rates, then nonholonomic constraints */
 Prog *lower_matrices(const Eqns *e);  /* out 0: nonzero entries of A, out 1: of M */
 /* out 0: the change d[nq] with A d = g for the first nrows constraints that is least in the metric M; out 1: A^T mu = M d. */
-Prog *lower_change(const Eqns *e, uint32_t nrows);
+Prog *lower_projection(const Eqns *e, uint32_t nrows);
 Prog *lower_multipliers(const Eqns *e); /* out 0: lambda of each constraint, in the order of e->constraints */
 Prog *lower_impact(const Eqns *e, const Contact *c); /* out 1: v1, the velocities after the impact */
 Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
 Prog *lower_plain_outputs(const Eqns *e); /* out 0: outputs without closed forms, in their order */
 int output_is_plain(const Eqns *e, uint32_t i);
-Prog *lower_exact(const Eqns *e);   /* out 0: value of each closed form, from the state at the start */
+Prog *lower_closed_forms(const Eqns *e);   /* out 0: value of each closed form, from the state at the start */
 Prog *lower_param(const Eqns *e, uint32_t i); /* out 0: p[i], from earlier parameters */
 Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only components with a start value */
 
 /* unit_new: the unit of these equations, without scenes; source: path of the file as the user gave it; libm as in lower_accel.
  * unit_add_scene adds the scene of e, which must come from the same file, with the same effects, inputs and fixed parameters. */
 IrUnit *unit_new(const Eqns *e, const char *source, int libm);
-int unit_shares(const IrUnit *a, const IrUnit *b); /* whether scenes of b may be added to a */
+int unit_accepts_scenes(const IrUnit *a, const IrUnit *b); /* whether scenes of b may be added to a */
 void unit_add_scene(IrUnit *u, const Eqns *e);
 
 /* Makes the programs of the WANT_... bits that are still missing. */
-void unit_want(IrUnit *u, Eqns *e, unsigned wants);
+void unit_require(IrUnit *u, Eqns *e, unsigned wants);
 
 #endif

@@ -17,7 +17,7 @@ Prog *lower_charges(const Eqns *e) {
     prog_store(l.p, 0, 2 * i, lower_slot(&l, roots[2 * i]), name);
     prog_store(l.p, 0, 2 * i + 1, lower_slot(&l, roots[2 * i + 1]), arena_printf(a, "the scale of %s", name));
   }
-  return lower_seldom(&l);
+  return lower_finish_seldom(&l);
 }
 
 /* dQ/dt of charge i; 0 where it is not known. */
@@ -26,7 +26,7 @@ static Expr power_of(const Eqns *e, uint32_t i) {
   return n->power_unknown ? expr_int(e->g, 0) : n->power;
 }
 
-Prog *lower_powers(const Eqns *e) {
+Prog *lower_charge_rates(const Eqns *e) {
   Lower l = lower_new(e);
   Arena *a = l.p->arena;
   Expr *roots = ARENA_ARRAY(a, Expr, e->ncharges + 1);
@@ -39,5 +39,5 @@ Prog *lower_powers(const Eqns *e) {
   lower_with_accelerations(&l, roots, e->ncharges);
   for (uint32_t i = 0; i < e->ncharges; i++)
     prog_store(l.p, 0, i, lower_slot(&l, roots[i]), arena_printf(a, "d(%s)/dt", e->charges[i].name));
-  return lower_seldom(&l);
+  return lower_finish_seldom(&l);
 }

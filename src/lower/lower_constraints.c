@@ -29,7 +29,7 @@ Prog *lower_matrices(const Eqns *e) {
   return prog_tidy(l.p);
 }
 
-Prog *lower_change(const Eqns *e, uint32_t nrows) {
+Prog *lower_projection(const Eqns *e, uint32_t nrows) {
   const Model *m = e->m;
   Lower l = lower_new(e);
   Arena *a = l.p->arena;

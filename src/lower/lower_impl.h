@@ -1,4 +1,4 @@
-/* Shared by the files that lower Eqns: lower*.c (expressions, one program each), solve.c, eliminate.c, gram.c (the linear system), grade.c. */
+/* Shared by the files that lower Eqns: lower*.c (expressions, one program each), linear_solve.c, eliminate.c, gram_schmidt.c (the linear system), common_denominator.c. */
 #ifndef LAGC_LOWER_LOWER_IMPL_H
 #define LAGC_LOWER_LOWER_IMPL_H
 
@@ -11,10 +11,10 @@ typedef struct {
   Prog *p;
   ExprMap slots;   /* node -> slot + 1 */
   ExprMap circular; /* u -> 1 where sin u or cos u occurs among the roots */
-  int64_t denominator; /* common denominator of graded coefficients; 0: none. See lower_grade */
-  ExprMap often;   /* coefficient, as a node -> number of terms with it */
+  int64_t denominator; /* common denominator of graded coefficients; 0: none. See lower_find_denominator */
+  ExprMap term_count;   /* coefficient, as a node -> number of terms with it */
   int direct;       /* no addition theorem for sin(a - b): a series of its own is cheaper */
-  Factored *factored; /* receives the factors of the linear system, and x its solution [n + ndefs]; NULL: not recorded */
+  FactorRecord *factored; /* receives the factors of the linear system, and x its solution [n + ndefs]; NULL: not recorded */
   Slot *x;
   int coarse;         /* as in Solve: for outputs, which shall stay finite where constraints become dependent */
   Slot *multipliers; /* [number of constraints], set by lower_solution */
@@ -22,11 +22,11 @@ typedef struct {
 
 Lower lower_new(const Eqns *e);
 
-/* grade.c. Finds the common denominator of coefficients that are graded along a family, as masses m*(1 + i/N) are. Before lower_roots. */
-void lower_grade(Lower *l, const Expr *roots, uint32_t n);
+/* common_denominator.c. Finds the common denominator of coefficients that are graded along a family, as masses m*(1 + i/N) are. Before lower_roots. */
+void lower_find_denominator(Lower *l, const Expr *roots, uint32_t n);
 
 /* Factor that brings a coefficient to the common denominator; 1 where it is not graded. */
-int64_t lower_grade_of(Lower *l, Num c);
+int64_t lower_denominator_scale(Lower *l, Num c);
 
 /* Lowers the roots and all nodes below them; lower_slot then gives their slots. */
 void lower_roots(Lower *l, const Expr *roots, uint32_t n);
@@ -36,7 +36,7 @@ Slot lower_slot(const Lower *l, Expr e);
 void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n);
 
 /* The finished program of a function that is called once a step, or once a row of output. */
-Prog *lower_seldom(const Lower *l);
+Prog *lower_finish_seldom(const Lower *l);
 
 /* Lowers M q'' = f and its solution; acc[n] receives the slots of q''. */
 void lower_solution(Lower *l, Slot *acc);
@@ -47,8 +47,8 @@ void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, Slot 
 /* eliminate.c: q'' by elimination without pivoting; entries of H and C and forces must be lowered. */
 void lower_elimination(Lower *l, Slot *acc);
 
-/* gram.c: q'' where M = W^T C W; weights, W and forces must be lowered. */
-void lower_gram(Lower *l, Slot *acc);
+/* gram_schmidt.c: q'' where M = W^T C W; weights, W and forces must be lowered. */
+void lower_gram_schmidt(Lower *l, Slot *acc);
 
 /* Names "M12", "f1" by numbers of coordinates, from 1 (j UINT32_MAX: i alone); the stem alone when there is one coordinate. */
 Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j);

@@ -6,7 +6,7 @@
 #include "lower/lower.h"
 #include "symmetry/charges.h"
 
-static IrVar var_of(Name name, const Unit *u, int periodic, AstSign sign) {
+static IrVar ir_var(Name name, const Unit *u, int periodic, AstSign sign) {
   static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
   return (IrVar){name, u->text, unit_factor(u), periodic, signs[sign], num_value(u->offset), u->factor, u->pi_power};
 }
@@ -88,13 +88,13 @@ static void add_constraints(IrUnit *u, const Eqns *e) {
   to->nkept = k->nkept;
   to->residuals = lower_residuals(e);
   to->matrices = lower_matrices(e);
-  to->position = lower_change(e, k->nkept);
-  to->velocity = k->nkept == k->n ? to->position : lower_change(e, k->n);
+  to->position = lower_projection(e, k->nkept);
+  to->velocity = k->nkept == k->n ? to->position : lower_projection(e, k->n);
 }
 
 /* Adds nothing where the energy is the only charge, conserved, and without a unit. */
 static void add_charges(IrUnit *u, const Eqns *e) {
-  const Prog *powers = e->ncharges ? lower_powers(e) : NULL;
+  const Prog *powers = e->ncharges ? lower_charge_rates(e) : NULL;
   if (e->ncharges < 2 && !powers && !e->energy_jumps && !(e->ncharges && e->charges[0].unit.text[0])) return;
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
@@ -120,7 +120,7 @@ static void add_switches(IrUnit *u, const Eqns *e) {
 static void add_variation(IrUnit *u, const Eqns *e) {
   Variation *x = variation_derive(e);
   u->variation = lower_variation(e, x);
-  u->second = lower_second(e, x);
+  u->second = lower_second_derivatives(e, x);
   for (uint32_t k = 0; k < x->second.n; k++) {
     const SecondEntry *s = &x->second.at[k];
     vec_push(u->arena, &u->second_at, ((IrSecond){(int)s->part, s->row, s->col}));
@@ -146,13 +146,13 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
   u->all_effects = joined(m->arena, m->all_effects.at, m->all_effects.n);
   add_fixed(u, m);
   for (uint32_t i = 0; i < m->coords.n; i++)
-    vec_push(m->arena, &u->q, var_of(m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
+    vec_push(m->arena, &u->q, ir_var(m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->states.n; i++)
-    vec_push(m->arena, &u->z, var_of(m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
+    vec_push(m->arena, &u->z, ir_var(m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->params.n; i++)
-    if (!m->params.at[i].fixed) vec_push(m->arena, &u->p, var_of(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
+    if (!m->params.at[i].fixed) vec_push(m->arena, &u->p, ir_var(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
   for (uint32_t i = 0; i < m->inputs.n; i++)
-    vec_push(m->arena, &u->u, var_of(m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
+    vec_push(m->arena, &u->u, ir_var(m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
   u->accel = lower_accel(e, libm);
   u->energy = e->energy ? lower_energy(e) : NULL;
   u->inputs = lower_inputs(e);
@@ -164,7 +164,7 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
   return u;
 }
 
-int unit_shares(const IrUnit *a, const IrUnit *b) {
+int unit_accepts_scenes(const IrUnit *a, const IrUnit *b) {
   return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
 }
 
@@ -186,7 +186,7 @@ static void add_exact(IrScene *s, const Eqns *e) {
   const Model *m = e->m;
   const Scene *sc = &m->scene;
   s->observe_plain = s->plain.n < s->outputs.n ? lower_plain_outputs(e) : s->observe;
-  s->exact = lower_exact(e);
+  s->exact = lower_closed_forms(e);
   for (uint32_t i = 0; i < sc->exacts.n; i++) {
     const Symbol *of = expr_symbol(m->g, sc->exacts.at[i].target);
     uint32_t before = of->kind == SYM_COORD ? 0 : of->kind == SYM_VEL ? m->coords.n : 2 * m->coords.n;
@@ -202,13 +202,13 @@ static void add_linear(IrUnit *u, Eqns *e) {
 }
 
 static void add_jumps(IrUnit *u, const Eqns *e) {
-  Jumps jumps = eqns_jumps(e);
+  EventPartials jumps = eqns_event_derivatives(e);
   if (!jumps.n) return;
-  u->jumps = lower_jumps(e, jumps);
+  u->jumps = lower_event_derivatives(e, jumps);
   for (uint32_t k = 0; k < jumps.n; k++) vec_push(u->arena, &u->jump_at, ((IrJump){jumps.at[k].event, jumps.at[k].row, jumps.at[k].col}));
 }
 
-void unit_want(IrUnit *u, Eqns *e, unsigned wants) {
+void unit_require(IrUnit *u, Eqns *e, unsigned wants) {
   unsigned fresh = wants & ~u->wants;
   u->wants |= wants;
   if (fresh & WANT_VARIATION && e->n) add_variation(u, e);
@@ -236,7 +236,7 @@ void unit_add_scene(IrUnit *u, const Eqns *e) {
     vec_push(m->arena, &s.options, o);
   }
   for (uint32_t i = 0; i < e->noutputs; i++) {
-    IrVar v = var_of(e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
+    IrVar v = ir_var(e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
     vec_push(m->arena, &s.outputs, v);
     if (e->constraints.n) vec_push(m->arena, &s.forces, (expr_kinds(e->g, e->outputs[i].value) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
     if (output_is_plain(e, i)) vec_push(m->arena, &s.plain, v);

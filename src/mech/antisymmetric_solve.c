@@ -10,26 +10,26 @@ typedef struct {
   Expr *A, *b;
   uint8_t *gone;
   uint32_t *degree; /* nonzero entries of each row, among the remaining columns */
-} Skew;
+} SkewSystem;
 
-static Expr *entry(const Skew *s, uint32_t i, uint32_t j) { return &s->A[(size_t)i * s->n + j]; }
+static Expr *entry(const SkewSystem *s, uint32_t i, uint32_t j) { return &s->A[(size_t)i * s->n + j]; }
 
-static int is_zero(const Skew *s, uint32_t i, uint32_t j) { return expr_is_zero(s->g, *entry(s, i, j)); }
+static int is_zero(const SkewSystem *s, uint32_t i, uint32_t j) { return expr_is_zero(s->g, *entry(s, i, j)); }
 
-static void set(const Skew *s, uint32_t i, uint32_t j, Expr e) {
+static void set(const SkewSystem *s, uint32_t i, uint32_t j, Expr e) {
   *entry(s, i, j) = e;
   *entry(s, j, i) = expr_neg(s->g, e);
 }
 
 /* --- elimination --- */
 
-static int has_sign(const Skew *s, Expr e) {
+static int has_sign(const SkewSystem *s, Expr e) {
   ExprSign sign = expr_sign(s->g, e);
   return (expr_is_num(s->g, e) && !expr_is_zero(s->g, e)) || sign == SIGN_POSITIVE || sign == SIGN_NEGATIVE;
 }
 
 /* Whether e is nonzero wherever it has a value, as 1/(x*y). */
-static int is_safe(const Skew *s, Expr e) {
+static int is_nonzero(const SkewSystem *s, Expr e) {
   Num k;
   if (expr_pairs(s->g, e, EX_SUM) == 1 && !expr_is_num(s->g, e)) e = expr_pair(s->g, e, EX_SUM, 0, &k);
   int safe = 1;
@@ -40,7 +40,7 @@ static int is_safe(const Skew *s, Expr e) {
   return safe || has_sign(s, e);
 }
 
-static void count(Skew *s) {
+static void count(SkewSystem *s) {
   for (uint32_t i = 0; i < s->n; i++) {
     s->degree[i] = 0;
     for (uint32_t j = 0; j < s->n && !s->gone[i]; j++) s->degree[i] += !s->gone[j] && !is_zero(s, i, j);
@@ -48,13 +48,13 @@ static void count(Skew *s) {
 }
 
 /* The pair with a nonzero entry for certain and the least fill-in (Markowitz's count). 0: there is none. */
-static int find_pair(Skew *s, uint32_t *at, uint32_t *with) {
+static int find_pair(SkewSystem *s, uint32_t *at, uint32_t *with) {
   uint64_t best = UINT64_MAX;
   count(s);
   for (uint32_t i = 0; i < s->n; i++)
     for (uint32_t j = i + 1; j < s->n && !s->gone[i]; j++) {
       uint64_t cost = 2 * (uint64_t)(s->degree[i] - 1) * (s->degree[j] - 1);
-      if (s->gone[j] || is_zero(s, i, j) || !is_safe(s, *entry(s, i, j))) continue;
+      if (s->gone[j] || is_zero(s, i, j) || !is_nonzero(s, *entry(s, i, j))) continue;
       cost += !expr_is_num(s->g, *entry(s, i, j)); /* numbers first */
       if (cost >= best) continue;
       best = cost;
@@ -64,13 +64,13 @@ static int find_pair(Skew *s, uint32_t *at, uint32_t *with) {
   return best < UINT64_MAX;
 }
 
-static Expr over(const Skew *s, Expr a, Expr b, Expr pivot) {
+static Expr over(const SkewSystem *s, Expr a, Expr b, Expr pivot) {
   Expr product = expr_mul(s->g, a, b);
   return expr_div(s->g, product, pivot);
 }
 
 /* A_kl += (A_jk A_il - A_ik A_jl)/a, b_k += (A_jk b_i - A_ik b_j)/a, with a = A_ij. */
-static void eliminate(Skew *s, uint32_t i, uint32_t j) {
+static void eliminate(SkewSystem *s, uint32_t i, uint32_t j) {
   ExprGraph *g = s->g;
   Expr a = *entry(s, i, j);
   s->gone[i] = s->gone[j] = 1;
@@ -89,7 +89,7 @@ static void eliminate(Skew *s, uint32_t i, uint32_t j) {
 }
 
 /* x/pivot, term by term if the pivot is a product, so that common factors cancel. */
-static Expr divide(const Skew *s, Expr x, Expr pivot) {
+static Expr divide(const SkewSystem *s, Expr x, Expr pivot) {
   ExprGraph *g = s->g;
   uint32_t n = expr_pairs(g, x, EX_SUM);
   if (n < 2 || expr_pairs(g, pivot, EX_SUM) > 1) return expr_div(g, x, pivot);
@@ -103,7 +103,7 @@ static Expr divide(const Skew *s, Expr x, Expr pivot) {
 }
 
 /* Back substitution for the pair (i, j); x[k] is the null Expr for unknowns eliminated before it. */
-static void substitute(const Skew *s, uint32_t i, uint32_t j, Expr *x) {
+static void substitute(const SkewSystem *s, uint32_t i, uint32_t j, Expr *x) {
   ExprGraph *g = s->g;
   Expr a = *entry(s, i, j), at_i = s->b[i], at_j = expr_neg(g, s->b[j]);
   for (uint32_t k = 0; k < s->n; k++) {
@@ -125,7 +125,7 @@ static int bits(uint32_t set) {
 }
 
 /* pf[set] = Pfaffian of the rows and columns at[k] for the bits k of set, expanded along its first row. */
-static Expr *pfaffians(const Skew *s, const uint32_t *at, uint32_t m) {
+static Expr *pfaffians(const SkewSystem *s, const uint32_t *at, uint32_t m) {
   ExprGraph *g = s->g;
   Expr *pf = ARENA_ARRAY(s->arena, Expr, (size_t)1 << m);
   pf[0] = expr_int(g, 1);
@@ -147,14 +147,14 @@ static Expr *pfaffians(const Skew *s, const uint32_t *at, uint32_t m) {
 }
 
 /* Above the diagonal, A^-1 has the entries (-1)^(i + j) Pf(without i, j)/Pf, counted from 1. */
-static void solve_left(const Skew *s, const uint32_t *at, uint32_t m, Name name, Expr *x, Expr *divisor) {
+static void solve_by_pfaffians(const SkewSystem *s, const uint32_t *at, uint32_t m, Name name, Expr *x, Expr *divisor) {
   enum { NAMED = 4 };
   ExprGraph *g = s->g;
   Expr *pf = pfaffians(s, at, m);
   uint32_t all = (1u << m) - 1;
   Expr whole = simplify(g, pf[all]);
-  if (m >= NAMED) whole = expr_def_fresh(g, name, whole);
-  *divisor = is_safe(s, whole) ? 0 : whole;
+  if (m >= NAMED) whole = expr_def_unique(g, name, whole);
+  *divisor = is_nonzero(s, whole) ? 0 : whole;
   for (uint32_t i = 0; i < m; i++) {
     Expr sum = expr_int(g, 0);
     for (uint32_t j = 0; j < m; j++) {
@@ -167,9 +167,9 @@ static void solve_left(const Skew *s, const uint32_t *at, uint32_t m, Name name,
   }
 }
 
-int skew_solve(ExprGraph *g, uint32_t n, Expr *A, Expr *b, Name name, Expr *x, Expr *divisor, uint32_t *left, uint32_t *nleft) {
+int antisymmetric_solve(ExprGraph *g, uint32_t n, Expr *A, Expr *b, Name name, Expr *x, Expr *divisor, uint32_t *left, uint32_t *nleft) {
   Arena *arena = expr_arena(g);
-  Skew s = {g, arena, n, A, b, ARENA_ARRAY(arena, uint8_t, n + 1), ARENA_ARRAY(arena, uint32_t, n + 1)};
+  SkewSystem s = {g, arena, n, A, b, ARENA_ARRAY(arena, uint8_t, n + 1), ARENA_ARRAY(arena, uint32_t, n + 1)};
   uint32_t *pairs = ARENA_ARRAY(arena, uint32_t, n + 2), npairs = 0;
   for (uint32_t i = 0; i < n; i++) x[i] = 0;
   *divisor = 0;
@@ -180,8 +180,8 @@ int skew_solve(ExprGraph *g, uint32_t n, Expr *A, Expr *b, Name name, Expr *x, E
   *nleft = 0;
   for (uint32_t i = 0; i < n; i++)
     if (!s.gone[i]) left[(*nleft)++] = i;
-  if (*nleft > SKEW_MOST || *nleft % 2) return 0;
-  if (*nleft) solve_left(&s, left, *nleft, name, x, divisor);
+  if (*nleft > ANTISYMMETRIC_MOST || *nleft % 2) return 0;
+  if (*nleft) solve_by_pfaffians(&s, left, *nleft, name, x, divisor);
   while (npairs) {
     npairs -= 2;
     substitute(&s, pairs[npairs], pairs[npairs + 1], x);

@@ -17,12 +17,12 @@ typedef struct {
   const Expr *back;        /* by symbol: the definition behind a stand-in */
   uint32_t nback;
   ExprPartials *gradient;  /* [n + 1] derivatives of cut by u */
-} Lift;
+} Augmentation;
 
 /* Finds the definitions that contain velocities; writes them and L in q', stand-ins and expressions without velocities. */
-static void cut_definitions(Lift *l) {
+static void cut_definitions(Augmentation *l) {
   const Eqns *e = l->e;
-  Expr lagrangian = e->summed;
+  Expr lagrangian = e->differentiated_lagrangian;
   ExprList all = expr_topo(l->g, &lagrangian, 1);
   VEC(Expr) defs = {0};
   for (uint32_t i = 0; i < all.n; i++)
@@ -44,11 +44,11 @@ static void cut_definitions(Lift *l) {
   l->back = back;
   l->nback = last + 1;
   l->cut = ARENA_ARRAY(l->arena, Expr, l->n + 1);
-  expr_cut(l->g, body, l->n + 1, l->def, l->stand_in, l->n, l->cut);
+  expr_replace_nodes(l->g, body, l->n + 1, l->def, l->stand_in, l->n, l->cut);
 }
 
 /* Derivatives of x by u = (q', w), indices in u, ascending. */
-static ExprPartials by_u(Lift *l, Expr x) {
+static ExprPartials by_u(Augmentation *l, Expr x) {
   VEC(ExprPartial) all = {0};
   ExprPartials v = expr_gradient_sparse(l->g, x, SYM_VEL, l->e->n), w = expr_gradient_sparse(l->g, x, SYM_LOCAL, l->first + l->n);
   for (uint32_t i = 0; i < v.n; i++) vec_push(l->arena, &all, v.at[i]);
@@ -57,10 +57,10 @@ static ExprPartials by_u(Lift *l, Expr x) {
   return (ExprPartials){all.at, all.n};
 }
 
-static Expr without_stand_ins(Lift *l, Expr x) { return expr_substitute(l->g, x, l->back, l->nback, ""); }
+static Expr without_stand_ins(Augmentation *l, Expr x) { return expr_substitute(l->g, x, l->back, l->nback, ""); }
 
 /* Adjoints lambda_k = dL/dw_k + sum over later definitions m of lambda_m dW_m/dw_k. */
-static Expr *multipliers(Lift *l) {
+static Expr *multipliers(Augmentation *l) {
   Expr *lambda = ARENA_ARRAY(l->arena, Expr, l->n);
   for (uint32_t k = 0; k < l->n; k++) lambda[k] = expr_int(l->g, 0);
   for (uint32_t m = l->n + 1; m-- > 0;) {
@@ -83,7 +83,7 @@ static int by_place(const void *a, const void *b) {
 }
 
 /* Sorts entries, sums those at one place, and drops zeros. */
-static void merge(Lift *l, Entries *t) {
+static void merge(Augmentation *l, Entries *t) {
   if (t->n) qsort(t->at, t->n, sizeof *t->at, by_place);
   uint32_t kept = 0;
   for (uint32_t i = 0; i < t->n;) {
@@ -95,7 +95,7 @@ static void merge(Lift *l, Entries *t) {
 }
 
 /* Lower triangle of H = d2L/du2 + sum lambda_m d2W_m/du2. Definitions linear in u, the usual case, need no lambda. */
-static void second_derivatives(Lift *l, Entries *H) {
+static void second_derivatives(Augmentation *l, Entries *H) {
   Expr *lambda = NULL;
   for (uint32_t m = 0; m <= l->n; m++)
     for (uint32_t i = 0; i < l->gradient[m].n; i++) {
@@ -111,8 +111,8 @@ static void second_derivatives(Lift *l, Entries *H) {
   merge(l, H);
 }
 
-LinearSystem lift_system(const Eqns *e) {
-  Lift l = {.e = e, .g = e->g, .arena = e->m->arena};
+LinearSystem augmented_system(const Eqns *e) {
+  Augmentation l = {.e = e, .g = e->g, .arena = e->m->arena};
   for (SymId s = 1; s <= expr_symbol_count(l.g); s++) l.first += expr_symbol(l.g, s)->kind == SYM_LOCAL;
   cut_definitions(&l);
   LinearSystem s = {.n = e->n, .ndefs = l.n, .defs = l.def};

@@ -17,6 +17,6 @@
 #include "mech/eqns.h"
 
 /* H and C as differentiated, for the definitions through which L reaches its velocities; ndefs = 0 where there are none. */
-LinearSystem lift_system(const Eqns *e);
+LinearSystem augmented_system(const Eqns *e);
 
 #endif

@@ -94,9 +94,9 @@ enum { COMPARE_MAX = 64 };
 typedef struct {
   ExprPartials row;
   Expr kept;
-} Kind;
+} ConstraintRow;
 
-static int look_at(Eqns *e, const Constraint *k, Kind *to) {
+static int derive_row(Eqns *e, const Constraint *k, ConstraintRow *to) {
   int holonomic = is_holonomic(e, k);
   to->row = expr_gradient_sparse(e->g, k->c, holonomic ? SYM_COORD : SYM_VEL, e->n);
   if (!check_contains(e, k, &to->row) || (!holonomic && !check_linear(e, k, &to->row))) return 0;
@@ -105,7 +105,7 @@ static int look_at(Eqns *e, const Constraint *k, Kind *to) {
   return 1;
 }
 
-static void add(Eqns *e, const Constraint *k, const Kind *kind, const Constraint **of, Expr *c, Expr *r, Expr *demand) {
+static void add(Eqns *e, const Constraint *k, const ConstraintRow *kind, const Constraint **of, Expr *c, Expr *r, Expr *demand) {
   Constraints *all = &e->constraints;
   uint32_t at = all->n++;
   of[at] = k;
@@ -135,9 +135,9 @@ int constrain(Eqns *e) {
   if (!n) return 1;
   const Constraint **of = ARENA_ARRAY(a, const Constraint *, n);
   Expr *c = ARENA_ARRAY(a, Expr, n), *r = ARENA_ARRAY(a, Expr, n), *demand = ARENA_ARRAY(a, Expr, n);
-  Kind *kinds = ARENA_ARRAY(a, Kind, n);
+  ConstraintRow *kinds = ARENA_ARRAY(a, ConstraintRow, n);
   int good = check_count(e);
-  for (uint32_t i = 0; i < n; i++) good &= look_at(e, &m->constraints.at[i], &kinds[i]);
+  for (uint32_t i = 0; i < n; i++) good &= derive_row(e, &m->constraints.at[i], &kinds[i]);
   for (int turn = 0; turn < 3 && good; turn++) {
     for (uint32_t i = 0; i < n; i++) {
       const Constraint *k = &m->constraints.at[i];

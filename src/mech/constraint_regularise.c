@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "mech/constrain.h"
-#include "mech/start.h"
+#include "mech/consistent_start.h"
 #include "sym/eval.h"
 
 static int is_fixed(const Eqns *e, Expr x) { return !(expr_kinds(e->g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) && !expr_is_zero(e->g, x); }
@@ -28,15 +28,15 @@ static Expr typical_inertia(const Eqns *e, uint32_t k) {
 }
 
 /* The power of two next to 1/sum A_kj^2 near the scene's start. */
-static Num size_of(const Eqns *e, uint32_t k) {
+static Num weight_near_start(const Eqns *e, uint32_t k) {
   const Entries *A = &e->constraints.A;
   const Model *m = e->m;
   uint32_t all = expr_symbol_count(e->g) + 1, n = 0;
-  long double *there = ARENA_ARRAY(m->arena, long double, all), *asked = start_asked(e), *step = ARENA_ARRAY(m->arena, long double, e->n), sum = 0;
+  long double *there = ARENA_ARRAY(m->arena, long double, all), *asked = start_requested(e), *step = ARENA_ARRAY(m->arena, long double, e->n), sum = 0;
   Expr *row = ARENA_ARRAY(m->arena, Expr, A->n + 1);
   long double *value = ARENA_ARRAY(m->arena, long double, A->n + 1);
   for (uint32_t i = 0; i < all; i++) there[i] = asked[i];
-  start_steps_beside(e, asked, 0.1L, step);
+  start_nearby_steps(e, asked, 0.1L, step);
   for (uint32_t i = 0; i < e->n; i++) there[m->coords.at[i].q] += step[i];
   for (uint32_t i = 0; i < A->n; i++)
     if (A->at[i].row == k) row[n++] = A->at[i].e;
@@ -57,10 +57,10 @@ static Expr weight(const Eqns *e, uint32_t k) {
     return expr_div(e->g, own, square);
   }
   Expr typical = typical_inertia(e, k);
-  return expr_scale(e->g, size_of(e, k), typical);
+  return expr_scale(e->g, weight_near_start(e, k), typical);
 }
 
-Expr lend_inertia(const Eqns *e) {
+Expr regularising_term(const Eqns *e) {
   const Constraints *all = &e->constraints;
   Expr *terms = ARENA_ARRAY(e->m->arena, Expr, all->n + 1);
   uint32_t n = 0;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/methods.h"
+#include "base/method_table.h"
 #include "mech/constrain.h"
 #include "mech/degree.h"
 #include "mech/discontinuity.h"
@@ -114,7 +114,7 @@ static int check_momenta(const Eqns *e) {
 
 /* Adds the formulas of the inputs that occur to the roots. A table depends on time, and the third derivative of its spline
  * jumps at each row: not autonomous, not smooth. */
-static void follow_inputs(Eqns *e, ExprVec *roots) {
+static void add_input_formulas(Eqns *e, ExprVec *roots) {
   const Model *m = e->m;
   ExprList l = expr_topo(e->g, roots->at, roots->n);
   for (uint32_t i = 0; i < l.n; i++) {
@@ -129,7 +129,7 @@ static void follow_inputs(Eqns *e, ExprVec *roots) {
 
 /* Whether the dissipation takes energy at every velocity: nonnegative terms, quadratic, 0 at rest, so that the power
  * q' dR/dq' = 2 R is nonnegative. Not so (q' - c)^2, a belt that drives. */
-static int only_brakes(const Eqns *e) {
+static int dissipation_is_passive(const Eqns *e) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
   Expr R = m->dissipation;
@@ -157,7 +157,7 @@ static int loses_energy(const Eqns *e, unsigned lagrangian) {
   unsigned forces = 0;
   for (uint32_t i = 0; i < m->forces.n; i++) forces |= expr_kinds(e->g, m->forces.at[i].f);
   return m->lagrangian && !e->first.n && !e->conserves_energy && constraints_do_no_work(e) && !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) &&
-         !(forces & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_COORD) | bit(SYM_VEL))) && (!m->dissipation || only_brakes(e));
+         !(forces & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_COORD) | bit(SYM_VEL))) && (!m->dissipation || dissipation_is_passive(e));
 }
 
 static int is_no_coordinate(const Symbol *s, const void *states) { return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate; }
@@ -186,7 +186,7 @@ static void classify(Eqns *e) {
   e->autonomous = e->timeless = !((mass | rest) & bit(SYM_TIME));
   int inputs = (rest & bit(SYM_INPUT)) != 0 && m->inputs.n > m->contacts.n; /* those of contacts do no work */
   e->smooth = 1;
-  if (inputs) follow_inputs(e, &roots);
+  if (inputs) add_input_formulas(e, &roots);
   ExprList l = expr_topo(e->g, roots.at, roots.n);
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(e->g, l.at[i]);
@@ -220,7 +220,7 @@ int eqns_check_numbers(const Eqns *e) {
       diag_help(m->diags, "numbers reach up to 1.8e308; measure in other units");
       return 0;
     }
-    if (num_is_lost(n)) {
+    if (num_is_imprecise(n)) {
       diag_error(m->diags, span, "rounding leaves fewer than six digits of a number in the equations of motion");
       diag_help(m->diags, "numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits; write what such numbers come to");
       return 0;
@@ -260,7 +260,7 @@ Eqns *eqns_derive(const Model *m) {
 Eqns *eqns_derive_regularised(const Eqns *singular) {
   Model *m = ARENA_NEW(singular->m->arena, Model);
   *m = *singular->m;
-  Expr lent = lend_inertia(singular);
+  Expr lent = regularising_term(singular);
   m->across = m->across ? expr_add(singular->g, m->across, lent) : lent;
   return eqns_derive(m);
 }

@@ -25,18 +25,18 @@ typedef struct {
 typedef VEC(MassEntry) Entries;
 
 /* M q'' = f as the program solves it. Variables 0 .. n-1 are the accelerations; variable n + k is the rate of
- * definition k, which contains velocities: C_k times the variables before it (mech/lift.h). Without definitions H = M. */
+ * definition k, which contains velocities: C_k times the variables before it (mech/augmented_system.h). Without definitions H = M. */
 typedef struct {
   uint32_t n, ndefs;
   const Expr *defs;      /* [ndefs] */
   Entries H;             /* lower triangle, row by row */
   Entries C;             /* row n + k; col < n + k */
   const Expr *f;         /* [n] */
-  const uint32_t *order; /* [n + ndefs] elimination order of the variables: mech/order.h */
+  const uint32_t *order; /* [n + ndefs] elimination order of the variables: mech/elimination_order.h */
   uint64_t ops;          /* operations of elimination and substitution, estimated */
 } LinearSystem;
 
-/* M = W^T C W with C = diag(weight): mech/squares.h. */
+/* M = W^T C W with C = diag(weight): mech/kinetic_squares.h. */
 typedef struct {
   uint32_t n;         /* number of forms; 0: M is factored from its entries */
   const Expr *weight; /* [n] */
@@ -68,14 +68,14 @@ typedef struct {
   int constant;          /* the form is free of coordinates, states and time */
 } FirstOrder;
 
-typedef struct Charge Charge; /* mech/charges.h */
+typedef struct Charge Charge; /* symmetry/charges.h */
 
 typedef struct {
   const Model *m;
   ExprGraph *g;
   FirstOrder first;
   uint32_t n;            /* number of coordinates with accelerations */
-  Expr summed;           /* L as differentiated, with long sums of velocities as definitions (mech/sums.h) */
+  Expr differentiated_lagrangian;           /* L as differentiated, with long sums of velocities as definitions (mech/velocity_sums.h) */
   const Expr *p;         /* [n] momenta, as differentiated */
   const Expr *dLdq;      /* [n] as differentiated */
   const Expr *momenta;   /* [n] momenta in short forms, to show */

@@ -1,5 +1,5 @@
 /* Two-form and right-hand side by differentiation, split into blocks of coupled coordinates; each block solved on the graph by
- * mech/skew.h, as a doubled antisymmetric system where forces make it unsymmetric. */
+ * mech/antisymmetric_solve.h, as a doubled antisymmetric system where forces make it unsymmetric. */
 #include "mech/first_order.h"
 
 #include <math.h>
@@ -32,14 +32,14 @@ typedef struct {
   Expr *rhs;
   VEC(Expr) divisors;
   VEC(Part) parts;
-} Work;
+} FirstOrderBuilder;
 
 static unsigned bit(SymKind kind) { return 1u << kind; }
-static int has_rates(const Work *w, Expr x) { return (expr_kinds(w->g, x) & bit(SYM_RATE)) != 0; }
-static const State *state_of(const Work *w, uint32_t i) { return &w->m->states.at[w->to->at[i]]; }
-static Expr at_rest(const Work *w, Expr x) { return expr_substitute(w->g, x, w->still, expr_symbol_count(w->g) + 1, "_at_rest"); }
+static int has_rates(const FirstOrderBuilder *w, Expr x) { return (expr_kinds(w->g, x) & bit(SYM_RATE)) != 0; }
+static const State *state_of(const FirstOrderBuilder *w, uint32_t i) { return &w->m->states.at[w->to->at[i]]; }
+static Expr at_rest(const FirstOrderBuilder *w, Expr x) { return expr_substitute(w->g, x, w->still, expr_symbol_count(w->g) + 1, "_at_rest"); }
 
-static void find_coordinates(Work *w) {
+static void find_coordinates(FirstOrderBuilder *w) {
   uint32_t *at = ARENA_ARRAY(w->arena, uint32_t, w->m->states.n + 1);
   w->place = ARENA_ARRAY(w->arena, uint32_t, w->m->states.n + 1);
   w->still = ARENA_ARRAY(w->arena, Expr, expr_symbol_count(w->g) + 1);
@@ -56,7 +56,7 @@ static void find_coordinates(Work *w) {
 /* --- the parts of L --- */
 
 /* theta, H, and the right-hand side dH/dq_i + dtheta_i/dt, still without forces. */
-static int differentiate(Work *w) {
+static int differentiate(FirstOrderBuilder *w) {
   SymId *rates = ARENA_ARRAY(w->arena, SymId, w->n), *q = ARENA_ARRAY(w->arena, SymId, w->n);
   Expr *theta = ARENA_ARRAY(w->arena, Expr, w->n), *dH = ARENA_ARRAY(w->arena, Expr, w->n);
   for (uint32_t i = 0; i < w->n; i++) {
@@ -81,12 +81,12 @@ static int differentiate(Work *w) {
   return 1;
 }
 
-static void add_part(Work *w, uint32_t row, uint32_t col, Expr e) {
+static void add_part(FirstOrderBuilder *w, uint32_t row, uint32_t col, Expr e) {
   vec_push(w->arena, &w->parts, ((Part){row, col, w->parts.n, e}));
 }
 
 /* omega_ij += dtheta_j/dq_i - dtheta_i/dq_j. */
-static int add_form(Work *w) {
+static int add_form(FirstOrderBuilder *w) {
   for (uint32_t i = 0; i < w->n; i++) {
     ExprPartials d = expr_gradient_sparse(w->g, w->to->theta[i], SYM_STATE, w->m->states.n);
     for (uint32_t k = 0; k < d.n; k++) {
@@ -106,7 +106,7 @@ static int add_form(Work *w) {
 }
 
 /* Q_i = sum of f d(point)/dq_i - dR/dq_i'. */
-static Expr *forces(const Work *w) {
+static Expr *forces(const FirstOrderBuilder *w) {
   const Model *m = w->m;
   Expr *Q = ARENA_ARRAY(w->arena, Expr, w->n);
   for (uint32_t i = 0; i < w->n; i++) Q[i] = expr_int(w->g, 0);
@@ -127,7 +127,7 @@ static Expr *forces(const Work *w) {
 }
 
 /* Adds dQ/dq' to the form, and subtracts Q at q' = 0 from the right-hand side. */
-static int add_forces(Work *w) {
+static int add_forces(FirstOrderBuilder *w) {
   Expr *Q = forces(w);
   w->e->Q = Q;
   for (uint32_t i = 0; i < w->n; i++) {
@@ -156,7 +156,7 @@ static int by_place(const void *a, const void *b) {
 }
 
 /* Sums the parts of each entry of the form; nonzero entries, in short forms. */
-static void collect(Work *w) {
+static void collect(FirstOrderBuilder *w) {
   unsigned kinds = 0;
   if (w->parts.n) qsort(w->parts.at, w->parts.n, sizeof *w->parts.at, by_place);
   for (uint32_t k = 0; k < w->parts.n;) {
@@ -178,7 +178,7 @@ static uint32_t root(uint32_t *up, uint32_t i) {
 }
 
 /* Numbers the connected components of the form by their first coordinates (union-find). Returns their number. */
-static uint32_t find_blocks(Work *w) {
+static uint32_t find_blocks(FirstOrderBuilder *w) {
   uint32_t *up = ARENA_ARRAY(w->arena, uint32_t, w->n), *block = ARENA_ARRAY(w->arena, uint32_t, w->n), count = 0;
   for (uint32_t i = 0; i < w->n; i++) up[i] = i;
   for (uint32_t k = 0; k < w->to->form.n; k++) {
@@ -199,7 +199,7 @@ typedef struct {
 
 typedef VEC(Block) Blocks;
 
-static Blocks split(Work *w) {
+static Blocks split(FirstOrderBuilder *w) {
   Blocks blocks = {0};
   uint32_t count = find_blocks(w), *inside = ARENA_ARRAY(w->arena, uint32_t, w->n);
   for (uint32_t i = 0; i < count; i++) vec_push(w->arena, &blocks, ((Block){0}));
@@ -224,7 +224,7 @@ static Blocks split(Work *w) {
   return blocks;
 }
 
-static const char *names_of(const Work *w, const Block *b, const uint32_t *which, uint32_t n) {
+static const char *names_of(const FirstOrderBuilder *w, const Block *b, const uint32_t *which, uint32_t n) {
   enum { FEW = 12 };
   StrBuf names = strbuf(w->arena);
   for (uint32_t i = 0; i < n && i < FEW; i++) sb_printf(&names, "%s`%s`", i ? ", " : "", state_of(w, b->at[which ? which[i] : i])->name);
@@ -233,13 +233,13 @@ static const char *names_of(const Work *w, const Block *b, const uint32_t *which
 }
 
 /* A determinant that is not identically zero vanishes at a random state with probability zero. 1: regular, or defined at no state tried. */
-static int is_regular(const Work *w, const Block *b) {
+static int is_regular(const FirstOrderBuilder *w, const Block *b) {
   enum { TRIES = 8 };
   long double *symbols = ARENA_ARRAY(w->arena, long double, expr_symbol_count(w->g) + 1);
   long double *a = ARENA_ARRAY(w->arena, long double, (size_t)b->n * b->n);
   int judged = 0;
   for (uint32_t seed = 1; seed <= TRIES; seed++) {
-    prove_state(w->g, seed, symbols);
+    sample_state(w->g, seed, symbols);
     expr_eval(w->g, b->A, b->n * b->n, symbols, a);
     int finite = 1;
     for (uint32_t k = 0; k < b->n * b->n; k++) finite &= isfinite(a[k]) != 0;
@@ -250,7 +250,7 @@ static int is_regular(const Work *w, const Block *b) {
   return !judged;
 }
 
-static void report_singular(const Work *w, const Block *b) {
+static void report_singular(const FirstOrderBuilder *w, const Block *b) {
   Diags *d = w->m->diags;
   Span span = w->m->lagrangian_span;
   if (w->to->closed && w->n % 2) {
@@ -268,7 +268,7 @@ static void report_singular(const Work *w, const Block *b) {
 /* --- rates --- */
 
 /* Replaces A by the antisymmetric [0 A; -A^T 0], with the solution (y, x): A x = b, A^T y = 0. */
-static void double_block(const Work *w, Block *b) {
+static void double_block(const FirstOrderBuilder *w, Block *b) {
   uint32_t n = b->n, m = 2 * n;
   Expr *A = ARENA_ARRAY(w->arena, Expr, (size_t)m * m), *rhs = ARENA_ARRAY(w->arena, Expr, m);
   for (size_t k = 0; k < (size_t)m * m; k++) A[k] = expr_int(w->g, 0);
@@ -287,13 +287,13 @@ static void double_block(const Work *w, Block *b) {
 enum { BLOCK_MOST = 200 };
 
 /* Writes the rates of the block's coordinates into rate[]. 0, reported: the block couples too many coordinates. */
-static int solve(Work *w, Block *b, Expr *rate) {
+static int solve(FirstOrderBuilder *w, Block *b, Expr *rate) {
   Expr *x = ARENA_ARRAY(w->arena, Expr, 2 * (size_t)b->n), divisor = 0;
   uint32_t *left = ARENA_ARRAY(w->arena, uint32_t, 2 * (size_t)b->n), nleft = 0, m = w->to->closed ? b->n : 2 * b->n;
   Name name = intern(w->m->ast->names, "Pf");
   if (!w->to->closed) double_block(w, b);
   int many = b->n > BLOCK_MOST;
-  if (many || !skew_solve(w->g, m, b->A, b->b, name, x, &divisor, left, &nleft)) {
+  if (many || !antisymmetric_solve(w->g, m, b->A, b->b, name, x, &divisor, left, &nleft)) {
     int all = many || !w->to->closed;
     diag_error(w->m->diags, w->m->lagrangian_span, "not yet: L is linear in the velocities, and its two-form couples too many coordinates: %s",
                names_of(w, b, all ? NULL : left, all ? b->n : nleft));
@@ -306,7 +306,7 @@ static int solve(Work *w, Block *b, Expr *rate) {
 }
 
 /* Flows := the rates in the form with the fewest operations; substituted for rates in other flows, in events and their actions. */
-static void put_flows(Work *w, const Model *m, const Expr *rate) {
+static void put_flows(FirstOrderBuilder *w, const Model *m, const Expr *rate) {
   uint32_t nsymbols = expr_symbol_count(w->g) + 1;
   const Expr *best = lagrange_short_forms(w->e, rate, w->n);
   Expr *with = ARENA_ARRAY(w->arena, Expr, nsymbols), *flow = ARENA_ARRAY(w->arena, Expr, m->states.n + 1);
@@ -332,7 +332,7 @@ static void put_flows(Work *w, const Model *m, const Expr *rate) {
 }
 
 /* Energy E = theta q' - L = H, and its scale |theta q'| + |L|. */
-static void put_energy(Work *w) {
+static void put_energy(FirstOrderBuilder *w) {
   enum { SHORTEN_MAX = 64 };
   ExprGraph *g = w->g;
   Expr *terms = ARENA_ARRAY(w->arena, Expr, w->n + 1);
@@ -343,7 +343,7 @@ static void put_energy(Work *w) {
 }
 
 int first_order_derive(Eqns *e, const Model *m) {
-  Work w = {.e = e, .m = m, .g = m->g, .arena = m->arena, .to = &e->first};
+  FirstOrderBuilder w = {.e = e, .m = m, .g = m->g, .arena = m->arena, .to = &e->first};
   w.to->closed = 1;
   find_coordinates(&w);
   if (!differentiate(&w) || !add_form(&w) || !add_forces(&w)) return 0;

@@ -80,12 +80,12 @@ static uint32_t allowed(const Forms *f, const long double *form, long double *ba
   uint32_t n = 0, first;
   for (uint32_t i = 0; i < f->m; i++) {
     for (uint32_t j = 0; j < f->w; j++) basis[n * f->w + j] = form[i * f->w + j];
-    n += dense_reduce(f->w, basis + n * f->w, basis, n) > independent;
+    n += dense_gram_schmidt(f->w, basis + n * f->w, basis, n) > independent;
   }
   first = n;
   for (uint32_t i = 0; i < f->w && n < f->w; i++) {
     for (uint32_t j = 0; j < f->w; j++) basis[n * f->w + j] = j == i;
-    n += dense_reduce(f->w, basis + n * f->w, basis, n) > independent;
+    n += dense_gram_schmidt(f->w, basis + n * f->w, basis, n) > independent;
   }
   return first;
 }
@@ -118,8 +118,8 @@ static int looks_integrable(const Forms *f, StateSolver *solver) {
   long double *basis = ARENA_ARRAY(arena, long double, (size_t)(f->w + 1) * f->w);
   int seen = 0;
   for (uint32_t seed = 1; seed <= TRIES && seen < ENOUGH; seed++) {
-    prove_state(f->g, seed, symbols);
-    if (!states_obey(solver, symbols)) continue;
+    sample_state(f->g, seed, symbols);
+    if (!states_project(solver, symbols)) continue;
     values(f, f->form, (size_t)f->m * f->w, symbols, form);
     uint32_t first = allowed(f, form, basis);
     for (uint32_t i = f->e->constraints.nholonomic; i < f->m; i++)

@@ -14,15 +14,15 @@ typedef struct {
   uint32_t n;
   SymId *q, *v, *p;
   Expr *inverse, *a, *rate, *force;
-} Work;
+} LegendreTransform;
 
-static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
-static Expr mul3(const Work *w, Expr a, Expr b, Expr c) { return expr_mul(w->g, a, expr_mul(w->g, b, c)); }
+static Expr node(const LegendreTransform *w, SymId s) { return expr_symbol(w->g, s)->node; }
+static Expr mul3(const LegendreTransform *w, Expr a, Expr b, Expr c) { return expr_mul(w->g, a, expr_mul(w->g, b, c)); }
 
 /* --- the inverse of M --- */
 
 /* block[i] := the least coordinate in the connected component of i in M. */
-static void find_blocks(const Work *w, uint32_t *block) {
+static void find_blocks(const LegendreTransform *w, uint32_t *block) {
   for (uint32_t i = 0; i < w->n; i++) block[i] = i;
   for (int changed = 1; changed;) {
     changed = 0;
@@ -34,20 +34,20 @@ static void find_blocks(const Work *w, uint32_t *block) {
   }
 }
 
-static Expr minor2(const Work *w, const Expr *m, uint32_t n, uint32_t r1, uint32_t r2, uint32_t c1, uint32_t c2) {
+static Expr minor2(const LegendreTransform *w, const Expr *m, uint32_t n, uint32_t r1, uint32_t r2, uint32_t c1, uint32_t c2) {
   Expr a = expr_mul(w->g, m[r1 * n + c1], m[r2 * n + c2]), b = expr_mul(w->g, m[r1 * n + c2], m[r2 * n + c1]);
   return simplify(w->g, expr_sub(w->g, a, b));
 }
 
 /* Cofactor of element (i, j) of m[n*n], n up to 3. */
-static Expr cofactor(const Work *w, const Expr *m, uint32_t n, uint32_t i, uint32_t j) {
+static Expr cofactor(const LegendreTransform *w, const Expr *m, uint32_t n, uint32_t i, uint32_t j) {
   if (n == 1) return expr_int(w->g, 1);
   if (n == 2) return (i + j) % 2 ? expr_neg(w->g, m[(1 - i) * 2 + (1 - j)]) : m[(1 - i) * 2 + (1 - j)];
   return minor2(w, m, 3, (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3); /* cyclic: the sign is in it */
 }
 
 /* Inverse of the block of the n coordinates in at. 0: the block is singular, or an entry takes more than OPS_MOST operations. */
-static int invert_block(Work *w, const uint32_t *at, uint32_t n) {
+static int invert_block(LegendreTransform *w, const uint32_t *at, uint32_t n) {
   ExprGraph *g = w->g;
   Expr m[BLOCK_MOST * BLOCK_MOST], det = expr_int(g, 0);
   for (uint32_t i = 0; i < n; i++)
@@ -64,7 +64,7 @@ static int invert_block(Work *w, const uint32_t *at, uint32_t n) {
   return 1;
 }
 
-static const char *invert(Work *w) {
+static const char *invert(LegendreTransform *w) {
   uint32_t *block = ARENA_ARRAY(w->arena, uint32_t, w->n + 1);
   if (w->e->singular_mass) return "the mass matrix is singular";
   find_blocks(w, block);
@@ -85,7 +85,7 @@ static const char *invert(Work *w) {
 /* --- H --- */
 
 /* x at q' = 0; definitions with velocities are expanded. */
-static Expr at_rest(const Work *w, Expr x) {
+static Expr at_rest(const LegendreTransform *w, Expr x) {
   Expr *zero = ARENA_ARRAY(w->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
   if (!(expr_kinds(w->g, x) & 1u << SYM_VEL)) return x;
@@ -93,7 +93,7 @@ static Expr at_rest(const Work *w, Expr x) {
 }
 
 /* V = -L at rest, term by term; terms without velocities stay as written. */
-static Expr potential(const Work *w) {
+static Expr potential(const LegendreTransform *w) {
   ExprGraph *g = w->g;
   Expr L = w->e->m->lagrangian, V = expr_int(g, 0);
   for (uint32_t i = 0; i < expr_pairs(g, L, EX_SUM); i++) {
@@ -104,9 +104,9 @@ static Expr potential(const Work *w) {
   return V;
 }
 
-static Expr short_form(const Work *w, Expr x) { return w->n <= SHORT_MOST ? simplify(w->g, x) : x; }
+static Expr short_form(const LegendreTransform *w, Expr x) { return w->n <= SHORT_MOST ? simplify(w->g, x) : x; }
 
-static Hamilton result(Work *w) {
+static Hamilton hamilton_equations(LegendreTransform *w) {
   ExprGraph *g = w->g;
   const Constraints *k = &w->e->constraints;
   Expr *u = ARENA_ARRAY(w->arena, Expr, w->n + 1), kinetic = expr_int(g, 0), V = potential(w);
@@ -146,7 +146,7 @@ static int is_quadratic(const Eqns *e) {
 
 Hamilton hamilton_derive(Eqns *e) {
   Arena *a = e->m->arena;
-  Work w = {.e = e, .g = e->g, .arena = a, .n = e->n};
+  LegendreTransform w = {.e = e, .g = e->g, .arena = a, .n = e->n};
   size_t n = e->n, nn = n * n;
   if (!e->mass_known) eqns_derive_mass(e);
   w.q = ARENA_ARRAY(a, SymId, n + 1), w.v = ARENA_ARRAY(a, SymId, n + 1), w.p = ARENA_ARRAY(a, SymId, n + 1);
@@ -161,5 +161,5 @@ Hamilton hamilton_derive(Eqns *e) {
   Hamilton open = {.p = w.p, .why_not = is_quadratic(e) ? NULL : "L is not quadratic in velocities"};
   if (e->m->across) open.why_not = "the components of a rotation are not independent";
   if (!open.why_not) open.why_not = invert(&w);
-  return open.why_not ? open : result(&w);
+  return open.why_not ? open : hamilton_equations(&w);
 }

@@ -1,16 +1,16 @@
 /* Momenta, forces and mass matrix by differentiation on the graph; the cheapest form of M q'' = f, dense or with definitions as
- * unknowns (mech/lift.h); the error message for a mass matrix that is singular everywhere. */
+ * unknowns (mech/augmented_system.h); the error message for a mass matrix that is singular everywhere. */
 #include "mech/lagrange.h"
 
 #include <math.h>
 
 #include "base/sparse_solve.h"
-#include "mech/definite.h"
+#include "mech/mass_definiteness.h"
 #include "mech/augmented_system.h"
-#include "mech/order.h"
-#include "mech/squares.h"
+#include "mech/elimination_order.h"
+#include "mech/kinetic_squares.h"
 #include "mech/states.h"
-#include "mech/sums.h"
+#include "mech/velocity_sums.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
 #include "sym/simplify.h"
@@ -69,7 +69,7 @@ static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
 }
 
 /* L plus the regularising terms of Model.across, for rotations and constraints. */
-static Expr lagrange_regular(const Eqns *e) { return e->m->across ? expr_add(e->g, e->summed, e->m->across) : e->summed; }
+static Expr regularised_lagrangian(const Eqns *e) { return e->m->across ? expr_add(e->g, e->differentiated_lagrangian, e->m->across) : e->differentiated_lagrangian; }
 
 /* Fills p, dLdq and Q; returns the forces f as differentiated. */
 static Expr *differentiate(Eqns *e) {
@@ -78,7 +78,7 @@ static Expr *differentiate(Eqns *e) {
   SymId *q = coordinate_symbols(e->m, 0), *v = coordinate_symbols(e->m, 1);
   Expr *p = ARENA_ARRAY(m->arena, Expr, e->n), *dLdq = ARENA_ARRAY(m->arena, Expr, e->n);
   Expr *convective = ARENA_ARRAY(m->arena, Expr, e->n), *f = ARENA_ARRAY(m->arena, Expr, e->n);
-  Expr l = lagrange_regular(e);
+  Expr l = regularised_lagrangian(e);
   expr_gradient(g, l, v, e->n, p);
   expr_gradient(g, l, q, e->n, dLdq);
   e->p = p;
@@ -133,7 +133,7 @@ static uint64_t system_ops(Eqns *e, LinearSystem *s) {
   for (uint32_t k = 0; k < s->H.n; k++) vec_push(e->m->arena, &roots, s->H.at[k].e);
   for (uint32_t k = 0; k < s->C.n; k++) vec_push(e->m->arena, &roots, s->C.at[k].e);
   for (uint32_t i = 0; i < s->n; i++) vec_push(e->m->arena, &roots, s->f[i]);
-  order_best(e->m->arena, e->g, s);
+  elimination_order_best(e->m->arena, e->g, s);
   return expr_ops(e->g, roots.at, roots.n) + s->ops;
 }
 
@@ -189,18 +189,18 @@ static LinearSystem best_form(Eqns *e, const LinearSystem *s, int how, uint64_t 
 }
 
 /* Whether solving with the dense mass matrix takes more than MANY_TIMES the operations of the lifted system; M is then not derived. */
-static int mass_is_hopeless(Eqns *e, LinearSystem *lifted) {
+static int dense_is_too_costly(Eqns *e, LinearSystem *lifted) {
   enum { FEW_COORDINATES = 12, MANY_TIMES = 3 };
   if (e->n <= FEW_COORDINATES || !lifted->ndefs || e->m->expects.n) return 0;
-  order_best(e->m->arena, e->g, lifted);
+  elimination_order_best(e->m->arena, e->g, lifted);
   LinearSystem dense = *lifted;
   uint64_t many = MANY_TIMES * lifted->ops;
-  order_elimination(e->m->arena, e->g, &dense, ORDER_DEFINITIONS_FIRST, many);
+  elimination_order(e->m->arena, e->g, &dense, ORDER_DEFINITIONS_FIRST, many);
   return dense.ops > many;
 }
 
 static int is_definite(Eqns *e, const LinearSystem *s) {
-  Expr l = lagrange_regular(e);
+  Expr l = regularised_lagrangian(e);
   e->definite_mass = mass_is_definite(e, s, l);
   e->definite_by_values = e->definite_mass || mass_is_definite_by_values(e, s, l);
   return e->definite_by_values;
@@ -209,12 +209,12 @@ static int is_definite(Eqns *e, const LinearSystem *s) {
 /* The lifted system is used only where its pivots are known to be positive. */
 void lagrange_momenta_and_forces(Eqns *e) {
   uint64_t dense_ops, lifted_ops;
-  e->summed = sums_named(e->g, e->m->lagrangian, e->n);
+  e->differentiated_lagrangian = define_velocity_sums(e->g, e->m->lagrangian, e->n);
   const Expr *f = differentiate(e);
-  LinearSystem lifted = lift_system(e);
+  LinearSystem lifted = augmented_system(e);
   lifted.f = f;
   int constrained = e->m->constraints.n > 0; /* then M itself is needed */
-  if (!constrained && mass_is_hopeless(e, &lifted) && is_definite(e, &lifted)) {
+  if (!constrained && dense_is_too_costly(e, &lifted) && is_definite(e, &lifted)) {
     e->system = best_form(e, &lifted, 0, &lifted_ops);
     e->f = e->system.f;
     return;
@@ -231,10 +231,10 @@ void lagrange_momenta_and_forces(Eqns *e) {
 
 void lagrange_squares(Eqns *e) {
   if (!e->n || !e->mass_known || !e->definite_by_values) return;
-  e->squares = squares_of(e);
+  e->squares = kinetic_squares(e);
   if (!e->squares.n) return;
   e->system = (LinearSystem){.n = e->n, .H = e->mass, .f = e->f};
-  order_best(e->m->arena, e->g, &e->system);
+  elimination_order_best(e->m->arena, e->g, &e->system);
 }
 
 /* --- a mass matrix that is singular everywhere --- */
@@ -258,7 +258,7 @@ static void random_state(const Eqns *e, uint64_t *state, long double *values) {
 }
 
 /* Names of the coordinates whose rows of the mass matrix are zero, if L contains the velocity of one of them; else NULL. */
-static const char *without_inertia(const Eqns *e) {
+static const char *coordinates_without_inertia(const Eqns *e) {
   const Model *m = e->m;
   StrBuf names = strbuf(m->arena);
   uint8_t *heavy = ARENA_ARRAY(m->arena, uint8_t, e->n);
@@ -282,7 +282,7 @@ static void report_singular(const Eqns *e, const long double *null) {
       sb_printf(&names, "%s`%s'`", involved++ ? ", " : "", m->coords.at[i].name);
       last = i;
     }
-  const char *light = without_inertia(e);
+  const char *light = coordinates_without_inertia(e);
   if (e->mass.n == 0 && !(expr_kinds(e->g, m->lagrangian) & 1u << SYM_VEL)) {
     diag_error(d, m->lagrangian_span, "the mass matrix is zero: L does not contain velocities");
     diag_help(d, "nothing moves without kinetic energy, or terms like x*y' that make a coordinate the momentum of another");

@@ -13,7 +13,7 @@ struct StateSolver {
   long double *out, *b; /* the tape's results; right-hand side and solution */
   SparseElements a;     /* matrix of the linear system */
   SparseVector row;     /* a scaled row of A */
-  int *scale;               /* [n + m] exponents of states_scale for the system's unknowns, at the state evaluated last */
+  int *scale;               /* [n + m] exponents of states_column_scale for the system's unknowns, at the state evaluated last */
   int scaled;               /* scale is known for that state */
   uint32_t nflows;
 };
@@ -89,7 +89,7 @@ static void fill(StateSolver *s, int with_mass, uint32_t rows) {
 }
 
 /* s->b[n] := the least d with A d = -g for the first rows. 0: not finite. */
-static int change(StateSolver *s, const long double *g, uint32_t rows) {
+static int least_change(StateSolver *s, const long double *g, uint32_t rows) {
   uint32_t n = s->e->n, m = s->e->constraints.n, w = n + m;
   fill(s, 0, rows); /* positions: holonomic rows only, since constraints on velocities do not restrict positions */
   for (uint32_t i = 0; i < w; i++) s->b[i] = i < n || i >= n + rows ? 0 : -g[i - n];
@@ -128,7 +128,7 @@ static int are_small(const StateSolver *s, const long double *residual, uint32_t
 }
 
 /* Newton's method for positions or velocities, until the corrections are rounding. 0: no convergence. */
-static int obey(StateSolver *s, long double *symbols, int velocities) {
+static int project(StateSolver *s, long double *symbols, int velocities) {
   enum { MOST = 60 };
   const long double rounding = 64 * LDBL_EPSILON;
   const Constraints *k = &s->e->constraints;
@@ -136,7 +136,7 @@ static int obey(StateSolver *s, long double *symbols, int velocities) {
   long double moved = INFINITY, size = 0, least = fminl(motion_size(s, symbols, velocities), 1); /* scale for a motion that ends at 0 */
   for (int i = 0; i < MOST && moved > rounding * size; i++) {
     StateValues v = states_at(s, symbols);
-    if (!change(s, velocities ? v.r : v.c, rows)) return 0;
+    if (!least_change(s, velocities ? v.r : v.c, rows)) return 0;
     for (uint32_t j = 0; j < s->e->n; j++) symbols[symbol_at(s->e->m, j, velocities)] += s->b[j];
     moved = largest(s->b, s->e->n);
     size = fmaxl(motion_size(s, symbols, velocities), least);
@@ -145,16 +145,16 @@ static int obey(StateSolver *s, long double *symbols, int velocities) {
   return moved <= 1e-15L * size && are_small(s, velocities ? v.r : v.c, rows, size);
 }
 
-int states_obey(StateSolver *s, long double *symbols) { return obey(s, symbols, 0) && obey(s, symbols, 1); }
+int states_project(StateSolver *s, long double *symbols) { return project(s, symbols, 0) && project(s, symbols, 1); }
 
 const SparseElements *states_system(StateSolver *s) {
   fill(s, 1, s->e->constraints.n);
   return &s->a;
 }
 
-const int *states_scale(StateSolver *s) {
+const int *states_column_scale(StateSolver *s) {
   if (!s->scaled) {
-    sparse_scales(s->e->m->arena, s->e->n + s->e->constraints.n, states_system(s), NULL, s->scale);
+    sparse_equilibrate(s->e->m->arena, s->e->n + s->e->constraints.n, states_system(s), NULL, s->scale);
     s->scaled = 1;
   }
   return s->scale;
@@ -162,7 +162,7 @@ const int *states_scale(StateSolver *s) {
 
 const SparseVector *states_row(StateSolver *s, uint32_t k, uint32_t *at) {
   const Entries *A = &s->e->constraints.A;
-  const int *scale = states_scale(s);
+  const int *scale = states_column_scale(s);
   const long double *values = values_of(s).A;
   s->row.n = 0;
   for (; *at < A->n && A->at[*at].row == k; ++*at)
@@ -171,7 +171,7 @@ const SparseVector *states_row(StateSolver *s, uint32_t k, uint32_t *at) {
 }
 
 uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts) {
-  const long double independent = 6e-6L; /* a double's eps^(1/3), as in runtime/core/consistent.c: singular places are found to eps^(1/2) */
+  const long double independent = 6e-6L; /* a double's eps^(1/3), as in runtime/constraints/consistent_start.c: singular places are found to eps^(1/2) */
   uint32_t at = 0;
   RowSpan span = row_span(s->e->m->arena, s->e->n);
   for (uint32_t k = 0; k < s->e->constraints.n; k++) {
@@ -191,7 +191,7 @@ int states_complete(StateSolver *s, long double *symbols) {
     SymId closed = m->contacts.at[i].closed;
     symbols[closed] = e->definitions && !expr_is_zero(e->g, e->definitions[closed]);
   }
-  if (k->n && !states_obey(s, symbols)) return 0;
+  if (k->n && !states_project(s, symbols)) return 0;
   const long double *demand = states_at(s, symbols).demand, *f = s->out + e->mass.n, *flow = f + n;
   for (uint32_t i = 0; i < n + k->n; i++) s->b[i] = i < n ? f[i] : demand[i - n];
   rank = sparse_solve(m->arena, n + k->n, states_system(s), s->b, k->n ? 1e-13L : 0, NULL);

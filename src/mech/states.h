@@ -23,7 +23,7 @@ StateValues states_at(StateSolver *s, const long double *symbols);
 int states_complete(StateSolver *s, long double *symbols);
 
 /* Projects positions, then velocities onto the constraints by Newton's method with least changes. 0: no convergence. */
-int states_obey(StateSolver *s, long double *symbols);
+int states_project(StateSolver *s, long double *symbols);
 
 /* [M -A^T; A 0] at the state evaluated last. Valid until the next call of a function of this solver. */
 const SparseElements *states_system(StateSolver *s);
@@ -32,9 +32,9 @@ const SparseElements *states_system(StateSolver *s);
 void states_put_mass(const Eqns *e, const long double *values, SparseElements *a);
 void states_put_constraints(const Eqns *e, const long double *values, uint32_t rows, SparseElements *a);
 
-/* Exponents of 2, one a coordinate, that scale the columns of A so that its rank does not depend on units: sparse_scales of [M -A^T; A 0]
+/* Exponents of 2, one a coordinate, that scale the columns of A so that its rank does not depend on units: sparse_equilibrate of [M -A^T; A 0]
  * at the state evaluated last. Valid until another state is evaluated. */
-const int *states_scale(StateSolver *s);
+const int *states_column_scale(StateSolver *s);
 
 /* Row k of A at the state evaluated last, columns scaled; valid until the next call. *at: index in A of the row's first entry; becomes
  * that of the next row. */

@@ -33,7 +33,7 @@ static int turns_at_rest(const Eqns *e, Expr x, Expr side) {
   Expr roots[] = {x, side};
   Real jump[2], above[2], below[2], *state = ARENA_ARRAY(e->m->arena, Real, expr_symbol_count(e->g) + 1);
   Real *symbols = ARENA_ARRAY(e->m->arena, Real, expr_symbol_count(e->g) + 1);
-  prove_state(e->g, 1, state);
+  sample_state(e->g, 1, state);
   for (int i = 0; i < 2; i++) {
     scale_rates(e, symbols, state, near[i]);
     expr_eval(e->g, roots, 2, symbols, above);

@@ -206,7 +206,7 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
   }
   if (st->name && !b->index.n) check_name_is_new(b, "expectation", st->name, effect, st->name_span);
   Expect x = {.name = st->name, .span = st->span, .lhs_ast = st->lhs, .rhs_ast = st->rhs, .effect = effect};
-  x.elsewhere = l.n || b->index.n;
+  x.is_repeated = l.n || b->index.n;
   x.domain = domain_and(b, l.domain, r.domain);
   for (uint32_t k = 0; k < (l.n ? l.n : 1); k++) {
     x.lhs = l.at[k];
@@ -235,13 +235,13 @@ void finish_observe(Builder *b, uint32_t index, Value v) {
   Name stem = o.name;
   for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
     o.value = v.at[k];
-    if (v.n) o.name = intern_printf(b, "%s.%c", stem, part_letter(v.n, k));
+    if (v.n) o.name = intern_printf(b, "%s.%c", stem, component_letter(v.n, k));
     if (k) vec_push(b->arena, &b->m->observes, o);
     else b->m->observes.at[index] = o;
   }
 }
 
-static void apply(Builder *b, const AstStmt *st, Name effect, void *data) {
+static void apply_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
   Energies *en = data;
   switch (st->kind) {
     case STMT_LAGRANGIAN: case STMT_KINETIC: case STMT_POTENTIAL: case STMT_DISSIPATION:
@@ -291,7 +291,7 @@ static void each_active(Builder *b, StatementFn *fn, void *data) {
 /* --- checks on the whole --- */
 
 /* Reports coordinates that occur neither in L nor in a constraint. */
-static void check_contained(Builder *b) {
+static void check_coords_in_lagrangian(Builder *b) {
   Model *m = b->m;
   uint8_t *found = ARENA_ARRAY(b->arena, uint8_t, m->coords.n + 1);
   Expr *roots = ARENA_ARRAY(b->arena, Expr, m->constraints.n + 1);
@@ -321,7 +321,7 @@ static void check_whole(Builder *b) {
     diag_error(b->diags, m->coords.at[0].span, "there are coordinates but no Lagrangian");
     diag_help(b->diags, "give `lagrangian = ...`, or `kinetic = ...` and `potential = ...`");
   }
-  if (m->coords.n && m->lagrangian) check_contained(b);
+  if (m->coords.n && m->lagrangian) check_coords_in_lagrangian(b);
   for (uint32_t i = 0; i < m->states.n; i++)
     if (!m->states.at[i].flow && !m->states.at[i].coordinate) {
       diag_error(b->diags, m->states.at[i].span, "the state `%s` has no flow", m->states.at[i].name);
@@ -433,7 +433,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   each_active(b, declare_statement, NULL);
   check_defines(b);
   Energies en = {0};
-  each_active(b, apply, &en);
+  each_active(b, apply_statement, &en);
   finish_energies(b, &en);
   add_rotation_inertia(b);
   apply_unused_lets(b);
@@ -452,7 +452,7 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   }
   add_section(b, &choice->section);
   scene_build(b, choice);
-  settle_units(b);
+  fill_inferred_units(b);
   if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
   return ast->diags->errors ? NULL : b->m;

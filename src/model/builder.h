@@ -96,7 +96,7 @@ typedef struct {
   uint32_t coord; /* first coordinate of the rotation, R.w */
   Expr at[3];
   Span span;
-} Spin;
+} SpinStart;
 
 typedef struct Builder Builder;
 struct Builder {
@@ -109,12 +109,12 @@ struct Builder {
   Scope outputs; /* the scene's outputs by label; index into Scene.outputs */
   Scope constraints; /* constraints by name; index of the first component in Model.constraints */
   VEC(uint32_t) rotations; /* index of each rotation's first coordinate, w */
-  VEC(Spin) spins; /* start values of angular velocities */
+  VEC(SpinStart) spins; /* start values of angular velocities */
   Scope *named; /* names of events, constraints and expectations; NULL: none yet */
   IndexVars index; /* indices of the `for` around the current statement */
   VEC(struct Eval *) idle; /* free list of evaluations */
   VEC(Expr) scratch;
-  uint32_t *start_of; /* [SymId] index into Scene.starts + 1; 0: no start value */
+  uint32_t *start_index; /* [SymId] index into Scene.starts + 1; 0: no start value */
   Expr *at_start, *from_start; /* [nbefore], [nstart]: substitution q -> q(0), and back (resolve_exact.c) */
   uint32_t nbefore, nstart;
   Expr *seeds; /* [nseeds] time derivative of each symbol; 0: constant */
@@ -137,8 +137,8 @@ struct Builder {
   int unitless;    /* no name of the model has a unit: dimensions are not checked */
   Name group;      /* group parameter of the symmetry being read, or NULL */
   SymId group_symbol;
-  AstId stand_in;  /* node replaced by `stands_for` (model_reresolve); 0: none */
-  Expr stands_for;
+  AstId replaced_node;  /* node replaced by `replacement_expr` (model_resolve_edited); 0: none */
+  Expr replacement_expr;
   int domains;     /* compute Value.domain, for claims */
 };
 
@@ -193,7 +193,7 @@ void report_many_indices(Builder *b, Span span);
 Expr domain_and(const Builder *b, Expr p, Expr q);
 
 /* Letter of component k of a value of n components: xyz, or wxyz for a rotation. */
-static inline char part_letter(uint32_t n, uint32_t k) { return "wxyz"[k + (n != ROTATION)]; }
+static inline char component_letter(uint32_t n, uint32_t k) { return "wxyz"[k + (n != ROTATION)]; }
 
 /* Shape for messages: "a number", "a vector of 3 components", "a rotation". */
 const char *shape_text(const Builder *b, uint32_t n);
@@ -213,7 +213,7 @@ typedef struct {
 Target read_target(const Builder *b, AstId id);
 
 /* Index of Target.part among the n components of a value; -1: no such component. */
-static inline int part_place(uint32_t n, int part) {
+static inline int component_index(uint32_t n, int part) {
   int place = n == ROTATION ? (part + 1) % ROTATION : part;
   return part < 0 || part > 3 || place >= (int)n ? -1 : place;
 }
@@ -245,14 +245,14 @@ typedef struct {
   void (*give)(Builder *b, uint32_t scalar, Expr value, Span span, void *data);
   void *data;
   Name effect;   /* the effect around the statement, or NULL */
-} Giver;
-void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstId rhs, const Giver *giver);
+} Assigner;
+void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstId rhs, const Assigner *assigner);
 
 /* resolve_exact.c: sets the closed form of a coordinate, velocity or state; finds the closed form of symbol e, or NULL;
  * the deviation of the motion from it (for an angle within -pi..pi). */
-void give_exact(Builder *b, SymId target, const Unit *unit, int periodic, Expr value, Span span);
-const Exact *find_exact(const Builder *b, Expr e);
-Expr exact_error(Builder *b, const Exact *x);
+void set_closed_form(Builder *b, SymId target, const Unit *unit, int periodic, Expr value, Span span);
+const Exact *find_closed_form(const Builder *b, Expr e);
+Expr closed_form_error(Builder *b, const Exact *x);
 
 /* effect.c: reports an unknown scene or effect, with the nearest name. */
 void report_unnamed(const Ast *ast, AstStmtKind kind, Span span, const char *name);
@@ -262,10 +262,10 @@ void report_unnamed(const Ast *ast, AstStmtKind kind, Span span, const char *nam
 int uses_effect(const Builder *b, Name effect);
 int is_use_none(const AstStmt *st);
 void collect_uses(Builder *b, const AstStmt *scene);
-void use_with_needs(Builder *b, Name effect);
+void use_with_required(Builder *b, Name effect);
 void check_effect_needs(Builder *b, const AstStmt *effect);
 /* 1 if an expression contains a name of an effect that is off. */
-int mentions_off(const Builder *b, AstId value);
+int names_off_effect(const Builder *b, AstId value);
 
 /* output.c: appends an output to the scene, even if its label exists; its index in Scene.outputs. */
 int push_output(Builder *b, const Output *o);
@@ -313,7 +313,7 @@ SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSi
 
 /* Value of a constant expression (span, step, tolerance) in `unit`; NAN after an error. `what` names it in messages. */
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what);
-/* resolve_number, with *digits as in base/digits.h, or NULL. */
+/* resolve_number, with *digits as in base/decimal_literal.h, or NULL. */
 double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits);
 /* Decimal digits of a number times pi^-1, pi^0 or pi^1; NULL for other expressions. */
 const char *expression_digits(Builder *b, Expr e);
@@ -392,12 +392,12 @@ const char *in_dim(const Builder *b, Dim d);
 void explain_dims(Builder *b, Dim x, Dim y);
 
 /* Replaces missing units in the model by the inferred ones. */
-void settle_units(Builder *b);
+void fill_inferred_units(Builder *b);
 
 /* rotation.c */
 
 /* Adds the constraint q.q = 1 for the quaternion whose first coordinate is `coord`. */
-void hold_rotation(Builder *b, Name name, uint32_t coord, Span span);
+void constrain_rotation(Builder *b, Name name, uint32_t coord, Span span);
 
 /* Sets Model.across: a kinetic term in the rate of |q|, which no motion has, so that the mass matrix is regular. */
 void add_rotation_inertia(Builder *b);
@@ -425,7 +425,7 @@ void add_symmetry(Builder *b, const AstStmt *st, Name effect);
  * event gives twice. */
 void check_names_once(Builder *b, const FileIndex *file);
 void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Span span);
-void check_said_once(Builder *b, const AstStmt *block);
+void check_set_once(Builder *b, const AstStmt *block);
 
 /* event.c: adds an event, or a section; resolves a value assigned to a coordinate, a state, or the rate of one, whose name is
  * declared in `unit`; reports different shapes. */
@@ -437,7 +437,7 @@ void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right);
 /* start_values.c: reads `start q = ...`, `exact q = ...`; completes the starts of rotations after all statements of the scene
  * (default: the identity); rad/s. */
 void set_motion(Builder *b, const AstStmt *st);
-void settle_rotations(Builder *b);
+void complete_rotation_starts(Builder *b);
 Unit spin_unit(const Builder *b);
 
 /* name_hints.c: reports an unknown `effect.name`. */

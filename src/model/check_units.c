@@ -4,7 +4,7 @@
 #include "model/resolve_impl.h"
 
 int is_zero(const Builder *b, const Value *v) {
-  for (uint32_t k = 0; k < parts_of(v); k++)
+  for (uint32_t k = 0; k < component_count(v); k++)
     if (!expr_is_zero(b->g, v->at[k])) return 0;
   return 1;
 }
@@ -74,7 +74,7 @@ int need_pure(Eval *ev, AstId arg, const char *what) {
   diag_error(b->diags, span, "%s takes a pure number or an angle; `%s` is in [%s]", what, ast_short(b, arg), shown_unit(b, v));
   if (strcmp(what, "an exponent") == 0 && ast_expr(b->ast, arg)->kind == AST_UNIT)
     diag_help(b->diags, "a unit belongs to what stands directly before it, here to the exponent: write `5 [N/s^2]*t^2`, or `(5*t^2) [...]`");
-  else if (!dim_is_open(b->dims, dim_found(b->dims, v->dim)))
+  else if (!dim_is_open(b->dims, dim_resolved(b->dims, v->dim)))
     diag_help(b->diags, "where a number in it has a unit, write it: `[%s]`", dim_text(b->dims, dim_pow(b->dims, v->dim, num_int(-1))));
   explain_dims(b, v->dim, DIM_ANY);
   return 0;
@@ -127,23 +127,23 @@ Unit unit_of_difference(const Unit *u) {
   return d;
 }
 
-static void settle(Builder *b, Unit *u) {
+static void fill_unit(Builder *b, Unit *u) {
   if (!u->text[0]) *u = unit_of_dim(b->dims, u->dim);
 }
 
-void settle_units(Builder *b) {
+void fill_inferred_units(Builder *b) {
   Model *m = b->m;
-  for (uint32_t i = 0; i < m->coords.n; i++) settle(b, &m->coords.at[i].unit);
-  for (uint32_t i = 0; i < m->states.n; i++) settle(b, &m->states.at[i].unit);
-  for (uint32_t i = 0; i < m->params.n; i++) settle(b, &m->params.at[i].unit);
-  for (uint32_t i = 0; i < m->inputs.n; i++) settle(b, &m->inputs.at[i].unit);
-  for (uint32_t i = 0; i < m->symmetries.n; i++) settle(b, &m->symmetries.at[i].unit);
+  for (uint32_t i = 0; i < m->coords.n; i++) fill_unit(b, &m->coords.at[i].unit);
+  for (uint32_t i = 0; i < m->states.n; i++) fill_unit(b, &m->states.at[i].unit);
+  for (uint32_t i = 0; i < m->params.n; i++) fill_unit(b, &m->params.at[i].unit);
+  for (uint32_t i = 0; i < m->inputs.n; i++) fill_unit(b, &m->inputs.at[i].unit);
+  for (uint32_t i = 0; i < m->symmetries.n; i++) fill_unit(b, &m->symmetries.at[i].unit);
   m->energy_unit = unit_of_dim(b->dims, b->unitless ? DIM_ANY : b->energy);
   m->energy_unit = unit_of_dim(b->dims, b->unitless ? DIM_ANY : b->energy);
-  for (uint32_t i = 0; i < m->observes.n; i++) settle(b, &m->observes.at[i].unit);
-  for (uint32_t i = 0; i < m->scene.outputs.n; i++) settle(b, &m->scene.outputs.at[i].unit);
+  for (uint32_t i = 0; i < m->observes.n; i++) fill_unit(b, &m->observes.at[i].unit);
+  for (uint32_t i = 0; i < m->scene.outputs.n; i++) fill_unit(b, &m->scene.outputs.at[i].unit);
   for (uint32_t i = 0; i < b->undeclared.n; i++) {
-    Dim d = dim_found(b->dims, b->undeclared.at[i].dim);
+    Dim d = dim_resolved(b->dims, b->undeclared.at[i].dim);
     if (dim_is_open(b->dims, d)) continue;
     vec_push(b->arena, &m->found, ((FoundUnit){b->undeclared.at[i].name, dim_text(b->dims, d)}));
   }

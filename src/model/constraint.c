@@ -62,7 +62,7 @@ void add_constraint(Builder *b, const AstStmt *st, Name effect) {
   b->m->domain = domain_and(b, b->m->domain, domain_and(b, left.domain, right.domain));
   Dim dim = is_zero(b, &left) ? right.dim : left.dim;
   scope_add(&b->constraints, (Entity){.index = b->m->constraints.n, .name = name, .effect = effect, .span = st->name_span, .parts = (uint8_t)left.n});
-  for (uint32_t k = 0; k < parts_of(&left); k++) {
+  for (uint32_t k = 0; k < component_count(&left); k++) {
     Expr c = expr_sub(b->g, left.at[k], right.at[k]);
     if (is_refused(b, c, "constraint", name, st->span)) return;
     add_scalar_constraint(b, left.n ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name, c, dim, st->span);
@@ -183,7 +183,7 @@ Value multiplier_value(Eval *ev, const AstExpr *x) {
   }
   if (e->index >= b->m->constraints.n) return FAILED; /* refused */
   Value v = {.n = e->parts};
-  for (uint32_t k = 0; k < parts_of(&v); k++) v.at[k] = expr_symbol(b->g, b->m->constraints.at[e->index + k].multiplier)->node;
+  for (uint32_t k = 0; k < component_count(&v); k++) v.at[k] = expr_symbol(b->g, b->m->constraints.at[e->index + k].multiplier)->node;
   v.dim = b->dim_of.at[b->m->constraints.at[e->index].multiplier];
   return v;
 }

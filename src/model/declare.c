@@ -103,7 +103,7 @@ static int declare_family(Builder *b, const AstStmt *st, Name effect, EntKind ki
 
 Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k) {
   Name name = member_name(b, stem, at, e->ndims);
-  return e->parts ? intern_printf(b, "%s.%c", name, part_letter(e->parts, k)) : name;
+  return e->parts ? intern_printf(b, "%s.%c", name, component_letter(e->parts, k)) : name;
 }
 
 Unit declared_unit(Builder *b, const AstStmt *st, Name effect) {
@@ -194,7 +194,7 @@ static void declare_motion(Builder *b, const AstStmt *st, Name effect) {
   Name stem = plain_name(b, st, effect);
   do {
     for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) (is_state ? add_state : add_coord)(b, st, scalar_name(b, &e, stem, at, k), unit);
-    if (parts == ROTATION && !is_state) hold_rotation(b, member_name(b, stem, at, e.ndims), e.index + member_offset(&e, at), st->name_span);
+    if (parts == ROTATION && !is_state) constrain_rotation(b, member_name(b, stem, at, e.ndims), e.index + member_offset(&e, at), st->name_span);
   } while (next_member(&e, at));
 }
 

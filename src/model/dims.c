@@ -9,15 +9,15 @@
 typedef struct {
   uint32_t key;
   Num e; /* never 0 */
-} Part;
+} DimPower;
 
 typedef struct {
-  const Part *part; /* by increasing key */
+  const DimPower *part; /* by increasing key */
   uint32_t n, hash;
   uint32_t next;         /* hash chain; 0: end */
-  Dim found;             /* memo of dim_found, valid while Dims.time is found_when; 0: none */
+  Dim found;             /* memo of dim_resolved, valid while Dims.time is found_when; 0: none */
   uint32_t found_when;
-} Form;
+} DimVector;
 
 typedef struct {
   Name name;
@@ -34,9 +34,9 @@ enum { BUCKETS = 1024, CACHED = 1024 };
 
 struct Dims {
   Arena *arena;
-  VEC(Form) forms; /* 0 is DIM_ANY */
+  VEC(DimVector) forms; /* 0 is DIM_ANY */
   VEC(Unknown) unknowns;
-  VEC(Part) scratch;
+  VEC(DimPower) scratch;
   VEC(Spelling) spellings;
   VEC(uint32_t) solved; /* solved unknowns, in order of solution */
   uint32_t time;        /* incremented when an unknown is solved or a solution undone */
@@ -46,7 +46,7 @@ struct Dims {
   } cache[CACHED];
 };
 
-static uint32_t hash_parts(const Part *p, uint32_t n) {
+static uint32_t hash_parts(const DimPower *p, uint32_t n) {
   uint32_t h = 2166136261u;
   for (uint32_t i = 0; i < n; i++) {
     uint64_t x = (uint64_t)p[i].e.num * 0x9E3779B97F4A7C15u + (uint64_t)p[i].e.den * 31 + p[i].key;
@@ -55,7 +55,7 @@ static uint32_t hash_parts(const Part *p, uint32_t n) {
   return h;
 }
 
-static int same_parts(const Form *f, const Part *p, uint32_t n) {
+static int same_parts(const DimVector *f, const DimPower *p, uint32_t n) {
   if (f->n != n) return 0;
   for (uint32_t i = 0; i < n; i++)
     if (f->part[i].key != p[i].key || !num_equal(f->part[i].e, p[i].e)) return 0;
@@ -68,9 +68,9 @@ static Dim intern_scratch(Dims *d) {
   d->scratch.n = 0;
   for (Dim i = *head; i; i = d->forms.at[i].next)
     if (d->forms.at[i].hash == hash && same_parts(&d->forms.at[i], d->scratch.at, n)) return i;
-  Part *copy = ARENA_ARRAY(d->arena, Part, n + 1);
+  DimPower *copy = ARENA_ARRAY(d->arena, DimPower, n + 1);
   if (n) memcpy(copy, d->scratch.at, n * sizeof *copy);
-  Form f = {.part = copy, .n = n, .hash = hash, .next = *head};
+  DimVector f = {.part = copy, .n = n, .hash = hash, .next = *head};
   vec_push(d->arena, &d->forms, f);
   return *head = d->forms.n - 1;
 }
@@ -78,13 +78,13 @@ static Dim intern_scratch(Dims *d) {
 Dims *dims_new(Arena *a) {
   Dims *d = ARENA_NEW(a, Dims);
   d->arena = a;
-  vec_push(a, &d->forms, (Form){0});
+  vec_push(a, &d->forms, (DimVector){0});
   intern_scratch(d); /* DIM_NONE */
   return d;
 }
 
 static Dim of_key(Dims *d, uint32_t key) {
-  vec_push(d->arena, &d->scratch, ((Part){key, num_int(1)}));
+  vec_push(d->arena, &d->scratch, ((DimPower){key, num_int(1)}));
   return intern_scratch(d);
 }
 
@@ -98,13 +98,13 @@ Dim dim_unknown(Dims *d, Name name) {
 }
 
 static void put(Dims *d, uint32_t key, Num e) {
-  if (!num_is_zero(e)) vec_push(d->arena, &d->scratch, ((Part){key, e}));
+  if (!num_is_zero(e)) vec_push(d->arena, &d->scratch, ((DimPower){key, e}));
 }
 
 /* Interned a * b^e. */
 static Dim combine(Dims *d, Dim a, Dim b, Num e) {
   if (a == DIM_ANY || b == DIM_ANY) return DIM_ANY;
-  const Form *f = &d->forms.at[a], *g = &d->forms.at[b];
+  const DimVector *f = &d->forms.at[a], *g = &d->forms.at[b];
   uint32_t i = 0, k = 0;
   while (i < f->n || k < g->n) {
     uint32_t x = i < f->n ? f->part[i].key : UINT32_MAX, y = k < g->n ? g->part[k].key : UINT32_MAX;
@@ -137,18 +137,18 @@ Dim dim_per_second(Dims *d, Dim a) { return dim_div(d, a, dim_base(d, DIM_TIME))
 /* --- unknowns --- */
 
 /* Last power of a solved unknown, or NULL. */
-static const Part *solved_part(const Dims *d, Dim a) {
-  const Form *f = &d->forms.at[a];
+static const DimPower *solved_part(const Dims *d, Dim a) {
+  const DimVector *f = &d->forms.at[a];
   for (uint32_t i = f->n; i-- > 0 && f->part[i].key >= DIM_BASES;)
     if (d->unknowns.at[f->part[i].key - DIM_BASES].is) return &f->part[i];
   return NULL;
 }
 
 /* Terminates: the solution of an unknown contains older unknowns only (the pivot is the newest one). */
-Dim dim_found(Dims *d, Dim a) {
+Dim dim_resolved(Dims *d, Dim a) {
   if (d->forms.at[a].found && d->forms.at[a].found_when == d->time) return d->forms.at[a].found;
   Dim r = a;
-  for (const Part *p = solved_part(d, r); p; p = solved_part(d, r)) {
+  for (const DimPower *p = solved_part(d, r); p; p = solved_part(d, r)) {
     uint32_t key = p->key;
     Num e = p->e;
     Dim without = combine(d, r, of_key(d, key), num_neg(e));
@@ -159,22 +159,22 @@ Dim dim_found(Dims *d, Dim a) {
   return r;
 }
 
-static const Part *last_part(const Dims *d, Dim a) { return d->forms.at[a].n ? &d->forms.at[a].part[d->forms.at[a].n - 1] : NULL; }
+static const DimPower *last_part(const Dims *d, Dim a) { return d->forms.at[a].n ? &d->forms.at[a].part[d->forms.at[a].n - 1] : NULL; }
 
 int dim_is_open(Dims *d, Dim a) {
-  const Part *last = last_part(d, dim_found(d, a));
+  const DimPower *last = last_part(d, dim_resolved(d, a));
   return last && last->key >= DIM_BASES;
 }
 
 Name dim_open_name(Dims *d, Dim a) {
-  const Part *last = last_part(d, dim_found(d, a));
+  const DimPower *last = last_part(d, dim_resolved(d, a));
   return last && last->key >= DIM_BASES ? d->unknowns.at[last->key - DIM_BASES].name : NULL;
 }
 
 int dim_equate(Dims *d, Dim a, Dim b, Span why) {
   if (a == b || a == DIM_ANY || b == DIM_ANY) return 1;
-  Dim difference = dim_found(d, dim_div(d, a, b));
-  const Part *pivot = last_part(d, difference);
+  Dim difference = dim_resolved(d, dim_div(d, a, b));
+  const DimPower *pivot = last_part(d, difference);
   if (!pivot) return 1;
   if (pivot->key < DIM_BASES) return 0;
   uint32_t key = pivot->key;
@@ -196,8 +196,8 @@ void dims_undo(Dims *d, uint32_t mark) {
 }
 
 /* A power of unknown first .. first + n - 1, or NULL. */
-static const Part *part_between(const Dims *d, Dim a, uint32_t first, uint32_t n) {
-  const Form *f = &d->forms.at[a];
+static const DimPower *part_between(const Dims *d, Dim a, uint32_t first, uint32_t n) {
+  const DimVector *f = &d->forms.at[a];
   for (uint32_t i = 0; i < f->n; i++)
     if (f->part[i].key >= first + DIM_BASES && f->part[i].key < first + n + DIM_BASES) return &f->part[i];
   return NULL;
@@ -206,7 +206,7 @@ static const Part *part_between(const Dims *d, Dim a, uint32_t first, uint32_t n
 /* Solved unknowns are replaced by their solutions first. Terminates, as those contain older unknowns only. */
 Dim dim_replace(Dims *d, Dim a, uint32_t first, uint32_t n, const Dim *with) {
   Dim r = a;
-  for (const Part *p = part_between(d, r, first, n); p; p = part_between(d, r, first, n)) {
+  for (const DimPower *p = part_between(d, r, first, n); p; p = part_between(d, r, first, n)) {
     uint32_t key = p->key, u = key - DIM_BASES;
     Num e = p->e;
     Dim without = combine(d, r, of_key(d, key), num_neg(e));
@@ -216,7 +216,7 @@ Dim dim_replace(Dims *d, Dim a, uint32_t first, uint32_t n, const Dim *with) {
 }
 
 int dim_cause(const Dims *d, Dim a, DimCause *cause) {
-  const Form *f = &d->forms.at[a];
+  const DimVector *f = &d->forms.at[a];
   for (uint32_t i = 0; i < f->n; i++) {
     if (f->part[i].key < DIM_BASES) continue;
     const Unknown *u = &d->unknowns.at[f->part[i].key - DIM_BASES];
@@ -228,7 +228,7 @@ int dim_cause(const Dims *d, Dim a, DimCause *cause) {
 }
 
 Num dim_exponent(const Dims *d, Dim a, DimBase base) {
-  const Form *f = &d->forms.at[a];
+  const DimVector *f = &d->forms.at[a];
   for (uint32_t i = 0; i < f->n; i++)
     if (f->part[i].key == base) return f->part[i].e;
   return num_int(0);
@@ -265,7 +265,7 @@ static void put_power(StrBuf *b, const char *name, Num e) {
 }
 
 /* Power i in writing order: kg before m. */
-static Part part_in_order(const Form *f, uint32_t i) {
+static DimPower part_in_order(const DimVector *f, uint32_t i) {
   if (i < 2 && f->n > 1 && f->part[0].key == DIM_LENGTH && f->part[1].key == DIM_MASS) return f->part[1 - i];
   return f->part[i];
 }
@@ -279,23 +279,23 @@ static const char *key_name(const Dims *d, uint32_t key) {
 
 const char *dim_text(Dims *d, Dim a) {
   if (a == DIM_ANY) return "?";
-  a = dim_found(d, a);
+  a = dim_resolved(d, a);
   if (a == DIM_NONE) return "1";
   const char *name = derived_name(d, a);
   if (name) return name;
   for (uint32_t i = 0; i < d->spellings.n; i++)
     if (d->spellings.at[i].dim == a) return d->spellings.at[i].text;
   StrBuf b = strbuf(d->arena);
-  const Form f = d->forms.at[a];
+  const DimVector f = d->forms.at[a];
   for (uint32_t i = 0; i < f.n; i++) {
-    Part p = part_in_order(&f, i);
+    DimPower p = part_in_order(&f, i);
     if (num_sign(p.e) < 0) continue;
     if (b.n) sb_putc(&b, '*');
     put_power(&b, key_name(d, p.key), p.e);
   }
   if (!b.n) sb_putc(&b, '1');
   for (uint32_t i = 0; i < f.n; i++) {
-    Part p = part_in_order(&f, i);
+    DimPower p = part_in_order(&f, i);
     if (num_sign(p.e) > 0) continue;
     sb_putc(&b, '/');
     put_power(&b, key_name(d, p.key), num_neg(p.e));

@@ -44,7 +44,7 @@ uint32_t dims_mark(const Dims *d);
 void dims_undo(Dims *d, uint32_t mark);
 
 /* Dimension with all solved unknowns substituted: base units and unsolved unknowns only. */
-Dim dim_found(Dims *d, Dim a);
+Dim dim_resolved(Dims *d, Dim a);
 
 /* 1 if an unsolved unknown remains in a dimension. */
 int dim_is_open(Dims *d, Dim a);
@@ -65,7 +65,7 @@ typedef struct {
 /* An inferred name among the unknowns of a; 0 when there is none. */
 int dim_cause(const Dims *d, Dim a, DimCause *cause);
 
-/* Exponent of a base unit in a result of dim_found. */
+/* Exponent of a base unit in a result of dim_resolved. */
 Num dim_exponent(const Dims *d, Dim a, DimBase base);
 
 /* Spelling of a dimension for messages, as the model's author wrote it: "N/m". The first one counts. */

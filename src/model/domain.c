@@ -15,34 +15,34 @@ static Expr implied(const Builder *b, Expr a, Expr p) {
 }
 
 /* The condition, or 0 if it is the number 1. */
-static Expr unless_true(const Builder *b, Expr p) { return p == expr_int(b->g, 1) ? 0 : p; }
+static Expr drop_if_true(const Builder *b, Expr p) { return p == expr_int(b->g, 1) ? 0 : p; }
 
-static Expr differ(const Builder *b, Expr x, Expr y) {
+static Expr not_equal(const Builder *b, Expr x, Expr y) {
   Expr equal = expr_fn2(b->g, EX_EQ, x, y);
-  return unless_true(b, expr_fn(b->g, EX_NOT, equal));
+  return drop_if_true(b, expr_fn(b->g, EX_NOT, equal));
 }
 
-static Expr at_least(const Builder *b, Expr x, Expr y) { return unless_true(b, expr_fn2(b->g, EX_LE, y, x)); }
-static Expr not_zero(const Builder *b, Expr x) { return differ(b, x, expr_int(b->g, 0)); }
+static Expr at_least(const Builder *b, Expr x, Expr y) { return drop_if_true(b, expr_fn2(b->g, EX_LE, y, x)); }
+static Expr not_zero(const Builder *b, Expr x) { return not_equal(b, x, expr_int(b->g, 0)); }
 
 /* Domain of base^exponent; cube roots are real. 0 for a variable exponent: the values at a state decide. */
 static Expr power_domain(const Builder *b, Expr base, Expr exponent) {
   if (!expr_is_num(b->g, exponent)) return 0;
   Num e = expr_number(b->g, exponent);
   int root = !num_is_exact(e) || (e.den != 1 && e.den != 3);
-  if (num_sign(e) < 0) return root ? unless_true(b, expr_fn2(b->g, EX_LT, expr_int(b->g, 0), base)) : not_zero(b, base);
+  if (num_sign(e) < 0) return root ? drop_if_true(b, expr_fn2(b->g, EX_LT, expr_int(b->g, 0), base)) : not_zero(b, base);
   return root ? at_least(b, base, expr_int(b->g, 0)) : 0;
 }
 
 Expr domain_of_derivative(const Builder *b, const Value *of) {
-  ExprList l = expr_topo(b->g, of->at, parts_of(of));
+  ExprList l = expr_topo(b->g, of->at, component_count(of));
   Expr all = 0;
   for (uint32_t i = 0; i < l.n && b->domains; i++) {
     Expr e = l.at[i];
     ExprOp op = expr_op(b->g, e);
     if (op == EX_ABS || op == EX_SIGN || op == EX_CBRT) all = domain_and(b, all, not_zero(b, expr_arg(b->g, e, 0)));
     if (op == EX_MIN || op == EX_MAX || op == EX_LT || op == EX_LE || op == EX_EQ)
-      all = domain_and(b, all, differ(b, expr_arg(b->g, e, 0), expr_arg(b->g, e, 1)));
+      all = domain_and(b, all, not_equal(b, expr_arg(b->g, e, 0), expr_arg(b->g, e, 1)));
     for (uint32_t k = 0; op == EX_PROD && k < expr_pairs(b->g, e, EX_PROD); k++) {
       Num power;
       Expr base = expr_pair(b->g, e, EX_PROD, k, &power);
@@ -68,7 +68,7 @@ static Expr function_domain(const Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->args);
   AstId second = ast_expr(b->ast, x->args)->next;
   Expr u = v->e, zero = expr_int(b->g, 0), one = expr_int(b->g, 1);
-  if (strcmp(x->name, "log") == 0) return unless_true(b, expr_fn2(b->g, EX_LT, zero, u));
+  if (strcmp(x->name, "log") == 0) return drop_if_true(b, expr_fn2(b->g, EX_LT, zero, u));
   if (strcmp(x->name, "sqrt") == 0) return at_least(b, u, zero);
   if (strcmp(x->name, "asin") == 0 || strcmp(x->name, "acos") == 0) {
     Expr above = at_least(b, u, expr_int(b->g, -1)), below = at_least(b, one, u);
@@ -79,7 +79,7 @@ static Expr function_domain(const Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "atan2") != 0) return 0;
   Expr first = expr_fn2(b->g, EX_EQ, u, zero), both = expr_fn2(b->g, EX_EQ, value_of(ev, second)->e, zero);
   both = expr_fn2(b->g, EX_AND, first, both);
-  return unless_true(b, expr_fn(b->g, EX_NOT, both));
+  return drop_if_true(b, expr_fn(b->g, EX_NOT, both));
 }
 
 static Expr call_domain(const Eval *ev, const AstExpr *x, const Value *v) {

@@ -109,7 +109,7 @@ static const AstStmt *statement_of(const EffectGraph *g, uint32_t i, AstStmtKind
 }
 
 /* Shortest cycle of requirements through i over effects not before i, by breadth-first search: way[0..length), i first. 0: none. */
-static uint32_t find_circle(const Ast *ast, const EffectGraph *g, uint32_t i, uint32_t **way) {
+static uint32_t find_cycle(const Ast *ast, const EffectGraph *g, uint32_t i, uint32_t **way) {
   uint32_t *from = ARENA_ARRAY(ast->arena, uint32_t, g->n), *queue = ARENA_ARRAY(ast->arena, uint32_t, g->n + 1), n = 0, last = NONE;
   for (uint32_t k = 0; k < g->n; k++) from[k] = NONE;
   queue[n++] = i;
@@ -135,10 +135,10 @@ static uint32_t find_circle(const Ast *ast, const EffectGraph *g, uint32_t i, ui
 }
 
 /* Reports each cycle once, at its first effect. 0 if there is one. */
-static int check_circles(const Ast *ast, const EffectGraph *g) {
+static int check_cycles(const Ast *ast, const EffectGraph *g) {
   int fine = 1;
   for (uint32_t i = 0; i < g->n; i++) {
-    uint32_t *way = NULL, length = g->at[i].requires.n ? find_circle(ast, g, i, &way) : 0;
+    uint32_t *way = NULL, length = g->at[i].requires.n ? find_cycle(ast, g, i, &way) : 0;
     if (!length) continue;
     fine = 0;
     Name first = g->at[i].stmt->name;
@@ -213,7 +213,7 @@ int effects_check(const Ast *ast) {
   int exclusive = 0;
   check_names(ast, &g);
   for (uint32_t i = 0; i < g.n; i++) exclusive |= g.at[i].excludes.n > 0;
-  return check_circles(ast, &g) && (!exclusive || check_clashes(ast, &g));
+  return check_cycles(ast, &g) && (!exclusive || check_clashes(ast, &g));
 }
 
 /* --- effects in use --- */
@@ -252,7 +252,7 @@ void collect_uses(Builder *b, const AstStmt *scene) {
   }
 }
 
-void use_with_needs(Builder *b, Name effect) {
+void use_with_required(Builder *b, Name effect) {
   if (uses_effect(b, effect)) return;
   vec_push(b->arena, &b->m->effects, effect);
   for (uint32_t i = b->m->effects.n - 1; i < b->m->effects.n; i++) {
@@ -305,7 +305,7 @@ void check_effect_needs(Builder *b, const AstStmt *effect) {
   }
 }
 
-int mentions_off(const Builder *b, AstId value) {
+int names_off_effect(const Builder *b, AstId value) {
   Span all = ast_expr(b->ast, value)->span;
   for (AstId i = 1; i < b->ast->exprs.n; i++) {
     const AstExpr *x = ast_expr(b->ast, i);

@@ -102,7 +102,7 @@ void add_event(Builder *b, const AstStmt *st, Name effect) {
   if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
   ev.name = member_name(b, st->name, r.lo, r.n);
   check_name_is_new(b, "event", ev.name, effect, st->name_span);
-  check_said_once(b, st);
+  check_set_once(b, st);
   Value g = resolve(b, st->lhs, IN_DYNAMICS, effect);
   if (g.n) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "this is %s, and a number is wanted here", shape_text(b, g.n));
   ev.g = g.e;

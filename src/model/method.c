@@ -1,8 +1,8 @@
-/* `method NAME(option = value, ...)` of a scene: checked against the table of base/methods.h and against the model (states,
+/* `method NAME(option = value, ...)` of a scene: checked against the table of base/method_table.h and against the model (states,
  * constraints), and stored in the scene with names and values as the runtime expects them. */
 #include <string.h>
 
-#include "base/methods.h"
+#include "base/method_table.h"
 #include "base/suggest.h"
 #include "model/builder.h"
 
@@ -21,7 +21,7 @@ static const char *list_choices(const Builder *b, const MethodOption *o) {
 /* The method's entry in the table; NULL for one that only the runtime knows (gsl-*), and, reported, for an unknown one. */
 static const MethodInfo *known_method(Builder *b, const AstStmt *st) {
   const MethodInfo *m = method_find(st->name, strlen(st->name));
-  if (m || method_is_foreign(st->name)) return m;
+  if (m || method_may_be_gsl(st->name)) return m;
   const char *near = method_suggest(b->arena, st->name);
   diag_error(b->diags, st->name_span, "unknown method `%s`", st->name);
   if (near) diag_help(b->diags, "did you mean `%s`? `lagc methods` lists them", near);
@@ -56,7 +56,7 @@ static void check_value(Builder *b, const MethodOption *o, const Option *given, 
   }
 }
 
-static void take_option(Builder *b, const MethodInfo *m, const AstStmt *st) {
+static void read_method_option(Builder *b, const MethodInfo *m, const AstStmt *st) {
   static const Unit any = {.dim = DIM_ANY, .text = ""};
   const AstExpr *l = ast_expr(b->ast, st->lhs), *r = ast_expr(b->ast, st->rhs);
   Unit unit = any;
@@ -96,5 +96,5 @@ void scene_method(Builder *b, const AstStmt *st) {
     diag_also(b->diags, b->m->constraints.at[0].span, "here is a constraint");
     diag_help(b->diags, "`rk45`, `dop853` and `variational` can");
   }
-  for (const AstStmt *o = st->body; o; o = o->next) take_option(b, m, o);
+  for (const AstStmt *o = st->body; o; o = o->next) read_method_option(b, m, o);
 }

@@ -68,7 +68,7 @@ typedef struct {
   Expr lhs, rhs;
   Expr domain; /* condition under which both sides, as written, have real values; 0: wherever the nodes have */
   Name effect; /* the effect around the statement, or NULL */
-  int elsewhere; /* one of several instances of its statement (family, vector): model_reresolve refuses it */
+  int is_repeated; /* one of several instances of its statement (family, vector): model_resolve_edited refuses it */
 } Expect;
 
 typedef struct {
@@ -181,7 +181,7 @@ typedef struct {
   VEC(Start) starts;
   Span exactly; /* the first `start exactly`; empty: none */
   double t0, t1;
-  const char *t1_digits; /* t1 as decimal digits beyond double precision (base/digits.h), or NULL */
+  const char *t1_digits; /* t1 as decimal digits beyond double precision (base/decimal_literal.h), or NULL */
   int has_span;
   Name method; /* or NULL */
   Span method_span;
@@ -231,7 +231,7 @@ typedef struct {
   ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
   SymId energy_sym; /* placeholder for the energy p q' - L in outputs and expects, which mech replaces */
   Unit energy_unit;
-  struct Builder *builder; /* state for model_reresolve and the self-check */
+  struct Builder *builder; /* state for model_resolve_edited and the self-check */
 } Model;
 
 /* Name of built-in function i; NULL past the end. */
@@ -263,12 +263,12 @@ EffectList model_claiming_effects(const Ast *ast);
 typedef struct {
   AstId expr;
   Name name;
-} Asked;
+} CommandOutput;
 
 /* An input, or the start of a rotation R or of omega(R), and its value from the command line: a formula, or the name of a table. */
 typedef struct {
   AstId what, value;
-} Given;
+} CommandInput;
 
 /* The surface of a Poincare section: an event without actions. */
 typedef struct {
@@ -286,9 +286,9 @@ typedef struct {
                            * monitors and closed forms of the scene are dropped. NULL: the scene's effects */
   const Define *defines;
   uint32_t ndefines;
-  const Asked *asked; /* outputs besides the scene's own */
-  uint32_t nasked;
-  const Given *given; /* values that override the scene's */
+  const CommandOutput *asked; /* outputs besides the scene's own */
+  uint32_t nextra_outputs;
+  const CommandInput *given; /* values that override the scene's */
   uint32_t ngiven;
   Section section;
   const char *fix; /* parameters to compile in as numbers, with the scene's values: "g,drag.c", "all"; NULL: none */
@@ -303,10 +303,10 @@ Model *model_build(Ast *ast, const ModelChoice *choice);
 
 /* Resolves the expression `root` of expectation x (or a part of it) again with its node `node` replaced by
  * `with`; node 0: unchanged. 0 where the result has no meaning (a replacement under a prime, say); nothing is reported. */
-Expr model_reresolve(const Model *m, const Expect *x, AstId root, AstId node, Expr with);
+Expr model_resolve_edited(const Model *m, const Expect *x, AstId root, AstId node, Expr with);
 
 /* Converts a value from the command line for `target` (0: a time) into a number in the target's declared unit, *digits as
- * in base/digits.h or NULL. 0, reported, when a run cannot set the target, or the value does not fit it. */
-int model_setting(const Model *m, AstId target, AstId value, double *out, const char **digits);
+ * in base/decimal_literal.h or NULL. 0, reported, when a run cannot set the target, or the value does not fit it. */
+int model_command_value(const Model *m, AstId target, AstId value, double *out, const char **digits);
 
 #endif

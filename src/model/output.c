@@ -24,7 +24,7 @@ const Unit *entity_unit(const Builder *b, const Entity *e) {
   return NULL;
 }
 
-/* Unit of an output: the name's declared unit, otherwise none yet: settle_units derives it from the dimension. */
+/* Unit of an output: the name's declared unit, otherwise none yet: fill_inferred_units derives it from the dimension. */
 static Unit output_unit(Builder *b, const Entity *e, uint32_t primes, Dim dim) {
   const Unit *own = e ? entity_unit(b, e) : NULL;
   Unit u = own && own->text[0] ? *own : (Unit){.factor = num_int(1), .offset = num_int(0), .text = ""};
@@ -90,7 +90,7 @@ static void add_family(Builder *b, AstId id, const Target *p, const Entity *e) {
     if (!member) continue;
     Value v = resolve_member(b, e, at, p->primes, span, IN_OUTPUT);
     if (!v.e) return;
-    int place = part_place(v.n, p->part);
+    int place = component_index(v.n, p->part);
     if (place >= 0) v = (Value){.e = v.at[place], .dim = v.dim};
     Name name = member_name(b, stem, at, e->ndims);
     if (p->part >= 0) name = label_of(b, name, p->part, 0);
@@ -99,7 +99,7 @@ static void add_family(Builder *b, AstId id, const Target *p, const Entity *e) {
 }
 
 int add_error(Builder *b, const Exact *x, Span span) {
-  Expr e = exact_error(b, x);
+  Expr e = closed_form_error(b, x);
   return add_one(b, intern_printf(b, "error(%s)", x->name), span, unit_of_difference(&x->unit), e, &(OutputText){0});
 }
 
@@ -122,7 +122,7 @@ static int add_closed_form(Builder *b, AstId id, Name label) {
   Value of = resolve(b, arg, IN_OUTPUT, NULL);
   int place = -1;
   for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
-    const Exact *form = find_exact(b, of.at[k]);
+    const Exact *form = find_closed_form(b, of.at[k]);
     Name own = intern_printf(b, "%s(%s)", call, form->name);
     Unit unit = strcmp(call, "error") == 0 ? unit_of_difference(&form->unit) : form->unit;
     place = add_one(b, label && !v.n ? label : own, span, unit, v.at[k], &(OutputText){.id = id, .component = k});

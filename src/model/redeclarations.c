@@ -33,7 +33,7 @@ void check_name_is_new(Builder *b, const char *what, Name name, Name effect, Spa
 }
 
 /* Key of a setting: equal for two statements of which the second would override the first; NULL: repetition is allowed. */
-static Name said_key(Builder *b, const AstStmt *st, const char *owner) {
+static Name setting_key(Builder *b, const AstStmt *st, const char *owner) {
   switch (st->kind) {
     case STMT_SPAN: return intern_printf(b, "span");
     case STMT_METHOD: return intern_printf(b, "method");
@@ -48,8 +48,8 @@ static Name said_key(Builder *b, const AstStmt *st, const char *owner) {
   }
 }
 
-static void check_said(Builder *b, Scope *said, const AstStmt *st, const char *owner) {
-  Name key = said_key(b, st, owner);
+static void check_setting(Builder *b, Scope *said, const AstStmt *st, const char *owner) {
+  Name key = setting_key(b, st, owner);
   const Entity *old = key ? scope_own(said, key, NULL) : NULL;
   if (key && !old) scope_add(said, (Entity){.name = key, .span = st->span});
   if (!old) return;
@@ -58,17 +58,17 @@ static void check_said(Builder *b, Scope *said, const AstStmt *st, const char *o
   diag_also(b->diags, old->span, "first said here");
 }
 
-void check_said_once(Builder *b, const AstStmt *block) {
+void check_set_once(Builder *b, const AstStmt *block) {
   Scope *said = new_scope(b);
   for (const AstStmt *x = block->body; x; x = x->next) {
     if (x->kind != STMT_USE && x->kind != STMT_METHOD) {
-      check_said(b, said, x, "");
+      check_setting(b, said, x, "");
       continue;
     }
     if (x->kind == STMT_USE && strcmp(x->name, "none") == 0) said = new_scope(b); /* statements before `use none` have no effect */
-    if (x->kind == STMT_METHOD) check_said(b, said, x, "");
+    if (x->kind == STMT_METHOD) check_setting(b, said, x, "");
     Scope *values = x->kind == STMT_METHOD ? new_scope(b) : said;
     const char *owner = x->kind == STMT_USE ? arena_printf(b->arena, "%s.", x->name) : "";
-    for (const AstStmt *o = x->body; o; o = o->next) check_said(b, values, o, owner);
+    for (const AstStmt *o = x->body; o; o = o->next) check_setting(b, values, o, owner);
   }
 }

@@ -6,7 +6,7 @@
  * definitions use the C stack. */
 #include <math.h>
 
-#include "base/digits.h"
+#include "base/decimal_literal.h"
 #include "base/suggest.h"
 #include "model/resolve_impl.h"
 #include "sym/eval.h"
@@ -16,10 +16,10 @@
 /* Marks a left operand with the same kind of operator: a chain becomes one n-ary sum (or product), so a sum of a
  * million terms costs one sort. */
 static void mark_chain(Eval *ev, const AstExpr *x) {
-  if (x->a == ev->b->stand_in) return;
+  if (x->a == ev->b->replaced_node) return;
   AstKind left = ast_expr(ev->b->ast, x->a)->kind;
   int additive = x->kind == AST_ADD || x->kind == AST_SUB;
-  ev->open[x->a - ev->first] = additive ? left == AST_ADD || left == AST_SUB : left == AST_MUL || left == AST_DIV;
+  ev->by_parent[x->a - ev->first] = additive ? left == AST_ADD || left == AST_SUB : left == AST_MUL || left == AST_DIV;
 }
 
 static void guard(Eval *ev, AstId construct, AstId body) {
@@ -39,7 +39,7 @@ static void mark_branches(Eval *ev, AstId id, const AstExpr *x) {
 static void mark_name(Eval *ev, const AstExpr *x) {
   const AstExpr *of = ast_expr(ev->b->ast, x->a);
   int effects = x->kind == AST_INDEX && of->kind == AST_MEMBER && ast_expr(ev->b->ast, of->a)->kind == AST_NAME;
-  if (of->kind == AST_NAME || effects) ev->open[x->a - ev->first] = 1;
+  if (of->kind == AST_NAME || effects) ev->by_parent[x->a - ev->first] = 1;
 }
 
 /* Marks names of constraints, which have no value: lambda(rod), lambda(rod[2]), lambda(drag.rod). */
@@ -47,7 +47,7 @@ static void mark_constraint(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "lambda") != 0 || !x->args || own_function(ev, x)) return;
   for (AstId i = x->args; i; i = ast_expr(ev->b->ast, i)->next) {
     AstKind kind = ast_expr(ev->b->ast, i)->kind;
-    if (kind == AST_NAME || kind == AST_INDEX || kind == AST_MEMBER) ev->open[i - ev->first] = 1;
+    if (kind == AST_NAME || kind == AST_INDEX || kind == AST_MEMBER) ev->by_parent[i - ev->first] = 1;
   }
 }
 
@@ -158,13 +158,13 @@ static int is_infinite(Num n) { return !isfinite(num_value(n)); }
 
 /* Refuses values that contain a number beyond the range of doubles, or one that rounding has destroyed. */
 static Value usable_value(Eval *ev, const AstExpr *x, Value v) {
-  for (uint32_t k = 0; v.e && k < parts_of(&v); k++) {
+  for (uint32_t k = 0; v.e && k < component_count(&v); k++) {
     if (has_number(ev->b->g, v.at[k], is_infinite)) {
       diag_error(ev->b->diags, x->span, "a number here is not finite");
       diag_help(ev->b->diags, "numbers reach up to 1.8e308");
       return FAILED;
     }
-    if (has_number(ev->b->g, v.at[k], num_is_lost)) {
+    if (has_number(ev->b->g, v.at[k], num_is_imprecise)) {
       diag_error(ev->b->diags, x->span, "rounding leaves fewer than six digits of a number here");
       diag_help(ev->b->diags, "write what it comes to: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
       return FAILED;
@@ -199,8 +199,8 @@ static int run(Eval *ev) {
     if (to) ev->pc = to;
     AstId i = ev->pc;
     const AstExpr *x = ast_expr(b->ast, i);
-    if (i == b->stand_in) *value_of(ev, i) = (Value){.e = b->stands_for, .dim = DIM_ANY};
-    else if (!ev->open[i - ev->first]) {
+    if (i == b->replaced_node) *value_of(ev, i) = (Value){.e = b->replacement_expr, .dim = DIM_ANY};
+    else if (!ev->by_parent[i - ev->first]) {
       Value v = operands_fit(ev, x) ? usable_value(ev, x, node_value(ev, i)) : FAILED;
       if (ev->waiting) return 0;
       if (b->unitless) v.dim = DIM_ANY;
@@ -228,11 +228,11 @@ static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   if (n > ev->cap) {
     ev->cap = n < 64 ? 64 : n;
     ev->value = ARENA_ARRAY(b->arena, Value, ev->cap);
-    ev->open = ARENA_ARRAY(b->arena, unsigned char, ev->cap);
+    ev->by_parent = ARENA_ARRAY(b->arena, unsigned char, ev->cap);
     ev->guarded = ARENA_ARRAY(b->arena, AstId, ev->cap);
   } else {
     memset(ev->value, 0, n * sizeof *ev->value);
-    memset(ev->open, 0, n);
+    memset(ev->by_parent, 0, n);
     memset(ev->guarded, 0, n * sizeof *ev->guarded);
   }
   ev->b = b;
@@ -275,15 +275,15 @@ static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
 
 /* Wraps the value of a let in a definition node, one per component: `r.x`. */
 static void finish_let(Builder *b, Definition *d, Value v) {
-  for (uint32_t k = 0; v.e && k < parts_of(&v); k++) {
-    Name name = v.n ? intern_printf(b, "%s.%c", d->name, part_letter(v.n, k)) : d->name;
+  for (uint32_t k = 0; v.e && k < component_count(&v); k++) {
+    Name name = v.n ? intern_printf(b, "%s.%c", d->name, component_letter(v.n, k)) : d->name;
     v.at[k] = expr_def(b->g, name, v.at[k]);
   }
   d->value = v;
 }
 
 /* Internal error: an expression failed without a message. */
-static void report_silence(Builder *b, AstId id) {
+static void report_missing_message(Builder *b, AstId id) {
   if (!b->diags->errors)
     diag_error(b->diags, ast_expr(b->ast, id)->span, "internal error: `%s` has no value, and no reason is known", ast_short(b, id));
 }
@@ -292,7 +292,7 @@ static void finish_definition(Eval *ev) {
   Builder *b = ev->b;
   Definition *d = definition(b, ev->kind, ev->definition);
   Value v = *value_of(ev, ev->root);
-  if (!v.e) report_silence(b, ev->root);
+  if (!v.e) report_missing_message(b, ev->root);
   if (ev->kind == ENT_OBSERVE && v.bare && d->stmt->unit.n) {
     Unit own = unit_resolve(&d->stmt->unit, b->dims, b->diags, b->arena);
     v = values_in(b, v, ast_expr(b->ast, ev->root)->span, &own);
@@ -357,7 +357,7 @@ static Value evaluate(Builder *b, AstId id, Context where, Name effect) {
 Value resolve(Builder *b, AstId id, Context where, Name effect) {
   if (!id) return FAILED;
   Value v = evaluate(b, id, where, effect);
-  if (!v.e) report_silence(b, id);
+  if (!v.e) report_missing_message(b, id);
   if (!v.e || !v.condition) return v;
   report_condition(b, id);
   return FAILED;
@@ -367,7 +367,7 @@ Value resolve(Builder *b, AstId id, Context where, Name effect) {
 
 /* Warns of pi/2 assigned to a name in degrees: a bare number takes the unit, here pi/2 degrees. */
 static void warn_degrees(Builder *b, const Value *v, Span span, const Unit *unit) {
-  if (v->n || expr_is_num(b->g, v->e) || !unit->text[0] || dim_found(b->dims, unit->dim) != DIM_NONE) return;
+  if (v->n || expr_is_num(b->g, v->e) || !unit->text[0] || dim_resolved(b->dims, unit->dim) != DIM_NONE) return;
   if (num_is_one(unit->factor) && !unit->pi_power) return;
   long double *symbols = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1), x = 0;
   symbols[b->m->pi] = 3.14159265358979323846264338327950288L;
@@ -381,14 +381,14 @@ Value values_in(Builder *b, Value v, Span span, const Unit *unit) {
   if (!v.e) return FAILED;
   if (v.bare) {
     warn_degrees(b, &v, span, unit);
-    for (uint32_t k = 0; k < parts_of(&v); k++) v.at[k] = times_unit(b, v.at[k], unit);
+    for (uint32_t k = 0; k < component_count(&v); k++) v.at[k] = times_unit(b, v.at[k], unit);
     return v;
   }
   if (is_zero(b, &v) || dim_equate(b->dims, v.dim, unit->dim, span)) return v;
   const char *want = unit->text[0] ? unit->text : dim_text(b->dims, unit->dim);
   const char *wanted = strcmp(want, "1") == 0 ? "a pure number" : arena_printf(b->arena, "[%s]", want);
   diag_error(b->diags, span, "this value is %s, and %s is wanted here", in_unit(b, shown_unit(b, &v)), wanted);
-  if (dim_found(b->dims, v.dim) == DIM_NONE)
+  if (dim_resolved(b->dims, v.dim) == DIM_NONE)
     diag_help(b->diags, "give a number in it its unit, or multiply by `1 [%s]`", dim_text(b->dims, unit->dim));
   explain_dims(b, v.dim, unit->dim);
   return FAILED;
@@ -411,7 +411,7 @@ const char *expression_digits(Builder *b, Expr e) {
   Expr pi = expr_symbol(b->g, b->m->pi)->node;
   for (int power = -1; power <= 1; power++) {
     Expr rest = expr_mul(b->g, e, expr_pow_num(b->g, pi, num_int(-power)));
-    if (expr_is_num(b->g, rest)) return digits_text(b->arena, expr_number(b->g, rest), power);
+    if (expr_is_num(b->g, rest)) return decimal_literal(b->arena, expr_number(b->g, rest), power);
   }
   return NULL;
 }

@@ -55,11 +55,11 @@ static Value call_unary(Eval *ev, const AstExpr *x, ExprOp op) {
   const Value *v = value_of(ev, x->args);
   if (!v->e) return FAILED;
   if (op == EX_ABS) return a_value(expr_fn(b->g, op, v->e), v->dim, v->bare);
-  if (op == EX_SIGN) return a_value(note_written(ev, x, expr_fn(b->g, op, v->e)), DIM_NONE, v->bare);
+  if (op == EX_SIGN) return a_value(record_jump(ev, x, expr_fn(b->g, op, v->e)), DIM_NONE, v->bare);
   if (op == EX_CBRT) return a_value(expr_fn(b->g, op, v->e), dim_pow(b->dims, v->dim, num_ratio(1, 3)), v->bare);
   const char *what = arena_printf(b->arena, "`%s`", x->name);
   if (!need_pure(ev, x->args, what)) return FAILED;
-  return a_value(note_written(ev, x, expr_fn(b->g, op, v->e)), DIM_NONE, v->bare);
+  return a_value(record_jump(ev, x, expr_fn(b->g, op, v->e)), DIM_NONE, v->bare);
 }
 
 static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
@@ -70,7 +70,7 @@ static Value call_binary(Eval *ev, const AstExpr *x, ExprOp op) {
   if (!v->e || !w->e) return FAILED;
   if (!operands_agree(ev, x->span, x->args, second)) return FAILED;
   Dim dim = v->dim != DIM_ANY ? v->dim : w->dim;
-  return a_value(note_written(ev, x, expr_fn2(b->g, op, v->e, w->e)), op == EX_ATAN2 ? DIM_NONE : dim, v->bare && w->bare);
+  return a_value(record_jump(ev, x, expr_fn2(b->g, op, v->e, w->e)), op == EX_ATAN2 ? DIM_NONE : dim, v->bare && w->bare);
 }
 
 /* With a constant condition the other branch was not evaluated (see enter in resolve.c). */
@@ -89,7 +89,7 @@ static Value call_if(Eval *ev, const AstExpr *x) {
   if (!v->e || !w->e || !same_shape(ev, x->span, yes, no)) return FAILED;
   if (!operands_agree(ev, x->span, yes, no)) return FAILED;
   Value r = {.dim = v->dim != DIM_ANY ? v->dim : w->dim, .n = v->n};
-  for (uint32_t k = 0; k < parts_of(v); k++) r.at[k] = expr_select(b->g, c->e, v->at[k], w->at[k]);
+  for (uint32_t k = 0; k < component_count(v); k++) r.at[k] = expr_select(b->g, c->e, v->at[k], w->at[k]);
   return r;
 }
 
@@ -170,7 +170,7 @@ static void warn_no_rate(Eval *ev, const AstExpr *x, const Value *derivative) {
   Builder *b = ev->b;
   const AstExpr *of = ast_expr(b->ast, x->args), *by = ast_expr(b->ast, of->next);
   if (by->kind != AST_NAME || strcmp(by->name, "t") != 0 || expr_is_num(b->g, value_of(ev, x->args)->e)) return;
-  for (uint32_t k = 0; k < parts_of(derivative); k++)
+  for (uint32_t k = 0; k < component_count(derivative); k++)
     if (!expr_is_zero(b->g, derivative->at[k])) return;
   diag_warning(b->diags, x->span, "this is 0: `d` is the partial derivative, and `%s` does not contain t itself", ast_short(b, x->args));
   diag_help(b->diags, of->kind == AST_NAME ? "its rate is written `%s'`" : "its rate is written `(%s)'`", ast_short(b, x->args));
@@ -194,7 +194,7 @@ static Value call_d(Eval *ev, const AstExpr *x) {
     return FAILED;
   }
   Value r = {.dim = dim_div(b->dims, v->dim, w->dim), .n = v->n};
-  for (uint32_t k = 0; k < parts_of(v); k++) {
+  for (uint32_t k = 0; k < component_count(v); k++) {
     if (kind != SYM_LOCAL && expr_contains(b->g, v->at[k], is_local, NULL)) {
       not_yet(b, x->span, "a partial derivative of the energy, or of the arguments of a function");
       diag_help(b->diags, "differentiate `T` and `V`, or `lagrangian`; of a function, its value: `d(f(x), x)`");

@@ -49,7 +49,7 @@ Value start_value(Eval *ev, Value v, Span span, const Value *when) {
     return FAILED;
   }
   start_symbols(b);
-  for (uint32_t k = 0; k < parts_of(&v); k++) v.at[k] = expr_substitute(b->g, v.at[k], b->at_start, b->nbefore, "_0");
+  for (uint32_t k = 0; k < component_count(&v); k++) v.at[k] = expr_substitute(b->g, v.at[k], b->at_start, b->nbefore, "_0");
   v.bare = 0;
   return v;
 }
@@ -61,7 +61,7 @@ static int moves(const Symbol *s, const void *data) {
   return s->kind == SYM_COORD || s->kind == SYM_VEL || s->kind == SYM_ACC || s->kind == SYM_STATE || s->kind == SYM_RATE;
 }
 
-void give_exact(Builder *b, SymId target, const Unit *unit, int periodic, Expr value, Span span) {
+void set_closed_form(Builder *b, SymId target, const Unit *unit, int periodic, Expr value, Span span) {
   Scene *sc = &b->m->scene;
   const Symbol *s = expr_symbol(b->g, target);
   if (expr_contains(b->g, value, moves, NULL)) {
@@ -83,7 +83,7 @@ void give_exact(Builder *b, SymId target, const Unit *unit, int periodic, Expr v
 
 /* --- outputs --- */
 
-const Exact *find_exact(const Builder *b, Expr e) {
+const Exact *find_closed_form(const Builder *b, Expr e) {
   const Scene *sc = &b->m->scene;
   for (uint32_t i = 0; i < sc->exacts.n && expr_op(b->g, e) == EX_SYM; i++)
     if (sc->exacts.at[i].target == expr_sym_id(b->g, e)) return &sc->exacts.at[i];
@@ -96,7 +96,7 @@ static Expr wrapped(ExprGraph *g, Expr e) {
   return expr_fn2(g, EX_ATAN2, s, c);
 }
 
-Expr exact_error(Builder *b, const Exact *x) {
+Expr closed_form_error(Builder *b, const Exact *x) {
   Expr is = expr_symbol(b->g, x->target)->node, should = expr_symbol(b->g, x->sym)->node, off = expr_sub(b->g, is, should);
   return x->periodic ? wrapped(b->g, off) : off;
 }
@@ -114,15 +114,15 @@ Value exact_value(Eval *ev, const AstExpr *x) {
   }
   Value v = *value_of(ev, arg);
   int error = strcmp(x->name, "error") == 0;
-  for (uint32_t k = 0; v.e && k < parts_of(&v); k++) {
-    const Exact *form = find_exact(b, v.at[k]);
+  for (uint32_t k = 0; v.e && k < component_count(&v); k++) {
+    const Exact *form = find_closed_form(b, v.at[k]);
     if (!form) {
       diag_error(b->diags, ast_expr(b->ast, arg)->span, "the scene gives `%s` no closed form", ast_short(b, arg));
       if (expr_op(b->g, v.at[k]) == EX_SYM) diag_help(b->diags, "`exact %s = ...` gives one", ast_short(b, arg));
       else diag_help(b->diags, "coordinates, velocities and states have closed forms: `%s(x)`", x->name);
       return FAILED;
     }
-    v.at[k] = error ? exact_error(b, form) : expr_symbol(b->g, form->sym)->node;
+    v.at[k] = error ? closed_form_error(b, form) : expr_symbol(b->g, form->sym)->node;
   }
   v.bare = 0;
   v.point &= !error;

@@ -19,8 +19,8 @@ static uint32_t count_args(const Builder *b, const Definition *f) {
 /* Declares the symbols of an argument, one per component. */
 static Value new_argument(Builder *b, Instance *in, Name name, uint32_t shape) {
   Value v = {.n = shape, .dim = b->unitless ? DIM_ANY : dim_unknown(b->dims, name)};
-  for (uint32_t k = 0; k < parts_of(&v); k++) {
-    Name part = shape ? intern_printf(b, "%s.%c", name, part_letter(shape, k)) : name;
+  for (uint32_t k = 0; k < component_count(&v); k++) {
+    Name part = shape ? intern_printf(b, "%s.%c", name, component_letter(shape, k)) : name;
     SymId s = declare_symbol(b, SYM_LOCAL, in->symbols.n, part, SIGN_UNKNOWN, v.dim);
     vec_push(b->arena, &in->symbols, s);
     v.at[k] = expr_symbol(b->g, s)->node;
@@ -92,7 +92,7 @@ static int bind_dims(Eval *ev, const AstExpr *x, const Instance *in, Dim *with) 
     with[i] = is_zero(b, value_of(ev, arg)) ? DIM_ANY : value_of(ev, arg)->dim;
   arg = x->args;
   for (uint32_t i = 0; i < in->nargs && !b->unitless; i++, arg = ast_expr(b->ast, arg)->next) {
-    Dim own = in->args[i].dim, found = dim_found(b->dims, own);
+    Dim own = in->args[i].dim, found = dim_resolved(b->dims, own);
     if (found == own) continue; /* the body does not determine it */
     Dim want = dim_replace(b->dims, found, in->first_unknown, in->nargs, with);
     if (dim_equate(b->dims, with[i], want, ast_expr(b->ast, arg)->span)) continue;
@@ -106,7 +106,7 @@ static int bind_dims(Eval *ev, const AstExpr *x, const Instance *in, Dim *with) 
 static uint32_t order_of(const Builder *b, const Instance *in, uint32_t first, uint32_t n) {
   uint32_t order = 0;
   for (uint32_t i = in->nplain; i < in->symbols.n; i++)
-    for (uint32_t k = 0; i % in->nplain >= first && i % in->nplain < n && k < parts_of(&in->value); k++)
+    for (uint32_t k = 0; i % in->nplain >= first && i % in->nplain < n && k < component_count(&in->value); k++)
       if (expr_contains_sym(b->g, in->value.at[k], in->symbols.at[i])) order = i / in->nplain;
   return order;
 }
@@ -117,7 +117,7 @@ static int bind_symbols(Eval *ev, const AstExpr *x, const Instance *in, Expr *wi
   uint32_t n = 0;
   for (AstId arg = x->args; arg; arg = ast_expr(ev->b->ast, arg)->next) {
     Value v = *value_of(ev, arg);
-    uint32_t first = n, parts = parts_of(&v), order = order_of(ev->b, in, first, n += parts);
+    uint32_t first = n, parts = component_count(&v), order = order_of(ev->b, in, first, n += parts);
     for (uint32_t i = 0;; i++) {
       for (uint32_t k = 0; k < parts; k++) with[i * in->nplain + first + k] = v.at[k];
       if (i == order) break;
@@ -135,7 +135,7 @@ static Value call_instance(Eval *ev, const AstExpr *x, const Instance *in) {
   if (!in->value.e || !bind_dims(ev, x, in, dims) || !bind_symbols(ev, x, in, with)) return FAILED;
   Value r = in->value;
   r.dim = dim_replace(b->dims, r.dim, in->first_unknown, in->nargs, dims);
-  for (uint32_t k = 0; k < parts_of(&r); k++) r.at[k] = expr_replace(b->g, r.at[k], in->symbols.at, with, in->symbols.n);
+  for (uint32_t k = 0; k < component_count(&r); k++) r.at[k] = expr_replace(b->g, r.at[k], in->symbols.at, with, in->symbols.n);
   if (r.domain) r.domain = expr_replace(b->g, r.domain, in->symbols.at, with, in->symbols.n);
   return r;
 }
@@ -155,14 +155,14 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
   }
   uint32_t place = find_instance(b, e->index, nargs, shapes, x->span);
   if (b->instances.at[place]->done) return call_instance(ev, x, b->instances.at[place]);
-  wait_for(ev, ENT_FUNCTION, place, f->progress, x->name, x->span);
+  suspend_for(ev, ENT_FUNCTION, place, f->progress, x->name, x->span);
   return FAILED;
 }
 
 /* --- functions that nothing calls --- */
 
 /* Choice k of n argument shapes, counted in base 3: 0 0, 2 0, 3 0, 0 2, ... */
-static void take_shapes(uint32_t k, uint32_t n, uint32_t *shapes) {
+static void choose_shapes(uint32_t k, uint32_t n, uint32_t *shapes) {
   static const uint32_t kinds[] = {0, 2, 3};
   for (uint32_t i = 0; i < n; i++, k /= 3) shapes[i] = kinds[k % 3];
 }
@@ -187,7 +187,7 @@ void check_uncalled(Builder *b, uint32_t function) {
   Diags *heard = b->diags;
   int good = 0;
   for (uint32_t k = 0; k < tries && !good; k++) {
-    take_shapes(k, n, shapes);
+    choose_shapes(k, n, shapes);
     b->diags = diags_new(b->arena, b->ast->sources);
     uint32_t instances = b->instances.n;
     resolve_instance(b, function, shapes);
@@ -197,6 +197,6 @@ void check_uncalled(Builder *b, uint32_t function) {
     forget_instances(b, instances);
   }
   b->diags = heard;
-  take_shapes(0, n, shapes);
+  choose_shapes(0, n, shapes);
   if (!good) resolve_instance(b, function, shapes);
 }

@@ -31,7 +31,7 @@ struct Eval {
   AstId first, root, pc;
   uint32_t cap;
   Value *value;        /* [i] value of node first + i */
-  unsigned char *open; /* [i] node first + i is skipped: its parent reads it (chain operand, name before an index) */
+  unsigned char *by_parent; /* [i] node first + i is skipped: its parent reads it (chain operand, name before an index) */
   AstId *guarded;      /* [i] the sum, product or `if` whose body or branch begins at node first + i, or 0 */
   VEC(Loop) loops;
   VEC(Value) terms;    /* terms of all loops in progress */
@@ -45,7 +45,7 @@ static const Value FAILED = {0};
 static inline Value a_value(Expr e, Dim dim, int bare) { return (Value){.e = e, .dim = dim, .bare = bare}; }
 
 /* Number of components. */
-static inline uint32_t parts_of(const Value *v) { return v->n ? v->n : 1; }
+static inline uint32_t component_count(const Value *v) { return v->n ? v->n : 1; }
 
 static inline Value *value_of(const Eval *ev, AstId id) { return &ev->value[id - ev->first]; }
 
@@ -63,7 +63,7 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId operand);
 int same_shape(Eval *ev, Span span, AstId x, AstId y);
 
 /* Returns e, the value of x, and records x in Model.written the first time a node that may jump appears. */
-Expr note_written(Eval *ev, const AstExpr *x, Expr e);
+Expr record_jump(Eval *ev, const AstExpr *x, Expr e);
 
 /* Value of a number, an operator, or a tuple. */
 Value operator_value(Eval *ev, AstId id);
@@ -80,7 +80,7 @@ const Value *function_argument(const Builder *b, const Instance *function, Name 
 
 /* Suspends the evaluation until a let, an observable or a function instance has a value. If that one is in progress, the
  * definition is circular: reported. */
-void wait_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span);
+void suspend_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span);
 
 /* resolve_function.c: appends an instance of a function for argument shapes 0 (number), 2, 3 to b->instances, without
  * evaluating it; resolve_instance evaluates it, too. */

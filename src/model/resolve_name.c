@@ -21,7 +21,7 @@ const char *shape_text(const Builder *b, uint32_t n) {
   return n ? arena_printf(b->arena, "a vector of %u components", n) : "a number";
 }
 
-void wait_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span) {
+void suspend_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span) {
   Builder *b = ev->b;
   if (progress == DOING) {
     diag_error(b->diags, span, "`%s` is defined by itself", name);
@@ -36,7 +36,7 @@ void wait_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name na
 static Value defined_value(Eval *ev, const Entity *e, Span span) {
   const Definition *d = e->kind == ENT_LET ? &ev->b->lets.at[e->index] : &ev->b->observes.at[e->index];
   if (d->progress == DONE) return d->value;
-  wait_for(ev, e->kind, e->index, d->progress, e->name, span);
+  suspend_for(ev, e->kind, e->index, d->progress, e->name, span);
   return FAILED;
 }
 
@@ -84,7 +84,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
     case ENT_COORD: case ENT_STATE: case ENT_PARAM: case ENT_INPUT: {
       Value v = {.n = e->parts};
       uint32_t i = e->index + member_offset(e, at);
-      for (uint32_t k = 0; k < parts_of(&v); k++) v.at[k] = expr_symbol(b->g, symbol_of(b->m, e->kind, i + k))->node;
+      for (uint32_t k = 0; k < component_count(&v); k++) v.at[k] = expr_symbol(b->g, symbol_of(b->m, e->kind, i + k))->node;
       v.dim = b->dim_of.at[symbol_of(b->m, e->kind, i)];
       v.unit = entity_unit(b, e)->text;
       return v;
@@ -144,7 +144,7 @@ static Value momentum_value(const Eval *ev, const Entity *e, const int64_t *at) 
   Builder *b = ev->b;
   uint32_t i = e->index + member_offset(e, at);
   Value r = {.n = e->parts, .domain = domain_of_derivative(b, &(Value){.e = b->m->lagrangian})};
-  for (uint32_t k = 0; k < parts_of(&r); k++) {
+  for (uint32_t k = 0; k < component_count(&r); k++) {
     SymId v = e->kind == ENT_STATE ? b->m->states.at[i + k].rate : b->m->coords.at[i + k].v;
     r.at[k] = expr_diff(b->g, b->m->lagrangian, v);
     r.dim = dim_div(b->dims, b->energy, b->dim_of.at[v]);
@@ -273,7 +273,7 @@ static Value component(Eval *ev, const AstExpr *x, Value v) {
   Builder *b = ev->b;
   if (!v.e) return FAILED;
   uint32_t k = 0;
-  while (k < v.n && !(x->name[0] == part_letter(v.n, k) && !x->name[1])) k++;
+  while (k < v.n && !(x->name[0] == component_letter(v.n, k) && !x->name[1])) k++;
   if (k < v.n) {
     Value one = a_value(v.at[k], v.dim, v.bare);
     one.unit = v.unit;

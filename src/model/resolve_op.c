@@ -28,7 +28,7 @@ static void chain(Eval *ev, AstId id, AstKind inverse) {
     const AstExpr *x = ast_expr(b->ast, at);
     vec_push(b->arena, &ev->operands, ((Operand){x->b, x->kind == inverse}));
     at = x->a;
-    if (!ev->open[at - ev->first]) break;
+    if (!ev->by_parent[at - ev->first]) break;
   }
   vec_push(b->arena, &ev->operands, ((Operand){at, 0}));
   Operand *o = ev->operands.at;
@@ -55,7 +55,7 @@ static int point_in_sum(Eval *ev, uint32_t i) {
 }
 
 /* Shape and dimension of a sum, and whether it is bare; 0, reported, when operands differ. */
-static int judge_sum(Eval *ev, const AstExpr *x, Value *r) {
+static int type_of_sum(Eval *ev, const AstExpr *x, Value *r) {
   Builder *b = ev->b;
   AstId measure = 0; /* the operand that determines the dimension */
   *r = (Value){.dim = DIM_ANY, .bare = 1};
@@ -87,8 +87,8 @@ static Value sum_value(Eval *ev, AstId id) {
   Builder *b = ev->b;
   chain(ev, id, AST_SUB);
   Value r;
-  if (!judge_sum(ev, ast_expr(b->ast, id), &r)) return FAILED;
-  for (uint32_t k = 0; k < parts_of(&r); k++) {
+  if (!type_of_sum(ev, ast_expr(b->ast, id), &r)) return FAILED;
+  for (uint32_t k = 0; k < component_count(&r); k++) {
     for (uint32_t i = 0; i < ev->operands.n; i++) {
       Expr e = value_of(ev, ev->operands.at[i].at)->at[k];
       if (ev->operands.at[i].inverted) e = expr_neg(b->g, e);
@@ -147,7 +147,7 @@ static void warn_unit_of_divisor(Eval *ev, const Operand *o, const Value *r) {
   diag_help(b->diags, "a unit of the quotient: `(%s/%s) [%s]`; of the divisor: `%s/(%s [%s])`", above, number, unit, above, number, unit);
 }
 
-static int judge_product(Eval *ev, const AstExpr *x, Value *r, Factors *f) {
+static int type_of_product(Eval *ev, const AstExpr *x, Value *r, Factors *f) {
   Builder *b = ev->b;
   int ok = 1;
   AstId turn = 0;
@@ -190,10 +190,10 @@ static Value product_value(Eval *ev, AstId id) {
   chain(ev, id, AST_DIV);
   Value r, turned = {0};
   Factors f;
-  if (!judge_product(ev, ast_expr(b->ast, id), &r, &f)) return FAILED;
+  if (!type_of_product(ev, ast_expr(b->ast, id), &r, &f)) return FAILED;
   if (f.turns) turned = turned_value(ev, &f);
   if (f.turns && f.vector == UINT32_MAX) return turned;
-  for (uint32_t k = 0; k < parts_of(&r); k++) {
+  for (uint32_t k = 0; k < component_count(&r); k++) {
     for (uint32_t i = 0; i < ev->operands.n; i++) {
       const Value *v = value_of(ev, ev->operands.at[i].at);
       if (v->n == ROTATION) continue;
@@ -224,7 +224,7 @@ Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id) {
   return a_value(expr_pow(b->g, base->e, e->e), DIM_NONE, 0);
 }
 
-Expr note_written(Eval *ev, const AstExpr *x, Expr e) {
+Expr record_jump(Eval *ev, const AstExpr *x, Expr e) {
   const Builder *b = ev->b;
   ExprOp op = expr_op(b->g, e);
   int may_jump = op == EX_LT || op == EX_LE || op == EX_SIGN || op == EX_TAN || op == EX_ATAN2;
@@ -240,7 +240,7 @@ static Value compare_value(Eval *ev, const AstExpr *x) {
   int swapped = x->kind == AST_GT || x->kind == AST_GE;
   ExprOp op = x->kind == AST_LT || x->kind == AST_GT ? EX_LT : x->kind == AST_LE || x->kind == AST_GE ? EX_LE : EX_EQ;
   Expr e = expr_fn2(b->g, op, swapped ? r->e : l->e, swapped ? l->e : r->e);
-  note_written(ev, x, e);
+  record_jump(ev, x, e);
   if (x->kind == AST_NE) e = expr_fn(b->g, EX_NOT, e);
   return (Value){.e = e, .dim = DIM_NONE, .condition = 1};
 }
@@ -293,7 +293,7 @@ Value operator_value(Eval *ev, AstId id) {
     case AST_NEG: {
       Value v = *value_of(ev, x->a);
       if (v.n == ROTATION) return refuse_rotation(b, x->span, ast_short(b, x->a), TURN_NEGATION);
-      for (uint32_t k = 0; v.e && k < parts_of(&v); k++) v.at[k] = expr_neg(b->g, v.at[k]);
+      for (uint32_t k = 0; v.e && k < component_count(&v); k++) v.at[k] = expr_neg(b->g, v.at[k]);
       return v;
     }
     case AST_ADD: case AST_SUB: return sum_value(ev, id);
@@ -343,7 +343,7 @@ int loop_begin(Eval *ev, AstId id) {
 }
 
 /* Shape and dimension of sum(...) or product(...) from its terms, and whether it is bare; 0, reported, when terms differ. */
-static int judge_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr *x, Value *r) {
+static int type_of_terms(Eval *ev, const Value *term, uint32_t n, const AstExpr *x, Value *r) {
   Builder *b = ev->b;
   int product = x->kind == AST_PRODUCT;
   *r = (Value){.dim = product ? DIM_NONE : DIM_ANY, .bare = 1, .n = term[0].n};
@@ -378,9 +378,9 @@ static Value loop_value(Eval *ev, const Loop *l, const AstExpr *x) {
   const Value *term = ev->terms.at + l->base;
   uint32_t n = ev->terms.n - l->base;
   Value r;
-  if (!judge_terms(ev, term, n, x, &r)) return FAILED;
+  if (!type_of_terms(ev, term, n, x, &r)) return FAILED;
   for (uint32_t i = 0; i < n; i++) r.domain = domain_and(b, r.domain, term[i].domain);
-  for (uint32_t k = 0; k < parts_of(&r); k++) {
+  for (uint32_t k = 0; k < component_count(&r); k++) {
     for (uint32_t i = 0; i < n; i++) vec_push(b->arena, &b->scratch, term[i].at[k]);
     r.at[k] = x->kind == AST_SUM ? expr_add_n(b->g, b->scratch.at, n) : expr_mul_n(b->g, b->scratch.at, n);
     b->scratch.n = 0;

@@ -33,7 +33,7 @@ static const Expr *time_seeds(Builder *b) {
 /* 1 if v contains a symbol without a known rate: the energy, a charge, a second rate of an argument. */
 static int has_no_rate(Builder *b, const Value *v) {
   const Expr *seed = time_seeds(b);
-  ExprList l = expr_topo(b->g, v->at, parts_of(v));
+  ExprList l = expr_topo(b->g, v->at, component_count(v));
   for (uint32_t i = 0; i < l.n; i++)
     if (expr_op(b->g, l.at[i]) == EX_SYM && expr_sym_of(b->g, l.at[i])->kind == SYM_LOCAL && !seed[expr_sym_id(b->g, l.at[i])]) return 1;
   return 0;
@@ -42,7 +42,7 @@ static int has_no_rate(Builder *b, const Value *v) {
 /* Kinds of symbols in a value, as bits 1 << SymKind. */
 static unsigned kinds_in(Builder *b, const Value *v) {
   unsigned kinds = 0;
-  for (uint32_t i = 0; i < parts_of(v); i++) kinds |= expr_kinds(b->g, v->at[i]);
+  for (uint32_t i = 0; i < component_count(v); i++) kinds |= expr_kinds(b->g, v->at[i]);
   return kinds;
 }
 
@@ -75,7 +75,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   }
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
   const Expr *seed = time_seeds(b);
-  expr_tangent(b->g, of.at, parts_of(&of), seed, b->nseeds + 1, "'", &b->rates, r.at);
+  expr_tangent(b->g, of.at, component_count(&of), seed, b->nseeds + 1, "'", &b->rates, r.at);
   if (b->m->first_order) return r; /* rates are velocities; rates of true states were refused in the first build */
   if (where < IN_OBSERVE && kinds_in(b, &r) & second && !(kinds_in(b, &r) & 1u << SYM_ACC)) {
     diag_error(b->diags, span, "the rate of a state may stand only in `expect`, `observe` and `output`");
@@ -114,6 +114,6 @@ Value unit_value(Eval *ev, const AstExpr *x) {
     return FAILED;
   }
   Value r = {.dim = u.dim, .n = v->n, .unit = u.text, .point = !num_is_zero(u.offset)};
-  for (uint32_t k = 0; k < parts_of(v); k++) r.at[k] = times_unit(b, v->at[k], &u);
+  for (uint32_t k = 0; k < component_count(v); k++) r.at[k] = times_unit(b, v->at[k], &u);
   return r;
 }

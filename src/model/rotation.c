@@ -237,7 +237,7 @@ static Expr dot4(ExprGraph *g, const Value *p, const Value *q) {
   return four(g, pairs, 1);
 }
 
-void hold_rotation(Builder *b, Name name, uint32_t coord, Span span) {
+void constrain_rotation(Builder *b, Name name, uint32_t coord, Span span) {
   Value q = rotation_at(b, coord, 0);
   Expr square = dot4(b->g, &q, &q);
   vec_push(b->arena, &b->rotations, coord);

@@ -59,7 +59,7 @@ static const AstStmt *pick_scene(Builder *b, const char *scene) {
   return NULL;
 }
 
-static void take_model_name(Builder *b, const FileIndex *file) {
+static void read_model_name(Builder *b, const FileIndex *file) {
   const AstStmt *m = file->model;
   if (!m) {
     Span start = b->ast->first ? b->ast->first->span : (Span){0};
@@ -93,17 +93,17 @@ static void check_file(Builder *b, FileIndex *file) {
 
 void scene_select(Builder *b, const ModelChoice *choice) {
   FileIndex *file = file_index(b->ast);
-  take_model_name(b, file);
+  read_model_name(b, file);
   check_file(b, file);
   const AstStmt *st = choice->bare ? NULL : pick_scene(b, choice->scene);
   b->m->scene.name = st ? st->name : intern(b->ast->names, "default");
   b->m->scene.doc = st && st->doc ? st->doc : "";
   b->chain = scene_chain(b, st);
   for (const AstStmt **s = b->chain; *s; s++) {
-    check_said_once(b, *s);
+    check_set_once(b, *s);
     collect_uses(b, *s);
   }
-  if (choice->also) use_with_needs(b, choice->also);
+  if (choice->also) use_with_required(b, choice->also);
   b->is_variant = choice->only != NULL;
   if (b->is_variant) b->m->effects.n = 0;
   for (uint32_t i = 0; b->is_variant && i < choice->only->n; i++) vec_push(b->arena, &b->m->effects, choice->only->at[i]);
@@ -192,12 +192,12 @@ static void give_param(Builder *b, uint32_t i, Expr e, Span span, void *data) {
 }
 
 static void set_value(Builder *b, const AstStmt *st, Name effect) {
-  static const Giver giver = {IN_START, param_unit, give_param, NULL, NULL};
+  static const Assigner assigner = {IN_START, param_unit, give_param, NULL, NULL};
   if (!effect && advise_statement(b, st)) return;
   Target p = read_target(b, st->lhs);
   const Entity *e = find_settable(b, p.wrong || p.primes ? st->lhs : p.stem, effect);
   if (!e) return;
-  if (e->kind == ENT_PARAM) assign_values(b, &p, e, st->lhs, st->rhs, &giver);
+  if (e->kind == ENT_PARAM) assign_values(b, &p, e, st->lhs, st->rhs, &assigner);
   else if (p.indices || p.part >= 0) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "`%s` is an input: it has no index and no component", e->name);
   else give_input(b, e->index, e->name, st->rhs, effect);
 }
@@ -253,7 +253,7 @@ static void scene_statement(Builder *b, const AstStmt *st) {
     case STMT_USE:
       if (uses_effect(b, st->name))
         for (const AstStmt *x = st->body; x; x = x->next)
-          if (!b->is_variant || !mentions_off(b, x->rhs)) set_value(b, x, st->name);
+          if (!b->is_variant || !names_off_effect(b, x->rhs)) set_value(b, x, st->name);
       return;
     case STMT_SPAN: set_span(b, st); return;
     case STMT_METHOD: scene_method(b, st); return;
@@ -313,7 +313,7 @@ static void apply_in_chain(Builder *b, const AstStmt *const *s, const AstStmt *s
 }
 
 /* 1 if one of the scenes from *s on has an output statement: its columns replace inherited ones. */
-static int shows_others(const AstStmt *const *s) {
+static int has_own_outputs(const AstStmt *const *s) {
   for (; *s; s++)
     for (const AstStmt *x = (*s)->body; x; x = x->next)
       if (x->kind == STMT_OUTPUT) return 1;
@@ -328,7 +328,7 @@ static int is_dropped(Builder *b, const AstStmt *st, int before_none, int inheri
   if (st->kind == STMT_USE) return before_none;
   if (b->is_variant && is_shown(st)) return 1;
   if (!gives_value(st)) return 0;
-  if (b->is_variant && mentions_off(b, st->rhs)) return 1;
+  if (b->is_variant && names_off_effect(b, st->rhs)) return 1;
   Name effect = effect_given(b, st);
   return effect && (before_none || ((inherited || b->is_variant) && !uses_effect(b, effect)));
 }
@@ -343,14 +343,14 @@ static const AstStmt *last_of(const Builder *b, int (*is)(const AstStmt *st)) {
 }
 
 /* Calls `apply` for all statements of the chain that are not dropped. */
-static void each_said(Builder *b, void (*apply)(Builder *b, const AstStmt *st)) {
+static void each_effective(Builder *b, void (*apply)(Builder *b, const AstStmt *st)) {
   const AstStmt *none = last_of(b, is_use_none);
   int before = none != NULL;
   for (const AstStmt **s = b->chain; *s; s++)
     for (const AstStmt *x = (*s)->body; x; x = x->next) {
       before &= x != none;
       if (is_dropped(b, x, before, s[1] != NULL)) continue;
-      int hidden = apply == scene_statement && x->kind == STMT_OUTPUT && shows_others(s + 1);
+      int hidden = apply == scene_statement && x->kind == STMT_OUTPUT && has_own_outputs(s + 1);
       apply_in_chain(b, s, x, hidden ? set_every : apply);
     }
 }
@@ -367,7 +367,7 @@ static void set_monitors(Builder *b) {
 }
 
 /* Applies a value from the command line: the start of a rotation or of its omega, or an input. */
-static void give(Builder *b, const Given *x) {
+static void give(Builder *b, const CommandInput *x) {
   int ambiguous;
   AstStmt st = {.lhs = x->what, .rhs = x->value, .span = ast_expr(b->ast, x->value)->span};
   const AstExpr *name = ast_expr(b->ast, read_target(b, x->what).stem);
@@ -381,13 +381,13 @@ static void give(Builder *b, const Given *x) {
 void scene_build(Builder *b, const ModelChoice *choice) {
   Scene *sc = &b->m->scene;
   sc->t1 = 10;
-  each_said(b, exact_statement); /* first, as outputs refer to closed forms */
-  each_said(b, scene_statement);
+  each_effective(b, exact_statement); /* first, as outputs refer to closed forms */
+  each_effective(b, scene_statement);
   for (const AstStmt **s = b->chain; *s; s++)
     if ((*s)->doc) sc->doc = (*s)->doc;
   for (uint32_t i = 0; i < choice->ngiven; i++) give(b, &choice->given[i]);
-  settle_rotations(b);
+  complete_rotation_starts(b);
   if (!sc->outputs.n) default_outputs(b);
   if (!b->is_variant) set_monitors(b);
-  for (uint32_t i = 0; i < choice->nasked; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
+  for (uint32_t i = 0; i < choice->nextra_outputs; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
 }

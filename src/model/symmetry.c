@@ -119,7 +119,7 @@ static long double quotient(const Mapping *p, Expr to, long double h, long doubl
   SymId s = p->of->parameter;
   long double bound;
   symbols[s] = h;
-  long double value = prove_value(p->b->g, to, symbols, NULL, &bound);
+  long double value = value_with_bound(p->b->g, to, symbols, NULL, &bound);
   symbols[s] = 0;
   return (value - at_zero) / h;
 }
@@ -135,9 +135,9 @@ static int has_rate(const Mapping *p, Expr to, Expr rate) {
   long double *symbols = ARENA_ARRAY(p->b->arena, long double, expr_symbol_count(g) + 1), bound;
   int seen = 0;
   for (uint32_t seed = 1; seed <= TRIES && seen < STATES; seed++) {
-    prove_state(g, seed, symbols);
+    sample_state(g, seed, symbols);
     symbols[p->of->parameter] = 0;
-    long double at_zero = prove_value(g, to, symbols, NULL, &bound), slope = prove_value(g, rate, symbols, NULL, &bound);
+    long double at_zero = value_with_bound(g, to, symbols, NULL, &bound), slope = value_with_bound(g, rate, symbols, NULL, &bound);
     if (!isfinite(at_zero)) continue; /* the map has no value at this state */
     if (!isfinite(slope)) return 0;
     seen++;
@@ -235,8 +235,8 @@ static void add_map(Builder *b, const AstStmt *st, Name effect, void *data) {
     report_target(b, &target, target.primes ? whole : name, e);
     return;
   }
-  Giver giver = {IN_DYNAMICS, unit_of_target, give_target, &p, effect};
-  assign_values(b, &target, e, st->lhs, st->rhs, &giver);
+  Assigner assigner = {IN_DYNAMICS, unit_of_target, give_target, &p, effect};
+  assign_values(b, &target, e, st->lhs, st->rhs, &assigner);
 }
 
 /* Reports a generator that is zero: its charge would be 0. */

@@ -206,7 +206,7 @@ static void report_offset(const AstUnit *u, const AstUnitFactor *f, Diags *diags
 }
 
 /* Multiplies u by one factor of the written unit; 0, reported, if the factor is unknown or has an offset. */
-static int take_factor(Unit *u, const AstUnit *ast, const AstUnitFactor *f, Dims *dims, Diags *diags, Arena *a) {
+static int apply_factor(Unit *u, const AstUnit *ast, const AstUnitFactor *f, Dims *dims, Diags *diags, Arena *a) {
   int power;
   const UnitRow *row = find_prefixed(f->name, &power);
   if (!row) {
@@ -228,7 +228,7 @@ Unit unit_resolve(const AstUnit *ast, Dims *dims, Diags *diags, Arena *a) {
   if (!ast->n) return u;
   u.text = arena_strdup(a, ast->text);
   for (uint32_t i = 0; i < ast->n; i++)
-    if (!take_factor(&u, ast, &ast->at[i], dims, diags, a)) {
+    if (!apply_factor(&u, ast, &ast->at[i], dims, diags, a)) {
       u.dim = DIM_ANY;
       return u;
     }
@@ -238,7 +238,7 @@ Unit unit_resolve(const AstUnit *ast, Dims *dims, Diags *diags, Arena *a) {
 
 Unit unit_of_dim(Dims *dims, Dim d) {
   Unit u = {.dim = d, .factor = num_int(1), .offset = num_int(0), .text = ""};
-  d = dim_found(dims, d);
+  d = dim_resolved(dims, d);
   if (d != DIM_ANY && d != DIM_NONE && !dim_is_open(dims, d)) u.text = dim_text(dims, d);
   return u;
 }

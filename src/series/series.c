@@ -8,23 +8,23 @@ enum { INVERSE_MAX = 3 };
 
 /* --- values --- */
 
-Val series_open(Maker *m, Slot zero) {
+Val series_open(SeriesBuilder *m, Slot zero) {
   vec_push(m->arena, &m->values, ((Value){.zero = zero, .varies = 1}));
   return m->values.n - 1;
 }
 
-Val series_value(Maker *m, Slot zero, Slot coef) {
+Val series_value(SeriesBuilder *m, Slot zero, Slot coef) {
   if (!zero && !coef) return 0;
   vec_push(m->arena, &m->values, ((Value){.zero = zero, .coef = coef, .varies = coef != 0}));
   return m->values.n - 1;
 }
 
-void series_set(Maker *m, Val v, Slot coef) {
+void series_set(SeriesBuilder *m, Val v, Slot coef) {
   m->values.at[v].coef = coef;
   m->values.at[v].varies = coef != 0;
 }
 
-Slot series_constant(Maker *m, Slot s) {
+Slot series_constant(SeriesBuilder *m, Slot s) {
   if (!s) return 0;
   const Ins *i = &m->first->ins.at[s];
   if (i->op == IR_CONST) return prog_num(m->next, i->number);
@@ -38,16 +38,16 @@ Slot series_constant(Maker *m, Slot s) {
   return prog_ins(m->next, (Ins){.op = IR_LOAD, .array = ARR_STEP, .index = *at - 1, .name = i->name ? i->name : "constant"});
 }
 
-Slot series_zero(Maker *m, Val a) { return series_constant(m, m->values.at[a].zero); }
-Slot series_op(Maker *m, IrOp op, Slot a, Slot b) { return prog_op(m->next, op, a, b); }
-Slot series_order(Maker *m) { return prog_ins(m->next, (Ins){.op = IR_LOAD, .array = ARR_ORDER, .name = "k"}); }
+Slot series_zero(SeriesBuilder *m, Val a) { return series_constant(m, m->values.at[a].zero); }
+Slot series_op(SeriesBuilder *m, IrOp op, Slot a, Slot b) { return prog_op(m->next, op, a, b); }
+Slot series_order(SeriesBuilder *m) { return prog_ins(m->next, (Ins){.op = IR_LOAD, .array = ARR_ORDER, .name = "k"}); }
 
-Slot series_per_order(Maker *m, Slot x) {
+Slot series_per_order(SeriesBuilder *m, Slot x) {
   Slot r = prog_ins(m->next, (Ins){.op = IR_LOAD, .array = ARR_PER_ORDER, .name = "per_k"});
   return series_op(m, IR_MUL, x, r);
 }
 
-Slot series_over(Maker *m, Slot x, Slot divisor) {
+Slot series_over(SeriesBuilder *m, Slot x, Slot divisor) {
   Slot one = prog_num(m->first, num_int(1)), inverse = prog_op(m->first, IR_DIV, one, divisor);
   return series_op(m, IR_MUL, x, series_constant(m, inverse));
 }
@@ -55,7 +55,7 @@ Slot series_over(Maker *m, Slot x, Slot divisor) {
 /* --- sums over the orders below --- */
 
 /* Index of the pair (a, b) or (b, a), appended if new. */
-static uint32_t find_pair(Maker *m, Val a, Val b) {
+static uint32_t find_pair(SeriesBuilder *m, Val a, Val b) {
   if (a > b) {
     Val t = a;
     a = b;
@@ -68,18 +68,18 @@ static uint32_t find_pair(Maker *m, Val a, Val b) {
 }
 
 /* The base of a multiple; *factor, a slot of `first` (0: one), is multiplied by the value's factor. */
-static Val base_of(Maker *m, Val v, Slot *factor) {
+static Val base_of(SeriesBuilder *m, Val v, Slot *factor) {
   const Value *x = &m->values.at[v];
   if (!x->factor) return v;
   *factor = *factor ? prog_op(m->first, IR_MUL, *factor, x->factor) : x->factor;
   return x->base;
 }
 
-static Slot load(Maker *m, IrArray array, uint32_t index, Name name) {
+static Slot load(SeriesBuilder *m, IrArray array, uint32_t index, Name name) {
   return prog_ins(m->next, (Ins){.op = IR_LOAD, .array = array, .index = index, .name = name});
 }
 
-Slot series_sum(Maker *m, Val a, Val b) {
+Slot series_sum(SeriesBuilder *m, Val a, Val b) {
   if (!m->values.at[a].varies || !m->values.at[b].varies) return 0;
   Slot factor = 0;
   a = base_of(m, a, &factor);
@@ -88,7 +88,7 @@ Slot series_sum(Maker *m, Val a, Val b) {
   return factor ? series_op(m, IR_MUL, series_constant(m, factor), s) : s;
 }
 
-Slot series_product(Maker *m, Val a, Val b) {
+Slot series_product(SeriesBuilder *m, Val a, Val b) {
   Slot sum = series_sum(m, a, b), a0 = m->values.at[a].zero, lead;
   if (a == b) {
     Slot twice = prog_op(m->first, IR_ADD, a0, a0);
@@ -101,7 +101,7 @@ Slot series_product(Maker *m, Val a, Val b) {
   return series_op(m, IR_ADD, sum, lead);
 }
 
-Val series_theta(Maker *m, Val v) {
+Val series_theta(SeriesBuilder *m, Val v) {
   const Value x = m->values.at[v];
   if (x.theta || !x.varies) return x.theta;
   Slot coef = series_op(m, IR_MUL, series_order(m), x.coef);
@@ -122,7 +122,7 @@ typedef struct {
 typedef VEC(Entry) EntryList;
 
 typedef struct {
-  Maker m;
+  SeriesBuilder m;
   const IrSystem *sys;
   Series *out;
   unsigned char *need; /* by slot of the program: whether its coefficients are needed */
@@ -130,9 +130,9 @@ typedef struct {
   Val *value;          /* by slot of the program */
   EntryList *H, *row, *column; /* [nq + ndefs] rows of H, rows and columns of C */
   Val *u, *lambda;     /* [nq + ndefs] the rates u', and the adjoints of definitions */
-} Model;
+} ModelSeries;
 
-static void mark_roots(Model *w) {
+static void mark_roots(ModelSeries *w) {
   const IrSystem *sys = w->sys;
   for (uint32_t k = 0; k < sys->H.n; k++) w->need[sys->H.at[k].slot] = 1;
   for (uint32_t k = 0; k < sys->C.n; k++) w->need[sys->C.at[k].slot] = 1;
@@ -145,7 +145,7 @@ static void mark_roots(Model *w) {
 }
 
 /* Column of x that a load reads; -1 for parameters and other constants. */
-static int64_t column_of(Model *w, const Ins *i) {
+static int64_t column_of(ModelSeries *w, const Ins *i) {
   const IrSystem *sys = w->sys;
   switch (i->array) {
     case ARR_Q: return i->index;
@@ -158,18 +158,18 @@ static int64_t column_of(Model *w, const Ins *i) {
   return -1;
 }
 
-static Val load_value(Model *w, const Ins *i, Slot zero) {
+static Val load_value(ModelSeries *w, const Ins *i, Slot zero) {
   int64_t column = column_of(w, i);
   if (column < 0) return series_value(&w->m, zero, 0);
   return series_value(&w->m, zero, load(&w->m, ARR_COEF, (uint32_t)column, i->name));
 }
 
 /* Copies the program to `first`, and appends the recurrences of its instructions to `next`. */
-static void copy_program(Model *w) {
+static void copy_program(ModelSeries *w) {
   const Prog *p = w->sys->p;
   for (Slot s = 1; s < p->ins.n && !w->m.why; s++) {
     const Ins *was = &p->ins.at[s];
-    Ins i = prog_moved(w->m.first, p, w->zero, *was);
+    Ins i = prog_import(w->m.first, p, w->zero, *was);
     Slot zero = w->zero[s] = prog_ins(w->m.first, i);
     prog_name(w->m.first, zero, i.name);
     if (!w->need[s]) continue;
@@ -182,7 +182,7 @@ static void copy_program(Model *w) {
 
 /* --- M q'' = f --- */
 
-static void list_entries(Model *w) {
+static void list_entries(ModelSeries *w) {
   Arena *a = w->m.arena;
   const IrSystem *sys = w->sys;
   uint32_t total = sys->nq + sys->ndefs;
@@ -202,8 +202,8 @@ static void list_entries(Model *w) {
 }
 
 /* Opens the values of rates and adjoints, the latter computed in `first`: lambda = H u' + C^T lambda, from the last definition on. */
-static void open_unknowns(Model *w) {
-  Maker *m = &w->m;
+static void open_unknowns(ModelSeries *w) {
+  SeriesBuilder *m = &w->m;
   const IrSystem *sys = w->sys;
   uint32_t total = sys->nq + sys->ndefs;
   w->u = ARENA_ARRAY(m->arena, Val, total + 1);
@@ -224,8 +224,8 @@ static void open_unknowns(Model *w) {
 }
 
 /* Coefficient k of sum E x without its terms E[0] x[k]. */
-static Slot lower_terms(Model *w, const EntryList *list, const Val *x) {
-  Maker *m = &w->m;
+static Slot lower_terms(ModelSeries *w, const EntryList *list, const Val *x) {
+  SeriesBuilder *m = &w->m;
   Slot sum = 0;
   for (uint32_t k = 0; k < list->n; k++) {
     Val E = list->at[k].value, y = x[list->at[k].other];
@@ -238,8 +238,8 @@ static Slot lower_terms(Model *w, const EntryList *list, const Val *x) {
 }
 
 /* The terms E[0] x[k]. */
-static Slot top_terms(Model *w, const EntryList *list, const Val *x) {
-  Maker *m = &w->m;
+static Slot top_terms(ModelSeries *w, const EntryList *list, const Val *x) {
+  SeriesBuilder *m = &w->m;
   Slot sum = 0;
   for (uint32_t k = 0; k < list->n; k++) {
     Slot part = series_op(m, IR_MUL, series_zero(m, list->at[k].value), m->values.at[x[list->at[k].other]].coef);
@@ -249,14 +249,14 @@ static Slot top_terms(Model *w, const EntryList *list, const Val *x) {
 }
 
 /* Coefficient k of row v, H u' + C^T lambda, without the unknown terms of order k. */
-static Slot row_below(Model *w, uint32_t v) {
+static Slot row_below(ModelSeries *w, uint32_t v) {
   Slot quadratic = lower_terms(w, &w->H[v], w->u), adjoint = lower_terms(w, &w->column[v], w->lambda);
   return series_op(&w->m, IR_ADD, quadratic, adjoint);
 }
 
 /* Coefficients k of the adjoints lambda = H u' + C^T lambda, from the last definition on. */
-static void set_adjoints(Model *w) {
-  Maker *m = &w->m;
+static void set_adjoints(ModelSeries *w) {
+  SeriesBuilder *m = &w->m;
   for (uint32_t v = w->sys->nq + w->sys->ndefs; v-- > w->sys->nq;) {
     Slot below = row_below(w, v), top = top_terms(w, &w->H[v], w->u), adjoint = top_terms(w, &w->column[v], w->lambda);
     top = series_op(m, IR_ADD, top, adjoint);
@@ -266,15 +266,15 @@ static void set_adjoints(Model *w) {
 
 /* --- the factors of order 0 as order k sees them --- */
 
-static Slot seen_slot(Model *w, Slot s) { return series_constant(&w->m, w->zero[s]); }
+static Slot seen_slot(ModelSeries *w, Slot s) { return series_constant(&w->m, w->zero[s]); }
 
-static const Slot *seen_slots(Model *w, const Slot *s, uint32_t n) {
+static const Slot *seen_slots(ModelSeries *w, const Slot *s, uint32_t n) {
   Slot *to = ARENA_ARRAY(w->m.arena, Slot, n + 1);
   for (uint32_t i = 0; i < n; i++) to[i] = seen_slot(w, s[i]);
   return to;
 }
 
-static const SparseRow *seen_rows(Model *w, const SparseRow *rows, uint32_t n) {
+static const SparseRow *seen_rows(ModelSeries *w, const SparseRow *rows, uint32_t n) {
   SparseRow *to = ARENA_ARRAY(w->m.arena, SparseRow, n + 1);
   for (uint32_t v = 0; v < n; v++)
     for (uint32_t k = 0; k < rows[v].n; k++)
@@ -282,16 +282,16 @@ static const SparseRow *seen_rows(Model *w, const SparseRow *rows, uint32_t n) {
   return to;
 }
 
-static Slot seen_inverse(Model *w, Slot divisor) {
+static Slot seen_inverse(ModelSeries *w, Slot divisor) {
   Slot one = prog_num(w->m.first, num_int(1)), inverse = prog_op(w->m.first, IR_DIV, one, w->zero[divisor]);
   return series_constant(&w->m, inverse);
 }
 
-static Factored seen_from_next(Model *w) {
-  const Factored *f = w->sys->factored;
+static FactorRecord factors_in_next(ModelSeries *w) {
+  const FactorRecord *f = w->sys->factored;
   uint32_t total = f->n + f->ndefs;
   Slot *inverse = ARENA_ARRAY(w->m.arena, Slot, total + 1);
-  Factored seen = {.n = f->n, .ndefs = f->ndefs, .straight = f->straight, .order = f->order, .inverse = inverse};
+  FactorRecord seen = {.n = f->n, .ndefs = f->ndefs, .straight = f->straight, .order = f->order, .inverse = inverse};
   if (f->straight) {
     seen.pivot = ARENA_ARRAY(w->m.arena, Slot, f->n + 1);
     for (uint32_t v = 0; v < f->n; v++) inverse[v] = seen_inverse(w, f->pivot[v]);
@@ -300,20 +300,20 @@ static Factored seen_from_next(Model *w) {
     seen.row = seen_rows(w, f->row, total);
   }
   for (uint32_t k = 0; k < f->blocks.n; k++) {
-    FactoredBlock b = f->blocks.at[k];
+    FactorBlock b = f->blocks.at[k];
     if (b.n < 3) inverse[k] = seen_inverse(w, b.divisor);
     if (b.n == 2) b.M = seen_slots(w, b.M, 4);
     vec_push(w->m.arena, &seen.blocks, b);
-    if (b.n > 2) w->out->room += factored_room(b.n);
+    if (b.n > 2) w->out->room += factor_record_size(b.n);
   }
   return seen;
 }
 
 /* Solves small systems by the inverse: for a full M it takes as many operations as factors do, with shorter chains of dependence. It is
  * as accurate, since a definite matrix loses no digits by bad scales. */
-static void solve_by_inverse(Model *w, const Slot *b, Slot *x) {
-  Maker *m = &w->m;
-  Factored f = *w->sys->factored;
+static void solve_by_inverse(ModelSeries *w, const Slot *b, Slot *x) {
+  SeriesBuilder *m = &w->m;
+  FactorRecord f = *w->sys->factored;
   uint32_t n = f.n;
   Slot unit[INVERSE_MAX], column[INVERSE_MAX], inverse[INVERSE_MAX][INVERSE_MAX], *pivot = ARENA_ARRAY(m->arena, Slot, n);
   SparseRow *below = ARENA_ARRAY(m->arena, SparseRow, n);
@@ -326,7 +326,7 @@ static void solve_by_inverse(Model *w, const Slot *b, Slot *x) {
   f.below = below;
   for (uint32_t j = 0; j < n; j++) {
     for (uint32_t i = 0; i < n; i++) unit[i] = i == j ? prog_num(m->first, num_int(1)) : 0;
-    factored_solve(m->first, &f, unit, NULL, column);
+    factor_record_solve(m->first, &f, unit, NULL, column);
     for (uint32_t i = 0; i <= j; i++) inverse[i][j] = inverse[j][i] = column[i];
   }
   for (uint32_t i = 0; i < n; i++) {
@@ -338,8 +338,8 @@ static void solve_by_inverse(Model *w, const Slot *b, Slot *x) {
   }
 }
 
-static void solve(Model *w) {
-  Maker *m = &w->m;
+static void solve(ModelSeries *w) {
+  SeriesBuilder *m = &w->m;
   const IrSystem *sys = w->sys;
   uint32_t n = sys->nq, total = n + sys->ndefs;
   Slot *b = ARENA_ARRAY(m->arena, Slot, total + 1), *s = ARENA_ARRAY(m->arena, Slot, total + 1), *x = ARENA_ARRAY(m->arena, Slot, total + 1);
@@ -355,8 +355,8 @@ static void solve(Model *w) {
   if (sys->factored->straight && n <= INVERSE_MAX && !sys->ndefs) {
     solve_by_inverse(w, b, x);
   } else {
-    Factored seen = seen_from_next(w);
-    factored_solve(m->next, &seen, b, s, x);
+    FactorRecord seen = factors_in_next(w);
+    factor_record_solve(m->next, &seen, b, s, x);
   }
   for (uint32_t v = 0; v < total; v++) series_set(m, w->u[v], x[v]);
   set_adjoints(w);
@@ -364,7 +364,7 @@ static void solve(Model *w) {
 
 /* --- stores --- */
 
-static void store_rate(Model *w, uint32_t i, Slot zero, Slot coef) {
+static void store_rate(ModelSeries *w, uint32_t i, Slot zero, Slot coef) {
   Name name = w->sys->rates[i];
   uint32_t column = 2 * w->sys->nq + w->sys->nz + i;
   prog_name(w->m.first, zero, name);
@@ -374,13 +374,13 @@ static void store_rate(Model *w, uint32_t i, Slot zero, Slot coef) {
 }
 
 /* x[k+1] of q, v, z: T/(k+1) times their rates. */
-static void store_state(Model *w, uint32_t column, Slot rate) {
+static void store_state(ModelSeries *w, uint32_t column, Slot rate) {
   Slot up = load(&w->m, ARR_UP, 0, "up");
   prog_store(w->m.next, 1, column, series_op(&w->m, IR_MUL, up, rate), "");
 }
 
-static void store_all(Model *w) {
-  Maker *m = &w->m;
+static void store_all(ModelSeries *w) {
+  SeriesBuilder *m = &w->m;
   const IrSystem *sys = w->sys;
   uint32_t nq = sys->nq, nz = sys->nz;
   for (uint32_t i = 0; i < nq; i++) store_rate(w, i, w->zero[sys->x[i]], m->values.at[w->u[i]].coef);
@@ -392,7 +392,7 @@ static void store_all(Model *w) {
 
 /* By slot: cycles until the loads of `next` are ready. Rates of the previous order, and v and z computed from them, come last, with the
  * sums that contain them; everything else was ready one order before. */
-static const uint32_t *when_ready(const Model *w, const Prog *next) {
+static const uint32_t *when_ready(const ModelSeries *w, const Prog *next) {
   enum { ORDER = 30, PRODUCT = 4 };
   uint32_t *ready = ARENA_ARRAY(next->arena, uint32_t, next->ins.n), total = w->sys->nq + w->sys->ndefs;
   unsigned char *late = ARENA_ARRAY(next->arena, unsigned char, w->m.values.n);
@@ -412,7 +412,7 @@ Series *series_new(const IrSystem *sys, const char **why) {
   Arena *a = sys->p->arena;
   uint32_t n = sys->p->ins.n;
   Series *out = ARENA_NEW(a, Series);
-  Model w = {.m = {.arena = a, .first = prog_new(a), .next = prog_new(a)}, .sys = sys, .out = out};
+  ModelSeries w = {.m = {.arena = a, .first = prog_new(a), .next = prog_new(a)}, .sys = sys, .out = out};
   *out = (Series){.nq = sys->nq, .nz = sys->nz};
   w.need = ARENA_ARRAY(a, unsigned char, n);
   w.zero = ARENA_ARRAY(a, Slot, n);
@@ -426,9 +426,9 @@ Series *series_new(const IrSystem *sys, const char **why) {
   }
   solve(&w);
   store_all(&w);
-  series_place(&w.m, out);
+  series_columns(&w.m, out);
   Prog *first = prog_tidy(w.m.first), *next = prog_tidy(w.m.next);
-  next = prog_balance(next, when_ready(&w, next));
+  next = prog_reassociate(next, when_ready(&w, next));
   out->columns = (3 * sys->nq + 2 * sys->nz + (out->uses_time ? 1 : 0) + 3) / 4 * 4;
   series_arrange(out, first, next);
   out->first = first;

@@ -14,7 +14,7 @@
  *
  * M q'' = f is solved order by order with the factors of M[0], which `first` makes: M[0] q''[k] is
  * f[k] - M[k] q''[0] less the sums over M and q''. Where M is kept as a product, through definitions w' = C q'' + ...
- * (mech/lift.h), the same holds for the larger sparse system of the rates w' and their adjoints,
+ * (mech/augmented_system.h), the same holds for the larger sparse system of the rates w' and their adjoints,
  *     H u' + C^T lambda = f (rows of q),   H u' + C^T lambda = lambda (rows of w),   w' = C u',
  * so that the number of sums is proportional to the length of the text. */
 #ifndef LAGC_SERIES_SERIES_H
@@ -37,7 +37,7 @@ typedef struct {
   IrEntries H, C;        /* H: lower triangle */
   const Slot *f;         /* [nq] */
   const Slot *x;         /* [nq + ndefs] the solution */
-  const Factored *factored; /* the factors by which x was found */
+  const FactorRecord *factored; /* the factors by which x was found */
   const Slot *flow;      /* [nz] */
   const Name *velocities, *rates; /* [nq] and [nq + nz]: names of q', and of q'' and z' */
 } IrSystem;

@@ -18,7 +18,7 @@ typedef struct {
   uint32_t *place; /* by old index: new index + 1; 0: not placed yet */
   unsigned char *read; /* by old index: 1 if it is in a run */
   uint32_t placed;
-} Layout;
+} Renumbering;
 
 /* Runs of loads from `array` that change from turn to turn. */
 static RunList runs_of(const Rolls *r, IrArray array) {
@@ -46,13 +46,13 @@ static int longer(const void *a, const void *b) {
   return x->step < y->step ? -1 : x->step > y->step;
 }
 
-static void place(Layout *y, uint32_t index) {
+static void place(Renumbering *y, uint32_t index) {
   if (y->place[index]) return;
   y->place[index] = ++y->placed;
 }
 
 /* Places a run, extended at both ends by indices that are in no other: members of the family outside of the loop. */
-static void place_run(Layout *y, Run r) {
+static void place_run(Renumbering *y, Run r) {
   while (r.first >= r.step && !y->read[r.first - r.step] && !y->place[r.first - r.step]) r.first -= r.step, r.count++;
   for (uint32_t end = r.first + r.step * r.count; end < y->n && !y->read[end] && !y->place[end]; end += r.step) r.count++;
   for (uint32_t k = 0; k < r.count; k++) place(y, r.first + r.step * k);
@@ -61,8 +61,8 @@ static void place_run(Layout *y, Run r) {
 static int is_inside(Run r, uint32_t from, uint32_t n) { return r.first >= from && r.first + r.step * (r.count - 1) < from + n; }
 
 /* New places of the indices from ... from + n - 1, relative to `from`. The longest runs come first. */
-static Layout layout_of(Arena *a, const RunList *runs, uint32_t from, uint32_t n) {
-  Layout y = {.n = n, .place = ARENA_ARRAY(a, uint32_t, n + 1), .read = ARENA_ARRAY(a, unsigned char, n + 1)};
+static Renumbering layout_of(Arena *a, const RunList *runs, uint32_t from, uint32_t n) {
+  Renumbering y = {.n = n, .place = ARENA_ARRAY(a, uint32_t, n + 1), .read = ARENA_ARRAY(a, unsigned char, n + 1)};
   for (uint32_t k = 0; k < runs->n; k++)
     for (uint32_t t = 0; t < runs->at[k].count && is_inside(runs->at[k], from, n); t++) y.read[runs->at[k].first + runs->at[k].step * t - from] = 1;
   for (uint32_t k = 0; k < runs->n; k++) {
@@ -75,7 +75,7 @@ static Layout layout_of(Arena *a, const RunList *runs, uint32_t from, uint32_t n
   return y;
 }
 
-static void move_loads(Prog *p, IrArray array, const Layout *y, uint32_t from) {
+static void move_loads(Prog *p, IrArray array, const Renumbering *y, uint32_t from) {
   for (Slot s = 1; s < p->ins.n; s++) {
     Ins *i = &p->ins.at[s];
     if (i->op == IR_LOAD && i->array == array && i->index >= from && i->index < from + y->n) i->index = from + y->place[i->index - from] - 1;
@@ -88,7 +88,7 @@ static int in_order(const void *a, const void *b) {
   return x->index < y->index ? -1 : x->index > y->index;
 }
 
-static void move_stores(Prog *p, uint32_t array, const Layout *y, uint32_t from) {
+static void move_stores(Prog *p, uint32_t array, const Renumbering *y, uint32_t from) {
   for (uint32_t k = 0; k < p->stores.n; k++) {
     Store *st = &p->stores.at[k];
     if (st->array == array && st->index >= from && st->index < from + y->n) st->index = from + y->place[st->index - from] - 1;
@@ -103,8 +103,8 @@ void series_arrange(const Series *s, Prog *first, Prog *next) {
   RunList sums = runs_of(&r, ARR_SUMS), constants = runs_of(&r, ARR_STEP);
   if (sums.n) qsort(sums.at, sums.n, sizeof *sums.at, longer);
   if (constants.n) qsort(constants.at, constants.n, sizeof *constants.at, longer);
-  Layout of_sums = layout_of(a, &sums, 0, s->sums), of_squares = layout_of(a, &sums, s->first_square, s->squares);
-  Layout of_constants = layout_of(a, &constants, 0, s->constants);
+  Renumbering of_sums = layout_of(a, &sums, 0, s->sums), of_squares = layout_of(a, &sums, s->first_square, s->squares);
+  Renumbering of_constants = layout_of(a, &constants, 0, s->constants);
   move_loads(next, ARR_SUMS, &of_sums, 0);
   move_loads(next, ARR_SUMS, &of_squares, s->first_square);
   move_loads(next, ARR_STEP, &of_constants, 0);

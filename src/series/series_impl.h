@@ -1,4 +1,4 @@
-/* Shared by series.c (the two programs, the linear system), series_fn.c (a recurrence for each operation), series_place.c (columns of sums
+/* Shared by series.c (the two programs, the linear system), series_recurrences.c (a recurrence for each operation), series_columns.c (columns of sums
  * and constants) and series_arrange.c (their order for loops). */
 #ifndef LAGC_SERIES_SERIES_IMPL_H
 #define LAGC_SERIES_SERIES_IMPL_H
@@ -32,40 +32,40 @@ typedef struct {
   VEC(Pair) pairs;
   VEC(Slot) constants;       /* c: slots in `first` */
   VEC(uint32_t) constant_at; /* by slot of `first`: index in c + 1 */
-  VEC(uint32_t) columns;     /* by column: the pair whose sum it holds; UINT32_MAX: padding. See series_place */
+  VEC(uint32_t) columns;     /* by column: the pair whose sum it holds; UINT32_MAX: padding. See series_columns */
   const char *why;           /* the first function or word that is not analytic; NULL: none */
-} Maker;
+} SeriesBuilder;
 
 /* A value with coefficients 0 and k; coef == 0: constant in time. */
-Val series_value(Maker *m, Slot zero, Slot coef);
+Val series_value(SeriesBuilder *m, Slot zero, Slot coef);
 /* A value whose coefficient k is set later, by series_set, since it needs sums over the value's own lower coefficients. */
-Val series_open(Maker *m, Slot zero);
-void series_set(Maker *m, Val v, Slot coef);
+Val series_open(SeriesBuilder *m, Slot zero);
+void series_set(SeriesBuilder *m, Val v, Slot coef);
 
 /* Slot of `next` for a slot of `first`: a number, or a load of c. */
-Slot series_constant(Maker *m, Slot s);
+Slot series_constant(SeriesBuilder *m, Slot s);
 
 /* In `next`: coefficient 0 of a; the sum over the pair (a, b); coefficient k of the product a b. */
-Slot series_zero(Maker *m, Val a);
-Slot series_sum(Maker *m, Val a, Val b);
-Slot series_product(Maker *m, Val a, Val b);
+Slot series_zero(SeriesBuilder *m, Val a);
+Slot series_sum(SeriesBuilder *m, Val a, Val b);
+Slot series_product(SeriesBuilder *m, Val a, Val b);
 
 /* Instructions of `next`. */
-Slot series_op(Maker *m, IrOp op, Slot a, Slot b);
+Slot series_op(SeriesBuilder *m, IrOp op, Slot a, Slot b);
 /* x / k, and x divided by a slot of `first`. */
-Slot series_per_order(Maker *m, Slot x);
-Slot series_over(Maker *m, Slot x, Slot divisor);
-Slot series_order(Maker *m);
+Slot series_per_order(SeriesBuilder *m, Slot x);
+Slot series_over(SeriesBuilder *m, Slot x, Slot divisor);
+Slot series_order(SeriesBuilder *m);
 
 /* The value t d/dt v. */
-Val series_theta(Maker *m, Val v);
+Val series_theta(SeriesBuilder *m, Val v);
 
 /* The value of an instruction of the program, by its recurrence; v, w, x: values of its operands, zero: its slot in `first`.
  * 0 when it is not analytic, with m->why set. */
-Val series_instruction(Maker *m, const Ins *i, Slot zero, Val v, Val w, Val x);
+Val series_instruction(SeriesBuilder *m, const Ins *i, Slot zero, Val v, Val w, Val x);
 
 /* Assigns columns to the sums, and places to the constants, that the stores of `next` need; stores the factors a[k], b[k] and the constants. */
-void series_place(Maker *m, Series *s);
+void series_columns(SeriesBuilder *m, Series *s);
 
 /* Reorders sums and constants of long programs so that loops read and write neighbours. */
 void series_arrange(const Series *s, Prog *first, Prog *next);

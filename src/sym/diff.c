@@ -116,7 +116,7 @@ static Expr partial(ExprGraph *g, Expr e, uint32_t i) {
 
 /* Makes a sum or a long product a definition named after the definition it belongs to, so that the derivative of a
  * chain of lets stays as long as the chain. */
-static Expr name_sum(ExprGraph *g, const char *before, Name name, const char *after, Expr body) {
+static Expr name_long_expr(ExprGraph *g, const char *before, Name name, const char *after, Expr body) {
   enum { LONG_PRODUCT = 8 };
   Num c;
   int sum = expr_pairs(g, body, EX_SUM) > 1;
@@ -125,7 +125,7 @@ static Expr name_sum(ExprGraph *g, const char *before, Name name, const char *af
   int n = snprintf(room, sizeof room, "%s%s%s", before, name, after);
   const char *text = n < (int)sizeof room ? room : arena_printf(g->arena, "%s%s%s", before, name, after);
   Name full = intern(g->names, text);
-  return expr_def_fresh(g, full, body);
+  return expr_def_unique(g, full, body);
 }
 
 /* --- forward --- */
@@ -170,7 +170,7 @@ void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed,
       StrBuf b = strbuf(g->arena);
       sb_printf(&b, "%s%s", expr_def_name(g, e), suffix);
       Name name = intern(g->names, sb_text(&b));
-      sum = expr_def_fresh(g, name, sum);
+      sum = expr_def_unique(g, name, sum);
       if (known) expr_map_set(known, e, sum);
     }
     expr_map_set(dot, e, sum);
@@ -240,7 +240,7 @@ static Adjoints sweep(ExprGraph *g, Expr e, const Wanted *w, ExprList *l) {
     if (expr_op(g, x) == EX_SYM || !expr_map_get(live, x)) continue;
     Expr bar = adjoint_of(&a, x);
     if (bar == g->zero) continue;
-    if (expr_op(g, x) == EX_DEF) bar = name_sum(g, "d_", expr_def_name(g, x), "", bar);
+    if (expr_op(g, x) == EX_DEF) bar = name_long_expr(g, "d_", expr_def_name(g, x), "", bar);
     for (uint32_t i = 0; i < inputs(g, x); i++) {
       if (!expr_map_get(live, input(g, x, i))) continue;
       Expr p = partial(g, x, i);

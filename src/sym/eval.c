@@ -20,39 +20,39 @@ static long double number(Num n) {
   return num_is_exact(n) ? (long double)n.num / (long double)n.den : n.approx;
 }
 
-/* Step of a tape, for one node: its arguments are t->arg[first ..], indices of earlier steps; coefficients or exponents
+/* TapeStep of a tape, for one node: its arguments are t->arg[first ..], indices of earlier steps; coefficients or exponents
  * of a sum or product are t->number[first ..]. */
 typedef struct {
   ExprOp op;
   uint32_t first, n;
   SymId symbol;
   long double constant;
-} Step;
+} TapeStep;
 
 struct EvalTape {
   uint32_t n, nroots;
-  Step *step;
+  TapeStep *step;
   long double *value;
   VEC(uint32_t) arg;
   VEC(Num) number;
-  int narrow;     /* factors and partial products are rounded to double */
+  int round_to_double;     /* factors and partial products are rounded to double */
   uint32_t *root; /* step of each root; UINT32_MAX for root 0 */
-  SymId changed;  /* the symbol for which follows[] was computed */
-  uint8_t *follows; /* whether a step depends on that symbol */
+  SymId changed;  /* the symbol for which is_dependent[] was computed */
+  uint8_t *is_dependent; /* whether a step depends on that symbol */
 };
 
-static long double pairs_value(const EvalTape *t, const Step *o) {
+static long double pairs_value(const EvalTape *t, const TapeStep *o) {
   long double r = o->op == EX_SUM ? 0 : 1;
   for (uint32_t i = o->first; i < o->first + o->n; i++) {
     long double x = t->value[t->arg.at[i]];
     if (o->op == EX_SUM) r += number(t->number.at[i]) * x;
-    else if (t->narrow) r = (double)(r * (double)power(x, t->number.at[i]));
+    else if (t->round_to_double) r = (double)(r * (double)power(x, t->number.at[i]));
     else r *= power(x, t->number.at[i]);
   }
   return r;
 }
 
-static long double step_value(const EvalTape *t, const Step *o, const long double *symbols) {
+static long double step_value(const EvalTape *t, const TapeStep *o, const long double *symbols) {
   const uint32_t *arg = t->arg.at + o->first;
   long double x = 0, y = 0;
   if (o->op != EX_SUM && o->op != EX_PROD) {
@@ -95,9 +95,9 @@ static long double step_value(const EvalTape *t, const Step *o, const long doubl
   return NAN;
 }
 
-static Step lay_step(EvalTape *t, ExprGraph *g, Arena *a, Expr e, const ExprMap *place) {
+static TapeStep compile_step(EvalTape *t, ExprGraph *g, Arena *a, Expr e, const ExprMap *place) {
   ExprOp op = expr_op(g, e);
-  Step o = {.op = op, .first = t->arg.n};
+  TapeStep o = {.op = op, .first = t->arg.n};
   int pairs = op == EX_SUM || op == EX_PROD;
   if (op == EX_NUM) o.constant = number(expr_number(g, e));
   if (op == EX_SYM) o.symbol = expr_sym_id(g, e);
@@ -121,12 +121,12 @@ EvalTape *eval_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
   t->nroots = n;
   vec_push(a, &t->arg, 0); /* keeps the arrays non-NULL where no step has arguments */
   vec_push(a, &t->number, num_int(0));
-  t->step = ARENA_ARRAY(a, Step, l.n + 1);
+  t->step = ARENA_ARRAY(a, TapeStep, l.n + 1);
   t->value = ARENA_ARRAY(a, long double, l.n + 1);
-  t->follows = ARENA_ARRAY(a, uint8_t, l.n + 1);
+  t->is_dependent = ARENA_ARRAY(a, uint8_t, l.n + 1);
   t->root = ARENA_ARRAY(a, uint32_t, n + 1);
   for (uint32_t i = 0; i < l.n; i++) {
-    t->step[i] = lay_step(t, g, a, l.at[i], &place);
+    t->step[i] = compile_step(t, g, a, l.at[i], &place);
     expr_map_set(&place, l.at[i], i + 1);
   }
   for (uint32_t i = 0; i < n; i++) t->root[i] = roots[i] ? expr_map_get(&place, roots[i]) - 1 : UINT32_MAX;
@@ -143,28 +143,28 @@ void eval_run(EvalTape *t, const long double *symbols, long double *out) {
 }
 
 void eval_run_double(EvalTape *t, long double (*symbol)(SymId s, const void *data), const void *data, long double *out) {
-  t->narrow = 1;
+  t->round_to_double = 1;
   for (uint32_t i = 0; i < t->n; i++) {
-    const Step *o = &t->step[i];
+    const TapeStep *o = &t->step[i];
     t->value[i] = (double)(o->op == EX_SYM ? symbol(o->symbol, data) : step_value(t, o, NULL));
   }
-  t->narrow = 0;
+  t->round_to_double = 0;
   read_roots(t, out);
 }
 
-static void mark_followers(EvalTape *t, SymId changed) {
+static void mark_dependents(EvalTape *t, SymId changed) {
   for (uint32_t i = 0; i < t->n; i++) {
-    const Step *o = &t->step[i];
-    t->follows[i] = o->op == EX_SYM && o->symbol == changed;
-    for (uint32_t k = o->first; k < o->first + o->n; k++) t->follows[i] |= t->follows[t->arg.at[k]];
+    const TapeStep *o = &t->step[i];
+    t->is_dependent[i] = o->op == EX_SYM && o->symbol == changed;
+    for (uint32_t k = o->first; k < o->first + o->n; k++) t->is_dependent[i] |= t->is_dependent[t->arg.at[k]];
   }
   t->changed = changed;
 }
 
 void eval_rerun(EvalTape *t, const long double *symbols, SymId changed, long double *out) {
-  if (t->changed != changed) mark_followers(t, changed);
+  if (t->changed != changed) mark_dependents(t, changed);
   for (uint32_t i = 0; i < t->n; i++)
-    if (t->follows[i]) t->value[i] = step_value(t, &t->step[i], symbols);
+    if (t->is_dependent[i]) t->value[i] = step_value(t, &t->step[i], symbols);
   read_roots(t, out);
 }
 

@@ -160,7 +160,7 @@ static Named *named_entry(ExprGraph *g, Name name, Expr body) {
   return &g->named.at[g->named.n - 1];
 }
 
-Expr expr_def_fresh(ExprGraph *g, Name name, Expr body) {
+Expr expr_def_unique(ExprGraph *g, Name name, Expr body) {
   ExprOp op = expr_op(g, body);
   if (op == EX_NUM || op == EX_SYM || op == EX_DEF) return body;
   Expr known = named_entry(g, name, body)->def;

@@ -74,7 +74,7 @@ SymId expr_declare(ExprGraph *g, SymKind kind, uint32_t index, Name name, ExprSi
 uint32_t expr_symbol_count(const ExprGraph *g);
 const Symbol *expr_symbol(const ExprGraph *g, SymId id);
 /* Definition with a unique name: name, name_2, name_3 ... in order of request; equal (name, body) give one definition. */
-Expr expr_def_fresh(ExprGraph *g, Name name, Expr body);
+Expr expr_def_unique(ExprGraph *g, Name name, Expr body);
 /* Definition `name = body`; leaves (numbers, symbols, definitions) are returned unchanged. */
 Expr expr_def(ExprGraph *g, Name name, Expr body);
 
@@ -158,13 +158,13 @@ Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const c
 Expr expr_replace(ExprGraph *g, Expr e, const SymId *syms, const Expr *with, uint32_t n);
 
 /* out[i] = roots[i] with each nodes[k] replaced by with[k], all roots in one pass. */
-void expr_cut(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with, uint32_t nnodes, Expr *out);
+void expr_replace_nodes(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with, uint32_t nnodes, Expr *out);
 
 /* e with every definition replaced by its body. */
 Expr expr_expand_defs(ExprGraph *g, Expr e);
 
 /* Number of nodes of e written out as a tree, definitions by name; *distinct: its number of distinct nodes. */
-double expr_written_size(ExprGraph *g, Expr e, uint32_t *distinct);
+double expr_tree_size(ExprGraph *g, Expr e, uint32_t *distinct);
 
 /* Operation count of the roots, every node computed once; a transcendental function counts 20. */
 uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n);

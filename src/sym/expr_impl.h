@@ -18,7 +18,7 @@ typedef struct {
   uint32_t next;
 } Contribution;
 
-/* Definition made for (name, body) by expr_def_fresh. The entry with body 0 counts the definitions that asked for the name. */
+/* Definition made for (name, body) by expr_def_unique. The entry with body 0 counts the definitions that asked for the name. */
 typedef struct {
   Name name;
   Expr body, def;
@@ -40,7 +40,7 @@ struct ExprGraph {
   ExprMap work; /* scratch of passes that do not call each other: substitution, derivatives */
   Expr *found, *spare; /* scratch of expr_topo, used again */
   uint32_t found_cap, spare_n;
-  VEC(Named) named;          /* definitions by requested name and body: see expr_def_fresh */
+  VEC(Named) named;          /* definitions by requested name and body: see expr_def_unique */
   uint32_t *named_table, named_cap;
   Expr zero, one, minus_one;
 };
@@ -66,16 +66,16 @@ typedef struct {
 /* Multiplies r by base^e. */
 void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e);
 
-/* quotient.c: applies sinh/cosh = tanh, exp(u)/exp(v) = exp(u - v) or exp(u)/(1 + exp(u)) = 1/(1 + exp(-u)) once to
+/* finite_quotients.c: applies sinh/cosh = tanh, exp(u)/exp(v) = exp(u - v) or exp(u)/(1 + exp(u)) = 1/(1 + exp(-u)) once to
  * the factors of r. Returns 1 when r changed. */
-int expr_use_quotient(ExprGraph *g, Product *r);
+int expr_rewrite_quotient(ExprGraph *g, Product *r);
 
 /* cosh(u) of the sum 1 - tanh(u)^2 = 1/cosh(u)^2, which rounds to 0 where u > 19; otherwise 0. */
 Expr expr_cosh_of_tanh(ExprGraph *g, Expr sum);
 
 /* Index of the sum T in exp(u)*T or T/S that must be distributed, so that each exp(u) meets the sums with exp(u) below it;
  * r->p.n if there is none. */
-uint32_t expr_mixed_sum(const ExprGraph *g, const Product *r);
+uint32_t expr_sum_to_distribute(const ExprGraph *g, const Product *r);
 
 /* The hash-consed node (op, args). The caller guarantees that it is canonical. */
 Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);

@@ -11,7 +11,7 @@ FracField *frac_field(PolyRing *r) {
   return f;
 }
 
-void frac_know_root(FracField *f, GenId x) {
+void frac_register_root(FracField *f, GenId x) {
   PolyRing *r = f->ring;
   PolyId id = poly_intern(r, r->gens.at[x].relation);
   while (f->root_of.n <= id) vec_push(r->arena, &f->root_of, 0);
@@ -268,7 +268,7 @@ static Poly cancel_common(FracField *f, Poly num, DenFactor *d) {
   Poly p = poly_at(r, d->factor);
   if (p.n != 1 || num.n == 0 || mono_at(r, p.at[0].mono)->n != 1) return num;
   GenId x = mono_at(r, p.at[0].mono)->at[0].gen;
-  int32_t have = mono_exp(r, poly_common(r, num), x);
+  int32_t have = mono_exp(r, poly_common_monomial(r, num), x);
   if (have <= 0) return num;
   uint32_t take = (uint32_t)have < d->exp ? (uint32_t)have : d->exp;
   MonoPow lower = {.gen = x, .exp = -(int32_t)take};

@@ -38,7 +38,7 @@ typedef struct {
 FracField *frac_field(PolyRing *r);
 
 /* Registers the relation x^k = R of x, so that a denominator equal to R becomes x^k. */
-void frac_know_root(FracField *f, GenId x);
+void frac_register_root(FracField *f, GenId x);
 
 static inline Den frac_den(const FracField *f, DenId id) { return f->dens.at[id]; }
 

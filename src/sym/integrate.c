@@ -21,7 +21,7 @@ typedef struct {
   Expr factor, growth;
   int32_t power;
   Harmonics harmonics;
-} Product;
+} IntegrandTerm;
 
 typedef struct {
   ExprGraph *g;
@@ -56,7 +56,7 @@ static int is_linear(const Task *t, Expr u) {
   return !has_x(t, slope) && !(expr_kinds(t->g, slope) & t->without);
 }
 
-static int times_power(const Task *t, Product *p, const GenInfo *gen, int32_t exp) {
+static int times_power(const Task *t, IntegrandTerm *p, const GenInfo *gen, int32_t exp) {
   if (expr_op(t->g, gen->expr) != EX_EXP) return 0;
   Expr u = expr_arg(t->g, gen->expr, 0), grown = expr_scale(t->g, num_int(exp), u);
   p->growth = expr_add(t->g, p->growth, grown);
@@ -64,7 +64,7 @@ static int times_power(const Task *t, Product *p, const GenInfo *gen, int32_t ex
 }
 
 /* Multiplies p by a power of a generator that contains x; returns 0 if the form has no place for it. */
-static int times_gen(Normal *n, const Task *t, Product *p, GenId x, int32_t exp) {
+static int times_gen(Normal *n, const Task *t, IntegrandTerm *p, GenId x, int32_t exp) {
   const GenInfo gen = n->gens.at[x];
   switch (gen.kind) {
     case GEN_SYMBOL: p->power += exp; return exp <= MAX_POWER && exp >= -MAX_POWER;
@@ -81,10 +81,10 @@ static int times_gen(Normal *n, const Task *t, Product *p, GenId x, int32_t exp)
 }
 
 /* One term of the integrand, times divisor, in that product form; returns 0 if it does not fit. */
-static int product_of(Normal *n, const Task *t, Term term, Expr divisor, Product *p) {
+static int product_of(Normal *n, const Task *t, Term term, Expr divisor, IntegrandTerm *p) {
   ExprGraph *g = t->g;
   Mono mono = *mono_at(n->ring, term.mono);
-  *p = (Product){.factor = expr_num(g, term.c), .growth = expr_int(g, 0)};
+  *p = (IntegrandTerm){.factor = expr_num(g, term.c), .growth = expr_int(g, 0)};
   vec_push(n->arena, &p->harmonics, ((Harmonic){num_int(1), expr_int(g, 0), 0}));
   p->factor = expr_mul(g, p->factor, divisor);
   for (uint32_t i = 0; i < mono.n; i++) {
@@ -104,7 +104,7 @@ static int product_of(Normal *n, const Task *t, Term term, Expr divisor, Product
 
 typedef struct {
   Expr sin, cos;
-} Pair;
+} HarmonicPair;
 
 /* Integral of x^k: x^(k + 1)/(k + 1), or log|x| for k = -1. */
 static Expr power_integral(const Task *t, int32_t k) {
@@ -125,12 +125,12 @@ static Expr combine(ExprGraph *g, Expr a, Expr x, Expr b, Expr y) {
 
 /* The integrals of x^k exp(u) sin(w) and x^k exp(u) cos(w), u' = a, w' = b, by parts from k = 0 on:
  *   int x^k exp(u) sin(w) = (x^k exp(u) (a sin w - b cos w) - k (a S - b C))/(a^2 + b^2), S and C the integrals for k - 1. */
-static Pair harmonic_integrals(const Task *t, int32_t k, Expr u, Expr w) {
+static HarmonicPair harmonic_integrals(const Task *t, int32_t k, Expr u, Expr w) {
   ExprGraph *g = t->g;
   Expr a = expr_diff(g, u, t->x), b = expr_diff(g, w, t->x), minus_b = expr_neg(g, b), x = expr_symbol(g, t->x)->node;
   Expr size = combine(g, a, a, b, b), inverse = expr_pow_num(g, size, num_int(-1));
   Expr grown = expr_fn(g, EX_EXP, u), s = expr_fn(g, EX_SIN, w), c = expr_fn(g, EX_COS, w);
-  Pair done = {expr_int(g, 0), expr_int(g, 0)};
+  HarmonicPair done = {expr_int(g, 0), expr_int(g, 0)};
   for (int32_t i = 0; i <= k; i++) {
     Expr power = expr_pow_num(g, x, num_int(i)), front = expr_mul(g, power, grown);
     Expr sine = combine(g, a, s, minus_b, c), cosine = combine(g, a, c, b, s);
@@ -145,7 +145,7 @@ static Pair harmonic_integrals(const Task *t, int32_t k, Expr u, Expr w) {
 }
 
 /* Integral of p; 0 for a negative power of x times a function of x. */
-static Expr product_integral(const Task *t, const Product *p) {
+static Expr product_integral(const Task *t, const IntegrandTerm *p) {
   ExprGraph *g = t->g;
   Expr sum = expr_int(g, 0);
   for (uint32_t i = 0; i < p->harmonics.n; i++) {
@@ -159,7 +159,7 @@ static Expr product_integral(const Task *t, const Product *p) {
     } else if (p->power < 0) {
       return 0;
     } else {
-      Pair both = harmonic_integrals(t, p->power, p->growth, h.angle);
+      HarmonicPair both = harmonic_integrals(t, p->power, p->growth, h.angle);
       part = h.is_sin ? both.sin : both.cos;
     }
     part = expr_scale(g, h.c, part);
@@ -184,7 +184,7 @@ static void integrate_work(Arena *scratch, void *data) {
   if (n->ring->status != POLY_OK || has_x(t, divisor)) return;
   VEC(Expr) parts = {0};
   for (uint32_t i = 0; i < f.num.n; i++) {
-    Product p;
+    IntegrandTerm p;
     if (!product_of(n, t, f.num.at[i], divisor, &p)) continue;
     Expr part = product_integral(t, &p);
     if (part) vec_push(scratch, &parts, part);
@@ -270,7 +270,7 @@ static void homotopy_work(Arena *scratch, void *data) {
   Expr divisor = divisor_expr(n, f.den), sum = expr_int(t->g, 0);
   if (n->ring->status != POLY_OK || has_x(t, divisor)) return;
   for (uint32_t i = 0; i < f.num.n; i++) {
-    Product p;
+    IntegrandTerm p;
     if (!product_of(n, t, f.num.at[i], divisor, &p) || p.power == -1 || has_x(t, p.growth) || p.harmonics.n != 1) return;
     Expr part = expr_scale(t->g, num_ratio(1, p.power + 1), p.factor);
     sum = expr_add(t->g, sum, part);

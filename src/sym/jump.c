@@ -10,12 +10,12 @@
 typedef long double Real;
 
 enum {
-  MOST = 200,   /* candidates examined: models of many bodies repeat the same few */
+  MAX_CANDIDATES = 200,   /* candidates examined: models of many bodies repeat the same few */
   LINES = 64,   /* lines through random states */
   PLACES = 12   /* sign changes tried for each candidate; one jump suffices */
 };
 
-static const unsigned varied = 1u << SYM_TIME | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE;
+static const unsigned varying_kinds = 1u << SYM_TIME | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE;
 
 typedef struct {
   ExprGraph *g;
@@ -25,7 +25,7 @@ typedef struct {
   uint32_t nterms;    /* number of terms of x that may jump with the source */
   EvalTape *tape;     /* tape of these terms */
   Real *term;         /* their values */
-  Real *base, *way;   /* current line base + s*way */
+  Real *base, *direction;   /* current line base + s*direction */
   int from_origin;    /* whether coordinates, velocities and time are 0 at its base */
   Real *at;           /* a state on the line */
   VEC(ExprJump) found;
@@ -37,13 +37,13 @@ typedef struct {
 typedef struct {
   Expr node, side;
   int angle;     /* jumps where cos(side) is 0 instead: tan */
-  uint64_t made; /* hash of the symbols in side: sources that jump at one place have equal hashes */
+  uint64_t symbols_hash; /* hash of the symbols in side: sources that jump at one place have equal hashes */
 } Source;
 
 typedef VEC(Source) Sources;
 
 /* FNV-1a hash of the symbols in side, in graph order. */
-static uint64_t made_of(const Search *s, Expr side) {
+static uint64_t hash_symbols(const Search *s, Expr side) {
   uint64_t hash = 0xcbf29ce484222325u;
   ExprList l = expr_topo(s->g, &side, 1);
   for (uint32_t i = 0; i < l.n; i++)
@@ -52,12 +52,12 @@ static uint64_t made_of(const Search *s, Expr side) {
 }
 
 static void add(const Search *s, Sources *to, Expr node, Expr side, int angle) {
-  if (!(expr_kinds(s->g, side) & varied) || to->n == MOST) return;
-  vec_push(s->arena, to, ((Source){node, side, angle, made_of(s, side)}));
+  if (!(expr_kinds(s->g, side) & varying_kinds) || to->n == MAX_CANDIDATES) return;
+  vec_push(s->arena, to, ((Source){node, side, angle, hash_symbols(s, side)}));
 }
 
 /* Whether op can turn a pole into a finite jump: atan(1/x), x/abs(x). */
-static int tames_poles(ExprOp op) { return op == EX_ATAN || op == EX_ATAN2 || op == EX_TANH || op == EX_EXP || op == EX_ABS; }
+static int bounds_poles(ExprOp op) { return op == EX_ATAN || op == EX_ATAN2 || op == EX_TANH || op == EX_EXP || op == EX_ABS; }
 
 static void add_divisors(const Search *s, Sources *to, Expr product) {
   ExprGraph *g = s->g;
@@ -76,7 +76,7 @@ static Sources sources_of(const Search *s, Expr x) {
   Sources all = {0};
   ExprList nodes = expr_topo(g, &x, 1);
   int poles = 0;
-  for (uint32_t i = 0; i < nodes.n; i++) poles |= tames_poles(expr_op(g, nodes.at[i]));
+  for (uint32_t i = 0; i < nodes.n; i++) poles |= bounds_poles(expr_op(g, nodes.at[i]));
   for (uint32_t i = 0; i < nodes.n; i++) {
     Expr e = nodes.at[i];
     ExprOp op = expr_op(g, e);
@@ -95,7 +95,7 @@ static Sources sources_of(const Search *s, Expr x) {
 /* A term of x, and the symbol hashes of its sources. */
 typedef struct {
   Expr term;
-  VEC(uint64_t) made;
+  VEC(uint64_t) symbols_hash;
 } Part;
 
 typedef VEC(Part) Parts;
@@ -112,9 +112,9 @@ static Parts parts_of(const Search *s, const Sources *all, Expr x) {
     ExprList l = expr_topo(g, &part.term, 1);
     for (uint32_t k = 0; k < l.n; k++) {
       uint32_t source = expr_map_get(&nodes, l.at[k]);
-      if (source) vec_push(s->arena, &part.made, all->at[source - 1].made);
+      if (source) vec_push(s->arena, &part.symbols_hash, all->at[source - 1].symbols_hash);
     }
-    if (!part.made.n) continue;
+    if (!part.symbols_hash.n) continue;
     part.term = expr_scale(g, c, part.term);
     vec_push(s->arena, &parts, part);
   }
@@ -122,14 +122,14 @@ static Parts parts_of(const Search *s, const Sources *all, Expr x) {
 }
 
 /* Selects the terms that may jump with the source, and their symbols. */
-static void take_terms(Search *s, const Parts *parts, const Source *from) {
+static void select_terms(Search *s, const Parts *parts, const Source *from) {
   ExprGraph *g = s->g;
   VEC(Expr) roots = {0};
   for (uint32_t i = 0; i < parts->n; i++) {
     const Part *part = &parts->at[i];
     uint32_t k = 0;
-    while (k < part->made.n && part->made.at[k] != from->made) k++;
-    if (k < part->made.n) vec_push(s->arena, &roots, part->term);
+    while (k < part->symbols_hash.n && part->symbols_hash.at[k] != from->symbols_hash) k++;
+    if (k < part->symbols_hash.n) vec_push(s->arena, &roots, part->term);
   }
   s->nterms = roots.n;
   s->tape = eval_tape(g, roots.at, roots.n);
@@ -150,59 +150,59 @@ static void draw_line(Search *s, uint32_t seed) {
   s->from_origin = seed % 2 == 0;
   for (uint32_t i = 0; i < s->symbols.n; i++) {
     SymId k = s->symbols.at[i];
-    int moves = (1u << expr_symbol(s->g, k)->kind & varied) != 0;
-    s->base[k] = moves && s->from_origin ? 0 : prove_symbol(s->g, k, seed) * (moves ? wide : 1);
-    s->way[k] = moves ? prove_symbol(s->g, k, seed + 2 * LINES) : 0;
+    int moves = (1u << expr_symbol(s->g, k)->kind & varying_kinds) != 0;
+    s->base[k] = moves && s->from_origin ? 0 : sample_symbol(s->g, k, seed) * (moves ? wide : 1);
+    s->direction[k] = moves ? sample_symbol(s->g, k, seed + 2 * LINES) : 0;
   }
 }
 
-/* Sets the state to base + where*way; returns 0 if a symbol violates its declared sign. */
-static int go_to(Search *s, Real where) {
+/* Sets the state to base + where*direction; returns 0 if a symbol violates its declared sign. */
+static int set_state(Search *s, Real where) {
   for (uint32_t i = 0; i < s->symbols.n; i++) {
     SymId k = s->symbols.at[i];
     ExprSign sign = expr_symbol(s->g, k)->sign;
-    Real x = s->at[k] = s->base[k] + where * s->way[k];
+    Real x = s->at[k] = s->base[k] + where * s->direction[k];
     if (((sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE) && x < 0) || ((sign == SIGN_NEGATIVE || sign == SIGN_NONPOSITIVE) && x > 0)) return 0;
   }
   return 1;
 }
 
 /* Switching function minus its threshold, at a place of the line; NaN where a declared sign is violated. */
-static Real side_at(Search *s, EvalTape *side, Real level, Real where) {
+static Real switching_value(Search *s, EvalTape *side, Real level, Real where) {
   Real value;
-  if (!go_to(s, where)) return NAN;
+  if (!set_state(s, where)) return NAN;
   eval_run(side, s->at, &value);
   return value - level;
 }
 
 /* Threshold of the switching function: 0, or for an angle an odd multiple of a quarter turn near the base of the line. */
-static Real level_of(Search *s, EvalTape *side, int angle, uint32_t seed) {
+static Real threshold_of(Search *s, EvalTape *side, int angle, uint32_t seed) {
   const Real half_turn = acosl(-1);
   if (!angle) return 0;
-  Real u = side_at(s, side, 0, 0);
+  Real u = switching_value(s, side, 0, 0);
   return (floorl(u / half_turn) + 0.5L - (seed % 4 == 0) + (seed % 4 == 1)) * half_turn;
 }
 
 /* Sampling point i of the line: 0, and on both sides powers of 10 for lines from the origin, of 2 for others. */
-static Real mark(const Search *s, int i) {
+static Real sampling_point(const Search *s, int i) {
   int power = (i < 0 ? -i : i) - 1;
   Real size = i == 0 ? 0 : s->from_origin ? powl(10, power - 9) : ldexpl(1, power - 2);
   return i < 0 ? -size : size;
 }
 
 /* Sign change of the switching function nearest to the base of the line, bisected to the last bit; returns 0 if there is none. */
-static int find_change(Search *s, EvalTape *side, Real level, Real *where) {
+static int find_sign_change(Search *s, EvalTape *side, Real level, Real *where) {
   enum { REACH = 24, HALVINGS = 200 };
-  Real lo = 0, hi = 0, first = side_at(s, side, level, 0), left = first, right = first;
+  Real lo = 0, hi = 0, first = switching_value(s, side, level, 0), left = first, right = first;
   for (int i = 1; i <= REACH && lo >= hi; i++) {
     Real before = left, after = right;
-    left = side_at(s, side, level, mark(s, -i));
-    right = side_at(s, side, level, mark(s, i));
-    if (isfinite(before) && isfinite(left) && (left > 0) != (before > 0)) lo = mark(s, -i), hi = mark(s, 1 - i), first = left;
-    else if (isfinite(after) && isfinite(right) && (right > 0) != (after > 0)) lo = mark(s, i - 1), hi = mark(s, i), first = after;
+    left = switching_value(s, side, level, sampling_point(s, -i));
+    right = switching_value(s, side, level, sampling_point(s, i));
+    if (isfinite(before) && isfinite(left) && (left > 0) != (before > 0)) lo = sampling_point(s, -i), hi = sampling_point(s, 1 - i), first = left;
+    else if (isfinite(after) && isfinite(right) && (right > 0) != (after > 0)) lo = sampling_point(s, i - 1), hi = sampling_point(s, i), first = after;
   }
   for (int i = 0; i < HALVINGS && lo < hi; i++) {
-    Real mid = (lo + hi) / 2, value = side_at(s, side, level, mid);
+    Real mid = (lo + hi) / 2, value = switching_value(s, side, level, mid);
     if (!isfinite(value)) return 0;
     if ((value > 0) == (first > 0)) lo = mid;
     else hi = mid;
@@ -217,7 +217,7 @@ static int find_change(Search *s, EvalTape *side, Real level, Real *where) {
 static Real value_at(Search *s, Real where, Real *size) {
   Real value = 0;
   *size = 0;
-  if (!go_to(s, where)) return NAN;
+  if (!set_state(s, where)) return NAN;
   eval_run(s->tape, s->at, s->term);
   for (uint32_t i = 0; i < s->nterms; i++) {
     value += s->term[i];
@@ -227,15 +227,15 @@ static Real value_at(Search *s, Real where, Real *size) {
 }
 
 /* Length scale for steps along the line at `where`. */
-static Real unit_at(const Search *s, Real where) { return s->from_origin ? fabsl(where) : fmaxl(1, fabsl(where)); }
+static Real length_scale(const Search *s, Real where) { return s->from_origin ? fabsl(where) : fmaxl(1, fabsl(where)); }
 
 /* Height of the jump of x at `where`, 0 if there is none. Across a jump the difference of both sides stays constant as the distance shrinks;
  * for a continuous x it falls, to about half per step even for an eighth root; at a pole, or for log, it grows. */
 static Real jump_at(Search *s, Real where) {
   static const Real distance[] = {1e-5L, 1e-7L, 1e-9L, 1e-11L};
   enum { DISTANCES = sizeof distance / sizeof *distance };
-  const Real alike = 0.02L, least = 1e-9L; /* relative to the jump; to its terms. Places are known to 1e-11 even where long double is double */
-  Real far = unit_at(s, where), jump[DISTANCES], size, other, most = 0;
+  const Real tolerance = 0.02L, least = 1e-9L; /* relative to the jump; to its terms. Places are known to 1e-11 even where long double is double */
+  Real far = length_scale(s, where), jump[DISTANCES], size, other, most = 0;
   for (int i = 0; i < DISTANCES; i++) {
     Real h = distance[i] * far, above = value_at(s, where + h, &size), below = value_at(s, where - h, &other);
     jump[i] = above - below;
@@ -243,28 +243,28 @@ static Real jump_at(Search *s, Real where) {
     if (!isfinite(jump[i])) return 0;
   }
   Real is = jump[DISTANCES - 1];
-  if (!(fabsl(is) > least * most) || !(fabsl(jump[1] - jump[0]) <= 10 * alike * fabsl(is))) return 0;
+  if (!(fabsl(is) > least * most) || !(fabsl(jump[1] - jump[0]) <= 10 * tolerance * fabsl(is))) return 0;
   for (int i = 2; i < DISTANCES; i++)
-    if (!(fabsl(jump[i] - jump[i - 1]) <= alike * fabsl(is))) return 0;
+    if (!(fabsl(jump[i] - jump[i - 1]) <= tolerance * fabsl(is))) return 0;
   return is;
 }
 
 static void try_source(Search *s, const Parts *parts, const Source *from) {
   EvalTape *side = eval_tape(s->g, &from->side, 1);
   uint32_t places = 0;
-  take_terms(s, parts, from);
+  select_terms(s, parts, from);
   for (uint32_t seed = 1; seed <= LINES && places < PLACES; seed++) {
     Real where;
     draw_line(s, seed);
-    Real level = level_of(s, side, from->angle, seed);
-    if (!find_change(s, side, level, &where)) continue;
+    Real level = threshold_of(s, side, from->angle, seed);
+    if (!find_sign_change(s, side, level, &where)) continue;
     places++;
     Real by = jump_at(s, where);
     if (by == 0) continue;
-    Real h = 1e-6L * unit_at(s, where), slope = (side_at(s, side, level, where + h) - side_at(s, side, level, where - h)) / (2 * h);
+    Real h = 1e-6L * length_scale(s, where), slope = (switching_value(s, side, level, where + h) - switching_value(s, side, level, where - h)) / (2 * h);
     Real *symbols = ARENA_ARRAY(s->arena, Real, s->nsymbols + 1);
-    prove_state(s->g, seed, symbols); /* symbols without influence on the jump */
-    go_to(s, where);
+    sample_state(s->g, seed, symbols); /* symbols without influence on the jump */
+    set_state(s, where);
     for (uint32_t i = 0; i < s->symbols.n; i++) symbols[s->symbols.at[i]] = s->at[s->symbols.at[i]];
     vec_push(s->arena, &s->found, ((ExprJump){from->node, from->side, symbols, by, slope}));
     return;
@@ -273,12 +273,12 @@ static void try_source(Search *s, const Parts *parts, const Source *from) {
 
 ExprJumps expr_jumps(ExprGraph *g, Expr x) {
   Search s = {.g = g, .arena = expr_arena(g), .nsymbols = expr_symbol_count(g)};
-  if (!(expr_kinds(g, x) & varied)) return (ExprJumps){0};
+  if (!(expr_kinds(g, x) & varying_kinds)) return (ExprJumps){0};
   Sources all = sources_of(&s, x);
   if (!all.n) return (ExprJumps){0};
   Parts parts = parts_of(&s, &all, x);
   s.base = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
-  s.way = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
+  s.direction = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
   s.at = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
   for (uint32_t i = 0; i < all.n; i++) try_source(&s, &parts, &all.at[i]);
   return (ExprJumps){s.found.at, s.found.n};

@@ -360,7 +360,7 @@ static MonoId mono_min(PolyRing *r, MonoId a, MonoId b) {
   return mono_intern(r, r->scratch.at, r->scratch.n);
 }
 
-MonoId poly_common(PolyRing *r, Poly a) {
+MonoId poly_common_monomial(PolyRing *r, Poly a) {
   MonoId m = a.at[0].mono;
   for (uint32_t i = 1; i < a.n; i++) m = mono_min(r, m, a.at[i].mono);
   return m;
@@ -368,7 +368,7 @@ MonoId poly_common(PolyRing *r, Poly a) {
 
 Poly poly_primitive(PolyRing *r, Poly a, Num *content, MonoId *common) {
   *content = poly_content(r, a);
-  *common = poly_common(r, a);
+  *common = poly_common_monomial(r, a);
   if (r->status != POLY_OK) return poly_zero();
   if (num_is_one(*content) && *common == 0) return a;
   MonoId inverse = mono_pow(r, *common, -1);

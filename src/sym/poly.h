@@ -106,7 +106,7 @@ int poly_is_one(Poly a);
 Num poly_content(PolyRing *r, Poly a);
 
 /* Common monomial: each generator's lowest exponent in the terms of a, 0 where it is absent; a must not be 0. */
-MonoId poly_common(PolyRing *r, Poly a);
+MonoId poly_common_monomial(PolyRing *r, Poly a);
 
 /* a = content * common * primitive, and the primitive part's first coefficient is positive. */
 Poly poly_primitive(PolyRing *r, Poly a, Num *content, MonoId *common);

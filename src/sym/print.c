@@ -23,10 +23,10 @@ typedef struct {
 static void text(Printer *p, const char *s) { vec_push(p->g->arena, &p->part, ((Item){.text = s})); }
 static void node(Printer *p, Expr e, Prec prec) { vec_push(p->g->arena, &p->part, ((Item){NULL, e, prec})); }
 static int latex(const Printer *p) { return p->style == PRINT_LATEX; }
-static const char *either(const Printer *p, const char *t, const char *l) { return latex(p) ? l : t; }
+static const char *by_style(const Printer *p, const char *t, const char *l) { return latex(p) ? l : t; }
 
-static void open_paren(Printer *p) { text(p, either(p, "(", "\\left(")); }
-static void close_paren(Printer *p) { text(p, either(p, ")", "\\right)")); }
+static void open_paren(Printer *p) { text(p, by_style(p, "(", "\\left(")); }
+static void close_paren(Printer *p) { text(p, by_style(p, ")", "\\right)")); }
 
 static const char *num_text(Printer *p, Num n) {
   StrBuf b = strbuf(p->g->arena);
@@ -82,9 +82,9 @@ static void arguments(Printer *p, Expr e);
 
 static void factor(Printer *p, Factor f, Prec place) {
   if (num_is_exact(f.exponent) && f.exponent.num == 1 && f.exponent.den == 2) {
-    text(p, either(p, "sqrt(", "\\sqrt{"));
+    text(p, by_style(p, "sqrt(", "\\sqrt{"));
     node(p, f.base, PREC_OR);
-    text(p, either(p, ")", "}"));
+    text(p, by_style(p, ")", "}"));
     return;
   }
   if (num_is_one(f.exponent)) {
@@ -107,7 +107,7 @@ static void factor(Printer *p, Factor f, Prec place) {
 }
 
 static void factors(Printer *p, const char *number, const Factor *f, uint32_t n) {
-  const char *times = either(p, "*", " ");
+  const char *times = by_style(p, "*", " ");
   if (number) text(p, number);
   for (uint32_t i = 0; i < n; i++) {
     if (i || number) text(p, times);
@@ -143,7 +143,7 @@ static void term(Printer *p, Expr e, Num c) {
   if (latex(p) && fraction) text(p, "\\frac{");
   factors(p, up_text, above, top);
   if (!fraction) return;
-  text(p, either(p, "/", "}{"));
+  text(p, by_style(p, "/", "}{"));
   int group = !latex(p) && bottom + (down_text != NULL) > 1;
   if (group) open_paren(p);
   if (!latex(p) && !group && bottom == 1) {
@@ -202,7 +202,7 @@ static void arguments(Printer *p, Expr e) {
 }
 
 static void call(Printer *p, Expr e, const char *name, const char *latex_name) {
-  text(p, either(p, name, latex_name));
+  text(p, by_style(p, name, latex_name));
   arguments(p, e);
 }
 
@@ -252,7 +252,7 @@ static void expand(Printer *p, Expr e) {
     case EX_PROD: term(p, e, num_int(1)); return;
     case EX_POW:
       node(p, expr_arg(g, e, 0), PREC_ATOM);
-      text(p, either(p, "^", "^{"));
+      text(p, by_style(p, "^", "^{"));
       node(p, expr_arg(g, e, 1), latex(p) ? PREC_OR : PREC_ATOM);
       if (latex(p)) text(p, "}");
       return;
@@ -276,12 +276,12 @@ static void expand(Printer *p, Expr e) {
       return;
     }
     case EX_LT: infix(p, e, " < ", PREC_CMP); return;
-    case EX_LE: infix(p, e, either(p, " <= ", " \\le "), PREC_CMP); return;
-    case EX_EQ: infix(p, e, either(p, " == ", " = "), PREC_CMP); return;
-    case EX_AND: infix(p, e, either(p, " and ", " \\wedge "), PREC_AND); return;
-    case EX_OR: infix(p, e, either(p, " or ", " \\vee "), PREC_OR); return;
+    case EX_LE: infix(p, e, by_style(p, " <= ", " \\le "), PREC_CMP); return;
+    case EX_EQ: infix(p, e, by_style(p, " == ", " = "), PREC_CMP); return;
+    case EX_AND: infix(p, e, by_style(p, " and ", " \\wedge "), PREC_AND); return;
+    case EX_OR: infix(p, e, by_style(p, " or ", " \\vee "), PREC_OR); return;
     case EX_NOT:
-      text(p, either(p, "not ", "\\neg "));
+      text(p, by_style(p, "not ", "\\neg "));
       node(p, expr_arg(g, e, 0), PREC_ATOM);
       return;
     case EX_COUNT: return;
@@ -300,9 +300,9 @@ void expr_print(ExprGraph *g, Expr e, PrintStyle style, StrBuf *out) {
     int group = prec_of(g, top.node) < top.prec;
     p.part.n = 0;
     int flat = group && is_flat(g, top.node);
-    if (group) text(&p, flat ? "(" : either(&p, "(", "\\left("));
+    if (group) text(&p, flat ? "(" : by_style(&p, "(", "\\left("));
     expand(&p, top.node);
-    if (group) text(&p, flat ? ")" : either(&p, ")", "\\right)"));
+    if (group) text(&p, flat ? ")" : by_style(&p, ")", "\\right)"));
     for (uint32_t i = p.part.n; i-- > 0;) vec_push(g->arena, &p.stack, p.part.at[i]);
   }
 }

@@ -19,9 +19,9 @@ static Verdict nonzero_by_value(ExprGraph *g, Expr e) {
   long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
   for (uint32_t seed = 1; seed <= 2 * STATES; seed++) {
     long double bound, value;
-    if (seed <= STATES) prove_state(g, seed, symbols);
-    else prove_state_wide(g, seed, symbols);
-    value = prove_value(g, e, symbols, NULL, &bound);
+    if (seed <= STATES) sample_state(g, seed, symbols);
+    else sample_state_wide(g, seed, symbols);
+    value = value_with_bound(g, e, symbols, NULL, &bound);
     if (clearly_nonzero(value, bound)) return PROVED_NONZERO;
   }
   return NOT_DECIDED;
@@ -158,7 +158,7 @@ static Expr split_quotient(ExprGraph *g, Expr f, Expr M) {
 }
 
 /* e with each unknown replaced by quotient(f_i, M_ii). */
-static Expr solved(const System *s, Expr (*quotient)(ExprGraph *g, Expr f, Expr M)) {
+static Expr with_quotients(const System *s, Expr (*quotient)(ExprGraph *g, Expr f, Expr M)) {
   Expr *with = ARENA_ARRAY(expr_arena(s->g), Expr, s->n + 1);
   for (uint32_t i = 0; i < s->n; i++) with[i] = quotient(s->g, s->f[i], s->M[i * (s->n + 1)]);
   return expr_replace(s->g, s->e, s->acc, with, s->n);
@@ -168,8 +168,8 @@ static Expr solved(const System *s, Expr (*quotient)(ExprGraph *g, Expr f, Expr 
  * by term where a common denominator would be too large: hence both f/M whole and f/M term by term are tried. */
 static Verdict diagonal_verdict(const System *s) {
   if (!is_diagonal(s) || !is_polynomial(s)) return NOT_DECIDED;
-  if (expr_is_zero(s->g, solved(s, expr_div))) return PROVED_ZERO;
-  return zero_by_form(s->g, solved(s, split_quotient), &s->limits);
+  if (expr_is_zero(s->g, with_quotients(s, expr_div))) return PROVED_ZERO;
+  return zero_by_form(s->g, with_quotients(s, split_quotient), &s->limits);
 }
 
 /* --- Cramer's rule --- */

@@ -2,7 +2,7 @@
 #ifndef LAGC_PROVE_H
 #define LAGC_PROVE_H
 
-#include "sym/normal.h"
+#include "sym/normal_form.h"
 
 typedef enum { NOT_DECIDED, PROVED_ZERO, PROVED_NONZERO } Verdict;
 
@@ -22,13 +22,13 @@ Verdict prove_solves(ExprGraph *g, uint32_t n, const Expr *M, const Expr *f, con
 
 /* Random sample state: symbols[s] for s in 1 .. expr_symbol_count, of magnitude 0.3 .. 2 and of the declared sign,
  * determined by seed. pi keeps its value. */
-void prove_state(const ExprGraph *g, uint32_t seed, long double *symbols);
+void sample_state(const ExprGraph *g, uint32_t seed, long double *symbols);
 
 /* Value of symbol s in the sample state of that seed. */
-long double prove_symbol(const ExprGraph *g, SymId s, uint32_t seed);
+long double sample_symbol(const ExprGraph *g, SymId s, uint32_t seed);
 
-/* prove_state with coordinates, states and time of magnitude 1.2 .. 8: angles beyond half a turn, across branch cuts. */
-void prove_state_wide(const ExprGraph *g, uint32_t seed, long double *symbols);
+/* sample_state with coordinates, states and time of magnitude 1.2 .. 8: angles beyond half a turn, across branch cuts. */
+void sample_state_wide(const ExprGraph *g, uint32_t seed, long double *symbols);
 
 /* Tape that evaluates all nodes of the roots with rounding bounds at a state (bound_run); bound_value reads one node after a run.
  * errors[s]: error of symbol s, or NULL for exact symbols. */
@@ -39,7 +39,7 @@ long double bound_value(const BoundTape *t, Expr node, long double *bound);
 
 /* Value of e and a bound of its error, given the errors of the symbols (NULL: none).
  * The bound is infinite where none is known. */
-long double prove_value(ExprGraph *g, Expr e, const long double *symbols, const long double *errors,
+long double value_with_bound(ExprGraph *g, Expr e, const long double *symbols, const long double *errors,
                         long double *bound);
 
 #endif

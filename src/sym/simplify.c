@@ -11,7 +11,7 @@
 
 #include "sym/eval.h"
 #include "sym/prove.h"
-#include "sym/trigform.h"
+#include "sym/trig_simplify.h"
 
 enum { MAX_TERMS = 2000, MAX_WORK = 200000 };
 
@@ -92,7 +92,7 @@ static uint32_t largest_group(Normal *n, const Term *t, uint32_t count, Split *s
   return best > 1 ? best : 0;
 }
 
-/* Factored form of a polynomial of parameters: m1*l1^2 + m2*l1^2 + m2*l2^2 becomes (m1 + m2)*l1^2 + m2*l2^2. */
+/* FactorRecord form of a polynomial of parameters: m1*l1^2 + m2*l1^2 + m2*l2^2 becomes (m1 + m2)*l1^2 + m2*l2^2. */
 static Expr params_expr(Normal *n, Poly p) {
   enum { MAX_FACTORED = 64 };
   ExprGraph *g = n->g;
@@ -170,7 +170,7 @@ static Pieces pieces_of(Normal *n, Poly p) {
     while (i < p.n && s[i].rest == rest) group[size++] = s[i++].circular;
     Poly circular = poly_collect(n->ring, group, size);
     if (circular.n == 0) continue;
-    TrigForm f = trig_shortest(n, circular);
+    TrigForm f = trig_simplify(n, circular);
     MonoId params = mono_part(n, rest, 0, 1), state = mono_part(n, rest, 0, 0);
     Expr factor = normal_mono_expr(n, state);
     for (uint32_t k = 0; k < f.n; k++) push_piece(n, &out, f.at[k].c, params, expr_mul(n->g, factor, f.at[k].e));
@@ -322,7 +322,7 @@ static long double far_symbol(SymId s, const void *data) {
   const FarState *at = data;
   SymKind kind = expr_symbol(at->g, s)->kind;
   int moves = kind == SYM_COORD || kind == SYM_STATE || kind == SYM_TIME || kind == SYM_VEL;
-  return prove_symbol(at->g, s, at->seed) * (moves ? at->scale : 1);
+  return sample_symbol(at->g, s, at->seed) * (moves ? at->scale : 1);
 }
 
 /* Whether `after` is finite wherever `before` is, in doubles; tested at random states near and far from the origin. */
@@ -343,7 +343,7 @@ static int keeps_range(ExprGraph *g, Expr before, Expr after) {
   return 1;
 }
 
-static Expr shorter(ExprGraph *g, Expr e, int shallow) {
+static Expr rewritten(ExprGraph *g, Expr e, int shallow) {
   if (!e || expr_nargs(g, e) == 0) return e;
   Task t = {.g = g, .e = e, .result = e, .shallow = shallow};
   normal_with_scratch(g, work, &t);
@@ -358,17 +358,17 @@ static int has_definitions(ExprGraph *g, Expr e) {
 }
 
 /* The new form s if it keeps the range of e, else e. */
-static Expr taken(ExprGraph *g, Expr e, Expr s) { return s == e || keeps_range(g, e, s) ? s : e; }
+static Expr if_range_kept(ExprGraph *g, Expr e, Expr s) { return s == e || keeps_range(g, e, s) ? s : e; }
 
 Expr simplify(ExprGraph *g, Expr e) {
-  Expr s = shorter(g, e, 0);
+  Expr s = rewritten(g, e, 0);
   uint32_t before = expr_ops(g, &e, 1), after = expr_ops(g, &s, 1);
   if (after > before || (after == before && !has_definitions(g, e))) return e;
-  return taken(g, e, s);
+  return if_range_kept(g, e, s);
 }
 
 Expr simplify_shallow(ExprGraph *g, Expr e) {
-  Expr s = shorter(g, e, 1);
+  Expr s = rewritten(g, e, 1);
   uint32_t before = expr_ops_shallow(g, e), after = expr_ops_shallow(g, s);
-  return after < before ? taken(g, e, s) : e;
+  return after < before ? if_range_kept(g, e, s) : e;
 }

@@ -47,7 +47,7 @@ void charges_derive(Eqns *e) {
   e->ncharges = m->symmetries.n + 1;
 }
 
-Expr charges_fill(const Eqns *e, Expr x) {
+Expr charges_substitute(const Eqns *e, Expr x) {
   const Model *m = e->m;
   if (!m->symmetries.n || !(expr_kinds(e->g, x) & 1u << SYM_LOCAL)) return x;
   SymId *syms = ARENA_ARRAY(m->arena, SymId, m->symmetries.n);
@@ -68,7 +68,7 @@ static void fill_outputs(Eqns *e) {
   with[m->energy_sym] = e->energy_stable;
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) {
     out[i] = m->scene.outputs.at[i];
-    out[i].value = charges_fill(e, out[i].value);
+    out[i].value = charges_substitute(e, out[i].value);
     if (e->energy) out[i].value = expr_substitute(g, out[i].value, with, m->energy_sym + 1, "");
     out[i].value = simplify_stable(g, out[i].value);
   }
@@ -98,7 +98,7 @@ static Expr in_own_names(const Eqns *e, Expr x) {
       vec_push(a, &bodies, expr_arg(e->g, nodes.at[i], 0));
     }
     if (!defs.n) break;
-    expr_cut(e->g, &x, 1, defs.at, bodies.at, defs.n, &x);
+    expr_replace_nodes(e->g, &x, 1, defs.at, bodies.at, defs.n, &x);
   }
   return x;
 }
@@ -108,7 +108,7 @@ static const char *text_of(const Eqns *e, Expr x) {
   uint32_t distinct;
   StrBuf b = strbuf(e->m->arena);
   x = in_own_names(e, x);
-  if (expr_written_size(e->g, x, &distinct) > LONGEST) return "(too long to print)";
+  if (expr_tree_size(e->g, x, &distinct) > LONGEST) return "(too long to print)";
   expr_print(e->g, x, PRINT_TEXT, &b);
   return sb_text(&b);
 }

@@ -24,7 +24,7 @@ Eqns *equations_of(const Model *m);
 Eqns *equations_regularised(const Eqns *singular);
 
 /* x with the symbols of declared charges replaced by their expressions. */
-Expr charges_fill(const Eqns *e, Expr x);
+Expr charges_substitute(const Eqns *e, Expr x);
 
 /* Whether the symmetries declared in `effect` (NULL: outside effects) hold. Others are reported in the model's diagnostics, with the remainder of
  * delta L and, where one map has the wrong sign, that map. e: the model without effects, or with that effect and what it requires. */

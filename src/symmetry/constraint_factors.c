@@ -13,14 +13,14 @@ typedef struct {
   EvalTape *tape; /* the factor, then its gradient */
 } Part;
 
-struct ConstraintParts {
+struct ConstraintFactors {
   const Eqns *e;
   VEC(Part) parts;
   SymId *q;
   long double *value; /* [1 + coordinates] */
 };
 
-static void add_part(ConstraintParts *p, Expr factor) {
+static void add_part(ConstraintFactors *p, Expr factor) {
   const Eqns *e = p->e;
   Expr *roots = ARENA_ARRAY(e->m->arena, Expr, 1 + (size_t)e->n);
   roots[0] = factor;
@@ -34,8 +34,8 @@ static int may_vanish(const Eqns *e, Expr base, Num power) {
   return num_sign(power) > 0 && sign != SIGN_POSITIVE && sign != SIGN_NEGATIVE && (expr_kinds(e->g, base) & 1u << SYM_COORD);
 }
 
-ConstraintParts *parts_new(const Eqns *e) {
-  ConstraintParts *p = ARENA_NEW(e->m->arena, ConstraintParts);
+ConstraintFactors *constraint_factors_new(const Eqns *e) {
+  ConstraintFactors *p = ARENA_NEW(e->m->arena, ConstraintFactors);
   const Constraints *k = &e->constraints;
   p->e = e;
   p->q = ARENA_ARRAY(e->m->arena, SymId, e->n + 1);
@@ -55,16 +55,16 @@ ConstraintParts *parts_new(const Eqns *e) {
   return p;
 }
 
-uint32_t parts_count(const ConstraintParts *p) { return p->parts.n; }
-Expr parts_factor(const ConstraintParts *p, uint32_t part) { return p->parts.at[part].factor; }
+uint32_t constraint_factors_count(const ConstraintFactors *p) { return p->parts.n; }
+Expr constraint_factors_at(const ConstraintFactors *p, uint32_t part) { return p->parts.at[part].factor; }
 
 /* Value of the factor; its gradient in value[1 ..]. */
-static long double factor_at(ConstraintParts *p, uint32_t part, const long double *symbols) {
+static long double factor_at(ConstraintFactors *p, uint32_t part, const long double *symbols) {
   eval_run(p->parts.at[part].tape, symbols, p->value);
   return p->value[0];
 }
 
-int parts_go(ConstraintParts *p, uint32_t part, long double *symbols) {
+int constraint_factors_solve(ConstraintFactors *p, uint32_t part, long double *symbols) {
   enum { MOST = 60 };
   for (int turn = 0; turn < MOST; turn++) {
     long double f = factor_at(p, part, symbols), square = 0;
@@ -73,7 +73,7 @@ int parts_go(ConstraintParts *p, uint32_t part, long double *symbols) {
     if (!(square > 0) || !isfinite(square) || !isfinite(f)) return 0;
     for (uint32_t i = 0; i < p->e->n; i++) symbols[p->q[i]] -= f / square * p->value[1 + i];
   }
-  return parts_is_on(p, part, symbols);
+  return constraint_factors_is_zero(p, part, symbols);
 }
 
-int parts_is_on(ConstraintParts *p, uint32_t part, const long double *symbols) { return fabsl(factor_at(p, part, symbols)) < 1e-14L; }
+int constraint_factors_is_zero(ConstraintFactors *p, uint32_t part, const long double *symbols) { return fabsl(factor_at(p, part, symbols)) < 1e-14L; }

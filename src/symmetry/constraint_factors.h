@@ -4,18 +4,18 @@
 
 #include "mech/eqns.h"
 
-typedef struct ConstraintParts ConstraintParts;
+typedef struct ConstraintFactors ConstraintFactors;
 
 /* The factors of the holonomic constraints, contacts left out, in which two or more factors contain coordinates and may be 0. */
-ConstraintParts *parts_new(const Eqns *e);
+ConstraintFactors *constraint_factors_new(const Eqns *e);
 
-uint32_t parts_count(const ConstraintParts *p);
-Expr parts_factor(const ConstraintParts *p, uint32_t part);
+uint32_t constraint_factors_count(const ConstraintFactors *p);
+Expr constraint_factors_at(const ConstraintFactors *p, uint32_t part);
 
 /* Moves coordinates to a zero of the factor, by Newton's method along its gradient. 0: no convergence from this state. */
-int parts_go(ConstraintParts *p, uint32_t part, long double *symbols);
+int constraint_factors_solve(ConstraintFactors *p, uint32_t part, long double *symbols);
 
 /* Whether the factor is 0 at the state, up to rounding. */
-int parts_is_on(ConstraintParts *p, uint32_t part, const long double *symbols);
+int constraint_factors_is_zero(ConstraintFactors *p, uint32_t part, const long double *symbols);
 
 #endif

@@ -3,7 +3,7 @@
 #define LAGC_SYMMETRY_FOUND_SYMMETRY_H
 
 #include "symmetry/noether.h"
-#include "symmetry/noether_forms.h"
+#include "symmetry/linear_forms.h"
 
 typedef enum {
   SYMMETRY_OTHER,
@@ -29,7 +29,7 @@ typedef struct {
   VEC(FoundSymmetry) all;
   uint32_t unproved;    /* directions of the solution space that are not in closed form, or not proved */
   int searched;         /* 0: no search, for the reason in `note` */
-  uint32_t attempt;     /* which random values of the parameters, see mech/noether_number.h */
+  uint32_t attempt;     /* which random values of the parameters, see symmetry/number_recognition.h */
   int galilean;         /* the ten charges of Galileo's group are among them */
   const char *ansatz;   /* in words */
   const char *note;     /* or NULL: a remark for the report */

@@ -6,7 +6,7 @@
 
 #include "mech/constrain.h"
 #include "mech/discontinuity.h"
-#include "symmetry/noether_forms.h"
+#include "symmetry/linear_forms.h"
 #include "symmetry/constraint_factors.h"
 #include "symmetry/term_magnitude.h"
 #include "mech/states.h"
@@ -33,38 +33,38 @@ typedef struct {
   int by_value;
   const LinearForms *forms; /* or NULL: proofs use the model's own coordinates */
   Expr unreached;   /* a factor of a constraint whose zeros no state reached: nothing is decided; 0: none */
-} Work;
+} ProofWork;
 
 static SymId velocity(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate; }
 
-static Expr node(const Work *w, SymId s) { return expr_symbol(w->g, s)->node; }
+static Expr node(const ProofWork *w, SymId s) { return expr_symbol(w->g, s)->node; }
 
-static Expr *no_seed(const Work *w) { return ARENA_ARRAY(w->m->arena, Expr, expr_symbol_count(w->g) + 1); }
+static Expr *no_seed(const ProofWork *w) { return ARENA_ARRAY(w->m->arena, Expr, expr_symbol_count(w->g) + 1); }
 
 /* Sum of a_i b_i. */
-static Expr dot(const Work *w, const Expr *a, const Expr *b, uint32_t n) {
+static Expr dot(const ProofWork *w, const Expr *a, const Expr *b, uint32_t n) {
   Expr *terms = ARENA_ARRAY(w->m->arena, Expr, n + 1);
   for (uint32_t i = 0; i < n; i++) terms[i] = expr_mul(w->g, a[i], b[i]);
   return expr_add_n(w->g, terms, n);
 }
 
-static Expr tangent(const Work *w, Expr x, const Expr *seed, const char *suffix) {
+static Expr tangent(const ProofWork *w, Expr x, const Expr *seed, const char *suffix) {
   Expr out;
   expr_tangent(w->g, &x, 1, seed, expr_symbol_count(w->g) + 1, suffix, NULL, &out);
   return out;
 }
 
 /* d/dt along q'. */
-static Expr total(const Work *w, Expr x) {
+static Expr total(const ProofWork *w, Expr x) {
   Expr *seed = no_seed(w);
   seed[w->m->time] = expr_int(w->g, 1);
   for (uint32_t i = 0; i < w->n; i++) seed[w->q[i]] = node(w, w->v[i]);
   return tangent(w, x, seed, "'");
 }
 
-static Work begin(const Eqns *e, const Generator *by) {
+static ProofWork begin(const Eqns *e, const Generator *by) {
   Arena *a = e->m->arena;
-  Work w = {.e = e, .m = e->m, .g = e->g, .n = eqns_coordinates(e)};
+  ProofWork w = {.e = e, .m = e->m, .g = e->g, .n = eqns_coordinates(e)};
   Expr zero = expr_int(w.g, 0), *xi = ARENA_ARRAY(a, Expr, w.n + 1);
   w.q = ARENA_ARRAY(a, SymId, w.n + 1);
   w.v = ARENA_ARRAY(a, SymId, w.n + 1);
@@ -85,21 +85,21 @@ static Work begin(const Eqns *e, const Generator *by) {
   return w;
 }
 
-static Expr shorten(const Work *w, Expr x) { return w->n <= SHORTEN_MAX ? simplify(w->g, x) : x; }
+static Expr shorten(const ProofWork *w, Expr x) { return w->n <= SHORTEN_MAX ? simplify(w->g, x) : x; }
 
 /* x or its short form, whichever is shorter to read. */
-static Expr readable(const Work *w, Expr x) {
+static Expr readable(const ProofWork *w, Expr x) {
   uint32_t distinct;
   Expr other = shorten(w, x);
-  return expr_written_size(w->g, other, &distinct) < expr_written_size(w->g, x, &distinct) ? other : x;
+  return expr_tree_size(w->g, other, &distinct) < expr_tree_size(w->g, x, &distinct) ? other : x;
 }
 
 /* --- delta L --- */
 
-static Verdict is_zero(const Work *w, Expr x) { return forms_prove_zero(w->forms, w->g, x); }
+static Verdict is_zero(const ProofWork *w, Expr x) { return forms_prove_zero(w->forms, w->g, x); }
 
 /* Change of x under the generator, to first order. */
-static Expr moved_by(const Work *w, Expr x) {
+static Expr moved_by(const ProofWork *w, Expr x) {
   Expr *seed = no_seed(w);
   for (uint32_t i = 0; i < w->n; i++) {
     Expr slower = expr_mul(w->g, node(w, w->v[i]), w->Dtau);
@@ -111,19 +111,19 @@ static Expr moved_by(const Work *w, Expr x) {
 }
 
 /* delta of a term of L. */
-static Expr delta(const Work *w, Expr term) {
+static Expr delta(const ProofWork *w, Expr term) {
   Expr moved = moved_by(w, term), stretched = expr_mul(w->g, term, w->Dtau);
   return expr_add(w->g, moved, stretched);
 }
 
-static Expr at_rest(const Work *w, Expr x) {
+static Expr at_rest(const ProofWork *w, Expr x) {
   Expr *zero = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
   return expr_replace(w->g, x, w->v, zero, w->n);
 }
 
 /* delta T = sum_i q_i' D(M xi)_i - T D tau of T = q' M q'/2. */
-static Expr delta_kinetic(const Work *w, Expr T) {
+static Expr delta_kinetic(const ProofWork *w, Expr T) {
   Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) terms[i] = expr_mul(w->g, node(w, w->v[i]), total(w, w->lowered[i]));
   terms[w->n] = expr_neg(w->g, expr_mul(w->g, T, w->Dtau));
@@ -132,7 +132,7 @@ static Expr delta_kinetic(const Work *w, Expr T) {
 
 /* delta L without the terms of L that are invariant by themselves: the pairs of N bodies are judged one by one. Each remainder is in its short
  * form. */
-static Expr delta_lagrangian(const Work *w) {
+static Expr delta_lagrangian(const ProofWork *w) {
   ExprGraph *g = w->g;
   Expr L = w->lowered ? at_rest(w, w->L) : w->L;
   VEC(Expr) left = {0};
@@ -150,21 +150,21 @@ static Expr delta_lagrangian(const Work *w) {
 /* --- zero on the constraints --- */
 
 /* 1: x is rounding at a state that obeys the constraints; 0: it is more; -1: it has no value there. */
-static int is_small(const Work *w, Expr x, const long double *symbols) {
+static int is_small(const ProofWork *w, Expr x, const long double *symbols) {
   const long double tiny = 1e-14L; /* states obey to 1e-16; terms of x have size 1 */
-  long double bound, value = prove_value(w->g, x, symbols, NULL, &bound), size = 0;
+  long double bound, value = value_with_bound(w->g, x, symbols, NULL, &bound), size = 0;
   if (!isfinite(value)) return -1;
   for (uint32_t i = 0; i < expr_pairs(w->g, x, EX_SUM); i++) {
     Num c;
     Expr term = expr_pair(w->g, x, EX_SUM, i, &c);
-    size += fabsl((long double)num_value(c) * prove_value(w->g, term, symbols, NULL, &bound));
+    size += fabsl((long double)num_value(c) * value_with_bound(w->g, term, symbols, NULL, &bound));
   }
   return fabsl(value) <= tiny * fmaxl(size, 1);
 }
 
 /* Scales coordinates by powers of two and flips unknown signs by the bits of the seed: where constraints have several branches, the nearest states
  * then lie on several of them. */
-static void spread(const Work *w, uint32_t seed, long double *symbols) {
+static void spread(const ProofWork *w, uint32_t seed, long double *symbols) {
   static const int powers[] = {0, 2, -3, 4, 1, 7, -6, 3};
   for (uint32_t i = 0; i < w->n; i++) {
     const Symbol *q = expr_symbol(w->g, w->q[i]);
@@ -175,14 +175,14 @@ static void spread(const Work *w, uint32_t seed, long double *symbols) {
 
 /* Whether x is zero at random states that obey the constraints: near ones first, then from starts that are far apart. A large x at a far state is
  * judged by the size of its terms. */
-static int vanishes_by_value(const Work *w, Expr x) {
+static int vanishes_by_value(const ProofWork *w, Expr x) {
   enum { STATES = 12, NEAR = 4 * STATES, ALL = NEAR + 64 };
   long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
   StateSolver *solver = states_new(w->e);
   uint32_t seen = 0;
   for (uint32_t seed = 1; seed <= ALL; seed++) {
     if (seed <= NEAR && seen == STATES) continue;
-    prove_state(w->g, seed, symbols);
+    sample_state(w->g, seed, symbols);
     if (seed > NEAR) spread(w, seed - NEAR - 1, symbols);
     if (!states_complete(solver, symbols)) continue;
     int small = is_small(w, x, symbols);
@@ -193,31 +193,31 @@ static int vanishes_by_value(const Work *w, Expr x) {
 }
 
 /* The same on each factor of constraints that are products; a factor on which no state is found leaves the verdict open. */
-static int vanishes_on_parts(Work *w, Expr x) {
+static int vanishes_on_parts(ProofWork *w, Expr x) {
   enum { STATES = 6, SEEDS = 64 };
   long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
-  ConstraintParts *parts = parts_new(w->e);
+  ConstraintFactors *parts = constraint_factors_new(w->e);
   StateSolver *solver = states_new(w->e);
-  for (uint32_t k = 0; k < parts_count(parts); k++) {
+  for (uint32_t k = 0; k < constraint_factors_count(parts); k++) {
     uint32_t seen = 0;
     for (uint32_t seed = 1; seed <= SEEDS && seen < STATES; seed++) {
-      prove_state(w->g, seed, symbols);
+      sample_state(w->g, seed, symbols);
       spread(w, seed, symbols);
-      if (!parts_go(parts, k, symbols) || !states_complete(solver, symbols) || !parts_is_on(parts, k, symbols)) continue;
+      if (!constraint_factors_solve(parts, k, symbols) || !states_complete(solver, symbols) || !constraint_factors_is_zero(parts, k, symbols)) continue;
       int small = is_small(w, x, symbols);
       if (!small) return 0;
       seen += small > 0;
     }
-    if (seen < STATES) w->unreached = parts_factor(parts, k);
+    if (seen < STATES) w->unreached = constraint_factors_at(parts, k);
   }
   return 1;
 }
 
 /* Whether some constraint always holds, which those of contacts do not. */
-static int is_constrained(const Work *w) { return w->e->constraints.n > w->m->contacts.n; }
+static int is_constrained(const ProofWork *w) { return w->e->constraints.n > w->m->contacts.n; }
 
 /* Whether x is zero where the constraints hold, those of contacts excepted. */
-static Verdict zero_on_constraints(Work *w, Expr x) {
+static Verdict zero_on_constraints(ProofWork *w, Expr x) {
   Verdict v = is_zero(w, x);
   if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x) || !vanishes_on_parts(w, x)) return v;
   w->by_value = 1;
@@ -227,7 +227,7 @@ static Verdict zero_on_constraints(Work *w, Expr x) {
 /* --- F --- */
 
 /* An F(q, t) whose total derivative removes what it can from dL = a.q' + b + terms of higher order in q'. */
-static Expr find_gauge(const Work *w, Expr dL) {
+static Expr find_gauge(const ProofWork *w, Expr dL) {
   Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1), b = at_rest(w, dL);
   for (uint32_t i = 0; i < w->n; i++) {
     Expr slope = expr_diff(w->g, dL, w->v[i]);
@@ -240,7 +240,7 @@ static Expr find_gauge(const Work *w, Expr dL) {
 }
 
 /* Whether dL is a total derivative: its Euler-Lagrange expressions vanish. PROVED_NONZERO: one does not. */
-static Verdict is_total_derivative(const Work *w, Expr dL) {
+static Verdict is_total_derivative(const ProofWork *w, Expr dL) {
   Verdict all = PROVED_ZERO;
   for (uint32_t i = 0; i < w->n; i++) {
     Expr a = expr_diff(w->g, dL, w->v[i]);
@@ -259,13 +259,13 @@ static Verdict is_total_derivative(const Work *w, Expr dL) {
 }
 
 /* Whether x depends on time alone: then it is the derivative of its integral, which need not have a closed form. */
-static int is_of_time(const Work *w, Expr x) {
+static int is_of_time(const ProofWork *w, Expr x) {
   return !expr_is_zero(w->g, x) && !(expr_kinds(w->g, x) & ~(1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_PARAM | 1u << SYM_CONST));
 }
 
 /* A first F by Cartan's formula: theta.xi + phi tau, where theta dq + phi dt is the part of L of degree 1 and 0 in velocities. Where these terms
  * are a gauge, the rest of delta L is small or 0, and their primitive need not be found. */
-static Expr contraction(const Work *w, int with_phi) {
+static Expr contraction(const ProofWork *w, int with_phi) {
   Expr *theta = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) theta[i] = at_rest(w, w->p[i]);
   Expr F = dot(w, theta, w->xi, w->n), phi = with_phi ? at_rest(w, w->L) : expr_int(w->g, 0);
@@ -273,7 +273,7 @@ static Expr contraction(const Work *w, int with_phi) {
 }
 
 /* An F that begins with contraction(); 0: none is proved. */
-static Expr contracted_gauge(Work *w, Expr dL) {
+static Expr contracted_gauge(ProofWork *w, Expr dL) {
   ExprGraph *g = w->g;
   for (int with_phi = 0; with_phi < 2; with_phi++) {
     Expr first = contraction(w, with_phi), taken = total(w, first), rest = simplify(g, expr_sub(g, dL, taken));
@@ -285,7 +285,7 @@ static Expr contracted_gauge(Work *w, Expr dL) {
 }
 
 /* Verdict, F and remainder: delta L = 0, else an F from its coefficients, else from Cartan's formula. */
-static void judge(Work *w, Noether *to) {
+static void judge(ProofWork *w, Noether *to) {
   ExprGraph *g = w->g;
   Expr zero = expr_int(g, 0), dL = delta_lagrangian(w);
   *to = (Noether){.F = zero, .remainder = zero, .by_constraints = zero};
@@ -308,7 +308,7 @@ static void judge(Work *w, Noether *to) {
     return;
   }
   uint32_t distinct;
-  int better = expr_written_size(g, left, &distinct) < expr_written_size(g, dL, &distinct);
+  int better = expr_tree_size(g, left, &distinct) < expr_tree_size(g, dL, &distinct);
   to->F = better ? F : zero;
   to->remainder = better ? left : dL;
   to->is = is_total_derivative(w, dL) == PROVED_NONZERO ? NOT_INVARIANT : INVARIANCE_NOT_DECIDED;
@@ -316,7 +316,7 @@ static void judge(Work *w, Noether *to) {
 
 /* --- the charge and its balance --- */
 
-static Expr p_along_xi(const Work *w) {
+static Expr p_along_xi(const ProofWork *w) {
   Expr *v = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   if (!w->lowered) return dot(w, w->p, w->xi, w->n);
   for (uint32_t i = 0; i < w->n; i++) v[i] = node(w, w->v[i]);
@@ -324,7 +324,7 @@ static Expr p_along_xi(const Work *w) {
 }
 
 /* p.xi - E tau - F. */
-static Expr charge_of(const Work *w, Expr F, Expr energy) {
+static Expr charge_of(const ProofWork *w, Expr F, Expr energy) {
   ExprGraph *g = w->g;
   Expr px = p_along_xi(w), minus_F = expr_neg(g, F), et = expr_mul(g, energy, w->tau), minus_et = expr_neg(g, et);
   Expr front = expr_add(g, px, minus_F);
@@ -332,11 +332,11 @@ static Expr charge_of(const Work *w, Expr F, Expr energy) {
   return expr_add(g, front, minus_et);
 }
 
-/* --- in the coordinates y of mech/noether_forms.h --- */
+/* --- in the coordinates y of symmetry/linear_forms.h --- */
 
 /* The work in coordinates y, written with the symbols of q. */
-static Work begin_in_forms(const Work *w, const Expr *eta) {
-  Work y = *w;
+static ProofWork begin_in_forms(const ProofWork *w, const Expr *eta) {
+  ProofWork y = *w;
   y.L = w->forms->L;
   y.p = w->forms->p;
   y.xi = eta;
@@ -348,7 +348,7 @@ static Work begin_in_forms(const Work *w, const Expr *eta) {
 }
 
 /* The energy: kinetic part from y', potential as it was written (see mech/eqns.c). */
-static Expr energy_in_forms(const Work *w, const Work *y) {
+static Expr energy_in_forms(const ProofWork *w, const ProofWork *y) {
   ExprGraph *g = w->g;
   Expr *v = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) v[i] = node(w, w->v[i]);
@@ -358,9 +358,9 @@ static Expr energy_in_forms(const Work *w, const Work *y) {
 }
 
 /* Verdict and charge from eta, in y. 0: not proved in this way. */
-static int judge_in_forms(Work *w, const Expr *eta, Noether *to) {
+static int judge_in_forms(ProofWork *w, const Expr *eta, Noether *to) {
   if (!eta || !w->forms || w->e->constraints.n) return 0;
-  Work y = begin_in_forms(w, eta);
+  ProofWork y = begin_in_forms(w, eta);
   judge(&y, to);
   if (to->is != INVARIANT && to->is != INVARIANT_UP_TO_F) return 0;
   Expr zero = expr_int(w->g, 0), front = charge_of(&y, to->F, zero), et = expr_mul(w->g, energy_in_forms(w, &y), w->tau);
@@ -370,27 +370,27 @@ static int judge_in_forms(Work *w, const Expr *eta, Noether *to) {
 }
 
 /* x with contact c closed; unchanged where c is NULL. */
-static Expr while_closed(const Work *w, const Contact *c, Expr x) {
+static Expr while_closed(const ProofWork *w, const Contact *c, Expr x) {
   Expr one = expr_int(w->g, 1);
   return c ? expr_replace(w->g, x, &c->closed, &one, 1) : x;
 }
 
-static Expr scale_of(const Work *w, Expr F) {
+static Expr scale_of(const ProofWork *w, Expr F) {
   ExprGraph *g = w->g;
   const Expr *p = w->e->n ? w->e->momenta : w->p;
-  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 2), size_tau = sizes_of_terms(g, w->tau);
+  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 2), size_tau = term_magnitude(g, w->tau);
   for (uint32_t i = 0; i < w->n; i++) {
-    Expr size_p = sizes_of_terms(g, p[i]), size_xi = sizes_of_terms(g, w->xi[i]);
+    Expr size_p = term_magnitude(g, p[i]), size_xi = term_magnitude(g, w->xi[i]);
     terms[i] = expr_mul(g, size_p, size_xi);
   }
   terms[w->n] = expr_mul(g, w->e->energy_scale, size_tau);
-  terms[w->n + 1] = sizes_of_terms(g, F);
+  terms[w->n + 1] = term_magnitude(g, F);
   return expr_add_n(g, terms, w->n + 2);
 }
 
 /* lambda^T (A xi + b tau), contacts closed. For a holonomic constraint: the change of c under the generator; for r = A q' + b: r with
  * displacements in place of velocities. */
-static Expr power_of_constraints(Work *w, Noether *to) {
+static Expr power_of_constraints(ProofWork *w, Noether *to) {
   ExprGraph *g = w->g;
   const Constraints *k = &w->e->constraints;
   Expr sum = expr_int(g, 0);
@@ -430,7 +430,7 @@ static int is_switch(const Model *m, const Input *in) {
 }
 
 /* tau dL/dt from everything in L besides q and t: states with their flow, inputs with the derivative of their formula. */
-static Expr power_of_change(const Work *w, Noether *to) {
+static Expr power_of_change(const ProofWork *w, Noether *to) {
   ExprGraph *g = w->g;
   const Model *m = w->m;
   Expr *seed = no_seed(w);
@@ -449,7 +449,7 @@ static Expr power_of_change(const Work *w, Noether *to) {
 }
 
 /* sum Q_i (xi_i - q_i' tau) */
-static Expr power_of_forces(const Work *w) {
+static Expr power_of_forces(const ProofWork *w) {
   ExprGraph *g = w->g;
   Expr *along = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   if (!w->e->Q) return expr_int(g, 0);
@@ -461,20 +461,20 @@ static Expr power_of_forces(const Work *w) {
 }
 
 /* Whether the generator moves the surfaces where L jumps. */
-static int moves_jumps(const Work *w) {
+static int moves_jumps(const ProofWork *w) {
   const long double still = 1e-7L; /* states lie on a jump to 1e-19 of their size, slopes are known to 1e-6 */
   ExprJumps all = discontinuities_of(w->e, w->m->lagrangian);
   for (uint32_t i = 0; i < all.n; i++) {
     const ExprJump *jump = &all.at[i];
     Expr change = moved_by(w, jump->side);
-    long double bound, value = prove_value(w->g, change, jump->symbols, NULL, &bound);
+    long double bound, value = value_with_bound(w->g, change, jump->symbols, NULL, &bound);
     if (!(fabsl(value) <= still * fabsl(jump->slope))) return 1;
   }
   return 0;
 }
 
 /* Balance of the charge, and the part of the constraints in it. */
-static void put_power(Work *w, Noether *to, Expr remainder) {
+static void put_power(ProofWork *w, Noether *to, Expr remainder) {
   ExprGraph *g = w->g;
   to->by_constraints = power_of_constraints(w, to);
   Expr forces = power_of_forces(w), change = power_of_change(w, to);
@@ -488,12 +488,12 @@ static void put_power(Work *w, Noether *to, Expr remainder) {
 
 int noether_moves_jumps(const Eqns *e, const Generator *by) {
   if (discontinuities_of(e, e->m->lagrangian).n == 0) return 0;
-  Work w = begin(e, by);
+  ProofWork w = begin(e, by);
   return moves_jumps(&w);
 }
 
 Noether noether_prove(const Eqns *e, const Generator *by) {
-  Work w = begin(e, by);
+  ProofWork w = begin(e, by);
   Noether out;
   int in_forms = judge_in_forms(&w, by->eta, &out);
   if (!in_forms) judge(&w, &out);
@@ -505,7 +505,7 @@ Noether noether_prove(const Eqns *e, const Generator *by) {
 }
 
 Noether noether_energy(const Eqns *e) {
-  Work w = begin(e, &(Generator){.tau = expr_int(e->g, -1)});
+  ProofWork w = begin(e, &(Generator){.tau = expr_int(e->g, -1)});
   Expr zero = expr_int(w.g, 0), drift = expr_diff(w.g, w.m->lagrangian, w.m->time);
   Noether out = {.is = INVARIANT, .F = zero, .remainder = zero, .charge = e->energy, .scale = e->energy_scale};
   put_power(&w, &out, expr_neg(w.g, drift));

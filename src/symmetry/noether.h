@@ -16,7 +16,7 @@
 typedef struct {
   const Expr *xi; /* [eqns_coordinates] in q, t and parameters; 0: nothing */
   Expr tau;       /* 0: t stays */
-  const Expr *eta; /* [eqns_coordinates] the same of the sums of mech/noether_forms.h, for which the symbols of q stand, where these have names: proofs
+  const Expr *eta; /* [eqns_coordinates] the same of the sums of symmetry/linear_forms.h, for which the symbols of q stand, where these have names: proofs
                     * and charges are short then. NULL: not given */
   const Expr *lowered; /* [eqns_coordinates] M xi, where M is made of numbers and p = M q', which keeps charges short; or NULL */
 } Generator;

@@ -148,13 +148,13 @@ int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t
   long double *there = ARENA_ARRAY(with->m->arena, long double, expr_symbol_count(with->g) + 1), *here = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
   for (uint32_t seed = 1; seed <= STATES; seed++) {
     long double bound, one, other;
-    prove_state(with->g, seed, there);
+    sample_state(with->g, seed, there);
     for (SymId s = 1; s <= expr_symbol_count(e->g); s++) {
       Expr same = symbol_in(with, expr_symbol(e->g, s));
       if (same) here[s] = there[expr_sym_id(with->g, same)];
     }
-    one = prove_value(e->g, r->found.all.at[k].is.charge, here, NULL, &bound);
-    other = prove_value(with->g, v->is[k].charge, there, NULL, &bound);
+    one = value_with_bound(e->g, r->found.all.at[k].is.charge, here, NULL, &bound);
+    other = value_with_bound(with->g, v->is[k].charge, there, NULL, &bound);
     if (fabsl(one - other) > near * (1 + fabsl(one))) return 0;
   }
   return 1;

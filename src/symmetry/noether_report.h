@@ -2,7 +2,7 @@
 #ifndef LAGC_SYMMETRY_NOETHER_REPORT_H
 #define LAGC_SYMMETRY_NOETHER_REPORT_H
 
-#include "symmetry/brackets.h"
+#include "symmetry/poisson_brackets.h"
 #include "sym/print.h"
 
 typedef VEC(uint32_t) Indices;

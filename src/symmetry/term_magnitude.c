@@ -26,7 +26,7 @@ static Expr size_of_product(ExprGraph *g, const Expr *size, Expr x) {
   return expr_mul_n(g, factors, n);
 }
 
-Expr sizes_of_terms(ExprGraph *g, Expr x) {
+Expr term_magnitude(ExprGraph *g, Expr x) {
   Expr *size = ARENA_ARRAY(expr_arena(g), Expr, (size_t)expr_count(g) + 1);
   ExprList l = expr_topo(g, &x, 1);
   for (uint32_t i = 0; i < l.n; i++) {

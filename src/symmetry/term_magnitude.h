@@ -6,6 +6,6 @@
 
 /* Sum of the absolute values of the terms of x, as if products of sums were multiplied out: |a|*(|x| + |z|) for a*(x - z). Denominators,
  * roots and functions count as single terms; definitions are expanded. */
-Expr sizes_of_terms(ExprGraph *g, Expr x);
+Expr term_magnitude(ExprGraph *g, Expr x);
 
 #endif

@@ -150,7 +150,7 @@ AstId ast_tuple(Ast *ast, Span span, AstId head, AstList rest) {
 }
 
 /* The gap of a contact: g >= 0 is kept as g, a >= b as a - b. */
-AstId ast_gap(Ast *ast, Span span, Span op, AstId gap, AstId least) {
+AstId ast_contact_gap(Ast *ast, Span span, Span op, AstId gap, AstId least) {
   const AstExpr *e = ast_expr(ast, least);
   int zero = e->kind == AST_NUM && num_is_zero(e->number);
   return zero ? gap : ast_binary(ast, AST_SUB, span, op, gap, least);

@@ -41,7 +41,7 @@ AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items); /* AST_LIST
 AstId ast_bind(Ast *ast, Span span, Ident index, AstId lo, AstId hi);
 
 AstId ast_tuple(Ast *ast, Span span, AstId head, AstList rest);
-AstId ast_gap(Ast *ast, Span span, Span op, AstId gap, AstId least); /* contact: gap >= least */
+AstId ast_contact_gap(Ast *ast, Span span, Span op, AstId gap, AstId least); /* contact: gap >= least */
 
 /* Reports a declaration of `t` or `pi`. */
 void check_declared(Ast *ast, Ident name);
@@ -55,7 +55,7 @@ StmtList stmts_add(StmtList list, AstStmt *s);
 StmtList stmts_join(StmtList a, StmtList b);
 
 /* Gives the statements of a list the kind of the statement that holds the list, and its `exactly`. */
-StmtList stmts_retag(Ast *ast, StmtList list, AstStmtKind kind, int exactly);
+StmtList stmts_set_kind(Ast *ast, StmtList list, AstStmtKind kind, int exactly);
 
 AstStmt *stmt_plain(Ast *ast, AstStmtKind kind, Span span);
 AstStmt *stmt_include(Ast *ast, Span span, AstText path);

@@ -28,7 +28,7 @@ static void refuse_bind(Ast *ast, const AstStmt *s) {
   }
 }
 
-StmtList stmts_retag(Ast *ast, StmtList list, AstStmtKind kind, int exactly) {
+StmtList stmts_set_kind(Ast *ast, StmtList list, AstStmtKind kind, int exactly) {
   for (AstStmt *s = list.first; s; s = s->next) {
     s->kind = kind;
     s->exactly = exactly;

@@ -23,7 +23,7 @@ static void push_tokens(Parse *cx, TokKind begin) {
     if (cx->reported) skipping = 1, depth = t.depth;
     if (t.kind == TOK_END) skipping = 0;
     do {
-      const OpenBracket *open = filter_bracket(cx->filter);
+      const OpenBracket *open = filter_open_bracket(cx->filter);
       cx->open = open ? *open : (OpenBracket){0};
       t = filter_next(cx->filter);
     } while (skipping && t.depth > depth);
@@ -116,7 +116,7 @@ static int seen_before(const Includes *in, const AstStmt *s, const char *path) {
 /* The statements of the file that s includes; none when it was included before or cannot be read. */
 static StmtList included(Includes *in, AstStmt *s) {
   Ast *ast = in->ast;
-  const char *path = path_beside(ast->arena, in->files.at[file_of(in, s->span.begin)].path, s->doc);
+  const char *path = path_relative_to(ast->arena, in->files.at[file_of(in, s->span.begin)].path, s->doc);
   if (seen_before(in, s, path)) return (StmtList){NULL, NULL};
   const char *error = NULL;
   const Source *source = source_read(ast->sources, path, &error);
@@ -153,7 +153,7 @@ static StmtList follow_includes(Includes *in, StmtList list) {
 int parse(Ast *ast, const Source *source) {
   uint32_t errors = ast->diags->errors;
   Includes in = {.ast = ast};
-  add_file(&in, source, path_beside(ast->arena, "", source->path), NULL);
+  add_file(&in, source, path_relative_to(ast->arena, "", source->path), NULL);
   Parse cx;
   run(&cx, ast, source, TOK_BEGIN_FILE);
   StmtList all = follow_includes(&in, cx.stmts);

@@ -1,9 +1,9 @@
-/* State of one parse of one text, shared by parse.c, errors.c and the generated parser. */
+/* State of one parse of one text, shared by parse.c, syntax_errors.c and the generated parser. */
 #ifndef LAGC_PARSE_STATE_H
 #define LAGC_PARSE_STATE_H
 
 #include "syntax/ast_build.h"
-#include "syntax/filter.h"
+#include "syntax/token_filter.h"
 
 enum { PARSE_STACK = 4 * 1000 * 1000 }; /* entries of the parser's stack: limit of nesting */
 
@@ -25,7 +25,7 @@ void parse_open(Parse *cx);
 int parse_push(Parse *cx, const Token *t);
 void parse_close(Parse *cx);
 
-/* Its callbacks: results (parse.c) and errors (errors.c). */
+/* Its callbacks: results (parse.c) and errors (syntax_errors.c). */
 void parse_done_file(Parse *cx, StmtList stmts);
 void parse_done_value(Parse *cx, AstId value);
 void parse_report(Parse *cx, const TokKind *expected, int n);

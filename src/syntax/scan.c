@@ -228,7 +228,7 @@ int scan_bracket(Scan *s, Token *t, const char *text, int n) {
   return n;
 }
 
-int scan_strange(Scan *s, Token *t, const char *text, int n) {
+int scan_unknown(Scan *s, Token *t, const char *text, int n) {
   unsigned char c = (unsigned char)text[0];
   (void)n;
   if (c >= 0x80)

@@ -26,7 +26,7 @@ int scan_number(Scan *s, Token *t, const char *text, int n);
 int scan_name(Scan *s, Token *t, const char *text, int n);
 int scan_string(Scan *s, Token *t, const char *text, int n);
 int scan_bracket(Scan *s, Token *t, const char *text, int n);
-int scan_strange(Scan *s, Token *t, const char *text, int n);
+int scan_unknown(Scan *s, Token *t, const char *text, int n);
 int scan_advice(Scan *s, Token *t, const char *text, int n, const char *write);
 
 /* The generated scanner (lag.l): set up for s, and one token from it. */

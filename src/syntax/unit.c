@@ -36,7 +36,7 @@ static void skip_spaces(Unit *u) {
   while (u->at < u->n && (u->text[u->at] == ' ' || u->text[u->at] == '\t')) u->at++;
 }
 
-static int take(Unit *u, const char *sign) {
+static int accept_sign(Unit *u, const char *sign) {
   size_t n = strlen(sign);
   skip_spaces(u);
   if (u->n - u->at < n || memcmp(u->text + u->at, sign, n) != 0) return 0;
@@ -69,8 +69,8 @@ static uint32_t digits_length(const Unit *u) {
 }
 
 static int parse_integer(Unit *u, Num *out) {
-  int negative = take(u, "-");
-  if (!negative) take(u, "+");
+  int negative = accept_sign(u, "-");
+  if (!negative) accept_sign(u, "+");
   skip_spaces(u);
   uint32_t n = digits_length(u);
   if (!n) return unit_bad(u, u->at, 1, "an exponent is an integer, or a fraction in parentheses", "write `m^2`, `s^-1`, `Hz^(1/2)`");
@@ -84,17 +84,17 @@ static int parse_integer(Unit *u, Num *out) {
 
 static int parse_exponent(Unit *u, Num *out) {
   *out = num_int(1);
-  if (!take(u, "^") && !take(u, "**")) return 1;
-  if (!take(u, "(")) return parse_integer(u, out);
+  if (!accept_sign(u, "^") && !accept_sign(u, "**")) return 1;
+  if (!accept_sign(u, "(")) return parse_integer(u, out);
   if (!parse_integer(u, out)) return 0;
-  if (take(u, "/")) {
+  if (accept_sign(u, "/")) {
     Num den;
     uint32_t at = u->at;
     if (!parse_integer(u, &den)) return 0;
     if (num_is_zero(den)) return unit_bad(u, at, 1, "an exponent cannot be divided by 0", NULL);
     *out = num_div(*out, den);
   }
-  if (!take(u, ")")) return unit_bad(u, u->at, 1, "the `)` of this exponent is missing", NULL);
+  if (!accept_sign(u, ")")) return unit_bad(u, u->at, 1, "the `)` of this exponent is missing", NULL);
   return 1;
 }
 
@@ -168,16 +168,16 @@ static int parse_factors(Unit *u) {
   for (;;) {
     int divide = 0;
     if (u->factors.n && u->at < u->n) {
-      divide = take(u, "/");
-      if (!divide && !take(u, "*") && !take(u, "\xC2\xB7")) take(u, "\xE2\x8B\x85");
+      divide = accept_sign(u, "/");
+      if (!divide && !accept_sign(u, "*") && !accept_sign(u, "\xC2\xB7")) accept_sign(u, "\xE2\x8B\x85");
     }
-    while (take(u, "(")) {
+    while (accept_sign(u, "(")) {
       if (!open_group(u, divide)) return 0;
       divide = 0;
     }
     skip_spaces(u);
     if (!parse_factor(u, divide)) return 0;
-    while (take(u, ")"))
+    while (accept_sign(u, ")"))
       if (!close_group(u)) return 0;
     skip_spaces(u);
     if (u->at >= u->n) break;

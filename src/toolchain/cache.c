@@ -57,9 +57,9 @@ const char *cache_build_folder(Arena *a) {
   return cache ? cache : temporary(a);
 }
 
-void cache_remove_remains(Arena *a) {
+void cache_remove_stale_builds(Arena *a) {
   const char *base = cache_build_folder(a);
-  if (base) build_folder_remains(a, base);
+  if (base) build_folder_remove_stale(a, base);
 }
 
 /* --- entries --- */

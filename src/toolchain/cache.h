@@ -9,7 +9,7 @@ const char *cache_folder(Arena *a);
 /* A folder to build in: the cache, or a temporary folder where others cannot replace the user's files; NULL: none. */
 const char *cache_build_folder(Arena *a);
 /* Removes the folders of killed builds. Called before the first build of a command. */
-void cache_remove_remains(Arena *a);
+void cache_remove_stale_builds(Arena *a);
 
 /* Whether the simulator at path matches its seal and is the user's own; otherwise it is built anew. Marks the entry as used. */
 int cache_is_whole(Arena *a, const char *path);

@@ -16,9 +16,9 @@
 /* --- files --- */
 
 /* Closes the file, and keeps or drops it. Interruptions are held until then: they would leave the temporary file. */
-static int complete(Outfile *o, int ok, const char **error) {
+static int close_outfile(Outfile *o, int ok, const char **error) {
   int why = errno;
-  if (outfile_close(o, ok ? OUTFILE_KEEP : OUTFILE_DROP) != 0 && ok) {
+  if (lag_outfile_close(o, ok ? OUTFILE_KEEP : OUTFILE_DROP) != 0 && ok) {
     ok = 0;
     why = errno;
   }
@@ -38,11 +38,11 @@ static void hold_interruptions(sigset_t *before) {
 static int write_text(const char *path, const char *text, size_t n, const char **error) {
   Outfile o;
   errno = 0;
-  if (outfile_open(&o, path) != 0) {
+  if (lag_outfile_open(&o, path) != 0) {
     *error = strerror(errno);
     return 0;
   }
-  return complete(&o, fwrite(text, 1, n, o.f) == n && fflush(o.f) == 0, error);
+  return close_outfile(&o, fwrite(text, 1, n, o.f) == n && fflush(o.f) == 0, error);
 }
 
 int file_write(Arena *a, const char *path, const char *text, size_t n, const char **error) {
@@ -72,10 +72,10 @@ int file_install(const char *path, const char *from, const char **error) {
   int ok = 0;
   hold_interruptions(&before);
   errno = f ? 0 : errno;
-  if (!f || outfile_open(&o, path) != 0) *error = strerror(errno);
+  if (!f || lag_outfile_open(&o, path) != 0) *error = strerror(errno);
   else {
     ok = copy(f, o.f) && fstat(fileno(o.f), &st) == 0;
-    ok = complete(&o, ok && fchmod(fileno(o.f), (st.st_mode | (st.st_mode & 0444) >> 2) & 0777) == 0, error); /* readers may execute it */
+    ok = close_outfile(&o, ok && fchmod(fileno(o.f), (st.st_mode | (st.st_mode & 0444) >> 2) & 0777) == 0, error); /* readers may execute it */
   }
   if (f) fclose(f);
   sigprocmask(SIG_SETMASK, &before, NULL);
@@ -134,7 +134,7 @@ static int take_lock(int fd) {
 }
 
 /* Removes the files in the folder, except `keep` and then the lock. */
-static void empty(const char *path, const char *keep) {
+static void remove_files(const char *path, const char *keep) {
   int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   DIR *d = fd >= 0 ? fdopendir(fd) : NULL;
   for (struct dirent *e; d && (e = readdir(d));)
@@ -144,7 +144,7 @@ static void empty(const char *path, const char *keep) {
 }
 
 void build_folder_remove(BuildFolder *f, const char *keep) {
-  empty(f->path, keep);
+  remove_files(f->path, keep);
   if (keep) return;
   rmdir(f->path);
   if (f->lock >= 0) close(f->lock);
@@ -170,7 +170,7 @@ int build_folder_make(Arena *a, const char *base, BuildFolder *f) {
 
 /* Removes the folder if its lock can be taken. A missing lock (its process was killed, or is about to make it) is made here: a process that is
  * still making the folder then fails to get its lock, and makes another folder. */
-static void remove_left(Arena *a, const char *path) {
+static void remove_if_stale(Arena *a, const char *path) {
   struct stat st;
   if (lstat(path, &st) != 0 || !S_ISDIR(st.st_mode) || st.st_uid != geteuid()) return;
   BuildFolder f = {path, open(arena_printf(a, "%s/lock", path), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0600)};
@@ -178,9 +178,9 @@ static void remove_left(Arena *a, const char *path) {
   else if (f.lock >= 0) close(f.lock);
 }
 
-void build_folder_remains(Arena *a, const char *base) {
+void build_folder_remove_stale(Arena *a, const char *base) {
   DIR *d = opendir(base);
   for (struct dirent *e; d && (e = readdir(d));)
-    if (strncmp(e->d_name, "lagc-build-", 11) == 0 && strlen(e->d_name) == 17) remove_left(a, arena_printf(a, "%s/%s", base, e->d_name));
+    if (strncmp(e->d_name, "lagc-build-", 11) == 0 && strlen(e->d_name) == 17) remove_if_stale(a, arena_printf(a, "%s/%s", base, e->d_name));
   if (d) closedir(d);
 }

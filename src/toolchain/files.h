@@ -38,6 +38,6 @@ int build_folder_make(Arena *a, const char *base, BuildFolder *f);
 /* Removes the folder and its files; keep: leaves the folder with this file, a program to be run from there. */
 void build_folder_remove(BuildFolder *f, const char *keep);
 /* Removes the build folders in `base` whose processes are gone. */
-void build_folder_remains(Arena *a, const char *base);
+void build_folder_remove_stale(Arena *a, const char *base);
 
 #endif

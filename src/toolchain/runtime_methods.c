@@ -21,7 +21,7 @@ static const char program[] =
 const char *methods_program(Arena *a, const char *argv0, int want_gsl, const char **error) {
   Toolchain tools;
   if (!toolchain_find(a, argv0, want_gsl, &tools, error)) return NULL;
-  SourceText text = {"methods.c", arena_printf(a, program, tools.gsl ? "&lag_gsl" : "NULL")};
+  SourceText text = {"runtime_methods.c", arena_printf(a, program, tools.gsl ? "&lag_gsl" : "NULL")};
   return toolchain_simulator(a, &tools, &text, 1, error);
 }
 

@@ -118,7 +118,7 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
 }
 
 /* Compiles with TMPDIR set to the build folder, so that the compiler's temporary files are removed with it. */
-static int compile_alone(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
+static int compile_with_tmpdir(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
   const char *was = getenv("TMPDIR"), *before = was ? arena_strdup(a, was) : NULL;
   setenv("TMPDIR", dir, 1);
   int ok = compile(a, t, dir, texts, n, error);
@@ -144,7 +144,7 @@ static int build_in(Arena *a, const Toolchain *t, const SourceText *texts, size_
     ok = file_write(a, arena_printf(a, "%s/%s", f->path, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
     if (!ok) *error = arena_printf(a, "cannot write in %s: %s", f->path, why);
   }
-  ok = ok && compile_alone(a, t, f->path, texts, n, error);
+  ok = ok && compile_with_tmpdir(a, t, f->path, texts, n, error);
   if (ok && !file_exists(arena_printf(a, "%s/simulator", f->path))) {
     *error = arena_printf(a, "cannot write %s/simulator: the C compiler `%s` has made nothing", f->path, t->cc);
     ok = 0;

@@ -25,7 +25,7 @@ typedef struct {
  * argv0: the name that lagc was called by. Returns 0, with *error, when it is not found. */
 int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error);
 
-/* Switches the toolchain to a precision: double, long or quad. Returns 0, with *error, when the runtime was not built for it. */
+/* SwitchingFunctions the toolchain to a precision: double, long or quad. Returns 0, with *error, when the runtime was not built for it. */
 int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const char **error);
 
 /* Compiles and links the texts into the executable `output`, which appears only on success.

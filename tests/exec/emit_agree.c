@@ -149,7 +149,7 @@ static int compare_graph(Eqns *e, const Prog *accel, const Prog *energy, const P
 /* dL/dq, dL/dq', Q and their derivatives. */
 static int compare_variation(const lag_model *m, const Eqns *e, Point *s) {
   Variation *x = variation_derive(e);
-  Prog *first = lower_variation(e, x), *second = lower_second(e, x);
+  Prog *first = lower_variation(e, x), *second = lower_second_derivatives(e, x);
   uint32_t n = x->second.n;
   Real a[3 * MAX], b[3 * MAX], *h = ARENA_ARRAY(e->m->arena, Real, n + 1), *k = ARENA_ARRAY(e->m->arena, Real, n + 1);
   const Real *in[ARR_COUNT] = {&s->t, s->q, s->v, s->z, s->p, s->u};

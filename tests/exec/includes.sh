@@ -22,24 +22,26 @@ src/toolchain toolchain/ base/
 src/commands  commands/ toolchain/ emit/ jets/ lower/ ir/ report/ claims/ symmetry/ mech/ model/ sym/ syntax/ base/
 src           commands/ syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
-runtime/core      core/ lag.h lag_model.h lag_kkt.h
-runtime/methods   methods/ core/rhs.h core/gauss.h lag.h lag_model.h
-runtime/analysis  analysis/ core/ lag.h lag_model.h
+runtime/numeric   numeric/
+runtime/core      core/ numeric/ lag.h lag_model.h
+runtime/constraints constraints/ core/core.h core/rhs.h numeric/ lag.h lag_model.h lag_kkt.h
+runtime/methods   methods/ core/rhs.h numeric/ lag.h lag_model.h
+runtime/analysis  analysis/ core/ numeric/ lag.h lag_model.h
 runtime/io        io/ lag.h lag_model.h
-runtime/app       app/ core/ io/ analysis/ lag.h lag_model.h
+runtime/app       app/ core/ io/ analysis/ numeric/ lag.h lag_model.h
 runtime/gsl       gsl/ lag.h lag_model.h
 '
 # FILE: further headers that it may include.
 besides='
-src/jets/text.h model/builder.h
+src/jets/text_eval.h model/builder.h
 runtime/include/lag.h  lag_model.h
 runtime/include/lag_math.h  lag_sincos.h
 '
 # The inside of a folder, shared by its own files only.
-private='syntax/ast_build.h syntax/parse_state.h syntax/filter.h syntax/scan.h syntax/token.h syntax/slips.h model/builder.h
+private='syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
   model/scope.h sym/expr_impl.h sym/ops.def lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h methods/tableau.h methods/embedded.h methods/embedded_trial.h
-  methods/steps.h methods/composition.h methods/path.h methods/rule.h methods/discrete.h methods/implicit.h
-  methods/history.h methods/band.h methods/control.h methods/links.h'
+  methods/steps.h methods/composition.h methods/step_interpolant.h methods/galerkin_rule.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
+  methods/predictor.h methods/band_matrix.h methods/step_control.h methods/substeps.h'
 
 # Every #include as `FILE HEADER`; <stdio.h> keeps its brackets.
 list=$TMP/list

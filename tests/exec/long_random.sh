@@ -20,8 +20,8 @@ done
 
 # A former mistake: the angle was read back from its cosine, which loses the sign.
 sign_is_lost() {
-  sed 's/, n->atoms\.at\[s->angles\.at\[i\]\]\.u)/, expr_arg(n->g, n->gens.at[n->atoms.at[s->angles.at[i]].cos].expr, 0))/' src/sym/trigform.c >"$TMP/trigform.c"
-  if cmp -s src/sym/trigform.c "$TMP/trigform.c"; then
+  sed 's/, n->atoms\.at\[s->angles\.at\[i\]\]\.u)/, expr_arg(n->g, n->gens.at[n->atoms.at[s->angles.at[i]].cos].expr, 0))/' src/sym/trig_simplify.c >"$TMP/trigform.c"
+  if cmp -s src/sym/trig_simplify.c "$TMP/trigform.c"; then
     echo "the place of the angle is not there"
     return 1
   fi

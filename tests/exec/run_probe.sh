@@ -1,5 +1,5 @@
 #!/bin/sh
-# The probe for compilers that store wrong numbers (src/cli/probe.in): its verdict on this compiler, and lagc and make after a failure.
+# The probe for compilers that store wrong numbers (src/toolchain/compiler_probe.in): its verdict on this compiler, and lagc and make after a failure.
 : "${LAGC:=build/lagc}" "${CC:=cc}" "${MAKE:=make}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
@@ -7,7 +7,7 @@ export XDG_CACHE_HOME="$TMP/cache"
 
 # probe COMPILER FLAGS...: its exit status.
 probe() {
-  "$@" -x c src/cli/probe.in -o "$TMP/probe" && "$TMP/probe"
+  "$@" -x c src/toolchain/compiler_probe.in -o "$TMP/probe" && "$TMP/probe"
 }
 check "as the build compiles, nothing is wrong" probe $CC -O2
 gcc_native() { # the flag cures faults of -march=native

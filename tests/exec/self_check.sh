@@ -72,36 +72,36 @@ done <<'ROWS'
 sym/diff.c|s/return expr_neg(g, s); }$/return s; }/
 sym/diff.c|s/return expr_sub(g, g->one, t2)/return expr_add(g, g->one, t2)/
 sym/diff.c|s/i == 0 ? x : expr_neg(g, y)/i == 0 ? x : y/
-sym/build.c|s/one.number = num_add(one.number,/one.number = num_sub(one.number,/
-sym/build.c|s/return is_odd(op) ? expr_neg(g, f) : f/return f/
-sym/build.c|s/op == EX_SIN || op == EX_TAN/op == EX_SIN || op == EX_COS || op == EX_TAN/
-sym/stable.c|s/num_mul(num_int(2), c), product/c, product/
-sym/stable.c|s/if (f == EX_SIN) c = num_neg(c);//
-sym/stable.c|s/minus = expr_sub(g, ra, b)/minus = expr_sub(g, b, ra)/
-sym/angles.c|s/Frac cos = frac_sub(f, cc, ss)/Frac cos = frac_add(f, cc, ss)/
-sym/angles.c|s/if (k < 0) sum.sin = frac_neg(n->field, sum.sin);//
-sym/trigform.c|s/sines \/ 2 % 2 ?/0 ?/
+sym/canonicalize.c|s/one.number = num_add(one.number,/one.number = num_sub(one.number,/
+sym/canonicalize.c|s/return is_odd(op) ? expr_neg(g, f) : f/return f/
+sym/canonicalize.c|s/op == EX_SIN || op == EX_TAN/op == EX_SIN || op == EX_COS || op == EX_TAN/
+sym/stable_forms.c|s/num_mul(num_int(2), c), product/c, product/
+sym/stable_forms.c|s/if (f == EX_SIN) c = num_neg(c);//
+sym/stable_forms.c|s/minus = expr_sub(g, ra, b)/minus = expr_sub(g, b, ra)/
+sym/addition_theorems.c|s/Frac cos = frac_sub(f, cc, ss)/Frac cos = frac_add(f, cc, ss)/
+sym/addition_theorems.c|s/if (k < 0) sum.sin = frac_neg(n->field, sum.sin);//
+sym/trig_simplify.c|s/sines \/ 2 % 2 ?/0 ?/
 sym/frac.c|s/poly_scale(f->ring, num_int(-1), a.num)/a.num/
 sym/frac.c|s/poly_add(r, x, y), .den = den/poly_add(r, x, x), .den = den/
-sym/normal.c|s/if (expr_op(n->g, e) == EX_COS) return cs.cos;/if (expr_op(n->g, e) == EX_COS) return cs.sin;/
+sym/normal_form.c|s/if (expr_op(n->g, e) == EX_COS) return cs.cos;/if (expr_op(n->g, e) == EX_COS) return cs.sin;/
 sym/poly.c|s/\*content = num_neg(\*content);.*//
-sym/roots.c|s/num_pow(num_int(prime), num_int(whole),/num_pow(num_int(prime), num_int(whole + 1),/
+sym/radicals.c|s/num_pow(num_int(prime), num_int(whole),/num_pow(num_int(prime), num_int(whole + 1),/
 sym/simplify.c|s/inverse = expr_pow_num(g, common, num_int(-1))/inverse = expr_pow_num(g, common, num_int(1))/
-sym/quotient.c|s/num_int(k - out)/num_int(k)/
-sym/quotient.c|s/expr_neg(g, expr_arg(g, E, 0))/expr_arg(g, E, 0)/
-ir/lower.c|s/IR_ADD : IR_SUB, first, second/IR_SUB : IR_ADD, first, second/
-ir/lower.c|s/wanted > 0 || negative ? IR_ADD : IR_SUB/IR_ADD/
+sym/finite_quotients.c|s/num_int(k - out)/num_int(k)/
+sym/finite_quotients.c|s/expr_neg(g, expr_arg(g, E, 0))/expr_arg(g, E, 0)/
+lower/lower.c|s/IR_ADD : IR_SUB, first, second/IR_SUB : IR_ADD, first, second/
+lower/lower.c|s/wanted > 0 || negative ? IR_ADD : IR_SUB/IR_ADD/
 model/rotation.c|s/num_int(2), turned\[k\]/num_int(1), turned[k]/
-ir/eliminate.c|s/prog_op(l->p, IR_SUB, x, ab)/prog_op(l->p, IR_ADD, x, ab)/
-ir/balance.c|s/x.minus ? prog_op(b->to, IR_SUB, y.slot, x.slot)/0 ? prog_op(b->to, IR_SUB, y.slot, x.slot)/
+lower/eliminate.c|s/prog_op(l->p, IR_SUB, x, ab)/prog_op(l->p, IR_ADD, x, ab)/
+ir/reassociate.c|s/x.minus ? prog_op(b->to, IR_SUB, y.slot, x.slot)/0 ? prog_op(b->to, IR_SUB, y.slot, x.slot)/
 model/resolve_time.c|s/seed\[m->time\] = expr_int(b->g, 1)/seed[m->time] = expr_int(b->g, 0)/
 mech/lagrange.c|s/expr_sub(g, dLdq\[i\], convective\[i\])/expr_add(g, dLdq[i], convective[i])/
 mech/lagrange.c|s/= expr_sub(g, Q\[d.at\[i\].index\]/= expr_add(g, Q[d.at[i].index]/
 mech/eqns.c|s/e->energy = expr_sub(g, moving, l0)/e->energy = expr_add(g, moving, l0)/
 mech/constrain.c|s/expr_neg(e->g, rate(e, r\[at\], "_drift"))/rate(e, r[at], "_drift")/
 mech/first_order.c|s/H = expr_neg(w->g, still)/H = still/
-ir/gram.c|s/Slot f = op(y, IR_DIV, product(y, weighted, u), d)/Slot f = op(y, IR_DIV, d, product(y, weighted, u))/
-mech/squares.c|s/take(s, expr_scale(g, p, weight), term)/take(s, weight, term)/
+lower/gram_schmidt.c|s/Slot f = op(y, IR_DIV, product(y, weighted, u), d)/Slot f = op(y, IR_DIV, d, product(y, weighted, u))/
+mech/kinetic_squares.c|s/take(s, expr_scale(g, p, weight), term)/take(s, weight, term)/
 jets/tape_partial.c|s/"cos") == 0) return negative(t, product(t, tape_function(t, "sin", a), da));/"cos") == 0) return product(t, tape_function(t, "sin", a), da);/
 jets/tape_partial.c|s/return p->index == ALL ? tape_op(t, TAPE_RATE, r, 0, 0)/return p->index == ALL ? r/
 mech/eqns.c|s/with\[m->energy_sym\] = e->energy_stable/with[m->energy_sym] = m->lagrangian/
@@ -118,8 +118,8 @@ ROWS
 
 # Programs that only `modes` and `lyapunov` need.
 linearisation() { build_with "$1" "$2" && ! "$TMP/lagc" modes models/double_pendulum.lag >"$TMP/said" 2>&1 && grep 'internal error: the linearisation: the text gives' "$TMP/said"; }
-check "the linearisation" linearisation src/mech/linear.c 's/expr_sub(e->g, e->f\[i\], inertia\[i\])/expr_add(e->g, e->f[i], inertia[i])/'
-check "the columns of its entries" linearisation src/ir/lower_unit.c 's/((IrEntry){dr.at\[k\].row, dr.at\[k\].col})/((IrEntry){dr.at[k].row, dr.at[k ? k - 1 : 0].col})/'
+check "the linearisation" linearisation src/mech/linearise.c 's/expr_sub(e->g, e->f\[i\], inertia\[i\])/expr_add(e->g, e->f[i], inertia[i])/'
+check "the columns of its entries" linearisation src/lower/lower_unit.c 's/((IrEntry){dr.at\[k\].row, dr.at\[k\].col})/((IrEntry){dr.at[k].row, dr.at[k ? k - 1 : 0].col})/'
 
 # Derivatives by the argument of a function are reported as not compared.
 printf 'model m\ncoord x\nfunction f(s) = d(s^3, s)\nlagrangian = x'"'"'^2/2 - f(x)\n' >"$TMP/argument.lag"

@@ -17,8 +17,8 @@
 #include "ir/hoist.h"
 #include "lower/lower.h"
 #include "symmetry/charges.h"
-#include "report/show.h"
-#include "mech/start.h"
+#include "report/equation_listing.h"
+#include "mech/consistent_start.h"
 #include "model/model.h"
 #include "syntax/parse.h"
 
@@ -165,12 +165,12 @@ static void emit(Ast *ast, Eqns *e) {
   StrBuf text = strbuf(a), c = strbuf(a), header = strbuf(a);
   long double *found = ARENA_ARRAY(a, long double, 2 * (size_t)e->n + 1);
   unsigned char *moved = ARENA_ARRAY(a, unsigned char, 2 * (size_t)e->n + 1);
-  start_moves(e, found, moved);
+  start_of_scene(e, found, moved);
   IrUnit *u = unit_new(e, "fuzz.lag", 0);
-  unit_want(u, e, (e->singular_mass ? 0 : WANT_VARIATION) | WANT_TAYLOR | WANT_LINEAR);
+  unit_require(u, e, (e->singular_mass ? 0 : WANT_VARIATION) | WANT_TAYLOR | WANT_LINEAR);
   unit_add_scene(u, e);
   verify_all(u);
-  show_equations(e, ops_text(u->accel, a), PRINT_TEXT, &text);
+  show_equations(e, op_count_text(u->accel, a), PRINT_TEXT, &text);
   emit_header(u, u->name, sb_text(&text), &header);
   unit_hoist(u);
   verify_all(u);

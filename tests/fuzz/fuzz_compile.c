@@ -14,7 +14,7 @@
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
 #include "emit/emit_model.h"
-#include "report/show.h"
+#include "report/equation_listing.h"
 #include "lower/lower.h"
 #include "symmetry/charges.h"
 #include "claims/expect.h"
@@ -27,7 +27,7 @@ enum { FUZZ_MEMORY = 256 * 1024 * 1024, MAX_SCENES = 8 };
 
 static void write_everything(Arena *a, Eqns *e) {
   IrUnit *u = unit_new(e, "fuzz.lag", 0);
-  unit_want(u, e, WANT_VARIATION);
+  unit_require(u, e, WANT_VARIATION);
   unit_add_scene(u, e);
   if (prog_verify(u->accel)) abort();
   if (u->energy && prog_verify(u->energy)) abort();
@@ -35,7 +35,7 @@ static void write_everything(Arena *a, Eqns *e) {
   if (prog_verify(u->scenes.at[0].observe)) abort();
   StrBuf c = strbuf(a), text = strbuf(a), latex = strbuf(a);
   emit_model(u, cname(a, u->name), &c);
-  const char *cost = ops_text(u->accel, a);
+  const char *cost = op_count_text(u->accel, a);
   show_equations(e, cost, PRINT_TEXT, &text);
   show_equations(e, cost, PRINT_LATEX, &latex);
   emit_header(u, u->name, sb_text(&text), &c);

@@ -95,7 +95,7 @@ static void look(lag_sim *sim)
   }
   lag_sim_outputs(sim, out);
   lag_sim_stats(sim, &stats);
-  lag_sim_watch(sim);
+  lag_sim_judge(sim);
   for (int i = 0; i < c->model->nev; i++) {
     lag_sim_event_times(sim, i, &first, &last);
   }
@@ -144,7 +144,7 @@ static void load(int k, const double *x, size_t n, int run)
   if (run) {
     double t = lag_sim_time(sim), dir = x[1] < 0 ? -1 : 1; /* dir: the second number of Run */
     lag_sim_on_step(sim, after_some, &steps);
-    lag_sim_reach(sim, t + dir, &reach);
+    lag_sim_ensure_step(sim, t + dir, &reach);
     lag_sim_advance(sim, t + dir * 1e-3);
     look(sim);
     lag_sim_advance(sim, t + dir);
@@ -171,7 +171,7 @@ static void load_text(const uint8_t *data, size_t size)
     h = (h ^ (unsigned char)text[i]) * UINT64_C(0x100000001b3);
   }
   snprintf(text + size, 32, "sum %016llx\n", (unsigned long long)h);
-  const char *why = state_parse(text, &state);
+  const char *why = lag_state_parse(text, &state);
   if (!why != (state.data != NULL)) {
     abort();
   }

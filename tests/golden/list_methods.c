@@ -1,4 +1,4 @@
-/* Prints the methods of the runtime as rows of the table in src/base/methods.c. Runs once, when lagc is built: the compiler includes no header
+/* Prints the methods of the runtime as rows of the table in src/base/method_table.c. Runs once, when lagc is built: the compiler includes no header
  * of the runtime, and so needs no second list of names, options and requirements of methods. */
 #include <math.h>
 #include <stdio.h>

@@ -21,7 +21,7 @@ static Verdict judge(Arena *a, Diags *diags, Sources *sources, const char *text)
   Eqns *e = m ? equations_of(m) : NULL;
   if (!e) return REFUSED;
   IrUnit *u = unit_new(e, "random.lag", 0);
-  unit_want(u, e, WANT_TAYLOR | (e->singular_mass ? 0 : WANT_VARIATION | WANT_LINEAR));
+  unit_require(u, e, WANT_TAYLOR | (e->singular_mass ? 0 : WANT_VARIATION | WANT_LINEAR));
   unit_add_scene(u, e);
   unit_hoist(u);
   SelfCheck told;

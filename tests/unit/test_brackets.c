@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "compile_text.h"
-#include "symmetry/brackets.h"
+#include "symmetry/poisson_brackets.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 

@@ -68,7 +68,7 @@ static void rows_become_orthonormal(void **state) {
     long double row[4], size = 0;
     memcpy(row, rows + 4 * i, sizeof row);
     for (uint32_t k = 0; k < 4; k++) size += row[k] * row[k];
-    assert_true(size == 0 || dense_reduce(4, row, o.at, o.n) < 1e-17L);
+    assert_true(size == 0 || dense_gram_schmidt(4, row, o.at, o.n) < 1e-17L);
   }
   arena_free(a);
 }

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "base/digits.h"
+#include "base/decimal_literal.h"
 
 static const struct {
   int64_t n, d;
@@ -40,7 +40,7 @@ static void digits_are_those_of_mpmath(void **state) {
   Arena *a = arena_new(NULL);
   (void)state;
   for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-    assert_string_equal(digits_text(a, num_ratio(known[i].n, known[i].d), known[i].pi_power), known[i].digits);
+    assert_string_equal(decimal_literal(a, num_ratio(known[i].n, known[i].d), known[i].pi_power), known[i].digits);
   arena_free(a);
 }
 
@@ -50,17 +50,17 @@ static void digits_read_back(void **state) {
   (void)state;
   for (int n = -50; n <= 50; n++)
     for (int d = 1; d <= 60; d++)
-      assert_true(strtod(digits_text(a, num_ratio(n, d), 0), NULL) == (double)n / d);
+      assert_true(strtod(decimal_literal(a, num_ratio(n, d), 0), NULL) == (double)n / d);
   arena_free(a);
 }
 
 static void what_has_none_says_so(void **state) {
   Arena *a = arena_new(NULL);
   (void)state;
-  assert_null(digits_text(a, num_double(sqrt(2)), 0));
-  assert_null(digits_text(a, num_int(1), 2));
-  assert_null(digits_text(a, num_int(1), -2));
-  assert_null(digits_text(a, num_ratio(1, INT64_C(1000000000000000001)), 0));
+  assert_null(decimal_literal(a, num_double(sqrt(2)), 0));
+  assert_null(decimal_literal(a, num_int(1), 2));
+  assert_null(decimal_literal(a, num_int(1), -2));
+  assert_null(decimal_literal(a, num_ratio(1, INT64_C(1000000000000000001)), 0));
   arena_free(a);
 }
 

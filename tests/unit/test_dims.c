@@ -66,7 +66,7 @@ static void test_one_unknown(void **state) {
   assert_string_equal(dim_open_name(f.d, term), "k");
   assert_true(dim_equate(f.d, joule, term, at(7)));
   assert_false(dim_is_open(f.d, term));
-  assert_int_equal(dim_found(f.d, k), dim_div(f.d, newton(&f), f.m));
+  assert_int_equal(dim_resolved(f.d, k), dim_div(f.d, newton(&f), f.m));
   assert_true(dim_equate(f.d, joule, term, at(8)));
   assert_false(dim_equate(f.d, newton(&f), term, at(9)));
   DimCause c;
@@ -86,10 +86,10 @@ static void test_system(void **state) {
   assert_true(dim_equate(f.d, first, f.m, at(1)));
   assert_true(dim_is_open(f.d, a));
   assert_true(dim_equate(f.d, second, f.kg, at(2)));
-  assert_int_equal(dim_found(f.d, a), dim_mul(f.d, power(&f, f.m, 1, 7), power(&f, f.kg, 2, 7)));
-  assert_int_equal(dim_found(f.d, b), dim_div(f.d, power(&f, f.m, 3, 7), power(&f, f.kg, 1, 7)));
-  assert_int_equal(dim_found(f.d, first), f.m);
-  assert_int_equal(dim_found(f.d, second), f.kg);
+  assert_int_equal(dim_resolved(f.d, a), dim_mul(f.d, power(&f, f.m, 1, 7), power(&f, f.kg, 2, 7)));
+  assert_int_equal(dim_resolved(f.d, b), dim_div(f.d, power(&f, f.m, 3, 7), power(&f, f.kg, 1, 7)));
+  assert_int_equal(dim_resolved(f.d, first), f.m);
+  assert_int_equal(dim_resolved(f.d, second), f.kg);
   arena_free(f.a);
 }
 
@@ -101,7 +101,7 @@ static void test_same_unknown(void **state) {
   assert_false(dim_equate(f.d, x, dim_per_second(f.d, x), at(1)));
   assert_true(dim_is_open(f.d, x));
   assert_true(dim_equate(f.d, x, power(&f, x, -1, 1), at(1)));
-  assert_int_equal(dim_found(f.d, x), DIM_NONE);
+  assert_int_equal(dim_resolved(f.d, x), DIM_NONE);
   arena_free(f.a);
 }
 
@@ -112,12 +112,12 @@ static void test_undo(void **state) {
   assert_true(dim_equate(f.d, y, dim_mul(f.d, x, f.s), at(1)));
   uint32_t mark = dims_mark(f.d);
   assert_true(dim_equate(f.d, x, f.m, at(2)));
-  assert_int_equal(dim_found(f.d, y), dim_mul(f.d, f.m, f.s));
+  assert_int_equal(dim_resolved(f.d, y), dim_mul(f.d, f.m, f.s));
   dims_undo(f.d, mark);
   assert_true(dim_is_open(f.d, y));
-  assert_int_equal(dim_found(f.d, y), dim_mul(f.d, x, f.s));
+  assert_int_equal(dim_resolved(f.d, y), dim_mul(f.d, x, f.s));
   assert_true(dim_equate(f.d, x, f.kg, at(3)));
-  assert_int_equal(dim_found(f.d, y), dim_mul(f.d, f.kg, f.s));
+  assert_int_equal(dim_resolved(f.d, y), dim_mul(f.d, f.kg, f.s));
   arena_free(f.a);
 }
 

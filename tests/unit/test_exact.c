@@ -1,4 +1,4 @@
-/* exact_solve: inverses of Hilbert's matrices, whose entries are products of binomials (D. E. Knuth, The Art of Computer Programming 1,
+/* rational_solve: inverses of Hilbert's matrices, whose entries are products of binomials (D. E. Knuth, The Art of Computer Programming 1,
  * 1.2.3, exercise 45), and systems made from their solutions. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "base/exact.h"
+#include "base/rational_solve.h"
 
 static int64_t binomial(int64_t n, int64_t k) {
   int64_t c = 1;
@@ -28,7 +28,7 @@ static void test_hilbert(void **state) {
     Num A[MOST * MOST], B[MOST * MOST], X[MOST * MOST];
     for (uint32_t i = 0; i < n; i++)
       for (uint32_t j = 0; j < n; j++) A[i * n + j] = num_ratio(1, (int64_t)(i + j + 1)), B[i * n + j] = num_int(i == j);
-    assert_true(exact_solve(arena, n, A, n, B, X));
+    assert_true(rational_solve(arena, n, A, n, B, X));
     for (uint32_t i = 0; i < n; i++)
       for (uint32_t j = 0; j < n; j++) assert_true(num_equal(X[i * n + j], num_int(hilbert_inverse(n, i + 1, j + 1))));
     arena_free(arena);
@@ -56,7 +56,7 @@ static void test_long(void **state) {
     for (int k = 0; k < 2; k++) B[k] = num_add(num_mul(A[2 * k], a), num_mul(A[2 * k + 1], b));
     Num determinant = num_sub(num_mul(A[0], A[3]), num_mul(A[1], A[2]));
     int exact = num_is_exact(B[0]) && num_is_exact(B[1]);
-    int solved = exact_solve(arena, 2, A, 1, B, X);
+    int solved = rational_solve(arena, 2, A, 1, B, X);
     assert_int_equal(solved, exact && !num_is_zero(determinant));
     if (solved) assert_true(num_equal(X[0], a) && num_equal(X[1], b));
     arena_free(arena);
@@ -68,7 +68,7 @@ static void test_overflow(void **state) {
   (void)state;
   Arena *arena = arena_new(NULL);
   Num large = num_int(1ll << 40), A = num_ratio(1, 1ll << 40), B = num_div(large, num_int(3)), X;
-  assert_true(exact_solve(arena, 1, &A, 1, &B, &X));
+  assert_true(rational_solve(arena, 1, &A, 1, &B, &X));
   assert_false(num_is_exact(X));
   Num square = num_mul(large, large), three = num_int(3);
   assert_true(num_is_zero(num_sub(num_mul(X, three), square)));
@@ -81,7 +81,7 @@ static void test_guess(void **state) {
   (void)state;
   Arena *arena = arena_new(NULL);
   Num A = num_ratio(4765598451, 466338042947), B = num_ratio(84947136216451393, 2078127315196880443), X;
-  assert_true(exact_solve(arena, 1, &A, 1, &B, &X));
+  assert_true(rational_solve(arena, 1, &A, 1, &B, &X));
   assert_true(num_is_zero(num_sub(num_mul(A, X), B)));
   double x = num_value(X), four = 4; /* less 1/(2^93 + 1) */
   assert_true(x == four);

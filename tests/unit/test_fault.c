@@ -14,7 +14,7 @@
 #include "emit/emit_header.h"
 #include "emit/emit_model.h"
 #include "lower/lower.h"
-#include "report/show.h"
+#include "report/equation_listing.h"
 #include "syntax/parse.h"
 
 typedef struct {
@@ -57,11 +57,11 @@ static const char bad[] =
 
 static void emit_all(Arena *a, Eqns *e) {
   IrUnit *u = unit_new(e, "test.lag", 0);
-  unit_want(u, e, WANT_VARIATION);
+  unit_require(u, e, WANT_VARIATION);
   unit_add_scene(u, e);
   StrBuf out = strbuf(a), text = strbuf(a);
   emit_model(u, cname(a, u->name), &out);
-  const char *cost = ops_text(u->accel, a);
+  const char *cost = op_count_text(u->accel, a);
   show_equations(e, cost, PRINT_TEXT, &text);
   show_equations(e, cost, PRINT_LATEX, &out);
   emit_header(u, u->name, sb_text(&text), &out);

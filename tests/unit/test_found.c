@@ -13,8 +13,8 @@
 
 #include "base/dense.h"
 #include "compile_text.h"
-#include "symmetry/noether_find.h"
-#include "symmetry/noether_frame.h"
+#include "symmetry/find_symmetries.h"
+#include "symmetry/search_frame.h"
 #include "mech/states.h"
 #include "sym/diff.h"
 
@@ -101,7 +101,7 @@ static DenseRows space_of(const Model_ *m) {
   return dense_orthonormal(m->arena, &all, w);
 }
 
-static int is_in(const DenseRows *space, long double *row) { return dense_reduce(space->width, row, space->at, space->n) < 1e-9L; }
+static int is_in(const DenseRows *space, long double *row) { return dense_gram_schmidt(space->width, row, space->at, space->n) < 1e-9L; }
 
 static Expr observed(const Eqns *e, const char *name) {
   for (uint32_t i = 0; i < e->m->observes.n; i++)

@@ -1,4 +1,4 @@
-/* common_denominator and whole_rows: numerators and denominators are what they are by construction. */
+/* common_denominator and integer_rows: numerators and denominators are what they are by construction. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "symmetry/noether_fraction.h"
+#include "symmetry/lattice_reduction.h"
 
 static void test_found(void **state) {
   (void)state;
@@ -44,7 +44,7 @@ static void test_rows(void **state) {
   for (size_t i = 0; i < ROWS; i++)
     for (size_t j = 0; j < WIDTH; j++)
       for (size_t k = 0; k < ROWS; k++) space.at[i * WIDTH + j] += mix[i][k] * (long double)known[k][j];
-  assert_int_equal(whole_rows(arena, &space, to), ROWS);
+  assert_int_equal(integer_rows(arena, &space, to), ROWS);
   back.at = ARENA_ARRAY(arena, long double, ROWS * WIDTH);
   for (size_t k = 0; k < ROWS * WIDTH; k++) {
     back.at[k] = (long double)to[k];
@@ -55,7 +55,7 @@ static void test_rows(void **state) {
   for (size_t i = 0; i < ROWS; i++) {
     long double row[WIDTH];
     for (size_t j = 0; j < WIDTH; j++) row[j] = (long double)known[i][j];
-    assert_true(dense_reduce(WIDTH, row, back.at, back.n) < 1e-15L); /* whole numbers of nine digits */
+    assert_true(dense_gram_schmidt(WIDTH, row, back.at, back.n) < 1e-15L); /* whole numbers of nine digits */
   }
   arena_free(arena);
 }
@@ -67,7 +67,7 @@ static void test_no_rows(void **state) {
   long double at[] = {1, 1.41421356237309504880L, 1.73205080756887729353L, 2.23606797749978969641L, 0.5L, 3.31662479035539984911L, 2.64575131106459059050L, 1};
   int64_t to[8];
   DenseRows space = {2, 4, at, 0};
-  assert_int_equal(whole_rows(arena, &space, to), 0);
+  assert_int_equal(integer_rows(arena, &space, to), 0);
   arena_free(arena);
 }
 

@@ -200,7 +200,7 @@ static void test_in_time(void **state) {
   prog_store(p, 0, 0, sum, "sum");
   Slot less = prog_op(p, IR_ADD, cd, sb); /* -(cd + sb) */
   prog_store(p, 0, 1, prog_op(p, IR_NEG, less, 0), "minus");
-  Prog *t = prog_in_time(p);
+  Prog *t = prog_reassociate_fma(p);
   assert_null(prog_verify(t));
   assert_int_equal(ops_total(prog_count(t)), ops_total(prog_count(p)));
   const Ins *last = &t->ins.at[t->stores.at[0].slot];
@@ -229,7 +229,7 @@ static void test_share(void **state) {
   prog_store(p, 0, 3, prog_op(p, IR_MUL, a, b), "a*b");
   prog_store(p, 0, 4, xy, "x*y");
   prog_store(p, 0, 5, prog_op(p, IR_MUL, xy, b), "x*y*b");
-  Prog *s = prog_share(prog_tidy(p));
+  Prog *s = prog_product_cse(prog_tidy(p));
   assert_null(prog_verify(s));
   assert_int_equal(count(p, IR_MUL), 9);
   assert_int_equal(count(s, IR_MUL), 6);
@@ -250,7 +250,7 @@ static void test_factors_in_time(void **state) {
   Slot all = prog_op(p, IR_MUL, s, a);
   all = prog_op(p, IR_MUL, all, a);
   prog_store(p, 0, 0, prog_op(p, IR_MUL, all, b), "s*a*a*b");
-  Prog *t = prog_in_time(p);
+  Prog *t = prog_reassociate_fma(p);
   assert_null(prog_verify(t));
   assert_int_equal(count(t, IR_MUL), 3);
   const Ins *last = &t->ins.at[t->stores.at[0].slot];
@@ -279,7 +279,7 @@ static void test_by_deadline(void **state) {
   prog_store(p, 0, 0, prog_op(p, IR_DIV, one, less), "1/(x^9 - sin y)");
   prog_store(p, 0, 1, sum, "z + 1");
   for (int calls_first = 0; calls_first < 2; calls_first++) {
-    Prog *d = prog_by_deadline(p, calls_first);
+    Prog *d = prog_schedule_by_path(p, calls_first);
     assert_null(prog_verify(d));
     assert_int_equal(ops_total(prog_count(d)), ops_total(prog_count(p)));
     assert_int_equal(place(d, IR_TITLE), 0);

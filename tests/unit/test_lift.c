@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "compile_text.h"
-#include "mech/order.h"
+#include "mech/elimination_order.h"
 
 typedef long double Real;
 

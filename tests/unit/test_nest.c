@@ -278,7 +278,7 @@ static void test_random(void **state) {
     Arena *a = arena_new(NULL);
     uint32_t n = 10 + trial % 23;
     Real hole = holes[trial % 5];
-    Prog *p = random_pairs(a, n, hole), *r = prog_nest(p, 100);
+    Prog *p = random_pairs(a, n, hole), *r = prog_find_nests(p, 100);
     assert_null(prog_verify(r));
     Real *x = ARENA_ARRAY(a, Real, 2*n + 2), *want = ARENA_ARRAY(a, Real, n), *got = ARENA_ARRAY(a, Real, n);
     for (uint32_t k = 0; k < 2*n + 2; k++) x[k] = uniform(0.5L, 2);
@@ -300,7 +300,7 @@ static void test_random(void **state) {
 static void test_verify(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
-  Prog *r = prog_nest(random_pairs(a, 12, 0), 100);
+  Prog *r = prog_find_nests(random_pairs(a, 12, 0), 100);
   assert_int_equal(r->nests.n, 1);
   assert_null(prog_verify(r));
   Nest good = r->nests.at[0];

@@ -28,7 +28,7 @@ static int setup(void **state) {
   Poly one = poly_num(t->r, num_int(1)), c = poly_gen(t->r, t->c);
   Poly cc = poly_mul(t->r, c, c);
   t->s = poly_new_root(t->r, 2, poly_sub(t->r, one, cc));
-  frac_know_root(t->f, t->s);
+  frac_register_root(t->f, t->s);
   *state = t;
   return 0;
 }

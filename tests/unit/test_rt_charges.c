@@ -1,6 +1,6 @@
 /* Charges along a run: drifts, balances with the work of forces integrated along, trends, monitors. Expected values: closed forms of
  * the damped oscillator, and orders of methods. */
-#include "core/gauss.h"
+#include "numeric/quadrature.h"
 #include "test_rt_systems.h"
 
 /* ---- a plane oscillator, damped: r'' = -r - c r', from (1, 0) with (0, 1/2); E' = -c v^2, L' = -c L; p = {c, how wrong L' is} */
@@ -225,7 +225,7 @@ static void the_end_within_a_step_is_watched(void **state)
   assert_close(charge(s, 1).now, sin(0.5), 1e-2);
   assert_close(charge(s, 1).drift, 1, 0);
   assert_close(lag_sim_monitor_drift(s, 0), 1, 0);
-  assert_int_equal(lag_sim_watch(s), LAG_EMONITOR);
+  assert_int_equal(lag_sim_judge(s), LAG_EMONITOR);
   lag_sim_free(s);
 }
 

@@ -1,7 +1,7 @@
-/* lag_complement: what it finds has the properties that define a solution, for matrices of any rank, and what has none is told from it. */
+/* lag_solve_lcp: what it finds has the properties that define a solution, for matrices of any rank, and what has none is told from it. */
 #include "test_rt_models.h"
 
-#include "core/complement.h"
+#include "numeric/complementarity.h"
 
 enum { MOST = 8 };
 
@@ -42,7 +42,7 @@ static void one(int n, int rank, uint64_t *seed, int *solved)
     q[i] = z[i] = chance(seed);
   }
   memcpy(T, M, sizeof M);
-  if (!lag_complement(n, T, z, scale, in, &row)) {
+  if (!lag_solve_lcp(n, T, z, scale, in, &row)) {
     assert_true(row >= 0 && rank < n); /* a regular matrix has a solution for each q */
     return;
   }
@@ -84,7 +84,7 @@ static void test_squeezed(void **state)
     double M[] = {1, -1, -1, 1}, x[] = {q[k][0], q[k][1]}, scale[2];
     unsigned char in[2];
     int row = -1;
-    assert_int_equal(lag_complement(2, M, x, scale, in, &row), solvable[k]);
+    assert_int_equal(lag_solve_lcp(2, M, x, scale, in, &row), solvable[k]);
     if (solvable[k]) { /* of each pair one is 0, and what is left over is q_1 + q_2 */
       double sum = q[k][0] + q[k][1];
       assert_close(k < 5 ? (in[0] ? x[1] : x[0]) : 1, k < 5 ? (sum > 0 ? sum : 0) : 1, 1e-15);
@@ -100,10 +100,10 @@ static void test_follows(void **state)
   unsigned char in[3];
   int row = -1;
 
-  assert_int_equal(lag_complement(3, M, x, scale, in, &row), 1);
+  assert_int_equal(lag_solve_lcp(3, M, x, scale, in, &row), 1);
   assert_true(in[0] && !in[1] && !in[2]);
   assert_close(x[0], 0.5, 1e-15);
-  assert_true(M[4] <= lag_no_pivot && M[8] <= lag_no_pivot && M[0] > lag_no_pivot);
+  assert_true(M[4] <= lag_lcp_zero_pivot && M[8] <= lag_lcp_zero_pivot && M[0] > lag_lcp_zero_pivot);
 }
 
 int main(void)

@@ -1,7 +1,7 @@
 /* The measurements behind `lagc cost`: how often a setting is run, errors against a closed form, what ends a sweep, the front. */
 #include "test_rt_models.h"
 
-#include "analysis/cost.h"
+#include "analysis/work_precision.h"
 
 enum { ROWS = 8 };
 
@@ -105,7 +105,7 @@ static void the_front_is_what_nothing_beats(void **state)
       {.nruns = 3, .run = {{.time = 1, .error = 1e-1}, {.time = 3, .error = 1e-6}, {.time = 5, .error = 1e-5}}}};
   const int best[2][3] = {{1, 1, 0}, {0, 1, 0}};
   const CostRun *run;
-  lag_cost_front(m, 2);
+  lag_pareto_front(m, 2);
   for (int i = 0; i < 2; i++) {
     for (int k = 0; k < 3; k++) {
       assert_int_equal(m[i].run[k].best, best[i][k]);

@@ -1,7 +1,7 @@
 /* Methods: order conditions, measured orders of steps and of dense output. Expected values: closed forms. */
 #include "test_rt_systems.h"
 
-#include "methods/control.h"
+#include "methods/step_control.h"
 #include "methods/tableau.h"
 
 /* ---- Order conditions (Butcher; HNW I II.2 theorem 2.13): sum b_i Phi_i(tree) = 1/gamma(tree). */

@@ -61,7 +61,7 @@ static void times_that_are_none_are_refused(void **state)
   assert_int_equal(lag_sim_save(s, saved), LAG_OK);
   for (int i = 0; i < 3; i++) {
     assert_int_equal(lag_sim_advance(s, bad[i]), LAG_EINVAL);
-    assert_int_equal(lag_sim_reach(s, bad[i], &reach), LAG_EINVAL);
+    assert_int_equal(lag_sim_ensure_step(s, bad[i], &reach), LAG_EINVAL);
     assert_int_equal(lag_sim_eval(s, bad[i], y), LAG_EINVAL);
     assert_int_equal(lag_sim_outputs_at(s, bad[i], y, out), LAG_EINVAL);
     assert_int_equal(lag_sim_set_tolerance(s, bad[i]), LAG_EINVAL);
@@ -84,11 +84,11 @@ static void indices_out_of_range_are_refused(void **state)
   assert_int_equal(lag_sim_advance(s, 1), LAG_OK);
   assert_int_equal(lag_sim_save(s, saved), LAG_OK);
   for (int i = 0; i < 4; i++) {
-    assert_true(isnan(lag_sim_asked(s, bad[i])) && isnan(lag_sim_begin(s, bad[i])) && isnan(lag_sim_state_value(s, bad[i])));
+    assert_true(isnan(lag_sim_requested_start(s, bad[i])) && isnan(lag_sim_actual_start(s, bad[i])) && isnan(lag_sim_state_value(s, bad[i])));
     assert_true(isnan(lag_sim_declared(s, bad[i], 1)) && isnan(lag_sim_monitor_drift(s, bad[i])));
     assert_true(isnan(lag_sim_state_info(s, bad[i], NULL, 0, NULL, 0)) && isnan(lag_sim_output_info(s, bad[i], NULL, 0, NULL, 0)));
     assert_int_equal(lag_sim_is_redundant(s, bad[i]), 0);
-    assert_int_equal(lag_sim_is_loose(s, bad[i]), 0);
+    assert_int_equal(lag_sim_is_undetermined(s, bad[i]), 0);
     assert_int_equal(lag_sim_event_count(s, bad[i]), 0);
     assert_int_equal(lag_sim_event_times(s, bad[i], &a, &b), 0);
     assert_true(isnan(a) && isnan(b));
@@ -114,12 +114,12 @@ static void null_is_refused(void **state)
   assert_int_equal(lag_sim_advance(s, 1), LAG_OK);
   assert_int_equal(lag_sim_save(s, saved), LAG_OK);
   const int refused[] = {
-      lag_sim_reach(s, 2, NULL), lag_sim_eval(s, 1, NULL), lag_sim_outputs(s, NULL), lag_sim_outputs_at(s, 1, x, NULL), lag_sim_outputs_at(s, 1, NULL, x),
+      lag_sim_ensure_step(s, 2, NULL), lag_sim_eval(s, 1, NULL), lag_sim_outputs(s, NULL), lag_sim_outputs_at(s, 1, x, NULL), lag_sim_outputs_at(s, 1, NULL, x),
       lag_sim_tangent(s, NULL), lag_sim_save(s, NULL), lag_sim_load(s, NULL), lag_sim_set_method(s, NULL, NULL, 0), lag_sim_set(s, NULL, 1),
       lag_sim_set_input(s, NULL, NULL, NULL), lag_sim_set_method(s, lag_sim_method(s), NULL, 1), lag_sim_set_method(s, lag_sim_method(s), NULL, -1),
-      lag_sim_advance(NULL, 1), lag_sim_reach(NULL, 1, x), lag_sim_eval(NULL, 1, x), lag_sim_outputs(NULL, x), lag_sim_outputs_at(NULL, 1, x, x),
+      lag_sim_advance(NULL, 1), lag_sim_ensure_step(NULL, 1, x), lag_sim_eval(NULL, 1, x), lag_sim_outputs(NULL, x), lag_sim_outputs_at(NULL, 1, x, x),
       lag_sim_set_tangent(NULL, 1, x), lag_sim_tangent(NULL, x), lag_sim_save(NULL, x), lag_sim_load(NULL, x), lag_sim_set_method(NULL, NULL, NULL, 0),
-      lag_sim_set_tolerance(NULL, 1), lag_sim_set(NULL, "x", 1), lag_sim_set_input(NULL, "x", NULL, NULL), lag_sim_balance(NULL), lag_sim_watch(NULL)};
+      lag_sim_set_tolerance(NULL, 1), lag_sim_set(NULL, "x", 1), lag_sim_set_input(NULL, "x", NULL, NULL), lag_sim_balance(NULL), lag_sim_judge(NULL)};
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
     assert_int_equal(refused[i], LAG_EINVAL);
   }
@@ -131,7 +131,7 @@ static void null_is_refused(void **state)
   lag_sim_on_event(NULL, NULL, NULL);
   assert_true(isnan(lag_sim_time(NULL)) && isnan(lag_sim_tolerance(NULL)) && !lag_sim_q(NULL) && !lag_sim_v(NULL) && !lag_sim_z(NULL) && !lag_sim_p(NULL));
   assert_true(!lag_sim_scene(NULL) && !lag_sim_method(NULL) && !lag_sim_options(NULL) && lag_sim_message(NULL));
-  assert_true(!lag_sim_noutputs(NULL) && !lag_sim_rank(NULL) && !lag_sim_rank_beside(NULL) && !lag_sim_ncharges(NULL) && !lag_sim_save_size(NULL) && !lag_sim_signature(NULL));
+  assert_true(!lag_sim_noutputs(NULL) && !lag_sim_rank(NULL) && !lag_sim_nearby_rank(NULL) && !lag_sim_ncharges(NULL) && !lag_sim_save_size(NULL) && !lag_sim_signature(NULL));
   check_state(s, saved);
   lag_sim_free(s);
   lag_sim_free(NULL);

@@ -1,6 +1,6 @@
 /* The simulation object: values by name, energy and monitors, inputs, and runs that are split or saved. Expected
  * values: closed forms, GSL, and the same run done in one piece. */
-#include "core/room.h"
+#include "numeric/workspace.h"
 #include "test_rt_systems.h"
 
 /* Steps of 0.01 where the method does not choose them. */
@@ -34,7 +34,7 @@ static void parts_of_a_work_space_have_gaps(void **state)
   double *a, *b, *c, **const parts[] = {&a, &b, &c};
   const size_t sizes[] = {3, 0, 5};
   (void)state;
-  double *block = lag_room(3, parts, sizes);
+  double *block = lag_workspace(3, parts, sizes);
   for (int i = 0; i < 3; i++) {
     assert_true(__asan_address_is_poisoned(*parts[i] + sizes[i]));
     assert_false(sizes[i] && __asan_address_is_poisoned(*parts[i] + sizes[i] - 1));
@@ -312,7 +312,7 @@ static void looking_ahead_changes_nothing(void **state)
   (void)state;
   assert_int_equal(lag_sim_advance(plain, 5), LAG_OK);
   while (lag_sim_time(looked) < 5) {
-    assert_int_equal(lag_sim_reach(looked, 5, &reach), LAG_OK);
+    assert_int_equal(lag_sim_ensure_step(looked, 5, &reach), LAG_OK);
     double t = lag_sim_time(looked), middle = t + (reach - t) / 2;
     assert_true(reach > t && reach <= 5);
     assert_int_equal(lag_sim_outputs_at(looked, reach, y, there), LAG_OK);
@@ -343,7 +343,7 @@ static void looking_ahead_ends_at_events(void **state)
   assert_int_equal(lag_sim_advance(s, 0), LAG_OK);
   double floor_at = sqrt(2 * (lag_sim_q(s)[0]) / 9.81);
   while (hit == 0.0 && lag_sim_time(s) < 3) {
-    assert_int_equal(lag_sim_reach(s, 3, &reach), LAG_OK);
+    assert_int_equal(lag_sim_ensure_step(s, 3, &reach), LAG_OK);
     assert_int_equal(lag_sim_advance(s, reach), LAG_OK);
     if (fabs(reach - floor_at) < 1e-6) {
       hit = reach;
@@ -351,7 +351,7 @@ static void looking_ahead_ends_at_events(void **state)
   }
   assert_close(hit, floor_at, 1e-9);
   assert_true(lag_sim_v(s)[0] < 0);
-  assert_int_equal(lag_sim_reach(s, 3, &reach), LAG_OK);
+  assert_int_equal(lag_sim_ensure_step(s, 3, &reach), LAG_OK);
   assert_true(lag_sim_time(s) == hit && lag_sim_v(s)[0] > 0);
   lag_sim_free(s);
 }

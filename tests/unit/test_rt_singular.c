@@ -43,7 +43,7 @@ static void independence_is_what_is_left_of_a_row(void **state)
   lag_problem pb = {.model = &model, .nq = 2, .n = 4, .ranks = ranks};
   int k;
   (void)state;
-  assert_true(lag_ranks_room(&model) <= sizeof ranks / sizeof *ranks);
+  assert_true(lag_rank_scratch_size(&model) <= sizeof ranks / sizeof *ranks);
   assert_true(fabs(lag_independence(&pb, 0, y, &k) - 0.6) < 1e-15); /* 3/4 over 5/4 */
   assert_int_equal(k, 1);
   y[1] = 1e-6;
@@ -65,7 +65,7 @@ static int steps_until(const lag_model *m, double t0, double h, double y1)
 
   for (int i = 1; i <= PATIENCE; i++) {
     run.t = t0 + (i - 1) * h;
-    if (lag_stalls(&s, t0 + i * h)) {
+    if (lag_detect_stall(&s, t0 + i * h)) {
       assert_non_null(strstr(s.pb.detail, y1 < 1 ? "constraint second (line 4)" : "a force or a constraint jumps here"));
       assert_non_null(strstr(s.pb.detail, y1 < 1 ? "a larger one" : "smooth it"));
       assert_true(s.pb.bad_t == t0 + i * h);
@@ -100,13 +100,13 @@ static void what_nothing_moves_is_named(void **state)
   double part;
   int column[3];
   (void)state;
-  lag_weightless(3, K, x, column, &part);
+  lag_massless_direction(3, K, x, column, &part);
   assert_true(part >= 1 && part <= 1);
-  assert_int_equal(lag_weightless(3, pair, x, column, &part), 1); /* K (0, -2, 1) = 0: the second moves most */
+  assert_int_equal(lag_massless_direction(3, pair, x, column, &part), 1); /* K (0, -2, 1) = 0: the second moves most */
   assert_true(part <= 0);
-  assert_int_equal(lag_weightless(3, none, x, column, &part), 0);
+  assert_int_equal(lag_massless_direction(3, none, x, column, &part), 0);
   assert_true(part <= 0);
-  assert_int_equal(lag_weightless(2, one, x, column, &part), 1);
+  assert_int_equal(lag_massless_direction(2, one, x, column, &part), 1);
   assert_true(part <= 0);
 }
 
@@ -117,11 +117,11 @@ static void what_is_below_normal_numbers_is_no_residual(void **state)
   const double still[] = {0, 0, DBL_MIN / 0x1p50, 0}, moves[] = {0, 0, DBL_MIN * 0x1p50, 0};
   lag_problem pb = {.model = &model, .nq = 2, .n = 4, .held = held_room, .begin = begin, .span = 1};
   (void)state;
-  assert_true(lag_held_room(&model) <= sizeof held_room / sizeof *held_room);
+  assert_true(lag_constraint_scratch_size(&model) <= sizeof held_room / sizeof *held_room);
   memset(held_room, 0, sizeof held_room);
   assert_true(lag_worst_constraint(&pb, 0, still, 0, &times) >= 0);
   assert_true(times == 0);
-  assert_true(lag_is_met(&pb, 0, still, 0, residual));
+  assert_true(lag_constraint_is_met(&pb, 0, still, 0, residual));
   assert_int_equal(lag_worst_constraint(&pb, 0, moves, 0, &times), 0);
   assert_true(times > 1e3); /* it is as large as its terms */
 }

@@ -142,7 +142,7 @@ static void test_simple(void **state)
   has(&s, 4, 0, 1, 1, ROUNDING);
   has(&s, 0, 5, 1, 1, ROUNDING);
   check_vectors(A, &s, ROUNDING);
-  pool_free(&pool);
+  lag_pool_free(&pool);
 }
 
 /* 0 three times, once alone and once in a block of two; and a complex pair, whose vectors pass through both stages. */
@@ -161,7 +161,7 @@ static void test_zeros(void **state)
   has(&s, -2, 3, 1, 1, ROUNDING);
   has(&s, 7, 0, 1, 1, ROUNDING);
   check_vectors(A, &s, ROUNDING);
-  pool_free(&pool);
+  lag_pool_free(&pool);
 }
 
 static void test_defective(void **state)
@@ -176,7 +176,7 @@ static void test_defective(void **state)
   has(&s, -1, 0, 2, 2, ROUNDING);
   has(&s, 3, 0, 3, 3, 1e-8); /* a mean of three that are 1e-4 apart, with sensitivities of 1e8 */
   has(&s, 9, 0, 1, 1, ROUNDING);
-  pool_free(&pool);
+  lag_pool_free(&pool);
 }
 
 /* Complex pairs twice: in a Jordan block, and beside each other. */
@@ -197,7 +197,7 @@ static void test_complex_pairs(void **state)
   has(&s, 1, 2, 2, 1, ROUNDING);
   has(&s, 1, -2, 2, 1, ROUNDING);
   check_vectors(A, &s, ROUNDING);
-  pool_free(&pool);
+  lag_pool_free(&pool);
 }
 
 /* Equal eigenvalues that do not lack eigenvectors are not defective. */
@@ -213,7 +213,7 @@ static void test_repeated(void **state)
   has(&s, 2, 0, 3, 1, ROUNDING);
   has(&s, -1, 0, 2, 1, ROUNDING);
   check_vectors(A, &s, ROUNDING);
-  pool_free(&pool);
+  lag_pool_free(&pool);
 }
 
 /* Units of coordinates may differ by anything: 1e8 from row to row. */
@@ -230,7 +230,7 @@ static void test_scales(void **state)
   assert_int_equal(s.nkernel, 1);
   has(&s, 1, 2, 1, 1, ROUNDING);
   has(&s, 3, 0, 1, 1, ROUNDING);
-  pool_free(&pool);
+  lag_pool_free(&pool);
 }
 
 /* Blocks side by side: 1e-8 is no rounding of the 1e10 of another, and 1e-5 is nothing where entries are known to 1e-4. */
@@ -250,7 +250,7 @@ static void test_blocks(void **state)
   has(&s, 0, 1e10, 1, 1, 1e-4);
   assert_true(s.kernel[2] != 0 && s.kernel[1] == 0);
   check_vectors(A, &s, 1e-4);
-  pool_free(&pool);
+  lag_pool_free(&pool);
 }
 
 static void test_nothing_but_zeros(void **state)
@@ -264,7 +264,7 @@ static void test_nothing_but_zeros(void **state)
   assert_int_equal(s.nkernel, 3);
   assert_int_equal(s.count, 0);
   check_vectors(A, &s, 0);
-  pool_free(&pool);
+  lag_pool_free(&pool);
 }
 
 /* ---- GSL's part */

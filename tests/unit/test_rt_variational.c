@@ -4,8 +4,8 @@
  * Orders are measured in quadruple precision: tests/exec/run_quad.sh. LAG_STEPS: steps of the long runs. */
 #include "test_rt_systems.h"
 
-#include "methods/band.h"
-#include "methods/rule.h"
+#include "methods/band_matrix.h"
+#include "methods/galerkin_rule.h"
 
 /* ---- Digits */
 
@@ -90,7 +90,7 @@ static void bands_are_solved(void **state)
   double a[N * N], pivot[N], scale[N], b[N], right[N], full[N][N];
   (void)state;
   for (int band = 1; band < N; band += band < 3 ? 1 : 4) {
-    lag_band m = {N, band, a, pivot};
+    lag_band_matrix m = {N, band, a, pivot};
     uint64_t seed = 1;
     memset(a, 0, sizeof a);
     for (int i = 0; i < N; i++) {
@@ -99,7 +99,7 @@ static void bands_are_solved(void **state)
         full[i][j] = abs(i - j) > band ? 0 : i == j ? 1e-8 : (double)(seed >> 11) / 9007199254740992.0 - 0.5; /* pivots elsewhere */
         full[i][j] *= i == 2 ? 1e12 : 1; /* a row in other units */
         if (abs(i - j) <= band) {
-          *lag_band_at(&m, i, j) = full[i][j];
+          *lag_band_matrix_at(&m, i, j) = full[i][j];
         }
       }
     }
@@ -109,16 +109,16 @@ static void bands_are_solved(void **state)
         right[i] += full[i][j] * (j + 1);
       }
     }
-    assert_int_equal(lag_band_factor(&m, scale), 0);
+    assert_int_equal(lag_band_matrix_factor(&m, scale), 0);
     memcpy(b, right, sizeof b);
-    lag_band_solve(&m, b);
+    lag_band_matrix_solve(&m, b);
     for (int i = 0; i < N; i++) {
       assert_close(b[i], i + 1, 1e-12);
     }
   }
-  lag_band singular = {2, 1, a, pivot};
+  lag_band_matrix singular = {2, 1, a, pivot};
   memcpy(a, (double[]){1, 2, 2, 4}, 4 * sizeof *a);
-  assert_int_equal(lag_band_factor(&singular, scale), -1);
+  assert_int_equal(lag_band_matrix_factor(&singular, scale), -1);
 }
 
 /* ---- Solutions */

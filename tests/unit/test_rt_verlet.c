@@ -4,7 +4,7 @@
 #include "test_rt_systems.h"
 
 #include "methods/composition.h"
-#include "methods/path.h"
+#include "methods/step_interpolant.h"
 
 typedef struct Member {
   const lag_method *method;
@@ -130,7 +130,7 @@ static void paths_reproduce_polynomials(void **state)
 {
   static const lag_model model = {MODEL("power"), .nq = 1, .q = names_q, .accel = power_accel};
   lag_problem pb = {.model = &model, .n = 2, .nq = 1, .dir = 1};
-  double *path = calloc(lag_path_size(1), sizeof *path), t0 = 0.3, h = 0.7, y[2][2], f[2][2], out[2];
+  double *path = calloc(lag_interpolant_size(1), sizeof *path), t0 = 0.3, h = 0.7, y[2][2], f[2][2], out[2];
   (void)state;
   for (int level = 0; level <= 2; level++) {
     for (degree = 2; degree <= 5 + 2 * level; degree++) {
@@ -141,10 +141,10 @@ static void paths_reproduce_polynomials(void **state)
         assert_int_equal(lag_rhs(&pb, t, y[k], f[k]), 0);
       }
       StepEnds ends = {t0, h, y[0], f[0], y[1], f[1]};
-      assert_int_equal(lag_path_make(path, &pb, &ends, level, 1), 0);
+      assert_int_equal(lag_interpolant_make(path, &pb, &ends, level, 1), 0);
       for (double s = 0; s <= 1; s += 0.125) {
         double t = t0 + s * h;
-        lag_path_at(path, &pb, &ends, level, s, out);
+        lag_interpolant_at(path, &pb, &ends, level, s, out);
         assert_close(out[0], pow(t, degree) - t, 2e-14);
         if (degree <= 4 + 2 * level) {
           assert_close(out[1], degree * pow(t, degree - 1) - 1, 2e-13);

@@ -1,5 +1,5 @@
 /* Unit tests of src/ir/series: what a model costs in sums and instructions, that M is factored at order 0 only, refusals; of
- * factored_solve against elimination, and of prog_balance. That the coefficients are right is tests/exec/run_taylor.sh. */
+ * factor_record_solve against elimination, and of prog_reassociate. That the coefficients are right is tests/exec/run_taylor.sh. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -135,7 +135,7 @@ static void check_again(const char *lag, int straight) {
   }
   Slot *r = ARENA_ARRAY(a, Slot, total);
   for (uint32_t v = 0; v < total; v++) r[v] = b[v];
-  factored_solve(sys.p, sys.factored, b, s, x);
+  factor_record_solve(sys.p, sys.factored, b, s, x);
   /* what must vanish: rows of q: H u + C^T lambda - r, of w: w - C u - s; lambda = H u + C^T lambda - r by its own row */
   Slot *lambda = ARENA_ARRAY(a, Slot, total), *row = ARENA_ARRAY(a, Slot, total);
   for (uint32_t v = total; v-- > 0;) {
@@ -214,7 +214,7 @@ static void test_balance(void **state) {
   prog_store(p, 0, 1, prog_op(p, IR_MUL, late, late), "square");
   uint32_t *ready = ARENA_ARRAY(a, uint32_t, p->ins.n);
   ready[x[0]] = 100;
-  Prog *b = prog_balance(p, ready);
+  Prog *b = prog_reassociate(p, ready);
   assert_null(prog_verify(b));
   uint32_t through = 0; /* additions between x0 and the square */
   for (Slot s = 1; s < b->ins.n; s++) through += (b->ins.at[s].op == IR_ADD || b->ins.at[s].op == IR_SUB) && (b->ins.at[b->ins.at[s].a].op == IR_LOAD && b->ins.at[b->ins.at[s].a].index == 0);

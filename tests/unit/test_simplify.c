@@ -38,8 +38,8 @@ static void assert_same_values(Texts *t, Expr a, Expr b) {
   long double symbols[64], bound_a, bound_b;
   uint32_t usable = 0;
   for (uint32_t seed = 0; seed < 10; seed++) {
-    prove_state(t->g, seed, symbols);
-    long double x = prove_value(t->g, a, symbols, NULL, &bound_a), y = prove_value(t->g, b, symbols, NULL, &bound_b);
+    sample_state(t->g, seed, symbols);
+    long double x = value_with_bound(t->g, a, symbols, NULL, &bound_a), y = value_with_bound(t->g, b, symbols, NULL, &bound_b);
     if (!isfinite(x) || !isfinite(y)) continue;
     usable++;
     if (fabsl(x - y) > 100 * (bound_a + bound_b) + LDBL_MIN)
@@ -395,7 +395,7 @@ static void assert_gain(const char *text, const char *name, long double x, long 
   both[0] = e;
   both[1] = simplify_stable(t.g, e);
   long double symbols[64], values[2];
-  prove_state(t.g, 1, symbols);
+  sample_state(t.g, 1, symbols);
   symbols[text_symbol(&t, name)] = x;
   expr_eval(t.g, both, 2, symbols, values);
   double before = digits(values[0], exact), after = digits(values[1], exact);

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "syntax/filter.h"
+#include "syntax/token_filter.h"
 #include "syntax/parse.h"
 
 /* ---- a compilation for one test ---- */

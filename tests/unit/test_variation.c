@@ -148,7 +148,7 @@ static void check_scene(Ast *ast, const char *path, const char *scene) {
   if (!e->n || !e->smooth) return;
   if (e->n > MOST) return;
   Variation *x = variation_derive(e);
-  Case c = {.e = e, .x = x, .variation = lower_variation(e, x), .second = lower_second(e, x)};
+  Case c = {.e = e, .x = x, .variation = lower_variation(e, x), .second = lower_second_derivatives(e, x)};
   c.where = arena_printf(arena, "%s, scene %s", path, scene);
   assert_null(prog_verify(c.variation));
   assert_null(prog_verify(c.second));
@@ -191,8 +191,8 @@ static const char *emitted(Arena *arena, unsigned wants) {
   Eqns *e = equations(arena, spring, NULL);
   assert_non_null(e);
   IrUnit *u = unit_new(e, "test.lag", 0);
-  unit_want(u, e, wants);
-  unit_want(u, e, wants);
+  unit_require(u, e, wants);
+  unit_require(u, e, wants);
   unit_add_scene(u, e);
   StrBuf out = strbuf(arena);
   emit_model(u, "m", &out);
@@ -229,7 +229,7 @@ static void test_entries(void **state) {
   Variation *x = variation_derive(e);
   Real h[8];
   assert_int_equal(x->second.n, sizeof hand / sizeof *hand);
-  assert_int_equal(run_prog(e, lower_second(e, x), random_point(e), h, NULL), 0);
+  assert_int_equal(run_prog(e, lower_second_derivatives(e, x), random_point(e), h, NULL), 0);
   for (uint32_t k = 0; k < x->second.n; k++) {
     const SecondEntry *s = &x->second.at[k];
     assert_true(s->part == hand[k].part && s->row == hand[k].row && s->col == hand[k].col && h[k] == hand[k].value);

@@ -1,0 +1,67 @@
+/* Work-precision measurement: a scene run with many settings of many methods. Enters: a function that makes the simulation, and a reference
+ * motion; leaves: errors, processor times, observed orders. */
+#ifndef LAG_ANALYSIS_WORK_PRECISION_H
+#define LAG_ANALYSIS_WORK_PRECISION_H
+
+#include "lag.h"
+
+/* The motion at `rows` times: y[rows * n] is q, v, z in SI. uncertainty: its own error, measured as the errors below. */
+typedef struct Samples {
+  int rows, n;
+  double *t, *y;
+  double uncertainty;
+} Samples;
+
+/* Allocates samples of zeros. LAG_OK or LAG_ENOMEM. Free with lag_samples_free, also after an error. */
+int lag_samples_init(Samples *s, int rows, int n);
+void lag_samples_free(Samples *s);
+
+/* A source of simulations at their start, with the user's values, method and tolerance still to choose; fresh returns NULL where it fails. */
+typedef struct CostScene {
+  lag_sim *(*fresh)(void *context);
+  void *context;
+  double t0; /* start of the run */
+} CostScene;
+
+/* Runs `sim` to each of the times s->t and fills s->y. Fewer rows remain where an event ends the run. < 0: failure, see lag_sim_message. */
+int lag_samples_take(Samples *s, lag_sim *sim);
+
+/* scale[n] := divisor of the error of component i: the largest reference value among components of the same kind (coordinate, velocity or state)
+ * and unit; 1 where all of them are 0. */
+void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale);
+
+/* The largest |a - b| / scale over times and components; HUGE_VAL when one is not finite. */
+double lag_cost_error(const Samples *a, const Samples *b, const double *scale);
+
+/* One run: knob is its tolerance, or its step where steps are of equal size. */
+typedef struct CostRun {
+  double knob;
+  double error;
+  double time, spread; /* median processor time [s] of the repeats; their interquartile range relative to it, NaN for one run */
+  long long steps, calls;
+  int best;            /* Pareto-optimal: no other run of any method is both faster and more accurate */
+} CostRun;
+
+enum { LAG_COST_MOST_RUNS = 40 };
+
+/* A method at one value of its option `option` (name NULL: without). */
+typedef struct CostMethod {
+  const lag_method *method;
+  lag_option option;
+  CostRun run[LAG_COST_MOST_RUNS]; /* [nruns], from the least accurate on */
+  int nruns;
+  double order;   /* observed order, the slope of log error against log of the number of steps; NaN: not visible */
+  char why[512];  /* without runs: why the last one tried has no result; "": its error was too large */
+} CostMethod;
+
+/* Runs the settings of one method, from coarse to fine, until its error stops falling, or a run takes longer than `longest` [s of
+ * processor time]. LAG_OK, also where no run has a result (m->why); LAG_ENOMEM. */
+int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, double longest);
+
+/* Marks the Pareto front of all runs. */
+void lag_pareto_front(CostMethod *m, int n);
+
+/* The method of the fastest run with an error of at most `target`, and *run; NULL: there is none. */
+const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run);
+
+#endif

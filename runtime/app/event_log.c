@@ -1,0 +1,131 @@
+/* Event log (--events) and the report on events. Enters: events during the run, with the state before and after; leaves:
+ * rows of time, name, state before, state after, in declared units with all digits. Holds: a run that is saved and resumed
+ * logs each event once, in the part where it happens. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+
+enum { MOST_EVENTS = 24 };
+
+/* Columns of the log: t, event, the state before, the state after. -1: no memory. */
+static int make_columns(App *app)
+{
+  const lag_model *m = app->scene->model;
+  int n = 2 * m->nq + m->nz;
+  Table *t = &app->log;
+
+  *t = (Table){.ncols = 2 + 2 * n, .cols = calloc((size_t)(2 + 2 * n), sizeof *t->cols)};
+  app->log_row = calloc((size_t)t->ncols, sizeof *app->log_row);
+  app->log_names = calloc((size_t)m->nev, sizeof *app->log_names);
+  if (!t->cols || !app->log_row || !app->log_names) {
+    return -1;
+  }
+  for (int k = 0; k < m->nev; k++) {
+    app->log_names[k] = m->ev[k].name;
+  }
+  strcpy(t->cols[0].name, "t");
+  strcpy(t->cols[0].unit, "s");
+  strcpy(t->cols[1].name, "event");
+  t->cols[1].words = app->log_names;
+  t->cols[1].nwords = m->nev;
+  for (int i = 0; i < n; i++) {
+    Column *before = &t->cols[2 + i], *after = &t->cols[2 + n + i];
+    lag_sim_state_info(app->sim, i, before->name, sizeof before->name, before->unit, sizeof before->unit);
+    *after = *before;
+    strcpy(after->name + strnlen(after->name, sizeof after->name - sizeof " after"), " after");
+  }
+  return 0;
+}
+
+int lag_event_log_open(App *app)
+{
+  const Args *a = &app->args;
+
+  if (!a->events) {
+    return 0;
+  }
+  if (app->scene->model->nev == 0) {
+    return lag_app_error(a, "--events %s: model %s has no events in scene %s", a->events, app->scene->model->name, app->scene->name);
+  }
+  if (make_columns(app)) {
+    return lag_app_error(a, "out of memory");
+  }
+  return lag_rows_open(&app->log_rows, a->events, &app->log) ? lag_app_io_error(app, a->events) : 0;
+}
+
+void lag_event_log_note(void *context, int k, double t, const double *before, const double *after)
+{
+  App *app = context;
+  int n = (app->log.ncols - 2) / 2;
+
+  if (!app->log_rows.open) {
+    return;
+  }
+  app->log_row[0] = t;
+  app->log_row[1] = k;
+  for (int i = 0; i < n; i++) {
+    app->log_row[2 + i] = lag_sim_declared(app->sim, i, before[i]);
+    app->log_row[2 + n + i] = lag_sim_declared(app->sim, i, after[i]);
+  }
+  if (lag_rows_write(&app->log_rows, app->log_row)) {
+    app->bad_file = app->args.events;
+  }
+}
+
+void lag_event_log_free(App *app)
+{
+  lag_table_free(&app->log);
+  free(app->log_row);
+  free(app->log_names);
+}
+
+/* ---- The report */
+
+void lag_report_events(const App *app, FILE *f)
+{
+  const lag_model *m = app->scene->model;
+
+  for (int k = 0; k < m->nev && k < MOST_EVENTS; k++) {
+    double first, last;
+    long long n = lag_sim_event_times(app->sim, k, &first, &last);
+    fprintf(f, "%s %s: ", k == app->section ? "section" : "event", m->ev[k].name);
+    if (n == 0) {
+      fputs("never", f);
+    } else {
+      fprintf(f, "%lld time%s", n, n == 1 ? "" : "s");
+    }
+    if (n == 1) {
+      fprintf(f, ", t = %s s", lag_number_text(first, (char[64]){0}));
+    } else if (n > 1) {
+      fprintf(f, ", first at t = %s s, last at %s s", lag_number_text(first, (char[64]){0}), lag_number_text(last, (char[64]){0}));
+    }
+    putc('\n', f);
+  }
+  if (m->nev > MOST_EVENTS) {
+    fprintf(f, "  (and %d events more)\n", m->nev - MOST_EVENTS);
+  }
+  if (app->args.events) {
+    fprintf(f, "%zu events in %s\n", app->log_rows.nrows, app->args.events);
+  }
+}
+
+void lag_report_events_json(const App *app, FILE *f)
+{
+  const lag_model *m = app->scene->model;
+
+  fputs("\"events\": {", f);
+  for (int k = 0; k < m->nev; k++) {
+    double first, last;
+    long long n = lag_sim_event_times(app->sim, k, &first, &last);
+    fputs(k ? ", " : "", f);
+    lag_json_string(f, m->ev[k].name);
+    fprintf(f, ": {\"count\": %lld, \"first\": ", n);
+    lag_json_number(f, first);
+    fputs(", \"last\": ", f);
+    lag_json_number(f, last);
+    putc('}', f);
+  }
+  fputs("}, ", f);
+}

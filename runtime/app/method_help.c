@@ -1,0 +1,127 @@
+/* `lagc methods` and --method help: the descriptors of all methods as a table and in words; `--method "help NAME"`: one of
+ * them. Holds: lines have at most 80 columns. */
+#include <string.h>
+
+#include "app/app.h"
+
+enum { WIDTH = 80 };
+#define ROW "  %-16s %-5s %-5s %-5s %-10s %-6s %-6s %-6s %-5s %s\n"
+
+/* Prints text wrapped to WIDTH columns; the first line is indented by `first`, the others by `indent`. */
+static void wrapped(FILE *f, const char *text, int first, int indent)
+{
+  int column = fprintf(f, "%*s", first, "");
+
+  for (int fresh = 1; *text; fresh = 0) {
+    int n = (int)strcspn(text, " ");
+    if (!fresh && column + 1 + n > WIDTH) {
+      column = fprintf(f, "\n%*s", indent, "") - 1;
+    } else if (!fresh) {
+      column += fprintf(f, " ");
+    }
+    column += fprintf(f, "%.*s", n, text);
+    text += n + (text[n] == ' ');
+  }
+  putc('\n', f);
+}
+
+static const lag_method *method(const App *app, int i)
+{
+  return i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods];
+}
+
+/* text := the order, "5", or "2-8" where options choose it. */
+static const char *order_text(const lag_method *m, int order, char *text, size_t size)
+{
+  if (m->order_most > 0) {
+    snprintf(text, size, "%d-%d", m->order_least, m->order_most);
+  } else {
+    snprintf(text, size, "%d", order);
+  }
+  return text;
+}
+
+static void row(const lag_method *m, FILE *f)
+{
+  unsigned is = m->flags;
+  char order[32], dense[32];
+
+  fprintf(f, ROW, m->name, order_text(m, m->order, order, sizeof order),
+          order_text(m, m->dense_order, dense, sizeof dense),
+          is & LAG_METHOD_ADAPTIVE ? "adapt" : "fixed",
+          is & LAG_METHOD_SYMMETRIC ? is & LAG_METHOD_SYMPLECTIC ? "both" : "symmetric"
+          : is & LAG_METHOD_SYMPLECTIC ? "symplectic" : "-",
+          is & LAG_METHOD_SPLITS ? "partly" : is & LAG_METHOD_NEWTON ? "yes" : "no",
+          is & LAG_METHOD_CONSERVATIVE ? "no" : "yes", is & LAG_METHOD_FLOWS ? "alone" : is & LAG_METHOD_NO_STATES ? "no" : "yes",
+          m->tangent ? "yes" : "no", is & LAG_METHOD_CONSTRAINTS ? "yes" : "no");
+}
+
+static void options(const lag_method *m, FILE *f, int indent)
+{
+  for (int i = 0; i < m->noptions; i++) {
+    const lag_method_option *o = &m->options[i];
+    char number[32], text[400];
+    snprintf(number, sizeof number, "%g", o->value);
+    snprintf(text, sizeof text, "%s = %s: %s", o->name, o->choices ? o->choices[(int)o->value] : number, o->doc);
+    wrapped(f, text, indent, indent + 2);
+  }
+}
+
+static const char *saved(const lag_method *m)
+{
+  return m->flags & LAG_METHOD_NO_SAVE ? "; its state cannot be saved" : "";
+}
+
+static void words(const lag_method *m, FILE *f)
+{
+  char text[400];
+
+  snprintf(text, sizeof text, "%s: %s%s", m->name, m->doc, saved(m));
+  putc('\n', f);
+  wrapped(f, text, 2, 4);
+  options(m, f, 6);
+}
+
+int lag_app_explain_method(const App *app, const char *name, FILE *f)
+{
+  char order[32], dense[32], text[500];
+
+  for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
+    const lag_method *m = method(app, i);
+    unsigned is = m->flags;
+    if (strcmp(m->name, name) != 0) {
+      continue;
+    }
+    snprintf(text, sizeof text, "%s, of order %s (dense output %s), %s steps%s%s%s%s%s%s.", m->name, order_text(m, m->order, order, sizeof order),
+             order_text(m, m->dense_order, dense, sizeof dense), is & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed",
+             is & LAG_METHOD_SYMPLECTIC ? ", symplectic" : "", is & LAG_METHOD_SYMMETRIC ? ", symmetric" : "",
+             is & LAG_METHOD_CONSERVATIVE ? ", for models without forces, explicit time and states"
+             : is & LAG_METHOD_FLOWS ? ", for models of coordinates alone or of states alone"
+             : is & LAG_METHOD_NO_STATES ? ", for models without states" : "",
+             is & LAG_METHOD_SPLITS ? "; Newton's method where the model is not separable" : is & LAG_METHOD_NEWTON ? "; Newton's method" : "",
+             is & LAG_METHOD_CONSTRAINTS ? "; with constraints or without" : "; not for models with constraints", saved(m));
+    wrapped(f, text, 0, 0);
+    wrapped(f, m->doc, 0, 0);
+    options(m, f, 2);
+    return 1;
+  }
+  return 0;
+}
+
+void lag_app_list_methods(const App *app, FILE *f)
+{
+  fprintf(f, ROW, "method", "order", "dense", "steps", "keeps", "Newton", "forces", "states", "deriv", "holds");
+  for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
+    row(method(app, i), f);
+  }
+  putc('\n', f);
+  wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. both: symplectic and symmetric. Newton: whether each step solves "
+             "equations by Newton's method; partly: unless the model is separable, with constant mass matrix, and accelerations that do not "
+             "depend on velocities. forces: whether the model may have forces and explicit time; what a symplectic method keeps without "
+             "them it does not keep with them. states: whether it may have a `state`; alone: without coordinates, or where L is linear in "
+             "all velocities. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). holds: whether its steps end on "
+             "constraints. Options, with their defaults:", 0, 0);
+  for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
+    words(method(app, i), f);
+  }
+}

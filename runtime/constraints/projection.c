@@ -1,0 +1,567 @@
+/* Projection onto the constraints, and the sizes against which residuals are judged. Enters: a state near the constraints; leaves: the nearest
+ * one on them in the mass metric, positions first. Holds: a state that obeys them to rounding stays as it is, bit by bit. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/core.h"
+
+enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
+
+/* The layout of pb->held; behind it the scratch of constraint_pole.c, and a state for lag_rhs_prepare. */
+typedef struct ConstraintScratch {
+  const lag_constraints *of;
+  double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
+  double *terms[2];               /* [n] sizes of the terms of the rates, and of the holonomic constraints, where they were last met */
+  double *d, *force, *step;       /* [nq], [nq], [nq] */
+  double *other;                  /* [2 nq + nz] */
+  double *M;                      /* [nmass] */
+} ConstraintScratch;
+
+size_t lag_constraint_scratch_size(const lag_model *m)
+{
+  const lag_constraints *of = m->constraints;
+
+  size_t pole = of ? (size_t)(3 * (2 * m->nq + m->nz) + 4 * of->n + 2 * m->nq) : 0; /* scratch of constraint_pole.c */
+  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz + (2 * m->nq + m->nz)) + pole : 0;
+}
+
+static ConstraintScratch layout(const lag_problem *pb)
+{
+  ConstraintScratch w = {.of = pb->model->constraints};
+  double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g, &w.terms[0], &w.terms[1], &w.A, &w.M, &w.d, &w.force, &w.step, &w.other};
+  const int n = w.of->n, sizes[] = {n, n, n, n, n, n, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, pb->nq, 0};
+
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    *parts[i] = x;
+    x += sizes[i];
+  }
+  return w;
+}
+
+double *lag_last_term_sizes(const lag_problem *pb)
+{
+  return layout(pb).terms[0];
+}
+
+int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r)
+{
+  int rc = lag_inputs(pb, t), nq = pb->nq;
+
+  rc = rc ? rc : pb->model->constraints->residuals(t, y, y + nq, y + 2 * nq, pb->p, pb->u, c, r, pb->work);
+  for (int k = 0; pb->kept && k < pb->model->constraints->nholonomic; k++) {
+    c[k] = isnan(pb->kept[k]) ? 0 : c[k] - pb->kept[k];
+  }
+  return rc;
+}
+
+void lag_release_integrals(lag_sim *s)
+{
+  const lag_constraints *of = s->scene->model->constraints;
+
+  for (int k = 0; of && k < of->n; k++) {
+    s->kept[k] = of->of[k].holonomic ? 0 : NAN;
+  }
+}
+
+int lag_hold_integrals(lag_sim *s, double t, const double *y)
+{
+  const lag_constraints *of = s->scene->model->constraints;
+
+  if (!of) {
+    return LAG_OK;
+  }
+  ConstraintScratch w = layout(&s->pb);
+  memset(s->kept, 0, (size_t)of->n * sizeof *s->kept);
+  int rc = lag_residuals(&s->pb, t, y, w.c, w.r);
+  for (int k = 0; k < of->nholonomic && rc == 0; k++) {
+    s->kept[k] = of->of[k].holonomic ? 0 : w.c[k];
+  }
+  return rc;
+}
+
+int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d, double *force)
+{
+  const lag_constraints *of = pb->model->constraints;
+  int rc = lag_inputs(pb, t), nq = pb->nq;
+
+  return rc ? rc : (holonomic ? of->position : of->velocity)(t, y, y + nq, y + 2 * nq, pb->p, pb->u, g, d, force, pb->work);
+}
+
+/* ---- sizes of residuals */
+
+/* size[n] := first-order change of each constraint when every coordinate (velocity) moves from 0 to its value. */
+static int sizes(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, double *size)
+{
+  const lag_constraints *of = w->of;
+  int nq = pb->nq, n = holonomic ? of->nholonomic : of->n, at = holonomic ? 0 : nq, rc = lag_inputs(pb, t);
+
+  rc = rc ? rc : of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work);
+  if (rc) {
+    return rc;
+  }
+  memset(size, 0, (size_t)n * sizeof *size);
+  for (int e = 0; e < of->njacobian; e++) {
+    int row = of->jacobian[e].row;
+    if (row < n) {
+      size[row] += fabs(w->A[e] * y[at + of->jacobian[e].col]);
+    }
+  }
+  return 0;
+}
+
+double lag_unit_magnitude(const lag_problem *pb, const double *x, int i)
+{
+  const lag_var *q = pb->model->q;
+  double most = 0;
+
+  for (int j = 0; j < pb->nq; j++) {
+    most = fabs(x[j]) > most && (q[i].unit == q[j].unit || strcmp(q[i].unit, q[j].unit) == 0) ? fabs(x[j]) : most;
+  }
+  return most;
+}
+
+double lag_typical_magnitude(const lag_problem *pb, const double *y, int holonomic, int i)
+{
+  const lag_var *q = &pb->model->q[i];
+  const double unknown = 1e-6; /* of the unit: a run from 0 has no length, and what rounding moved off 0 is none */
+  int from_zero = pb->begin && !(lag_unit_magnitude(pb, pb->begin, i) > 0);
+  double time = holonomic ? 1 : pb->span > 0 ? pb->span : 1, most = lag_unit_magnitude(pb, holonomic ? y : y + pb->nq, i);
+
+  if (most > 0 && from_zero) {
+    most = fmax(most, unknown / time);
+  }
+  most = fmax(most, lag_unit_magnitude(pb, y, i) / time);
+
+  int is_angle = q->periodic || !q->unit[0] || strcmp(q->unit, "rad") == 0 || strcmp(q->unit, "deg") == 0;
+  return most <= 0 || (most < 1 && is_angle) ? 1 : most;
+}
+
+/* Raises size[n] to the residuals of a state displaced by typical magnitudes: there may be no terms of first order, as of a folded linkage or a
+ * body at rest. */
+static int displaced_sizes(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, double *size)
+{
+  const double step = 0.618033988749894848; /* arbitrary, so that nothing cancels */
+  int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq;
+  double *c = w->c, *r = w->r;
+
+  double reach = 0;
+  const lag_var *q = pb->model->q;
+  memcpy(w->other, y, (size_t)pb->n * sizeof *y);
+  for (int i = 0; i < nq; i++) { /* members of a family share their magnitude, and there may be hundreds */
+    reach = i > 0 && strcmp(q[i].unit, q[i - 1].unit) == 0 && q[i].periodic == q[i - 1].periodic ? reach : lag_typical_magnitude(pb, y, holonomic, i);
+    w->other[at + i] += reach * (0.5 + fmod(step * (i + 1), 1));
+  }
+  int rc = lag_residuals(pb, t, w->other, c, r);
+  for (int k = 0; k < n && rc == 0; k++) {
+    size[k] = fmax(size[k], fabs(holonomic ? c[k] : r[k]));
+  }
+  return rc;
+}
+
+int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonomic, double *size)
+{
+  ConstraintScratch w = layout(pb);
+  int rc = sizes(pb, &w, t, y, holonomic, size);
+
+  return rc ? rc : displaced_sizes(pb, &w, t, y, holonomic, size);
+}
+
+int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonomic, double *worst)
+{
+  const lag_constraints *of = pb->model->constraints;
+  ConstraintScratch w = layout(pb);
+  double most = -1;
+  int which = -1, n = holonomic ? of->nholonomic : of->n;
+
+  if (lag_constraint_terms(pb, t, y, holonomic, w.g) || lag_residuals(pb, t, y, w.c, w.r)) {
+    return -1;
+  }
+  for (int k = 0; k < n; k++) {
+    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x < DBL_MIN ? 0 : x / (DBL_EPSILON * w.g[k]); /* subnormal numbers have lost digits */
+    part = isnan(part) ? HUGE_VAL : part; /* no value */
+    if (part > most) {
+      most = part;
+      which = k;
+    }
+  }
+  if (worst) {
+    *worst = most;
+  }
+  return which;
+}
+
+const char *lag_line_text(const lag_constraint *c, char text[32])
+{
+  text[0] = '\0';
+  if (c->line > 0) {
+    snprintf(text, 32, " (line %d)", c->line);
+  }
+  return text;
+}
+
+void lag_report_residual(lag_problem *pb, int k, int holonomic, double residual, const char *words)
+{
+  const lag_constraint *c = &pb->model->constraints->of[k];
+  const char *level = c->holonomic == holonomic ? "" : holonomic ? "*s" : c->unit[0] ? "/s" : "1/s";
+  size_t length = strlen(c->unit);
+  char line[32], unit[64];
+
+  if (level[0] == '*' && length > 2 && strcmp(c->unit + length - 2, "/s") == 0) { /* m/s*s is m */
+    length -= 2;
+    level = "";
+  }
+  snprintf(unit, sizeof unit, "%s%.*s%s", c->unit[0] || level[0] ? " " : "", (int)(length ? length : 1), c->unit[0] || level[0] != '*' ? c->unit : "1", level);
+  if (isnan(residual)) {
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, lag_line_text(c, line), words);
+  } else {
+    snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s", c->name, lag_line_text(c, line), residual, unit, words);
+  }
+  pb->detail = pb->words;
+}
+
+/* ---- Newton's iteration */
+
+static double ratio(double x, double y)
+{
+  return x == 0.0 ? 0 : fabs(x / y);
+}
+
+/* Whether the rest of a correction d, its part `left`, is rounding of x. */
+static int is_rounding(int n, const double *x, const double *d, double left)
+{
+  for (int i = 0; i < n; i++) {
+    if (!(left * fabs(d[i]) <= 2 * DBL_EPSILON * fabs(x[i]))) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+/* The largest, and *least the smallest, ratio of a residual to the one before the correction. */
+static double parts_left(int n, const double *now, const double *before, double *least)
+{
+  double most = 0;
+
+  *least = HUGE_VAL;
+  for (int k = 0; k < n; k++) {
+    double part = ratio(now[k], before[k]);
+    most = fmax(most, part);
+    *least = now[k] == 0.0 ? *least : fmin(*least, part);
+  }
+  return most;
+}
+
+/* x += d, with the rounding error of that sum in lost, or without (NULL). */
+static void add(int n, double *x, double *lost, const double *d)
+{
+  for (int i = 0; i < n; i++) {
+    double before = x[i], add = d[i] + (lost ? lost[i] : 0), b;
+    x[i] = before + add;
+    b = x[i] - before;
+    if (lost) { /* as lag_compensated_sum of methods/steps.h */
+      lost[i] = (before - (x[i] - b)) + (add - b);
+    }
+  }
+}
+
+/* Reports the worst of constraints that cannot be met. */
+static int report_unmet(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic)
+{
+  int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
+
+  if (k >= 0) {
+    lag_report_residual(pb, k, holonomic, fabs(holonomic ? w->c[k] : w->r[k]),
+                       holonomic ? ", and no small change of the coordinates meets it"
+                                 : " for any velocities: it contradicts the others");
+  }
+  pb->bad_t = t;
+  return LAG_ERETRY;
+}
+
+/* g := -A x */
+static void negative_product(const ConstraintScratch *w, int n, const double *x, double *g)
+{
+  memset(g, 0, (size_t)n * sizeof *g);
+  for (int e = 0; e < w->of->njacobian; e++) {
+    const lag_entry *at = &w->of->jacobian[e];
+    if (at->row < n) {
+      g[at->row] -= w->A[e] * x[at->col];
+    }
+  }
+}
+
+/* w->before[k] := deviation of constraint k from a straight line along w->d, the change that would remove the residual -w->g: its rounding. */
+static int nonlinearity(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic)
+{
+  static const double parts[] = {0.25, 0.5, 0.75, 1, 1.5, 2};
+  int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq, rc = 0;
+
+  memset(w->before, 0, (size_t)n * sizeof *w->before);
+  for (size_t j = 0; j < sizeof parts / sizeof *parts && rc == 0; j++) {
+    memcpy(w->other, y, (size_t)pb->n * sizeof *y);
+    for (int i = 0; i < nq; i++) {
+      w->other[at + i] += parts[j] * w->d[i];
+    }
+    rc = lag_residuals(pb, t, w->other, w->c, w->r);
+    for (int k = 0; k < n && rc == 0; k++) {
+      w->before[k] = fmax(w->before[k], fabs((holonomic ? w->c : w->r)[k] + (1 - parts[j]) * w->g[k]));
+    }
+  }
+  return rc;
+}
+
+/* Whether the residual is rounding of some constraints, and removing the rest takes a smaller change than that. Needed where a state at 0 shows
+ * no size: 0.6^2 + 0.8^2 - 1 is rounding of terms that no coordinate shows. */
+static int is_noise(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, const double *residual)
+{
+  int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, noise = 0;
+  double *rest = w->other;
+
+  for (int k = 0; k < n; k++) {
+    w->g[k] = -residual[k];
+  }
+  if (lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force) || lag_not_finite(nq, w->d) >= 0 ||
+      w->of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work)) {
+    return 0;
+  }
+  negative_product(w, n, w->d, w->before);
+  memset(w->c, 0, (size_t)n * sizeof *w->c); /* sizes of the terms of A d */
+  for (int e = 0; e < w->of->njacobian; e++) {
+    const lag_entry *at_e = &w->of->jacobian[e];
+    w->c[at_e->row] += at_e->row < n ? fabs(w->A[e] * w->d[at_e->col]) : 0;
+  }
+  for (int k = 0; k < n; k++) {
+    if (!(fabs(w->before[k] + w->g[k]) <= 1e-3 * fabs(w->g[k]) + 1e-9 * w->c[k])) {
+      return 0; /* no change removes it: it contradicts others */
+    }
+  }
+  if (nonlinearity(pb, w, t, y, holonomic)) {
+    return 0;
+  }
+  for (int k = 0; k < n; k++) {
+    int is = fabs(w->g[k]) <= 4 * w->before[k];
+    w->g[k] = is ? 0 : w->g[k];
+    noise |= is;
+  }
+  if (!noise || lag_least_change(pb, t, y, holonomic, w->g, rest, w->force)) {
+    return 0;
+  }
+  for (int i = 0; i < nq; i++) {
+    noise &= fabs(rest[i]) <= 2 * lag_unit_magnitude(pb, w->d, i); /* they may be equal up to rounding */
+  }
+  return noise;
+}
+
+/* Whether the coordinates of some unit were all 0 at the start, so that nothing tells their scale. */
+static int began_at_0(const lag_problem *pb)
+{
+  int zero = 0;
+
+  for (int i = 0; i < pb->nq && pb->begin; i++) {
+    zero |= !(lag_unit_magnitude(pb, pb->begin, i) > 0);
+  }
+  return zero;
+}
+
+int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual)
+{
+  const double rounding = 0x1p10 * DBL_EPSILON;
+  ConstraintScratch w = layout(pb);
+  double *terms = w.terms[holonomic], worst = HUGE_VAL;
+  int n = holonomic ? w.of->nholonomic : w.of->n, met = 1;
+
+  for (int k = 0; k < n; k++) {
+    met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* terms from the last time suffice where the answer is clear */
+  }
+  if (met) {
+    return 1;
+  }
+  lag_worst_constraint(pb, t, y, holonomic, &worst);
+  met = worst <= 0x1p10;
+  if (!met && began_at_0(pb)) {
+    met = is_noise(pb, &w, t, y, holonomic, residual);
+    met = lag_residuals(pb, t, y, w.c, w.r) == 0 && met; /* is_noise() has overwritten the residuals that newton() needs */
+  } else if (met) { /* only where met: terms of a state off the constraints may have any size */
+    memcpy(terms, w.g, (size_t)n * sizeof *terms);
+  }
+  return met;
+}
+
+/* Whether the residuals of y, w->c and w->r, are rounding in the last digits of their terms. */
+static int is_clean(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic)
+{
+  const double *residual = holonomic ? w->c : w->r;
+  int n = holonomic ? w->of->nholonomic : w->of->n, clean = 1;
+
+  if (lag_constraint_terms(pb, t, y, holonomic, w->g) || lag_residuals(pb, t, y, w->c, w->r)) {
+    return 0;
+  }
+  for (int k = 0; k < n; k++) {
+    clean &= fabs(residual[k]) <= 4 * DBL_EPSILON * w->g[k];
+  }
+  return clean;
+}
+
+/* Newton's iteration of positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of y, before and after. */
+static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double *y, double *lost, int holonomic)
+{
+  int n = holonomic ? w->of->nholonomic : w->of->n, nq = pb->nq, strikes = 0;
+  double *x = holonomic ? y : y + nq, *residual = holonomic ? w->c : w->r, least;
+  double *lost_x = lost ? lost + (x - y) : NULL;
+
+  for (int turn = 0; turn < MOST_TURNS; turn++) {
+    int busy = 0;
+    for (int k = 0; k < n; k++) {
+      busy |= !(residual[k] == 0.0);
+    }
+    if (!busy || (turn > holonomic && is_clean(pb, w, t, y, holonomic))) {
+      return LAG_OK; /* is_clean: coordinates that are 0 up to rounding never stop moving by more than their last digits */
+    }
+    for (int k = 0; k < n; k++) {
+      w->before[k] = residual[k];
+      w->g[k] = -residual[k];
+    }
+    int rc = lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force);
+    if (rc || lag_not_finite(nq, w->d) >= 0) {
+      return rc < 0 ? rc : report_unmet(pb, w, t, y, holonomic);
+    }
+    add(nq, x, lost_x, w->d);
+    if ((rc = lag_residuals(pb, t, y, w->c, w->r)) != 0) {
+      return rc;
+    }
+    double most = parts_left(n, residual, w->before, &least);
+    int lost_in_rounding = is_rounding(nq, x, w->d, most);
+    if (lost_in_rounding && most < 0.5) {
+      return LAG_OK;
+    }
+    if (lost_in_rounding || !(least < 0.5)) { /* no residual shrinks any more, or one that the correction cannot reach does not */
+      if (lag_constraint_is_met(pb, t, y, holonomic, residual)) {
+        return LAG_OK;
+      }
+      if (++strikes == MOST_STRIKES) {
+        return report_unmet(pb, w, t, y, holonomic);
+      }
+    }
+  }
+  return lag_constraint_is_met(pb, t, y, holonomic, residual) ? LAG_OK : report_unmet(pb, w, t, y, holonomic);
+}
+
+int lag_project(lag_problem *pb, double t, double *y, double *lost)
+{
+  if (!pb->model->constraints || lag_not_finite(pb->n, y) >= 0) { /* the method reports states that are not finite */
+    return LAG_OK;
+  }
+  ConstraintScratch w = layout(pb);
+  const char *said = pb->detail;
+  int rc = lag_residuals(pb, t, y, w.c, w.r);
+
+  rc = rc ? rc : newton(pb, &w, t, y, lost, 1);
+  rc = rc ? rc : newton(pb, &w, t, y, lost, 0);
+  pb->detail = rc ? pb->detail : said;
+  return rc < LAG_ESINGULAR ? LAG_EMODEL : rc;
+}
+
+/* Largest distance of coordinate i from 0, now or at the start; at least 1e-10 of its unit. */
+static double extent(const lag_problem *pb, const double *y0, const double *y, int i)
+{
+  double begin = pb->begin ? lag_unit_magnitude(pb, pb->begin, i) : 0;
+
+  return fmax(fmax(lag_typical_magnitude(pb, y0, 1, i), lag_typical_magnitude(pb, y, 1, i)), fmax(begin, 1e-10));
+}
+
+/* Whether one constraint on positions contains coordinates i and j. */
+static int are_tied(const lag_constraints *of, int i, int j)
+{
+  for (int a = 0; a < of->njacobian; a++) {
+    for (int b = 0; of->jacobian[a].col == i && of->jacobian[a].row < of->nholonomic && b < of->njacobian; b++) {
+      if (of->jacobian[b].row == of->jacobian[a].row && of->jacobian[b].col == j) {
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
+
+int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led)
+{
+  const lag_constraints *of = pb->model->constraints;
+  const double small = 1e-6;
+
+  for (int i = 0; i < pb->nq; i++) {
+    double most = fabs(led[i]);
+    if (!(fabs(moved[i]) > 2 * most + small * fabs(y[i]))) {
+      continue;
+    }
+    for (int j = 0; j < pb->nq; j++) {
+      int alike = strcmp(pb->model->q[i].unit, pb->model->q[j].unit) == 0 && are_tied(of, i, j);
+      most = alike ? fmax(most, fabs(led[j])) : most;
+    }
+    if (fabs(moved[i]) > 2 * most + small * extent(pb, y0, y, i)) {
+      return i;
+    }
+  }
+  return -1;
+}
+
+int lag_report_leap(lag_problem *pb, double t, const double *y, int i, double moved)
+{
+  int k = lag_worst_constraint(pb, t, y, 1, NULL);
+
+  if (k >= 0) {
+    char words[128];
+    const lag_var *q = &pb->model->q[i];
+    snprintf(words, sizeof words, " after a step, and meeting it would move %s by %.3g %s: it jumps, or the step is too long", q->name,
+             fabs(moved) / q->factor, q->unit);
+    lag_report_residual(pb, k, 1, NAN, words);
+  }
+  pb->bad_t = t;
+  return LAG_ERETRY;
+}
+
+int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost)
+{
+  if (!pb->model->constraints) {
+    return LAG_OK;
+  }
+  ConstraintScratch w = layout(pb);
+  size_t bytes = (size_t)pb->nq * sizeof(double);
+
+  memcpy(w.step, y, bytes);
+  int rc = lag_project(pb, t, y, lost);
+  for (int i = 0; i < pb->nq; i++) {
+    w.d[i] = y[i] - w.step[i];
+    w.force[i] = w.step[i] - y0[i];
+  }
+  int i = rc ? -1 : lag_projection_leap(pb, y0, y, w.d, w.force);
+  if (i < 0) {
+    return rc;
+  }
+  double moved = w.d[i];
+  memcpy(y, w.step, bytes);
+  return lag_report_leap(pb, t, y, i, moved);
+}
+
+int lag_project_tangent(lag_problem *pb, double t, const double *y, double *e)
+{
+  if (!pb->model->constraints) {
+    return LAG_OK;
+  }
+  ConstraintScratch w = layout(pb);
+  int nq = pb->nq, rc = lag_inputs(pb, t);
+
+  rc = rc ? rc : w.of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w.A, w.M, pb->work);
+  for (int level = 0; level < 2 && rc == 0; level++) {
+    double *x = e + level * nq;
+    if (!level && !w.of->nholonomic) {
+      continue;
+    }
+    negative_product(&w, level ? w.of->n : w.of->nholonomic, x, w.g);
+    rc = lag_least_change(pb, t, y, !level, w.g, w.d, w.force);
+    for (int i = 0; i < nq && rc == 0; i++) {
+      x[i] += w.d[i];
+    }
+  }
+  return rc;
+}

@@ -1,0 +1,298 @@
+/* Tables and files of rows. Enters: the columns of a simulation, then one row at a time; leaves: a CSV file (RFC 4180;
+ * a header with names and units, numbers with the digits to read back exactly), or a NumPy .npy file.
+ *
+ * The .npy file is a one-dimensional array of records with one 8-byte field a column (text columns: the length of the longest
+ * word); the field's title is "name [unit]": a = numpy.load("f.npy"); a["th"], a["th [deg]"], a.dtype.fields. Format: NumPy
+ * Enhancement Proposal 1; version 1.0, and 3.0 where a name is not ASCII. */
+#include <errno.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/io.h"
+
+int lag_table_init(Table *t, const lag_sim *sim, int keep)
+{
+  *t = (Table){.ncols = lag_sim_noutputs(sim) + 1, .keep = keep};
+  t->cols = calloc((size_t)t->ncols, sizeof *t->cols);
+  if (!t->cols) {
+    return -1;
+  }
+  strcpy(t->cols[0].name, "t");
+  strcpy(t->cols[0].unit, "s");
+  for (int i = 1; i < t->ncols; i++) {
+    Column *c = &t->cols[i];
+    lag_sim_output_info(sim, i - 1, c->name, sizeof c->name, c->unit, sizeof c->unit);
+  }
+  return 0;
+}
+
+void lag_table_free(Table *t)
+{
+  free(t->cols);
+  free(t->data);
+  *t = (Table){0};
+}
+
+int lag_table_add(Table *t, const double *row)
+{
+  if (!t->keep) {
+    return 0;
+  }
+  if (t->nrows == t->capacity) {
+    size_t capacity = t->capacity ? 2 * t->capacity : 1024;
+    double *data = realloc(t->data, capacity * (size_t)t->ncols * sizeof *data);
+    if (!data) {
+      return -1;
+    }
+    t->data = data;
+    t->capacity = capacity;
+  }
+  memcpy(t->data + t->nrows * (size_t)t->ncols, row, (size_t)t->ncols * sizeof *row);
+  t->nrows++;
+  return 0;
+}
+
+void lag_table_scale_time(Table *t)
+{
+  static const struct {
+    double seconds;
+    const char *name;
+  } units[] = {{31557600, "yr"}, {86400, "d"}, {3600, "h"}};
+  double span = t->nrows ? fabs(t->data[(t->nrows - 1) * (size_t)t->ncols] - t->data[0]) : 0;
+  int has_units = 0;
+
+  for (int i = 1; i < t->ncols; i++) {
+    has_units |= t->cols[i].unit[0] && strcmp(t->cols[i].unit, "rad") != 0;
+  }
+  for (size_t k = 0; k < sizeof units / sizeof *units && has_units; k++) {
+    if (span >= 2 * units[k].seconds) {
+      for (size_t i = 0; i < t->nrows; i++) {
+        t->data[i * (size_t)t->ncols] /= units[k].seconds;
+      }
+      strcpy(t->cols[0].unit, units[k].name);
+      return;
+    }
+  }
+}
+
+/* Writes a CSV field (RFC 4180): in quotes if it holds a comma, a quote or a line break; quotes are doubled. */
+static void csv_text(FILE *f, const char *s)
+{
+  if (!strpbrk(s, ",\"\r\n")) {
+    fputs(s, f);
+    return;
+  }
+  putc('"', f);
+  for (; *s; s++) {
+    if (*s == '"') {
+      putc('"', f);
+    }
+    putc(*s, f);
+  }
+  putc('"', f);
+}
+
+static void csv_head(Rows *r)
+{
+  for (int i = 0; i < r->ncols; i++) {
+    const Column *c = &r->cols[i];
+    char text[sizeof c->name + sizeof c->unit + 4];
+    snprintf(text, sizeof text, c->unit[0] ? "%s [%s]" : "%s", c->name, c->unit);
+    if (i) {
+      putc(',', r->out.f);
+    }
+    csv_text(r->out.f, text);
+  }
+  putc('\n', r->out.f);
+}
+
+/* Decodes the next UTF-8 character; bytes that are not UTF-8 one by one. */
+static uint32_t next_char(const unsigned char **s)
+{
+  uint32_t c = *(*s)++;
+  int more = c >= 0xF0 ? 3 : c >= 0xE0 ? 2 : c >= 0xC0 ? 1 : 0;
+
+  c &= more == 3 ? 0x07u : more == 2 ? 0x0Fu : more == 1 ? 0x1Fu : 0xFFu;
+  for (; more > 0 && (**s & 0xC0) == 0x80; more--) {
+    c = c << 6 | (*(*s)++ & 0x3Fu);
+  }
+  return c;
+}
+
+/* Length of the longest word of a text column in characters, at least 1. */
+static size_t word_width(const Column *c)
+{
+  size_t most = 1;
+
+  for (int i = 0; i < c->nwords; i++) {
+    size_t n = 0;
+    for (const unsigned char *s = (const unsigned char *)c->words[i]; *s; n++) {
+      next_char(&s);
+    }
+    most = n > most ? n : most;
+  }
+  return most;
+}
+
+static void npy_word(FILE *f, const Column *c, const char *word)
+{
+  const unsigned char *s = (const unsigned char *)word;
+
+  for (size_t n = word_width(c); n > 0; n--) {
+    uint32_t code = *s ? next_char(&s) : 0;
+    fwrite(&code, sizeof code, 1, f);
+  }
+}
+
+static int is_ascii(const Rows *r)
+{
+  for (int i = 0; i < r->ncols; i++) {
+    const Column *c = &r->cols[i];
+    for (const char *s = c->name; *s; s++) {
+      if ((unsigned char)*s >= 128) {
+        return 0;
+      }
+    }
+    for (const char *s = c->unit; *s; s++) {
+      if ((unsigned char)*s >= 128) {
+        return 0;
+      }
+    }
+  }
+  return 1;
+}
+
+/* Writes a Python string literal. */
+static void python_text(FILE *f, const char *s)
+{
+  putc('"', f);
+  for (; *s; s++) {
+    if (*s == '"' || *s == '\\') {
+      putc('\\', f);
+    }
+    putc(*s, f);
+  }
+  putc('"', f);
+}
+
+/* Writes the dictionary of the .npy header up to the shape, whose number of rows is not known yet. */
+static void npy_dict(Rows *r, FILE *f)
+{
+  const union {
+    uint16_t word;
+    unsigned char byte[2];
+  } probe = {1};
+  char order = probe.byte[0] ? '<' : '>';
+
+  fputs("{'descr': [", f);
+  for (int i = 0; i < r->ncols; i++) {
+    const Column *c = &r->cols[i];
+    char title[sizeof c->name + sizeof c->unit + 4];
+    snprintf(title, sizeof title, "%s [%s]", c->name, c->unit);
+    fputs(i ? ", (" : "(", f);
+    if (c->unit[0]) {
+      putc('(', f);
+      python_text(f, title);
+      fputs(", ", f);
+    }
+    python_text(f, c->name);
+    fputs(c->unit[0] ? "), " : ", ", f);
+    if (c->words) {
+      fprintf(f, "'%cU%zu')", order, word_width(c));
+    } else {
+      fprintf(f, "'%cf8')", order);
+    }
+  }
+  fputs("], 'fortran_order': False, 'shape': (", f);
+}
+
+/* Writes the .npy header; its length does not depend on the number of rows, so it can be rewritten at the end. */
+static int npy_head(Rows *r)
+{
+  char *dict = NULL;
+  size_t size = 0;
+  FILE *m = open_memstream(&dict, &size);
+
+  if (!m) {
+    return -1;
+  }
+  npy_dict(r, m);
+  fclose(m);
+  int v3 = !is_ascii(r) || size > 60000;
+  size_t fixed = v3 ? 12 : 10, total = (fixed + size + 32 + 63) / 64 * 64, length = total - fixed;
+  FILE *f = r->out.f;
+  fwrite("\x93NUMPY", 1, 6, f);
+  putc(v3 ? 3 : 1, f);
+  putc(0, f);
+  for (int i = 0; i < (v3 ? 4 : 2); i++) {
+    putc((int)(length >> 8 * i & 255), f);
+  }
+  fwrite(dict, 1, size, f);
+  int n = fprintf(f, "%zu,), }", r->nrows);
+  for (size_t i = size + (size_t)n; i + 1 < length; i++) {
+    putc(' ', f);
+  }
+  putc('\n', f);
+  free(dict);
+  return 0;
+}
+
+int lag_rows_open(Rows *r, const char *path, const Table *t)
+{
+  *r = (Rows){.ncols = t->ncols, .cols = t->cols};
+  r->npy = lag_outfile_has_suffix(path, "npy");
+  if (lag_outfile_open(&r->out, path)) {
+    return -1;
+  }
+  r->open = 1;
+  return r->npy ? npy_head(r) : 0;
+}
+
+int lag_rows_write(Rows *r, const double *row)
+{
+  FILE *f = r->out.f;
+
+  if (!r->npy && r->nrows == 0) {
+    csv_head(r);
+  }
+  r->nrows++;
+  for (int i = 0; i < r->ncols; i++) {
+    const Column *c = &r->cols[i];
+    if (!r->npy && i) {
+      putc(',', f);
+    }
+    if (!c->words && r->npy) {
+      fwrite(&row[i], sizeof row[i], 1, f);
+    } else if (!c->words) {
+      fputs(lag_number_text(row[i], (char[64]){0}), f);
+    } else if (r->npy) {
+      npy_word(f, c, c->words[(int)row[i]]);
+    } else {
+      csv_text(f, c->words[(int)row[i]]);
+    }
+  }
+  if (!r->npy) {
+    putc('\n', f);
+  }
+  return ferror(f) ? -1 : 0;
+}
+
+int lag_rows_close(Rows *r, int keep)
+{
+  if (!r->open) {
+    return 0;
+  }
+  r->open = 0;
+  if (!r->npy && keep && r->nrows == 0) {
+    csv_head(r);
+  }
+  if (r->npy && keep && (fseek(r->out.f, 0, SEEK_SET) != 0 || npy_head(r))) {
+    int error = errno;
+    lag_outfile_close(&r->out, 0);
+    errno = error;
+    return -1;
+  }
+  return lag_outfile_close(&r->out, keep ? OUTFILE_SYNC : OUTFILE_DROP);
+}

@@ -1,0 +1,292 @@
+/* Symplectic steps in q and p for any L. Enters: t, y = [q|v]; leaves: t + h, y one step later. Holds: p is carried from step to
+ * step, and v is solved from dL/dv(q, v) = p; sums over steps of q, p and t are compensated (steps.h). Dense output is a
+ * polynomial through both ends (step_interpolant.h): accurate to the order of the method, not symplectic. */
+#include "methods/implicit_symplectic.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "methods/discrete_lagrangian.h"
+#include "methods/predictor.h"
+#include "methods/substeps.h"
+#include "methods/step_interpolant.h"
+#include "methods/steps.h"
+#include "methods/tangent.h"
+
+size_t lag_implicit_size(const lag_problem *pb, int free)
+{
+  return lag_substeps_size(pb, free, 1);
+}
+
+size_t lag_implicit_composed_size(const lag_problem *pb, const lag_composition *c)
+{
+  return lag_substeps_size(pb, 1, 2 * c->stages);
+}
+
+void lag_implicit_reset(void *work, lag_problem *pb)
+{
+  Implicit *w = work;
+
+  (void)pb;
+  w->ready = w->have_path = 0;
+  w->tc = 0;
+}
+
+void lag_implicit_init(void *work, lag_problem *pb, double h, int order, const lag_rule *rule)
+{
+  Implicit *w = work;
+
+  w->h = h;
+  w->order = order;
+  w->substeps = w->part[0] = 1;
+  w->rule[0] = *rule;
+  lag_rule_euler(&w->momentum, 0);
+  lag_implicit_reset(work, pb);
+}
+
+void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_composition *c)
+{
+  Implicit *w = work;
+  lag_rule rule;
+
+  lag_rule_euler(&rule, 0);
+  lag_implicit_init(work, pb, h, c->order, &rule);
+  lag_rule_euler(&w->rule[1], 1);
+  w->substeps = lag_composition_substeps(c, w->part);
+}
+
+/* Whether the histories of substeps, velocities and impulses, read from a file, are valid. */
+static int histories_are_sound(const Implicit *w, const lag_problem *pb)
+{
+  ImplicitArrays a = lag_substeps_arrays((Implicit *)w, pb);
+  int nc = pb->model->constraints ? pb->model->constraints->n : 0;
+
+  for (int k = 0; k <= (int)w->substeps; k++) {
+    if (!lag_predictor_is_sound(a.history + (size_t)k * lag_substep_history(pb, w)) ||
+        (nc && k < (int)w->substeps && !lag_predictor_is_sound(a.block.history + (size_t)k * lag_predictor_size(nc)))) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+int lag_implicit_sound(const void *work, const void *fresh, const lag_problem *pb)
+{
+  const Implicit *w = work, *f = fresh;
+
+  return w->h == f->h && lag_same_numbers(&w->order, &f->order, (size_t)(w->x - &w->order)) && lag_is_flag(w->ready) &&
+         lag_is_count(w->have_path + 2, 3) && isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc) && histories_are_sound(w, pb);
+}
+
+/* First step from y: p := dL/dv, compensations and histories := 0. */
+static int begin(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y)
+{
+  int nq = pb->nq;
+  size_t bytes = (size_t)nq * sizeof(double);
+  int rc = lag_variation(pb, t, y, y + nq, a->dq, a->p, a->dp);
+
+  if (rc) {
+    return lag_step_refused(pb, rc, t);
+  }
+  if ((pb->bad_index = lag_not_finite(nq, a->p)) >= 0) {
+    pb->bad_index += nq;
+    return lag_step_failed(pb, LAG_ENAN, t);
+  }
+  memset(a->qc, 0, bytes);
+  memset(a->pc, 0, bytes);
+  memset(a->history, 0, (size_t)(a->path - a->history) * sizeof(double));
+  if (pb->model->constraints) {
+    memset(a->block.history, 0, (size_t)w->substeps * lag_predictor_size(pb->model->constraints->n) * sizeof(double));
+  }
+  w->ready = 1;
+  return LAG_OK;
+}
+
+/* All substeps of a step, without constraints; then v at its end. */
+static int chain(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
+{
+  double at = 0;
+  int rc = 0;
+
+  for (int k = 0; k < (int)w->substeps && rc == 0; k++) {
+    if ((rc = lag_substep(w, a, pb, t, y, dt, k, at, a->u, 0)) == 0) {
+      lag_substep_record(w, a, pb, k, a->u);
+    }
+    at += w->part[k];
+  }
+  return rc ? rc : lag_substeps_velocity(w, a, pb, tb, y, 0);
+}
+
+/* Adds the increments to q and p: the step is accepted. */
+static void accept(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double *y)
+{
+  int nq = pb->nq;
+
+  memcpy(a->y0, y, (size_t)pb->n * sizeof(double));
+  for (int i = 0; i < nq; i++) {
+    y[i] = lag_compensated_sum(y[i], a->dq[i], &a->qc[i]);
+    a->p[i] = lag_compensated_sum(a->p[i], a->dp[i], &a->pc[i]);
+    y[nq + i] = a->v[i];
+  }
+  memcpy(a->y1, y, (size_t)pb->n * sizeof(double));
+  w->have_path = 0;
+}
+
+int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y)
+{
+  Implicit *w = work;
+  ImplicitArrays a = lag_substeps_arrays(w, pb);
+  int rc;
+  double dt = w->h * (1 + pb->stretch) * pb->dir, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
+
+  pb->bad_index = -1;
+  if (tb == *t) {
+    return lag_step_failed(pb, LAG_ESTEP, *t);
+  }
+  if (w->ready == 0.0 && (rc = begin(w, &a, pb, *t, y)) != 0) {
+    return rc;
+  }
+  memset(a.dq, 0, (size_t)pb->nq * sizeof(double));
+  memset(a.dp, 0, (size_t)pb->nq * sizeof(double));
+  if ((rc = (pb->model->constraints ? lag_rattle : chain)(w, &a, pb, *t, tb, y, dt)) != 0) {
+    return rc;
+  }
+  lag_predictor_add(a.history + (size_t)w->substeps * lag_substep_history(pb, w), pb->nq, a.v);
+  accept(w, &a, pb, y);
+  w->t0 = *t;
+  w->dt = tb - *t;
+  w->tc = tc;
+  *t = tb;
+  return LAG_OK;
+}
+
+/* Builds dense output of the last step: 1 done, -1 only the Hermite form, -2 not even that. Each level takes two passes, because the
+ * accelerations depend on velocities. */
+static int make_path(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const StepEnds *e, int level)
+{
+  if (lag_rhs(pb, w->t0, a->y0, a->f0) || lag_rhs(pb, w->t0 + w->dt, a->y1, a->f1) || lag_not_finite(pb->n, a->f0) >= 0 ||
+      lag_not_finite(pb->n, a->f1) >= 0) {
+    return -2;
+  }
+  return level == 0 || lag_interpolant_make(a->path, pb, e, level, 2) == 0 ? 1 : -1;
+}
+
+void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y)
+{
+  Implicit *w = work;
+  ImplicitArrays a = lag_substeps_arrays(w, pb);
+  StepEnds ends = {w->t0, w->dt, a.y0, a.f0, a.y1, a.f1};
+  int level = w->order > 6 ? 2 : w->order > 4 ? 1 : 0;
+  double s = (t - w->t0) / w->dt;
+
+  if (w->have_path == 0.0 && w->order > 1) {
+    w->have_path = make_path(w, &a, pb, &ends, level);
+  }
+  if (w->order < 2 || w->have_path < -1) {
+    lag_interpolant_cubic(pb->nq, &ends, s, y);
+  } else {
+    lag_interpolant_at(a.path, pb, &ends, w->have_path > 0 ? level : 0, s, y);
+  }
+}
+
+/* ---- Derivative of a step */
+
+/* Scratch of the derivative. q, p at a substep: y0 + ql, p + pl, as in lag_discrete; u, force: of one substep; du, rest: of its derivative. */
+typedef struct Changes {
+  double *p, *ql, *pl, *v;    /* [nq] */
+  double *u, *force, *second; /* [free nq], [points nq], [nsecond] */
+  double *dv, *du, *rest;     /* [nq k], [free nq k] */
+} Changes;
+
+size_t lag_implicit_tangent_size(const lag_problem *pb, int k)
+{
+  size_t nq = (size_t)pb->nq, m = nq * (size_t)k;
+
+  return 4 * nq + (LAG_RULE_FREE + LAG_RULE_POINTS) * nq + (size_t)pb->model->nsecond + (1 + LAG_RULE_FREE) * m +
+         lag_discrete_tangent_size(pb, LAG_RULE_FREE, k);
+}
+
+static Changes changes(const lag_problem *pb, int k, double *x)
+{
+  Changes c;
+  int nq = pb->nq;
+
+  c.p = x;
+  c.ql = c.p + nq;
+  c.pl = c.ql + nq;
+  c.v = c.pl + nq;
+  c.u = c.v + nq;
+  c.force = c.u + LAG_RULE_FREE * nq;
+  c.second = c.force + LAG_RULE_POINTS * nq;
+  c.dv = c.second + pb->model->nsecond;
+  c.du = c.dv + nq * k;
+  c.rest = c.du + LAG_RULE_FREE * nq * k;
+  memset(c.ql, 0, (size_t)(2 * nq) * sizeof *x);
+  return c;
+}
+
+/* Start of the last step: Y = (dq, dv) becomes (dq, dp), and c->p := p. */
+static int to_momenta(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, int k, double *Y)
+{
+  int nq = pb->nq, m = nq * k, rc = lag_variation(pb, w->t0, a->y0, a->y0 + nq, c->v, c->p, c->force);
+
+  rc = rc ? rc : lag_second_derivatives(pb, w->t0, a->y0, a->y0 + nq, c->second);
+  if (rc) {
+    return lag_step_refused(pb, rc, w->t0);
+  }
+  memcpy(c->dv, Y + m, (size_t)m * sizeof *Y);
+  memset(Y + m, 0, (size_t)m * sizeof *Y);
+  lag_hessian_times(pb, c->second, k, Y, c->dv, Y + m, NULL);
+  return LAG_OK;
+}
+
+/* Y over substep j, which begins at t0 + at dt. whole: the step that was taken, whose velocities are known; else they are solved for. */
+static int over_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, int j, double at, double dt, int whole, int k,
+                     double *Y)
+{
+  const lag_rule *r = &w->rule[j % 2];
+  int nq = pb->nq, rc = 0;
+  double h = w->part[j] * dt;
+  lag_discrete d = {.rule = r, .pb = pb, .t = w->t0 + at * dt, .h = h, .size = w->h, .q = a->y0, .dq = c->ql, .p = c->p,
+                    .dp = c->pl, .u = c->u, .force = c->force, .work = a->discrete};
+
+  lag_predictor_last(a->history + (size_t)j * lag_substep_history(pb, w), nq * (int)r->free, c->u);
+  rc = whole ? 0 : lag_discrete_solve(&d);
+  rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + nq * k, c->du, c->rest);
+  for (int i = 0; i < (int)r->free && rc == 0; i++) {
+    lag_tangent_add(nq, h * r->whole[i], c->u + i * nq, c->ql);
+  }
+  for (int i = 0; i < (int)r->points && rc == 0 && !whole; i++) {
+    lag_tangent_add(nq, h * r->b[i], c->force + i * nq, c->pl);
+  }
+  return rc;
+}
+
+/* End of the step, t: Y = (dq, dp) becomes (dq, dv). */
+static int to_velocities(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, double t, int whole, int k, double *Y)
+{
+  int nq = pb->nq, m = nq * k, rc = 0;
+  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = t, .h = 0, .size = w->h, .q = a->y0, .dq = c->ql, .p = c->p, .dp = c->pl,
+                    .u = c->v, .force = c->force, .work = a->discrete};
+
+  memcpy(c->v, a->y1 + nq, (size_t)nq * sizeof *Y);
+  rc = whole ? 0 : lag_discrete_solve(&d);
+  rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + m, c->du, c->rest);
+  memcpy(Y + m, c->du, (size_t)m * sizeof *Y);
+  return rc;
+}
+
+int lag_implicit_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+{
+  Implicit *w = work;
+  ImplicitArrays a = lag_substeps_arrays(w, pb);
+  Changes c = changes(pb, k, scratch);
+  double step = w->h * pb->dir, dt = lag_tangent_span(w->t0, t, step), at = 0;
+  int whole = dt == step, rc = to_momenta(w, &a, pb, &c, k, Y);
+
+  for (int j = 0; j < (int)w->substeps && rc == 0; j++) {
+    rc = over_substep(w, &a, pb, &c, j, at, dt, whole, k, Y);
+    at += w->part[j];
+  }
+  return rc ? rc : to_velocities(w, &a, pb, &c, t, whole, k, Y);
+}

@@ -1,0 +1,41 @@
+/* Look-ups in the table of methods. */
+#include "base/method_table.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/suggest.h"
+#include "base/vec.h"
+
+static const MethodInfo methods[] = {
+#include "base/method_rows.def"
+};
+
+enum { METHODS = sizeof methods / sizeof *methods };
+
+const MethodInfo *method_at(size_t i) { return i < METHODS ? &methods[i] : NULL; }
+
+const MethodInfo *method_find(const char *name, size_t n) {
+  for (size_t i = 0; i < METHODS; i++)
+    if (strlen(methods[i].name) == n && strncmp(methods[i].name, name, n) == 0) return &methods[i];
+  return NULL;
+}
+
+int method_may_be_gsl(const char *name) {
+  static const char gsl[] = "gsl-";
+  for (size_t i = 0; i < METHODS; i++)
+    if (strncmp(methods[i].name, gsl, strlen(gsl)) == 0) return 0;
+  return strncmp(name, gsl, strlen(gsl)) == 0;
+}
+
+const char *method_suggest(Arena *a, const char *wrong) {
+  VEC(Name) names = {0};
+  for (size_t i = 0; i < METHODS; i++) vec_push(a, &names, methods[i].name);
+  return suggest(wrong, names.at, names.n);
+}
+
+const MethodOption *method_option(const MethodInfo *m, const char *name) {
+  for (const MethodOption *o = m->options; o->name; o++)
+    if (strcmp(o->name, name) == 0) return o;
+  return NULL;
+}

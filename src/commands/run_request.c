@@ -1,0 +1,261 @@
+/* Parses the expressions of --observe, --section, plot and animate, finds the points of an animation, and writes the simulator's argv. */
+#include "commands/run_request.h"
+
+#include <string.h>
+
+#include "commands/point_list.h"
+#include "syntax/parse.h"
+
+typedef struct {
+  RunRequest *p;
+  Ast *ast;
+  const Options *o;
+  Arena *arena;
+} RequestBuilder;
+
+/* The name of a column, cut to the length that a simulator keeps. */
+static const char *column_name(RequestBuilder *k, const char *text) {
+  enum { LONGEST = 90, SHOWN = 76 };
+  size_t n = strlen(text), cut = SHOWN;
+  if (n <= LONGEST) return text;
+  while (cut && ((unsigned char)text[cut] & 0xC0) == 0x80) cut--;
+  return arena_printf(k->arena, "%.*s...#%u", (int)cut, text, k->p->asked.n + 1);
+}
+
+/* Adds an expression to the outputs and returns the name of its column; NULL after a mistake. from: the option that holds the expression. */
+static const char *add_output(RequestBuilder *k, const char *from, const char *text) {
+  text = text_trimmed(k->arena, text, strlen(text));
+  if (strcmp(text, "t") == 0) return text; /* every table begins with the time */
+  const Source *source = source_add(k->ast->sources, from, text, strlen(text));
+  CommandOutput asked = {source ? parse_expression(k->ast, source) : 0, intern(k->ast->names, column_name(k, text))};
+  if (!asked.expr) return NULL;
+  vec_push(k->arena, &k->p->asked, asked);
+  return asked.name;
+}
+
+static void add_argument(RequestBuilder *k, const char *option, const char *value) {
+  vec_push(k->arena, &k->p->argv, arena_strdup(k->arena, option));
+  if (value) vec_push(k->arena, &k->p->argv, arena_strdup(k->arena, value));
+}
+
+/* The file of -o, or MODEL_SCENE.suffix. */
+static const char *file_name(RequestBuilder *k, const char *suffix) {
+  if (k->o->output) return k->o->output;
+  const char *model = "model";
+  for (const AstStmt *s = k->ast->first; s; s = s->next)
+    if (s->kind == STMT_MODEL && s->name) model = s->name;
+  return arena_printf(k->arena, "%s_%s.%s", model, k->p->scene ? k->p->scene : model_scenes(k->ast).at[0], suffix);
+}
+
+/* --- sections --- */
+
+/* The direction that the last word names; *n: length of the text before that word. -1: no direction. */
+static int section_direction(const char *text, size_t *n) {
+  static const char *const words[] = {[CROSS_BOTH] = "crossing", [CROSS_RISING] = "rising", [CROSS_FALLING] = "falling"};
+  const char *space = strrchr(text, ' ');
+  for (int k = 0; space && k < (int)(sizeof words / sizeof *words); k++) {
+    if (strcmp(space + 1, words[k]) != 0) continue;
+    *n = (size_t)(space - text);
+    return k;
+  }
+  return -1;
+}
+
+/* --section 'EXPR rising' becomes an event of the model, at which the simulator writes rows. */
+static int prepare_section(RequestBuilder *k, const char **error) {
+  const char *text = k->o->section;
+  size_t n = 0;
+  if (!text) return 1;
+  text = text_trimmed(k->arena, text, strlen(text));
+  int direction = section_direction(text, &n);
+  if (direction < 0) {
+    *error = arena_printf(k->arena, "--section %s: crossed in which direction? write --section '%s rising', falling or crossing (both)", text, text);
+    return 0;
+  }
+  const Source *source = source_add(k->ast->sources, "--section", text, n);
+  k->p->section = (Section){source ? parse_expression(k->ast, source) : 0, (AstDirection)direction, intern(k->ast->names, text)};
+  if (!k->p->section.expr) return 0;
+  add_argument(k, "--section", text);
+  return 1;
+}
+
+/* --- plot --- */
+
+/* The text of the time derivative: name', or (expression)'. */
+static const char *derivative_text(RequestBuilder *k, const char *text) {
+  int plain = 1;
+  for (const char *c = text; *c; c++)
+    if (strchr(" +-*/^()[]<>=,", *c)) plain = 0;
+  return arena_printf(k->arena, plain ? "%s'" : "(%s)'", text);
+}
+
+static int prepare_plot(RequestBuilder *k, const char **error) {
+  const Options *o = k->o;
+  const char *x = o->phase ? o->phase : o->x, *y = o->phase ? derivative_text(k, o->phase) : o->y;
+  if (o->phase && (o->x || o->y)) *error = "--phase EXPR draws the rate of EXPR against it; leave out --x and --y";
+  else if (x && !y) *error = arena_printf(k->arena, "--x %s: against what? add --y EXPR", x);
+  if (*error) return 0;
+  add_argument(k, "--svg", file_name(k, "svg"));
+  if (x && !(x = add_output(k, o->phase ? "--phase" : "--x", x))) return 0;
+  if (y && !(y = add_output(k, o->phase ? "--phase" : "--y", y))) return 0;
+  if (x) add_argument(k, "--plot-x", x);
+  if (y) add_argument(k, "--plot-y", y);
+  return 1;
+}
+
+/* --- animate --- */
+
+/* The statement outside effects that declares `name` as a number or a family of numbers; NULL: none. */
+static const AstStmt *find_quantity(const Ast *ast, const char *name) {
+  for (const AstStmt *s = ast->first; s; s = s->next) {
+    int counts = s->kind == STMT_COORD || s->kind == STMT_STATE || s->kind == STMT_LET || s->kind == STMT_OBSERVE;
+    if (counts && s->name && !s->type && strcmp(s->name, name) == 0) return s;
+  }
+  return NULL;
+}
+
+/* Points of the model, found by the names of its quantities. */
+typedef struct {
+  const char *points, *from;
+  int rods; /* joined by rods: their positions are lets of other coordinates */
+} FoundPoints;
+
+static int find_pair(RequestBuilder *k, const char *x, const char *y, StrBuf *points, int *rods) {
+  const AstStmt *s = find_quantity(k->ast, x), *t = find_quantity(k->ast, y);
+  if (!s || !t || !s->dims != !t->dims) return 0;
+  sb_printf(points, "%s%s,%s", points->n ? " " : "", x, y);
+  *rods = s->kind == STMT_LET;
+  return 1;
+}
+
+/* The point of a model with one coordinate; a periodic one is drawn as a hanging rod of length 1. */
+static void find_only(RequestBuilder *k, FoundPoints *f) {
+  const AstStmt *only = NULL;
+  uint32_t n = 0;
+  for (const AstStmt *s = k->ast->first; s; s = s->next)
+    if (s->kind == STMT_COORD) {
+      only = s;
+      n++;
+    }
+  if (n != 1 || !only->name || only->dims || only->type) return;
+  f->rods = only->periodic;
+  f->points = arena_printf(k->arena, only->periodic ? "sin(%s),-cos(%s)" : "%s,0", only->name, only->name);
+}
+
+/* Points of a family u[1] u[2] ...: abscissa the index, ordinate the value. */
+static void find_row(const Model *m, StrBuf *points) {
+  enum { MOST = 1000 };
+  CoordList coords = model_coordinates(m);
+  for (uint32_t i = 0; i < coords.n && i < MOST; i++) {
+    const char *name = coords.at[i], *at = strchr(name, '[');
+    if (!at || strchr(at, ',') || strchr(at, '.') || (i && strncmp(name, coords.at[0], (size_t)(at - name + 1)) != 0)) {
+      points->n = 0;
+      return;
+    }
+    sb_printf(points, "%s%.*s,%s", i ? " " : "", (int)strcspn(at + 1, "]"), at + 1, name);
+  }
+}
+
+/* Points from vectors among the coordinates, families included: r.x,r.y or b[1].x,b[1].y b[2].x,b[2].y; else from a family of
+ * numbers. Builds the model, which knows their number; returns 0 when it has mistakes. */
+static int find_vectors(RequestBuilder *k, FoundPoints *f) {
+  enum { MOST = 1000 };
+  ModelChoice choice = {.scene = k->p->scene, .defines = k->o->defines.at, .ndefines = k->o->defines.n};
+  const Model *m = model_build(k->ast, &choice);
+  StrBuf points = strbuf(k->arena);
+  if (!m) return 0;
+  CoordList coords = model_coordinates(m);
+  for (uint32_t i = 0, n = 0; i + 1 < coords.n && n < MOST; i++) {
+    const char *x = coords.at[i], *y = coords.at[i + 1];
+    size_t len = strlen(x);
+    if (len < 3 || strcmp(x + len - 2, ".x") != 0 || strlen(y) != len || strncmp(x, y, len - 1) != 0) continue;
+    sb_printf(&points, "%s%s,%s", n++ ? " " : "", x, y);
+  }
+  if (!points.n) find_row(m, &points);
+  if (points.n) f->points = sb_text(&points);
+  return 1;
+}
+
+static FoundPoints find_points(RequestBuilder *k) {
+  FoundPoints f = {0};
+  StrBuf points = strbuf(k->arena);
+  if (!find_pair(k, "x", "y", &points, &f.rods))
+    for (int i = 1; find_pair(k, arena_printf(k->arena, "x%d", i), arena_printf(k->arena, "y%d", i), &points, &f.rods);) i++;
+  if (!points.n && find_pair(k, "px", "py", &points, &f.rods) && find_quantity(k->ast, "x")) f.from = "x,0";
+  if (points.n) f.points = sb_text(&points);
+  else find_only(k, &f);
+  return f;
+}
+
+/* Makes each part of "x1,y1 x2,y2" an output of the scene and returns the names of the columns, written likewise; NULL after a mistake. */
+static const char *add_points(RequestBuilder *k, const char *from, const char *text, uint32_t most, const char **error) {
+  PointTexts points = {0};
+  const char *why = NULL;
+  if (!points_split(k->arena, text, &points, &why) || points.n > most) {
+    *error = arena_printf(k->arena, "%s %s", from, why ? why : "takes one point: x,y");
+    return NULL;
+  }
+  StrBuf out = strbuf(k->arena);
+  int ok = 1;
+  for (uint32_t i = 0; i < points.n; i++) {
+    const char *x = add_output(k, from, points.at[i].x), *y = add_output(k, from, points.at[i].y);
+    if (x && y) sb_printf(&out, "%s%s,%s", i ? " " : "", x, y);
+    else ok = 0;
+  }
+  return ok ? sb_text(&out) : NULL;
+}
+
+static int is_quiet(const Options *o) {
+  for (uint32_t i = 0; i < o->rest.n; i++)
+    if (strcmp(o->rest.at[i], "--quiet") == 0) return 1;
+  return 0;
+}
+
+static int prepare_animate(RequestBuilder *k, const char **error) {
+  enum { SHOWN_POINTS = 60 };
+  const Options *o = k->o;
+  FoundPoints f = {.points = o->points, .rods = 1};
+  if (!f.points) {
+    f = find_points(k);
+    if (!f.points && !find_vectors(k, &f)) return 0;
+    if (!f.points) {
+      *error = "which points? the model has no x,y, no x1,y1 x2,y2 ..., no px,py and no vector among its coordinates; write "
+               "--points 'X,Y X,Y', each two expressions";
+      return 0;
+    }
+  }
+  if (o->from) f.from = o->from;
+  int rods = (f.rods || o->from) && !o->no_rods;
+  if (!o->points && !is_quiet(o))
+    k->p->note = arena_printf(k->arena, "points %.*s%s%s%s; --points 'X,Y X,Y' takes others", SHOWN_POINTS, f.points,
+                              strlen(f.points) > SHOWN_POINTS ? "..." : "", rods ? ", joined by rods from " : "", !rods ? "" : f.from ? f.from : "the origin");
+  const char *points = add_points(k, "--points", f.points, UINT32_MAX, error), *from = NULL;
+  if (!points || (f.from && rods && !(from = add_points(k, "--from", f.from, 1, error)))) return 0;
+  add_argument(k, "--html", file_name(k, "html"));
+  add_argument(k, "--points", points);
+  if (from) add_argument(k, "--from", from);
+  if (!rods) add_argument(k, "--no-rods", NULL);
+  return 1;
+}
+
+int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **error) {
+  RequestBuilder k = {p, ast, o, ast->arena};
+  int ok = 1;
+  p->scene = o->scene ? intern(ast->names, o->scene) : NULL;
+  const char *self = o->command == CMD_PLOT ? "lagc plot" : o->command == CMD_ANIMATE ? "lagc animate"
+                   : o->command == CMD_MODES ? "lagc modes" : o->command == CMD_LYAPUNOV ? "lagc lyapunov" : o->command == CMD_COST ? "lagc cost"
+                   : o->command == CMD_EFFECTS ? "lagc effects" : "lagc run";
+  add_argument(&k, self, NULL); /* head of the simulator's messages */
+  if (o->command == CMD_EFFECTS) add_argument(&k, "--effects", "report");
+  for (uint32_t i = 0; i < o->observe.n; i++) ok &= add_output(&k, "--observe", o->observe.at[i]) != NULL;
+  ok = ok && prepare_section(&k, error);
+  if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);
+  if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
+  if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
+  if (o->command == CMD_LYAPUNOV) add_argument(&k, "--lyapunov", NULL);
+  if (o->command == CMD_COST) add_argument(&k, "--cost", NULL);
+  if (o->command == CMD_COST && o->output) add_argument(&k, "--svg", o->output);
+  for (uint32_t i = 0; i < o->rest.n; i++) add_argument(&k, o->rest.at[i], NULL);
+  vec_push(k.arena, &p->argv, NULL);
+  return ok;
+}

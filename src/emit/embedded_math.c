@@ -1,0 +1,77 @@
+/* Embedding of lag_math.h and lag_kkt.h: the sections that a unit needs, with its prefix. */
+#include "emit/embedded_math.h"
+
+#include <string.h>
+
+#include "emit/cfunction.h"
+#include "series/series.h"
+#include "emit/lag_kkt.h"  /* static const char *const lag_kkt[]: generated from runtime/include/lag_kkt.h */
+#include "emit/lag_math.h" /* static const char *const lag_math[]: generated from runtime/include/lag_math.h */
+
+/* Appends the section NAME: the lines between its marker `---- NAME ----` and the next marker. */
+static void section_of(const char *const *line, size_t lines, const char *name, const char *prefix, const char *lower, StrBuf *out) {
+  static const char mark[] = "/* ---- ";
+  size_t n = strlen(name), i = 0;
+  while (i < lines && !(strncmp(line[i], mark, sizeof mark - 1) == 0 && strncmp(line[i] + sizeof mark - 1, name, n) == 0)) i++;
+  for (i++; i < lines && strncmp(line[i], mark, sizeof mark - 1) != 0; i++) csupport_expand(line[i], prefix, lower, out);
+}
+
+static void section(const char *name, const char *prefix, const char *lower, StrBuf *out) {
+  section_of(lag_math, sizeof lag_math / sizeof *lag_math, name, prefix, lower, out);
+}
+
+void math_kkt_solver(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out) {
+  static const uint32_t large = 62; /* LAG_BAND_LEAST of lag_kkt.h: smaller systems have no band solver */
+  static const char *const names[] = {"numbers", "band", "kkt"};
+  int banded = u->q.n + u->constraints.of.n >= large;
+  for (size_t i = 0; u->constraints.of.n && i < sizeof names / sizeof *names; i++)
+    if (i != 1 || banded) section_of(lag_kkt, sizeof lag_kkt / sizeof *lag_kkt, names[i], prefix, lower, out);
+}
+
+static int calls(const Prog *p, const char *name) {
+  for (uint32_t k = 0; p && k < prog_parts(p); k++)
+    for (Slot s = 1; s < prog_part(p, k)->ins.n; s++)
+      if (prog_part(p, k)->ins.at[s].op == IR_FN1 && strcmp(prog_part(p, k)->ins.at[s].text, name) == 0) return 1;
+  return 0;
+}
+
+static int scene_calls(const IrScene *s, uint32_t params, const char *name) {
+  int some = calls(s->start, name) | calls(s->observe, name) | calls(s->exact, name);
+  for (uint32_t i = 0; i < params; i++) some |= calls(s->params[i], name);
+  return some;
+}
+
+static int unit_calls(const IrUnit *u, const char *name) {
+  int some = calls(u->accel, name) | calls(u->derived, name) | calls(u->energy, name) | calls(u->inputs, name) | calls(u->linear, name) | calls(u->charge_values, name) | calls(u->charge_powers, name) | calls(u->switch_values, name);
+  some |= calls(u->variation, name) | calls(u->second, name) | calls(u->event_values, name) | calls(u->jumps, name);
+  if (u->taylor) some |= calls(u->taylor->first, name);
+  for (uint32_t i = 0; i < u->events.n; i++) some |= calls(u->events.at[i].action, name);
+  for (uint32_t i = 0; i < u->scenes.n; i++) some |= scene_calls(&u->scenes.at[i], u->p.n, name);
+  return some;
+}
+
+static int calls_sincos(const IrUnit *u) { return unit_calls(u, "sin") || unit_calls(u, "cos"); }
+
+void math_lanes(const char *prefix, const char *lower, StrBuf *out) {
+  sb_puts(out, "/* ---- arithmetic, over doubles and over lanes of them; the model comes after it ---- */\n\n");
+  section("lanes", prefix, lower, out);
+}
+
+void math_functions(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out) {
+  int sincos = !u->libm && calls_sincos(u), e = !u->libm && unit_calls(u, "exp"), l = !u->libm && unit_calls(u, "log");
+  if (u->libm) sb_printf(out, "#define %s_OWN 0\n", prefix);
+  else section("own", prefix, lower, out);
+  section("libm", prefix, lower, out);
+  if (sincos) section("sincos", prefix, lower, out);
+  if (e) section("exp", prefix, lower, out);
+  if (l) section("log", prefix, lower, out);
+  sb_puts(out, "/* ---- the model ---- */\n");
+}
+
+const char *math_prefix(const IrUnit *u, const char *lower) { return u->libm ? NULL : lower; }
+
+const char *math_source_text(const IrUnit *u) {
+  if (u->libm) return "Functions: the C library's.";
+  if (!calls_sincos(u)) return "Functions: the C library's; over lanes exp and log are below.";
+  return "Functions: sin and cos are below, to less than 1 unit in the last place; the others are the C library's.";
+}

@@ -1,0 +1,233 @@
+/* Declarations of an emitted header: options, indices, structs, prototypes. */
+#include <math.h>
+#include <string.h>
+
+#include "emit/header_impl.h"
+
+static const char *const options =
+  "/* The scalar. */\n"
+  "#ifndef LAG_REAL\n#ifdef LAG_LANES\n"
+  "typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));\n#define LAG_REAL lag_lanes\n"
+  "#else\n#define LAG_REAL double\n#endif\n#endif\n\n"
+  "/* Linkage. */\n"
+  "#ifndef LAG_API\n#ifdef LAG_STATIC\n#define LAG_API static inline\n#else\n#define LAG_API\n#endif\n#endif\n\n"
+  "/* What functions return. */\n"
+  "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1 /* the mass matrix is singular at this state, or not positive definite as elsewhere */\n};\n";
+
+/* --- indices --- */
+
+/* Unit of a variable for a comment: " [deg]: 1 deg is 0.01745 in SI". */
+static const char *unit_text(const Header *h, const IrVar *v) {
+  if (!v->unit[0]) return "";
+  if (v->offset != 0) return arena_printf(h->a, " [%s]: 0 %s is %s in SI", v->unit, v->unit, shortest_double(h->a, v->offset));
+  if (v->factor == 1) return arena_printf(h->a, " [%s]", v->unit);
+  return arena_printf(h->a, " [%s]: 1 %s is %s in SI", v->unit, v->unit, shortest_double(h->a, v->factor));
+}
+
+static void size(const Header *h, const char *name, uint32_t n) { sb_printf(h->out, "  %s_%s = %u,\n", h->upper, name, n); }
+
+static void sizes(const Header *h) {
+  const IrUnit *u = h->u;
+  sb_puts(h->out, "\n/* Sizes: coordinates, states, parameters, inputs, events, outputs. */\nenum {\n");
+  size(h, "NQ", u->q.n);
+  size(h, "NZ", u->z.n);
+  size(h, "NP", u->p.n);
+  size(h, "NU", u->u.n);
+  size(h, "NEV", u->events.n);
+  sb_printf(h->out, "  %s_NOUT = %u\n};\n", h->upper, h->scene->plain.n);
+}
+
+static void indices(const Header *h, const char *comment, const char **names, const IrVar *v, uint32_t n) {
+  if (!n) return;
+  sb_printf(h->out, "\n/* %s */\nenum {\n", comment);
+  for (uint32_t i = 0; i < n; i++) {
+    const char *text = arena_printf(h->a, "%s%s", v[i].name, unit_text(h, &v[i]));
+    sb_printf(h->out, "  %s = %u%s /* %s */\n", names[i], i, i + 1 < n ? "," : "", comment_text(h->a, text));
+  }
+  sb_puts(h->out, "};\n");
+}
+
+static void event_indices(const Header *h) {
+  uint32_t n = h->u->events.n;
+  if (!n) return;
+  sb_puts(h->out, "\n/* Events: where their function, from _events, changes sign. */\nenum {\n");
+  for (uint32_t i = 0; i < n; i++) {
+    const IrEvent *ev = &h->u->events.at[i];
+    const char *way = ev->direction > 0 ? "rising" : ev->direction < 0 ? "falling" : "crossing";
+    sb_printf(h->out, "  %s = %u%s /* %s, %s%s */\n", h->ev[i], i, i + 1 < n ? "," : "", ev->name, way, ev->stop ? ", ends the run" : "");
+  }
+  sb_puts(h->out, "};\n");
+}
+
+/* --- structs --- */
+
+/* Values of the parameters in the scene; NaN where a formula has none. */
+static long double *param_values(const Header *h) {
+  uint32_t n = h->u->p.n;
+  long double *p = ARENA_ARRAY(h->a, long double, n + 1), zero = 0;
+  const long double *in[ARR_COUNT] = {&zero, NULL, NULL, NULL, p, NULL};
+  long double *out[] = {p};
+  for (uint32_t i = 0; i < n; i++)
+    if (prog_eval(h->scene->params[i], in, out) != 0) p[i] = (long double)NAN;
+  return p;
+}
+
+static const char *sign_text(int sign) { return sign == 1 ? " > 0" : sign == 2 ? " >= 0" : sign == -1 ? " < 0" : sign == -2 ? " <= 0" : ""; }
+
+static void params_struct(const Header *h) {
+  const long double *value = param_values(h);
+  sb_printf(h->out, "\n/* Parameters, with the values of scene %s. */\ntypedef struct %s_params {\n", h->scene->name, h->lower);
+  if (!h->u->p.n) sb_puts(h->out, "  char none; /* C has no empty struct */\n");
+  for (uint32_t i = 0; i < h->u->p.n; i++) {
+    const IrVar *v = &h->u->p.at[i];
+    const char *text = arena_printf(h->a, "%s%s, default %s%s", unit_text(h, v), sign_text(v->sign), shortest_double(h->a, (double)value[i]), v->factor == 1 && v->offset == 0 ? "" : " (SI)");
+    if (*text == ' ' || *text == ',') text++;
+    sb_printf(h->out, "  %s_REAL %s; /* %s */\n", h->upper, h->fields[i], comment_text(h->a, *text == ' ' ? text + 1 : text));
+  }
+  sb_printf(h->out, "} %s_params;\n", h->lower);
+}
+
+static void input_type(const Header *h) {
+  if (!h->u->u.n) return;
+  sb_printf(h->out, "\n/* Sets those of the inputs u[%s_NU] that it knows, at time t. */\ntypedef void %s_input_fn(void *context, %s_REAL t, %s_REAL *u);\n",
+            h->upper, h->lower, h->upper, h->upper);
+}
+
+static void state_struct(const Header *h) {
+  sb_printf(h->out, "\ntypedef struct %s_state {\n  %s_REAL t; /* time [s] */\n", h->lower, h->upper);
+  if (h->u->q.n) sb_printf(h->out, "  %s_REAL q[%s_NQ]; /* coordinates */\n  %s_REAL v[%s_NQ]; /* their time derivatives */\n", h->upper, h->upper, h->upper, h->upper);
+  if (h->u->z.n) sb_printf(h->out, "  %s_REAL z[%s_NZ]; /* states */\n", h->upper, h->upper);
+  sb_printf(h->out, "} %s_state;\n", h->lower);
+}
+
+/* --- prototypes --- */
+
+const char *header_state_args(const Header *h, int typed, const char *from) {
+  StrBuf b = strbuf(h->a);
+  const char *real = arena_printf(h->a, "const %s_REAL *", h->upper);
+  if (typed) sb_printf(&b, "%s_REAL t", h->upper);
+  else sb_printf(&b, "%st", from);
+  if (h->u->q.n) sb_printf(&b, typed ? ", %sq, %sv" : ", %sq, %sv", typed ? real : from, typed ? real : from);
+  if (h->u->z.n) sb_printf(&b, ", %sz", typed ? real : from);
+  if (typed) sb_printf(&b, ", const %s_params *p", h->lower);
+  else sb_puts(&b, ", p");
+  if (h->u->u.n) sb_printf(&b, ", %su", typed ? real : "");
+  return sb_text(&b);
+}
+
+const char *header_wrapped(const Header *h, const char *prototype) {
+  enum { WIDTH = 110 };
+  StrBuf b = strbuf(h->a);
+  size_t column = 0;
+  for (const char *s = prototype; *s;) {
+    size_t n = strcspn(s, ","), whole = n + (s[n] == ',');
+    if (column && column + whole > WIDTH) {
+      sb_puts(&b, "\n   ");
+      column = 3;
+    }
+    sb_putn(&b, s, whole);
+    column += whole;
+    s += whole;
+  }
+  return sb_text(&b);
+}
+
+int header_has(const Header *h, HeaderFn f) {
+  const IrUnit *u = h->u;
+  switch (f) {
+    case FN_INPUTS: case FN_RK4_STEP_WITH: return u->u.n > 0;
+    case FN_ENERGY: return u->energy != NULL;
+    case FN_CHARGES: return u->charge_values != NULL;
+    case FN_POWERS: return u->charge_values && u->charge_powers;
+    case FN_OBSERVE: return h->scene->plain.n > 0;
+    case FN_EVENTS: case FN_ACT: return u->events.n > 0;
+    case FN_HOLD: return u->constraints.of.n > 0;
+    case FN_DEFAULTS: case FN_PARAM: case FN_START: case FN_ACCEL: case FN_RK4_STEP: case FN_COUNT: break;
+  }
+  return 1;
+}
+
+const char *header_prototype(const Header *h, HeaderFn f) {
+  Arena *a = h->a;
+  const char *R = h->upper, *m = h->lower, *state = header_state_args(h, 1, "");
+  const char *u = h->u->u.n ? arena_printf(a, ", const %s_REAL *u", R) : "";
+  switch (f) {
+    case FN_DEFAULTS: return arena_printf(a, "void %s_defaults(%s_params *p)", m, m);
+    case FN_PARAM: return arena_printf(a, "%s_REAL *%s_param(%s_params *p, int index)", R, m, m);
+    case FN_START: return arena_printf(a, "%s %s_start(const %s_params *p, %s_state *s)", header_has(h, FN_HOLD) ? "int" : "void", m, m, m);
+    case FN_INPUTS: return arena_printf(a, "void %s_inputs(%s_REAL t, const %s_params *p, %s_REAL *u)", m, R, m, R);
+    case FN_ACCEL: {
+      const char *q = h->u->q.n ? arena_printf(a, ", %s_REAL *a", R) : "", *z = h->u->z.n ? arena_printf(a, ", %s_REAL *zd", R) : "";
+      return arena_printf(a, "int %s_accel(%s%s%s)", m, state, q, z);
+    }
+    case FN_ENERGY: return arena_printf(a, "void %s_energy(%s, %s_REAL *e)", m, state, R);
+    case FN_CHARGES: return arena_printf(a, "int %s_charges(%s, %s_REAL *out)", m, state, R);
+    case FN_POWERS: return arena_printf(a, "int %s_powers(%s, %s_REAL *out)", m, state, R);
+    case FN_OBSERVE: return arena_printf(a, "int %s_observe(%s, %s_REAL *out)", m, state, R);
+    case FN_EVENTS: return arena_printf(a, "int %s_events(%s, %s_REAL *g)", m, state, R);
+    case FN_ACT: return arena_printf(a, "int %s_act(int event, const %s_params *p, %s_state *s%s, int *stop)", m, m, m, u);
+    case FN_HOLD: return arena_printf(a, "int %s_hold(const %s_params *p, %s_state *s%s)", m, m, m, u);
+    case FN_RK4_STEP: return arena_printf(a, "int %s_rk4_step(const %s_params *p, %s_state *s, %s_REAL h%s)", m, m, m, R, u);
+    case FN_RK4_STEP_WITH:
+      return arena_printf(a, "int %s_rk4_step_with(const %s_params *p, %s_state *s, %s_REAL h, %s_input_fn *input, void *context)", m, m, m, R, m);
+    case FN_COUNT: break;
+  }
+  return "";
+}
+
+static const char *const docs[FN_COUNT] = {
+  [FN_DEFAULTS] = "The parameters of the scene.",
+  [FN_PARAM] = "A parameter by its index LAG_P_...; 0 when there is none. For tables and sliders.",
+  [FN_START] = "The state at the start of the scene.",
+  [FN_INPUTS] = "The inputs u[LAG_NU] at time t by the model's formulas and tables; a table holds its end values outside.",
+  [FN_ACCEL] = "Accelerations a[LAG_NQ], rates zd[LAG_NZ] of the states: what an integrator needs.",
+  [FN_ENERGY] = "e[0]: the energy p q' - L; e[1]: |p q'| + |L|, what its drift is compared with.",
+  [FN_CHARGES] = "out[2*k]: the charge of symmetry k; out[2*k + 1]: the sizes of its terms, what its drift is compared with.",
+  [FN_POWERS] = "What they change by a second: out[0] is that of the energy, out[k + 1] that of symmetry k.",
+  [FN_OBSERVE] = "What the scene puts out: out[LAG_NOUT].",
+  [FN_EVENTS] = "The event functions g[LAG_NEV].",
+  [FN_ACT] = "What an event does to the state; *stop becomes 1 when it ends the run.",
+  [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, by the metric of the mass matrix; _rk4_step does so itself.",
+  [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was. Events, and contacts, are the caller's.",
+  [FN_RK4_STEP_WITH] = "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",
+};
+
+/* Numbered names of the symmetries: "0 spin, 1 momentum"; charge 0, the energy, is left out. */
+static const char *charge_names(const Header *h) {
+  StrBuf b = strbuf(h->a);
+  for (uint32_t i = 1; i < h->u->charges.n; i++) sb_printf(&b, "%s%u %s", i > 1 ? ", " : "", i - 1, h->u->charges.at[i].name);
+  return comment_text(h->a, sb_text(&b));
+}
+
+void header_declarations(const Header *h) {
+  const IrUnit *u = h->u;
+  csupport_expand(options, h->upper, h->lower, h->out);
+  sizes(h);
+  indices(h, "Coordinates: q[...], and their time derivatives v[...].", h->q, u->q.at, u->q.n);
+  indices(h, "States: z[...].", h->z, u->z.at, u->z.n);
+  indices(h, "Inputs: u[...].", h->in, u->u.at, u->u.n);
+  const char *outputs = h->scene->plain.n < h->scene->outputs.n ? "Outputs: out[...]. Those with closed forms, which need the start of a run, are left out."
+                                                                : "Outputs: out[...].";
+  indices(h, outputs, h->outputs, h->scene->outputs.at, h->scene->plain.n);
+  event_indices(h);
+  indices(h, "Parameters, for _param.", h->p, u->p.at, u->p.n);
+  params_struct(h);
+  state_struct(h);
+  sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
+  input_type(h);
+  for (int f = 0; f < FN_COUNT; f++) {
+    if (!header_has(h, (HeaderFn)f)) continue;
+    const char *doc = f != FN_ACCEL || (u->q.n && u->z.n) ? docs[f] : u->q.n ? "Accelerations a[LAG_NQ]: what an integrator needs."
+                                                                             : "Rates zd[LAG_NZ] of the states: what an integrator needs.";
+    if (f == FN_START && u->constraints.of.n)
+      doc = "The state at the start of the scene, on the constraints, as `lagc run` finds it with the parameters of _defaults; with others, _hold\n"
+            " * leads from there to the nearest one that obeys them.";
+    sb_puts(h->out, "\n/* ");
+    csupport_expand(doc, h->upper, h->lower, h->out);
+    if (f == FN_CHARGES) sb_printf(h->out, "\n * Symmetries: %s.", charge_names(h));
+    if (f == FN_RK4_STEP && u->u.n) sb_puts(h->out, "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
+    const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, (HeaderFn)f));
+    sb_printf(h->out, " */\n%s\n", header_wrapped(h, text));
+  }
+  sb_puts(h->out, "\n#ifdef __cplusplus\n}\n#endif\n");
+}

@@ -1,0 +1,67 @@
+/* M q'' = f in straight-line code where M = W^T C W is almost singular somewhere (mech/kinetic_squares.h). Modified Gram-Schmidt in the metric C
+ * (A. Bjorck, BIT 7 (1967) 1, DOI 10.1007/BF01934122) gives the factors of M = L D L^T from W itself: their errors grow with the condition
+ * of W, in elimination of M with its square. */
+#include "lower/lower_impl.h"
+
+typedef struct {
+  Lower *l;
+  const SquareForms *s;
+  uint32_t n;
+  Slot *w;           /* [s->n * n] the columns of W, orthogonal once they are reached */
+  Slot *b, *pivot;   /* [n] */
+  SparseRow *below;  /* [n] the columns of L below the diagonal */
+} Gram;
+
+static Slot op(const Gram *y, IrOp o, Slot a, Slot b) { return prog_op(y->l->p, o, a, b); }
+
+/* Inner product sum over k of weighted[k] W[k][u]. */
+static Slot product(const Gram *y, const Slot *weighted, uint32_t u) {
+  Slot sum = 0;
+  for (uint32_t k = 0; k < y->s->n; k++) {
+    Slot part = op(y, IR_MUL, weighted[k], y->w[k * y->n + u]);
+    sum = op(y, IR_ADD, sum, part);
+  }
+  return sum;
+}
+
+/* Gram-Schmidt step for column v: subtracts from the columns in `later`, and from b, their parts along v. */
+static void orthogonalise_by(Gram *y, uint32_t v, const uint32_t *later, uint32_t nlater) {
+  Slot *weighted = ARENA_ARRAY(y->l->p->arena, Slot, y->s->n);
+  for (uint32_t k = 0; k < y->s->n; k++) weighted[k] = op(y, IR_MUL, lower_slot(y->l, y->s->weight[k]), y->w[k * y->n + v]);
+  Slot d = y->pivot[v] = product(y, weighted, v);
+  prog_name(y->l->p, d, lower_numbered(y->l, "D", v, UINT32_MAX));
+  lower_pivot(y->l, d, 1);
+  for (uint32_t i = 0; i < nlater; i++) {
+    uint32_t u = later[i];
+    Slot f = op(y, IR_DIV, product(y, weighted, u), d);
+    if (!f) continue;
+    prog_name(y->l->p, f, lower_numbered(y->l, "L", v, u));
+    for (uint32_t k = 0; k < y->s->n; k++) y->w[k * y->n + u] = lower_minus_product(y->l, y->w[k * y->n + u], f, y->w[k * y->n + v]);
+    y->b[u] = lower_minus_product(y->l, y->b[u], f, y->b[v]);
+    vec_push(y->l->p->arena, &y->below[v], ((SparseEntry){u, f}));
+  }
+}
+
+void lower_gram_schmidt(Lower *l, Slot *acc) {
+  const Eqns *e = l->e;
+  Arena *a = l->p->arena;
+  uint32_t n = e->n;
+  const uint32_t *order = e->system.order;
+  Gram y = {.l = l, .s = &e->squares, .n = n, .w = ARENA_ARRAY(a, Slot, (size_t)e->squares.n * n), .b = ARENA_ARRAY(a, Slot, n), .pivot = ARENA_ARRAY(a, Slot, n),
+            .below = ARENA_ARRAY(a, SparseRow, n)};
+  for (uint32_t k = 0; k < y.s->n * n; k++) y.w[k] = y.s->W[k] ? lower_slot(l, y.s->W[k]) : 0;
+  for (uint32_t i = 0; i < n; i++) {
+    y.b[i] = lower_slot(l, e->system.f[i]);
+    prog_name(l->p, y.b[i], lower_numbered(l, "f", i, UINT32_MAX));
+  }
+  prog_title(l->p, "M q'' = f, M = W^T C W by orthogonal columns of W");
+  for (uint32_t k = 0; k < n; k++) orthogonalise_by(&y, order[k], order + k + 1, n - k - 1);
+  for (uint32_t k = n; k-- > 0;) {
+    uint32_t v = order[k];
+    acc[v] = op(&y, IR_DIV, y.b[v], y.pivot[v]);
+    for (uint32_t i = 0; i < y.below[v].n; i++) acc[v] = lower_minus_product(l, acc[v], y.below[v].at[i].value, acc[y.below[v].at[i].col]);
+  }
+  if (!l->factored) return;
+  *l->factored = (FactorRecord){.n = n, .straight = 1, .order = order, .pivot = y.pivot, .below = y.below, .C = ARENA_ARRAY(a, SparseRow, n), .row = ARENA_ARRAY(a, SparseRow, n)};
+  l->x = acc;
+}

@@ -1,0 +1,330 @@
+/* M q'' = f, and its solution, as instructions.
+ *
+ * A positive definite mass matrix is eliminated in straight-line code (eliminate.c, gram_schmidt.c) unless that would be long. Otherwise M falls into
+ * blocks of coupled coordinates: one by division, two by Cramer's rule, more by a loop, in an order of narrow band, with partial
+ * pivoting where M may be indefinite. Coordinates that a constraint couples are one block, solved with their multipliers. */
+#include "ir/band.h"
+#include "lower/lower_impl.h"
+
+/* Straight-line elimination of a dense matrix takes n^3/3 lines. Measured: it is faster than a loop
+ * by a third at n = 10; past n = 12 the code is too long for what it gains. */
+enum { STRAIGHT_OPS_A_VARIABLE = 100 };
+
+typedef struct {
+  uint32_t n;
+  uint32_t *at; /* [n] its coordinates */
+  Slot *M;      /* [n*n], lower triangle filled */
+  Slot *f;
+  Slot divisor; /* n == 2: the determinant */
+  uint32_t m;   /* constraints on these coordinates, */
+  uint32_t *rows; /* [m] their numbers */
+  Slot *A, *g;  /* [m*n], [m] */
+} Block;
+
+/* Right-hand sides: f[n] (0: zero), and g[nrows] of the first nrows constraints. */
+typedef struct {
+  const Slot *f, *g;
+  uint32_t nrows;
+  int coarse; /* as in Solve */
+} RightHandSides;
+
+typedef VEC(Expr) ExprVec;
+
+/* --- blocks --- */
+
+static uint32_t find_root(uint32_t *parent, uint32_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+static void join(uint32_t *parent, uint32_t i, uint32_t j) {
+  uint32_t a = find_root(parent, i), b = find_root(parent, j);
+  if (a < b) parent[b] = a;
+  else parent[a] = b;
+}
+
+/* label[i]: the first coordinate of the block of coordinate i. */
+static uint32_t *label_blocks(const Eqns *e, uint32_t nrows) {
+  uint32_t *parent = ARENA_ARRAY(e->m->arena, uint32_t, e->n + 1);
+  const Entries *H = &e->system.H, *A = &e->constraints.A;
+  for (uint32_t i = 0; i < e->n; i++) parent[i] = i;
+  for (uint32_t k = 0; k < H->n; k++) join(parent, H->at[k].row, H->at[k].col);
+  for (uint32_t k = 1; k < A->n && A->at[k].row < nrows; k++)
+    if (A->at[k].row == A->at[k - 1].row) join(parent, A->at[k].col, A->at[k - 1].col);
+  for (uint32_t i = 0; i < e->n; i++) parent[i] = find_root(parent, i);
+  return parent;
+}
+
+Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j) {
+  Arena *a = l->p->arena;
+  if (l->e->n == 1) return arena_strdup(a, stem);
+  if (j == UINT32_MAX) return arena_printf(a, "%s%u", stem, i + 1);
+  return arena_printf(a, l->e->n > 9 ? "%s%u_%u" : "%s%u%u", stem, j + 1, i + 1);
+}
+
+/* Coordinate i is number place[i] of blocks[block[i]]; constraint k number row_place[k] of blocks[row_block[k]]. */
+typedef struct {
+  Block *blocks;
+  uint32_t n, *block, *place, *row_block, *row_place;
+} BlockLayout;
+
+static void place_rows(Lower *l, const RightHandSides *s, BlockLayout *y) {
+  const Eqns *e = l->e;
+  const Entries *A = &e->constraints.A;
+  Arena *a = l->p->arena;
+  y->row_block = ARENA_ARRAY(a, uint32_t, s->nrows + 1);
+  y->row_place = ARENA_ARRAY(a, uint32_t, s->nrows + 1);
+  for (uint32_t k = 0; k < A->n && A->at[k].row < s->nrows; k++) {
+    uint32_t row = A->at[k].row;
+    if (k && A->at[k - 1].row == row) continue;
+    y->row_block[row] = y->block[A->at[k].col];
+    y->row_place[row] = y->blocks[y->row_block[row]].m++;
+  }
+}
+
+/* Empty blocks in the order of their first coordinates. */
+static BlockLayout make_layout(Lower *l, const RightHandSides *s) {
+  const Eqns *e = l->e;
+  Arena *a = l->p->arena;
+  const uint32_t *label = label_blocks(e, s->nrows);
+  BlockLayout y = {.blocks = ARENA_ARRAY(a, Block, e->n), .block = ARENA_ARRAY(a, uint32_t, e->n), .place = ARENA_ARRAY(a, uint32_t, e->n)};
+  for (uint32_t i = 0; i < e->n; i++) {
+    y.block[i] = label[i] == i ? y.n++ : y.block[label[i]];
+    y.place[i] = y.blocks[y.block[i]].n++;
+  }
+  place_rows(l, s, &y);
+  for (uint32_t k = 0; k < y.n; k++) {
+    Block *b = &y.blocks[k];
+    b->at = ARENA_ARRAY(a, uint32_t, b->n);
+    b->f = ARENA_ARRAY(a, Slot, b->n);
+    b->M = ARENA_ARRAY(a, Slot, (size_t)b->n * b->n);
+    if (!b->m) continue;
+    b->rows = ARENA_ARRAY(a, uint32_t, b->m);
+    b->A = ARENA_ARRAY(a, Slot, (size_t)b->m * b->n);
+    b->g = ARENA_ARRAY(a, Slot, b->m);
+  }
+  return y;
+}
+
+static void fill_constraints(Lower *l, const RightHandSides *s, const BlockLayout *y) {
+  const Entries *A = &l->e->constraints.A;
+  for (uint32_t k = 0; k < A->n && A->at[k].row < s->nrows; k++) {
+    uint32_t row = A->at[k].row;
+    Block *b = &y->blocks[y->row_block[row]];
+    b->A[y->row_place[row] * b->n + y->place[A->at[k].col]] = lower_slot(l, A->at[k].e);
+    b->rows[y->row_place[row]] = row;
+    b->g[y->row_place[row]] = s->g[row];
+  }
+}
+
+static uint32_t make_blocks(Lower *l, const RightHandSides *s, Block **blocks) {
+  const Eqns *e = l->e;
+  BlockLayout y = make_layout(l, s);
+  for (uint32_t k = 0; k < e->system.H.n; k++) {
+    const MassEntry *x = &e->system.H.at[k];
+    Block *b = &y.blocks[y.block[x->row]];
+    Slot slot = lower_slot(l, x->e);
+    prog_name(l->p, slot, lower_numbered(l, "M", x->row, x->col));
+    b->M[y.place[x->row] * b->n + y.place[x->col]] = slot;
+  }
+  for (uint32_t i = 0; i < e->n; i++) {
+    Block *b = &y.blocks[y.block[i]];
+    b->at[y.place[i]] = i;
+    b->f[y.place[i]] = s->f[i];
+    if (s->f[i]) prog_name(l->p, s->f[i], lower_numbered(l, "f", i, UINT32_MAX));
+  }
+  fill_constraints(l, s, &y);
+  *blocks = y.blocks;
+  return y.n;
+}
+
+/* Reorders the coordinates of the block for a narrower band, where there is one. */
+static void narrow(Lower *l, Block *b) {
+  Arena *a = l->p->arena;
+  uint32_t n = b->n;
+  const uint32_t *order = band_order(a, n, b->M);
+  Block r = *b;
+  r.at = ARENA_ARRAY(a, uint32_t, n);
+  r.f = ARENA_ARRAY(a, Slot, n);
+  r.M = ARENA_ARRAY(a, Slot, (size_t)n * n);
+  for (uint32_t i = 0; i < n; i++) {
+    r.at[i] = b->at[order[i]];
+    r.f[i] = b->f[order[i]];
+    for (uint32_t j = 0; j <= i; j++) r.M[(size_t)i * n + j] = order[i] > order[j] ? b->M[(size_t)order[i] * n + order[j]] : b->M[(size_t)order[j] * n + order[i]];
+  }
+  if (band_width(n, r.M) < band_width(n, b->M)) *b = r;
+}
+
+/* --- one coordinate, two, and loops --- */
+
+static Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
+
+static void solve_one(Lower *l, const Block *b, Slot *x) {
+  Expr M = eqns_mass(l->e, b->at[0], b->at[0]);
+  if (expr_sign(l->g, M) != SIGN_POSITIVE) lower_pivot(l, b->M[0], 0);
+  x[0] = op(l, IR_DIV, b->f[0], b->M[0]);
+}
+
+/* Cramer's rule for two coordinates whose mass matrix may be indefinite (L = x'*y'). It needs no pivoting,
+ * and for 2 x 2 is forward stable (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed.,
+ * section 1.10.1). */
+static void solve_two(Lower *l, Block *b, Slot *x) {
+  Slot m11 = b->M[0], m12 = b->M[2], m22 = b->M[3];
+  Slot square = op(l, IR_MUL, m11, m22);
+  Slot det = lower_minus_product(l, square, m12, m12);
+  prog_name(l->p, det, "det_M");
+  b->divisor = det;
+  lower_pivot(l, det, 0);
+  Slot top1 = op(l, IR_MUL, b->f[0], m22), top2 = op(l, IR_MUL, m11, b->f[1]);
+  Slot n1 = lower_minus_product(l, top1, m12, b->f[1]), n2 = lower_minus_product(l, top2, m12, b->f[0]);
+  x[0] = op(l, IR_DIV, n1, det);
+  x[1] = op(l, IR_DIV, n2, det);
+}
+
+/* Lists the nonzero elements of the matrix. */
+static void list_filled(Arena *a, Solve *k) {
+  uint32_t *filled = ARENA_ARRAY(a, uint32_t, solve_elements(k) + 1);
+  for (uint32_t j = 0; j < solve_elements(k); j++)
+    if (k->matrix[j]) filled[k->nfilled++] = j;
+  k->filled = filled;
+}
+
+/* Solves the block by a loop of the runtime: x[n], then the m multipliers. */
+static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
+  Arena *a = l->p->arena;
+  size_t n = b->n, m = b->m;
+  Slot *full = ARENA_ARRAY(a, Slot, (n + m) * n), *rhs = ARENA_ARRAY(a, Slot, n + m);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++) full[i * n + j] = i >= j ? b->M[i * n + j] : b->M[j * n + i];
+  for (size_t k = 0; k < m * n; k++) full[n * n + k] = b->A[k];
+  for (size_t i = 0; i < n + m; i++) rhs[i] = i < n ? b->f[i] : b->g[i - n];
+  int definite = !m && !l->factored && (l->e->definite_mass || l->e->definite_by_values);
+  for (size_t i = 0; definite && i < n; i++)
+    for (size_t j = 0; j < i; j++) full[i * n + j] = 0; /* the loop reads the upper triangle only */
+  Solve k = {.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .matrix = full, .rhs = rhs};
+  if (m) list_filled(a, &k);
+  vec_push(a, &l->p->solves, k);
+  Slot s = prog_ins(l->p, (Ins){.op = IR_SOLVE, .index = l->p->solves.n - 1});
+  for (uint32_t i = 0; i < n + m; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
+}
+
+/* Whether M has a block of more than two coordinates. */
+static int has_large_block(const Eqns *e) {
+  const uint32_t *label = label_blocks(e, 0);
+  uint32_t *size = ARENA_ARRAY(e->m->arena, uint32_t, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++)
+    if (++size[label[i]] > 2) return 1;
+  return 0;
+}
+
+/* Whether to eliminate in straight-line code without pivoting. Where M is definite only for the values of parameters, small blocks go by
+ * the rules below instead: they cost the same, and work for any M. */
+static int is_straight_line(const Eqns *e) {
+  const LinearSystem *s = &e->system;
+  if (e->squares.n) return 1; /* kinetic_squares needs M definite, by values of parameters at least */
+  int definite = e->definite_mass || (e->definite_by_values && (s->ndefs || has_large_block(e)));
+  return definite && !e->constraints.n && (s->ndefs || s->ops <= STRAIGHT_OPS_A_VARIABLE * (uint64_t)e->n);
+}
+
+/* Whether all forces of the block are structural zeros. */
+static int is_empty(const Block *b) {
+  for (uint32_t i = 0; i < b->n; i++)
+    if (b->f[i]) return 0;
+  return 1;
+}
+
+/* Records blocks for factor_record_solve; those factored by a loop get a place each, so that their factors survive. */
+static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
+  FactorRecord *f = l->factored;
+  uint32_t place = 0, loop = 0;
+  *f = (FactorRecord){.n = l->e->n};
+  for (uint32_t k = 0; k < n; k++) {
+    const Block *b = &blocks[k];
+    if (is_empty(b)) continue; /* the solution of an empty block is 0 to all orders */
+    FactorBlock kept = {.n = b->n, .at = b->at, .M = b->M, .divisor = b->n == 2 ? b->divisor : b->M[0], .place = place};
+    vec_push(l->p->arena, &f->blocks, kept);
+    if (b->n < 3) continue;
+    l->p->solves.at[loop++].place = place;
+    place += factor_record_size(b->n);
+  }
+  l->x = x;
+}
+
+/* Solves all blocks: acc[n], and the multipliers of the first nrows constraints. */
+static void solve_blocks(Lower *l, const RightHandSides *s, Slot *acc, Slot *multipliers) {
+  Block *blocks;
+  uint32_t n = make_blocks(l, s, &blocks), nrows = s->nrows;
+  Slot *x = ARENA_ARRAY(l->p->arena, Slot, l->e->n + nrows + 1);
+  for (uint32_t k = 0; k < n; k++) {
+    Block *b = &blocks[k];
+    if (!b->m && is_empty(b)) continue;
+    if (b->n > 2 && !b->m) narrow(l, b);
+    if (b->n > 2 || b->m) solve_loop(l, b, s->coarse, x);
+    else if (b->n == 1) solve_one(l, b, x);
+    else solve_two(l, b, x);
+    for (uint32_t i = 0; i < b->n; i++) acc[b->at[i]] = x[i];
+    for (uint32_t i = 0; i < b->m; i++) multipliers[b->rows[i]] = x[b->n + i];
+  }
+  if (l->factored) keep_factors(l, blocks, n, acc);
+}
+
+static void push_entries(Lower *l, ExprVec *roots, const Entries *from) {
+  for (uint32_t k = 0; k < from->n; k++) vec_push(l->p->arena, roots, from->at[k].e);
+}
+
+static void push_forms(Lower *l, ExprVec *roots) {
+  const SquareForms *s = &l->e->squares;
+  for (uint32_t k = 0; k < s->n; k++) vec_push(l->p->arena, roots, s->weight[k]);
+  for (uint32_t k = 0; k < s->n * l->e->n; k++)
+    if (s->W[k]) vec_push(l->p->arena, roots, s->W[k]);
+}
+
+static const Slot *slots_of(Lower *l, const Expr *of, uint32_t n) {
+  Slot *s = ARENA_ARRAY(l->p->arena, Slot, n + 1);
+  for (uint32_t i = 0; i < n; i++) s[i] = lower_slot(l, of[i]);
+  return s;
+}
+
+void lower_solution(Lower *l, Slot *acc) {
+  const Eqns *e = l->e;
+  const LinearSystem *s = &e->system;
+  const Constraints *k = &e->constraints;
+  if (!e->n) return;
+  ExprVec roots = {0};
+  push_forms(l, &roots);
+  if (!e->squares.n || l->factored) push_entries(l, &roots, &s->H); /* series need the entries of M */
+  push_entries(l, &roots, &s->C);
+  push_entries(l, &roots, &k->A);
+  for (uint32_t i = 0; i < e->n; i++) vec_push(l->p->arena, &roots, s->f[i]);
+  for (uint32_t i = 0; i < k->n; i++) vec_push(l->p->arena, &roots, k->demand[i]);
+  lower_find_denominator(l, roots.at, roots.n);
+  prog_title(l->p, k->n ? "mass matrix M, forces f, constraints A q'' = g" : "mass matrix M and forces f");
+  lower_roots(l, roots.at, roots.n);
+  l->multipliers = ARENA_ARRAY(l->p->arena, Slot, k->n + 1);
+  if (is_straight_line(e)) {
+    (e->squares.n ? lower_gram_schmidt : lower_elimination)(l, acc);
+  } else {
+    RightHandSides sides = {slots_of(l, s->f, e->n), slots_of(l, k->demand, k->n), k->n, l->coarse};
+    prog_title(l->p, k->n ? "M q'' = f + A^T lambda" : "M q'' = f");
+    solve_blocks(l, &sides, acc, l->multipliers);
+  }
+  for (uint32_t i = 0; i < e->n; i++) prog_name(l->p, acc[i], expr_symbol(e->g, e->m->coords.at[i].a)->name);
+}
+
+void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, Slot *d, Slot *force) {
+  const Eqns *e = l->e;
+  const Entries *A = &e->constraints.A;
+  Arena *a = l->p->arena;
+  ExprVec roots = {0};
+  push_entries(l, &roots, &e->system.H);
+  push_entries(l, &roots, A);
+  lower_roots(l, roots.at, roots.n);
+  Slot *multipliers = ARENA_ARRAY(a, Slot, nrows + 1);
+  RightHandSides sides = {ARENA_ARRAY(a, Slot, e->n + 1), g, nrows, coarse};
+  solve_blocks(l, &sides, d, multipliers);
+  for (uint32_t i = 0; i < e->n; i++) force[i] = 0;
+  for (uint32_t k = 0; k < A->n && A->at[k].row < nrows; k++) {
+    Slot part = op(l, IR_MUL, lower_slot(l, A->at[k].e), multipliers[A->at[k].row]), *sum = &force[A->at[k].col];
+    *sum = op(l, IR_ADD, *sum, part);
+  }
+}

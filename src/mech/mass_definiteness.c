@@ -1,0 +1,204 @@
+/* Positive definiteness from L = sum of terms: signs of the terms first, then squares against products of velocities (Gershgorin). */
+#include "mech/mass_definiteness.h"
+
+#include "sym/diff.h"
+#include "sym/eval.h"
+#include "sym/print.h"
+
+static int has_velocities(const Eqns *e, Expr x) { return (expr_kinds(e->g, x) & 1u << SYM_VEL) != 0; }
+
+/* Linear in q', as Coriolis and magnetic terms are: no part of the mass matrix. */
+static int is_linear(const Eqns *e, Expr term) {
+  ExprPartials d = expr_gradient_sparse(e->g, term, SYM_VEL, e->n);
+  for (uint32_t i = 0; i < d.n; i++)
+    if (has_velocities(e, d.at[i].e)) return 0;
+  return 1;
+}
+
+static int is_nonnegative(const Eqns *e, Expr x) {
+  ExprSign sign = expr_sign(e->g, x);
+  return sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE;
+}
+
+/* Each moving term of L by itself is nonnegative or linear in velocities. */
+static int terms_are_nonnegative(const Eqns *e, Expr l) {
+  for (uint32_t i = 0; i < expr_pairs(e->g, l, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(e->g, l, EX_SUM, i, &c);
+    int positive = num_sign(c) > 0 && is_nonnegative(e, term);
+    if (has_velocities(e, term) && !positive && !is_linear(e, term)) return 0;
+  }
+  return 1;
+}
+
+/* --- products of velocities --- */
+
+/* c*factor*form, a part of L. */
+typedef struct {
+  Num c;
+  Expr factor, form;
+} Part;
+
+/* L multiplied out into c*factor*u*v. Since |u*v| <= (u^2 + v^2)/2, each product is subtracted from the coefficients of the squares with the
+ * same factor; these must stay nonnegative (Gershgorin's circles, one set for each factor). */
+typedef struct {
+  const Eqns *e;
+  VEC(Part) open; /* parts to be multiplied out */
+  ExprMap place;  /* factor*u^2 -> its index in left, from 1 */
+  VEC(Num) left;  /* remaining coefficients of the squares */
+} SquareBounds;
+
+static void add_square(SquareBounds *q, Expr factor, Expr u, Num c) {
+  ExprGraph *g = q->e->g;
+  Expr square = expr_pow_num(g, u, num_int(2)), key = expr_mul(g, factor, square);
+  uint32_t at = expr_map_get(&q->place, key);
+  if (!at) {
+    vec_push(q->e->m->arena, &q->left, num_int(0));
+    expr_map_set(&q->place, key, at = q->left.n);
+  }
+  q->left.at[at - 1] = num_add(q->left.at[at - 1], c);
+}
+
+/* Adds c*factor*term, at most quadratic in velocities. 0: the term may be negative, or has another form. */
+static int add_quadratic_term(SquareBounds *q, Expr factor, Num c, Expr term) {
+  const Eqns *e = q->e;
+  ExprGraph *g = e->g;
+  Expr moving[2] = {0};
+  Num power[2];
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++) {
+    Num p;
+    Expr base = expr_pair(g, term, EX_PROD, i, &p);
+    if (!has_velocities(e, base)) {
+      Expr still = expr_pow_num(g, base, p);
+      factor = expr_mul(g, factor, still);
+    } else {
+      if (n == 2) return 0;
+      moving[n] = base;
+      power[n++] = p;
+    }
+  }
+  if (!is_nonnegative(e, factor)) return 0;
+  if (n == 2) {
+    if (!num_is_one(power[0]) || !num_is_one(power[1])) return 0;
+    Num half = num_mul(num_abs(c), num_ratio(-1, 2));
+    add_square(q, factor, moving[0], half);
+    add_square(q, factor, moving[1], half);
+    return 1;
+  }
+  if (num_equal(power[0], num_int(2))) {
+    add_square(q, factor, moving[0], c);
+    return 1;
+  }
+  ExprOp op = expr_op(g, moving[0]);
+  if (num_is_one(power[0]) && (op == EX_SUM || op == EX_DEF)) {
+    vec_push(e->m->arena, &q->open, ((Part){c, factor, op == EX_DEF ? expr_arg(g, moving[0], 0) : moving[0]}));
+    return 1;
+  }
+  return num_sign(c) > 0 && is_nonnegative(e, term);
+}
+
+static int add_term(SquareBounds *q, Expr factor, Num c, Expr term) {
+  return !has_velocities(q->e, term) || add_quadratic_term(q, factor, c, term) || is_linear(q->e, term);
+}
+
+static int squares_dominate(const Eqns *e, Expr l) {
+  enum { MOST_PARTS = 100000 }; /* nested lets that each occur twice would multiply out exponentially */
+  SquareBounds q = {.e = e, .place = expr_map(e->m->arena)};
+  Expr one = expr_int(e->g, 1);
+  vec_push(e->m->arena, &q.open, ((Part){num_int(1), one, l}));
+  for (uint32_t k = 0; k < q.open.n; k++) {
+    Part p = q.open.at[k];
+    if (k == MOST_PARTS) return 0;
+    for (uint32_t i = 0; i < expr_pairs(e->g, p.form, EX_SUM); i++) {
+      Num c;
+      Expr term = expr_pair(e->g, p.form, EX_SUM, i, &c);
+      if (!add_term(&q, p.factor, num_mul(p.c, c), term)) return 0;
+    }
+  }
+  for (uint32_t k = 0; k < q.left.n; k++)
+    if (num_sign(q.left.at[k]) < 0 || !num_sign_is_sure(q.left.at[k])) return 0;
+  return 1;
+}
+
+int mass_is_definite(const Eqns *e, const LinearSystem *s, Expr lagrangian) {
+  /* A nonnegative form that is quadratic in q' has a positive semidefinite Hessian; quadratic: the entries of H and C contain no velocities. */
+  for (uint32_t i = 0; i < s->H.n; i++)
+    if (has_velocities(e, s->H.at[i].e)) return 0;
+  for (uint32_t i = 0; i < s->C.n; i++)
+    if (has_velocities(e, s->C.at[i].e)) return 0;
+  return terms_are_nonnegative(e, lagrangian) || squares_dominate(e, lagrangian);
+}
+
+int mass_is_definite_by_values(const Eqns *e, const LinearSystem *s, Expr lagrangian) {
+  const Model *m = e->m;
+  ExprGraph *g = e->g;
+  uint32_t n = expr_symbol_count(g) + 1, some = 0;
+  long double *value = ARENA_ARRAY(m->arena, long double, n);
+  Expr *with = ARENA_ARRAY(m->arena, Expr, n);
+  value[m->pi] = 3.14159265358979323846264338327950288L;
+  for (uint32_t i = 0; i < m->params.n; i++) {
+    const Param *p = &m->params.at[i];
+    if (p->value) expr_eval(g, &p->value, 1, value, &value[p->sym]);
+    if (expr_symbol(g, p->sym)->sign != SIGN_UNKNOWN || value[p->sym] == 0) continue;
+    Expr positive = expr_fn(g, EX_EXP, expr_symbol(g, p->sym)->node); /* any number of this sign */
+    with[p->sym] = value[p->sym] > 0 ? positive : expr_neg(g, positive);
+    some = 1;
+  }
+  return some && mass_is_definite(e, s, expr_substitute(g, lagrangian, with, n, ""));
+}
+
+/* The parameter that makes this entry nonpositive: with a positive value the entry is positive. UINT32_MAX: none. */
+static uint32_t find_offending_param(const Eqns *e, Expr entry, long double *value) {
+  long double inertia;
+  ExprList nodes = expr_topo(e->g, &entry, 1);
+  for (uint32_t i = 0; i < nodes.n; i++) {
+    const Symbol *s = expr_op(e->g, nodes.at[i]) == EX_SYM ? expr_sym_of(e->g, nodes.at[i]) : NULL;
+    if (!s || s->kind != SYM_PARAM) continue;
+    SymId sym = e->m->params.at[s->index].sym;
+    long double was = value[sym];
+    if (!(was <= 0)) continue;
+    value[sym] = was < 0 ? -was : 1;
+    expr_eval(e->g, &entry, 1, value, &inertia);
+    value[sym] = was;
+    if (inertia > 0) return s->index;
+  }
+  return UINT32_MAX;
+}
+
+/* Whether the entry's sign is open for positive parameters, as that of a - b; an entry -m is meant to be negative. */
+static int may_be_positive(const Eqns *e, Expr entry) {
+  const Model *m = e->m;
+  uint32_t n = expr_symbol_count(e->g) + 1;
+  Expr *with = ARENA_ARRAY(m->arena, Expr, n);
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (expr_symbol(e->g, m->params.at[i].sym)->sign == SIGN_UNKNOWN) with[m->params.at[i].sym] = expr_fn(e->g, EX_EXP, expr_symbol(e->g, m->params.at[i].sym)->node);
+  return expr_sign(e->g, expr_substitute(e->g, entry, with, n, "")) == SIGN_UNKNOWN;
+}
+
+void mass_warn_nonpositive(const Eqns *e) {
+  const Model *m = e->m;
+  long double *value = ARENA_ARRAY(m->arena, long double, expr_symbol_count(e->g) + 1), inertia;
+  uint8_t *warned = ARENA_ARRAY(m->arena, uint8_t, m->params.n + 1);
+  value[m->pi] = 3.14159265358979323846264338327950288L;
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (m->params.at[i].value) expr_eval(e->g, &m->params.at[i].value, 1, value, &value[m->params.at[i].sym]);
+  for (uint32_t i = 0; i < e->mass.n; i++) {
+    MassEntry x = e->mass.at[i];
+    if (x.row != x.col || (expr_kinds(e->g, x.e) & ~(1u << SYM_PARAM | 1u << SYM_CONST))) continue;
+    expr_eval(e->g, &x.e, 1, value, &inertia);
+    if (!(inertia < 0) && !(inertia == 0 && !m->constraints.n)) continue;
+    uint32_t k = find_offending_param(e, x.e, value);
+    if (k == UINT32_MAX && may_be_positive(e, x.e)) {
+      StrBuf entry = strbuf(m->arena);
+      expr_print(e->g, x.e, PRINT_TEXT, &entry);
+      diag_warning(m->diags, m->coords.at[x.row].span, "the values of the parameters make the inertia of `%s` %s", m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
+      diag_help(m->diags, "give them values that make %s positive", sb_text(&entry));
+    }
+    if (k == UINT32_MAX || warned[k]++) continue;
+    const Param *p = &m->params.at[k];
+    diag_warning(m->diags, p->span, "`%s` is %s, and makes the inertia of `%s` %s", p->name, arena_printf(m->arena, "%.6Lg", value[p->sym]),
+                 m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
+    diag_help(m->diags, "give it a positive value; with `> 0` behind it a run refuses others");
+  }
+}

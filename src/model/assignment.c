@@ -1,0 +1,217 @@
+/* Targets of assignments (`start`, `exact`, `param`, maps of symmetries): left sides, lists, and values for whole families. */
+#include "model/builder.h"
+
+Target read_target(const Builder *b, AstId id) {
+  static const char letters[] = "xyzw";
+  Target p = {.stem = id, .part = -1};
+  const AstExpr *x = ast_expr(b->ast, id);
+  for (; x->kind == AST_PRIME; x = ast_expr(b->ast, p.stem)) {
+    p.primes++;
+    p.stem = x->a;
+  }
+  int ambiguous;
+  if (x->kind == AST_MEMBER) {
+    const AstExpr *left = ast_expr(b->ast, x->a);
+    const AstExpr *owner = left->kind == AST_MEMBER ? ast_expr(b->ast, left->a) : NULL; /* wind.v.x */
+    int of_effect = owner && owner->kind == AST_NAME &&
+                    (scope_own(&b->scope, left->name, owner->name) || !scope_find(&b->scope, owner->name, NULL, &ambiguous));
+    int component = left->kind == AST_INDEX || of_effect || (left->kind == AST_NAME && !scope_own(&b->scope, x->name, left->name) &&
+                                                scope_find(&b->scope, left->name, NULL, &ambiguous));
+    if (component) {
+      p.part = strlen(x->name) == 1 && strchr(letters, x->name[0]) ? (int)(strchr(letters, x->name[0]) - letters) : 4;
+      p.stem = x->a;
+      x = left;
+    }
+  }
+  if (x->kind == AST_INDEX) {
+    p.indices = x->args;
+    p.stem = x->a;
+    x = ast_expr(b->ast, p.stem);
+  }
+  p.wrong = x->kind != AST_NAME && !(x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME);
+  return p;
+}
+
+const AstExpr *list_behind(const Builder *b, AstId id, const AstUnit **unit) {
+  const AstExpr *x = ast_expr(b->ast, id);
+  *unit = NULL;
+  if (x->kind == AST_UNIT && ast_expr(b->ast, x->a)->kind == AST_LIST) {
+    *unit = &x->unit;
+    x = ast_expr(b->ast, x->a);
+  }
+  return x->kind == AST_LIST ? x : NULL;
+}
+
+static uint32_t count_list(const Builder *b, const AstExpr *list) {
+  uint32_t n = 0;
+  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) n++;
+  return n;
+}
+
+static uint64_t count_along(const IndexRange *r, uint32_t k) {
+  return r->hi[k] < r->lo[k] ? 0 : (uint64_t)(r->hi[k] - r->lo[k] + 1);
+}
+
+static uint64_t count_in(const IndexRange *r) {
+  uint64_t n = 1;
+  for (uint32_t k = 0; k < r->n; k++) n *= count_along(r, k);
+  return n;
+}
+
+static int report_count(Builder *b, const AstExpr *list, const char *what, const char *wanted) {
+  uint32_t n = count_list(b, list);
+  diag_error(b->diags, list->span, "%s has %u element%s, and %s", what, n, n == 1 ? "" : "s", wanted);
+  return 0;
+}
+
+/* Elements of a list of rows; each row is a list, with or without a unit of its own. */
+static int row_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out) {
+  uint64_t rows = count_along(r, 0), columns = count_along(r, 1);
+  if (count_list(b, list) != rows)
+    return report_count(b, list, "the list", arena_printf(b->arena, "`%s` has %llu rows", name, (unsigned long long)rows));
+  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) {
+    const AstUnit *own;
+    const AstExpr *row = list_behind(b, i, &own);
+    if (!row || count_list(b, row) != columns)
+      return row ? report_count(b, row, "this row", arena_printf(b->arena, "those of `%s` have %llu", name, (unsigned long long)columns))
+                 : report_count(b, list, "the list", "some are rows and some are not");
+    for (AstId k = row->args; k; k = ast_expr(b->ast, k)->next) vec_push(b->arena, out, ((Element){k, own ? own : behind}));
+  }
+  return 1;
+}
+
+int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out) {
+  const AstUnit *own;
+  const AstExpr *row = list_behind(b, list->args, &own);
+  if (row && r->n == 2) return row_elements(b, list, behind, r, name, out);
+  if (row) {
+    diag_error(b->diags, row->span, "a list in a list gives a row of a family with two indices, and `%s` has %s", name, r->n ? "one" : "none");
+    return 0;
+  }
+  if (!r->n) {
+    report_count(b, list, "the list", arena_printf(b->arena, "`%s` is no family", name));
+    diag_help(b->diags, "a list gives a family its members; a vector is written `(a, b)`");
+    return 0;
+  }
+  if (count_list(b, list) != count_in(r))
+    return report_count(b, list, "the list", arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)count_in(r)));
+  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) vec_push(b->arena, out, ((Element){i, behind}));
+  return 1;
+}
+
+Value element_value(Builder *b, const Element *x, Context where, Name effect) {
+  Value v = resolve(b, x->id, where, effect);
+  if (!x->behind || !v.e) return v;
+  Unit own = unit_resolve(x->behind, b->dims, b->diags, b->arena);
+  v = values_in(b, v, ast_expr(b->ast, x->id)->span, &own);
+  v.bare = 0;
+  v.dim = own.dim;
+  return v;
+}
+
+/* --- assignment --- */
+
+typedef struct {
+  Builder *b;
+  const Target *p;
+  const Entity *e;
+  const Assigner *assigner;
+  uint32_t parts;       /* components of the required value; 0: a number */
+} Assign;
+
+/* Assigns a value to member `at`; 0 after an error. */
+static int give_member(const Assign *s, const int64_t *at, AstId id, Value v) {
+  Builder *b = s->b;
+  Span span = ast_expr(b->ast, id)->span;
+  if (!v.e) return 0;
+  if (v.n != s->parts) {
+    diag_error(b->diags, span, "`%s` is %s, and %s is given here", member_name(b, s->e->name, at, s->e->ndims), shape_text(b, s->parts),
+               shape_text(b, v.n));
+    return 0;
+  }
+  uint32_t first = s->e->index + member_offset(s->e, at) + (s->p->part < 0 ? 0 : (uint32_t)component_index(s->e->parts, s->p->part));
+  v = values_in(b, v, span, s->assigner->unit(b, first, s->assigner->data));
+  for (uint32_t k = 0; v.e && k < (v.n ? v.n : 1); k++) s->assigner->give(b, first + k, v.at[k], span, s->assigner->data);
+  return v.e != 0;
+}
+
+IndexRange entity_range(const Entity *e) {
+  IndexRange r = {.n = e->ndims};
+  for (int k = 0; k < e->ndims; k++) {
+    r.lo[k] = e->lo[k];
+    r.hi[k] = e->hi[k];
+  }
+  return r;
+}
+
+/* Ranges of the target's indices (none: the whole family); 0, reported, when they do not fit the entity. */
+static int read_ranges(Builder *b, const Target *p, const Entity *e, AstId lhs, IndexRange *r) {
+  Span span = ast_expr(b->ast, lhs)->span;
+  *r = entity_range(e);
+  if (!p->indices) return 1;
+  if (!e->ndims) {
+    diag_error(b->diags, span, "`%s` is %s without index", e->name, ent_kind_text(e->kind));
+    diag_help(b->diags, "a family is declared with its size: `%s[3]`", e->name);
+    return 0;
+  }
+  if (!resolve_indices(b, p->indices, NULL, r)) return 0;
+  if (r->n != e->ndims) {
+    diag_error(b->diags, span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", r->n);
+    return 0;
+  }
+  int empty = 0;
+  for (uint32_t k = 0; k < r->n; k++) empty |= r->hi[k] < r->lo[k];
+  return empty || (index_in_range(b, e, r->lo, span) && index_in_range(b, e, r->hi, span));
+}
+
+/* Next member of the ranges, row by row; 0 after the last. */
+static int next_in(const IndexRange *r, int64_t *at) {
+  for (uint32_t k = r->n; k-- > 0;) {
+    if (++at[k] <= r->hi[k]) return 1;
+    at[k] = r->lo[k];
+  }
+  return 0;
+}
+
+/* Assigns the elements of a list, one to each member. */
+static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list, const AstUnit *behind) {
+  Elements elements = {0};
+  if (!list_elements(s->b, list, behind, r, s->e->name, &elements)) return;
+  int64_t at[2] = {r->lo[0], r->lo[1]};
+  for (uint32_t i = 0; i < elements.n; i++) {
+    give_member(s, at, elements.at[i].id, element_value(s->b, &elements.at[i], s->assigner->where, s->assigner->effect));
+    next_in(r, at);
+  }
+}
+
+/* Assigns a formula: evaluated for each member with its indices in scope, or once if no index is named. */
+static void give_formula(const Assign *s, const IndexRange *r, AstId rhs) {
+  Builder *b = s->b;
+  uint32_t outer = b->index.n;
+  int64_t at[2] = {r->lo[0], r->lo[1]};
+  int named = r->name[0] || r->name[1];
+  Value v = named || !count_in(r) ? (Value){0} : resolve(b, rhs, s->assigner->where, s->assigner->effect);
+  if (!count_in(r)) return;
+  do {
+    b->index.n = outer;
+    for (uint32_t k = 0; k < r->n; k++)
+      if (r->name[k]) vec_push(b->arena, &b->index, ((IndexVar){r->name[k], at[k]}));
+    if (named) v = resolve(b, rhs, s->assigner->where, s->assigner->effect);
+    if (!give_member(s, at, rhs, v)) break;
+  } while (next_in(r, at));
+  b->index.n = outer;
+}
+
+void assign_values(Builder *b, const Target *p, const Entity *e, AstId lhs, AstId rhs, const Assigner *assigner) {
+  Assign s = {.b = b, .p = p, .e = e, .assigner = assigner, .parts = p->part < 0 ? e->parts : 0};
+  IndexRange r;
+  if (p->part >= 0 && component_index(e->parts, p->part) < 0) {
+    diag_error(b->diags, ast_expr(b->ast, lhs)->span, "`%s` is %s: it has no such component", e->name, shape_text(b, e->parts));
+    return;
+  }
+  if (!read_ranges(b, p, e, lhs, &r)) return;
+  const AstUnit *behind;
+  const AstExpr *list = list_behind(b, rhs, &behind);
+  if (list) give_list(&s, &r, list, behind);
+  else give_formula(&s, &r, rhs);
+}

@@ -1,0 +1,56 @@
+/* Values from the command line, `th=90[deg]`, converted to the unit that the simulator takes: the declared one. */
+#include <math.h>
+
+#include "model/builder.h"
+#include "sym/eval.h"
+
+/* Unit of the symbol x, a coordinate, velocity, state, parameter or input; 0: x is something else. */
+static int setting_unit(Builder *b, Expr x, Unit *unit) {
+  const Model *m = b->m;
+  const Symbol *s = x && expr_op(b->g, x) == EX_SYM ? expr_sym_of(b->g, x) : NULL;
+  if (!s) return 0;
+  switch (s->kind) {
+    case SYM_COORD: *unit = m->coords.at[s->index].unit; return 1;
+    case SYM_VEL: *unit = unit_per_second(b, &m->coords.at[s->index].unit); return 1;
+    case SYM_STATE: *unit = m->states.at[s->index].unit; return 1;
+    case SYM_PARAM: *unit = m->params.at[s->index].unit; return 1;
+    case SYM_INPUT: *unit = m->inputs.at[s->index].unit; return 1;
+    case SYM_ACC: case SYM_RATE: case SYM_TIME: case SYM_CONST: case SYM_MULTIPLIER: case SYM_LOCAL: break;
+  }
+  return 0;
+}
+
+/* Converts x from SI to unit u, exactly in rationals up to the final rounding: 90 deg gives 90. */
+static double in_declared(Builder *b, Expr x, const Unit *u, const char **digits) {
+  ExprGraph *g = b->g;
+  Expr pi = expr_symbol(g, b->m->pi)->node;
+  Expr from_zero = num_is_zero(u->offset) ? x : expr_sub(g, x, expr_num(g, u->offset));
+  Expr scaled = expr_scale(g, num_div(num_int(1), u->factor), from_zero), turns = expr_pow_num(g, pi, num_int(-u->pi_power));
+  Expr e = expr_mul(g, scaled, turns);
+  long double *symbols = ARENA_ARRAY(b->arena, long double, expr_symbol_count(g) + 1), value = 0;
+  symbols[b->m->pi] = 3.14159265358979323846264338327950288L;
+  expr_eval(g, &e, 1, symbols, &value);
+  *digits = expression_digits(b, e);
+  return (double)value;
+}
+
+int model_command_value(const Model *m, AstId target, AstId value, double *out, const char **digits) {
+  Builder *b = m->builder;
+  Unit unit = {.dim = dim_base(b->dims, DIM_TIME), .factor = num_int(1), .offset = num_int(0), .text = "s"};
+  if (target) {
+    Value of = resolve(b, target, IN_OBSERVE, NULL);
+    if (!of.e) return 0;
+    if (of.n || !setting_unit(b, of.e, &unit)) {
+      diag_error(b->diags, ast_expr(b->ast, target)->span, "`%s` is nothing that a run sets", ast_short(b, target));
+      if (of.n) diag_help(b->diags, "it is %s: set its components, `%s.x=...`", shape_text(b, of.n), ast_text(b, target));
+      else diag_help(b->diags, "parameters, inputs, and the starts of coordinates, velocities and states are set so");
+      return 0;
+    }
+  }
+  Expr e = resolve_in(b, value, IN_CONST, NULL, &unit);
+  if (!e) return 0;
+  *out = in_declared(b, e, &unit, digits);
+  if (isfinite(*out)) return 1;
+  diag_error(b->diags, ast_expr(b->ast, value)->span, "this is not a finite number");
+  return 0;
+}

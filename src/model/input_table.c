@@ -1,0 +1,380 @@
+/* Tables: the file of `input u = "file.csv"` becomes a cubic spline (base/spline.h).
+ *
+ * A row has time in s, and value in the input's unit, separated by commas, semicolons, tabs or, in a table without these, blanks.
+ * Blank lines and lines that begin with # are skipped. A first line whose first field is not a number is a head: the time is the column
+ * `t` (or `time`), else the first; the value is the column named like the input, or, of two columns, the other one. A head may state
+ * units, as lagc's own output does: `t [s],u [N]`; they must be the input's. Without a head, columns 1 and 2 are read. Two rows with
+ * the same time are a jump. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/builder.h"
+#include "syntax/parse.h"
+
+enum { TABLE_ROWS_MAX = 100000, TABLE_MISTAKES_MAX = 5 };
+
+typedef struct {
+  Builder *b;
+  Source file;
+  AstId id;          /* the string in the model that names the file */
+  const Input *in;
+  Name stem;         /* the input's name without its effect */
+  char separator;    /* ' ': any number of blanks */
+  uint32_t time, value; /* columns, from 0 */
+  int begun;         /* the head or the first row was read */
+  int wrong_head;    /* error in the head: rows are not read */
+  int mistakes;
+  double before;     /* time of the previous row */
+  int jumped;        /* the previous row was the second one with its time */
+  VEC(double) numbers; /* time, value in SI, row by row */
+} Table;
+
+/* Part of the file: offsets into its text. */
+typedef struct {
+  uint32_t begin, end;
+} Piece;
+
+static Span span_of(const Table *t, Piece p) { return (Span){t->file.base + p.begin, t->file.base + p.end}; }
+
+static const char *text_of(const Table *t, Piece p) { return arena_strndup(t->b->arena, t->file.text + p.begin, p.end - p.begin); }
+
+static int is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+static Piece trimmed(const Table *t, Piece p) {
+  const char *s = t->file.text;
+  while (p.begin < p.end && is_blank(s[p.begin])) p.begin++;
+  while (p.end > p.begin && is_blank(s[p.end - 1])) p.end--;
+  return p;
+}
+
+/* Removes blanks and the quotes of a quoted field (RFC 4180). */
+static Piece unquoted(const Table *t, Piece p) {
+  const char *s = t->file.text;
+  p = trimmed(t, p);
+  if (p.end - p.begin >= 2 && s[p.begin] == '"' && s[p.end - 1] == '"') p.begin++, p.end--;
+  return p;
+}
+
+/* End of the field that begins at `at`. */
+static uint32_t field_end(const Table *t, uint32_t at, uint32_t end) {
+  int quoted = 0;
+  for (; at < end; at++) {
+    char c = t->file.text[at];
+    if (c == '"') quoted = !quoted;
+    if (!quoted && (t->separator == ' ' ? is_blank(c) : c == t->separator)) break;
+  }
+  return at;
+}
+
+/* Field at *at, without blanks and quotes; advances *at to the next field. 0: it was the last. */
+static int next_field(const Table *t, Piece line, uint32_t *at, Piece *field) {
+  uint32_t end = field_end(t, *at, line.end);
+  *field = unquoted(t, (Piece){*at, end});
+  while (t->separator == ' ' && end + 1 < line.end && is_blank(t->file.text[end + 1])) end++;
+  *at = end + 1;
+  return end < line.end;
+}
+
+/* Number of fields of a line; *field is field `which`. */
+static uint32_t fields(const Table *t, Piece line, uint32_t which, Piece *field) {
+  Piece any;
+  uint32_t n = 0, at = line.begin;
+  for (int more = 1; more; n++) more = next_field(t, line, &at, n == which ? field : &any);
+  return n;
+}
+
+static char find_separator(const Table *t, Piece line) {
+  static const char known[] = {';', '\t', ','};
+  for (size_t i = 0; i < sizeof known; i++)
+    if (memchr(t->file.text + line.begin, known[i], line.end - line.begin)) return known[i];
+  return ' ';
+}
+
+/* Parses a finite decimal number; other input of strtod (inf, nan, 0x1p3) is refused. */
+static int number(const Table *t, Piece p, double *x) {
+  const char *text = text_of(t, p);
+  char *end;
+  *x = strtod(text, &end);
+  return *text && strspn(text, "+-.0123456789eE") == strlen(text) && !*end && isfinite(*x);
+}
+
+static void mistake(Table *t, Piece p, const char *what) {
+  diag_error(t->b->diags, span_of(t, p), "%s", what);
+  t->mistakes++;
+}
+
+/* --- the head --- */
+
+/* 1 if a field of the head is `name`, without unit; *unit is the text in brackets after it. */
+static int is_called(const Table *t, Piece field, const char *name, Piece *unit) {
+  const char *s = t->file.text, *open = memchr(s + field.begin, '[', field.end - field.begin);
+  Piece stem = {field.begin, open ? (uint32_t)(open - s) : field.end};
+  *unit = (Piece){field.end, field.end};
+  if (open && s[field.end - 1] == ']') *unit = (Piece){stem.end + 1, field.end - 1};
+  stem = trimmed(t, stem);
+  return strlen(name) == stem.end - stem.begin && memcmp(s + stem.begin, name, stem.end - stem.begin) == 0;
+}
+
+/* First column called `name`, from column `from` on, and its field; `none` if there is none. */
+static uint32_t find_column(const Table *t, Piece line, uint32_t from, const char *name, uint32_t none, Piece *field) {
+  Piece unit;
+  uint32_t at = line.begin;
+  int more = 1;
+  for (uint32_t i = 0; more; i++) {
+    more = next_field(t, line, &at, field);
+    if (i >= from && is_called(t, *field, name, &unit)) return i;
+  }
+  return none;
+}
+
+/* Parses a unit of the head; reported, with DIM_ANY, when it is none. */
+static Unit unit_written(const Table *t, const char *text) {
+  Builder *b = t->b;
+  const char *whole = arena_printf(b->arena, "1 [%s]", text);
+  const Source *source = source_add(b->ast->sources, arena_printf(b->arena, "unit in %s", t->file.path), whole, strlen(whole));
+  AstId id = source ? parse_expression(b->ast, source) : 0;
+  AstUnit none = {0};
+  int is_unit = id && ast_expr(b->ast, id)->kind == AST_UNIT;
+  return unit_resolve(is_unit ? &ast_expr(b->ast, id)->unit : &none, b->dims, b->diags, b->arena);
+}
+
+static int same_unit(const Table *t, const Unit *x, const Unit *y, Span why) {
+  return dim_equate(t->b->dims, x->dim, y->dim, why) && num_equal(x->factor, y->factor) && x->pi_power == y->pi_power && num_equal(x->offset, y->offset);
+}
+
+/* Reports a unit in the head other than the input's (want), or seconds (want NULL); spelling does not matter. */
+static void check_unit(Table *t, Piece line, uint32_t column, const Unit *want, const char *whose) {
+  Piece field, unit;
+  fields(t, line, column, &field);
+  is_called(t, field, "", &unit);
+  const char *text = text_of(t, trimmed(t, unit)), *wanted = want ? want->text : "s";
+  if (!*text || strcmp(text, wanted) == 0) return;
+  uint32_t errors = t->b->diags->errors;
+  Unit is = unit_written(t, text), second = want ? *want : unit_written(t, "s");
+  if (t->b->diags->errors > errors) t->mistakes++;
+  else if (!*wanted || !same_unit(t, &is, &second, span_of(t, field))) {
+    const char *other = *wanted ? arena_printf(t->b->arena, "is in [%s]", wanted) : "has no unit";
+    mistake(t, field, arena_printf(t->b->arena, "this column is in [%s], and %s %s", text, whose, other));
+    if (want) diag_help(t->b->diags, "convert the column, or declare `input %s [%s] = ...`", t->stem, text);
+    else diag_help(t->b->diags, "convert the column to seconds");
+  }
+}
+
+/* Reports a second column of the same name. */
+static void check_once(Table *t, Piece line, uint32_t column, const char *name) {
+  Piece field;
+  if (find_column(t, line, column + 1, name, UINT32_MAX, &field) == UINT32_MAX) return;
+  mistake(t, field, arena_printf(t->b->arena, "two columns are called `%s`", name));
+  diag_help(t->b->diags, "give one of them another name");
+}
+
+static void read_head(Table *t, Piece line) {
+  Piece field, any;
+  uint32_t n = fields(t, line, 0, &field);
+  t->time = find_column(t, line, 0, "t", find_column(t, line, 0, "time", 0, &any), &any);
+  t->value = find_column(t, line, 0, t->stem, n > 2 ? n : 1 - t->time, &any);
+  const char *whose = arena_printf(t->b->arena, "`%s`", t->stem);
+  if (n < 2) mistake(t, field, "a table has two columns: time and value");
+  else if (t->value == n) {
+    mistake(t, line, arena_printf(t->b->arena, "none of these %u columns is called `%s`", n, t->stem));
+    diag_help(t->b->diags, "give the column of the values that name");
+  } else if (t->value == t->time) mistake(t, field, "the column of the time is also that of the value");
+  else {
+    check_unit(t, line, t->time, NULL, "the time");
+    check_unit(t, line, t->value, &t->in->unit, whose);
+    check_once(t, line, t->value, t->stem);
+  }
+  t->wrong_head = t->mistakes > 0;
+}
+
+/* --- rows --- */
+
+static int read_number(Table *t, Piece line, uint32_t column, const char *what, double *x, Piece *field) {
+  Builder *b = t->b;
+  uint32_t n = fields(t, line, column, field);
+  if (n <= column) {
+    mistake(t, line, arena_printf(b->arena, "the %s stands in column %u, and this row has %u", what, column + 1, n));
+    diag_help(b->diags, "a row is `time, value`; a comment begins with `#`");
+    return 0;
+  }
+  if (number(t, *field, x)) return 1;
+  if (field->begin == field->end) mistake(t, (Piece){field->begin, field->begin + 1}, arena_printf(b->arena, "the %s is missing", what));
+  else mistake(t, *field, arena_printf(b->arena, "the %s is no number", what));
+  if (memchr(t->file.text + field->begin, ',', field->end - field->begin)) diag_help(b->diags, "numbers are written with a point: `0.5`");
+  else diag_help(b->diags, "numbers are decimal and finite: `0.5`, `1e-3`; the row can be left out, or commented out with `#`");
+  return 0;
+}
+
+static void read_row(Table *t, Piece line) {
+  double time, value;
+  Piece at, of;
+  const char *nul = memchr(t->file.text + line.begin, '\0', line.end - line.begin);
+  if (nul) {
+    uint32_t place = (uint32_t)(nul - t->file.text);
+    mistake(t, (Piece){place, place + 1}, "this byte is no text");
+    diag_help(t->b->diags, "a table is a text of numbers");
+    return;
+  }
+  if (!read_number(t, line, t->time, "time", &time, &at) || !read_number(t, line, t->value, "value", &value, &of)) return;
+  double before = t->before;
+  int jumps = t->numbers.n && time == before;
+  if (t->numbers.n && (time < before || (jumps && t->jumped))) {
+    char now[32], then[32];
+    num_format_double(now, time);
+    num_format_double(then, before);
+    mistake(t, at, arena_printf(t->b->arena, jumps ? "this is the third row at %s" : "times must increase, and %s does not come after %s", now, then));
+    diag_help(t->b->diags, "sort the rows; a jump is two rows of one time: the value before it, and the one after it");
+    return;
+  }
+  t->before = time;
+  t->jumped = jumps;
+  if (jumps) time = nextafter(time, HUGE_VAL); /* no step of the runtime crosses such a gap */
+  vec_push(t->b->arena, &t->numbers, time);
+  vec_push(t->b->arena, &t->numbers, value * unit_factor(&t->in->unit) + num_value(t->in->unit.offset));
+}
+
+static void read_line(Table *t, Piece line) {
+  Piece first;
+  double x;
+  line = trimmed(t, line);
+  if (line.begin == line.end || t->file.text[line.begin] == '#') return;
+  int head = 0;
+  if (!t->begun) {
+    t->begun = 1;
+    t->separator = find_separator(t, line);
+    t->value = 1;
+    fields(t, line, 0, &first);
+    head = !number(t, first, &x);
+  }
+  if (head) read_head(t, line);
+  else read_row(t, line);
+}
+
+static void read_lines(Table *t) {
+  for (uint32_t at = 0; at < t->file.len && !t->wrong_head && t->mistakes < TABLE_MISTAKES_MAX;) {
+    const char *nl = memchr(t->file.text + at, '\n', t->file.len - at);
+    uint32_t end = nl ? (uint32_t)(nl - t->file.text) : t->file.len;
+    read_line(t, (Piece){at, end});
+    at = end + 1;
+    if (t->numbers.n <= 2 * TABLE_ROWS_MAX) continue;
+    mistake(t, (Piece){0, 1}, arena_printf(t->b->arena, "a table has at most %d rows", TABLE_ROWS_MAX));
+    diag_help(t->b->diags, "leave rows out: a cubic runs between each two");
+    return;
+  }
+}
+
+/* --- the file --- */
+
+/* Reads the file, once for all scenes. */
+static int find_table_file(Table *t, const char *path) {
+  Builder *b = t->b;
+  if (!*path) path = ".";
+  const Sources *all = b->ast->sources;
+  for (uint32_t i = 0; i < all->files.n; i++)
+    if (strcmp(all->files.at[i].path, path) == 0) {
+      t->file = all->files.at[i];
+      return 1;
+    }
+  const char *error = NULL;
+  const Source *file = source_read(b->ast->sources, path, &error);
+  if (file) {
+    t->file = *file;
+    return 1;
+  }
+  diag_error(b->diags, ast_expr(b->ast, t->id)->span, "cannot read `%s`: %s", path, error);
+  diag_help(b->diags, "the path is relative to the file that names it");
+  return 0;
+}
+
+/* Widens *lo, *hi to the extrema of the cubic between rows a and b (time, value, second derivative), at the zeros of its
+ * slope. With x in [0, 1] the slope is chord + (h^2/6)((1 - 3(1-x)^2) m0 + (3x^2 - 1) m1), a parabola. */
+static void widen_to_extrema(const double *a, const double *b, double *lo, double *hi) {
+  double h = b[0] - a[0], m0 = a[2] * h * h / 6, m1 = b[2] * h * h / 6, chord = b[1] - a[1];
+  double p = 3 * (m1 - m0), q = 6 * m0, r = chord - 2 * m0 - m1, root = sqrt(fmax(q * q - 4 * p * r, 0));
+  double at[3] = {0, (-q - root) / (2 * p), (-q + root) / (2 * p)};
+  if (p == 0) at[1] = at[2] = q != 0 ? -r / q : 0;
+  for (int i = 0; i < 3; i++) {
+    if (!(at[i] >= 0 && at[i] <= 1)) continue;
+    double x = at[i], y = (1 - x) * a[1] + x * b[1] - x * (1 - x) * ((2 - x) * m0 + (1 + x) * m1);
+    *lo = fmin(*lo, y);
+    *hi = fmax(*hi, y);
+  }
+}
+
+/* Warns of overshoot by more than half the range of values: a cubic overshoots where rows are sparse near a steep rise.
+ * (A step between equidistant rows overshoots by an eighth.) */
+static void warn_of_overshoot(const Table *t, const Spline *s) {
+  double lo = s->row[0][1], hi = lo, low = lo, high = lo;
+  for (uint32_t i = 0; i < s->n; i++) {
+    lo = fmin(lo, s->row[i][1]);
+    hi = fmax(hi, s->row[i][1]);
+  }
+  for (uint32_t i = 0; i + 1 < s->n; i++) widen_to_extrema(s->row[i], s->row[i + 1], &low, &high);
+  if (lo - low <= (hi - lo) / 2 && high - hi <= (hi - lo) / 2) return;
+  double unit = unit_factor(&t->in->unit), zero = num_value(t->in->unit.offset);
+  diag_warning(t->b->diags, ast_expr(t->b->ast, t->id)->span, "between its rows the curve goes from %.3g to %.3g, and the rows from %.3g to %.3g",
+               (low - zero) / unit, (high - zero) / unit, (lo - zero) / unit, (hi - zero) / unit);
+  diag_help(t->b->diags, "a cubic swings where rows lie far apart beside a steep rise: add rows there, or make it a jump, two rows of one time");
+}
+
+/* Fits a spline to each piece between two jumps. */
+static int fit_pieces(Arena *a, double (*row)[3], uint32_t n) {
+  for (uint32_t from = 0, to = 1; to <= n; to++) {
+    if (to < n && row[to][0] != nextafter(row[to - 1][0], HUGE_VAL)) continue;
+    if (!spline_fit(a, row + from, to - from)) return 0;
+    from = to;
+  }
+  return 1;
+}
+
+/* The spline through all rows; NULL, reported, for fewer than two rows or an infinite curve. */
+static const Spline *fit(Table *t) {
+  Builder *b = t->b;
+  uint32_t n = t->numbers.n / 2;
+  Span span = ast_expr(b->ast, t->id)->span;
+  if (n < 2) {
+    diag_error(b->diags, span, "the table `%s` has %s, and a curve needs two", t->file.path, n ? "one row" : "no rows");
+    diag_help(b->diags, "a row is `time, value`; a constant is written `input %s = 1`", t->stem);
+    return NULL;
+  }
+  double(*row)[3] = arena_alloc(b->arena, n * sizeof *row);
+  for (uint32_t i = 0; i < n; i++) {
+    row[i][0] = t->numbers.at[2 * i];
+    row[i][1] = t->numbers.at[2 * i + 1];
+  }
+  if (!fit_pieces(b->arena, row, n)) {
+    diag_error(b->diags, span, "the curve through `%s` is not finite", t->file.path);
+    diag_help(b->diags, "rows are too close, or values too far apart, for double precision");
+    return NULL;
+  }
+  Spline *s = ARENA_NEW(b->arena, Spline);
+  *s = (Spline){n, (const double(*)[3])row};
+  warn_of_overshoot(t, s);
+  return s;
+}
+
+static const Spline *read_table(Builder *b, const Input *in, Name stem, AstId id) {
+  Table t = {.b = b, .id = id, .in = in, .stem = stem};
+  const AstExpr *x = ast_expr(b->ast, id);
+  Place from = source_place(b->ast->sources, x->span.begin);
+  if (!find_table_file(&t, path_relative_to(b->arena, from.file ? from.file->path : "", x->name))) return NULL;
+  read_lines(&t);
+  return t.mistakes ? NULL : fit(&t);
+}
+
+void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect) {
+  Input *in = &b->m->inputs.at[index];
+  in->value = 0;
+  in->table = NULL;
+  in->file = "";
+  in->text = 0;
+  in->effect = effect;
+  if (ast_expr(b->ast, rhs)->kind != AST_STRING) {
+    in->value = resolve_in(b, rhs, IN_INPUT, effect, &in->unit);
+    in->text = rhs;
+    return;
+  }
+  in->file = ast_expr(b->ast, rhs)->name;
+  in->table = read_table(b, in, stem, rhs);
+}

@@ -1,0 +1,214 @@
+/* Start values, `start q = ...`, and closed forms, `exact q = ...`. A rotation starts with its four quaternion components;
+ * `start omega(R) = ...` is converted to their rates after all statements of the scene, as it depends on the start of R. */
+#include "model/resolve_impl.h"
+
+typedef struct {
+  EntKind kind;
+  int velocity;
+  Unit unit;
+} StartOf;
+
+static SymId start_target(const Builder *b, const StartOf *of, uint32_t i) {
+  if (of->kind == ENT_STATE) return b->m->states.at[i].z;
+  return of->velocity ? b->m->coords.at[i].v : b->m->coords.at[i].q;
+}
+
+/* Unit of bare numbers: the coordinate's, per second for a velocity. */
+static const Unit *start_unit(Builder *b, uint32_t i, void *data) {
+  StartOf *of = data;
+  of->unit = of->kind == ENT_STATE ? b->m->states.at[i].unit : b->m->coords.at[i].unit;
+  if (of->velocity) of->unit = unit_per_second(b, &of->unit);
+  return &of->unit;
+}
+
+static void give_start(Builder *b, uint32_t i, Expr value, Span span, void *data) {
+  (void)span;
+  Scene *sc = &b->m->scene;
+  SymId target = start_target(b, data, i);
+  if (!b->start_index) b->start_index = ARENA_ARRAY(b->arena, uint32_t, expr_symbol_count(b->g) + 1);
+  if (b->start_index[target]) {
+    sc->starts.at[b->start_index[target] - 1].value = value;
+    return;
+  }
+  vec_push(b->arena, &sc->starts, ((Start){target, value, 0}));
+  b->start_index[target] = sc->starts.n;
+}
+
+static void give_closed_form(Builder *b, uint32_t i, Expr value, Span span, void *data) {
+  const StartOf *of = data;
+  int periodic = of->kind == ENT_STATE ? b->m->states.at[i].periodic : !of->velocity && b->m->coords.at[i].periodic;
+  set_closed_form(b, start_target(b, of, i), start_unit(b, i, data), periodic, value, span);
+}
+
+static void give_spin(Builder *b, const AstStmt *st);
+
+/* Warns of `start th = 30` for an angle in rad: an integer from 7 to 360 was probably meant in degrees. */
+static void warn_of_degrees(Builder *b, const Coord *q, AstId value) {
+  const AstExpr *x = ast_expr(b->ast, value);
+  if (x->kind == AST_NEG) x = ast_expr(b->ast, x->a);
+  double v = x->kind == AST_NUM ? num_value(x->number) : 0;
+  if (strcmp(q->unit.text, "rad") != 0 || !(v > 6) || v > 360 || v != (double)(int)v) return;
+  diag_warning(b->diags, x->span, "`%s` is measured in rad, and %g rad are %.2g turns", q->name, v, v / 6.283185307179586);
+  diag_help(b->diags, "write %g [deg] where degrees are meant, and %g [rad] where not", v, v);
+}
+
+/* Reads `start q = ...` or `exact q = ...` for a coordinate, velocity or state. `start exactly`: constraints may not move it. */
+void set_motion(Builder *b, const AstStmt *st) {
+  if (ast_expr(b->ast, st->lhs)->kind == AST_CALL) {
+    give_spin(b, st);
+    return;
+  }
+  int exact = st->kind == STMT_EXACT;
+  Target p = read_target(b, st->lhs);
+  const AstExpr *x = ast_expr(b->ast, st->lhs), *name = ast_expr(b->ast, p.stem);
+  Name owner = name->kind == AST_MEMBER && !p.wrong ? ast_expr(b->ast, name->a)->name : NULL; /* e1.y */
+  if (p.wrong || p.primes > 1 || (name->kind != AST_NAME && !owner) || (owner && declared_in_use(b, owner, NULL))) {
+    if (name->kind == AST_ERROR) return;
+    if (exact) diag_error(b->diags, x->span, "a closed form is that of a coordinate, a velocity or a state: `exact x = x(0)*cos(w*t)`");
+    else diag_error(b->diags, x->span, "a start gives a coordinate or a velocity: `start th = 90 [deg]`");
+    return;
+  }
+  const Entity *e = owner ? scope_own(&b->scope, name->name, owner) : resolve_name(b, name->name, name->span, NULL, "coord");
+  if (!e && owner) report_no_member(b, name->span, owner, name->name);
+  if (!e) return;
+  if (e->kind == ENT_NONE) return;
+  if (e->kind != ENT_COORD && e->kind != ENT_STATE) {
+    diag_error(b->diags, name->span, "`%s` is %s; only coordinates, velocities and states %s", name->name, ent_kind_text(e->kind),
+               exact ? "have a closed form" : "start somewhere");
+    if (e->kind == ENT_PARAM && !exact) diag_help(b->diags, "write `%s = ...` without `start`", name->name);
+    return;
+  }
+  if (p.primes && e->kind == ENT_STATE) {
+    int is_coord = b->m->states.at[e->index].coordinate;
+    if (is_coord) diag_error(b->diags, x->span, "`%s'` follows from the coordinates: L is linear in the velocities, and the motion of first order", name->name);
+    else diag_error(b->diags, x->span, "the rate of a state follows from its flow");
+    diag_help(b->diags, exact ? "the %s itself has a closed form: `exact %s = ...`" : "the %s itself starts somewhere: `start %s = ...`",
+              is_coord ? "coordinate" : "state", name->name);
+    return;
+  }
+  if (p.primes && e->parts == ROTATION && p.part < 0) {
+    diag_error(b->diags, x->span, "`%s` is a rotation, and its rate is an angular velocity", name->name);
+    diag_help(b->diags, "`start omega(%s) = (a, b, c)` gives it, in the rotation's own frame", name->name);
+    return;
+  }
+  if (e->kind == ENT_COORD && !p.primes && !exact && e->parts != ROTATION) warn_of_degrees(b, &b->m->coords.at[e->index], st->rhs);
+  if (st->exactly && !b->m->scene.exactly.end) b->m->scene.exactly = st->span;
+  StartOf of = {.kind = e->kind, .velocity = p.primes > 0};
+  Assigner assigner = {exact ? IN_EXACT : IN_START, start_unit, exact ? give_closed_form : give_start, &of, NULL};
+  assign_values(b, &p, e, st->lhs, st->rhs, &assigner);
+}
+
+/* --- rotations --- */
+
+static const Entity *spin_entity(Builder *b, AstId call, Name effect, Target *p) {
+  const AstExpr *x = ast_expr(b->ast, call);
+  AstId arg = x->args;
+  *p = read_target(b, arg);
+  const AstExpr *stem = ast_expr(b->ast, p->stem);
+  int ambiguous, plain = strcmp(x->name, "omega") == 0 && !p->wrong && !p->primes && p->part < 0;
+  const Entity *e = NULL;
+  if (plain && stem->kind == AST_MEMBER) e = scope_own(&b->scope, stem->name, ast_expr(b->ast, stem->a)->name);
+  else if (plain) e = scope_find(&b->scope, stem->name, effect, &ambiguous);
+  if (e && e->kind == ENT_COORD && e->parts == ROTATION) return e;
+  diag_error(b->diags, x->span, "`%s` is no angular velocity of a rotation among the coordinates", ast_short(b, call));
+  diag_help(b->diags, "`omega(R) = (a, b, c)` says how fast `coord R: rotation` turns, in its own frame");
+  return NULL;
+}
+
+int spin_target(Builder *b, AstId place, Name effect) {
+  Target p;
+  int64_t at[2] = {0};
+  if (ast_expr(b->ast, place)->kind != AST_CALL) return -1;
+  const Entity *e = spin_entity(b, place, effect, &p);
+  if (!e) return -2;
+  IndexRange r = {0};
+  if (p.indices && !resolve_indices(b, p.indices, effect, &r)) return -2;
+  for (uint32_t k = 0; k < r.n; k++) at[k] = r.lo[k];
+  if (r.n == e->ndims && index_in_range(b, e, at, ast_expr(b->ast, place)->span)) return (int)(e->index + member_offset(e, at));
+  if (r.n != e->ndims) diag_error(b->diags, ast_expr(b->ast, place)->span, "`%s` names no single rotation", ast_short(b, place));
+  return -2;
+}
+
+Unit spin_unit(const Builder *b) {
+  return (Unit){.dim = dim_per_second(b->dims, DIM_NONE), .factor = num_int(1), .offset = num_int(0), .text = "rad/s"};
+}
+
+/* Target of values for omega(R): assign_values numbers them as vectors of 3 components, rotations have 4. */
+typedef struct {
+  uint32_t index; /* first coordinate of the family's first rotation */
+  Unit unit;
+} SpinOf;
+
+static const Unit *unit_of_spin(Builder *b, uint32_t i, void *data) {
+  (void)b;
+  (void)i;
+  return &((SpinOf *)data)->unit;
+}
+
+static SpinStart *find_spin(Builder *b, uint32_t coord) {
+  for (uint32_t i = 0; i < b->spins.n; i++)
+    if (b->spins.at[i].coord == coord) return &b->spins.at[i];
+  vec_push(b->arena, &b->spins, ((SpinStart){.coord = coord}));
+  return &b->spins.at[b->spins.n - 1];
+}
+
+static void assign_spin(Builder *b, uint32_t i, Expr value, Span span, void *data) {
+  SpinStart *s = find_spin(b, ((SpinOf *)data)->index + i / 3 * ROTATION);
+  s->at[i % 3] = value;
+  s->span = span;
+}
+
+static void give_spin(Builder *b, const AstStmt *st) {
+  Target p;
+  const Entity *e = spin_entity(b, st->lhs, NULL, &p);
+  if (!e) return;
+  if (st->kind == STMT_EXACT) {
+    diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "a closed form is that of a rotation itself: `exact R = turn(axis, w*t)`");
+    return;
+  }
+  SpinOf of = {e->index, spin_unit(b)};
+  Entity vectors = *e;
+  vectors.index = 0;
+  vectors.parts = 3;
+  if (!e->ndims) vectors.name = intern_printf(b, "omega(%s)", e->name);
+  Assigner assigner = {IN_START, unit_of_spin, assign_spin, &of, NULL};
+  assign_values(b, &p, &vectors, st->lhs, st->rhs, &assigner);
+}
+
+static int starts(const Builder *b, SymId s) { return b->start_index && b->start_index[s]; }
+
+/* Start of a rotation as a unit quaternion: normalised start values, by default the identity. */
+static Value start_of_rotation(Builder *b, uint32_t coord) {
+  Value q = {.n = ROTATION};
+  Expr square[ROTATION];
+  for (uint32_t k = 0; k < ROTATION; k++) {
+    SymId s = b->m->coords.at[coord + k].q;
+    q.at[k] = starts(b, s) ? b->m->scene.starts.at[b->start_index[s] - 1].value : expr_int(b->g, k == 0);
+    square[k] = expr_pow_num(b->g, q.at[k], num_int(2));
+  }
+  Expr sum = expr_add_n(b->g, square, ROTATION), shorter = expr_pow_num(b->g, sum, num_ratio(-1, 2));
+  for (uint32_t k = 0; k < ROTATION; k++) q.at[k] = expr_mul(b->g, q.at[k], shorter);
+  return q;
+}
+
+static void complete_spin_start(Builder *b, const SpinStart *s) {
+  Value q = start_of_rotation(b, s->coord), rates = rotation_rates(b, &q, s->at);
+  StartOf of = {.kind = ENT_COORD, .velocity = 1};
+  for (uint32_t k = 0; k < ROTATION; k++) {
+    const Coord *c = &b->m->coords.at[s->coord + k];
+    if (starts(b, c->v)) {
+      diag_error(b->diags, s->span, "how fast the rotation turns is said twice: by `omega`, and by `%s'`", c->name);
+      diag_help(b->diags, "leave out one of them");
+      return;
+    }
+    give_start(b, s->coord + k, rates.at[k], s->span, &of);
+  }
+}
+
+void complete_rotation_starts(Builder *b) {
+  for (uint32_t i = 0; i < b->spins.n; i++) complete_spin_start(b, &b->spins.at[i]);
+  for (uint32_t i = 0; i < b->rotations.n && b->m->coords.n; i++) {
+    SymId w = b->m->coords.at[b->rotations.at[i]].q;
+    if (!starts(b, w)) vec_push(b->arena, &b->m->scene.starts, ((Start){w, expr_int(b->g, 1), 1}));
+  }
+}

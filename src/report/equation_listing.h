@@ -1,0 +1,21 @@
+/* The equations of motion for people: text and LaTeX, in the user's names. */
+#ifndef LAGC_REPORT_EQUATION_LISTING_H
+#define LAGC_REPORT_EQUATION_LISTING_H
+
+#include "mech/eqns.h"
+#include "sym/print.h"
+
+/* Appends L, momenta, M q'' = f row by row, energy, the definitions used, facts about the model, and `cost`, a line on the cost of the
+ * accelerations. */
+void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *out);
+
+/* Appends the Hamiltonian side: momenta, H, Hamilton's equations; M and the energy where M is not inverted in closed form. */
+void show_hamiltonian(Eqns *e, PrintStyle style, StrBuf *out);
+
+/* Appends M, f, Q and the energy as they are computed, one entry a line, for --dump=eqns. */
+void dump_equations(const Eqns *e, StrBuf *out);
+
+/* Appends one line: coordinates, mass matrix, energy. Nothing when there are only states. */
+void show_facts(const Eqns *e, StrBuf *out);
+
+#endif

@@ -1,0 +1,293 @@
+/* `lagc noether` as text and as LaTeX. */
+#include "symmetry/noether_report.h"
+#include "report/listing_text.h"
+
+typedef struct {
+  Text text;
+  const NoetherReport *r;
+  const char *Q; /* letter of the charges Q1, Q2, ..; another where the model has such names */
+} Page;
+
+/* Whether x is `letter` followed by digits. */
+static int is_numbered(const char *x, const char *letter) {
+  size_t n = strlen(letter);
+  return strncmp(x, letter, n) == 0 && x[n] && x[n + strspn(x + n, "0123456789")] == '\0';
+}
+
+static int takes_names(const Eqns *e, const char *letter) {
+  const ExprGraph *g = e->g;
+  for (SymId k = 1; k <= expr_symbol_count(g); k++)
+    if (is_numbered(expr_symbol(g, k)->name, letter)) return 1;
+  for (Expr x = 1; x <= expr_count(g); x++)
+    if (expr_op(g, x) == EX_DEF && is_numbered(expr_def_name(g, x), letter)) return 1;
+  for (uint32_t k = 0; k < e->m->symmetries.n; k++)
+    if (is_numbered(e->m->symmetries.at[k].name, letter)) return 1;
+  return 0;
+}
+
+/* The first letter without such names in the model. */
+static const char *free_letter(const Eqns *e) {
+  static const char *const letters[] = {"Q", "C", "J", "charge"};
+  enum { N = sizeof letters / sizeof *letters };
+  uint32_t k = 0;
+  while (k + 1 < N && takes_names(e, letters[k])) k++;
+  return letters[k];
+}
+
+/* Q1, dQ1/dt */
+static const char *named(const Page *p, const char *before, uint32_t k, const char *after) {
+  return arena_printf(p->text.e->m->arena, "%s%s%u%s", before, p->Q, k + 1, after);
+}
+
+static const char *named_latex(const Page *p, uint32_t k, int dot) {
+  const char *letter = strlen(p->Q) > 1 ? arena_printf(p->text.e->m->arena, "\\mathrm{%s}", p->Q) : p->Q;
+  return arena_printf(p->text.e->m->arena, dot ? "\\dot{%s}_{%u}" : "%s_{%u}", letter, k + 1);
+}
+
+/* A line of prose; in LaTeX a comment. */
+static void say(Page *p, const char *words) { sb_printf(p->text.out, "%s%s\n", text_latex(&p->text) ? "% " : "", words); }
+
+static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
+
+/* --- symmetries --- */
+
+static void put_delta(Page *p, Name name, Expr x) {
+  Text *t = &p->text;
+  Arena *a = t->e->m->arena;
+  if (!expr_is_zero(t->g, x)) text_named(t, arena_printf(a, "delta %s", name), arena_printf(a, "\\delta %s", text_latex_name(t, name)), x, 0);
+}
+
+/* "  for k > 0" */
+static void put_conditions(Page *p, uint32_t k) {
+  Text *t = &p->text;
+  Conditions all = noether_conditions(p->r, k);
+  StrBuf b = strbuf(t->e->m->arena);
+  for (uint32_t i = 0; i < all.n; i++) {
+    sb_puts(&b, i ? ", " : "  for ");
+    expr_print(t->g, all.at[i], PRINT_TEXT, &b);
+    sb_puts(&b, " > 0");
+  }
+  if (all.n) say(p, sb_text(&b));
+}
+
+/* Whether x contains a number that 64 bits do not hold. */
+static int is_rounded(ExprGraph *g, Expr x) {
+  ExprList all = expr_topo(g, &x, 1);
+  for (uint32_t i = 0; i < all.n; i++) {
+    if (expr_is_num(g, all.at[i]) && !num_is_exact(expr_number(g, all.at[i]))) return 1;
+    for (uint32_t k = 0; k < expr_pairs(g, all.at[i], EX_SUM); k++) {
+      Num c;
+      expr_pair(g, all.at[i], EX_SUM, k, &c);
+      if (!num_is_exact(c)) return 1;
+    }
+  }
+  return 0;
+}
+
+/* Changes of the coordinates, or of the sums of them that L is written with; a formula for them where numbers have too many digits. */
+static void deltas(Page *p, const FoundSymmetry *s) {
+  Text *t = &p->text;
+  uint32_t n = eqns_coordinates(t->e);
+  int rounded = 0;
+  for (uint32_t i = 0; i < n && s->by.lowered && expr_is_zero(t->g, s->by.tau); i++) rounded = rounded || is_rounded(t->g, s->by.xi[i]);
+  if (rounded) say(p, arena_printf(t->e->m->arena, "  delta q = M^-1 d%s/dq' with the mass matrix M: its numbers have too many digits", named(p, "", (uint32_t)(s - p->r->found.all.at), "")));
+  for (uint32_t i = 0; i < n && !rounded; i++) {
+    if (s->forms) put_delta(p, s->forms->name[i], forms_back(s->forms, t->g, s->by.eta[i]));
+    else put_delta(p, expr_symbol(t->g, eqns_coordinate(t->e, i))->name, s->by.xi[i]);
+  }
+  put_delta(p, "t", s->by.tau);
+}
+
+static void symmetry(Page *p, uint32_t k) {
+  Text *t = &p->text;
+  Arena *a = t->e->m->arena;
+  const FoundSymmetry *s = &p->r->found.all.at[k];
+  int moves = !s->is.power_unknown && !expr_is_zero(t->g, s->is.power);
+  Name declared = noether_declared(p->r, k);
+  text_heading(t, arena_printf(a, "%s: %s%s%s%s", named(p, "", k, ""), s->name, declared ? "; declared as " : "", declared ? declared : "", s->is.jumps ? "; between jumps of L only" : ""));
+  deltas(p, s);
+  if (!expr_is_zero(t->g, s->is.F)) text_named(t, "F", "F", s->is.F, 0);
+  if (s->is.over_time) say(p, "  F has the integral over t of what stands as dQ/dt, too");
+  text_named(t, named(p, "", k, ""), named_latex(p, k, 0), s->is.charge, !moves);
+  if (moves) text_named(t, named(p, "d", k, "/dt"), named_latex(p, k, 1), s->is.power, 1);
+  text_end(t);
+  put_conditions(p, k);
+  if (s->is.power_unknown) say(p, "  not conserved: L depends on an input whose rate of change is not known");
+}
+
+static int some_jump(const FoundSymmetries *f) {
+  int some = 0;
+  for (uint32_t k = 0; k < f->all.n; k++) some |= f->all.at[k].is.jumps;
+  return some;
+}
+
+static void symmetries(Page *p) {
+  const FoundSymmetries *f = &p->r->found;
+  Arena *a = p->text.e->m->arena;
+  sb_putc(p->text.out, '\n');
+  say(p, arena_printf(a, "looked for: %s", f->ansatz));
+  if (!f->searched) {
+    say(p, arena_printf(a, "not searched: %s", f->note));
+    return;
+  }
+  say(p, f->all.n ? arena_printf(a, "found: %u symmetr%s, each proved%s; %s = p.delta q - E delta t - F", f->all.n, f->all.n == 1 ? "y" : "ies", some_jump(f) ? ", some between jumps of L only" : "", p->Q)
+                  : "found: none");
+  if (f->unproved)
+    say(p, arena_printf(a, "%u more direction%s of the solution space not written in closed form, or not proved: not listed", f->unproved, plural(f->unproved)));
+  if (f->note) say(p, f->note);
+  if (f->galilean) say(p, "the ten charges of Galileo's group are among them");
+  for (uint32_t k = 0; k < f->all.n; k++) symmetry(p, k);
+  Expr *roots = ARENA_ARRAY(a, Expr, 3 * (size_t)f->all.n + 1);
+  for (uint32_t k = 0; k < f->all.n; k++) {
+    const Noether *is = &f->all.at[k].is;
+    roots[3 * k] = is->charge, roots[3 * k + 1] = is->F, roots[3 * k + 2] = is->power;
+  }
+  text_definitions(&p->text, roots, 3 * f->all.n);
+}
+
+/* --- scaling --- */
+
+/* s, s^2, s^(-1), s^(3/2). */
+static const char *power_text(Page *p, Num power) {
+  StrBuf b = strbuf(p->text.e->m->arena);
+  int bare = num_is_int(power) && num_sign(power) > 0;
+  if (num_is_one(power)) return "s";
+  sb_puts(&b, bare ? "s^" : "s^(");
+  num_print(&b, power);
+  sb_puts(&b, bare ? "" : ")");
+  return sb_text(&b);
+}
+
+static void scaling(Page *p) {
+  const NoetherReport *r = p->r;
+  Text *t = &p->text;
+  StrBuf b = strbuf(t->e->m->arena);
+  if (!r->scales) return;
+  sb_putc(t->out, '\n');
+  sb_puts(&b, "scaling:");
+  for (uint32_t i = 0; i <= t->e->n; i++) {
+    Num power = i < t->e->n ? r->scaling.alpha[i] : r->scaling.beta;
+    Name x = i < t->e->n ? t->e->m->coords.at[i].name : "t";
+    if (num_is_zero(power)) continue;
+    sb_printf(&b, "%s %s -> %s*%s", b.n > sizeof "scaling:" ? "," : "", x, power_text(p, power), x);
+  }
+  sb_printf(&b, " maps solutions to solutions; it multiplies the action by %s, so it is no symmetry in Noether's sense and has no charge",
+            power_text(p, r->scaling.kappa));
+  say(p, sb_text(&b));
+}
+
+/* --- the algebra --- */
+
+static Expr charge_symbol(Page *p, uint32_t k) {
+  Text *t = &p->text;
+  SymId s = expr_declare(t->g, SYM_LOCAL, k, named(p, "", k, ""), SIGN_UNKNOWN);
+  return expr_symbol(t->g, s)->node;
+}
+
+static Expr combination(const NoetherReport *r, const Bracket *k, const Expr *charge) {
+  ExprGraph *g = r->e->g;
+  Expr sum = k->constant;
+  for (uint32_t i = 0; i < r->algebra.n; i++) sum = expr_add(g, sum, expr_mul(g, k->c[i], charge[i]));
+  return sum;
+}
+
+static void bracket(Page *p, const Bracket *k, const Expr *charge, int last) {
+  Text *t = &p->text;
+  Arena *a = t->e->m->arena;
+  Expr value = k->c ? combination(p->r, k, charge) : k->value;
+  const char *text = arena_printf(a, "{%s, %s}", named(p, "", k->a, ""), named(p, "", k->b, ""));
+  const char *tex = arena_printf(a, "\\{%s, %s\\}", named_latex(p, k->a, 0), named_latex(p, k->b, 0));
+  text_named(t, text, tex, value, last);
+}
+
+static void algebra(Page *p) {
+  const Algebra *x = &p->r->algebra;
+  Arena *a = p->text.e->m->arena;
+  Expr *charge = ARENA_ARRAY(a, Expr, x->n + 1);
+  if (x->n < 2) return;
+  if (x->why_not) {
+    sb_putc(p->text.out, '\n');
+    say(p, arena_printf(a, "no Poisson brackets: %s", x->why_not));
+    return;
+  }
+  for (uint32_t k = 0; k < x->n; k++) charge[k] = charge_symbol(p, k);
+  uint32_t pairs = x->n * (x->n - 1) / 2, zero = pairs - x->all.n, open = 0, outside = 0;
+  if (x->all.n) text_heading(&p->text, "Poisson brackets");
+  else sb_putc(p->text.out, '\n');
+  for (uint32_t k = 0; k < x->all.n; k++) bracket(p, &x->all.at[k], charge, k + 1 == x->all.n);
+  if (x->all.n) text_end(&p->text);
+  for (uint32_t k = 0; k < x->all.n; k++) {
+    open += !x->all.at[k].c && !x->all.at[k].is_outside;
+    outside += !x->all.at[k].c && x->all.at[k].is_outside;
+  }
+  if (outside) say(p, arena_printf(a, "  %u of them %s no combination of these charges", outside, outside == 1 ? "is" : "are"));
+  if (open) say(p, arena_printf(a, "  %u of them %s of these charges with coefficients that were not recognised", open, open == 1 ? "is a combination" : "are combinations"));
+  const char *how = x->by_value ? arena_printf(a, "%u of %u proved, all seen at random states", pairs - x->by_value, pairs) : "all proved";
+  say(p, arena_printf(a, "  %s%s", !x->all.n ? "all Poisson brackets are 0: " : zero ? "the others are 0: " : "", how));
+}
+
+/* --- effects --- */
+
+static int is_broken(const EffectVerdict *v, const Noether *is, const Noether *before) {
+  if (!is->charge) return 1;
+  return is->power_unknown || (is->jumps && !before->jumps) || !expr_is_zero(v->e->g, is->power) || (is->is != INVARIANT && is->is != INVARIANT_UP_TO_F);
+}
+
+/* The charge whose rate follows, where L or F of the effect changes it. */
+static void other_charge(Page *p, const EffectVerdict *v, Text *of, uint32_t k) {
+  if (!noether_same_charge(p->r, v, k)) text_named(of, named(p, "", k, ""), named_latex(p, k, 0), v->is[k].charge, 0);
+}
+
+/* Remark on impacts or events that the effect adds to the model. */
+static void impacts(Page *p, const EffectVerdict *v) {
+  const char *note = noether_note_on_impacts(v->e->m);
+  if (note && !noether_note_on_impacts(p->text.e->m)) say(p, arena_printf(v->e->m->arena, "  its %s", note));
+}
+
+static void effect(Page *p, const EffectVerdict *v) {
+  Text of = {.e = v->e, .g = v->e->g, .style = p->text.style, .out = p->text.out};
+  Arena *a = v->e->m->arena;
+  uint32_t n = p->r->found.all.n, broken = 0, shown = 0;
+  for (uint32_t k = 0; k < n; k++) broken += (uint32_t)is_broken(v, &v->is[k], &p->r->found.all.at[k].is);
+  if (!broken) {
+    sb_putc(p->text.out, '\n');
+    say(p, arena_printf(a, "effect %s breaks none of them", v->effect));
+    impacts(p, v);
+    return;
+  }
+  text_heading(&of, arena_printf(a, "effect %s breaks %u of %u", v->effect, broken, n));
+  for (uint32_t k = 0; k < n; k++) {
+    const Noether *is = &v->is[k];
+    if (!is_broken(v, is, &p->r->found.all.at[k].is)) continue;
+    int last = ++shown == broken;
+    if (is->charge) other_charge(p, v, &of, k);
+    if (is->charge && is->jumps) say(p, arena_printf(a, "  of %s between jumps of L only:", named(p, "", k, "")));
+    if (is->charge && !is->power_unknown) text_named(&of, named(p, "d", k, "/dt"), named_latex(p, k, 1), is->power, last);
+    else sb_printf(of.out, text_latex(&of) ? "  %s &\\text{ is not known}\n" : "  %s is not known\n", text_latex(&of) ? named_latex(p, k, 1) : named(p, "d", k, "/dt"));
+  }
+  text_end(&of);
+  impacts(p, v);
+}
+
+/* --- the page --- */
+
+static void cyclic(Page *p) {
+  StrBuf b = strbuf(p->text.e->m->arena);
+  const char *at;
+  show_cyclic(p->text.e, &b);
+  if (!b.n) return;
+  sb_putc(p->text.out, '\n');
+  for (const char *line = sb_text(&b); (at = strchr(line, '\n')) != NULL; line = at + 1)
+    say(p, arena_strndup(p->text.e->m->arena, line, (size_t)(at - line)));
+}
+
+void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out) {
+  Page p = {.text = {.e = r->e, .g = r->e->g, .style = style, .out = out}, .r = r, .Q = free_letter(r->e)};
+  text_title(&p.text);
+  text_charges(&p.text);
+  cyclic(&p);
+  symmetries(&p);
+  scaling(&p);
+  algebra(&p);
+  for (uint32_t k = 0; k < r->effects.n; k++) effect(&p, &r->effects.at[k]);
+}

@@ -1,0 +1,298 @@
+/* Traversals of the expression graph: maps over nodes, reachable nodes, substitution, operation counts. */
+#include <stdlib.h>
+
+#include "base/strbuf.h"
+#include "sym/expr.h"
+#include "sym/expr_impl.h"
+
+/* --- maps --- */
+
+ExprMap expr_map(Arena *a) { return (ExprMap){.arena = a, .epoch = 1}; }
+
+void expr_map_clear(ExprMap *m) {
+  m->epoch++;
+  m->n = 0;
+}
+
+/* Slot of e, or the free slot for it (open addressing; Knuth's multiplicative hash). */
+static uint32_t map_slot(const ExprMap *m, Expr e) {
+  uint32_t i = (e * 2654435769u) >> m->shift;
+  while (m->at[i].stamp == m->epoch && m->at[i].key != e) i = (i + 1) & (m->cap - 1);
+  return i;
+}
+
+static void map_grow(ExprMap *m) {
+  ExprMap old = *m;
+  m->cap = old.cap ? 2 * old.cap : 64;
+  m->shift = old.cap ? old.shift - 1 : 26;
+  m->at = ARENA_ARRAY(m->arena, ExprMapEntry, m->cap);
+  for (uint32_t i = 0; i < old.cap; i++)
+    if (old.at[i].stamp == m->epoch) m->at[map_slot(m, old.at[i].key)] = old.at[i];
+}
+
+void expr_map_set(ExprMap *m, Expr e, uint32_t value) {
+  if (2 * m->n >= m->cap) map_grow(m);
+  ExprMapEntry *x = &m->at[map_slot(m, e)];
+  m->n += x->stamp != m->epoch;
+  *x = (ExprMapEntry){e, value, m->epoch};
+}
+
+uint32_t expr_map_get(const ExprMap *m, Expr e) {
+  if (!m->n) return 0;
+  const ExprMapEntry *x = &m->at[map_slot(m, e)];
+  return x->stamp == m->epoch ? x->value : 0;
+}
+
+/* --- reachable nodes --- */
+
+static int ascending(const void *a, const void *b) {
+  Expr x = *(const Expr *)a, y = *(const Expr *)b;
+  return (x > y) - (x < y);
+}
+
+/* Sorts n node ids: by comparison below 512, otherwise a radix sort with digits of eleven bits. */
+static void sort_ids(ExprGraph *g, Expr *at, uint32_t n) {
+  enum { FEW = 512, BITS = 11, DIGITS = 1 << BITS };
+  if (n < 2) return;
+  if (n < FEW) {
+    qsort(at, n, sizeof *at, ascending);
+    return;
+  }
+  if (g->spare_n < n) {
+    g->spare_n = 2 * n;
+    g->spare = ARENA_ARRAY(g->arena, Expr, g->spare_n);
+  }
+  for (uint32_t shift = 0; shift < 32; shift += BITS) {
+    uint32_t place[DIGITS] = {0}, sum = 0;
+    for (uint32_t i = 0; i < n; i++) place[(at[i] >> shift) & (DIGITS - 1)]++;
+    for (uint32_t d = 0; d < DIGITS; d++) {
+      uint32_t count = place[d];
+      place[d] = sum;
+      sum += count;
+    }
+    for (uint32_t i = 0; i < n; i++) g->spare[place[(at[i] >> shift) & (DIGITS - 1)]++] = at[i];
+    memcpy(at, g->spare, n * sizeof *at);
+  }
+}
+
+/* Nodes reachable from the roots, ascending; not below nodes of `leaves` (or NULL) nor, if shallow, below definitions. */
+static ExprList topo(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves, int shallow) {
+  VEC(Expr) found = {g->found, 0, g->found_cap};
+  expr_map_clear(&g->seen);
+  for (uint32_t i = 0; i < n; i++)
+    if (roots[i] && !expr_map_get(&g->seen, roots[i])) {
+      expr_map_set(&g->seen, roots[i], 1);
+      vec_push(g->arena, &found, roots[i]);
+    }
+  for (uint32_t k = 0; k < found.n; k++) {
+    Expr e = found.at[k];
+    if ((leaves && expr_map_get(leaves, e)) || (shallow && expr_op(g, e) == EX_DEF)) continue;
+    for (uint32_t i = 0; i < expr_nargs(g, e); i++) {
+      Expr a = expr_arg(g, e, i);
+      if (expr_map_get(&g->seen, a)) continue;
+      expr_map_set(&g->seen, a, 1);
+      vec_push(g->arena, &found, a);
+    }
+  }
+  sort_ids(g, found.at, found.n);
+  g->found = found.at;
+  g->found_cap = found.cap;
+  Expr *list = ARENA_ARRAY(g->arena, Expr, found.n + 1);
+  if (found.n) memcpy(list, found.at, found.n * sizeof *list);
+  return (ExprList){list, found.n};
+}
+
+ExprList expr_topo(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, 0); }
+ExprList expr_topo_shallow(ExprGraph *g, const Expr *roots, uint32_t n) { return topo(g, roots, n, NULL, 1); }
+ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves) { return topo(g, roots, n, leaves, 0); }
+
+int expr_contains(ExprGraph *g, Expr e, int (*want)(const Symbol *s, const void *data), const void *data) {
+  ExprList l = expr_topo(g, &e, 1);
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(g, l.at[i]) == EX_SYM && want(expr_sym_of(g, l.at[i]), data)) return 1;
+  return 0;
+}
+
+static int same_symbol(const Symbol *s, const void *data) { return s->node == *(const Expr *)data; }
+
+int expr_contains_sym(ExprGraph *g, Expr e, SymId sym) {
+  Expr node = expr_symbol(g, sym)->node;
+  return expr_contains(g, e, same_symbol, &node);
+}
+
+void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s, const void *data), const void *data, ExprMap *m) {
+  expr_map_clear(m);
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr e = l.at[i];
+    int yes = expr_op(g, e) == EX_SYM && want(expr_sym_of(g, e), data);
+    for (uint32_t k = 0; k < expr_nargs(g, e) && !yes; k++) yes = expr_map_get(m, expr_arg(g, e, k)) != 0;
+    if (yes) expr_map_set(m, e, 1);
+  }
+}
+
+/* --- rewriting bottom-up --- */
+
+/* Arguments of e mapped through m; an argument not in m stays. Returns 1 when one changed. */
+static int mapped_args(const ExprGraph *g, const ExprMap *m, Expr e, Expr *args) {
+  int changed = 0;
+  for (uint32_t k = 0; k < expr_nargs(g, e); k++) {
+    Expr a = expr_arg(g, e, k), b = expr_map_get(m, a);
+    args[k] = b ? b : a;
+    changed |= args[k] != a;
+  }
+  return changed;
+}
+
+/* out[i] = roots[i] with the nodes in the map replaced; rewritten nodes are added to the map. */
+static void rewrite(ExprGraph *g, const Expr *roots, uint32_t n, ExprMap *m, const char *suffix, Expr *out) {
+  ExprList l = expr_topo(g, roots, n);
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr x = l.at[i];
+    if (expr_op(g, x) == EX_SYM || expr_map_get(m, x)) continue;
+    Expr *args = ARENA_ARRAY(g->arena, Expr, expr_nargs(g, x) + 1);
+    if (!mapped_args(g, m, x, args)) continue;
+    Expr y;
+    if (expr_op(g, x) == EX_DEF) {
+      StrBuf name = strbuf(g->arena);
+      sb_printf(&name, "%s%s", expr_def_name(g, x), suffix);
+      Name interned = intern(g->names, sb_text(&name));
+      y = expr_def(g, interned, args[0]);
+    } else {
+      y = expr_rebuild(g, x, args);
+    }
+    expr_map_set(m, x, y);
+  }
+  for (uint32_t i = 0; i < n; i++) {
+    Expr r = expr_map_get(m, roots[i]);
+    out[i] = r ? r : roots[i];
+  }
+}
+
+static Expr rewrite_one(ExprGraph *g, Expr e, ExprMap *m, const char *suffix) {
+  Expr out;
+  rewrite(g, &e, 1, m, suffix, &out);
+  return out;
+}
+
+Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const char *suffix) {
+  if (!e) return 0;
+  expr_map_clear(&g->work);
+  ExprList l = expr_topo(g, &e, 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    if (expr_op(g, l.at[i]) != EX_SYM) continue;
+    SymId s = expr_sym_id(g, l.at[i]);
+    if (s < n && with[s]) expr_map_set(&g->work, l.at[i], with[s]);
+  }
+  return g->work.n ? rewrite_one(g, e, &g->work, suffix) : e;
+}
+
+Expr expr_replace(ExprGraph *g, Expr e, const SymId *syms, const Expr *with, uint32_t n) {
+  if (!e) return 0;
+  expr_map_clear(&g->work);
+  for (uint32_t i = 0; i < n; i++) expr_map_set(&g->work, expr_symbol(g, syms[i])->node, with[i]);
+  return rewrite_one(g, e, &g->work, "");
+}
+
+void expr_replace_nodes(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *nodes, const Expr *with, uint32_t nnodes, Expr *out) {
+  expr_map_clear(&g->work);
+  for (uint32_t i = 0; i < nnodes; i++) expr_map_set(&g->work, nodes[i], with[i]);
+  rewrite(g, roots, n, &g->work, "", out);
+}
+
+Expr expr_expand_defs(ExprGraph *g, Expr e) {
+  if (!e) return 0;
+  ExprList l = expr_topo(g, &e, 1);
+  ExprMap m = expr_map(g->arena);
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr x = l.at[i];
+    Expr *args = ARENA_ARRAY(g->arena, Expr, expr_nargs(g, x) + 1);
+    int changed = mapped_args(g, &m, x, args);
+    if (expr_op(g, x) == EX_DEF) {
+      expr_map_set(&m, x, args[0]);
+    } else if (changed) {
+      Expr y = expr_rebuild(g, x, args);
+      expr_map_set(&m, x, y);
+    }
+  }
+  Expr r = expr_map_get(&m, e);
+  return r ? r : e;
+}
+
+/* --- counting --- */
+
+double expr_tree_size(ExprGraph *g, Expr e, uint32_t *distinct) {
+  VEC(Expr) found = {0};
+  expr_map_clear(&g->seen);
+  expr_map_set(&g->seen, e, 1);
+  vec_push(g->arena, &found, e);
+  for (uint32_t k = 0; k < found.n; k++)
+    for (uint32_t i = 0; i < (expr_op(g, found.at[k]) == EX_DEF ? 0 : expr_nargs(g, found.at[k])); i++) {
+      Expr a = expr_arg(g, found.at[k], i);
+      if (expr_map_get(&g->seen, a)) continue;
+      expr_map_set(&g->seen, a, 1);
+      vec_push(g->arena, &found, a);
+    }
+  sort_ids(g, found.at, found.n);
+  double *size = ARENA_ARRAY(g->arena, double, found.n);
+  for (uint32_t k = 0; k < found.n; k++) {
+    expr_map_set(&g->seen, found.at[k], k + 1);
+    size[k] = 1;
+    if (expr_op(g, found.at[k]) == EX_DEF) continue;
+    for (uint32_t i = 0; i < expr_nargs(g, found.at[k]); i++)
+      size[k] += size[expr_map_get(&g->seen, expr_arg(g, found.at[k], i)) - 1];
+  }
+  *distinct = found.n;
+  return size[found.n - 1];
+}
+
+/* Operations of b^e: repeated squaring for integers, one square root for halves, 20 for other powers. */
+static uint32_t power_ops(Num e) {
+  if (!num_is_exact(e)) return 20;
+  int64_t n = e.num < 0 ? -e.num : e.num;
+  uint32_t ops = 0;
+  for (int64_t k = n; k > 1; k >>= 1) ops += 1 + (uint32_t)(k & 1);
+  if (e.den == 2) return ops + 1;
+  return e.den == 1 ? ops : 20;
+}
+
+static uint32_t sum_ops(const ExprGraph *g, Expr e) {
+  uint32_t n = expr_pairs(g, e, EX_SUM), ops = n - 1;
+  for (uint32_t i = 0; i < n; i++) {
+    Num c;
+    Expr t = expr_pair(g, e, EX_SUM, i, &c);
+    ops += !num_is_one(num_abs(c)) && !expr_is_num(g, t);
+  }
+  return ops;
+}
+
+static uint32_t prod_ops(const ExprGraph *g, Expr e) {
+  uint32_t n = expr_pairs(g, e, EX_PROD), ops = n - 1, inverse = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    Num k;
+    expr_pair(g, e, EX_PROD, i, &k);
+    ops += power_ops(k);
+    inverse += num_sign(k) < 0;
+  }
+  return ops + (inverse == n);
+}
+
+static uint32_t count_ops(const ExprGraph *g, ExprList l) {
+  uint32_t ops = 0;
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr e = l.at[i];
+    switch (expr_op(g, e)) {
+      case EX_NUM: case EX_SYM: case EX_DEF: case EX_COUNT: break;
+      case EX_SUM: ops += sum_ops(g, e); break;
+      case EX_PROD: ops += prod_ops(g, e); break;
+      case EX_POW: case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN:
+      case EX_SINH: case EX_COSH: case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ATAN2:
+      case EX_HYPOT: ops += 20; break;
+      case EX_ABS: case EX_SIGN: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
+      case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: ops += 1; break;
+    }
+  }
+  return ops;
+}
+
+uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n) { return count_ops(g, expr_topo(g, roots, n)); }
+uint32_t expr_ops_shallow(ExprGraph *g, Expr e) { return count_ops(g, expr_topo_shallow(g, &e, 1)); }

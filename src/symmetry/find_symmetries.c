@@ -1,0 +1,353 @@
+/* Drives the search: chooses parameter values, computes solution spaces, writes the rates of exp(A t) in closed form (or, where L contains t or is
+ * of first order, lists functions of time), and adds each family of generators that share them. */
+#include "symmetry/find_symmetries_impl.h"
+
+#include <math.h>
+
+#include "mech/lagrange.h"
+#include "symmetry/usual_symmetries.h"
+#include "symmetry/symmetry_names.h"
+#include "sym/diff.h"
+#include "sym/normal_form.h"
+#include "sym/print.h"
+#include "sym/simplify.h"
+
+const SolutionSpace *noether_space_at(SymmetrySearch *s, uint32_t choice) {
+  if (s->spaces[choice].space.width == 0) {
+    const SolutionSpace *like = choice > CHOICE_SECOND ? noether_space_at(s, CHOICE_FIRST) : NULL;
+    s->spaces[choice] = solution_space(s->ansatz, s->scratch, s->choices.at[choice], like);
+  }
+  return &s->spaces[choice];
+}
+
+uint32_t noether_choices(const SymmetrySearch *s) { return 2 + s->choices.n; }
+
+/* --- rates, as expressions --- */
+
+/* A candidate for rates: squares of actual rates are rational multiples of its square. */
+typedef struct {
+  Expr square, root; /* root^2 = +-square */
+  int is_double;     /* a double root: t times the oscillation is a solution, too */
+} RateCandidate;
+
+typedef VEC(RateCandidate) RateCandidates;
+
+static int is_constant(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
+
+static void add_guess(SymmetrySearch *s, RateCandidates *all, Expr root, int is_double) {
+  int negative = choice_value(&s->choices, CHOICE_FIRST, root) < 0;
+  Expr square = expr_neg(s->g, expr_pow_num(s->g, root, num_int(2)));
+  vec_push(s->scratch, all, ((RateCandidate){square, negative ? expr_neg(s->g, root) : root, is_double}));
+}
+
+/* Rates of two coordinates coupled by b = beta m through velocities: with z = x + i y, z'' = kappa z - i beta z', w^2 + beta w + kappa = 0; a
+ * double root in a frame that turns. */
+static void add_coupled(SymmetrySearch *s, RateCandidates *all, Expr beta, Expr kappa) {
+  ExprGraph *g = s->g;
+  Expr four = expr_scale(g, num_int(4), kappa), inside = simplify(g, expr_sub(g, expr_pow_num(g, beta, num_int(2)), four));
+  add_guess(s, all, beta, 0);
+  if (expr_is_zero(g, inside)) add_guess(s, all, expr_scale(g, num_ratio(1, 2), beta), 1);
+  if (expr_is_zero(g, kappa) || choice_value(&s->choices, CHOICE_FIRST, inside) <= 0) return;
+  Expr root = expr_sqrt(g, inside), sum = expr_add(g, beta, root), difference = expr_sub(g, root, beta);
+  add_guess(s, all, expr_scale(g, num_ratio(1, 2), sum), 0);
+  add_guess(s, all, expr_scale(g, num_ratio(1, 2), difference), 0);
+  add_guess(s, all, root, 0); /* of breathing modes: the sum of both */
+}
+
+/* Candidates from each coordinate with its own equation m q'' = kappa m q + ..., and from pairs with equal kappa and coupled velocities. */
+static RateCandidates rate_candidates(SymmetrySearch *s) {
+  Eqns *e = s->e;
+  ExprGraph *g = s->g;
+  RateCandidates all = {0};
+  Expr *kappa = ARENA_ARRAY(s->scratch, Expr, e->n + 1);
+  if (e->n && !e->mass_known) eqns_derive_mass(e);
+  for (uint32_t i = 0; i < e->n; i++) {
+    Expr m = simplify(g, eqns_mass(e, i, i)), k = simplify(g, expr_diff(g, e->dLdq[i], s->ansatz->q[i]));
+    if (expr_is_zero(g, m) || !is_constant(g, m) || !is_constant(g, k)) continue;
+    kappa[i] = simplify(g, expr_div(g, k, m));
+    if (!expr_is_zero(g, k)) {
+      int grows = choice_value(&s->choices, CHOICE_FIRST, kappa[i]) > 0;
+      Expr root = expr_sqrt(g, grows ? kappa[i] : simplify(g, expr_neg(g, kappa[i])));
+      vec_push(s->scratch, &all, ((RateCandidate){kappa[i], root, 0}));
+    }
+    for (uint32_t j = 0; j < i; j++) {
+      Expr one = expr_diff(g, e->dLdq[i], s->ansatz->v[j]), other = expr_diff(g, e->dLdq[j], s->ansatz->v[i]);
+      Expr b = simplify(g, expr_sub(g, one, other));
+      if (kappa[j] == kappa[i] && is_constant(g, b) && !expr_is_zero(g, b)) add_coupled(s, &all, simplify(g, expr_div(g, b, m)), kappa[i]);
+    }
+  }
+  return all;
+}
+
+/* The squared rate nearest to x at another choice; NAN: there is none. */
+static long double nearest_rate(SymmetrySearch *s, uint32_t choice, long double x) {
+  const SolutionSpace *space = noether_space_at(s, choice);
+  Rates r = space->sure ? space_rates(s->scratch, space) : (Rates){0};
+  long double best = NAN;
+  for (uint32_t k = 0; k < r.n; k++)
+    if (!(fabsl(r.at[k] - x) >= fabsl(best - x))) best = r.at[k];
+  return best;
+}
+
+static int close_to(long double a, long double b) { return fabsl(a - b) < 1e-8L * fabsl(b); }
+
+/* Writes the rate as sqrt(c) times a candidate, c rational, and checks it at the second choice. 0: none fits. */
+static int rate_by_guess(SymmetrySearch *s, const RateCandidates *all, long double rate2, Family *to) {
+  for (uint32_t k = 0; k < all->n; k++) {
+    Num c;
+    long double ratio = rate2 / choice_value(&s->choices, CHOICE_FIRST, all->at[k].square);
+    if (!recognise_rational(ratio, &c) || num_value(c) <= 0) continue;
+    for (uint32_t i = 0; i < noether_choices(s); i++) to->rate2[i] = (long double)num_value(c) * choice_value(&s->choices, i, all->at[k].square);
+    if (!close_to(nearest_rate(s, CHOICE_SECOND, to->rate2[CHOICE_SECOND]), to->rate2[CHOICE_SECOND])) continue;
+    Expr root = expr_sqrt(s->g, expr_num(s->g, c));
+    to->rate = expr_mul(s->g, root, all->at[k].root);
+    return 1;
+  }
+  return 0;
+}
+
+/* Writes the squared rate as a product of powers of parameters, or a sum of parameters over one of them. 0: it is neither. */
+static int rate_by_value(SymmetrySearch *s, long double rate2, Family *to) {
+  for (uint32_t i = 0; i < noether_choices(s); i++) to->rate2[i] = i == CHOICE_SECOND ? NAN : nearest_rate(s, i, rate2);
+  const SolutionSpace *second = noether_space_at(s, CHOICE_SECOND);
+  Rates r = second->sure ? space_rates(s->scratch, second) : (Rates){0};
+  for (uint32_t k = 0; k < r.n; k++) {
+    to->rate2[CHOICE_SECOND] = r.at[k];
+    Expr square = recognise_monomial(&s->choices, to->rate2);
+    if (!square) square = recognise_quotient(&s->choices, to->rate2);
+    if (!square) continue;
+    to->rate = expr_sqrt(s->g, rate2 < 0 ? expr_neg(s->g, square) : square);
+    return 1;
+  }
+  return 0;
+}
+
+/* --- where coefficients may be any functions of time --- */
+
+static void sort_rates(Rates *r) {
+  for (uint32_t i = 1; i < r->n; i++)
+    for (uint32_t k = i; k > 0 && fabsl(r->at[k]) < fabsl(r->at[k - 1]); k--) {
+      long double swap = r->at[k];
+      r->at[k] = r->at[k - 1];
+      r->at[k - 1] = swap;
+    }
+}
+
+static void search_rates(SymmetrySearch *s) {
+  Rates rates = space_rates(s->scratch, noether_space_at(s, CHOICE_FIRST));
+  if (!rates.n) return;
+  sort_rates(&rates);
+  RateCandidates all = rate_candidates(s);
+  for (uint32_t k = 0; k < rates.n; k++) {
+    Family f = {.kind = rates.at[k] < 0 ? TIME_CIRCULAR : TIME_EXPONENTIAL, .rate2 = ARENA_ARRAY(s->scratch, long double, noether_choices(s))};
+    if (rate_by_guess(s, &all, rates.at[k], &f) || rate_by_value(s, rates.at[k], &f)) noether_add_family(s, &f);
+  }
+}
+
+/* --- where L contains t, or is of first order: functions of time from a list --- */
+
+typedef VEC(Expr) Exprs;
+
+static void add_once(SymmetrySearch *s, Exprs *list, Expr x) {
+  for (uint32_t k = 0; k < list->n; k++)
+    if (list->at[k] == x) return;
+  vec_push(s->scratch, list, x);
+}
+
+/* Rates w of sin(w t + ...) and cos(w t + ...) in L, and s of exp(s t + ...). */
+static void rates_in_text(SymmetrySearch *s, Exprs *circular, Exprs *exponential) {
+  ExprGraph *g = s->g;
+  Expr L = s->e->m->lagrangian;
+  ExprList all = expr_topo(g, &L, 1);
+  for (uint32_t i = 0; i < all.n; i++) {
+    ExprOp op = expr_op(g, all.at[i]);
+    if (op != EX_SIN && op != EX_COS && op != EX_EXP) continue;
+    Expr rate = simplify(g, expr_diff(g, expr_arg(g, all.at[i], 0), s->e->m->time));
+    if (expr_is_zero(g, rate) || !is_constant(g, rate)) continue;
+    if (choice_value(&s->choices, CHOICE_FIRST, rate) < 0) rate = expr_neg(g, rate);
+    add_once(s, op == EX_EXP ? exponential : circular, rate);
+  }
+}
+
+static void add_circular(SymmetrySearch *s, Exprs *to, Expr w) {
+  Expr phase = expr_mul(s->g, w, expr_symbol(s->g, s->e->m->time)->node);
+  if (expr_is_zero(s->g, w)) return;
+  add_once(s, to, expr_fn(s->g, EX_COS, phase));
+  Expr sine = expr_fn(s->g, EX_SIN, phase);
+  Num sign;
+  expr_pair(s->g, sine, EX_SUM, 0, &sign);
+  add_once(s, to, num_sign(sign) < 0 ? expr_neg(s->g, sine) : sine);
+}
+
+/* cos(w t) and sin(w t) times t and t^2. */
+static void add_growing(SymmetrySearch *s, Exprs *to, Expr w) {
+  Exprs plain = {0};
+  Expr t = expr_symbol(s->g, s->e->m->time)->node;
+  add_circular(s, &plain, w);
+  for (int power = 1; power <= 2; power++)
+    for (uint32_t k = 0; k < plain.n; k++) add_once(s, to, expr_mul(s->g, expr_pow_num(s->g, t, num_int(power)), plain.at[k]));
+}
+
+static void add_exponential(SymmetrySearch *s, Exprs *to, Expr rate) {
+  Expr phase = expr_mul(s->g, rate, expr_symbol(s->g, s->e->m->time)->node);
+  add_once(s, to, expr_fn(s->g, EX_EXP, phase));
+  add_once(s, to, expr_fn(s->g, EX_EXP, expr_neg(s->g, phase)));
+}
+
+/* Functions of time for the ansatz. For xi and tau: 1, t, t^2 and those of L's own rates, double rates times t and t^2; for F their products, too.
+ * A first-order L gets constants only for xi and tau: more would let each charge be multiplied by functions of others. */
+static TimeList time_list(SymmetrySearch *s) {
+  enum { RATES_MOST = 4 };
+  Exprs circular = {0}, exponential = {0}, growing = {0}, list = {0};
+  ExprGraph *g = s->g;
+  Expr t = expr_symbol(g, s->e->m->time)->node;
+  rates_in_text(s, &circular, &exponential);
+  if (s->e->n) {
+    RateCandidates own = rate_candidates(s);
+    for (uint32_t k = 0; k < own.n; k++)
+      if (own.at[k].is_double) add_once(s, &growing, own.at[k].root);
+    for (uint32_t k = 0; k < own.n && circular.n + exponential.n < RATES_MOST; k++)
+      add_once(s, choice_value(&s->choices, CHOICE_FIRST, own.at[k].square) < 0 ? &circular : &exponential, own.at[k].root);
+  }
+  if (circular.n > RATES_MOST) circular.n = RATES_MOST;
+  if (exponential.n > RATES_MOST) exponential.n = RATES_MOST;
+  vec_push(s->scratch, &list, expr_int(g, 1));
+  if (s->e->n) vec_push(s->scratch, &list, t);
+  if (s->e->n) vec_push(s->scratch, &list, expr_pow_num(g, t, num_int(2)));
+  for (uint32_t k = 0; k < circular.n && s->e->n; k++) add_circular(s, &list, circular.at[k]);
+  for (uint32_t k = 0; k < growing.n; k++) add_growing(s, &list, growing.at[k]);
+  for (uint32_t k = 0; k < exponential.n && s->e->n; k++) add_exponential(s, &list, exponential.at[k]);
+  s->ansatz->far_times = !exponential.n;
+  uint32_t own = list.n;
+  add_once(s, &list, t);
+  add_once(s, &list, expr_pow_num(g, t, num_int(2)));
+  for (uint32_t k = 0; k < circular.n; k++) {
+    add_circular(s, &list, circular.at[k]);
+    for (uint32_t j = 0; j <= k; j++) {
+      add_circular(s, &list, expr_add(g, circular.at[k], circular.at[j]));
+      add_circular(s, &list, expr_sub(g, circular.at[k], circular.at[j]));
+    }
+  }
+  for (uint32_t k = 0; k < exponential.n; k++) add_exponential(s, &list, exponential.at[k]);
+  for (uint32_t k = 2; k < own; k++) add_once(s, &list, expr_mul(g, t, list.at[k]));
+  return (TimeList){own, list.n, list.at};
+}
+
+static const char *functions_text(SymmetrySearch *s, const TimeList *times, uint32_t from, uint32_t to) {
+  StrBuf b = strbuf(s->e->m->arena);
+  for (uint32_t k = from; k < to; k++) {
+    sb_puts(&b, k > from ? ", " : "");
+    expr_print(s->g, times->f[k], PRINT_TEXT, &b);
+  }
+  return sb_text(&b);
+}
+
+static void search_listed(SymmetrySearch *s) {
+  Family f = {.kind = TIME_LISTED, .times = time_list(s)};
+  FamilyTables t = {.family = &f, .at = ARENA_ARRAY(s->scratch, GeneratorTable, 1)};
+  t.at[0] = generator_table_at(s, &f, CHOICE_FIRST);
+  s->out->searched = t.at[0].shown != 0;
+  if (s->out->searched) noether_add_family(s, &f);
+  s->out->ansatz = arena_printf(s->e->m->arena, "xi affine in the coordinates%s, tau, with coefficients in t: %s; F a polynomial of degree %u in the coordinates, "
+                                "with those%s%s, and any function of t alone",
+                                ansatz_is_restricted(s->ansatz) ? " (turns and stretches of one vector only)" : "", functions_text(s, &f.times, 0, f.times.n),
+                                s->ansatz->degree, f.times.n < f.times.ngauge ? " and " : "", functions_text(s, &f.times, f.times.n, f.times.ngauge));
+}
+
+/* --- the search --- */
+
+static const char *ansatz_text(const SymmetrySearch *s) {
+  const Ansatz *a = s->ansatz;
+  return arena_printf(s->e->m->arena, "xi affine in the coordinates%s, tau, both with any dependence on time; F a polynomial of degree %u in the coordinates",
+                      ansatz_is_restricted(a) ? " (turns and stretches of one vector only)" : "", a->degree);
+}
+
+static const long double GAP_WEAK = 1e10L; /* least ratio of pivots to rounding that is trusted; models have 1e13 and more */
+
+static void search_autonomous(SymmetrySearch *s) {
+  const SolutionSpace *space = noether_space_at(s, CHOICE_FIRST);
+  s->out->ansatz = ansatz_text(s);
+  s->out->searched = space->sure;
+  if (!space->sure) return;
+  Family powers = {.kind = TIME_POWERS};
+  noether_add_family(s, &powers);
+  search_rates(s);
+  uint32_t dimension = space->space.n ? space->space.n - 1 : 0, known = s->out->all.n + s->out->unproved; /* less F = 1 */
+  if (dimension > known) s->out->unproved += dimension - known;
+  int weak = space->space.gap < GAP_WEAK;
+  if (!weak && !s->out->unproved) return;
+  uint32_t more = try_solution_shifts(s->e, s->out);
+  s->out->unproved -= more < s->out->unproved ? more : s->out->unproved;
+  if (weak) s->out->note = "rates or couplings lie so close to one another that some may be missing";
+}
+
+/* Number of solutions at a choice whose rate is complex: they oscillate and grow at once. */
+static uint32_t complex_rates(SymmetrySearch *s, uint32_t choice) {
+  const SolutionSpace *space = noether_space_at(s, choice);
+  return space->sure ? space_rates(s->scratch, space).others : 0;
+}
+
+static void use_attempt(SymmetrySearch *s, uint32_t attempt) {
+  s->out->attempt = attempt;
+  s->choices = choices_new(s->scratch, s->e, attempt);
+  s->spaces = ARENA_ARRAY(s->scratch, SolutionSpace, noether_choices(s));
+}
+
+enum { ATTEMPTS = 12 };
+
+/* Chooses values of the parameters, and others where some rate is complex and has no closed form: a trap that does not confine. */
+static void draw_parameters(SymmetrySearch *s) {
+  use_attempt(s, s->first);
+  if (s->ansatz->has_time || !s->e->n || !s->choices.n || !(complex_rates(s, CHOICE_FIRST) + complex_rates(s, CHOICE_SECOND))) return;
+  for (uint32_t attempt = 1; attempt < ATTEMPTS; attempt++) {
+    use_attempt(s, s->first + attempt);
+    if (complex_rates(s, CHOICE_FIRST) + complex_rates(s, CHOICE_SECOND) == 0) return;
+  }
+  use_attempt(s, s->first);
+}
+
+static void search_work(Arena *scratch, void *data) {
+  SymmetrySearch *s = data;
+  s->scratch = scratch;
+  s->ansatz = ansatz_new(scratch, s->e);
+  draw_parameters(s);
+  if (s->ansatz->has_time || !s->e->n) search_listed(s);
+  else search_autonomous(s);
+  if (s->out->searched) return;
+  try_usual_symmetries(s->e, s->out);
+  try_solution_shifts(s->e, s->out);
+  s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and turns of all of a kind together, shifts along solutions of single coordinates";
+  s->out->note = "the linear equations of the search for more could not be solved reliably";
+}
+
+const char *noether_note_on_impacts(const Model *m) {
+  uint32_t setting = 0;
+  if (m->contacts.n) return "impacts and contacts change charges: what is said holds between them";
+  for (uint32_t i = 0; i < m->events.n; i++) setting += m->events.at[i].actions.n > 0;
+  return setting ? "events change charges: what is said holds between them" : NULL;
+}
+
+static FoundSymmetries search_from(Eqns *e, uint32_t first) {
+  FoundSymmetries out = {0};
+  SymmetrySearch s = {.e = e, .g = e->g, .first = first, .out = &out};
+  normal_with_scratch(e->g, search_work, &s);
+  return out;
+}
+
+/* Searches again with other values of the parameters if more than a fifth of the generators are unproved: the equations at random states were
+ * badly conditioned. Fewer have other reasons. */
+static FoundSymmetries search_twice(Eqns *e) {
+  FoundSymmetries out = search_from(e, 0);
+  if (4 * out.unproved <= out.all.n) return out;
+  FoundSymmetries again = search_from(e, ATTEMPTS);
+  return again.all.n > out.all.n ? again : out;
+}
+
+FoundSymmetries noether_find(Eqns *e) {
+  FoundSymmetries out = {0};
+  if (too_large_to_search(e)) try_usual_symmetries(e, &out);
+  else out = search_twice(e);
+  out.galilean = has_galilean_charges(&out);
+  if (!out.note) out.note = noether_note_on_impacts(e->m);
+  return out;
+}

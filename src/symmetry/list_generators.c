@@ -1,0 +1,203 @@
+/* Turns rows of tables into generators, proves and names them, and lists those that are proved. */
+#include "symmetry/find_symmetries_impl.h"
+#include "symmetry/symmetry_names.h"
+#include "symmetry/polynomial_rows.h"
+#include "symmetry/integer_generators.h"
+#include "sym/diff.h"
+
+/* The function of time that a block of a family stands for. */
+static Expr time_function(SymmetrySearch *s, const Family *f, uint32_t block) {
+  ExprGraph *g = s->g;
+  Expr t = expr_symbol(g, s->e->m->time)->node;
+  if (f->kind == TIME_LISTED) return f->times.f[block];
+  if (f->kind == TIME_POWERS) return expr_pow_num(g, t, num_int(block));
+  Expr phase = expr_mul(g, f->rate, t), power = expr_pow_num(g, t, num_int(block / 2));
+  if (f->kind == TIME_CIRCULAR) return expr_mul(g, power, expr_fn(g, block % 2 ? EX_SIN : EX_COS, phase));
+  return expr_mul(g, power, expr_fn(g, EX_EXP, block % 2 ? expr_neg(g, phase) : phase));
+}
+
+/* Scales a row so that its numbers are whole, without a common factor. */
+static void clear_fractions(SymmetrySearch *s, Expr *c, size_t n) {
+  Num common = num_int(0);
+  for (size_t k = 0; k < n; k++) {
+    Num number = num_int(1);
+    if (expr_is_zero(s->g, c[k])) continue;
+    if (expr_is_num(s->g, c[k])) number = expr_number(s->g, c[k]);
+    else expr_pair(s->g, c[k], EX_SUM, 0, &number);
+    common = num_is_zero(common) ? num_abs(number) : num_gcd(common, number);
+  }
+  if (num_is_zero(common) || !num_is_exact(common)) return;
+  for (size_t k = 0; k < n; k++) c[k] = expr_scale(s->g, num_div(num_int(1), common), c[k]);
+}
+
+/* Lowest whole exponent of x in the monomials c; 0: none is negative. */
+static int32_t lowest_power(const ExprGraph *g, const Expr *c, size_t n, Expr x) {
+  int32_t lowest = 0;
+  for (size_t k = 0; k < n; k++) {
+    Num number, power;
+    Expr term = expr_pair(g, c[k], EX_SUM, 0, &number);
+    for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++)
+      if (expr_pair(g, term, EX_PROD, i, &power) == x && num_is_int(power) && power.num < lowest) lowest = (int32_t)power.num;
+  }
+  return lowest;
+}
+
+/* Clears parameters from denominators: m1/m2*x1 + x2 becomes m1*x1 + m2*x2. */
+static void clear_parameters(SymmetrySearch *s, Expr *c, size_t n) {
+  ExprGraph *g = s->g;
+  for (uint32_t p = 0; p < s->choices.n; p++) {
+    Expr x = expr_symbol(g, s->choices.param[p])->node;
+    int32_t lowest = lowest_power(g, c, n, x);
+    if (lowest == 0) continue;
+    Expr factor = expr_pow_num(g, x, num_int(-lowest));
+    for (size_t k = 0; k < n; k++) c[k] = expr_mul(g, c[k], factor);
+  }
+}
+
+static Expr phi(SymmetrySearch *s, uint32_t k) { return k ? expr_symbol(s->g, s->ansatz->q[k - 1])->node : expr_int(s->g, 1); }
+
+/* xi and *tau from the coefficients c. */
+static Expr *components(SymmetrySearch *s, const FamilyTables *t, const Expr *c, Expr *tau) {
+  const Ansatz *a = s->ansatz;
+  Expr *xi = ARENA_ARRAY(s->e->m->arena, Expr, a->n + 1);
+  *tau = expr_int(s->g, 0);
+  for (uint32_t i = 0; i < a->n; i++) xi[i] = expr_int(s->g, 0);
+  for (uint32_t m = 0; m < t->at[0].blocks; m++, c += a->shown) {
+    Expr of_time = time_function(s, t->family, m);
+    *tau = expr_add(s->g, *tau, expr_mul(s->g, c[0], of_time));
+    for (uint32_t j = 0; j < a->xi.n; j++) {
+      if (expr_is_zero(s->g, c[1 + j])) continue;
+      Expr term = expr_mul(s->g, c[1 + j], of_time);
+      term = expr_mul(s->g, term, phi(s, a->xi.at[j].k));
+      xi[a->xi.at[j].i] = expr_add(s->g, xi[a->xi.at[j].i], term);
+    }
+  }
+  return xi;
+}
+
+/* Generator from coefficients to->c, cleared of fractions; in y where the forms have names. */
+static void make_generator(SymmetrySearch *s, const FamilyTables *t, const CoordinateNames *names, GeneratorRow *to) {
+  const LinearForms *forms = s->ansatz->forms;
+  size_t shown = s->ansatz->shown, n = t->at[0].blocks * shown;
+  int named = forms && forms->named;
+  Expr *own = ARENA_ARRAY(s->scratch, Expr, n + 1);
+  for (size_t k = 0; k < n && forms && !named; k += shown) forms_to_coordinates(forms, s->g, to->c + k + 1);
+  clear_parameters(s, to->c, n);
+  clear_fractions(s, to->c, n);
+  to->ansatz = s->ansatz;
+  to->kind = t->family->kind;
+  to->blocks = t->at[0].blocks;
+  orient_generator(names, to);
+  memcpy(own, to->c, n * sizeof *own);
+  for (size_t k = 0; k < n && named; k += shown) forms_to_coordinates(forms, s->g, own + k + 1);
+  to->by.xi = components(s, t, own, &to->by.tau);
+  if (named) to->by.eta = components(s, t, to->c, &to->by.tau);
+}
+
+/* Generator from coefficients to->c of M xi, which are whole numbers. 0: those of xi are too long. */
+static int make_lowered(SymmetrySearch *s, const FamilyTables *t, const Num *M, const CoordinateNames *names, GeneratorRow *to) {
+  size_t n = t->at[0].blocks * s->ansatz->shown;
+  Expr *own = ARENA_ARRAY(s->scratch, Expr, n + 1);
+  to->ansatz = s->ansatz;
+  to->kind = t->family->kind;
+  to->blocks = t->at[0].blocks;
+  orient_generator(names, to);
+  memcpy(own, to->c, n * sizeof *own);
+  if (!raise_generator(s->scratch, s->ansatz, M, to->blocks, own)) return 0;
+  to->by.lowered = components(s, t, to->c, &to->by.tau);
+  to->by.xi = components(s, t, own, &to->by.tau);
+  to->c = own;
+  return 1;
+}
+
+/* Whether xi preserves lengths in the metric of the kinetic energy: M times its linear part is antisymmetric. */
+static int turns(SymmetrySearch *s, const Generator *by) {
+  enum { COORDINATES_MOST = 20 };
+  const Eqns *e = s->e;
+  ExprGraph *g = s->g;
+  size_t n = e->n;
+  Expr *W = ARENA_ARRAY(s->scratch, Expr, n * n + 1); /* M times the linear part */
+  if (!n || n > COORDINATES_MOST || !e->mass_known || !e->constant_mass || !expr_is_zero(g, by->tau)) return 0;
+  for (size_t k = 0; k < n * n; k++) W[k] = expr_int(g, 0);
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    const MassEntry *m = &e->mass.at[k];
+    for (size_t j = 0; j < n; j++) {
+      Expr one = expr_mul(g, m->e, expr_diff(g, by->xi[m->col], s->ansatz->q[j])), other = expr_mul(g, m->e, expr_diff(g, by->xi[m->row], s->ansatz->q[j]));
+      W[m->row * n + j] = expr_add(g, W[m->row * n + j], one);
+      if (m->row != m->col) W[m->col * n + j] = expr_add(g, W[m->col * n + j], other);
+    }
+  }
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j <= i; j++)
+      if (prove_zero(g, expr_add(g, W[i * n + j], W[j * n + i]), NULL) != PROVED_ZERO) return 0;
+  return 1;
+}
+
+/* Whether the verdict counts as proved. Contacts are open at random states, so that their constraints do not matter. */
+static int is_proved(const SymmetrySearch *s, const Noether *is) {
+  return (is->is == INVARIANT || is->is == INVARIANT_UP_TO_F) && !is->broken && (!is->by_value || s->ansatz->held.n == 0);
+}
+
+/* Lists a row with recognised coefficients (of M xi where M is given), if it is proved. */
+static int add_row(SymmetrySearch *s, const FamilyTables *t, const Num *M, Expr *c) {
+  GeneratorRow r = {.c = c};
+  CoordinateNames names = coordinate_names(s->e, s->ansatz->forms);
+  if (!M) make_generator(s, t, &names, &r);
+  else if (!make_lowered(s, t, M, &names, &r)) return 0;
+  FoundSymmetry found = {.is = noether_prove(s->e, &r.by), .by = r.by, .forms = r.by.eta ? s->ansatz->forms : NULL, .rate = t->family->rate};
+  if (!is_proved(s, &found.is)) return 0;
+  r.turns = turns(s, &r.by);
+  name_symmetry(&names, &r, &found);
+  vec_push(s->e->m->arena, &s->out->all, found);
+  return 1;
+}
+
+/* Adds a row to the listed ones; 0: it depends on them linearly. */
+static int add_independent(DenseRows *listed, const long double *row) {
+  long double *kept = listed->at + (size_t)listed->n * listed->width;
+  memcpy(kept, row, listed->width * sizeof *kept);
+  if (dense_gram_schmidt(listed->width, kept, listed->at, listed->n) < 1e-6L) return 0;
+  listed->n++;
+  return 1;
+}
+
+/* Lists rows whose M xi are short whole numbers. */
+static void add_whole(SymmetrySearch *s, FamilyTables *t, DenseRows *listed) {
+  Arena *a = s->scratch;
+  const Num *M = exact_mass(a, s->ansatz);
+  if (!M || t->family->kind == TIME_LISTED || !noether_shapes_agree(s, t)) return;
+  DenseRows space = polynomial_common_rows(a, &s->choices, t->at, noether_choices(s));
+  Expr **c = ARENA_ARRAY(a, Expr *, space.n + 1);
+  long double **value = ARENA_ARRAY(a, long double *, space.n + 1);
+  uint32_t count = integer_generators(a, s->ansatz, M, &space, c, value);
+  for (uint32_t k = 0; k < count && listed->n < t->at[0].rows; k++)
+    if (add_independent(listed, value[k]) && !add_row(s, t, M, c[k])) listed->n--;
+}
+
+/* Lists rows that are polynomials of parameters and independent of the listed ones. */
+static void add_parametric(SymmetrySearch *s, FamilyTables *t, DenseRows *listed) {
+  if (t->family->kind == TIME_LISTED || !noether_shapes_agree(s, t)) return;
+  PolynomialRows rows = polynomial_rows(s->scratch, &s->choices, t->at, noether_choices(s));
+  for (uint32_t k = 0; k < rows.n && listed->n < t->at[0].rows; k++)
+    if (add_independent(listed, rows.at[k].value) && !add_row(s, t, NULL, rows.at[k].c)) listed->n--;
+}
+
+void noether_add_family(SymmetrySearch *s, const Family *f) {
+  FamilyTables t = {.family = f, .at = ARENA_ARRAY(s->scratch, GeneratorTable, noether_choices(s))};
+  for (uint32_t i = 0; i < CHOICE_MOVED; i++) t.at[i] = generator_table_at(s, f, i);
+  uint32_t width = t.at[0].blocks * t.at[0].shown, rows = t.at[0].rows;
+  DenseRows listed = {.width = width, .at = ARENA_ARRAY(s->scratch, long double, (size_t)(rows + 1) * width + 1)};
+  if (!table_same_shape(&t.at[0], &t.at[1])) {
+    s->out->unproved += rows;
+    return;
+  }
+  add_whole(s, &t, &listed);
+  for (uint32_t row = 0; row < rows && listed.n < rows; row++) {
+    Expr *c = ARENA_ARRAY(s->scratch, Expr, width + 1);
+    const long double *values = t.at[0].at + (size_t)row * width;
+    if (!noether_recognise(s, &t, row, c) || !add_independent(&listed, values)) continue;
+    if (!add_row(s, &t, NULL, c)) listed.n--;
+  }
+  if (listed.n < rows) add_parametric(s, &t, &listed);
+  s->out->unproved += rows - listed.n;
+}

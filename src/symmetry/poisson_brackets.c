@@ -1,0 +1,386 @@
+/* Fits each bracket to the charges at random states for every choice of parameter values, recognises the coefficients as expressions, and proves
+ * the combination against the symbolic bracket. */
+#include "symmetry/poisson_brackets.h"
+
+#include <math.h>
+
+#include "base/dense.h"
+#include "mech/lagrange.h"
+#include "symmetry/linear_forms.h"
+#include "symmetry/number_recognition.h"
+#include "sym/diff.h"
+#include "sym/eval.h"
+#include "sym/normal_form.h"
+#include "sym/simplify.h"
+
+enum { CHARGES_MOST = 48, SPARE_STATES = 6 };
+
+typedef struct {
+  Eqns *e;
+  ExprGraph *g;
+  Arena *scratch;
+  const FoundSymmetries *of;
+  uint32_t n, r, pairs; /* numbers of coordinates, charges, pairs of charges */
+  const SymId *q, *v;   /* [n] */
+  EvalTape *tape;       /* [r] charges, [r*n] dQ/dq, [r*n] dQ/dv, [n*n] M or omega, [n*n] dp/dq */
+  uint32_t roots;
+  Choices choices;
+  const LinearForms *forms; /* or NULL */
+  int in_forms;         /* charge, F, dLdq and p are written in y, in which numbers are small */
+  Expr *charge, *F;     /* [r] */
+  Expr *dLdq;           /* [n] */
+  const Expr *p;        /* [n] */
+  Algebra *out;
+} BracketFit;
+
+static const FoundSymmetry *at(const BracketFit *w, uint32_t a) { return &w->of->all.at[a]; }
+static Expr node(const BracketFit *w, SymId s) { return expr_symbol(w->g, s)->node; }
+
+/* --- in numbers --- */
+
+/* M, or omega of a first-order L, as a full square matrix of nodes. */
+static void form_roots(const BracketFit *w, Expr *to) {
+  const Entries *form = w->e->n ? &w->e->mass : &w->e->first.form;
+  for (size_t k = 0; k < (size_t)w->n * w->n; k++) to[k] = expr_int(w->g, 0);
+  for (uint32_t k = 0; k < form->n; k++) {
+    MassEntry x = form->at[k];
+    to[x.row * w->n + x.col] = x.e;
+    if (w->e->n) to[x.col * w->n + x.row] = x.e;
+  }
+}
+
+static void make_tape(BracketFit *w) {
+  size_t n = w->n, r = w->r, count = 0;
+  Expr *roots = ARENA_ARRAY(w->scratch, Expr, r + 2 * r * n + 2 * n * n + 1);
+  for (uint32_t a = 0; a < r; a++) roots[count++] = at(w, a)->is.charge;
+  for (uint32_t a = 0; a < r; a++, count += n) expr_gradient(w->g, at(w, a)->is.charge, w->q, w->n, roots + count);
+  for (uint32_t a = 0; a < r; a++, count += n) expr_gradient(w->g, at(w, a)->is.charge, w->v, w->n, roots + count);
+  form_roots(w, roots + count);
+  count += n * n;
+  for (uint32_t i = 0; i < n && w->e->n; i++, count += n) expr_gradient(w->g, w->e->p[i], w->q, w->n, roots + count);
+  w->roots = (uint32_t)count;
+  w->tape = eval_tape(w->g, roots, w->roots);
+}
+
+/* Solves m x = b for each row b of `rows`, [count*n], in place; m[n*n]. 0: m has no inverse. */
+static int solve(Arena *a, uint32_t n, const long double *m, uint32_t count, long double *rows) {
+  size_t w = (size_t)n + count;
+  long double *both = ARENA_ARRAY(a, long double, n * w + 1), largest = 0;
+  uint32_t *pivot = ARENA_ARRAY(a, uint32_t, n + 1);
+  for (size_t i = 0; i < n; i++) {
+    for (size_t j = 0; j < n; j++) largest = fmaxl(largest, fabsl(both[i * w + j] = m[i * n + j]));
+    for (size_t k = 0; k < count; k++) both[i * w + n + k] = rows[k * n + i];
+  }
+  dense_echelon(n, (uint32_t)w, both, 1e-13L * largest, pivot);
+  for (size_t i = 0; i < n; i++) {
+    if (pivot[i] != i || both[i * w + i] == 0) return 0;
+    for (size_t k = 0; k < count; k++) rows[k * n + i] = both[i * w + n + k];
+  }
+  return 1;
+}
+
+/* Replaces the derivatives by q and v with those in phase space. 0: M (or omega) has no inverse. */
+static int to_phase_space(const BracketFit *w, long double *out) {
+  size_t n = w->n, r = w->r;
+  long double *by_q = out + r, *by_v = by_q + r * n, *form = by_v + r * n, *slope = form + n * n;
+  if (!w->e->n) memcpy(by_v, by_q, r * n * sizeof *by_v);
+  if (!solve(w->scratch, w->n, form, w->r, by_v)) return 0;
+  for (size_t a = 0; a < r && w->e->n; a++)
+    for (size_t i = 0; i < n; i++)
+      for (size_t j = 0; j < n; j++) by_q[a * n + j] -= by_v[a * n + i] * slope[i * n + j];
+  return 1;
+}
+
+static long double largest(const long double *x, size_t n) {
+  long double most = 0;
+  for (size_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
+  return most;
+}
+
+/* Brackets [pairs] at a state from derivatives in phase space; size[pairs] keeps the largest products of derivatives so far, the measure for
+ * rounding. */
+static void all_brackets(const BracketFit *w, const long double *out, long double *to, long double *size) {
+  size_t n = w->n;
+  const long double *by_q = out + w->r, *by_p = by_q + w->r * n;
+  for (size_t a = 0; a < w->r; a++)
+    for (size_t b = a + 1; b < w->r; b++, to++, size++) {
+      const long double *aq = by_q + a * n, *bq = by_q + b * n, *ap = by_p + a * n, *bp = by_p + b * n;
+      *to = 0;
+      for (size_t i = 0; i < n; i++) *to += aq[i] * bp[i] - (w->e->n ? ap[i] * bq[i] : 0);
+      *size = fmaxl(*size, largest(aq, n) * largest(bp, n) + largest(ap, n) * largest(bq, n));
+    }
+}
+
+typedef struct {
+  uint32_t states;
+  long double *charges;  /* [states*(r + 1)] charges and a 1 behind them, divided by scale */
+  long double *brackets; /* [states*pairs] */
+  long double *scale;    /* [r + 1] largest magnitude of each charge */
+  long double *size;     /* [pairs] see all_brackets */
+} Sample;
+
+static Sample sample_new(const BracketFit *w, uint32_t states) {
+  size_t m = w->r + 1;
+  return (Sample){states, ARENA_ARRAY(w->scratch, long double, states * m), ARENA_ARRAY(w->scratch, long double, (size_t)states * w->pairs + 1),
+                  ARENA_ARRAY(w->scratch, long double, m), ARENA_ARRAY(w->scratch, long double, w->pairs + 1)};
+}
+
+/* Scales each charge to largest magnitude 1. */
+static void scale_charges(const BracketFit *w, Sample *x) {
+  size_t m = w->r + 1;
+  for (size_t k = 0; k < m; k++) {
+    for (size_t s = 0; s < x->states; s++) x->scale[k] = fmaxl(x->scale[k], fabsl(x->charges[s * m + k]));
+    if (x->scale[k] == 0) x->scale[k] = 1;
+    for (size_t s = 0; s < x->states; s++) x->charges[s * m + k] /= x->scale[k];
+  }
+}
+
+/* Evaluates charges and brackets at random states. 0: too few states have finite values. */
+static int draw_sample(const BracketFit *w, uint32_t choice, Sample *x) {
+  uint32_t count = expr_symbol_count(w->g) + 1, done = 0;
+  long double *symbols = ARENA_ARRAY(w->scratch, long double, count), *out = ARENA_ARRAY(w->scratch, long double, w->roots + 1);
+  for (uint32_t seed = 1; done < x->states && seed < 20 + 4 * x->states; seed++) {
+    int finite = 1;
+    sample_state(w->g, 50 + seed, symbols);
+    for (uint32_t k = 0; k < w->choices.n; k++) symbols[w->choices.param[k]] = w->choices.at[choice][w->choices.param[k]];
+    eval_run(w->tape, symbols, out);
+    for (uint32_t k = 0; k < w->roots; k++) finite = finite && isfinite(out[k]);
+    if (!finite || !to_phase_space(w, out)) continue;
+    memcpy(x->charges + (size_t)done * (w->r + 1), out, w->r * sizeof *out);
+    x->charges[(size_t)done * (w->r + 1) + w->r] = 1;
+    all_brackets(w, out, x->brackets + (size_t)done * w->pairs, x->size);
+    done++;
+  }
+  scale_charges(w, x);
+  return done == x->states;
+}
+
+/* Checks coefficients c[r + 1] of one bracket, which the first states gave, at the others. NAN: the bracket is no combination of charges. */
+static void check_fit(const BracketFit *w, const Sample *x, size_t pair, long double *c) {
+  uint32_t m = w->r + 1;
+  long double worst = 0;
+  for (size_t s = m; s < x->states; s++) {
+    long double left = x->brackets[s * w->pairs + pair];
+    for (uint32_t k = 0; k < m; k++) left -= c[k] * x->charges[s * m + k];
+    worst = fmaxl(worst, fabsl(left));
+  }
+  for (uint32_t k = 0; k < m; k++) {
+    if (worst > 1e-8L * x->size[pair]) c[k] = NAN;
+    else c[k] = fabsl(c[k]) < 1e-10L * x->size[pair] ? 0 : c[k] / x->scale[k];
+  }
+}
+
+/* Coefficients of all brackets, [pairs*(r + 1)]; NAN where a bracket is no combination. 0: they cannot be had. */
+static int fit(const BracketFit *w, uint32_t choice, long double *c) {
+  uint32_t m = w->r + 1;
+  Sample x = sample_new(w, m + SPARE_STATES);
+  if (!draw_sample(w, choice, &x)) return 0;
+  for (size_t pair = 0; pair < w->pairs; pair++)
+    for (size_t s = 0; s < m; s++) c[pair * m + s] = x.brackets[s * w->pairs + pair];
+  if (!solve(w->scratch, m, x.charges, w->pairs, c)) return 0;
+  for (size_t pair = 0; pair < w->pairs; pair++) check_fit(w, &x, pair, c + pair * m);
+  return 1;
+}
+
+/* --- symbolically --- */
+
+/* Charges, F, dL/dq and p for symbolic brackets; in y where all generators are known in y. */
+static void choose_symbols(BracketFit *w) {
+  ExprGraph *g = w->g;
+  Expr *all = ARENA_ARRAY(w->scratch, Expr, 2 * (size_t)w->r + w->n + 1);
+  w->charge = all, w->F = all + w->r, w->dLdq = w->F + w->r;
+  w->in_forms = w->forms != NULL;
+  for (uint32_t a = 0; a < w->r; a++) {
+    w->in_forms = w->in_forms && at(w, a)->by.eta;
+    w->charge[a] = at(w, a)->is.charge;
+    w->F[a] = at(w, a)->is.F;
+  }
+  for (uint32_t i = 0; i < w->n && w->e->n; i++) w->dLdq[i] = w->in_forms ? expr_diff(g, w->forms->L, w->q[i]) : w->e->dLdq[i];
+  w->p = w->in_forms ? w->forms->p : w->e->p;
+  if (w->in_forms) expr_replace_nodes(g, w->charge, 2 * w->r, w->forms->node.at, w->forms->is.at, w->forms->node.n, w->charge);
+}
+
+/* dA/dp_i and dA/dq_i at fixed p, A the charge number a. */
+static void slopes(const BracketFit *w, uint32_t a, Expr *by_p, Expr *by_q) {
+  ExprGraph *g = w->g;
+  const Generator *by = &at(w, a)->by;
+  const Expr *xi = w->in_forms ? by->eta : by->xi;
+  Expr *of_xi = ARENA_ARRAY(w->scratch, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr rate = w->e->n ? node(w, w->v[i]) : w->e->first.rates[i], moved = expr_mul(g, by->tau, rate), fall = expr_diff(g, w->F[a], w->q[i]);
+    by_p[i] = expr_sub(g, xi[i], moved);
+    by_q[i] = w->e->n ? expr_sub(g, expr_mul(g, by->tau, w->dLdq[i]), fall) : expr_int(g, 0);
+  }
+  for (uint32_t k = 0; k < w->n && w->e->n; k++) {
+    expr_gradient(g, xi[k], w->q, w->n, of_xi);
+    for (uint32_t i = 0; i < w->n; i++) by_q[i] = expr_add(g, by_q[i], expr_mul(g, w->p[k], of_xi[i]));
+  }
+}
+
+static int is_energy(const BracketFit *w, uint32_t a) { return at(w, a)->kind == SYMMETRY_ENERGY && expr_is_zero(w->g, at(w, a)->is.power); }
+
+/* {Q, E} of a conserved E is minus the explicit time derivative of Q, as Q is already proved conserved. */
+static Expr with_energy(const BracketFit *w, uint32_t a) { return expr_neg(w->g, expr_diff(w->g, w->charge[a], w->e->m->time)); }
+
+static Expr symbolic(const BracketFit *w, uint32_t a, uint32_t b) {
+  ExprGraph *g = w->g;
+  Expr *all = ARENA_ARRAY(w->scratch, Expr, 4 * (size_t)w->n + 1), *ap = all, *aq = ap + w->n, *bp = aq + w->n, *bq = bp + w->n, sum = expr_int(g, 0);
+  if (is_energy(w, b) && expr_is_zero(g, at(w, a)->is.power)) return with_energy(w, a);
+  if (is_energy(w, a) && expr_is_zero(g, at(w, b)->is.power)) return expr_neg(g, with_energy(w, b));
+  slopes(w, a, ap, aq);
+  slopes(w, b, bp, bq);
+  if (!w->e->n) { /* minus the change of B under A */
+    expr_gradient(g, w->charge[b], w->q, w->n, bq);
+    for (uint32_t i = 0; i < w->n; i++) sum = expr_sub(g, sum, expr_mul(g, bq[i], ap[i]));
+    return sum;
+  }
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr one = expr_mul(g, aq[i], bp[i]), other = expr_mul(g, ap[i], bq[i]), both = expr_sub(g, one, other);
+    sum = expr_add(g, sum, both);
+  }
+  return sum;
+}
+
+/* --- the brackets --- */
+
+/* The nearest whole number, where there are no parameters: a guess that needs a proof. */
+static Expr nearest(const BracketFit *w, const long double *x) {
+  long double whole = roundl(x[CHOICE_FIRST]);
+  if (w->choices.n || !(fabsl(x[CHOICE_FIRST] - whole) < 0.1L) || !(fabsl(whole) < 9e18L)) return 0;
+  return expr_num(w->g, num_int((int64_t)whole));
+}
+
+/* A coefficient from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges; if `bold`, a guess.
+ * 0: not recognised. */
+static Expr recognise(const BracketFit *w, long double *const *fits, size_t place, int bold) {
+  long double *x = ARENA_ARRAY(w->scratch, long double, 2 + w->choices.n);
+  int zero = 1;
+  Num c;
+  for (uint32_t k = 0; k < 2 + w->choices.n; k++) {
+    x[k] = fits[k][place];
+    zero = zero && x[k] == 0;
+    if (isnan(x[k])) return 0;
+  }
+  if (zero) return expr_int(w->g, 0);
+  if (bold) return nearest(w, x);
+  if (fabsl(x[CHOICE_FIRST] - x[CHOICE_SECOND]) < 1e-9L * fabsl(x[CHOICE_FIRST]) && recognise_rational(x[CHOICE_FIRST], &c)) return expr_num(w->g, c);
+  Expr known = recognise_ratio(&w->choices, x);
+  for (uint32_t a = 0; a < w->r && !known; a++)
+    if (at(w, a)->rate) known = recognise_power(&w->choices, x, at(w, a)->rate);
+  for (uint32_t a = 0; a < w->r && !known; a++)
+    if (at(w, a)->rate) known = recognise_ratio_power(&w->choices, x, at(w, a)->rate);
+  if (!known) known = recognise_linear(&w->choices, x);
+  return known ? known : recognise_monomial(&w->choices, x);
+}
+
+static int is_constant(const BracketFit *w, Expr x) { return (expr_kinds(w->g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
+
+/* The constant of a bracket, its difference from the combination of charges: by simplification, or recognised and then proved. */
+static void find_bracket_constant(const BracketFit *w, Bracket *k, long double *const *fits, size_t place, int bold) {
+  ExprGraph *g = w->g;
+  Expr sum = expr_int(g, 0), left;
+  for (uint32_t i = 0; i < w->r; i++) sum = expr_add(g, sum, expr_mul(g, k->c[i], w->charge[i]));
+  left = simplify(g, expr_sub(g, k->value, sum));
+  k->constant = left;
+  k->proved = is_constant(w, left);
+  if (k->proved) return;
+  k->constant = recognise(w, fits, place + w->r, bold);
+  if (k->constant) k->proved = forms_prove_zero(w->in_forms ? NULL : w->forms, g, expr_sub(g, left, k->constant)) == PROVED_ZERO;
+  else k->c = NULL;
+}
+
+/* Whether the fit has failed at every choice; failures at some are rounding and prove nothing. */
+static int is_outside(const BracketFit *w, long double *const *fits, size_t place) {
+  for (uint32_t k = 0; k < 2 + w->choices.n; k++)
+    if (!isnan(fits[k][place])) return 0;
+  return 1;
+}
+
+/* The bracket with its coefficients; c NULL: one is not recognised. */
+static Bracket combined(const BracketFit *w, Bracket k, long double *const *fits, size_t place, int bold) {
+  Expr *c = ARENA_ARRAY(w->e->m->arena, Expr, w->r + 1);
+  k.c = c;
+  for (uint32_t i = 0; i < w->r && k.c; i++)
+    if (!(c[i] = recognise(w, fits, place + i, bold))) k.c = NULL;
+  if (k.c) find_bracket_constant(w, &k, fits, place, bold);
+  return k;
+}
+
+static Bracket bracket_of(const BracketFit *w, uint32_t a, uint32_t b, long double *const *fits, size_t place) {
+  Bracket k = {.a = a, .b = b, .constant = expr_int(w->g, 0), .value = symbolic(w, a, b), .is_outside = is_outside(w, fits, place)};
+  Bracket known = combined(w, k, fits, place, 0);
+  if (known.c && known.proved) return known;
+  Bracket guess = combined(w, k, fits, place, 1);
+  if (guess.c && guess.proved) return guess;
+  if (known.c) return known;
+  k.value = simplify(w->g, k.value);
+  if (!expr_is_zero(w->g, k.value)) return k;
+  Expr *c = ARENA_ARRAY(w->e->m->arena, Expr, w->r + 1);
+  for (uint32_t i = 0; i < w->r; i++) c[i] = k.value; /* all 0: rounding spoilt the fit */
+  k.c = c;
+  k.constant = k.value;
+  k.proved = 1;
+  return k;
+}
+
+static Bracket bracket(const BracketFit *w, uint32_t a, uint32_t b, long double *const *fits, size_t place) {
+  Bracket k = bracket_of(w, a, b, fits, place);
+  if (w->in_forms) k.value = forms_back(w->forms, w->g, k.value);
+  return k;
+}
+
+/* Whether a bracket is 0. */
+static int is_null(const BracketFit *w, const Bracket *k) {
+  for (uint32_t i = 0; k->c && i < w->r; i++)
+    if (!expr_is_zero(w->g, k->c[i])) return 0;
+  return k->c && expr_is_zero(w->g, k->constant);
+}
+
+static void compute_brackets(Arena *scratch, void *data) {
+  BracketFit *w = data;
+  w->scratch = scratch;
+  w->choices = choices_new(scratch, w->e, w->of->attempt);
+  make_tape(w);
+  choose_symbols(w);
+  uint32_t choices = 2 + w->choices.n;
+  long double **fits = ARENA_ARRAY(scratch, long double *, choices);
+  for (uint32_t k = 0; k < choices; k++) {
+    fits[k] = ARENA_ARRAY(scratch, long double, (size_t)w->pairs * (w->r + 1) + 1);
+    if (!fit(w, k, fits[k])) {
+      w->out->why_not = "the charges depend on one another, or M has no inverse at random states";
+      return;
+    }
+  }
+  size_t place = 0;
+  for (uint32_t a = 0; a < w->r; a++)
+    for (uint32_t b = a + 1; b < w->r; b++, place += w->r + 1) {
+      Bracket k = bracket(w, a, b, fits, place);
+      w->out->by_value += !k.proved;
+      if (!is_null(w, &k)) vec_push(w->e->m->arena, &w->out->all, k);
+    }
+}
+
+static const char *reason_against(const Eqns *e, uint32_t r) {
+  if (e->constraints.n) return "the model has constraints, which take Dirac's brackets";
+  if (!e->n && (e->m->forces.n || e->m->dissipation)) return "L is linear in velocities, and forces change the form that brackets are taken with";
+  if (e->m->states.n && e->n) return "the model has states beside its coordinates";
+  if (r > CHARGES_MOST) return arena_printf(e->m->arena, "there are more than %d charges", CHARGES_MOST);
+  return NULL;
+}
+
+Algebra brackets_find(Eqns *e, const FoundSymmetries *of) {
+  Algebra out = {.n = of->all.n, .why_not = reason_against(e, of->all.n)};
+  BracketFit w = {.e = e, .g = e->g, .of = of, .n = eqns_coordinates(e), .r = of->all.n, .pairs = of->all.n * (of->all.n - 1) / 2, .out = &out};
+  SymId *q = ARENA_ARRAY(e->m->arena, SymId, 2 * (size_t)w.n + 1), *v = q + w.n;
+  if (out.why_not || of->all.n < 2) return out;
+  if (e->n && !e->mass_known) eqns_derive_mass(e);
+  for (uint32_t i = 0; i < w.n; i++) {
+    q[i] = eqns_coordinate(e, i);
+    v[i] = e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate;
+  }
+  w.q = q;
+  w.v = v;
+  w.forms = forms_new(e->m->arena, e);
+  normal_with_scratch(e->g, compute_brackets, &w);
+  return out;
+}

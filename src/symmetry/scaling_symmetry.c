@@ -1,0 +1,110 @@
+/* Scalings that multiply the action: exponents from the kernel of linear equations at random states, the same rationals at two choices of
+ * parameters, then proved term by term. */
+#include <math.h>
+
+#include "base/dense.h"
+#include "symmetry/find_symmetries.h"
+#include "symmetry/number_recognition.h"
+#include "sym/diff.h"
+#include "sym/eval.h"
+#include "sym/prove.h"
+
+typedef struct {
+  const Eqns *e;
+  ExprGraph *g;
+  Arena *scratch;
+  uint32_t n;
+  Scaling *out;
+  int found;
+} ScalingSearch;
+
+static Expr node(const ScalingSearch *w, SymId s) { return expr_symbol(w->g, s)->node; }
+static SymId q_of(const ScalingSearch *w, uint32_t i) { return w->e->m->coords.at[i].q; }
+static SymId v_of(const ScalingSearch *w, uint32_t i) { return w->e->m->coords.at[i].v; }
+
+/* Exponents alpha, beta, kappa up to a factor: the kernel of the equations at random states. NULL: it is not one-dimensional. */
+static const long double *exponents(ScalingSearch *w, const long double *parameters, uint32_t turn) {
+  enum { SPARE_ROWS = 8 };
+  ExprGraph *g = w->g;
+  Expr L = w->e->m->lagrangian, *roots = ARENA_ARRAY(w->scratch, Expr, 2 + 2 * (size_t)w->n);
+  uint32_t n = w->n, width = n + 2, rows = width + SPARE_ROWS, count = expr_symbol_count(g) + 1;
+  long double *m = ARENA_ARRAY(w->scratch, long double, (size_t)rows * width), *symbols = ARENA_ARRAY(w->scratch, long double, count);
+  long double *out = ARENA_ARRAY(w->scratch, long double, 2 + 2 * (size_t)n);
+  roots[0] = L;
+  roots[1] = expr_diff(g, L, w->e->m->time);
+  for (uint32_t i = 0; i < n; i++) roots[2 + i] = w->e->dLdq[i], roots[2 + n + i] = w->e->p[i];
+  EvalTape *tape = eval_tape(g, roots, 2 + 2 * n);
+  for (size_t r = 0; r < rows; r++) {
+    long double *row = m + r * width;
+    sample_state(g, 100 * turn + (uint32_t)r + 3, symbols);
+    for (SymId s = 1; s < count; s++)
+      if (expr_symbol(g, s)->kind == SYM_PARAM) symbols[s] = parameters[s];
+    eval_run(tape, symbols, out);
+    row[n] = out[0] + symbols[w->e->m->time] * out[1];
+    row[n + 1] = -out[0];
+    for (uint32_t i = 0; i < n; i++) {
+      long double moved = symbols[v_of(w, i)] * out[2 + n + i];
+      row[i] = symbols[q_of(w, i)] * out[2 + i] + moved;
+      row[n] -= moved;
+    }
+    for (uint32_t j = 0; j < width; j++)
+      if (!isfinite(row[j])) return NULL;
+  }
+  DenseRows kernel = dense_kernel(w->scratch, rows, width, m, 1e-12L);
+  return kernel.n == 1 && kernel.gap > 1e4L ? kernel.at : NULL;
+}
+
+/* Whether delta L = kappa L, term by term: each has the same dimension. */
+static int is_proved(ScalingSearch *w) {
+  ExprGraph *g = w->g;
+  Expr L = w->e->m->lagrangian;
+  uint32_t n = w->n;
+  SymId *syms = ARENA_ARRAY(w->scratch, SymId, 2 * (size_t)n + 1);
+  Expr *slope = ARENA_ARRAY(w->scratch, Expr, 2 * (size_t)n + 1);
+  for (uint32_t i = 0; i < n; i++) syms[i] = q_of(w, i), syms[n + i] = v_of(w, i);
+  syms[2 * n] = w->e->m->time;
+  for (uint32_t k = 0; k < expr_pairs(g, L, EX_SUM); k++) {
+    Num c;
+    Expr term = expr_pair(g, L, EX_SUM, k, &c), sum = expr_scale(g, num_sub(w->out->beta, w->out->kappa), term);
+    expr_gradient(g, term, syms, 2 * n + 1, slope);
+    for (uint32_t i = 0; i < 2 * n + 1; i++) {
+      Num by = i == 2 * n ? w->out->beta : i < n ? w->out->alpha[i] : num_sub(w->out->alpha[i - n], w->out->beta);
+      Expr moved = expr_mul(g, node(w, syms[i]), slope[i]);
+      sum = expr_add(g, sum, expr_scale(g, by, moved));
+    }
+    if (prove_zero(g, sum, NULL) != PROVED_ZERO) return 0;
+  }
+  return 1;
+}
+
+/* Divides x by the greatest common divisor of its elements. */
+static void make_whole(Num *x, uint32_t n) {
+  Num common = num_int(0);
+  for (uint32_t i = 0; i < n; i++)
+    if (!num_is_zero(x[i])) common = num_is_zero(common) ? num_abs(x[i]) : num_gcd(common, x[i]);
+  for (uint32_t i = 0; i < n; i++) x[i] = num_div(x[i], common);
+}
+
+static void scaling_work(Arena *scratch, void *data) {
+  ScalingSearch *w = data;
+  w->scratch = scratch;
+  Choices choices = choices_new(scratch, w->e, 0);
+  const long double *x = exponents(w, choices.at[CHOICE_FIRST], 1), *y = x ? exponents(w, choices.at[CHOICE_SECOND], 2) : NULL;
+  Num *whole = ARENA_ARRAY(w->e->m->arena, Num, w->n + 2), other;
+  uint32_t last = w->n + 1;
+  if (!y || fabsl(x[last]) < 1e-9L || fabsl(y[last]) < 1e-9L) return; /* kappa is 0: a symmetry in Noether's sense */
+  for (uint32_t i = 0; i <= last; i++)
+    if (!recognise_rational(x[i] / x[last], &whole[i]) || !recognise_rational(y[i] / y[last], &other) || !num_equal(whole[i], other)) return;
+  make_whole(whole, w->n + 2);
+  *w->out = (Scaling){whole, whole[w->n], whole[last]};
+  w->found = is_proved(w);
+}
+
+int noether_scaling(const Eqns *e, Scaling *found) {
+  ScalingSearch w = {.e = e, .g = e->g, .n = e->n, .out = found};
+  if (!e->n || e->constraints.n || e->m->states.n || expr_kinds(e->g, e->m->lagrangian) & 1u << SYM_INPUT) return 0;
+  for (uint32_t i = 0; i < e->n; i++)
+    if (!expr_is_zero(e->g, e->Q[i])) return 0;
+  normal_with_scratch(e->g, scaling_work, &w);
+  return w.found;
+}

@@ -1,0 +1,47 @@
+/* Names of the symmetries found, as physicists call them: momentum, rotation, boost, scaling. */
+#ifndef LAGC_SYMMETRY_SYMMETRY_NAMES_H
+#define LAGC_SYMMETRY_SYMMETRY_NAMES_H
+
+#include "symmetry/found_symmetry.h"
+#include "symmetry/generator_table.h"
+
+/* A row of a table with recognised coefficients: those of the generator by = (xi, tau). */
+typedef struct {
+  const Ansatz *ansatz;
+  TimeKind kind;
+  uint32_t blocks;
+  Expr *c;      /* [blocks*shown], as in Table */
+  int turns;    /* xi changes no length that the kinetic energy measures: M times its linear part is antisymmetric */
+  Generator by;
+} GeneratorRow;
+
+/* The coordinates that generators move: the model's, or the sums of them that L is written with, where these have names. */
+typedef struct {
+  ExprGraph *g;
+  Arena *arena;      /* for texts */
+  uint32_t n;
+  const Name *name;  /* [n] */
+} CoordinateNames;
+
+/* forms NULL, or without names: the model's own coordinates. */
+CoordinateNames coordinate_names(const Eqns *e, const LinearForms *forms);
+
+enum { AXIS_NONE = 3 };
+
+/* Axis of coordinate i by its name (r[2].x, x[2], x2, x): 0, 1, 2 for x, y, z; AXIS_NONE: none. Components of rotations have none. */
+uint32_t name_axis(const CoordinateNames *e, uint32_t i);
+const char *axis_text(uint32_t axis);
+
+/* Whether two components belong to one body: their names agree in all but the letter. */
+int name_same_body(Name a, Name b);
+
+/* Gives a row the sign of textbooks: the energy is E, a turn goes from x to y, from y to z, from z to x. */
+void orient_generator(const CoordinateNames *e, GeneratorRow *row);
+
+/* Sets kind, name, axis and of_all of a found symmetry from its row. */
+void name_symmetry(const CoordinateNames *e, const GeneratorRow *row, FoundSymmetry *to);
+
+/* Whether energy, three momenta, three angular momenta and three boosts are among them. */
+int has_galilean_charges(const FoundSymmetries *all);
+
+#endif

@@ -1,0 +1,164 @@
+/* Builds usual generators, proves each by noether_prove, and lists the proved ones. */
+#include "symmetry/usual_symmetries.h"
+
+#include "mech/lagrange.h"
+#include "symmetry/symmetry_names.h"
+#include "sym/diff.h"
+#include "sym/simplify.h"
+
+enum { SEARCH_MOST = 100, TRY_MOST = 1000, KINDS_MOST = 6 };
+
+typedef struct {
+  Eqns *e;
+  ExprGraph *g;
+  uint32_t n;
+  Expr t;
+  CoordinateNames names;
+  FoundSymmetries *out;
+} TrialWork;
+
+static Name name_of(const TrialWork *w, uint32_t i) { return expr_symbol(w->g, eqns_coordinate(w->e, i))->name; }
+static Expr node(const TrialWork *w, uint32_t i) { return expr_symbol(w->g, eqns_coordinate(w->e, i))->node; }
+
+static Expr *zero_components(const TrialWork *w) {
+  Expr *xi = ARENA_ARRAY(w->e->m->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) xi[i] = expr_int(w->g, 0);
+  return xi;
+}
+
+/* Lists the generator if it is proved. */
+static int try_one(TrialWork *w, const Expr *xi, Expr tau, FoundSymmetry as) {
+  as.by = (Generator){.xi = xi, .tau = tau};
+  as.is = noether_prove(w->e, &as.by);
+  if ((as.is.is != INVARIANT && as.is.is != INVARIANT_UP_TO_F) || as.is.by_value || as.is.broken) return 0;
+  vec_push(w->e->m->arena, &w->out->all, as);
+  return 1;
+}
+
+/* Whether two coordinates are of a kind: along one axis, or members of one family. */
+static int same_kind(const TrialWork *w, uint32_t i, uint32_t k) {
+  uint32_t a = name_axis(&w->names, i), b = name_axis(&w->names, k);
+  Name one = name_of(w, i), other = name_of(w, k);
+  size_t n = strcspn(one, "[");
+  if (a != AXIS_NONE || b != AXIS_NONE) return a == b;
+  return n == strcspn(other, "[") && memcmp(one, other, n) == 0;
+}
+
+/* A translation of all coordinates of i's kind, and a boost. */
+static void try_kind(TrialWork *w, uint32_t i) {
+  Arena *a = w->e->m->arena;
+  Expr *shift = zero_components(w), *boost = zero_components(w);
+  uint32_t axis = name_axis(&w->names, i);
+  int of_all = axis != AXIS_NONE;
+  for (uint32_t k = i; k < w->n; k++)
+    if (same_kind(w, i, k)) shift[k] = expr_int(w->g, 1), boost[k] = w->t;
+  Name what = of_all ? axis_text(axis) : arena_strndup(a, name_of(w, i), strcspn(name_of(w, i), "["));
+  try_one(w, shift, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_MOMENTUM, .name = arena_printf(a, "total momentum along %s", what), .of_all = of_all, .axis = axis});
+  try_one(w, boost, expr_int(w->g, 0),
+          (FoundSymmetry){.kind = SYMMETRY_BOOST, .name = arena_printf(a, "boost along %s: the centre of mass moves uniformly", what), .of_all = of_all, .axis = axis});
+}
+
+static void try_kinds(TrialWork *w) {
+  uint32_t kinds = 0;
+  for (uint32_t i = 0; i < w->n && kinds < KINDS_MOST; i++) {
+    uint32_t k = 0;
+    while (k < i && !same_kind(w, k, i)) k++;
+    if (k < i) continue;
+    try_kind(w, i);
+    kinds++;
+  }
+}
+
+/* A rotation of all bodies about an axis. */
+static void try_turn(TrialWork *w, uint32_t axis) {
+  Expr *xi = zero_components(w);
+  uint32_t bodies = 0;
+  for (uint32_t i = 0; i < w->n; i++)
+    for (uint32_t k = 0; k < w->n && name_axis(&w->names, i) == (axis + 1) % 3; k++) {
+      if (name_axis(&w->names, k) != (axis + 2) % 3 || !name_same_body(name_of(w, i), name_of(w, k))) continue;
+      xi[i] = expr_neg(w->g, node(w, k));
+      xi[k] = node(w, i);
+      bodies++;
+    }
+  const char *name = arena_printf(w->e->m->arena, "total angular momentum about %s", axis_text(axis));
+  if (bodies) try_one(w, xi, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_ROTATION, .name = name, .of_all = 1, .axis = axis});
+}
+
+static void try_cyclic(TrialWork *w) {
+  for (uint32_t i = 0; i < w->n && w->e->n; i++) {
+    if (!expr_is_zero(w->g, w->e->dLdq[i])) continue;
+    Expr *xi = zero_components(w);
+    xi[i] = expr_int(w->g, 1);
+    try_one(w, xi, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_MOMENTUM, .name = arena_printf(w->e->m->arena, "momentum of %s", name_of(w, i)), .axis = AXIS_NONE});
+  }
+}
+
+/* --- shifts along solutions --- */
+
+static int is_constant(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
+
+/* kappa of q'' = kappa q + ..., coordinate i's own equation; 0: mass or stiffness is zero or not constant. */
+static Expr own_rate(const TrialWork *w, uint32_t i) {
+  Expr m = simplify(w->g, eqns_mass(w->e, i, i)), k = simplify(w->g, expr_diff(w->g, w->e->dLdq[i], eqns_coordinate(w->e, i)));
+  if (expr_is_zero(w->g, m) || expr_is_zero(w->g, k) || !is_constant(w->g, m) || !is_constant(w->g, k)) return 0;
+  return simplify(w->g, expr_div(w->g, k, m));
+}
+
+static int is_listed(const TrialWork *w, uint32_t i, Expr xi) {
+  for (uint32_t k = 0; k < w->out->all.n; k++)
+    if (w->out->all.at[k].by.xi && w->out->all.at[k].by.xi[i] == xi) return 1;
+  return 0;
+}
+
+static uint32_t try_shift(TrialWork *w, uint32_t i, Expr of_time, Expr rate, const char *name) {
+  Expr *xi = zero_components(w);
+  xi[i] = of_time;
+  if (is_listed(w, i, of_time)) return 0;
+  return (uint32_t)try_one(w, xi, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_OTHER, .name = name, .axis = AXIS_NONE, .rate = rate});
+}
+
+/* Sign of k, a number or a monomial of parameters with signs: 1 or -1; 0: not known. */
+static int sign_of(const ExprGraph *g, Expr k) {
+  switch (expr_sign(g, k)) {
+    case SIGN_POSITIVE: return 1;
+    case SIGN_NEGATIVE: return -1;
+    case SIGN_UNKNOWN: case SIGN_NONNEGATIVE: case SIGN_NONPOSITIVE: break;
+  }
+  return 0;
+}
+
+uint32_t try_solution_shifts(Eqns *e, FoundSymmetries *out) {
+  TrialWork w = {.e = e, .g = e->g, .n = e->n, .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e, NULL), .out = out};
+  uint32_t found = 0;
+  if (e->n && !e->mass_known) eqns_derive_mass(e);
+  for (uint32_t i = 0; i < w.n; i++) {
+    Expr kappa = own_rate(&w, i);
+    int sign = kappa ? sign_of(w.g, kappa) : 0;
+    if (!sign) continue;
+    Expr rate = expr_sqrt(w.g, sign < 0 ? simplify(w.g, expr_neg(w.g, kappa)) : kappa), phase = expr_mul(w.g, rate, w.t);
+    const char *name = sign < 0 ? "shift along a solution, periodic in t" : "shift along a solution, exponential in t";
+    Expr first = expr_fn(w.g, sign < 0 ? EX_COS : EX_EXP, phase), other = sign < 0 ? phase : expr_neg(w.g, phase);
+    Expr second = expr_fn(w.g, sign < 0 ? EX_SIN : EX_EXP, other);
+    found += try_shift(&w, i, first, rate, name);
+    found += try_shift(&w, i, second, rate, name);
+  }
+  return found;
+}
+
+/* --- dispatch --- */
+
+int too_large_to_search(const Eqns *e) { return eqns_coordinates(e) > SEARCH_MOST; }
+
+void try_usual_symmetries(Eqns *e, FoundSymmetries *out) {
+  TrialWork w = {.e = e, .g = e->g, .n = eqns_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e, NULL), .out = out};
+  out->ansatz = "of more than a hundred coordinates the energy, momenta of cyclic ones, and translations, boosts and turns of all of a kind together";
+  out->searched = w.n <= TRY_MOST;
+  if (!out->searched) {
+    out->note = "there are more than a thousand coordinates";
+    return;
+  }
+  try_one(&w, zero_components(&w), expr_int(e->g, -1), (FoundSymmetry){.kind = SYMMETRY_ENERGY, .name = "energy", .axis = AXIS_NONE});
+  try_cyclic(&w);
+  try_kinds(&w);
+  for (uint32_t axis = 0; axis < 3; axis++) try_turn(&w, axis);
+}

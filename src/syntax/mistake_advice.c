@@ -1,0 +1,237 @@
+/* Advice for known mistakes: a table of words from other languages, and one function for each kind of unexpected token. */
+#include "syntax/mistake_advice.h"
+
+#include <string.h>
+
+#include "base/suggest.h"
+#include "syntax/parse.h"
+
+/* ---- words ---- */
+
+enum { W_MODEL = W_FILE | W_EFFECT | W_FOR };
+
+/* Words outside the language, separated by spaces; the places where people write them; the advice. */
+static const struct {
+  const char *words;
+  unsigned where;
+  const char *way;
+} ways[] = {
+  {"coordinate coordinates coords variable variables var vars dof", W_MODEL, "a coordinate is declared by `coord x [m]`"},
+  {"rotation rotations orientation attitude quaternion", W_MODEL, "a rotation is a coordinate, too: `coord R: rotation`"},
+  {"vector vec", W_MODEL, "a vector is a coordinate, too: `coord r: vec3 [m]`"},
+  {"parameter parameters params par", W_MODEL, "a parameter is declared by `param k = 1 [N/m]`"},
+  {"constant constants consts", W_MODEL, "write `param g = 9.81 [m/s^2]`; `const N = 10` is a number fixed when compiling, such as the size of a family"},
+  {"def define set var", W_MODEL, "an abbreviation is made by `let a = …`, a function by `function f(x) = …`"},
+  {"L lagrange lagr", W_MODEL, "the Lagrangian is given by `lagrangian = …`"},
+  {"T kinetic_energy", W_MODEL, "the kinetic energy is given by `kinetic = …`"},
+  {"V U potential_energy", W_MODEL, "the potential energy is given by `potential = …`"},
+  {"H hamiltonian", W_MODEL, "write the Lagrangian, `lagrangian = …`: momenta and energy follow"},
+  {"D R friction damping damp rayleigh drag loss losses", W_MODEL, "losses are a Rayleigh function, `dissipation = c/2*x'^2`, or a `force`"},
+  {"torque moment Q forces", W_MODEL, "a generalised force is given by `force q = …`; of an angle it is a torque"},
+  {"equation equations eq eom ode", W_MODEL, "equations of motion follow from the Lagrangian; `expect x'' = …` has one of yours checked, `flow z' = …` is for a state"},
+  {"import require load using", W_MODEL, "another file is taken in by `include \"file.lag\"`"},
+  {"initial init initials ic start", W_MODEL, "starts stand in a scene: `scene s { start x = 1 }`"},
+  {"simulation simulate sim run experiment case", W_MODEL, "what is simulated is a scene: `scene s { start x = 1; span 20 [s] }`"},
+  {"time tspan duration tmax", W_MODEL, "the time of a run stands in a scene: `span 20 [s]`"},
+  {"plot print", W_MODEL, "columns are chosen in a scene: `output x, y every 0.01 [s]`; `lagc plot` draws"},
+  {"initial init initials ic", W_SCENE, "a start is set by `start x = 1, x' = 0`"},
+  {"duration time times tspan tmax until end t_end tend stop", W_SCENE, "the time of a run is `span 20 [s]`"},
+  {"dt step steps stepsize h", W_SCENE, "a step is an option of a method: `method rk4(step = 0.01)`; rows of output have `every 0.01 [s]`"},
+  {"tol rtol atol accuracy precision eps", W_SCENE, "write `tolerance 1e-9`"},
+  {"integrator solver integrate scheme", W_SCENE, "a method is chosen by `method rk4(step = 0.01)`; `lagc help methods` lists them"},
+  {"plot print save write show record columns", W_SCENE, "columns are chosen by `output x, y every 0.01 [s]`"},
+  {"every sample", W_SCENE, "write `output x, y every 0.01 [s]`"},
+  {"with effects enable on", W_SCENE, "effects are turned on by `use drag`"},
+  {"without disable off", W_SCENE, "`use none` turns all effects off; without `use` none is on"},
+  {"from extends inherit based", W_SCENE, "another scene is taken over by `like OTHER`"},
+  {"set let", W_SCENE, "a value is set by `name = 2`, a start by `start x = 1`"},
+  {"terminate end halt exit quit", W_EVENT, "the run is ended by `stop`"},
+};
+
+const char *advice_for_word(const char *word, unsigned where) {
+  for (size_t i = 0; i < sizeof ways / sizeof *ways; i++)
+    if ((ways[i].where & where & W_ANY) && has_word(ways[i].words, word)) return ways[i].way;
+  return NULL;
+}
+
+const char *parse_advice(const char *word) { return advice_for_word(word, W_ANY); }
+
+/* ---- tokens ---- */
+
+static int has(const TokKind *set, int n, TokKind kind) {
+  for (int i = 0; i < n; i++)
+    if (set[i] == kind) return 1;
+  return 0;
+}
+
+static int ends_operand(const Token *t) { return (token_flags(t->kind) & T_OPERAND) != 0; }
+
+/* Functions that people write without parentheses on paper. */
+static int is_function(const char *name) {
+  return name && has_word("sin cos tan exp log ln sqrt asin acos atan sinh cosh tanh abs", name);
+}
+
+/* Whether an `=` follows the current token (after primes): then it begins another member of a list. */
+static int sets_next(const Parse *cx) {
+  const Source *source = cx->filter->scan->source;
+  const char *s = source->text + (cx->current.span.end - source->base);
+  s += strspn(s, "' \t");
+  return s[0] == '=' && s[1] != '=';
+}
+
+/* Whether a block is expected, and not a list or another expression. */
+static int wants_block(const TokKind *set, int n) { return has(set, n, TOK_LBRACE) && !has(set, n, TOK_NUMBER); }
+
+/* Two statements on one line. */
+static const char *missing_end(const Parse *cx) {
+  const Token *t = &cx->current;
+  const Filter *f = cx->filter;
+  if (t->kind != TOK_IDENT || !ends_operand(&cx->before) || cx->open.span.end || sets_next(cx)) return NULL;
+  if (token_statement(t->name, f->where[f->depth]) == TOK_IDENT) return NULL;
+  return arena_printf(cx->ast->arena, "put a `;` before `%s`, or a new line: a statement ends there", t->name);
+}
+
+/* Two adjacent names where a list is expected. */
+static const char *missing_comma(const Parse *cx, const TokKind *set, int n) {
+  const Token *t = &cx->current;
+  if (t->kind != TOK_IDENT || !has(set, n, TOK_COMMA) || cx->open.span.end) return NULL;
+  switch (cx->filter->word) {
+    case TOK_PARAM: case TOK_CONST: case TOK_INPUT: case TOK_LET: case TOK_START: case TOK_FLOW: case TOK_EXACT:
+      return sets_next(cx) ? arena_printf(cx->ast->arena, "put a `,` before `%s`", t->name) : NULL;
+    case TOK_COORD: case TOK_STATE: case TOK_USE: case TOK_REQUIRES: case TOK_EXCLUDES:
+      return arena_printf(cx->ast->arena, "put a `,` before `%s`", t->name);
+    case TOK_OUTPUT:
+      return arena_printf(cx->ast->arena, "put a `,` before `%s`; a product is written with `*`", t->name);
+    default: return NULL;
+  }
+}
+
+/* Advice after an operand, where an operator is expected. */
+static const char *missing_operator(const Parse *cx) {
+  const Token *t = &cx->current, *b = &cx->before;
+  if ((t->name && has_word("if then else when where", t->name)) || (b->name && has_word("if then else", b->name)))
+    return "a choice is written `if(x > 0, a, b)`: a where the condition holds, b where not";
+  if (t->kind == TOK_IDENT && b->kind == TOK_NUMBER)
+    return arena_printf(cx->ast->arena, "a unit stands in brackets: `[%s]`; a product is written with `*`", t->name);
+  if (b->kind == TOK_IDENT && is_function(b->name))
+    return arena_printf(cx->ast->arena, "a function takes its argument in parentheses: `%s(...)`", b->name);
+  return "a product is written with `*`";
+}
+
+/* `name(` where a value is expected. */
+static const char *unexpected_call(const Parse *cx) {
+  const char *name = cx->before.name ? cx->before.name : "f";
+  switch (cx->filter->word) {
+    case TOK_LET: return arena_printf(cx->ast->arena, "a function of one's own is `function %s(x) = …`", name);
+    case TOK_FORCE: return "a force acts along a coordinate, `force x = …`, or at a point, `force (px, py) = (…, …)`";
+    case TOK_PARAM: case TOK_CONST: case TOK_INPUT: case TOK_OBSERVE: case TOK_COORD: case TOK_STATE:
+      return arena_printf(cx->ast->arena, "a name has no arguments here; a function of one's own is `function %s(x) = …`", name);
+    default: return "a start is written `start x = 1, x' = 0`";
+  }
+}
+
+static const char *unexpected_comma(const TokKind *set, int n) {
+  if (has(set, n, TOK_IN) || has(set, n, TOK_RANGE)) return "a range is written `i in 1..N`";
+  return has(set, n, TOK_RPAREN) ? "what has several arguments is a function, and its name has no `.`: `pow(x, 2)`" : NULL;
+}
+
+static const char *after_method(const Parse *cx) {
+  return cx->before.name ? arena_printf(cx->ast->arena, "options stand in parentheses: `method %s(step = 0.01)`", cx->before.name) : NULL;
+}
+
+/* model, scene, effect: a name, a description, a block. */
+static const char *misshapen_title(const Parse *cx, const TokKind *set, int n) {
+  TokKind word = cx->filter->word;
+  if (word != TOK_MODEL && word != TOK_SCENE && word != TOK_EFFECT) return NULL;
+  if (cx->before.kind == word) return arena_printf(cx->ast->arena, "a name comes first: `%s NAME \"what it is\"`", token_word(word));
+  if (has(set, n, TOK_STRING) && cx->current.kind != TOK_END && cx->current.kind != TOK_COLON)
+    return "a name has letters, digits and `_`; a description stands in quotes";
+  return NULL;
+}
+
+static const char *unexpected_assign(const Parse *cx, const TokKind *set, int n) {
+  TokKind word = cx->filter->word;
+  if (word == TOK_EVENT && has(set, n, TOK_RISING)) return "an event is where an expression passes zero: `event e: x - 1 rising { … }`";
+  if (has(set, n, TOK_EQ)) return "write `==` to compare";
+  if (has(set, n, TOK_IN)) return "a range is written `i in 1..N`";
+  if (word == TOK_COORD || word == TOK_STATE) return "where it starts stands in a scene: `start x = …`";
+  return NULL;
+}
+
+static const char *unexpected_comparison(const Parse *cx, const TokKind *set, int n) {
+  if (cx->filter->word == TOK_CONTACT) return "a contact is written `contact NAME: g >= 0, restitution = e`";
+  if (cx->filter->word == TOK_EVENT && has(set, n, TOK_RISING)) return "an event is where an expression passes zero: `x - 1 rising { … }`";
+  return has(set, n, TOK_AND) ? "comparisons do not chain: write `a < b and b < c`" : NULL;
+}
+
+/* `constraint x^2 + y^2 = l^2`: the name is missing. */
+static const char *missing_name(const Parse *cx, const TokKind *set, int n) {
+  TokKind word = cx->filter->word;
+  if (cx->before.kind != word && (!has(set, n, TOK_COLON) || has(set, n, TOK_TIMES))) return NULL;
+  switch (word) {
+    case TOK_CONSTRAINT: return "a constraint has a name: `constraint NAME: x^2 + y^2 = l^2`";
+    case TOK_CONTACT: return "a contact has a name: `contact NAME: y >= 0, restitution = 0.5`";
+    case TOK_EVENT: return "an event has a name: `event NAME: x - 1 rising { … }`";
+    default: return NULL;
+  }
+}
+
+/* Advice after the gap of a contact. */
+static const char *after_gap(const Parse *cx, const TokKind *set, int n) {
+  TokKind t = cx->current.kind;
+  if (cx->filter->word != TOK_CONTACT) return NULL;
+  if (has(set, n, TOK_RESTITUTION) || (t == TOK_COMMA && has(set, n, TOK_END)))
+    return "a contact has a restitution and nothing else, `contact NAME: y >= 0, restitution = 0.5`; it slides without friction: a `force` or `dissipation` can brake it";
+  return t == TOK_END && has(set, n, TOK_COMMA) ? "a contact has a restitution: `contact NAME: y >= 0, restitution = 0.5`" : NULL;
+}
+
+/* `start x = 1, span 5`: a word that begins a statement stands in a list. */
+static const char *word_in_list(const Parse *cx, const TokKind *set, int n) {
+  const Token *b = &cx->before;
+  const Filter *f = cx->filter;
+  if (!has(set, n, TOK_ASSIGN) || b->kind != TOK_IDENT || token_statement(b->name, f->where[f->depth]) == TOK_IDENT) return NULL;
+  return arena_printf(cx->ast->arena, "`%s` begins a statement of its own: a new line, or a `;`, stands before it", b->name);
+}
+
+const char *advice_for_token(const Parse *cx, const TokKind *set, int n) {
+  const Token *t = &cx->current, *b = &cx->before;
+  Arena *a = cx->ast->arena;
+  const char *end = missing_end(cx), *comma = end ? end : missing_comma(cx, set, n), *title = comma ? NULL : misshapen_title(cx, set, n);
+  if (comma || title) return comma ? comma : title;
+  const char *name = missing_name(cx, set, n), *gap = name ? NULL : after_gap(cx, set, n);
+  if (name || gap) return name ? name : gap;
+  const char *word = word_in_list(cx, set, n);
+  if (word) return word;
+  if (cx->filter->word == TOK_METHOD && has(set, n, TOK_LPAREN)) return after_method(cx);
+  if (cx->filter->word == TOK_MONITOR && !has(set, n, TOK_TIMES) && ends_operand(b) && (token_flags(t->kind) & T_BINARY))
+    return "a monitor watches a name, or what stands in parentheses: `monitor (x + y) 1e-6`";
+  switch (t->kind) {
+    case TOK_COMMA: return unexpected_comma(set, n);
+    case TOK_RANGE: return has(set, n, TOK_RBRACKET) ? "a family has a size: `x[N]` has the members 1 to N" : NULL;
+    case TOK_UNIT: return b->kind == TOK_UNIT ? "an index touches what it belongs to, and a unit does not: `x[N] [m]`" : NULL;
+    case TOK_EQ: return has(set, n, TOK_ASSIGN) ? "write `=`: it states an equation; `==` compares two numbers" : NULL;
+    case TOK_ASSIGN: return unexpected_assign(cx, set, n);
+    case TOK_COLON:
+      if (wants_block(set, n)) return "a block begins with `{`";
+      return has(set, n, TOK_ASSIGN) ? arena_printf(a, "write `%s = …`", b->name ? b->name : "NAME") : NULL;
+    case TOK_END: case TOK_RBRACE:
+      if (cx->filter->word == TOK_MONITOR && has(set, n, TOK_NUMBER)) return "a monitor has a limit: `monitor energy 1e-8`";
+      if (t->kind == TOK_RBRACE) return NULL;
+      if (cx->filter->word == TOK_PARAM && has(set, n, TOK_ASSIGN)) return "a parameter has a value, which scenes can change: `param m = 1 [kg]`";
+      return wants_block(set, n) ? "a block begins with `{`" : NULL;
+    case TOK_INDEX: return has(set, n, TOK_UNIT) ? "a unit stands apart from the name: `u [N]`" : NULL;
+    case TOK_PRIME: 
+      if (b->kind == TOK_IDENT && b->span.begin == t->span.begin) return "a dot above a letter is a time derivative, as a `'` is: declare the name without it";
+      return b->kind == TOK_END ? "a `'` never continues a line: put it on the line of its name" : NULL;
+    case TOK_RPAREN: case TOK_RBRACKET:
+      return has(set, n, TOK_TIMES) && !cx->open.span.end ? arena_printf(a, "this `%s` closes nothing", token_word(t->kind)) : NULL;
+    case TOK_LT: case TOK_LE: case TOK_GT: case TOK_GE: case TOK_NE: return unexpected_comparison(cx, set, n);
+    case TOK_IN: case TOK_AND: case TOK_OR: case TOK_NOT:
+      return has(set, n, TOK_IDENT) ? arena_printf(a, "`%s` is a reserved word", token_word(t->kind)) : NULL;
+    case TOK_IDENT: case TOK_NUMBER: case TOK_LPAREN: case TOK_SUM: case TOK_PRODUCT:
+      if (t->kind == TOK_LPAREN && has(set, n, TOK_ASSIGN)) return unexpected_call(cx);
+      if (t->kind == TOK_NUMBER && b->kind == TOK_LPAREN && cx->filter->word == TOK_START) return "a start is written `start x = 1, x' = 0`";
+      return has(set, n, TOK_TIMES) && ends_operand(b) ? missing_operator(cx) : NULL;
+    default: return NULL;
+  }
+}
