@@ -51,7 +51,8 @@ static void list_units(const FoundUnits *all, StrBuf *out) {
 /* Whether the model declares inputs; each contact adds one more, which does not count. */
 static int has_inputs(const Model *m) { return m->inputs.n > m->contacts.n; }
 
-static int check_print(Compiler *c, Ast *ast, const char *scene, int allow_numeric, StrBuf *out) {
+int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) {
+  const Ast *ast = c->ast;
   SceneList scenes = model_scenes(ast);
   FoundUnits found = {0};
   ExpectResults results = {0};
@@ -88,7 +89,7 @@ static int check_print(Compiler *c, Ast *ast, const char *scene, int allow_numer
 int command_check(Compiler *c) {
   StrBuf out = strbuf(c->arena);
   c->told = strbuf(c->arena);
-  if (!check_print(c, c->ast, c->o.scene, c->o.allow_numeric, &out)) return STATUS_MODEL;
+  if (!check_print(c, c->o.scene, c->o.allow_numeric, &out)) return STATUS_MODEL;
   sb_puts(&out, sb_text(&c->told));
   int status = compiler_write(c, NULL, &out);
   return c->diags->errors ? STATUS_MODEL : status;

@@ -13,6 +13,14 @@ int command_build(Compiler *c);
 int command_run(Compiler *c); /* run, plot, animate, modes, lyapunov, cost */
 int command_effects(Compiler *c);
 
+/* Appends what `lagc check` says: facts, scenes (or the one named), effects that no scene uses, units found, symmetries, expectations. Returns 0
+ * when the model is wrong and nothing is worth printing; the reasons, and false claims, are in c->diags. */
+int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out);
+
+/* Appends the symmetries of the scene's model; scene NULL: of the model without effects, and of each effect alone. format: text, latex, json, or
+ * NULL. Returns 0, with the reasons in c->diags: a wrong model, a false symmetry, no Lagrangian. */
+int noether_print(Compiler *c, const char *scene, const char *format, StrBuf *out);
+
 /* These read no model. */
 int command_help(Compiler *c);
 int command_methods(Compiler *c);

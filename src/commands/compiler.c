@@ -93,7 +93,6 @@ Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
 /* Of one scene (NULL: the first). */
 Eqns *compiler_derive_scene(Compiler *c, const char *scene) { return compiler_derive(c, &(ModelChoice){.scene = scene}); }
 
-/* For a method that finds velocities from momenta, what has no inertia of its own gets some. */
 Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice) {
   Eqns *e = compiler_derive(c, choice);
   return e && e->singular_mass && (derivatives_required(e, &c->o) & WANT_VARIATION) ? equations_regularised(e) : e;
@@ -103,22 +102,21 @@ IrUnit *compiler_new_unit(Compiler *c, Eqns *e) {
   return unit_new(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0);
 }
 
-/* Whether the programs of u, for one of its scenes, compute what the text says. */
-int compiler_agrees(const Eqns *e, const IrUnit *u, uint32_t scene) {
-  SelfCheck told;
-  return self_check(e, u, scene, &told);
+static int agrees(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *told) {
+  const char *wrong = unit_verify(u);
+  if (wrong) diag_error(e->m->diags, (Span){0}, "internal error: %s", wrong);
+  return !wrong && self_check(e, u, scene, told);
 }
 
-/* hoists: its derived parameters are taken out, as emitted models have them. NULL, with the reason in c->diags, when the program is wrong: a bug. */
+int compiler_agrees(const Eqns *e, const IrUnit *u, uint32_t scene) {
+  SelfCheck told;
+  return agrees(e, u, scene, &told);
+}
+
 IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists) {
   IrUnit *u = compiler_new_unit(c, e);
   unit_require(u, e, derivatives_required(e, &c->o));
   unit_add_scene(u, e);
-  const char *wrong = prog_verify(u->accel);
-  if (wrong) {
-    diag_error(c->diags, (Span){0}, "internal error: %s", wrong);
-    return NULL;
-  }
   if (hoists) unit_hoist(u);
   if (!compiler_agrees(e, u, 0)) return NULL;
   if (wants_dump(c, "prog")) {
@@ -129,14 +127,13 @@ IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists) {
   return u;
 }
 
-/* Equations that are reported, compared with the text. */
 Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice) {
   Eqns *e = compiler_derive(c, choice);
   if (!e) return NULL;
   IrUnit *u = compiler_new_unit(c, e);
   unit_add_scene(u, e);
   SelfCheck told;
-  if (!self_check(e, u, 0, &told)) return NULL;
+  if (!agrees(e, u, 0, &told)) return NULL;
   if (c->o.verbose) self_check_print(e, &told, &c->told);
   return e;
 }

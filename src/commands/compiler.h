@@ -53,7 +53,7 @@ Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice);
 
 IrUnit *compiler_new_unit(Compiler *c, Eqns *e);
 
-/* Whether the programs of u, for one of its scenes, compute what the text says. */
+/* Whether all programs of u are well formed and, for one of its scenes, compute what the text says; otherwise reported: an internal error. */
 int compiler_agrees(const Eqns *e, const IrUnit *u, uint32_t scene);
 
 /* Programs of one scene, compared with the text. hoists: derived parameters are taken out, as emitted models have them. NULL with the reason

@@ -9,7 +9,7 @@
 
 static PrintStyle style_of(const char *format) { return format && strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT; }
 
-static int conserved_print(Compiler *c, const char *scene, const char *format, StrBuf *out) {
+int noether_print(Compiler *c, const char *scene, const char *format, StrBuf *out) {
   Eqns *e = compiler_derive_compared(c, &(ModelChoice){.scene = scene, .bare = !scene});
   if (!e) return 0;
   if (!e->m->lagrangian) {
@@ -30,5 +30,5 @@ static int conserved_print(Compiler *c, const char *scene, const char *format, S
 
 int command_noether(Compiler *c) {
   StrBuf out = strbuf(c->arena);
-  return conserved_print(c, c->o.scene, c->o.format, &out) ? compiler_write(c, c->o.output, &out) : STATUS_MODEL;
+  return noether_print(c, c->o.scene, c->o.format, &out) ? compiler_write(c, c->o.output, &out) : STATUS_MODEL;
 }

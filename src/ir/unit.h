@@ -159,4 +159,12 @@ typedef struct {
   int lines;                    /* messages on constraints and switches give their source lines: simulators name their file */
 } IrUnit;
 
+typedef VEC(const Prog *) ProgList;
+
+/* All programs of a unit and its scenes; those that it does not have are left out. */
+ProgList unit_programs(const IrUnit *u);
+
+/* NULL, or what is wrong with one of its programs: an internal error. */
+const char *unit_verify(const IrUnit *u);
+
 #endif

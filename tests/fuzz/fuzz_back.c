@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "commands/check.h"
-#include "commands/noether.h"
+#include "commands/commands.h"
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
 #include "emit/emit_header.h"
@@ -141,23 +140,15 @@ static const char *model_text(Arena *a, const uint8_t *data, size_t size) {
 
 /* ---- the ways of the commands ---- */
 
-static Eqns *derive(void *ast, const ModelChoice *choice) {
+static Eqns *derive(Ast *ast, const ModelChoice *choice) {
   Model *m = model_build(ast, choice);
   Eqns *e = m ? equations_of(m) : NULL;
-  if (!e && !((Ast *)ast)->diags->errors) abort();
+  if (!e && !ast->diags->errors) abort();
   return e;
 }
 
-static void verify(const Prog *p) {
-  if (p && prog_verify(p)) abort();
-}
-
 static void verify_all(const IrUnit *u) {
-  const Prog *all[] = {u->accel, u->energy, u->event_values, u->inputs, u->derived, u->charge_values, u->charge_powers, u->constraints.residuals, u->constraints.matrices,
-                       u->constraints.position, u->constraints.velocity, u->variation, u->second, u->linear, u->jumps, u->taylor ? u->taylor->first : NULL,
-                       u->taylor ? u->taylor->next : NULL};
-  for (size_t k = 0; k < sizeof all / sizeof *all; k++) verify(all[k]);
-  for (uint32_t k = 0; k < u->scenes.n; k++) verify(u->scenes.at[k].observe), verify(u->scenes.at[k].start);
+  if (unit_verify(u)) abort();
 }
 
 static void emit(Ast *ast, Eqns *e) {
@@ -185,8 +176,9 @@ static void run(Arena *a, const char *text) {
     if (!parse(ast, source_add(sources, "fuzz.lag", text, strlen(text)))) abort();
     Eqns *e = way == 0 ? derive(ast, &(ModelChoice){0}) : NULL;
     if (e) emit(ast, e);
-    if (way == 1) check_print(&(Deriver){derive, ast}, ast, NULL, 0, &out);
-    if (way == 2) conserved_print(&(Deriver){derive, ast}, NULL, NULL, &out);
+    Compiler c = {.arena = a, .o.file = "fuzz.lag", .sources = sources, .diags = ast->diags, .ast = ast};
+    if (way == 1) check_print(&c, NULL, 0, &out);
+    if (way == 2) noether_print(&c, NULL, NULL, &out);
     diags_print(ast->diags, &out);
     if (e && e->n >= LARGE) break; /* the others take seconds */
   }

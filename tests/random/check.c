@@ -7,9 +7,10 @@
 #include <string.h>
 
 #include "ir/hoist.h"
-#include "lower/lower.h"
 #include "jets/self_check.h"
+#include "lower/lower.h"
 #include "model.h"
+#include "symmetry/charges.h"
 #include "syntax/parse.h"
 
 typedef enum { AGREES, UNDECIDED, REFUSED, DISAGREES, VERDICTS } Verdict;

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "claims/expect.h"
+#include "symmetry/charges.h"
 #include "syntax/parse.h"
 
 /* Bytes from..to of the text become `with`; in the mutant the edit is seen at begin..end, and a caret may lie anywhere

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "claims/expect.h"
+#include "symmetry/charges.h"
 #include "syntax/parse.h"
 
 #define FREE                                                                         \

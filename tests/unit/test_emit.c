@@ -14,8 +14,9 @@
 #include "base/dense.h"
 #include "emit/cwriter.h"
 #include "lower/lower.h"
-#include "symmetry/charges.h"
+#include "mech/lagrange.h"
 #include "sym/eval.h"
+#include "symmetry/charges.h"
 #include "syntax/parse.h"
 
 typedef long double Real;

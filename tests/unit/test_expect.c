@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "claims/expect.h"
+#include "symmetry/charges.h"
 #include "syntax/parse.h"
 
 typedef struct {

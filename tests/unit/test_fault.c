@@ -15,6 +15,7 @@
 #include "emit/emit_model.h"
 #include "lower/lower.h"
 #include "report/equation_listing.h"
+#include "symmetry/charges.h"
 #include "syntax/parse.h"
 
 typedef struct {

@@ -10,6 +10,7 @@
 
 #include "compile_text.h"
 #include "mech/elimination_order.h"
+#include "mech/lagrange.h"
 
 typedef long double Real;
 

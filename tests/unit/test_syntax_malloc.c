@@ -31,6 +31,7 @@ static void counting_free(void *p) {
 #pragma GCC diagnostic ignored "-Wsign-conversion"
 #pragma GCC diagnostic ignored "-Wshadow"
 #include "lag.tab.c"
+#include "syntax/parse.h"
 #pragma GCC diagnostic pop
 
 /* 1 when the text was read to its end, 0 when memory ran out. */

@@ -12,6 +12,7 @@
 
 #include "compile_text.h"
 #include "emit/emit_model.h"
+#include "symmetry/charges.h"
 
 typedef long double Real;
 
