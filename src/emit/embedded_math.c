@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "emit/cfunction.h"
-#include "series/series.h"
 #include "emit/lag_kkt.h"  /* static const char *const lag_kkt[]: generated from runtime/include/lag_kkt.h */
 #include "emit/lag_math.h" /* static const char *const lag_math[]: generated from runtime/include/lag_math.h */
 

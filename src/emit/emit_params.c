@@ -1,6 +1,5 @@
 /* Parameters in an emitted model: the values of a scene, and the derived parameters computed once. */
 #include "emit/emit_impl.h"
-#include "series/series.h"
 
 void emit_inverses(const File *f) {
   const IrUnit *u = f->u;

@@ -3,7 +3,7 @@
 #define LAGC_EMIT_TAYLOR_H
 
 #include "base/strbuf.h"
-#include "series/series.h"
+#include "ir/unit.h"
 
 /* Appends the functions and the const lag_taylor called `taylor`. globals: names that functions must not hide, NULL at the end;
  * math: as in CStyle. */

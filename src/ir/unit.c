@@ -1,8 +1,6 @@
 /* All programs of a unit, and their verification. */
 #include "ir/unit.h"
 
-#include "series/series.h"
-
 ProgList unit_programs(const IrUnit *u) {
   ProgList all = {0};
   const IrConstraints *k = &u->constraints;

@@ -5,8 +5,6 @@
 
 #include "ir/prog.h"
 
-typedef struct Series Series; /* series/series.h */
-
 /* Bit numbers of flags: UNIT_CONSERVES_ENERGY, ..., CHARGE_CONSERVED, ... */
 enum {
 #define MODEL_FLAG(name) UNIT_##name,
@@ -128,6 +126,22 @@ typedef struct {
   const char *name, *unit;
   unsigned flags;
 } IrCharge;
+
+/* Recurrences of Taylor coefficients (series/series.h makes them). Columns of the coefficients x[k][...]: q, v, z, then q'' and z', then t. */
+typedef struct {
+  const Prog *first;     /* order 0. out 0: x[0], its q'' and z'; out 1: c, the constants that `next` reads */
+  const Prog *next;      /* order k. Reads x[k] of q, v, z, t, the sums s, and c. out 0: x[k], its q'' and z'; out 1: x[k+1], its
+                            q, v and z; out 2, 3: a[k], b[k] (no b[k] of squares) */
+  uint32_t nq, nz;
+  uint32_t columns;      /* of x, a multiple of 4 */
+  uint32_t sums;         /* pairs a != b, with a column of a, b and s each */
+  uint32_t squares;      /* pairs a = b, with a column of a and s each, behind the others; 0: few, counted as sums */
+  uint32_t group;        /* columns in a group; the last group of sums, and of squares, is padded */
+  uint32_t first_square, width; /* column where squares begin; number of columns */
+  uint32_t constants;    /* length of c */
+  uint32_t room;         /* work space of blocks that a loop factors, in reals */
+  int uses_time;
+} Series;
 
 typedef struct {
   Arena *arena;

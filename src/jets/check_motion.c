@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "jets/self_check_impl.h"
-#include "series/series.h"
 
 /* A saved state. */
 typedef struct {

@@ -42,22 +42,6 @@ typedef struct {
   const Name *velocities, *rates; /* [nq] and [nq + nz]: names of q', and of q'' and z' */
 } IrSystem;
 
-/* Columns of the coefficients x[k][...]: q, v, z, then q'' and z', then t. */
-struct Series {
-  const Prog *first;     /* order 0. out 0: x[0], its q'' and z'; out 1: c, the constants that `next` reads */
-  const Prog *next;      /* order k. Reads x[k] of q, v, z, t, the sums s, and c. out 0: x[k], its q'' and z'; out 1: x[k+1], its
-                            q, v and z; out 2, 3: a[k], b[k] (no b[k] of squares) */
-  uint32_t nq, nz;
-  uint32_t columns;      /* of x, a multiple of 4 */
-  uint32_t sums;         /* pairs a != b, with a column of a, b and s each */
-  uint32_t squares;      /* pairs a = b, with a column of a and s each, behind the others; 0: few, counted as sums */
-  uint32_t group;        /* columns in a group; the last group of sums, and of squares, is padded */
-  uint32_t first_square, width; /* column where squares begin; number of columns */
-  uint32_t constants;    /* length of c */
-  uint32_t room;         /* work space of blocks that a loop factors, in reals */
-  int uses_time;
-};
-
 /* NULL where the program is not analytic; *why is then the function or word ("abs", "if") that is not. */
 Series *series_new(const IrSystem *system, const char **why);
 

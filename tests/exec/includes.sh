@@ -16,8 +16,8 @@ src/report    report/ symmetry/ mech/ model/ sym/ base/
 src/ir        ir/ base/
 src/series    series/ ir/ base/
 src/lower     lower/ series/ ir/ symmetry/charges.h mech/ model/ sym/ base/
-src/jets      jets/ lower/lower.h series/series.h ir/ mech/ model/ syntax/ base/
-src/emit      emit/ series/ ir/ base/
+src/jets      jets/ lower/lower.h ir/ mech/ model/ syntax/ base/
+src/emit      emit/ ir/ base/
 src/toolchain toolchain/ base/
 src/commands  commands/ toolchain/ emit/ jets/ lower/ ir/ report/ claims/ symmetry/ mech/ model/ sym/ syntax/ base/
 src           commands/ syntax/ base/
