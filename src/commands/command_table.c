@@ -196,7 +196,7 @@ static const OptionRow options[] = {
   {"--fix", NULL, "NAME,NAME", TAKES_PARAMS, "all", SIMULATE | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(fix),
    "makes numbers of these parameters, with the values that the scene gives them: fewer operations, and no other value at the command line; "
    "a family by its name, drag.c for one of an effect; all: all of them"},
-  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns prog", MODELS, OWN(dump), "what the stages of the compiler yield: ast, model, eqns, prog"},
+  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns passes prog", MODELS, OWN(dump), "what the stages of the compiler yield: ast, model, eqns, passes, prog"},
   {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION) | C(CACHE), OWN(help), "this help"},
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };

@@ -119,11 +119,10 @@ IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists) {
   unit_add_scene(u, e);
   if (hoists) unit_hoist(u);
   if (!compiler_agrees(e, u, 0)) return NULL;
-  if (wants_dump(c, "prog")) {
-    StrBuf b = strbuf(c->arena);
-    prog_dump(u->accel, &b);
-    compiler_write(c, NULL, &b);
-  }
+  StrBuf b = strbuf(c->arena);
+  if (wants_dump(c, "passes")) lower_accel_traced(e, u->libm, &b);
+  if (wants_dump(c, "prog")) prog_dump(u->accel, &b);
+  if (b.n) compiler_write(c, NULL, &b);
   return u;
 }
 

@@ -264,6 +264,7 @@ static const char *verify_nest(const Prog *p, Slot s) {
 }
 
 const char *prog_verify(const Prog *p) {
+  if (p->fault) return p->fault;
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     const char *wrong = i->op == IR_NEST ? verify_nest(p, s) : NULL;

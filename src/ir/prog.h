@@ -158,6 +158,7 @@ typedef struct Prog {
   VEC(Nest) nests;
   uint32_t cells;     /* number of sums of ARR_CELL */
   int folds_constants;        /* constants are folded at once, and x/number becomes x*(1/number) */
+  const char *fault;  /* a pass left it malformed (ir/passes.h), and how; NULL: none did */
   uint32_t *table;    /* hash table of value numbering */
   uint32_t table_cap;
 } Prog;

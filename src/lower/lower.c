@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "lower/lower_impl.h"
-#include "ir/nest.h"
+#include "ir/passes.h"
 #include "ir/roll.h"
 
 /* --- numbers and powers --- */
@@ -280,8 +280,8 @@ Lower lower_new(const Eqns *e) {
   return (Lower){.e = e, .g = e->g, .p = p, .slots = expr_map(a), .circular = expr_map(a)};
 }
 
-/* The tidy program, with sums over pairs as nests when it has `from` instructions. */
-static Prog *finished(const Lower *l, uint32_t from) { return prog_find_nests(prog_tidy(l->p), from); }
+/* The program after its passes, with sums over pairs as nests when it has `from` instructions. */
+static Prog *finished(const Lower *l, uint32_t from) { return passes_run(l->p, &(PassPlan){.nests_from = from}, NULL); }
 
 static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
 
@@ -292,7 +292,7 @@ static int is_diagonal(const Eqns *e) {
   return off == 0;
 }
 
-Prog *lower_accel(const Eqns *e, int libm) {
+Prog *lower_accel_traced(const Eqns *e, int libm, StrBuf *trace) {
   Lower l = lower_new(e);
   const Model *m = e->m;
   Slot *acc = ARENA_ARRAY(m->arena, Slot, e->n + 1);
@@ -303,15 +303,10 @@ Prog *lower_accel(const Eqns *e, int libm) {
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
   for (uint32_t i = 0; i < m->states.n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
-  enum { PAGE = 200 }; /* instructions; shorter programs fit a processor's window in any order, and keep the readable one */
-  Prog *tidy = prog_tidy(l.p), *p = prog_factor(tidy);
-  if (p->ins.n <= ROLL_FROM) {
-    p = prog_reassociate_fma(prog_product_cse(p));
-    return p->ins.n > PAGE ? prog_schedule_by_path(p, libm) : p;
-  }
-  Prog *nested = prog_find_shorter_nests(p, tidy, ROLL_FROM);
-  return is_diagonal(e) ? prog_schedule_by_store(nested) : nested;
+  return passes_run(l.p, &(PassPlan){.nests_from = ROLL_FROM, .every_step = 1, .uncoupled = is_diagonal(e), .libm = libm}, trace);
 }
+
+Prog *lower_accel(const Eqns *e, int libm) { return lower_accel_traced(e, libm, NULL); }
 
 /* Selects, by the flag ARR_FREE of each input, its formula or the constant at which it is held. */
 static void lower_inputs_along(Lower *l) {

@@ -15,6 +15,7 @@
 #include "mech/switching_surfaces.h"
 #include "mech/variation.h"
 
+Prog *lower_accel_traced(const Eqns *e, int libm, StrBuf *trace); /* the same, with a listing after each pass */
 Prog *lower_accel(const Eqns *e, int libm); /* out 0: a[nq], out 1: zd[nz]; libm: sin and cos are calls of the C library, not inline */
 IrSystem lower_system(const Eqns *e); /* M, f and the rates of the states, with inputs replaced by their formulas; */
 IrSystem lower_system(const Eqns *e); /* both unsolved and solved */

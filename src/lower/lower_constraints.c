@@ -1,4 +1,5 @@
 /* Programs of models with constraints: residuals, matrices A and M, projections, impacts, multipliers. */
+#include "ir/passes.h"
 #include "lower/lower_impl.h"
 
 Prog *lower_residuals(const Eqns *e) {
@@ -10,7 +11,7 @@ Prog *lower_residuals(const Eqns *e) {
   for (uint32_t i = 0; i < k->nkept; i++) prog_store(l.p, 0, i, lower_slot(&l, k->c[i]), k->of[i]->name);
   for (uint32_t i = 0; i < k->n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, k->r[i]), i < k->nkept ? arena_printf(a, "%s'", k->of[i]->name) : k->of[i]->name);
-  return prog_tidy(l.p);
+  return passes_run(l.p, &(PassPlan){0}, NULL);
 }
 
 static void store_entries(Lower *l, uint32_t array, const Entries *x) {
@@ -26,7 +27,7 @@ Prog *lower_matrices(const Eqns *e) {
   Lower l = lower_new(e);
   store_entries(&l, 0, &e->constraints.A);
   store_entries(&l, 1, &e->mass);
-  return prog_tidy(l.p);
+  return passes_run(l.p, &(PassPlan){0}, NULL);
 }
 
 Prog *lower_projection(const Eqns *e, uint32_t nrows) {
@@ -39,7 +40,7 @@ Prog *lower_projection(const Eqns *e, uint32_t nrows) {
   lower_correction(&l, nrows, 1, g, d, force);
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, d[i], m->coords.at[i].name);
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 1, i, force[i], m->coords.at[i].name);
-  return prog_tidy(l.p);
+  return passes_run(l.p, &(PassPlan){0}, NULL);
 }
 
 /* Newton's law of restitution for the contact, J v1 + g_t = -e (J v + g_t), with the impulse M (v1 - v) = A^T Lambda that keeps all other
@@ -75,7 +76,7 @@ Prog *lower_impact(const Eqns *e, const Contact *contact) {
     Slot after = d[i] ? prog_op(l.p, IR_ADD, lower_slot(&l, v), d[i]) : 0;
     if (after) prog_store(l.p, 1, i, after, expr_symbol(g, m->coords.at[i].v)->name);
   }
-  return prog_tidy(l.p);
+  return passes_run(l.p, &(PassPlan){0}, NULL);
 }
 
 Prog *lower_multipliers(const Eqns *e) {
@@ -83,5 +84,5 @@ Prog *lower_multipliers(const Eqns *e) {
   Slot *acc = ARENA_ARRAY(e->m->arena, Slot, e->n + 1);
   lower_solution(&l, acc);
   for (uint32_t k = 0; k < e->constraints.n; k++) prog_store(l.p, 0, k, l.multipliers[k], e->constraints.of[k]->name);
-  return prog_tidy(l.p);
+  return passes_run(l.p, &(PassPlan){0}, NULL);
 }

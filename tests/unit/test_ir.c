@@ -9,12 +9,40 @@
 #include <cmocka.h>
 
 #include "compile_text.h"
+#include "ir/passes.h"
 
 typedef long double Real;
 
 /* ---- the checker ---- */
 
 static Slot load(Prog *p, uint32_t i) { return prog_ins(p, (Ins){.op = IR_LOAD, .array = ARR_Q, .index = i, .name = "q"}); }
+
+/* A malformed program goes through no pass and says so; the accelerations of a short model go through those of short programs, in order. */
+static void test_passes(void **state) {
+  (void)state;
+  Arena *a = arena_new(NULL);
+  Prog *p = prog_new(a);
+  Slot x = load(p, 0), y = load(p, 1), sum = prog_op(p, IR_ADD, x, y), less = prog_op(p, IR_LT, x, y);
+  prog_store(p, 0, 0, sum, "out");
+  p->ins.at[sum].a = less; /* computes with a condition */
+  Prog *q = passes_run(p, &(PassPlan){.every_step = 1}, NULL);
+  assert_non_null(prog_verify(q));
+  assert_string_equal(prog_verify(q), "after lowering: instruction 3 uses a later one");
+  arena_free(a);
+
+  a = arena_new(NULL);
+  p = prog_new(a);
+  StrBuf trace = strbuf(a);
+  prog_store(p, 0, 0, prog_op(p, IR_MUL, load(p, 0), load(p, 1)), "out");
+  passes_run(p, &(PassPlan){.nests_from = 1500, .every_step = 1}, &trace);
+  const char *order[] = {"after lowering:", "after tidy:", "after factor:", "after product_cse:", "after reassociate_fma:"}, *at = sb_text(&trace);
+  for (size_t i = 0; i < sizeof order / sizeof *order; i++) {
+    at = strstr(at, order[i]);
+    assert_non_null(at);
+  }
+  assert_null(strstr(sb_text(&trace), "after find_nests:"));
+  arena_free(a);
+}
 
 static void test_verify(void **state) {
   (void)state;
@@ -437,7 +465,7 @@ static void test_solve_indefinite(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_verify), cmocka_unit_test(test_numbering),      cmocka_unit_test(test_tidy),
-    cmocka_unit_test(test_pivot),  cmocka_unit_test(test_lower),          cmocka_unit_test(test_solve_definite),
+    cmocka_unit_test(test_passes), cmocka_unit_test(test_pivot),  cmocka_unit_test(test_lower),          cmocka_unit_test(test_solve_definite),
     cmocka_unit_test(test_solve_indefinite), cmocka_unit_test(test_factor), cmocka_unit_test(test_count_of_many), cmocka_unit_test(test_count_of_bands), cmocka_unit_test(test_count_constrained), cmocka_unit_test(test_count_along_a_chain), cmocka_unit_test(test_in_time), cmocka_unit_test(test_share),
     cmocka_unit_test(test_factors_in_time), cmocka_unit_test(test_by_deadline),
   };
