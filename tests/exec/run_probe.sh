@@ -29,7 +29,7 @@ case " \$* " in *" -dM "*) echo "#define __AVX512F__ 1"; exit 0 ;; esac
 for m in \$MEND; do case " \$* " in *" \$m "*) for o; do shift; case \$o in -march=*) ;; *) set -- "\$@" "\$o" ;; esac; done; exec $CC "\$@" ;; esac; done
 for o; do
   shift
-  case \$o in */probe.c | */probe.in) sed '/void copied/,/^}/s/= 0;/= a;/' "\$o" >"$TMP/bad.c"; o=$TMP/bad.c ;; esac
+  case \$o in */probe.c | *probe.in) sed '/void copied/,/^}/s/= 0;/= a;/' "\$o" >"$TMP/bad.c"; o=$TMP/bad.c ;; esac
   set -- "\$@" "\$o"
 done
 exec $CC "\$@"
