@@ -1,5 +1,5 @@
 #!/bin/sh
-# The signposts are true: each folder of sources has a README, whose links lead somewhere and whose files exist; each .c and .h says at its head what it is.
+# The signposts are true: each folder of sources has a README, whose links lead somewhere and whose files exist; each .c and .h begins with a comment.
 . tests/tap.sh
 
 folders=$(find src runtime tests models -type f -name '*.[ch]' -o -type f -name '*.lag' | sed 's|/[^/]*$||' | LC_ALL=C sort -u | grep -v -e '^tests/' -e '^runtime/include$')
