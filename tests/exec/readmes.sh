@@ -12,6 +12,10 @@ empty "links of pages lead to files" "$(for f in $pages; do
   done
 done)"
 
+# Sentences begin with their noun; only beginnings that never have one are looked for.
+empty "no sentence of a page begins with That of, Those that, Of what, What no, What an" \
+  "$(grep -nE '(^|[.] |[|] |- )(That of|Those that|Of what|What no|What an)( |$)' $pages)"
+
 find src runtime tests grammar -type f | sed 's|.*/||' | LC_ALL=C sort -u >"$TMP/names"
 printf '%s\n' math.h stddef.h stdio.h >>"$TMP/names"
 empty "files that READMEs of sources name exist" "$(for f in src/README.md src/*/README.md runtime/README.md runtime/*/README.md tests/README.md; do
