@@ -1,20 +1,18 @@
 /* Help pages, put together from the tables of commands and options, the chapters of the reference, and the table of units. */
 #include "commands/help.h"
 
+#include <string.h>
 #include <unistd.h>
 
 #include "base/suggest.h"
-#include "commands/commands.h"
-#include "toolchain/runtime_methods.h"
-#include <string.h>
-
-#include "base/suggest.h"
 #include "commands/command_table.h"
+#include "commands/commands.h"
 #include "commands/options.h"
 #include "commands/terminal_page.h"
 #include "commands/language_reference.h"
 #include "model/model.h"
 #include "syntax/parse.h"
+#include "toolchain/runtime_methods.h"
 
 enum { TERMS = 24 }; /* column of the meanings in lists */
 
@@ -27,7 +25,7 @@ static void put_option(StrBuf *out, const OptionRow *o) {
   page_term(out, term, o->does, TERMS);
 }
 
-/* Lists a command's options; options of the simulator that run has, too, are listed under run alone. */
+/* Lists a command's options; those passed on to the simulator are listed under `run` only. */
 static void put_options(StrBuf *out, Command c) {
   for (size_t i = 0; option_row(i); i++) {
     const OptionRow *o = option_row(i);
@@ -168,7 +166,7 @@ static void put_overview(StrBuf *out) {
   }
   page_term(out, "methods", "of integration, with their options", TERMS);
   sb_putc(out, '\n');
-  page_paragraphs(out, "MODEL is a .lag file; without a SCENE its first one counts. Exit status: 0 ok, 1 bad model, 2 usage or files, "
+  page_paragraphs(out, "MODEL is a .lag file; without a SCENE its first scene is taken. Exit status: 0 ok, 1 bad model, 2 usage or files, "
                        "3 the run failed.");
 }
 
@@ -209,7 +207,7 @@ int help_print(StrBuf *out, const char *topic, Name *near) {
 
 /* --- the command --- */
 
-/* The runtime has them: asked with `--method help` it prints its table, with `--method "help NAME"` one of them. */
+/* A program of the runtime prints the methods: `--method help` the table, `--method "help NAME"` one method. */
 static int help_methods(Compiler *c, const char *name) {
   const char *error = NULL, *path = methods_program(c->arena, c->argv0, !c->o.no_gsl, &error);
   char *argv[] = {"lagc", "--method", name ? arena_printf(c->arena, "help %s", name) : "help", NULL};

@@ -29,7 +29,7 @@ driver() {
   "$TMP/driver" check >"$TMP/check" || { echo "they do not compute the same:"; cat "$TMP/check"; exit 1; }
 }
 
-# instructions NAME [CALLS]: of one call of it, without its caller's; - where there is no valgrind.
+# instructions NAME [CALLS]: instructions of one call, without those of its caller; - without valgrind.
 instructions() {
   [ -n "$VALGRIND" ] || { echo -; return; }
   function=$1 calls=${2:-1600}
@@ -44,7 +44,7 @@ instructions_of_all() { # "PEERS" [CALLS]: `name count` lines in $TMP/counts
 }
 of() { awk -v n="$1" -v c="${3:-2}" '$1 == n { print $c }' "$TMP/$2"; } # NAME counts|times [COLUMN]
 
-# SymPy's C to OUT; operations and seconds to $TMP/sympy. Fails where there is no SymPy.
+# Writes SymPy's C to OUT, operations and seconds to $TMP/sympy. Fails without SymPy.
 sympy() { [ -n "$PYTHON" ] && "$PYTHON" $here/sympy_peer.py "$@" >"$TMP/sympy"; }
 
 # ---- the table
@@ -55,7 +55,7 @@ echo "Compiled with \`$flags\`."
 echo
 table
 
-# Instructions are counted with the C library's sine; times are those of what lagc emits when nobody asks for another.
+# Instructions are counted with the C library's sine; times are measured with the default one of emitted C.
 math=
 if "$LAGC" help emit 2>/dev/null | grep -q -e --math; then math='--math libm'; fi
 
@@ -83,7 +83,8 @@ for p in $peers; do
 done
 
 
-# Over 8 lanes, in nanoseconds a lane, by lanes.c: 2.8, or eight times the rate by hand, which takes the machine's pace of the minute out.
+# Target over 8 lanes, in nanoseconds per lane (lanes.c): 2.8, or eight times the speed of the hand-written code, which
+# varies with the machine in the same way.
 if grep -q ' avx512dq ' /proc/cpuinfo 2>/dev/null; then
   # shellcheck disable=SC2086 # a list of words
   "$CC" $flags -march=x86-64-v4 -mprefer-vector-width=512 -Wno-psabi -DLAG_LANES=8 -DSCENE=double_pendulum_swing -I"$INC" \

@@ -1,5 +1,5 @@
 #!/bin/sh
-# How the time and the memory of lagc grow with a model: slopes of their logarithms against that of N, between two sizes. 1 is linear.
+# Growth of the time and the memory of lagc with a model: slopes of their logarithms against log N, between two sizes. 1 is linear.
 set -eu
 : "${LAGC:=build/lagc}" "${CC:=cc}" "${TMP:=$(mktemp -d)}"
 . tests/bench/lib_rows.sh
@@ -51,7 +51,7 @@ MODEL
 
 table
 # ---- lagc check
-# grows WHAT KIND FEW MANY: slopes of the logarithms of CPU time and memory against that of N. Memory is less what lagc needs for N = 1.
+# grows WHAT KIND FEW MANY: slopes of the logarithms of CPU time and memory against log N. The memory for N = 1 is subtracted.
 grows() {
   grown_model "$2" 1 >"$TMP/grows.lag"
   floor=$(kilobytes 1 "$LAGC" check "$TMP/grows.lag")

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Rows of tables of `make bench`, and what a command costs. Needs CC and TMP.
+# Rows of tables of `make bench`, and the time and memory of a command. Needs CC and TMP.
 "$CC" -O2 tests/bench/rusage.c -o "$TMP/rusage"
 
 # seconds TIMES COMMAND...: the least CPU seconds; kilobytes TIMES COMMAND...: the most memory.

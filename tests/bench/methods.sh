@@ -1,6 +1,6 @@
 #!/bin/sh
 # Time against error of dop853 and taylor, next to integrators of others with right-hand sides written by hand, in one run: GSL's rk8pd,
-# dop853 inlined by hand, Boost.odeint's rkf78, SUNDIALS' CVODE (Adams) and ARKODE (order 8), SciPy's DOP853, and, for the chains, what
+# dop853 inlined by hand, Boost.odeint's rkf78, SUNDIALS' CVODE (Adams) and ARKODE (order 8), SciPy's DOP853, and, for the chains, the code that
 # SymPy writes in the dop853 by hand; those that are installed (Debian: libgsl-dev, libboost-dev, libsundials-dev, python3-scipy,
 # python3-sympy). In brackets: the processor's time over that of rk8pd, and over that of dop853 inlined by hand.
 set -eu
@@ -19,7 +19,7 @@ for n in 10 20; do
   sed -i "s/\\<chain\\>/chain_model_$n/g; s/\\<chain_/chain_${n}_/g" "$TMP/chain_$n.c"
 done
 
-# What peers there are: by whether they compile.
+# Peers are available if they compile.
 has() { # COMPILER WORDS...
   compiler=$1
   shift

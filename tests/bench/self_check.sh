@@ -1,5 +1,5 @@
 #!/bin/sh
-# What the comparison with the text costs: its share of the instructions of `lagc emit`, by callgrind. To reach: a tenth of the compilation.
+# Cost of the comparison with the text: its share of the instructions of `lagc emit`, by callgrind. Target: a tenth of the compilation.
 set -eu
 : "${LAGC:=build/lagc}" "${TMP:=$(mktemp -d)}"
 command -v valgrind >/dev/null || {

@@ -1,6 +1,6 @@
 #!/bin/sh
-# How long a person waits: from .lag to the first row of output (nothing cached), and for `lagc check`.
-# To reach: 1 s and 50 ms. Medians of several runs; no test depends on them.
+# Waiting time of a user: from .lag to the first row of output (nothing cached), and for `lagc check`.
+# Targets: 1 s and 50 ms. Medians of several runs; no test depends on them.
 set -eu
 : "${LAGC:=build/lagc}" "${TMP:=$(mktemp -d)}"
 

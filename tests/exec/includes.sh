@@ -50,7 +50,7 @@ find src grammar runtime -name '*.[chly]' | LC_ALL=C sort | while read -r f; do
     sed "s|^|$f |"
 done >"$list"
 
-# What lag.y and lag.l turn into is included by src/syntax, and by nobody else.
+# Files generated from lag.y and lag.l are included by src/syntax only.
 empty "generated parser headers: src/syntax only" \
   "$(awk '$2 ~ /lag\.(tab|lex)\.[ch]>?$/ && $1 !~ /^src\/syntax\// { print $1 " includes " $2 }' "$list")"
 
@@ -76,7 +76,7 @@ empty "folders include only what lies before them" "$(awk -v allowed="$allowed" 
     print $1 " includes " $2 (known[folder] || folder ~ /include$/ ? "" : " (a folder without a rule)")
   }' "$list")"
 
-# jets/ reads what a name means from the scopes of the model that it compares.
+# jets/ reads the meanings of names from the scopes of the model that it compares.
 empty "the inside of a folder stays inside" "$(awk -v private="$private" '
   BEGIN { n = split(private, w); for (i = 1; i <= n; i++) inside[w[i]] = 1 }
   inside[$2] && $1 !~ /^grammar\// {

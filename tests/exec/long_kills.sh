@@ -134,7 +134,7 @@ fifty() {
 }
 if command -v python3 >/dev/null; then
   check "${KILLS:-50} kills at random moments" fifty
-  # C compilers that a kill has orphaned end first: what they write after a folder is emptied is removed by the command after the next.
+  # Waits for C compilers that a kill has orphaned: files that they write after a folder is emptied are removed by the command after the next.
   for _ in $(seq 60); do ps -eo args | grep -v grep | grep -q "lagc-build-" || break; sleep 1; done
   "$LAGC" run spring.lag --until 1 -o out.csv --save-state state --quiet
   "$LAGC" build spring.lag -o made

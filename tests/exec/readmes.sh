@@ -1,5 +1,5 @@
 #!/bin/sh
-# The signposts are true: each folder of sources has a README, whose links lead somewhere and whose files exist; each .c and .h says at its head what it is.
+# The signposts are true: each folder of sources has a README, whose links lead somewhere and whose files exist; each .c and .h begins with a comment.
 . tests/tap.sh
 
 folders=$(find src runtime tests models -type f -name '*.[ch]' -o -type f -name '*.lag' | sed 's|/[^/]*$||' | LC_ALL=C sort -u | grep -v -e '^tests/' -e '^runtime/include$')
@@ -11,6 +11,10 @@ empty "links of pages lead to files" "$(for f in $pages; do
     [ -e "$(dirname "$f")/$l" ] || echo "$f: $l"
   done
 done)"
+
+# Sentences begin with their noun; only beginnings that never have one are looked for.
+empty "no sentence of a page begins with That of, Those that, Of what, What no, What an" \
+  "$(grep -nE '(^|[.] |[|] |- )(That of|Those that|Of what|What no|What an)( |$)' $pages)"
 
 find src runtime tests grammar -type f | sed 's|.*/||' | LC_ALL=C sort -u >"$TMP/names"
 printf '%s\n' math.h stddef.h stdio.h >>"$TMP/names"

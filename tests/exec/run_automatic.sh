@@ -63,7 +63,7 @@ check "at a fine tolerance: dop853" takes dop853 "$TMP/spring.lag" --until -1e-4
 check "at a finer one: taylor" takes taylor "$TMP/spring.lag" --until -1e-4 --tol 1e-11
 check "nor where the scene goes backwards" takes rk45 "$TMP/spring.lag" back --tol 1e-3
 check "a sensor backwards: rk45" takes rk45 "$TMP/sensor.lag" --until -2e-5 --tol 1e-5
-# th is 1 there but for 2e-10, so z - sin(1) = (0.84 - sin(1)) exp(20) but for 1e-9 of it; 1e-2: growth by exp(20) in steps of tolerance 1e-5.
+# th is 1 within 2e-10 there, so z - sin(1) = (0.84 - sin(1)) exp(20) within 1e-9; tolerance 1e-2: growth by exp(20) in steps of tolerance 1e-5.
 grown() { awk '$1 == "z" { off = ($2 - sin(1))/((0.84 - sin(1))*exp(20)) - 1 } END { print off; exit !(off != "" && off*off < 1e-4) }' "$TMP/out"; }
 check "which grows as it must, and does not follow" grown
 check "what is stiff backwards takes radau" takes radau "$vdp" --until -2000 --tol 1e-7

@@ -123,7 +123,7 @@ for scene in forms distances tied; do
   done
 done
 
-# ---- stiff: a pendulum in honey, m x'' = -c x' + ...; c th' = -m g sin(th)/l but for (m/c)^2 g/l = 1e-9, so tan(th/2) = e^(-m g t/(c l))
+# ---- stiff: a pendulum in honey, m x'' = -c x' + ...; c th' = -m g sin(th)/l up to (m/c)^2 g/l = 1e-9, so tan(th/2) = e^(-m g t/(c l))
 cat >"$TMP/honey.lag" <<'EOF'
 model honey "A pendulum in honey, in Cartesian coordinates"
 coord x [m], y [m]
@@ -147,7 +147,7 @@ check "by one of order 4" says 'exact x: largest deviation [0-9.]*e-1[0-9]' $mod
 
 # A bead on x*y' = y*x', a line through the origin, where the constraint's coefficients vanish and change their sign. On y = x/2 with the
 # masses 1 and 2: 3/2 x'' = -3 x - 0.35, so x = -7/60 + 67/60 cos(sqrt(2) t), here at 10. A rule of order 2 in steps of 1e-3 is off by 1e-6 of that; verlet4, of
-# order 4, by 1e-11 and by what rounding becomes at the origin.
+# order 4, by 1e-11 and by the rounding error that grows at the origin.
 cat >"$TMP/origin.lag" <<'END'
 model origin
 coord x [m], y [m]

@@ -85,7 +85,7 @@ for method in dop853 rk45 rk4 radau verlet variational; do
   "$LAGC" run "$TMP/blades.lag" --method $method -o "$TMP/rows.csv" >"$TMP/report" 2>&1
   check "$method finds velocities that contradict each other" grep -E 'FAILED: at t = 1(.0[0-9]*)? s: .*constraint (blade|again) \(line [56]\) is (off|not met)' "$TMP/report"
 done
-# The same twice, by factors that differ along the way, so that a chord obeys one of both only: the motion is that of one, x = sin t, y = 1 - cos t, to
+# The same constraint twice, with different factors along the motion, so that a chord obeys only one: the motion is x = sin t, y = 1 - cos t, to
 # the order of the method, by h^2/12 and more.
 sed "s|k/T\*max(t/T - 1, 0)|0 [m/s]|; s|again: \(.*\) = 0|again: (2 + sin(a))*(\1) = 0|" "$TMP/blades.lag" >"$TMP/twice.lag"
 for method in verlet variational; do

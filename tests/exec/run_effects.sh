@@ -31,7 +31,7 @@ identical() { # FILE
   cp "$from"/*.csv "$dir/cut" 2>/dev/null
   scenes "$1" >"$dir/scenes"
   [ -s "$dir/scenes" ] || { cat "$dir/err"; return 1; }
-  while read -r scene used; do # `none` is no effect
+  while read -r scene used; do # `none` is not an effect
     off=
     while read -r effect; do
       case " $used " in *" $effect "*) ;; *) off="$off $effect" ;; esac

@@ -115,7 +115,7 @@ is "taylor: the series" taylor "$(has models/double_pendulum.lag --method taylor
 is "variational: second derivatives" variationsecond "$(has models/double_pendulum.lag --method variational)"
 is "accelerations do not pay for them" "$("$LAGC" emit models/double_pendulum.lag | grep -c 'Accelerations: 38 operations')" \
   "$("$LAGC" emit models/double_pendulum.lag --method radau | grep -c 'Accelerations: 38 operations')"
-# Functions of numbers that are no fractions stay calls: the compiled program computes them, and the text agrees (every compilation compares).
+# Functions whose values are not fractions stay calls: the compiled program computes them, and the text agrees (every compilation compares).
 cat >"$dir/numbers.lag" <<'END'
 model numbers
 coord x

@@ -58,7 +58,7 @@ scene tilted { start y = 0.1 [m], th = 0.1 [rad]; span 0.5 [s]; method dop853; t
 scene flat { like tilted; start y = 1 [m], th = 0; e = 0.5 }
 END
 # Turning about the left leg with th', the right one strikes: the momentum about the right leg is (I - M a^2) th' before and, where the left
-# leg leaves, (I + M a^2) th' after (G. Housner, Bull. Seismol. Soc. Am. 53 (1963) 403, for this block). It falls through 0.1 rad:
+# leg leaves, (I + M a^2) th' after (G. Housner, Bull. Seismol. Soc. Am. 53 (1963) 403, for this block). The block falls through 0.1 rad:
 # M g a th = (I + M a^2) th'^2/2.
 check "a block rocks" run block tilted
 check "it turns on about the other leg, slower" near "$(first right 0)" "$(calc '-sqrt(2*2*9.81*0.1/5)*(3 - 2)/5')" 1e-10

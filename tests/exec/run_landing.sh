@@ -47,7 +47,7 @@ for model in rhomb parallelogram; do
       near "$model, $method, adapt=off, $step" 1e-6 0 "$(ends $model --method "$method(adapt=off, step=$step)")"
     done
   done
-  # radau's steps shrink into such a position. It may pass; otherwise it says so, and does not continue on another motion.
+  # radau's steps shrink into such a position. The run may pass; otherwise it ends with a message, and does not continue on another motion.
   for tol in 1e-6 1e-7 1e-8 1e-9 1e-10; do
     got=$(ends $model --method radau --tol $tol)
     case $got in

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Models that could take for ever, as TAP: each ends in an answer, or in a message that names a limit, within seconds.
-# (The time limit is far above what they take; without the guards they would not end today.)
+# (The time limit is far above the usual time; without the guards these models would not finish in a day.)
 cd "$(dirname "$0")/../.." || exit 2
 : "${LAGC:=build/lagc}" "${TMP:=${TMPDIR:-/tmp}}"
 . tests/tap.sh

@@ -53,7 +53,7 @@ close "sum" -12 "$(number sum)" 1e-7
 find_them models/damped_oscillator.lag over --method radau # its steps could be too long to follow the fast decay
 close "slow" "-2*(3 - sqrt(8))" "$(list exponents 1)" 1e-7
 close "fast" "-2*(3 + sqrt(8))" "$(list exponents 2)" 1e-7
-find_them models/damped_oscillator.lag under # both c/(2m) = 0.2, but for the swing of the ellipse, log(w) at most, over 360 s
+find_them models/damped_oscillator.lag under # both c/(2m) = 0.2, up to the swing of the ellipse, at most log(w), over 360 s
 close "one" -0.2 "$(list exponents 1)" 0.004
 close "other" -0.2 "$(list exponents 2)" 0.004
 close "sum" -0.4 "$(number sum)" 1e-6

@@ -130,7 +130,7 @@ says "reached" tests/exec/models/gauge.lag go --method verlet4
 check "no such note on a conservative model" sh -c "! grep -q 'symplectic for' '$TMP/out'"
 check "dop853 on the double pendulum" says "energy drift: [0-9.]*e-1" models/double_pendulum.lag --method dop853 --tol 1e-12
 check "steps of equal size by an adaptive method" says "steps 100, rejected 0" models/pendulum.lag --method "rk45(step=0.1, adapt=off)" --until 10
-# 0.1 is no binary number: summed a hundred times without compensation it falls short of 10 by rounding, and another step is taken.
+# 0.1 is not a binary fraction: summed a hundred times without compensation it falls short of 10 by rounding, and another step is taken.
 for o in 'taylor(adapt=off, step=0.1)' 'taylor(order=2, adapt=off, step=0.1)' 'rk4(step=0.1)' 'rk45(adapt=off, step=0.1)' 'verlet(step=0.1)' \
   'gauss(step=0.1)' 'radau(adapt=off, step=0.1)'; do
   check "$o: 100 steps to 10 s, no rest of rounding's size" says "^steps 100," models/pendulum.lag --method "$o" --until 10

@@ -115,7 +115,7 @@ for mode in "1 0 1 1 -0.5" "2 1 0 1 0"; do
   for i in "a $2" "b $3" "c $4" "d $5"; do close "free direction $1" "(${i#* })" "$(shape "$1" "${i% *}")"; done
 done
 
-find_modes $dir/triangle.lag # breathing: 3 k u back for u outwards; the sum of all w^2 is the trace of K/m, 6 k/m; rotation is no straight line
+find_modes $dir/triangle.lag # breathing: 3 k u back for u outwards; the sum of all w^2 is the trace of K/m, 6 k/m; rotation is not along a straight line
 verdict neutral
 because "minimum in all other directions"
 for i in 1 2 3; do is "$title: translations, rotation" true "$(of_mode $i free)"; done
@@ -264,7 +264,7 @@ is "$title: one mode" 1 "$(count)"
 find_modes $dir/hill.lag valley # k < 0: w = (sqrt(W^2 + 4) -+ W)/2, and the energy has a minimum
 verdict stable
 close "slow" "(sqrt(13) - 3)/2" "$(of_mode 1 im)"
-find_modes $dir/hill.lag rubbed # friction destroys what gyroscopic forces hold (Thomson & Tait, Natural Philosophy, par. 345)
+find_modes $dir/hill.lag rubbed # friction destroys the stability by gyroscopic forces (Thomson & Tait, Natural Philosophy, par. 345)
 verdict unstable
 close "growth, to first order in c/m = 0.01" "0.01*0.381966/(2*0.381966 - 3)*-1" "$(of_mode 1 re)" 1e-5 # second order: 1e-4 of 1.7e-3
 

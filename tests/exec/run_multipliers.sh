@@ -21,7 +21,7 @@ check "lag_kkt within a band: chains, rings, without inertia here and there, and
 #   grows   r'' = 0, so lambda = -m r th'^2 with th' = (X Y' - Y X')/r^2, X'' = lambda X/(r m)
 #   blade   along the blade at speed 1, turning at 2: (s'', k'') = 2 (-sin a, cos a), lambda = -2 m
 #   roll    r'' = 2/7 W e_z x r' (any textbook: the ball on a turntable), lambda = m bx''
-#   curve   u'' = -2 u, and the force that holds what has no inertia, m
+#   curve   u'' = -2 u, and the force that holds the coordinate without inertia, m
 #   tied    m + 3 m falls by the weight of m: n.y'' = -g/4, lambda = (0, 3 m g/4)
 #   apart   the weight m g on m + 2 m + 3 m; of l1 + 2 l3 = -5 m g/6, l2 + 2 l3 = -m g/2 the least: 18 l3 = 8 (-4/3 m g/2)
 expected() {

@@ -6,7 +6,7 @@
 model() { # model NAME KINETIC START [MORE]
   printf 'model %s\ncoord x, y, z\nparam m = 1 > 0\nkinetic = %s\npotential = -x\n%s\nscene s { start %s; span 10; output x }\n' "$1" "$2" "${4:-}" "$3" >"$TMP/$1.lag"
 }
-ends() { # ends MODEL METHOD WORDS...: status 3, each of the words, and none of a singular matrix where "finite" is among them
+ends() { # ends MODEL METHOD WORDS...: status 3, all of the words are printed, and a singular matrix is not mentioned if "finite" is among them
   "$LAGC" run "$TMP/$1.lag" --method "$2" >"$TMP/out" 2>&1
   [ $? = 3 ] || { cat "$TMP/out"; return 1; }
   cat "$TMP/out"

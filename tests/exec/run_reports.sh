@@ -37,7 +37,7 @@ lagrangian = m/2*y'^2 - m*g*y
 scene s { span 10 }
 X
 run "$TMP/zero.lag" --method rk4
-near "an energy of 0 at first" 1e-12 0 "$(number energy_drift)" # exact but for rounding: the motion is a parabola
+near "an energy of 0 at first" 1e-12 0 "$(number energy_drift)" # exact up to rounding: the motion is a parabola
 
 # ---- a fall into the pole of -1/x takes pi/(2 sqrt 2) = 1.1107 s
 cat >"$TMP/pole.lag" <<'X'
@@ -65,7 +65,7 @@ done
 for method in verlet 'verlet(step=0.01)' 'verlet(step=0.1)' 'verlet6(step=0.01)' 'symplectic_euler(step=0.01)'; do
   for model in jumps signal log; do over $model "$method"; done
 done
-# Finite forces, and a corner of a root, are no poles: a barrier that a step leads over, a fall past a centre, a force of 1/sqrt(x).
+# Finite forces, and a corner of a root, are not poles: a barrier that a step leads over, a fall past a centre, a force of 1/sqrt(x).
 echo 'model barrier; coord x; lagrangian = x'"'"'^2/2 - 0.1*exp(-(x/1e-5)^2); scene s { start x = 1, x'"'"' = -1; span 3 }' >"$TMP/barrier.lag"
 echo 'model root; coord x; lagrangian = x'"'"'^2/2 - sqrt(abs(x)); scene s { start x = 1; span 20 }' >"$TMP/root.lag"
 echo 'model past; coord x, y; lagrangian = (x'"'"'^2 + y'"'"'^2)/2 + 1/hypot(x, y); scene s { start x = 1, y'"'"' = 0.01; span 3 }' >"$TMP/past.lag"

@@ -34,7 +34,7 @@ closed_form() { sed -n 's/^exact N.*largest deviation \([^,]*\),.*/\1/p' "$out.t
 check "turning about one axis is turn(n, w t)" closed_form
 
 # ---- torques and forces ----
-# 170 steps, of which each may be off by 1e-13 in a rate and that for 10 s
+# 170 steps, each with an error of up to 1e-13 in a rate, which acts for 10 s
 check "a torque about an axis of the body: w = w0 + tau t/C" near "$out" w.z 10 "pi + 0.6*10/3" 5e-11
 check "a torque in space: L = tau t" near "$out" '(T*omega(T)).x' 10 "0.6*10/2" 5e-11
 check "and none about y" near "$out" '(T*omega(T)).y' 10 0 5e-11
@@ -80,7 +80,7 @@ sed 's/(B - C)/(C - B)/' $spun >"$TMP/false.lag"
 check "a false one is refuted" sh -c '"$1" check "$2" --allow-numeric 2>&1 | grep -q "is false"' sh "$LAGC" "$TMP/false.lag"
 
 # ---- contacts ----
-# A box falls on its four corners and comes to rest: three equations for four forces, of which the least are a quarter of the weight each.
+# A box falls on its four corners and comes to rest: three equations for four forces; the least ones are a quarter of the weight each.
 for scene in flat tilted; do
   out=$TMP/$scene.csv
   check "a box falls, $scene" "$LAGC" run tests/exec/models/box.lag $scene -o "$out"
@@ -95,7 +95,7 @@ check "and turns on" near "$TMP/flat.csv" R.z 5 "sin(2.5)" 1e-8
 energy_of() { "$LAGC" derive "models/$1.lag" | sed -n '/^energy/{n;s/^ *E = //p;}'; }
 is "the energy is told by omega" 'A*w.x^2/2 + B*w.y^2/2 + C*w.z^2/2' "$(energy_of free_body)"
 is "and by what else L is written with" "A*(w.x^2 + w.y^2)/2 + C*w.z^2/2 + m*g*h*axis.z" "$(energy_of lagrange_top)"
-# A term of the first degree, a gyroscope's in a turning frame, is none of the energy: E = T2 - T0 + V.
+# A term of first degree, of a gyroscope in a turning frame, is not part of the energy: E = T2 - T0 + V.
 cat >"$TMP/turning.lag" <<'E2'
 model turning "A dumb-bell on a table that turns: terms of degree 2, 1 and 0 in L"
 coord R: rotation, x [m]

@@ -320,7 +320,7 @@ check "energy: rk45 holds it" "$LAGC" run "$dir/e.lag" --quiet
 check "energy: rk4 with long steps does not" says 3 'monitor energy: drift' "$LAGC" run "$dir/e.lag" --quiet --method 'rk4(step=0.5)'
 is "a scene with a monitor has the usual outputs" "t [s],x,x',energy" "$(sed 's/energy 1e-6/(x*x) 9/' "$dir/e.lag" >"$dir/f.lag"; "$LAGC" run "$dir/f.lag" -o - 2>/dev/null | head -1 | cut -d, -f1-4)"
 
-# The work of forces is no part of the energy's drift; outputs have no such balance.
+# The work of forces is not part of the energy's drift; outputs have no such balance.
 printf "model fade\ncoord x\nlagrangian = x'^2/2 - x^2/2\nforce x = -0.1*x'\nscene s { start x = 1; span 10; output x; monitor x 1e-3 }\n" >"$dir/fade.lag"
 of_an_output() { says 3 "monitor x: drift" "$LAGC" run "$dir/fade.lag" --quiet --method gsl-rk8pd && ! grep -q "forces bring" "$TMP/err"; }
 if [ -n "${GSL:-}" ]; then check "a monitor of the first output says nothing of forces" of_an_output; else skip "no GSL"; fi

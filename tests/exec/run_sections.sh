@@ -14,7 +14,7 @@ section() {
 }
 
 # ---- x = cos 2t: falling at (k + 1/4) pi with x' = -2, rising at (k + 3/4) pi with 2; in 20 s 7 and 6 times.
-# The tolerance 1e-11 leaves some 1e-10 after 20 s, of which the slope makes half of that in time; radau's dense output has order
+# The tolerance 1e-11 leaves an error of some 1e-10 after 20 s, and half of that in time, by the slope; radau's dense output has order
 # 3, and is good to 1e-8.
 oscillates() { # METHOD DIRECTION FIRST EVERY SIGN COUNT (pi/4 times FIRST, pi/2 times EVERY)
   near=1e-9
@@ -41,7 +41,7 @@ on_surface() {
   awk -F, '{ if ($2 > 2e-12 || -$2 > 2e-12 || $4 <= 0 || $7 - 1/8 > 1e-11 || 1/8 - $7 > 1e-11) { print; bad = 1 } } END { exit bad || NR < 100 }' "$TMP/star"
 }
 check "the star: on the surface, to the right, of its energy" on_surface
-crossings() { # crossings as seen in rows in time
+crossings() { # crossings counted in rows at equal times
   "$LAGC" run models/henon_heiles.lag chaos --every 0.01 --quiet -o - | awk -F, 'NR > 2 && $2 > 0 && before <= 0 && NR > 3 { n++ } NR > 1 { before = $2 } END { print n }'
 }
 is "as many as rows in time show" "$(crossings)" "$(wc -l <"$TMP/star" | tr -d ' ')"

@@ -184,7 +184,7 @@ more() { ! checks "$TMP/floor.lag" && says '`ground` has a restitution of 1.5' "
 check "a restitution of more than 1" more
 
 # ---- headers start where runs do
-# same TOLERANCE TIME MODEL [SCENE]: the header's start, and its state after steps of 1e-3, are those of the run; MAIN: more of its program
+# same TOLERANCE TIME MODEL [SCENE]: the header's start, and its state after steps of 1e-3, are those of the run; MAIN: further code of its main program
 same() {
   tolerance=$1
   until=$2

@@ -141,7 +141,7 @@ check "one that slides down a slope" run "$TMP/ball.lag" slides --json
 is "along which its momentum is a charge" conserved "$(of along is)"
 is "while neither component is" "balanced balanced" "$(of lift is) $(of level is)"
 
-# ---- the scale of a charge is the size of its terms: rounding of terms that cancel is no drift
+# ---- the scale of a charge is the size of its terms: rounding of terms that cancel is not drift
 cat >"$TMP/pair.lag" <<'END'
 model pair
 coord a, b

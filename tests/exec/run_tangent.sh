@@ -84,7 +84,7 @@ done
 last models/bouncing_ball.lag rubber --method 'verlet(step=0.01)'
 close "a ball that loses nothing keeps areas" 1 "$(det2_of() { awk -F, -v a="$(column 'dy/dy(0)')" 'END { printf "%.17g", $a*$(a + 3) - $(a + 1)*$(a + 2) }' "$TMP/last"; }; det2_of)" 1e-9
 
-# Hit once, at cos T = T/10 - 1/2 with speed -sin T: by the chain rule along x0 cos t, the bounce, and what follows.
+# Hit once, at cos T = T/10 - 1/2 with speed -sin T: by the chain rule along x0 cos t, the bounce, and the motion after it.
 wall="T = 1.9; for (k = 0; k < 30; k++) T -= (cos(T) - T/10 + 0.5)/(-sin(T) - 0.1); e = 0.7; x = cos(T); m = -sin(T); p = -e*m + (1 + e)/10; h = 4 - T
   c = cos(h); s = sin(h); dT = by_v ? -sin(T)/(m - 0.1) : -cos(T)/(m - 0.1); dx = (by_v ? sin(T) : cos(T)) + m*dT; dp = -e*((by_v ? cos(T) : -sin(T)) - x*dT)"
 after() { awk "BEGIN { by_v = $1; $wall; printf \"%.17g\", $2 }"; }

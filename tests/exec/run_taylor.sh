@@ -78,7 +78,7 @@ wrong_place() { # a loop that reads its neighbours' constants must show
     build "${p:-long}" "$TMP/wrong/model.c" "$TMP/wrong/scenes.c" $here/defect.c -o "$TMP/defect_wrong" && ! "$TMP/defect_wrong"
 }
 check "this test sees a loop that reads what stands one further" wrong_place
-short() { # MODEL N: four times the length has as much C, but for the digits of numbers
+short() { # MODEL N: four times the length gives the same amount of C, apart from digits of numbers
   for n in "$2" $((4 * $2)); do "$LAGC" emit "models/$1.lag" -D N="$n" --method taylor -o "$TMP/size$n.c" || return 1; done
   [ "$(wc -c <"$TMP/size$((4 * $2)).c")" -lt $(($(wc -c <"$TMP/size$2.c") * 11 / 10)) ] || { wc -c "$TMP/size$2.c" "$TMP/size$((4 * $2)).c"; return 1; }
 }
@@ -174,7 +174,7 @@ inputs() { # x' = 3 sin(2 t), and x' = 2 where a constant replaces the formula
     run $here/driven.lag F=2 --method taylor --tol 1e-15 --until 1 && near "$(final x)" 2
 }
 check "an input: along its formula, and held" inputs
-# Tolerances are relative where a state is above 1: an oscillator of a million is one of 1 in other units, up to what the floor of 1 adds.
+# Tolerances are relative for a state above 1: an amplitude of a million acts like an amplitude of 1 in other units, up to the floor of 1.
 calls() { run "$TMP/oscillator.lag" "x=$1" --method taylor && sed -n 's/.*right-hand sides \([0-9]*\).*/\1/p' "$TMP/out"; }
 other_unit() {
   printf 'model oscillator\ncoord x\nlagrangian = (x%s^2 - x^2)/2\nscene s { start x = 1; span 20; tolerance 1e-8 }\n' "'" >"$TMP/oscillator.lag"

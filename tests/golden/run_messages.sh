@@ -15,7 +15,7 @@ a section is a surface in the space of states
 this is not a finite number
 this is nested too deep'
 
-# The texts in the calls that report, one a line, as FILE:LINE<tab>TEXT; texts that are no sentences are left out.
+# The texts in the calls that report, one a line, as FILE:LINE<tab>TEXT; texts that are not sentences are left out.
 texts() {
   awk -v calls='(diag_error|diag_warning|not_yet|unit_bad|report_count|refuse_point)[(]' '
     function literals(call,   text, in_text, c, i) {

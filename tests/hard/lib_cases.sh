@@ -11,8 +11,8 @@ emit_one() {
   sed "s/^const lag_model /static &/; s/^\\(const lag_scene [A-Za-z_0-9]*\\) = {/\\1$emit_suffix = {/" "$TMP/part" >"$TMP/$emit_name.$emit_scene$emit_suffix.c"
 }
 
-# emit_cases WANTS [VARIATION]: of all cases with a model, $TMP/*.c, and $TMP/scenes.c with the list of their scenes. All have what taylor needs; with `all`, also what
-# radau needs, and a second program each with what variational needs.
+# emit_cases WANTS [VARIATION]: writes $TMP/*.c of all cases with a model, and $TMP/scenes.c with the list of their scenes.
+# All have the functions for taylor; with `all`, also those for radau, and a second program each for variational.
 emit_cases() {
   [ "$1" = all ] && emit_more='--with linear' || emit_more=
   awk '!seen[$1, $2]++ { print $1, $2 }' $hard/expected.txt >"$TMP/pairs"

@@ -3,9 +3,9 @@
 # nothing but the problem (rigid bodies by rotations; ends of rods and axes of hinges), two methods of different kind, invariants, and
 #
 # - the motion itself: by threefold symmetry the angles of the hinges are -a and b in turn, and the loop is closed where
-#   sin a sin b + sin a - sin b = 0 (Y. Chen, Z. You, T. Tarnai, Int. J. Solids Struct. 42 (2005) 2287). That leaves one equation
-#   I(u) u'' + I'(u) u'^2/2 + V'(u) = 0 along the curve, of which I and V were formed by SymPy, and which two orders of Gragg's extrapolation with 30
-#   digits solved alike to 20 and more;
+#   sin a sin b + sin a - sin b = 0 (Y. Chen, Z. You, T. Tarnai, Int. J. Solids Struct. 42 (2005) 2287). This leaves one equation
+#   I(u) u'' + I'(u) u'^2/2 + V'(u) = 0 along the curve; SymPy formed I and V, and two orders of Gragg's extrapolation with 30
+#   digits solve it and agree to 20 digits and more;
 # - the multipliers at the start, where all is rational: the least of all that the equations allow, by SymPy.
 . tests/tap.sh
 bodies=tests/hard/cases/bricard.lag points=tests/hard/cases/bricard_points.lag
@@ -61,7 +61,7 @@ for k in wide points; do
 done
 
 # ---- another method ----
-# Of order 2: an error of 1.5e-5 at 0.02 s becomes a quarter at 0.01 s, and their extrapolation to step 0 is of order 4.
+# Order 2: an error of 1.5e-5 at 0.02 s becomes a quarter at 0.01 s, and their extrapolation to step 0 is of order 4.
 check "variational, 0.02 s" run coarse $bodies --method variational --step 0.02 --until 1
 check "variational, 0.01 s" run fine $bodies --method variational --step 0.01 --until 1
 limit() { echo "$(row fine 1) $(row coarse 1)" | awk '{ for (i = 1; i <= 9; i++) printf "%.17g ", (4*$i - $(i + 9))/3 }'; }

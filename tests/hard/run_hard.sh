@@ -9,7 +9,7 @@ check "and compile" compile_cases "$TMP/hard"
 # passes through zero, and needs a floor.
 tap_of hard_runs quick
 
-# By taylor, the errors are a hundredth of what is allowed. rb-dzhanibekov leaves the unstable axis again and again, and
+# The errors of taylor are a hundredth of the tolerance. rb-dzhanibekov leaves the unstable axis again and again, and
 # multiplies the rounding of every build and processor by as much: a tenth.
 far_below() {
   hard_runs quick taylor | awk '/over what is allowed/ { n++; most = /rb-dzhanibekov/ ? 0.2 : 0.02; sub(/.*allowed /, ""); if ($1 + 0 > most) { print; bad = 1 } }
