@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/core.h"
-#include "numeric/consistent_state.h"
+#include "numeric/magnitudes.h"
 
 enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 
@@ -134,9 +134,7 @@ double lag_typical_magnitude(const lag_problem *pb, const double *y, int holonom
     most = fmax(most, unknown / time);
   }
   most = fmax(most, lag_unit_magnitude(pb, y, i) / time);
-
-  int is_angle = q->periodic || !q->unit[0] || strcmp(q->unit, "rad") == 0 || strcmp(q->unit, "deg") == 0;
-  return most <= 0 || (most < 1 && is_angle) ? 1 : most;
+  return lag_component_scale(most, q->periodic, q->unit);
 }
 
 /* Raises size[n] to the residuals of a state displaced by typical magnitudes: there may be no terms of first order, as of a folded linkage or a

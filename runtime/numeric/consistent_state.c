@@ -1,32 +1,12 @@
 /* Consistent states by damped Gauss-Newton steps, stage by stage; refusal of constraints that no force can hold. */
 #include "numeric/consistent_state.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "numeric/magnitudes.h"
+
 enum { MOST_STEPS = 100, MOST_HALVINGS = 30, TRIES = 9 };
-
-double lag_uneven(int i)
-{
-  return 0.5 + fmod(0.618033988749894848 * (i + 1), 1);
-}
-
-int lag_worst_residual(int n, const double *residual, const double *terms, double rounding, double *times)
-{
-  int which = -1;
-
-  *times = -1;
-  for (int k = 0; k < n; k++) {
-    double x = fabs(residual[k]), part = x < DBL_MIN ? 0 : x / (rounding * terms[k]); /* subnormal numbers have lost digits */
-    part = isnan(part) ? HUGE_VAL : part; /* no value */
-    if (part > *times) {
-      *times = part;
-      which = k;
-    }
-  }
-  return which;
-}
 
 void lag_loose_directions(int n, const double *held, const double *held_beside, double *loose)
 {

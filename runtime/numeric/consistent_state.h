@@ -59,10 +59,4 @@ int lag_state_beside(lag_level *w);
  * directions on the rows of A at both states. */
 void lag_loose_directions(int n, const double *held, const double *held_beside, double *loose);
 
-/* Factor from 0.5 to 1.5 of a displacement, different for each i, so that nothing cancels (golden ratio sequence). */
-double lag_uneven(int i);
-
-/* Index of the residual that is largest in units of the rounding of its terms; *times: that number of units. -1, -1: n is 0. */
-int lag_worst_residual(int n, const double *residual, const double *terms, double rounding, double *times);
-
 #endif

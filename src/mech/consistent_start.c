@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/sparse_solve.h"
+#include "numeric/magnitudes.h"
 
 typedef struct {
   const Eqns *e;
@@ -54,9 +55,8 @@ static void coordinate_scales(const Eqns *e, const long double *symbols, int pos
   if (!positions) largest_of_unit(e, symbols, 1, places);
   for (uint32_t i = 0; i < e->n; i++) {
     const Coord *q = &m->coords.at[i];
-    int is_angle = q->periodic || !*q->unit.text || strcmp(q->unit.text, "rad") == 0 || strcmp(q->unit.text, "deg") == 0;
     if (!positions) reach[i] = fmaxl(reach[i], places[i] / (span > 0 ? span : 1));
-    if (reach[i] <= 0 || (reach[i] < 1 && is_angle)) reach[i] = 1;
+    reach[i] = lag_component_scale(reach[i], q->periodic, q->unit.text);
   }
 }
 
