@@ -36,8 +36,10 @@ SAFE := $(shell d=$$(mktemp -d) && $(CC) $(CFLAGS) -x c src/toolchain/compiler_p
           { $$d/probe; [ $$? != 1 ] || echo -fno-tree-slp-vectorize; }; rm -rf "$$d")
 
 # ---- what is made of what ---------------------------------------------------------------------------
+# Of runtime/numeric, the files that the compiler calls, too.
+SHARED   := consistent_state magnitudes
 LAGC_SRC := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
-GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c toolchain/outfile.c)
+GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c toolchain/outfile.c $(SHARED:%=numeric/%.c))
 RT_SRC   := $(filter-out runtime/gsl/%,$(wildcard runtime/*/*.c))
 GSL_SRC  := $(wildcard runtime/gsl/*.c)
 
@@ -125,6 +127,11 @@ $(BUILD)/gen/toolchain/outfile.%: runtime/io/outfile.%
 	@mkdir -p $(@D)
 	sed 's|"io/outfile.h"|"toolchain/outfile.h"|' $< >$@.part
 	@mv $@.part $@
+# SHARED for the compiler: the same text for long double.
+$(BUILD)/gen/numeric/%: runtime/numeric/% runtime/precision.awk
+	@mkdir -p $(@D)
+	awk -v kind=long -v digits=21 -f runtime/precision.awk $< | sed 's/LAG_REAL/long double/g' >$@.part
+	@mv $@.part $@
 # With its section in place, without that file's first line.
 $(BUILD)/gen/emit/lag_math.txt: runtime/include/lag_math.h runtime/include/lag_sincos.h
 	@mkdir -p $(@D)
@@ -154,7 +161,7 @@ $(BUILD)/obj/src/commands/completion_scripts.o: $(SHELLS:%=$(BUILD)/gen/commands
 $(BUILD)/gen/base/visible.h: runtime/io/visible.h
 	@mkdir -p $(@D)
 	cp $< $@
-$(LAGC_SRC:%.c=$(BUILD)/obj/%.o) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/base/visible.h
+$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/base/visible.h $(SHARED:%=$(BUILD)/gen/numeric/%.h)
 $(BUILD)/obj/src/toolchain/files.o $(BUILD)/obj/src/commands/options.o $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h

@@ -1,174 +1,182 @@
 /* Consistent start. Enters: the start as scene and caller set it, and which components they set; leaves: the nearest start on the constraints.
  * Holds: components that nobody set move first, the others only where that does not suffice; a start that obeys the constraints to rounding is
- * not touched.
- *
- * Positions: Gauss-Newton steps, damped until the residual falls (P. Deuflhard, Newton Methods for Nonlinear Problems (2004), 4.3, DOI
- * 10.1007/978-3-642-23899-4), then Newton-like steps along the constraints to the nearest place in the mass metric. Velocities: one linear
- * problem, repeated for its rounding. */
+ * not touched. numeric/consistent_state.c searches; here are the model's functions for it, and messages. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/consistent_state.h"
 #include "numeric/workspace.h"
 #include "lag_kkt.h"
-
-enum { MOST_STEPS = 100, MOST_HALVINGS = 30, TRIES = 9 };
 
 typedef struct Start {
   lag_sim *sim;
   lag_problem *pb;
   const lag_constraints *of;
-  int n, nq, holonomic;      /* level at hand, positions (holonomic) or velocities, and its number of constraints */
-  int *free, nfree;          /* [nfree] components of q, or of v, that may move */
+  int nq;
+  lag_level level;           /* positions or velocities, at hand */
   double *y, *asked, *best;  /* [pb->n] */
-  double *residual, *other;  /* [constraints] residual of the level at hand, c or r, and of the other level */
-  double *size;              /* [constraints] size of terms, by which residuals are divided in the merit function */
-  double *says;              /* [constraints] 1: the constraint has terms of finite size */
-  double *A, *M;             /* sparse entries */
+  double *other;             /* [constraints] residual of the level not at hand; marks of rank */
+  double *M;                 /* sparse entries */
   double *full, *kkt;        /* [nq nq], work of lag_kkt */
+  int *index;                /* block of the level's integers */
 } Start;
 
-/* Solves for the step d of the free components: M d - A^T l = pull M (asked - y), A d = -residual. */
-static int direction(Start *w, double pull, double *d)
-{
-  lag_problem *pb = w->pb;
-  const lag_constraints *of = w->of;
-  int nq = w->nq, nf = w->nfree, at = w->holonomic ? 0 : nq, rc = lag_inputs(pb, w->sim->scene->t0);
-  const double *y = w->y;
-  double *A = w->kkt + nf * nf, *x = A + w->n * nf, *l = x + nf;
+/* ---- the model at the state of a level */
 
-  rc = rc ? rc : of->matrices(w->sim->scene->t0, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work);
+/* Writes the level's components into y; returns y. */
+static const double *put(const lag_level *w)
+{
+  Start *s = w->context;
+  double *level = s->y + (w->positions ? 0 : s->nq);
+
+  memcpy(level, w->x, (size_t)w->n * sizeof *level);
+  return s->y;
+}
+
+static int residuals(const lag_level *w, double *residual)
+{
+  Start *s = w->context;
+
+  return lag_residuals(s->pb, s->sim->scene->t0, put(w), w->positions ? residual : s->other, w->positions ? s->other : residual);
+}
+
+static int jacobian(const lag_level *w, double *A)
+{
+  Start *s = w->context;
+  lag_problem *pb = s->pb;
+  const double *y = put(w);
+  int rc = lag_inputs(pb, s->sim->scene->t0);
+
+  return rc ? rc : s->of->matrices(s->sim->scene->t0, y, y + s->nq, y + 2 * s->nq, pb->p, pb->u, A, s->M, pb->work);
+}
+
+static int terms(const lag_level *w, double *size)
+{
+  Start *s = w->context;
+
+  return lag_constraint_terms(s->pb, s->sim->scene->t0, put(w), w->positions, size);
+}
+
+static void scales(const lag_level *w, const double *x, double *reach)
+{
+  const Start *s = w->context;
+
+  for (int i = 0; i < w->n; i++) { /* of positions: lag_consistent_state asks at no other level */
+    reach[i] = lag_typical_magnitude(s->pb, x, 1, i);
+  }
+}
+
+/* Steps by lag_kkt, with the identity in place of a singular M. */
+static int direction(const lag_level *w, double pull, double *d)
+{
+  Start *s = w->context;
+  const lag_constraints *of = s->of;
+  int nq = s->nq, nf = w->nfree, rc = jacobian(w, w->A);
+  double *A = s->kkt + nf * nf, *x = A + w->rows * nf, *l = x + nf;
+
   for (int regular = 0, pass = 0; pass < 2 && rc == 0 && !regular; pass++) {
-    memset(w->full, 0, (size_t)(nq * nq) * sizeof(double));
+    memset(s->full, 0, (size_t)(nq * nq) * sizeof(double));
     for (int e = 0; e < of->nmass; e++) {
       int i = of->mass[e].row, j = of->mass[e].col;
-      w->full[i * nq + j] = w->full[j * nq + i] = w->M[e];
+      s->full[i * nq + j] = s->full[j * nq + i] = s->M[e];
     }
     for (int i = 0; i < nq && pass == 1; i++) { /* M is singular: the identity takes its place */
-      memset(w->full + i * nq, 0, (size_t)nq * sizeof(double));
-      w->full[i * nq + i] = 1;
+      memset(s->full + i * nq, 0, (size_t)nq * sizeof(double));
+      s->full[i * nq + i] = 1;
     }
-    memset(A, 0, (size_t)(w->n * nf) * sizeof(double));
+    memset(A, 0, (size_t)(w->rows * nf) * sizeof(double));
     for (int a = 0; a < nf; a++) {
       x[a] = 0;
       for (int b = 0; b < nf; b++) {
-        double m = w->full[w->free[a] * nq + w->free[b]];
-        w->kkt[a * nf + b] = m;
-        x[a] += pull * m * (w->asked[at + w->free[b]] - y[at + w->free[b]]);
+        double m = s->full[w->free[a] * nq + w->free[b]];
+        s->kkt[a * nf + b] = m;
+        x[a] += pull * m * (w->asked[w->free[b]] - w->x[w->free[b]]);
       }
       for (int e = 0; e < of->njacobian; e++) {
-        if (of->jacobian[e].row < w->n && of->jacobian[e].col == w->free[a]) {
+        if (of->jacobian[e].row < w->rows && of->jacobian[e].col == w->free[a]) {
           A[of->jacobian[e].row * nf + a] = w->A[e];
         }
       }
     }
-    for (int k = 0; k < w->n; k++) {
+    for (int k = 0; k < w->rows; k++) {
       l[k] = -w->residual[k];
     }
-    regular = lag_kkt(nf, w->n, 0, w->kkt);
+    regular = lag_kkt(nf, w->rows, 0, s->kkt);
     rc = regular || pass == 0 ? 0 : LAG_ESINGULAR;
   }
   memcpy(d, x, (size_t)nf * sizeof *d);
   return rc ? rc : lag_not_finite(nf, d) >= 0 ? LAG_ENAN : 0;
 }
 
-static int residuals(Start *w)
+/* In the metric of the last step's M, in s->full. */
+static double distance(const lag_level *w)
 {
-  return lag_residuals(w->pb, w->sim->scene->t0, w->y, w->holonomic ? w->residual : w->other, w->holonomic ? w->other : w->residual);
-}
+  const Start *s = w->context;
+  double sum = 0;
 
-/* Merit function: sum of squared residuals relative to their terms at the start. Infinite where it has no value, so that no step leads there. */
-static double merit(Start *w)
-{
-  double s = 0;
-
-  if (residuals(w)) {
-    return HUGE_VAL;
-  }
-  for (int k = 0; k < w->n; k++) {
-    double x = w->residual[k] / w->size[k];
-    s += x * x;
-  }
-  return isfinite(s) ? s : HUGE_VAL;
-}
-
-static void move(Start *w, const double *from, double part, const double *d)
-{
-  int at = w->holonomic ? 0 : w->nq;
-
-  for (int a = 0; a < w->nfree; a++) {
-    w->y[at + w->free[a]] = from[at + w->free[a]] + part * d[a];
-  }
-}
-
-/* The residual of the worst constraint in units of the rounding of its terms. */
-static double worst(Start *w)
-{
-  double size = HUGE_VAL;
-
-  lag_worst_constraint(w->pb, w->sim->scene->t0, w->y, w->holonomic, &size);
-  return size;
-}
-
-/* Damped Gauss-Newton steps from y; returns whether they arrive at the constraints. */
-static int descend(Start *w)
-{
-  double *d = w->best + w->pb->n, *from = d + w->nq, before = merit(w);
-
-  for (int step = 0; step < MOST_STEPS && before > 0 && w->nfree > 0; step++) {
-    double part = 1, now = HUGE_VAL;
-    memcpy(from, w->y, (size_t)w->pb->n * sizeof *from);
-    if (direction(w, 0, d)) {
-      return 0;
-    }
-    for (int i = 0; i < MOST_HALVINGS && !(now < before); i++, part /= 2) {
-      move(w, from, part, d);
-      now = merit(w);
-    }
-    if (!(now < before * (1 - 1e-6))) {
-      break;
-    }
-    before = now;
-  }
-  if (!(merit(w) <= before)) {
-    memcpy(w->y, from, (size_t)w->pb->n * sizeof *from);
-  }
-  return worst(w) <= 0x1p10;
-}
-
-/* |y - asked|^2 in the mass metric at y; w->full holds M. */
-static double distance(const Start *w)
-{
-  double s = 0;
-  int at = w->holonomic ? 0 : w->nq;
-
-  for (int i = 0; i < w->nq; i++) {
-    for (int j = 0; j < w->nq; j++) {
-      s += (w->y[at + i] - w->asked[at + i]) * w->full[i * w->nq + j] * (w->y[at + j] - w->asked[at + j]);
+  for (int i = 0; i < w->n; i++) {
+    for (int j = 0; j < w->n; j++) {
+      sum += (w->x[i] - w->asked[i]) * s->full[i * w->n + j] * (w->x[j] - w->asked[j]);
     }
   }
-  return s;
+  return sum;
 }
 
-/* Moves y along the constraints towards `asked`, as long as steps lead nearer. */
-static void approach(Start *w)
+static int stage(const lag_level *w, int i)
 {
-  double *d = w->best + w->pb->n;
-  size_t bytes = (size_t)w->pb->n * sizeof(double);
+  const Start *s = w->context;
+  const lag_scene *c = s->sim->scene;
+  int at = w->positions ? i : s->nq + i;
 
-  for (int step = 0; step < MOST_STEPS; step++) {
-    memcpy(w->best, w->y, bytes);
-    if (residuals(w) || direction(w, 1, d)) {
-      break;
-    }
-    double before = distance(w);
-    move(w, w->best, 1, d);
-    if (!descend(w) || !(distance(w) < before * (1 - 1e-14))) {
-      memcpy(w->y, w->best, bytes);
-      break;
-    }
+  if (!isnan(s->sim->start[at]) || (c->given && c->given[at] == 1)) {
+    return LAG_MOVES_LAST;
+  }
+  return c->given && c->given[at] ? LAG_MOVES_SECOND : LAG_MOVES_FIRST;
+}
+
+static int is_contact(const lag_level *w, int k)
+{
+  const Start *s = w->context;
+  const lag_model *m = s->pb->model;
+  int i = 0;
+
+  while (i < m->ncontacts && m->contacts[i].constraint != k) {
+    i++;
+  }
+  return i < m->ncontacts;
+}
+
+/* ---- starts that are refused */
+
+static int refuse_start(Start *s, lag_start_kind kind, int k)
+{
+  if (k < 0) {
+    return lag_fail(s->sim, LAG_EINVAL, "the constraints have no value at the start");
+  }
+  const lag_constraint *c = &s->of->of[k];
+  int positions = s->level.positions;
+  char line[32];
+  if (kind == LAG_START_BROKEN || kind == LAG_START_NONE) {
+    lag_report_residual(s->pb, k, positions, fabs(s->level.residual[k]), "");
+  }
+  switch (kind) {
+  case LAG_START_NO_VALUE:
+    return lag_fail(s->sim, LAG_EINVAL, "the constraint %s%s has no value at the start: start where it has one", c->name, lag_line_text(c, line));
+  case LAG_START_STEEP:
+    return lag_fail(s->sim, LAG_EINVAL, "the derivatives of the constraint %s%s have no value where it holds: write it so that they have, "
+                    "x = 1 in place of sqrt(x - 1) = 0", c->name, lag_line_text(c, line));
+  case LAG_START_FLAT:
+    return lag_fail(s->sim, LAG_EINVAL, "the derivatives of the constraint %s%s vanish where it holds, so that no force can hold it: write it "
+                    "so that they do not, x = 0 in place of x^2 = 0", c->name, lag_line_text(c, line));
+  case LAG_START_BROKEN:
+    return lag_fail(s->sim, LAG_EINVAL, "the start contradicts its constraints: %s%s; without `exactly` the nearest start is taken",
+                    s->pb->words, positions ? "" : ", in its velocities");
+  default:
+    return lag_fail(s->sim, LAG_EINVAL, "no start obeys the constraints: from the one given, none is found nearer than this: %s%s",
+                    s->pb->words, positions ? "" : " in its rate");
   }
 }
 
@@ -183,213 +191,25 @@ static int count_stated(const lag_constraints *of)
   return n;
 }
 
-/* Whether a constraint on positions contains coordinate i. */
-static int is_held(const Start *w, int i)
+/* Takes up positions, or velocities, of y. */
+static void begin_level(Start *s, int positions)
 {
-  for (int e = 0; e < w->of->njacobian; e++) {
-    if (w->of->jacobian[e].row < count_stated(w->of) && w->of->jacobian[e].col == i) {
-      return 1;
-    }
-  }
-  return 0;
+  lag_level *w = &s->level;
+
+  w->positions = positions;
+  w->rows = positions ? count_stated(s->of) : s->of->n;
+  memcpy(w->x, s->y + (positions ? 0 : s->nq), (size_t)s->nq * sizeof *w->x);
 }
 
-/* Reaches the constraints by moving free components. Where no step helps, as half-way between two solutions, it tries displaced starts: above
- * first, then ever further. */
-static int reach_constraints(Start *w)
+/* Brings positions or velocities to the constraints. */
+static int project_level(Start *s, int positions)
 {
-  static const double beside[TRIES] = {0, 1e-3, -1e-3, 0.03, -0.03, 0.3, -0.3, 1, -1};
-  double typical = 0;
-  int at = w->holonomic ? 0 : w->nq, tries = w->holonomic ? TRIES : 1;
+  int k;
 
-  for (int i = 0; i < w->nq; i++) {
-    typical = fmax(typical, fabs(w->asked[at + i]));
-  }
-  for (int k = 0; k < tries && w->nfree > 0; k++) {
-    memcpy(w->y + at, w->asked + at, (size_t)w->nq * sizeof(double));
-    for (int a = 0; a < w->nfree; a++) {
-      w->y[at + w->free[a]] += !is_held(w, w->free[a]) ? 0 : beside[k] * (typical > 0 ? typical : 1) * (0.5 + fmod(0.618033988749894848 * (a + 1), 1));
-    }
-    if (descend(w)) {
-      if (w->holonomic) {
-        approach(w);
-      }
-      return 1;
-    }
-  }
-  return 0;
-}
-
-/* Stages, in the order in which components may move: those that nobody set, rotations that nobody set, all. */
-enum { UNSET, ROTATIONS, ALL };
-
-static int yields_at(const Start *w, int i)
-{
-  const lag_scene *c = w->sim->scene;
-
-  if (!isnan(w->sim->start[i]) || (c->given && c->given[i] == 1)) {
-    return ALL;
-  }
-  return c->given && c->given[i] ? ROTATIONS : UNSET;
-}
-
-/* w->free := the components that may move at this stage. */
-static void choose_free(Start *w, int stage)
-{
-  int at = w->holonomic ? 0 : w->nq;
-
-  w->nfree = 0;
-  for (int i = 0; i < w->nq; i++) {
-    if (yields_at(w, at + i) <= stage) {
-      w->free[w->nfree++] = i;
-    }
-  }
-}
-
-/* ---- starts that are refused */
-
-/* Reports the worst constraint, which cannot be met, or (exactly) is not met by the start. */
-static int refuse_start(Start *w, int exactly)
-{
-  int k = lag_worst_constraint(w->pb, w->sim->scene->t0, w->y, w->holonomic, NULL);
-
-  if (residuals(w) || k < 0) {
-    return lag_fail(w->sim, LAG_EINVAL, "the constraints have no value at the start");
-  }
-  const lag_constraint *c = &w->of->of[k];
-  if (!isfinite(w->residual[k])) {
-    char line[32];
-    return lag_fail(w->sim, LAG_EINVAL, "the constraint %s%s has no value at the start: start where it has one", c->name, lag_line_text(c, line));
-  }
-  lag_report_residual(w->pb, k, w->holonomic, fabs(w->residual[k]), "");
-  if (exactly) {
-    return lag_fail(w->sim, LAG_EINVAL, "the start contradicts its constraints: %s%s; without `exactly` the nearest start is taken",
-                    w->pb->words, w->holonomic ? "" : ", in its velocities");
-  }
-  return lag_fail(w->sim, LAG_EINVAL, "no start obeys the constraints: from the one given, none is found nearer than this: %s%s",
-                  w->pb->words, w->holonomic ? "" : " in its rate");
-}
-
-static int is_contact(const Start *w, int k)
-{
-  const lag_model *m = w->pb->model;
-  int i = 0;
-
-  while (i < m->ncontacts && m->contacts[i].constraint != k) {
-    i++;
-  }
-  return i < m->ncontacts;
-}
-
-/* size[n] := first-order change of each constraint when every coordinate moves by its typical magnitude. */
-static int first_order_sizes(Start *w, double *size)
-{
-  const lag_constraints *of = w->of;
-  int nq = w->nq;
-
-  memset(size, 0, (size_t)of->n * sizeof *size);
-  if (of->matrices(w->sim->scene->t0, w->y, w->y + nq, w->y + 2 * nq, w->pb->p, w->pb->u, w->A, w->M, w->pb->work)) {
-    return 0;
-  }
-  for (int e = 0; e < of->njacobian; e++) {
-    int i = of->jacobian[e].col;
-    size[of->jacobian[e].row] += fabs(w->A[e]) * fmax(lag_typical_magnitude(w->pb, w->y, 1, i), lag_typical_magnitude(w->pb, w->asked, 1, i));
-  }
-  return 1;
-}
-
-static int is_flat(const Start *w, int k, const double *size)
-{
-  return w->says[k] != 0.0 && size[k] < 1e-6 * w->size[k];
-}
-
-/* Whether constraint k, whose derivatives vanish at y, has vanishing derivatives at a displaced solution, too; not so for a linkage at its dead
- * centre. y stays. */
-static int is_flat_beside(Start *w, int k)
-{
-  double *size = w->other, *here = w->best;
-  size_t bytes = (size_t)w->pb->n * sizeof(double);
-
-  memcpy(here, w->y, bytes);
-  choose_free(w, ALL);
-  for (int i = 0; i < w->nq; i++) {
-    w->y[i] += !is_held(w, i) ? 0 : 0.01 * lag_typical_magnitude(w->pb, here, 1, i) * (0.5 + fmod(0.618033988749894848 * (i + 1), 1));
-  }
-  int flat = !descend(w) || !first_order_sizes(w, size) || is_flat(w, k, size);
-  memcpy(w->y, here, bytes);
-  first_order_sizes(w, size);
-  return flat;
-}
-
-/* Refuses a constraint whose derivatives vanish where it holds, as those of x^2 = 0: no force can hold it. A constraint without terms, as with a
- * factor that is 0, is left alone. reached: y obeys the constraints. */
-static int check_derivatives(Start *w, int reached)
-{
-  double *size = w->other;
-  char line[32];
-
-  if (!first_order_sizes(w, size)) {
-    return LAG_OK;
-  }
-  for (int k = 0; k < count_stated(w->of); k++) {
-    const lag_constraint *c = &w->of->of[k];
-    if (is_contact(w, k)) {
-      continue;
-    }
-    if (!isfinite(size[k]) && reached) {
-      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s have no value where it holds: write it so that they have, "
-                      "x = 1 in place of sqrt(x - 1) = 0", c->name, lag_line_text(c, line));
-    }
-    int held = reached || fabs(w->residual[k]) <= 1e-6 * w->size[k];
-    if (is_flat(w, k, size) && held && (!reached || is_flat_beside(w, k))) {
-      return lag_fail(w->sim, LAG_EINVAL, "the derivatives of the constraint %s%s vanish where it holds, so that no force can hold it: write it "
-                      "so that they do not, x = 0 in place of x^2 = 0", c->name, lag_line_text(c, line));
-    }
-  }
-  return LAG_OK;
-}
-
-/* w->size := sizes of terms at the start, 1 where there are none; w->says: whether there are. */
-static void look_at_terms(Start *w)
-{
-  int rc = lag_constraint_terms(w->pb, w->sim->scene->t0, w->y, w->holonomic, w->size);
-
-  for (int k = 0; k < w->n; k++) {
-    w->says[k] = rc == 0 && w->size[k] > 0 && isfinite(w->size[k]);
-    w->size[k] = w->says[k] != 0.0 ? w->size[k] : 1;
-  }
-}
-
-/* Brings positions (holonomic) or velocities to the constraints, stage by stage. */
-static int project_level(Start *w, int holonomic)
-{
-  w->holonomic = holonomic;
-  w->n = holonomic ? count_stated(w->of) : w->of->n;
-  if (w->n == 0) {
-    return LAG_OK;
-  }
-  double off = worst(w);
-  look_at_terms(w);
-  if (!isfinite(merit(w))) {
-    return refuse_start(w, 0);
-  }
-  if (off <= 2) {
-    return holonomic ? check_derivatives(w, 1) : LAG_OK;
-  }
-  if (w->sim->scene->exactly && !(off <= sqrt(DBL_EPSILON) / DBL_EPSILON)) {
-    return refuse_start(w, 1);
-  }
-  for (int stage = UNSET; stage <= ALL; stage++) {
-    int before = w->nfree;
-    choose_free(w, stage);
-    if ((stage == UNSET || w->nfree != before) && reach_constraints(w)) {
-      return holonomic ? check_derivatives(w, 1) : LAG_OK;
-    }
-  }
-  memcpy(w->y + (holonomic ? 0 : w->nq), w->asked + (holonomic ? 0 : w->nq), (size_t)w->nq * sizeof(double));
-  descend(w); /* as near as possible, for the message */
-  int rc = holonomic ? check_derivatives(w, 0) : LAG_OK;
-  return rc ? rc : refuse_start(w, 0);
+  begin_level(s, positions);
+  lag_start_kind kind = lag_consistent_state(&s->level, &k);
+  put(&s->level);
+  return kind == LAG_START_FOUND ? LAG_OK : refuse_start(s, kind, k);
 }
 
 /* Rank of the constraints at y; marks[k] := 1 where constraint k depends on those before it; held[i] := squared projection of coordinate i on
@@ -415,22 +235,11 @@ static int rank(Start *w, double *marks, double *held)
   return r;
 }
 
-/* Moves y to a solution about a hundredth away from here[pb->n]; returns whether there is one. */
-static int go_beside(Start *w, const double *here)
-{
-  choose_free(w, ALL);
-  for (int i = 0; i < w->nq; i++) {
-    w->y[i] += 0.01 * lag_typical_magnitude(w->pb, here, 1, i) * (0.5 + fmod(0.618033988749894848 * (i + 1), 1));
-  }
-  return descend(w);
-}
-
 /* Rank at the start and, where constraints are redundant, at a displaced solution: a larger rank there is a singular start; sets loose. */
 static void look_beside(Start *w)
 {
   lag_sim *s = w->sim;
-  const double part = 0.05; /* change of a squared projection: twice the effect of turning a direction by a hundredth */
-  double *here = w->best, *held = s->loose, *held_beside = w->full, *marks = w->other; /* full is scratch of go_beside */
+  double *here = w->best, *held = s->loose, *held_beside = w->full, *marks = w->other; /* full is scratch of direction */
 
   s->run->rank = s->run->beside = rank(w, s->redundant, held);
   if (s->run->rank >= w->of->n - w->pb->model->ncontacts || w->nq < 2) {
@@ -438,14 +247,14 @@ static void look_beside(Start *w)
     return;
   }
   memcpy(here, w->y, (size_t)w->pb->n * sizeof *here);
-  w->holonomic = 1;
-  w->n = count_stated(w->of);
-  look_at_terms(w);
-  int r = go_beside(w, here) ? rank(w, marks, held_beside) : 0;
-  int singular = r > s->run->rank;
+  begin_level(w, 1);
+  int found = lag_state_beside(&w->level);
+  put(&w->level);
+  int r = found ? rank(w, marks, held_beside) : 0, singular = r > s->run->rank;
   s->run->beside = singular ? r : s->run->rank;
-  for (int i = 0; i < w->nq; i++) {
-    s->loose[i] = singular && held_beside[i] - held[i] > part;
+  memset(s->loose, 0, (size_t)(singular ? 0 : w->nq) * sizeof *s->loose);
+  if (singular) {
+    lag_loose_directions(w->nq, held, held_beside, s->loose);
   }
   memcpy(w->y, here, (size_t)w->pb->n * sizeof *here);
 }
@@ -484,30 +293,47 @@ static void keep_rounding_out(const Start *w)
   }
 }
 
-/* Allocates the work space, one block. */
-static double *make_room(Start *w)
+/* Allocates the work space, one block of doubles and one of integers. 0: no memory. */
+static int make_room(Start *s, double **block)
 {
-  size_t n = (size_t)w->pb->n, nq = (size_t)w->nq, m = (size_t)w->of->n;
-  const size_t sizes[] = {n, n, 2 * n + nq, m, m, m, m, (size_t)w->of->njacobian, (size_t)w->of->nmass, nq * nq,
-                          2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m};
-  double **const parts[] = {&w->y, &w->asked, &w->best, &w->residual, &w->other, &w->size, &w->says, &w->A, &w->M, &w->full, &w->kkt};
+  lag_level *w = &s->level;
+  size_t n = (size_t)s->pb->n, nq = (size_t)s->nq, m = (size_t)s->of->n, entries = (size_t)s->of->njacobian;
+  const size_t sizes[] = {n, n, n, m, (size_t)s->of->nmass, nq * nq, 2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m,
+                          nq, nq, nq, nq, nq, m, m, m, m, m, entries};
+  double **const parts[] = {&s->y, &s->asked, &s->best, &s->other, &s->M, &s->full, &s->kkt,
+                            &w->x, &w->asked, &w->best, &w->from, &w->d, &w->residual, &w->size, &w->terms_here, &w->slope, &w->has_terms, &w->A};
 
-  return lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
+  *block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
+  s->index = malloc((nq + 2 * entries + 1) * sizeof *s->index);
+  if (!*block || !s->index) {
+    return 0;
+  }
+  int *row = s->index + nq, *col = row + entries;
+  for (size_t e = 0; e < entries; e++) {
+    row[e] = s->of->jacobian[e].row;
+    col[e] = s->of->jacobian[e].col;
+  }
+  w->free = s->index;
+  w->row = row;
+  w->col = col;
+  return 1;
 }
 
 int lag_consistent_start(lag_sim *s)
 {
   Start w = {.sim = s, .pb = &s->pb, .of = s->scene->model->constraints, .nq = s->pb.nq};
   size_t bytes = (size_t)s->pb.n * sizeof(double);
+  double *block;
   int rc = LAG_ENOMEM;
 
   memcpy(s->asked, s->now, bytes);
   if (!w.of) {
     return LAG_OK;
   }
-  double *block = make_room(&w);
-  w.free = malloc(((size_t)w.nq + 1) * sizeof *w.free);
-  if (block && w.free) {
+  w.level = (lag_level){.context = &w, .n = w.nq, .entries = w.of->njacobian, .exactly = s->scene->exactly != 0, .rounding = DBL_EPSILON,
+                        .residuals = residuals, .jacobian = jacobian, .terms = terms, .scales = scales, .direction = direction,
+                        .distance = distance, .stage = stage, .is_contact = is_contact};
+  if (make_room(&w, &block)) {
     memcpy(w.y, s->now, bytes);
     memcpy(w.asked, s->now, bytes);
     lag_release_integrals(s);
@@ -524,6 +350,6 @@ int lag_consistent_start(lag_sim *s)
     }
   }
   free(block);
-  free(w.free);
+  free(w.index);
   return rc == LAG_ENOMEM ? lag_fail(s, rc, "out of memory") : rc;
 }

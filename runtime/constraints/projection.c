@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/magnitudes.h"
 
 enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 
@@ -133,16 +134,13 @@ double lag_typical_magnitude(const lag_problem *pb, const double *y, int holonom
     most = fmax(most, unknown / time);
   }
   most = fmax(most, lag_unit_magnitude(pb, y, i) / time);
-
-  int is_angle = q->periodic || !q->unit[0] || strcmp(q->unit, "rad") == 0 || strcmp(q->unit, "deg") == 0;
-  return most <= 0 || (most < 1 && is_angle) ? 1 : most;
+  return lag_component_scale(most, q->periodic, q->unit);
 }
 
 /* Raises size[n] to the residuals of a state displaced by typical magnitudes: there may be no terms of first order, as of a folded linkage or a
  * body at rest. */
 static int displaced_sizes(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, double *size)
 {
-  const double step = 0.618033988749894848; /* arbitrary, so that nothing cancels */
   int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq;
   double *c = w->c, *r = w->r;
 
@@ -151,7 +149,7 @@ static int displaced_sizes(lag_problem *pb, const ConstraintScratch *w, double t
   memcpy(w->other, y, (size_t)pb->n * sizeof *y);
   for (int i = 0; i < nq; i++) { /* members of a family share their magnitude, and there may be hundreds */
     reach = i > 0 && strcmp(q[i].unit, q[i - 1].unit) == 0 && q[i].periodic == q[i - 1].periodic ? reach : lag_typical_magnitude(pb, y, holonomic, i);
-    w->other[at + i] += reach * (0.5 + fmod(step * (i + 1), 1));
+    w->other[at + i] += reach * lag_uneven(i);
   }
   int rc = lag_residuals(pb, t, w->other, c, r);
   for (int k = 0; k < n && rc == 0; k++) {
@@ -172,24 +170,12 @@ int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonom
 {
   const lag_constraints *of = pb->model->constraints;
   ConstraintScratch w = layout(pb);
-  double most = -1;
-  int which = -1, n = holonomic ? of->nholonomic : of->n;
+  double most;
 
   if (lag_constraint_terms(pb, t, y, holonomic, w.g) || lag_residuals(pb, t, y, w.c, w.r)) {
     return -1;
   }
-  for (int k = 0; k < n; k++) {
-    double x = fabs(holonomic ? w.c[k] : w.r[k]), part = x < DBL_MIN ? 0 : x / (DBL_EPSILON * w.g[k]); /* subnormal numbers have lost digits */
-    part = isnan(part) ? HUGE_VAL : part; /* no value */
-    if (part > most) {
-      most = part;
-      which = k;
-    }
-  }
-  if (worst) {
-    *worst = most;
-  }
-  return which;
+  return lag_worst_residual(holonomic ? of->nholonomic : of->n, holonomic ? w.c : w.r, w.g, DBL_EPSILON, worst ? worst : &most);
 }
 
 const char *lag_line_text(const lag_constraint *c, char text[32])

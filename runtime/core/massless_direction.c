@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/magnitudes.h"
 
 static void swap(double *a, double *b)
 {
@@ -154,7 +155,7 @@ double lag_mass_condition(lag_problem *pb, double t, const double *y, int *which
         size = fmax(size, fabs(A[k * n + i]));
       }
       for (size_t i = 0; i < n * n && size > 0; i++) { /* a multiple of each constraint that no inertia cancels */
-        M[i] += (0.5 + fmod(0.618033988749894848 * (double)(k + 1), 1)) * (A[k * n + i / n] / size) * (A[k * n + i % n] / size);
+        M[i] += lag_uneven((int)k) * (A[k * n + i / n] / size) * (A[k * n + i % n] / size);
       }
     }
     if (rc == 0) {

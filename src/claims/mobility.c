@@ -49,12 +49,12 @@ static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, 
 
 /* A line if the start is singular: the rank is larger near it. */
 static void show_singular(const Eqns *e, StateSolver *s, const long double *symbols, uint32_t rank, StrBuf *out) {
-  unsigned char *loose = ARENA_ARRAY(e->m->arena, unsigned char, e->n + 1);
+  long double *loose = ARENA_ARRAY(e->m->arena, long double, e->n + 1);
   uint32_t beside = nearby_rank(e, s, symbols, loose), shown = 0;
   if (beside <= rank) return;
   sb_printf(out, "  singular start: the rank is %u beside it", beside);
   for (uint32_t i = 0; i < e->n; i++)
-    if (loose[i]) sb_printf(out, "%s%s'", shown++ ? ", " : "; the constraints do not determine ", e->m->coords.at[i].name);
+    if (loose[i] > 0) sb_printf(out, "%s%s'", shown++ ? ", " : "; the constraints do not determine ", e->m->coords.at[i].name);
   sb_printf(out, "%s\n", shown ? " here, and what the start says of them decides which way it goes" : "");
   states_at(s, symbols);
 }
@@ -122,7 +122,7 @@ static int check_agreement(const Eqns *e, StateSolver *s, const long double *sym
   for (uint32_t i = 0; i < n; i++) later[i] = symbols[i];
   later[m->time] += (m->scene.has_span ? (long double)m->scene.t1 - m->scene.t0 : 1) / 1024;
   StartResult r = start_find(e, s, later);
-  if (r.kind == START_NONE || r.kind == START_BROKEN)
+  if (r.kind == LAG_START_NONE || r.kind == LAG_START_BROKEN)
     return report_contradiction(e, r.constraint, arena_printf(m->arena, "at t = %.3Lg s no state obeys them%s", later[m->time], start_residual_text(e, &r)));
   return 1;
 }
@@ -196,7 +196,7 @@ int mobility_show(const Eqns *e, StrBuf *out) {
   StateSolver *s = states_new(e);
   long double *symbols = start_requested(e);
   StartResult start = start_find(e, s, symbols);
-  if (start.kind != START_FOUND) {
+  if (start.kind != LAG_START_FOUND) {
     if (says_start(e->m)) start_report(e, &start);
     else sb_printf(out, "scene %s: %u constraint%s; it gives no start, and from 0 none is found that obeys `%s`%s\n", e->m->scene.name, all->n,
                    plural(all->n), all->of[start.constraint]->name, start_residual_text(e, &start));

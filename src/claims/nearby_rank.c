@@ -1,10 +1,11 @@
 /* Singular starts: constraints that are dependent at a state but not a hundredth away, as for bars in one line. Ranks by orthogonalising
- * the scaled rows of A. runtime/constraints/consistent_start.c does the same for the report of a run. */
+ * the scaled rows of A. */
 #include "claims/nearby_rank.h"
 
 #include <math.h>
 
 #include "mech/consistent_start.h"
+#include "numeric/consistent_state.h"
 
 /* Rank of the constraints at the state evaluated last. held[n]: squared length of each coordinate direction's projection on the rows of A. */
 static uint32_t rank_of(const Eqns *e, StateSolver *s, long double *held) {
@@ -20,21 +21,16 @@ static uint32_t rank_of(const Eqns *e, StateSolver *s, long double *held) {
   return span.rank;
 }
 
-uint32_t nearby_rank(const Eqns *e, StateSolver *s, const long double *symbols, unsigned char *loose) {
-  const long double part = 0.05L; /* least change of held: twice what moving by a hundredth turns a direction */
+uint32_t nearby_rank(const Eqns *e, StateSolver *s, const long double *symbols, long double *loose) {
   Arena *arena = e->m->arena;
   uint32_t n = e->n, all = expr_symbol_count(e->g) + 1;
-  long double *held = ARENA_ARRAY(arena, long double, n + 1), *held_beside = ARENA_ARRAY(arena, long double, n + 1);
-  long double *there = ARENA_ARRAY(arena, long double, all), *step = ARENA_ARRAY(arena, long double, n);
+  long double *held = ARENA_ARRAY(arena, long double, n + 1), *held_beside = ARENA_ARRAY(arena, long double, n + 1), *there = ARENA_ARRAY(arena, long double, all);
   states_at(s, symbols);
   uint32_t here = rank_of(e, s, held), rank = here;
   for (uint32_t i = 0; i < all; i++) there[i] = symbols[i];
-  start_nearby_steps(e, there, 0.01L, step);
-  for (uint32_t i = 0; i < n; i++) there[e->m->coords.at[i].q] += step[i];
-  if (n > 1 && states_project(s, there)) {
-    states_at(s, there);
-    rank = rank_of(e, s, held_beside);
-  }
-  for (uint32_t i = 0; i < n; i++) loose[i] = rank > here && held_beside[i] - held[i] > part;
-  return rank > here ? rank : here;
+  if (n > 1 && start_beside(e, s, there)) rank = rank_of(e, s, held_beside);
+  for (uint32_t i = 0; i < n; i++) loose[i] = 0;
+  if (rank <= here) return here;
+  lag_loose_directions((int)n, held, held_beside, loose);
+  return rank;
 }

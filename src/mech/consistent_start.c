@@ -1,6 +1,5 @@
-/* Consistent starts. Positions: Gauss-Newton steps, damped until the residual falls (P. Deuflhard, Newton Methods for Nonlinear Problems (2004),
- * 4.3, DOI 10.1007/978-3-642-23899-4), from the scene's start or from states near it; then Newton-like steps along the constraints to the nearest
- * state. Velocities: one linear problem. runtime/constraints/consistent_start.c does the same in a run with emitted functions; tests compare the two. */
+/* Consistent starts: the scene's start values, moved onto the constraints by numeric/consistent_state.c, which a run calls with emitted functions;
+ * here are the functions by value. */
 #include "mech/consistent_start.h"
 
 #include <float.h>
@@ -8,39 +7,27 @@
 #include <string.h>
 
 #include "base/sparse_solve.h"
-
-enum { MOST_STEPS = 100, MOST_HALVINGS = 30 };
+#include "numeric/magnitudes.h"
 
 typedef struct {
   const Eqns *e;
   StateSolver *solver;
-  StateValues at;                 /* values at `symbols` */
-  int velocities;                 /* current level: velocities, else positions */
-  uint32_t n, rows;               /* number of coordinates; number of constraints of the level */
-  uint32_t *free, nfree;          /* coordinates that may move */
-  uint32_t *place;                /* by coordinate: 1 + its index in `free`; 0: it may not move */
-  SparseElements mass, system;    /* of the current step */
-  const unsigned char *given;     /* by symbol: the stage from which it may move */
-  long double *symbols, *asked, *best, *from; /* by symbol */
-  long double *size, *terms, *b, *d;
-  unsigned char *has_terms;            /* by constraint: it has terms of finite size */
-  uint32_t nsymbols;
+  StateValues at;                /* values at `symbols` */
+  uint32_t *place;               /* by coordinate: 1 + its index in the level's `free`; 0: it may not move */
+  SparseElements mass, system;   /* of the current step */
+  const unsigned char *given;    /* by symbol: the stage from which it may move */
+  long double *symbols, *b;      /* by symbol; right-hand side and solution */
 } Finder;
 
-/* Stages: components that may move are those that nobody set, then also rotations that nobody set, then all. */
-enum { UNSET, ROTATIONS, ALL };
+static SymId component(const Eqns *e, uint32_t i, int positions) { return positions ? e->m->coords.at[i].q : e->m->coords.at[i].v; }
 
-static SymId component(const Finder *f, uint32_t i) { return f->velocities ? f->e->m->coords.at[i].v : f->e->m->coords.at[i].q; }
-
-static void evaluate(Finder *f) { f->at = states_at(f->solver, f->symbols); }
-
-/* Residual of constraint k; infinite where a double would overflow. */
-static long double residual(const Finder *f, uint32_t k) {
-  long double x = f->velocities ? f->at.r[k] : f->at.c[k];
-  return fabsl(x) > DBL_MAX ? INFINITY : x;
+/* Evaluates the equations at the level's components x. */
+static Finder *evaluate(const lag_level *w, const long double *x) {
+  Finder *f = w->context;
+  for (uint32_t i = 0; i < f->e->n; i++) f->symbols[component(f->e, i, w->positions)] = x[i];
+  f->at = states_at(f->solver, f->symbols);
+  return f;
 }
-
-static void copy(const Finder *f, long double *to, const long double *from) { memcpy(to, from, f->nsymbols * sizeof *to); }
 
 /* --- scales --- */
 
@@ -48,82 +35,75 @@ static int same_unit(const Model *m, uint32_t i, uint32_t j) { return strcmp(m->
 
 /* most[i] := largest absolute value among coordinates (velocities) with the unit of coordinate i. The first coordinate of each unit searches
  * for all of that unit. */
-static void largest_of_unit(const Finder *f, const long double *symbols, int velocities, long double *most) {
-  const Model *m = f->e->m;
-  for (uint32_t i = 0; i < f->n; i++) {
+static void largest_of_unit(const Eqns *e, const long double *symbols, int positions, long double *most) {
+  for (uint32_t i = 0; i < e->n; i++) {
     uint32_t first = 0;
-    while (!same_unit(m, first, i)) first++;
+    while (!same_unit(e->m, first, i)) first++;
     most[i] = first < i ? most[first] : 0;
-    for (uint32_t j = i; first == i && j < f->n; j++)
-      if (same_unit(m, i, j)) most[i] = fmaxl(most[i], fabsl(symbols[velocities ? m->coords.at[j].v : m->coords.at[j].q]));
+    for (uint32_t j = i; first == i && j < e->n; j++)
+      if (same_unit(e->m, i, j)) most[i] = fmaxl(most[i], fabsl(symbols[component(e, j, positions)]));
   }
 }
 
 /* reach[i] := scale of coordinate i or its velocity: the largest of its unit (velocities: at least that over the scene's duration); 1 if that is 0,
  * and at least 1 for an angle. */
-static void coordinate_scales(const Finder *f, long double *reach) {
-  const Model *m = f->e->m;
+static void coordinate_scales(const Eqns *e, const long double *symbols, int positions, long double *reach) {
+  const Model *m = e->m;
   double span = m->scene.has_span ? fabs(m->scene.t1 - m->scene.t0) : 0;
-  long double *places = ARENA_ARRAY(m->arena, long double, f->n);
-  largest_of_unit(f, f->symbols, f->velocities, reach);
-  if (f->velocities) largest_of_unit(f, f->symbols, 0, places);
-  for (uint32_t i = 0; i < f->n; i++) {
+  long double *places = ARENA_ARRAY(m->arena, long double, e->n);
+  largest_of_unit(e, symbols, positions, reach);
+  if (!positions) largest_of_unit(e, symbols, 1, places);
+  for (uint32_t i = 0; i < e->n; i++) {
     const Coord *q = &m->coords.at[i];
-    int is_angle = q->periodic || !*q->unit.text || strcmp(q->unit.text, "rad") == 0 || strcmp(q->unit.text, "deg") == 0;
-    if (f->velocities) reach[i] = fmaxl(reach[i], places[i] / (span > 0 ? span : 1));
-    if (reach[i] <= 0 || (reach[i] < 1 && is_angle)) reach[i] = 1;
+    if (!positions) reach[i] = fmaxl(reach[i], places[i] / (span > 0 ? span : 1));
+    reach[i] = lag_component_scale(reach[i], q->periodic, q->unit.text);
   }
 }
 
-/* step[i] := `part` times the scale of coordinate i, times a factor from 0.5 to 1.5 (golden ratio sequence), different for each i. */
-static void steps_beside(const Finder *f, long double part, long double *step) {
-  coordinate_scales(f, step);
-  for (uint32_t i = 0; i < f->n; i++) step[i] = part * step[i] * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
+void start_nearby_steps(const Eqns *e, const long double *symbols, long double part, long double *step) {
+  coordinate_scales(e, symbols, 1, step);
+  for (uint32_t i = 0; i < e->n; i++) step[i] = part * step[i] * lag_uneven((int)i);
 }
 
-void start_nearby_steps(const Eqns *e, long double *symbols, long double part, long double *step) {
-  steps_beside(&(Finder){.e = e, .n = e->n, .symbols = symbols}, part, step);
-}
+/* --- the model at the state of a level --- */
 
-/* size[k] := magnitude of the terms of constraint k: to first order, and as its change over a displacement of the size of the model. */
-static void find_terms(Finder *f, long double *size) {
-  const Entries *A = &f->e->constraints.A;
-  evaluate(f);
-  for (uint32_t k = 0; k < f->rows; k++) size[k] = 0;
-  for (uint32_t i = 0; i < A->n; i++)
-    if (A->at[i].row < f->rows) size[A->at[i].row] += fabsl(f->at.A[i] * f->symbols[component(f, A->at[i].col)]);
-  long double *was = f->from;
-  copy(f, was, f->symbols);
-  steps_beside(f, 1, f->d);
-  for (uint32_t i = 0; i < f->n; i++) f->symbols[component(f, i)] += f->d[i];
-  evaluate(f);
-  for (uint32_t k = 0; k < f->rows; k++) size[k] = fmaxl(size[k], fabsl(residual(f, k)));
-  copy(f, f->symbols, was);
-  evaluate(f);
-}
-
-/* The constraint with the largest residual in units of its terms' rounding; *times: that number of units. */
-static uint32_t worst_constraint(Finder *f, long double *times) {
-  uint32_t which = 0;
-  *times = -1;
-  find_terms(f, f->terms);
-  for (uint32_t k = 0; k < f->rows; k++) {
-    long double x = fabsl(residual(f, k)), part = x == 0 ? 0 : x / (DBL_EPSILON * f->terms[k]);
-    part = isnan(part) ? INFINITY : part;
-    if (part > *times) *times = part, which = k;
+/* Infinite where a double would overflow. */
+static int residuals(const lag_level *w, long double *residual) {
+  const StateValues at = evaluate(w, w->x)->at;
+  for (int k = 0; k < w->rows; k++) {
+    residual[k] = w->positions ? at.c[k] : at.r[k];
+    if (fabsl(residual[k]) > DBL_MAX) residual[k] = INFINITY;
   }
-  return which;
+  return 0;
 }
 
-/* Merit function: sum of squares of the scaled residuals; infinite where they have no value. */
-static long double merit(Finder *f) {
-  long double s = 0;
-  evaluate(f);
-  for (uint32_t k = 0; k < f->rows; k++) s += residual(f, k) / f->size[k] * (residual(f, k) / f->size[k]);
-  return isfinite(s) ? s : INFINITY;
+static int jacobian(const lag_level *w, long double *A) {
+  const StateValues at = evaluate(w, w->x)->at;
+  for (int k = 0; k < w->entries; k++) A[k] = at.A[k];
+  return 0;
 }
 
-/* --- steps --- */
+static void scales(const lag_level *w, const long double *x, long double *reach) {
+  const Finder *f = evaluate(w, x);
+  coordinate_scales(f->e, f->symbols, w->positions, reach);
+}
+
+/* Terms to first order, and as the constraint's change over a displacement of the size of the model. */
+static int terms(const lag_level *w, long double *size) {
+  Arena *arena = ((Finder *)w->context)->e->m->arena;
+  lag_level beside = *w;
+  long double *reach = ARENA_ARRAY(arena, long double, (size_t)w->n + 1), *c = ARENA_ARRAY(arena, long double, (size_t)w->rows + 1);
+  beside.x = ARENA_ARRAY(arena, long double, (size_t)w->n + 1);
+  jacobian(w, w->A);
+  for (int k = 0; k < w->rows; k++) size[k] = 0;
+  for (int k = 0; k < w->entries; k++)
+    if (w->row[k] < w->rows) size[w->row[k]] += fabsl(w->A[k] * w->x[w->col[k]]);
+  scales(w, w->x, reach);
+  for (int i = 0; i < w->n; i++) beside.x[i] = w->x[i] + reach[i] * lag_uneven(i);
+  residuals(&beside, c);
+  for (int k = 0; k < w->rows; k++) size[k] = fmaxl(size[k], fabsl(c[k]));
+  return 0;
+}
 
 static long double largest(const long double *x, uint32_t n) {
   long double most = 0;
@@ -138,219 +118,70 @@ static void find_mass(Finder *f, long double size) {
   f->mass.n = 0;
   if (most > 0) states_put_mass(f->e, f->at.mass, &f->mass);
   for (uint32_t k = 0; k < f->mass.n && size > 0; k++) f->mass.at[k].value = f->mass.at[k].value / most * size;
-  for (uint32_t i = 0; i < f->n && !(most > 0); i++) sparse_put(arena, &f->mass, i, i, 1);
+  for (uint32_t i = 0; i < f->e->n && !(most > 0); i++) sparse_put(arena, &f->mass, i, i, 1);
 }
 
-/* Puts M of the free components into the system; pull: b += M (asked - here). */
-static void put_mass(Finder *f, int pull) {
+/* Puts M of the free components into the system; pull: b += M (asked - x). */
+static void put_mass(Finder *f, const lag_level *w, long double pull) {
   for (uint32_t k = 0; k < f->mass.n; k++) {
     const SparseElement *x = &f->mass.at[k];
     uint32_t row = f->place[x->row], col = f->place[x->col];
-    SymId at = component(f, x->col);
     if (!row || !col) continue;
     sparse_put(f->e->m->arena, &f->system, row - 1, col - 1, x->value);
-    if (pull) f->b[row - 1] += x->value * (f->asked[at] - f->symbols[at]);
+    f->b[row - 1] += pull * x->value * (w->asked[x->col] - w->x[x->col]);
   }
 }
 
-static void put_constraints(Finder *f) {
+static void put_constraints(Finder *f, const lag_level *w) {
   Arena *arena = f->e->m->arena;
-  const Entries *A = &f->e->constraints.A;
-  for (uint32_t e = 0; e < A->n; e++) {
-    uint32_t row = f->nfree + A->at[e].row, col = f->place[A->at[e].col];
-    if (!col || A->at[e].row >= f->rows) continue;
+  for (int e = 0; e < w->entries; e++) {
+    uint32_t row = (uint32_t)w->nfree + (uint32_t)w->row[e], col = f->place[w->col[e]];
+    if (!col || w->row[e] >= w->rows) continue;
     sparse_put(arena, &f->system, row, col - 1, f->at.A[e]);
     sparse_put(arena, &f->system, col - 1, row, -f->at.A[e]);
   }
 }
 
-/* Solves M d - A^T l = pull M (asked - here), A d = -residual for d[nfree]. 0: not finite. */
-static int direction(Finder *f, int pull) {
-  uint32_t nf = f->nfree;
-  evaluate(f);
-  long double size = largest(f->at.A, f->e->constraints.A.n); /* M as large as A, which changes no direction */
+static int direction(const lag_level *w, long double pull, long double *d) {
+  Finder *f = evaluate(w, w->x);
+  uint32_t nf = (uint32_t)w->nfree, rows = (uint32_t)w->rows;
+  long double size = largest(f->at.A, (uint32_t)w->entries); /* M as large as A, which changes no direction */
   find_mass(f, size > 0 ? size : 1);
-  memset(f->place, 0, f->n * sizeof *f->place);
-  for (uint32_t i = 0; i < nf; i++) f->place[f->free[i]] = i + 1, f->b[i] = 0;
+  memset(f->place, 0, f->e->n * sizeof *f->place);
+  for (uint32_t i = 0; i < nf; i++) f->place[w->free[i]] = i + 1, f->b[i] = 0;
   f->system.n = 0;
-  put_mass(f, pull);
-  put_constraints(f);
-  for (uint32_t k = 0; k < f->rows; k++) f->b[nf + k] = -residual(f, k);
-  sparse_solve(f->e->m->arena, nf + f->rows, &f->system, f->b, 1e-13L, NULL);
+  put_mass(f, w, pull);
+  put_constraints(f, w);
+  for (uint32_t k = 0; k < rows; k++) f->b[nf + k] = -w->residual[k];
+  sparse_solve(f->e->m->arena, nf + rows, &f->system, f->b, 1e-13L, NULL);
   for (uint32_t i = 0; i < nf; i++) {
-    if (!isfinite(f->b[i])) return 0;
-    f->d[i] = f->b[i];
+    if (!isfinite(f->b[i])) return 1;
+    d[i] = f->b[i];
   }
-  return 1;
+  return 0;
 }
 
-static void move(Finder *f, const long double *from, long double part) {
-  for (uint32_t i = 0; i < f->nfree; i++) {
-    SymId at = component(f, f->free[i]);
-    f->symbols[at] = from[at] + part * f->d[i];
-  }
-}
-
-/* Damped Gauss-Newton steps. Returns whether they end on the constraints, up to 1024 units of rounding. */
-static int descend(Finder *f) {
-  long double before = merit(f), times;
-  for (int step = 0; step < MOST_STEPS && before > 0 && f->nfree > 0; step++) {
-    long double part = 1, now = INFINITY;
-    if (!direction(f, 0)) return 0;
-    copy(f, f->from, f->symbols);
-    for (int i = 0; i < MOST_HALVINGS && !(now < before); i++, part /= 2) {
-      move(f, f->from, part);
-      now = merit(f);
-    }
-    if (!(now <= before)) copy(f, f->symbols, f->from);
-    if (!(now < before * (1 - 1e-6L))) break;
-    before = now;
-  }
-  worst_constraint(f, &times);
-  return times <= 1024;
-}
-
-static long double moved(const Finder *f, uint32_t i) { return f->symbols[component(f, i)] - f->asked[component(f, i)]; }
-
-static long double distance(Finder *f) {
+static long double distance(const lag_level *w) {
+  Finder *f = evaluate(w, w->x);
   long double s = 0;
-  evaluate(f);
   find_mass(f, 0);
-  for (uint32_t k = 0; k < f->mass.n; k++) s += moved(f, f->mass.at[k].row) * f->mass.at[k].value * moved(f, f->mass.at[k].col);
+  for (uint32_t k = 0; k < f->mass.n; k++) {
+    uint32_t i = f->mass.at[k].row, j = f->mass.at[k].col;
+    s += (w->x[i] - w->asked[i]) * f->mass.at[k].value * (w->x[j] - w->asked[j]);
+  }
   return s;
 }
 
-/* Moves to the nearest state on the constraints, by steps as long as the distance falls. */
-static void approach(Finder *f) {
-  for (int step = 0; step < MOST_STEPS; step++) {
-    copy(f, f->best, f->symbols);
-    if (!direction(f, 1)) return;
-    long double before = distance(f);
-    move(f, f->best, 1);
-    if (descend(f) && distance(f) < before * (1 - 1e-14L)) continue;
-    copy(f, f->symbols, f->best);
-    return;
-  }
+static int stage(const lag_level *w, int i) {
+  const Finder *f = w->context;
+  return f->given[component(f->e, (uint32_t)i, w->positions)];
 }
 
-/* Whether component i occurs in a constraint of the level. */
-static int is_held(const Finder *f, uint32_t i) {
-  const Entries *A = &f->e->constraints.A;
-  uint32_t k = 0;
-  while (k < A->n && !(A->at[k].col == i && A->at[k].row < f->rows)) k++;
-  return k < A->n;
-}
-
-/* Descends from the start asked for, then from displaced starts; positions continue to the nearest state. 0: none of them ends on the constraints. */
-static int reach(Finder *f) {
-  static const long double beside[] = {0, 1e-3L, -1e-3L, 0.03L, -0.03L, 0.3L, -0.3L, 1, -1};
-  long double typical = 0;
-  size_t tries = f->velocities ? 1 : sizeof beside / sizeof *beside;
-  for (uint32_t i = 0; i < f->n; i++) typical = fmaxl(typical, fabsl(f->asked[component(f, i)]));
-  for (size_t k = 0; k < tries && f->nfree > 0; k++) {
-    copy(f, f->symbols, f->asked);
-    for (uint32_t i = 0; i < f->nfree; i++)
-      if (is_held(f, f->free[i])) f->symbols[component(f, f->free[i])] += beside[k] * (typical > 0 ? typical : 1) * (0.5L + fmodl(0.618033988749894848L * (i + 1), 1));
-    if (!descend(f)) continue;
-    if (!f->velocities) approach(f);
-    return 1;
-  }
-  return 0;
-}
-
-/* Lists the components that may move at this stage. */
-static void choose_free(Finder *f, int stage) {
-  f->nfree = 0;
-  for (uint32_t i = 0; i < f->n; i++)
-    if (f->given[component(f, i)] <= stage) f->free[f->nfree++] = i;
-}
-
-/* --- refused starts --- */
-
-static StartResult fault(const Finder *f, StartKind kind, uint32_t k) { return (StartResult){kind, k, f->velocities, residual(f, k)}; }
-
-static int is_contact(const Eqns *e, uint32_t k) {
+static int is_contact(const lag_level *w, int k) {
+  const Eqns *e = ((Finder *)w->context)->e;
   for (uint32_t i = 0; i < e->m->contacts.n; i++)
     if (e->constraints.of[k] == &e->m->constraints.at[e->m->contacts.at[i].constraint]) return 1;
   return 0;
-}
-
-/* f->terms[k] := change of constraint k, to first order, when each coordinate moves by its scale, here or as asked for. */
-static void constraint_slopes(Finder *f) {
-  const Entries *A = &f->e->constraints.A;
-  Finder asked = *f;
-  asked.symbols = f->asked;
-  long double *reach = ARENA_ARRAY(f->e->m->arena, long double, f->n), *reach_asked = ARENA_ARRAY(f->e->m->arena, long double, f->n);
-  coordinate_scales(f, reach);
-  coordinate_scales(&asked, reach_asked);
-  evaluate(f);
-  for (uint32_t k = 0; k < f->rows; k++) f->terms[k] = 0;
-  for (uint32_t i = 0; i < A->n; i++) {
-    long double far = fmaxl(reach[A->at[i].col], reach_asked[A->at[i].col]);
-    if (A->at[i].row < f->rows) f->terms[A->at[i].row] += fabsl(f->at.A[i]) * far;
-  }
-}
-
-static int is_flat(const Finder *f, uint32_t k) { return f->has_terms[k] && f->terms[k] < 1e-6L * f->size[k]; }
-
-/* Whether a constraint with vanishing derivatives here has them at a nearby state on the constraints, too; a linkage at its dead centre has not. */
-static int is_flat_beside(Finder *f, uint32_t k) {
-  copy(f, f->best, f->symbols);
-  choose_free(f, ALL);
-  steps_beside(f, 0.01L, f->d);
-  for (uint32_t i = 0; i < f->n; i++)
-    if (is_held(f, i)) f->symbols[component(f, i)] += f->d[i];
-  int flat = !descend(f);
-  constraint_slopes(f);
-  flat |= is_flat(f, k);
-  copy(f, f->symbols, f->best);
-  constraint_slopes(f);
-  return flat;
-}
-
-static StartResult check_slopes(Finder *f, int reached) {
-  constraint_slopes(f);
-  for (uint32_t k = 0; k < f->rows; k++) {
-    if (is_contact(f->e, k)) continue;
-    if (!isfinite(f->terms[k]) && reached) return fault(f, START_STEEP, k);
-    if (!is_flat(f, k)) continue;
-    if (!reached && fabsl(residual(f, k)) > 1e-6L * f->size[k]) return fault(f, START_NONE, k); /* violated where it is flat */
-    if (!reached || is_flat_beside(f, k)) return fault(f, START_FLAT, k);
-  }
-  return (StartResult){.kind = START_FOUND};
-}
-
-/* Brings one level, positions or velocities, onto its constraints, stage by stage; checks their derivatives there. */
-static StartResult satisfy_level(Finder *f, int velocities) {
-  const Constraints *k = &f->e->constraints;
-  f->velocities = velocities;
-  f->rows = velocities ? k->n : k->nholonomic;
-  if (!f->rows) return (StartResult){.kind = START_FOUND};
-  copy(f, f->asked, f->symbols);
-  long double off;
-  uint32_t which = worst_constraint(f, &off);
-  for (uint32_t i = 0; i < f->rows; i++) {
-    f->has_terms[i] = f->terms[i] > 0 && isfinite(f->terms[i]);
-    f->size[i] = f->has_terms[i] ? f->terms[i] : 1;
-  }
-  if (!isfinite(merit(f))) return fault(f, START_NO_VALUE, which);
-  if (off > 2) {
-    if (f->e->m->scene.exactly.end && !(off <= 1 / sqrtl(DBL_EPSILON))) return fault(f, START_BROKEN, which);
-    int found = 0;
-    for (int stage = UNSET; stage <= ALL && !found; stage++) {
-      uint32_t before = f->nfree;
-      choose_free(f, stage);
-      found = (stage == UNSET || f->nfree != before) && reach(f);
-    }
-    if (!found) {
-      copy(f, f->symbols, f->asked);
-      descend(f); /* the least residual from the start asked for, to report it */
-      StartResult flat = velocities ? (StartResult){.kind = START_FOUND} : check_slopes(f, 0);
-      which = worst_constraint(f, &off);
-      return flat.kind != START_FOUND ? flat : fault(f, START_NONE, which);
-    }
-  }
-  return velocities ? (StartResult){.kind = START_FOUND} : check_slopes(f, 1);
 }
 
 /* --- entry points --- */
@@ -373,8 +204,8 @@ int start_of_scene(const Eqns *e, long double *found, unsigned char *moved) {
   uint32_t all = expr_symbol_count(e->g) + 1;
   long double *asked = start_requested(e), *symbols = ARENA_ARRAY(m->arena, long double, all);
   for (uint32_t i = 0; i < all; i++) symbols[i] = asked[i];
-  StartResult r = e->constraints.n ? start_find(e, states_new(e), symbols) : (StartResult){.kind = START_FOUND};
-  if (r.kind != START_FOUND) {
+  StartResult r = e->constraints.n ? start_find(e, states_new(e), symbols) : (StartResult){.kind = LAG_START_FOUND};
+  if (r.kind != LAG_START_FOUND) {
     if (m->scene.starts.n) start_report(e, &r);
     symbols = asked;
   }
@@ -382,7 +213,7 @@ int start_of_scene(const Eqns *e, long double *found, unsigned char *moved) {
     found[i] = symbols[i < e->n ? m->coords.at[i].q : m->coords.at[i - e->n].v];
     moved[i] = symbols != asked && is_moved(e, asked, symbols, i);
   }
-  return r.kind == START_FOUND || !m->scene.starts.n;
+  return r.kind == LAG_START_FOUND || !m->scene.starts.n;
 }
 
 long double *start_requested(const Eqns *e) {
@@ -403,29 +234,63 @@ static const unsigned char *given_by(const Eqns *e) {
   const Model *m = e->m;
   unsigned char *given = ARENA_ARRAY(m->arena, unsigned char, expr_symbol_count(e->g) + 1);
   for (uint32_t i = 0; i < m->scene.starts.n; i++)
-    if (!m->scene.starts.at[i].implied) given[m->scene.starts.at[i].target] = ALL;
+    if (!m->scene.starts.at[i].implied) given[m->scene.starts.at[i].target] = LAG_MOVES_LAST;
   for (uint32_t i = 0; i < m->scene.starts.n; i++) { /* implied: target is the first of a rotation's four components */
     uint32_t first = expr_symbol(m->g, m->scene.starts.at[i].target)->index;
     for (uint32_t k = first; m->scene.starts.at[i].implied && k < first + 4; k++)
-      if (!given[m->coords.at[k].q]) given[m->coords.at[k].q] = ROTATIONS;
+      if (!given[m->coords.at[k].q]) given[m->coords.at[k].q] = LAG_MOVES_SECOND;
   }
   return given;
 }
 
-StartResult start_find(const Eqns *e, StateSolver *solver, long double *symbols) {
+/* Room for a level of the constraints, with the functions above. */
+static lag_level level_new(Finder *f) {
+  Arena *a = f->e->m->arena;
+  const Entries *A = &f->e->constraints.A;
+  size_t n = f->e->n, m = f->e->constraints.n;
+  int *row = ARENA_ARRAY(a, int, A->n + 1), *col = ARENA_ARRAY(a, int, A->n + 1);
+  lag_level w = {.context = f, .n = (int)n, .entries = (int)A->n, .row = row, .col = col, .exactly = f->e->m->scene.exactly.end != 0, .rounding = DBL_EPSILON,
+                 .residuals = residuals, .jacobian = jacobian, .terms = terms, .scales = scales, .direction = direction, .distance = distance,
+                 .stage = stage, .is_contact = is_contact, .A = ARENA_ARRAY(a, long double, A->n + 1), .free = ARENA_ARRAY(a, int, n + 1)};
+  long double **const by_component[] = {&w.x, &w.asked, &w.best, &w.from, &w.d}, **const by_row[] = {&w.residual, &w.size, &w.terms_here, &w.slope, &w.has_terms};
+  for (size_t i = 0; i < sizeof by_component / sizeof *by_component; i++) *by_component[i] = ARENA_ARRAY(a, long double, n + 1);
+  for (size_t i = 0; i < sizeof by_row / sizeof *by_row; i++) *by_row[i] = ARENA_ARRAY(a, long double, m + 1);
+  for (uint32_t k = 0; k < A->n; k++) row[k] = (int)A->at[k].row, col[k] = (int)A->at[k].col;
+  return w;
+}
+
+static Finder finder_new(const Eqns *e, StateSolver *solver, long double *symbols) {
   Arena *a = e->m->arena;
-  uint32_t n = e->n, m = e->constraints.n, all = expr_symbol_count(e->g) + 1, w = n + m;
-  Finder f = {.e = e, .solver = solver, .n = n, .nsymbols = all, .symbols = symbols, .given = given_by(e)};
-  f.asked = ARENA_ARRAY(a, long double, all);
-  f.best = ARENA_ARRAY(a, long double, all);
-  f.from = ARENA_ARRAY(a, long double, all);
-  f.size = ARENA_ARRAY(a, long double, m + 1);
-  f.terms = ARENA_ARRAY(a, long double, m + 1);
-  f.has_terms = ARENA_ARRAY(a, unsigned char, m + 1);
-  f.b = ARENA_ARRAY(a, long double, w + 1);
-  f.d = ARENA_ARRAY(a, long double, n + 1);
-  f.free = ARENA_ARRAY(a, uint32_t, n + 1);
-  f.place = ARENA_ARRAY(a, uint32_t, n + 1);
-  StartResult r = satisfy_level(&f, 0);
-  return r.kind == START_FOUND ? satisfy_level(&f, 1) : r;
+  return (Finder){.e = e, .solver = solver, .given = given_by(e), .symbols = symbols, .place = ARENA_ARRAY(a, uint32_t, e->n + 1),
+                  .b = ARENA_ARRAY(a, long double, (size_t)e->n + e->constraints.n + 1)};
+}
+
+/* Takes up positions, or velocities, of the symbols. */
+static void begin_level(lag_level *w, int positions) {
+  const Finder *f = w->context;
+  w->positions = positions;
+  w->rows = (int)(positions ? f->e->constraints.nholonomic : f->e->constraints.n);
+  for (uint32_t i = 0; i < f->e->n; i++) w->x[i] = f->symbols[component(f->e, i, positions)];
+}
+
+StartResult start_find(const Eqns *e, StateSolver *solver, long double *symbols) {
+  Finder f = finder_new(e, solver, symbols);
+  lag_level w = level_new(&f);
+  for (int positions = 1; positions >= 0; positions--) {
+    int k;
+    begin_level(&w, positions);
+    lag_start_kind kind = lag_consistent_state(&w, &k);
+    evaluate(&w, w.x);
+    if (kind != LAG_START_FOUND) return (StartResult){kind, (uint32_t)k, !positions, w.residual[k]};
+  }
+  return (StartResult){.kind = LAG_START_FOUND};
+}
+
+int start_beside(const Eqns *e, StateSolver *solver, long double *symbols) {
+  Finder f = finder_new(e, solver, symbols);
+  lag_level w = level_new(&f);
+  begin_level(&w, 1);
+  int found = lag_state_beside(&w);
+  evaluate(&w, w.x);
+  return found;
 }

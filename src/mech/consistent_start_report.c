@@ -19,24 +19,24 @@ void start_report(const Eqns *e, const StartResult *r) {
   const Constraint *k = e->constraints.of[r->constraint];
   const char *scene = m->scene.name, *off = start_residual_text(e, r);
   switch (r->kind) {
-    case START_FOUND: return;
-    case START_NO_VALUE:
+    case LAG_START_FOUND: return;
+    case LAG_START_NO_VALUE:
       diag_error(m->diags, k->span, "scene %s: the constraint `%s` has no value at the start", scene, k->name);
       diag_help(m->diags, "start where it has one");
       return;
-    case START_BROKEN:
+    case LAG_START_BROKEN:
       diag_error(m->diags, k->span, "scene %s: the start contradicts the constraint `%s`%s", scene, k->name, off);
       diag_help(m->diags, "without `exactly` the nearest start is taken");
       return;
-    case START_FLAT:
+    case LAG_START_FLAT:
       diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` vanish where it holds, so that no force can hold it", scene, k->name);
       diag_help(m->diags, "write it so that they do not: x = 0 in place of x^2 = 0");
       return;
-    case START_STEEP:
+    case LAG_START_STEEP:
       diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` have no value where it holds", scene, k->name);
       diag_help(m->diags, "write it so that they have: x = 1 in place of sqrt(x - 1) = 0");
       return;
-    case START_NONE:
+    case LAG_START_NONE:
       diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`%s", scene, k->name, off);
       diag_help(m->diags, "start nearer to where it holds; at a place where its derivatives vanish no direction leads there");
   }

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Who may include whom. Data flows one way, from text to C, and each folder of src/ sees only what lies before it;
-# the compiler and the runtime never meet; GSL is met in one folder. src/README.md has the reasons.
+# the compiler and the runtime meet in runtime/numeric only; GSL is met in one folder. src/README.md has the reasons.
 . tests/tap.sh
 
 # FOLDER: the folders whose headers it may include. `mech/eqns.h` etc.: these files only.
@@ -9,9 +9,9 @@ src/base      base/
 src/sym       sym/ base/
 src/syntax    syntax/ base/
 src/model     model/ syntax/ sym/ base/
-src/mech      mech/ model/ sym/ base/
+src/mech      mech/ model/ sym/ base/ numeric/
 src/symmetry  symmetry/ mech/ model/ sym/ base/
-src/claims    claims/ symmetry/ mech/ model/ sym/ base/
+src/claims    claims/ symmetry/ mech/ model/ sym/ base/ numeric/
 src/report    report/ symmetry/ mech/ model/ sym/ base/
 src/ir        ir/ base/
 src/series    series/ ir/ base/

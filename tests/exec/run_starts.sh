@@ -1,5 +1,5 @@
 #!/bin/sh
-# Starts of models with constraints: `lagc check` and `lagc run`, which find the start by separate code, agree on them. Impossible starts
+# Starts of models with constraints: `lagc check` and `lagc run`, which find the start by one search with separate equations, agree. Impossible starts
 # are refused by both with the name of the constraint at fault; accepted ones have the same rank.
 . tests/tap.sh
 
