@@ -67,7 +67,8 @@ ifeq ($(MAKE_RESTARTS),)
 $(CONFIG): src/toolchain/compiler_probe.in $(CC_FILE) $(CONFIG_STALE)
 	@d=$(BUILD)/probe.$$$$ && mkdir -p $$d && { \
 	  echo 'CONFIG_FOR := $(AS_SET)'; \
-	  printf 'GSL_FOUND := '; printf '$(GSL_PROBE)' | $(CC) $(CPPFLAGS) $(LDFLAGS) -x c - -o $$d/gsl -lgsl -lgslcblas -lm 2>/dev/null && echo yes || echo; \
+	  printf 'GSL_FOUND := '; printf '$(GSL_PROBE)' | $(CC) $(CPPFLAGS) $(LDFLAGS) -x c - -o $$d/gsl -lgsl -lgslcblas -lm 2>/dev/null && \
+	    echo yes || echo; \
 	  printf 'QUAD_FOUND := '; printf '$(QUAD_PROBE)' | $(CC) $(LDFLAGS) -std=gnu11 -w -x c - -o $$d/quad -lquadmath -lm 2>/dev/null && \
 	    $$d/quad 2>/dev/null && echo quad || echo; \
 	  printf 'SAFE_FOUND := '; $(CC) $(CFLAGS) $(LDFLAGS) -x c src/toolchain/compiler_probe.in -o $$d/safe 2>/dev/null && \

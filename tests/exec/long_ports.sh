@@ -37,11 +37,11 @@ END_OF_MODEL
 
 # digits NAME CC PRECISION DIGITS TOL RUNNER...: a simulator that the port builds with its CC gives cos 10 to so many digits.
 digits() {
-  tree=$BUILD/port-$1 cc=$2 precision=$3 want=$(printf %s "$cos10" | cut -c "1-$(($4 + 3))") tol=$5
+  tree=$BUILD/port-$1 cc=$2 precision=$3 want=$(printf %s "$cos10" | cut -c "1-$(($4 + 3))") asked=$5
   shift 5
   mkdir -p "$TMP/home" && ln -sfn "$(pwd)/$tree" "$TMP/home/lib" && ln -sfn "$(pwd)/runtime/include" "$TMP/home/include"
   CC=$cc LAG_HOME=$TMP/home "$@" "$tree/lagc" build "$TMP/osc.lag" --method taylor --precision "$precision" -o "$TMP/osc" || return 1
-  got=$("$@" "$TMP/osc" --tol "$tol" -o - --quiet | tail -n 1 | cut -d , -f 2)
+  got=$("$@" "$TMP/osc" --tol "$asked" -o - --quiet | tail -n 1 | cut -d , -f 2)
   echo "got $got, expected $want..."
   case $got in "$want"*) ;; *) return 1 ;; esac
 }
@@ -60,9 +60,11 @@ port() {
 # installed NAME CC AR: with folders of one's own choice, lagc finds the runtime there, and so does pkg-config.
 installed() {
   usr=$TMP/usr
-  env -u CC -u CFLAGS "$MAKE" -s CC="$2" AR="$3" CFLAGS=-O1 BUILD="$BUILD/port-$1" PREFIX="$usr" LIBDIR="$usr/lib/port" INCLUDEDIR="$usr/include/lag" install &&
+  set -- "$@" "$usr/lib/port/pkgconfig/liblag.pc"
+  env -u CC -u CFLAGS "$MAKE" -s CC="$2" AR="$3" CFLAGS=-O1 BUILD="$BUILD/port-$1" PREFIX="$usr" LIBDIR="$usr/lib/port" \
+    INCLUDEDIR="$usr/include/lag" install &&
     [ -f "$usr/lib/port/liblag.a" ] && [ -f "$usr/include/lag/lag.h" ] && [ ! -e "$usr/lib/liblag.a" ] &&
-    grep -x 'libdir=${prefix}/lib/port' "$usr/lib/port/pkgconfig/liblag.pc" && grep -x 'includedir=${prefix}/include/lag' "$usr/lib/port/pkgconfig/liblag.pc" &&
+    grep -x 'libdir=${prefix}/lib/port' "$4" && grep -x 'includedir=${prefix}/include/lag' "$4" &&
     (cd "$TMP" && unset LAG_HOME && CC=$2 "$usr/bin/lagc" run osc.lag)
 }
 
