@@ -3,6 +3,9 @@
 # ---- settings: make NAME=value ----------------------------------------------------------------------
 CC      ?= cc
 CFLAGS  ?= -O2 -g
+CPPFLAGS ?=
+LDFLAGS ?=
+RANLIB  ?=
 WERROR  ?=
 WARN    := -std=c11 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes $(WERROR)
 BUILD   ?= build
@@ -10,30 +13,69 @@ SAN     ?=
 FLEX    ?= flex
 BISON   ?= bison
 PREFIX  ?= /usr/local
+LIBDIR  ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
 DESTDIR ?=
 T       ?=
 
-CPPFLAGS_ALL := -D_XOPEN_SOURCE=700
+# Position-independent code lets liblag go into shared objects. It costs nothing measurable: without interposition calls within a file stay direct,
+# and of 92 files 73 keep their instructions; the others take addresses of a few data from a table. Results keep their bits.
+PIC ?= -fPIC -fno-semantic-interposition
+
+# LIBDIR and INCLUDEDIR below PREFIX are relative to it in liblag.pc and in lagc, which can then be moved together.
+below = $(subst ^,,$(subst ^$(PREFIX)/,$(1),^$(2)))
+LIB_FROM_BIN     := $(call below,../,$(LIBDIR))
+INCLUDE_FROM_BIN := $(call below,../,$(INCLUDEDIR))
+
+CPPFLAGS_ALL := $(CPPFLAGS) -D_XOPEN_SOURCE=700
 SRC_FLAGS    := $(CPPFLAGS_ALL) -Isrc -I$(BUILD)/gen
-RT_FLAGS     := $(CPPFLAGS_ALL) -Iruntime/include -Iruntime -I$(BUILD)/gen -ffp-contract=off
-VERSION      := $(shell sed -n 's/^.define LAG_VERSION "\(.*\)"/\1/p' runtime/include/lag.h 2>/dev/null)
+RT_FLAGS     := $(CPPFLAGS_ALL) -Iruntime/include -Iruntime -I$(BUILD)/gen -ffp-contract=off $(PIC)
+VERSION       = $(shell sed -n 's/^.define LAG_VERSION "\(.*\)"/\1/p' runtime/include/lag.h 2>/dev/null)
+
+# ---- what the C compiler can do ---------------------------------------------------------------------
+# Results of probes stay in $(CONFIG). It is made when something is built, and again after a change of compiler, flags, folders or GSL's header.
+CONFIG    := $(BUILD)/config.mk
+CC_FILE   := $(firstword $(wildcard $(firstword $(CC)) $(addsuffix /$(firstword $(CC)),$(subst :, ,$(PATH)))))
+CONFIG_OF := $(strip $(CC_FILE) $(CC) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS) $(LIB_FROM_BIN) $(INCLUDE_FROM_BIN) \
+               $(wildcard /usr/include/gsl/gsl_odeiv2.h /usr/local/include/gsl/gsl_odeiv2.h))
+BUILDS    := $(filter-out help clean uninstall,$(or $(MAKECMDGOALS),all))
+ifneq ($(BUILDS),)
+-include $(CONFIG)
+endif
 
 # GSL is optional: without it there are no gsl-* methods, and no liblag_gsl.a.
-GSL := $(shell printf '\043include <gsl/gsl_odeiv2.h>\nint main(void) { return gsl_odeiv2_step_rk8pd == 0; }\n' | \
-         $(CC) -x c - -o /dev/null -lgsl -lgslcblas -lm 2>/dev/null && echo yes)
+GSL := $(GSL_FOUND)
 GSL_LIBS := $(if $(GSL),-lgsl -lgslcblas)
+GSL_PROBE = \043include <gsl/gsl_odeiv2.h>\nint main(void) { return gsl_odeiv2_step_rk8pd == 0; }\n
 
 # The runtime for other numbers than doubles: `lagc run --precision`. Quad needs libquadmath, and a printf that learns from it.
 QUAD_PROBE = \043include <quadmath.h>\n\043include <stdio.h>\n\043include <string.h>\nint main(void) { char s[40]; \
   snprintf(s, 40, "%%.3Qg", expq(0.0Q)/3); return strcmp(s, "0.333"); }\n
-QUAD_FOUND = $(shell mkdir -p $(BUILD) && printf '$(QUAD_PROBE)' | $(CC) -std=gnu11 -w -x c - -o $(BUILD)/quad_probe -lquadmath -lm \
-               2>/dev/null && $(BUILD)/quad_probe && echo quad)
 PRECISIONS ?= long $(QUAD_FOUND)
 PRECISIONS := $(PRECISIONS)
 
 # A flag that keeps the compiler from storing wrong numbers, where it does with these flags: src/toolchain/compiler_probe.in.
-SAFE := $(shell d=$$(mktemp -d) && $(CC) $(CFLAGS) -x c src/toolchain/compiler_probe.in -o $$d/probe 2>/dev/null && \
-          { $$d/probe; [ $$? != 1 ] || echo -fno-tree-slp-vectorize; }; rm -rf "$$d")
+SAFE := $(SAFE_FOUND)
+
+# A program that cannot run here, as in a cross build, finds nothing: no quad, no flag. After the restart of make the file is not made again.
+HASH := \#
+AS_SET = $(subst ','\'',$(subst $(HASH),\$(HASH),$(subst $$,$$$$,$(CONFIG_OF))))
+ifneq ($(CONFIG_FOR),$(CONFIG_OF))
+CONFIG_STALE := FORCE
+endif
+ifeq ($(MAKE_RESTARTS),)
+$(CONFIG): src/toolchain/compiler_probe.in $(CC_FILE) $(CONFIG_STALE)
+	@d=$(BUILD)/probe.$$$$ && mkdir -p $$d && { \
+	  echo 'CONFIG_FOR := $(AS_SET)'; \
+	  printf 'GSL_FOUND := '; printf '$(GSL_PROBE)' | $(CC) $(CPPFLAGS) $(LDFLAGS) -x c - -o $$d/gsl -lgsl -lgslcblas -lm 2>/dev/null && \
+	    echo yes || echo; \
+	  printf 'QUAD_FOUND := '; printf '$(QUAD_PROBE)' | $(CC) $(LDFLAGS) -std=gnu11 -w -x c - -o $$d/quad -lquadmath -lm 2>/dev/null && \
+	    $$d/quad 2>/dev/null && echo quad || echo; \
+	  printf 'SAFE_FOUND := '; $(CC) $(CFLAGS) $(LDFLAGS) -x c src/toolchain/compiler_probe.in -o $$d/safe 2>/dev/null && \
+	    { $$d/safe 2>/dev/null; [ $$? = 1 ]; } && echo -fno-tree-slp-vectorize || echo; \
+	  printf 'LONG_DIGITS := '; echo __LDBL_DECIMAL_DIG__ | $(CC) -E -P -x c - 2>/dev/null || echo; \
+	} >$$d/config.mk; mv $$d/config.mk $@; rm -rf $$d
+endif
 
 # ---- what is made of what ---------------------------------------------------------------------------
 # Of runtime/numeric, the files that the compiler calls, too.
@@ -55,18 +97,22 @@ all: $(BUILD)/lagc $(LIBLAG) $(LIBLAG_MORE)
 
 # ---- the compiler and the runtime -------------------------------------------------------------------
 $(BUILD)/lagc: $(BUILD)/obj/src/main.o $(BUILD)/liblagc.a
-	$(CC) $(CFLAGS) $(SAN) -o $@ $^ -lm
+	$(CC) $(CFLAGS) $(SAN) $(LDFLAGS) -o $@ $^ -lm
+
+# `ar s` writes the index; RANLIB is for an ar that does not.
+ARCHIVE = rm -f $@ && $(AR) rcs $@
+INDEX   = $(if $(RANLIB),$(RANLIB) $@)
 
 # Everything of the compiler but main: what the unit tests link.
 $(BUILD)/liblagc.a: $(LAGC_OBJ)
-	@rm -f $@
-	$(AR) rcs $@ $^
+	$(ARCHIVE) $^
+	$(INDEX)
 $(BUILD)/liblag.a: $(RT_OBJ)
-	@rm -f $@
-	$(AR) rcs $@ $^
+	$(ARCHIVE) $^
+	$(INDEX)
 $(BUILD)/liblag_gsl.a: $(GSL_OBJ)
-	@rm -f $@
-	$(AR) rcs $@ $^
+	$(ARCHIVE) $^
+	$(INDEX)
 
 $(BUILD)/gen/lag.tab.c: grammar/lag.y
 	@mkdir -p $(@D)
@@ -88,7 +134,7 @@ $(BUILD)/obj/runtime/%.o: runtime/%.c
 # and $(BUILD)/lag-quad. src/toolchain/toolchain.c compiles models with the same LAG_REAL.
 REAL_long := -std=c11 '-DLAG_REAL=long double' '-DLAG_PRECISION="long"'
 REAL_quad := -std=gnu11 -include quadmath.h -DLAG_REAL=__float128 '-DLAG_PRECISION="quad"'
-DIGITS_long := $(if $(filter long,$(PRECISIONS)),$(shell echo __LDBL_DECIMAL_DIG__ | $(CC) -E -P -x c -))
+DIGITS_long := $(if $(filter long,$(PRECISIONS)),$(LONG_DIGITS))
 DIGITS_quad := 36
 RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
 API_HEAD := lag.h lag_model.h
@@ -103,10 +149,10 @@ $(BUILD)/lag-$(1)/%.h: $(BUILD)/gen/$(1)/include/%.h
 	cp $$< $$@
 $(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | $(BUILD)/gen/io/page.h
 	@mkdir -p $$(@D)
-	$$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(CFLAGS) $$(SAFE) -c -o $$@ $$<
+	$$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(PIC) $$(CFLAGS) $$(SAFE) -c -o $$@ $$<
 $(BUILD)/liblag_$(1).a: $(RT_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%)
-	@rm -f $$@
-	$$(AR) rcs $$@ $$(filter %.o,$$^)
+	$$(ARCHIVE) $$(filter %.o,$$^)
+	$$(INDEX)
 endef
 $(foreach p,$(PRECISIONS),$(eval $(call precision_rules,$(p))))
 .SECONDARY: $(foreach p,$(PRECISIONS),$(RT_HEAD:%=$(BUILD)/gen/$(p)/%) $(RT_SRC:runtime/%=$(BUILD)/gen/$(p)/%))
@@ -153,6 +199,8 @@ $(BUILD)/gen/commands/complete_%.h: src/commands/complete.%
 	$(AS_C) >$@.part
 	@mv $@.part $@
 $(BUILD)/obj/src/base/method_table.o: SRC_FLAGS += $(if $(GSL),-DLAGC_WITH_GSL)
+$(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_BIN)"' '-DLAGC_INCLUDEDIR="$(INCLUDE_FROM_BIN)"'
+$(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
 $(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen/emit/lag_kkt.h
 $(BUILD)/obj/src/toolchain/compiler_probe.o: $(BUILD)/gen/toolchain/probe_text.h
@@ -318,23 +366,25 @@ mutants:
 # ---- installing -------------------------------------------------------------------------------------
 MODELS := $(wildcard models/*.lag models/*.csv)
 PC     := $(BUILD)/liblag.pc
+HEADERS := lag.h lag_model.h lag_math.h lag_sincos.h lag_kkt.h
+FILL_IN = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(call below,$${prefix}/,$(LIBDIR))|' \
+            -e 's|@INCLUDEDIR@|$(call below,$${prefix}/,$(INCLUDEDIR))|' -e 's|@VERSION@|$(VERSION)|'
 COMPLETIONS := bash-completion/completions zsh/site-functions fish/vendor_completions.d
 
 install: all
-	install -d '$(DESTDIR)$(PREFIX)/bin' '$(DESTDIR)$(PREFIX)/lib/pkgconfig' '$(DESTDIR)$(PREFIX)/include' \
+	install -d '$(DESTDIR)$(PREFIX)/bin' '$(DESTDIR)$(LIBDIR)/pkgconfig' '$(DESTDIR)$(INCLUDEDIR)' \
 	  '$(DESTDIR)$(PREFIX)/share/lagc/models' '$(DESTDIR)$(PREFIX)/share/man/man1' '$(DESTDIR)$(PREFIX)/share/doc/lagc' \
 	  $(COMPLETIONS:%='$(DESTDIR)$(PREFIX)/share/%')
 	install -m 755 $(BUILD)/lagc '$(DESTDIR)$(PREFIX)/bin'
-	install -m 644 $(LIBLAG) $(LIBLAG_MORE) '$(DESTDIR)$(PREFIX)/lib'
-	for p in $(PRECISIONS); do install -d "$(DESTDIR)$(PREFIX)/lib/lag-$$p" && \
-	  install -m 644 $(BUILD)/lag-$$p/*.h "$(DESTDIR)$(PREFIX)/lib/lag-$$p" || exit 1; done
-	install -m 644 runtime/include/lag.h $(addprefix runtime/include/,lag_model.h lag_math.h lag_sincos.h lag_kkt.h) \
-	  '$(DESTDIR)$(PREFIX)/include'
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' runtime/liblag.pc.in >$(PC)
-	install -m 644 $(PC) '$(DESTDIR)$(PREFIX)/lib/pkgconfig'
+	install -m 644 $(LIBLAG) $(LIBLAG_MORE) '$(DESTDIR)$(LIBDIR)'
+	for p in $(PRECISIONS); do install -d "$(DESTDIR)$(LIBDIR)/lag-$$p" && \
+	  install -m 644 $(BUILD)/lag-$$p/*.h "$(DESTDIR)$(LIBDIR)/lag-$$p" || exit 1; done
+	install -m 644 $(HEADERS:%=runtime/include/%) '$(DESTDIR)$(INCLUDEDIR)'
+	$(FILL_IN) runtime/liblag.pc.in >$(PC)
+	install -m 644 $(PC) '$(DESTDIR)$(LIBDIR)/pkgconfig'
 ifneq ($(GSL),)
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' runtime/gsl/liblag_gsl.pc.in >$(PC:.pc=_gsl.pc)
-	install -m 644 $(PC:.pc=_gsl.pc) '$(DESTDIR)$(PREFIX)/lib/pkgconfig'
+	$(FILL_IN) runtime/gsl/liblag_gsl.pc.in >$(PC:.pc=_gsl.pc)
+	install -m 644 $(PC:.pc=_gsl.pc) '$(DESTDIR)$(LIBDIR)/pkgconfig'
 endif
 	install -m 644 $(MODELS) '$(DESTDIR)$(PREFIX)/share/lagc/models'
 	install -m 644 grammar/lag.tmLanguage.json '$(DESTDIR)$(PREFIX)/share/lagc'
@@ -346,9 +396,11 @@ endif
 
 # Removes what install puts there, and the folders that are lagc's own.
 uninstall:
-	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc lib/liblag.a lib/liblag_gsl.a lib/liblag_long.a lib/liblag_quad.a include/lag.h include/lag_model.h include/lag_math.h include/lag_sincos.h include/lag_kkt.h \
-	  lib/pkgconfig/liblag.pc lib/pkgconfig/liblag_gsl.pc share/man/man1/lagc.1 share/bash-completion/completions/lagc \
-	  share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish && rm -rf lib/lag-long lib/lag-quad share/lagc share/doc/lagc
+	cd '$(DESTDIR)$(PREFIX)' && rm -f bin/lagc share/man/man1/lagc.1 share/bash-completion/completions/lagc \
+	  share/zsh/site-functions/_lagc share/fish/vendor_completions.d/lagc.fish && rm -rf share/lagc share/doc/lagc
+	cd '$(DESTDIR)$(LIBDIR)' && rm -f liblag.a liblag_gsl.a liblag_long.a liblag_quad.a pkgconfig/liblag.pc pkgconfig/liblag_gsl.pc && \
+	  rm -rf lag-long lag-quad
+	cd '$(DESTDIR)$(INCLUDEDIR)' && rm -f $(HEADERS)
 
 # ---- the rest ---------------------------------------------------------------------------------------
 clean:
@@ -367,11 +419,16 @@ help:
 	@echo 'make fuzz-coverage  the share of lines of src/ir, src/mech and src/emit that its inputs reach'
 	@echo 'make mutants      plants one-token changes and prints those that no suite sees; N=100 SEED=1 JOBS=2 ONLY_IN=src/ir/'
 	@echo 'make gallery      draws the pictures of models/README.md'
-	@echo 'make install      PREFIX=/usr/local DESTDIR='
+	@echo 'make install      PREFIX=/usr/local LIBDIR=PREFIX/lib INCLUDEDIR=PREFIX/include DESTDIR='
 	@echo 'make uninstall    the same, backwards'
 	@echo 'make clean        removes build/'
-	@echo 'settings: CC CFLAGS WERROR=-Werror BUILD FLEX BISON CXX CLANG= (to do without clang)'
+	@echo 'settings: CC CFLAGS CPPFLAGS LDFLAGS AR RANLIB WERROR=-Werror BUILD FLEX BISON CXX CLANG= (to do without clang)'
+	@echo '          GSL= PRECISIONS= (to do without gsl-* methods; without long double and quad)'
+	@echo '          for another machine: CC=aarch64-linux-gnu-gcc AR=aarch64-linux-gnu-ar BUILD=build/aarch64'
 
+ifneq ($(BUILDS),)
 -include $(LAGC_OBJ:.o=.d) $(RT_OBJ:.o=.d) $(GSL_OBJ:.o=.d) $(BUILD)/obj/src/main.d $(TEST_BIN:=.d)
+endif
 
-.PHONY: all demo run-demo gallery test test-long bless hard bench build-tests fuzz fuzz-coverage mutants install uninstall clean help
+FORCE:
+.PHONY: FORCE all demo run-demo gallery test test-long bless hard bench build-tests fuzz fuzz-coverage mutants install uninstall clean help

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/sparse_solve.h"
+#include "base/tolerance.h"
 
 static void exchange(long double *x, long double *y, uint32_t n, size_t stride) {
   for (size_t i = 0; i < n * stride; i += stride) {
@@ -94,7 +95,7 @@ static PivotedQR pivoted_qr_new(Arena *a, uint32_t rows, uint32_t columns, long 
   long double largest = 0;
   for (uint32_t j = 0; j < columns; j++) largest = fmaxl(largest, t.length[j] = sqrtl(squared_below(&t, 0, j)));
   for (uint32_t j = 0; j < columns; j++) {
-    int zero = !(t.length[j] > 1e-14L * largest);
+    int zero = !(t.length[j] > LONG_TOLERANCE(1e-14L) * largest);
     t.scale[j] = zero ? 1 : 1 / t.length[j];
     for (size_t i = 0; i < rows; i++) m[i * columns + j] *= zero ? 0 : t.scale[j];
     t.sure[j] = t.length[j] = zero ? 0 : 1;

@@ -2,6 +2,7 @@
  * programs' accelerations and multipliers there, with their sensitivity to rounding. */
 #include <math.h>
 
+#include "base/tolerance.h"
 #include "lower/lower.h"
 #include "jets/self_check_impl.h"
 
@@ -101,7 +102,8 @@ static int project_constraints(Check *c, int velocities) {
     if (round == HOPELESS && !(left < first)) return 0;
     if (!check_run(c, velocities ? k->velocity : k->position, (Real *const[]){change, force})) return 0;
     for (uint32_t i = 0; i < c->n; i++) of[i] += change[i];
-    if (largest(change, c->n) <= 1e-16L * (1 + largest(of, c->n))) return left <= 1e-9L * first + 1e-13L * (1 + largest(of, c->n));
+    Real size = 1 + largest(of, c->n);
+    if (largest(change, c->n) <= LONG_TOLERANCE(1e-16L) * size) return left <= 1e-9L * first + LONG_TOLERANCE(1e-13L) * size;
   }
   return 0;
 }

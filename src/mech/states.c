@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/row_span.h"
+#include "base/tolerance.h"
 
 struct StateSolver {
   const Eqns *e;
@@ -122,7 +123,7 @@ static int are_small(const StateSolver *s, const long double *residual, uint32_t
   for (uint32_t k = 0, at = 0; k < rows; k++) {
     long double steepness = 0;
     for (; at < A->n && A->at[at].row == k; at++) steepness += fabsl(values[at]);
-    if (!(fabsl(residual[k]) <= 1e-12L * steepness * size) && !(fabsl(residual[k]) < 1e-16L)) return 0;
+    if (!(fabsl(residual[k]) <= 1e-12L * steepness * size) && !(fabsl(residual[k]) < LONG_TOLERANCE(1e-16L))) return 0;
   }
   return 1;
 }
@@ -142,7 +143,7 @@ static int project(StateSolver *s, long double *symbols, int velocities) {
     size = fmaxl(motion_size(s, symbols, velocities), least);
   }
   StateValues v = states_at(s, symbols);
-  return moved <= 1e-15L * size && are_small(s, velocities ? v.r : v.c, rows, size);
+  return moved <= LONG_TOLERANCE(1e-15L) * size && are_small(s, velocities ? v.r : v.c, rows, size);
 }
 
 int states_project(StateSolver *s, long double *symbols) { return project(s, symbols, 0) && project(s, symbols, 1); }

@@ -1,6 +1,7 @@
 /* The ansatz of the search for symmetries, and its linear equations at random states: one row of B0 and B1 a state, scaled to size 1. */
 #include <math.h>
 
+#include "base/tolerance.h"
 #include "symmetry/search_frame.h"
 #include "mech/constrain.h"
 #include "mech/states.h"
@@ -262,7 +263,7 @@ static int constraint_row(RowSource *r, uint32_t which, long double *b0) {
     size += fabsl(row[i] * r->rate[i + 1]);
   }
   for (uint32_t j = 0; j < s->xi.n; j++) b0[1 + j] += row[s->xi.at[j].i] * r->phi[s->xi.at[j].k];
-  if (s->has_tau && fabsl(b) > 1e-14L * size) b0[0] = b; /* a state obeys to rounding */
+  if (s->has_tau && fabsl(b) > LONG_TOLERANCE(1e-14L) * size) b0[0] = b; /* a state obeys to rounding */
   return 1;
 }
 

@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
@@ -68,7 +69,7 @@ int constraint_factors_solve(ConstraintFactors *p, uint32_t part, long double *s
   enum { MOST = 60 };
   for (int turn = 0; turn < MOST; turn++) {
     long double f = factor_at(p, part, symbols), square = 0;
-    if (fabsl(f) < 1e-16L) return 1;
+    if (fabsl(f) < LONG_TOLERANCE(1e-16L)) return 1;
     for (uint32_t i = 0; i < p->e->n; i++) square += p->value[1 + i] * p->value[1 + i];
     if (!(square > 0) || !isfinite(square) || !isfinite(f)) return 0;
     for (uint32_t i = 0; i < p->e->n; i++) symbols[p->q[i]] -= f / square * p->value[1 + i];
@@ -76,4 +77,6 @@ int constraint_factors_solve(ConstraintFactors *p, uint32_t part, long double *s
   return constraint_factors_is_zero(p, part, symbols);
 }
 
-int constraint_factors_is_zero(ConstraintFactors *p, uint32_t part, const long double *symbols) { return fabsl(factor_at(p, part, symbols)) < 1e-14L; }
+int constraint_factors_is_zero(ConstraintFactors *p, uint32_t part, const long double *symbols) {
+  return fabsl(factor_at(p, part, symbols)) < LONG_TOLERANCE(1e-14L);
+}

@@ -6,11 +6,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/tolerance.h"
+
 typedef long double Real;
 
 enum { VALUES = 40, ROWS = 8, DIM = VALUES + ROWS, TURNS = 20000 };
 
-static const Real weight = 1e-16L; /* e */
+static const Real weight = LONG_TOLERANCE(1e-16L); /* e */
 
 typedef struct {
   uint32_t rows, values, n;    /* n: rows + values, the dimension */

@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "mech/discontinuity.h"
 #include "symmetry/linear_forms.h"
@@ -151,7 +152,7 @@ static Expr delta_lagrangian(const ProofWork *w) {
 
 /* 1: x is rounding at a state that obeys the constraints; 0: it is more; -1: it has no value there. */
 static int is_small(const ProofWork *w, Expr x, const long double *symbols) {
-  const long double tiny = 1e-14L; /* states obey to 1e-16; terms of x have size 1 */
+  const long double tiny = LONG_TOLERANCE(1e-14L); /* states obey to 1e-16; terms of x have size 1 */
   long double bound, value = value_with_bound(w->g, x, symbols, NULL, &bound), size = 0;
   if (!isfinite(value)) return -1;
   for (uint32_t i = 0; i < expr_pairs(w->g, x, EX_SUM); i++) {

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/tolerance.h"
 #include "sym/eval.h"
 #include "sym/prove.h"
 
@@ -54,7 +55,7 @@ static int fraction_of(long double x, long double error, long double most, Num *
 /* Longer fractions need more digits of x, which only values without accumulated rounding have. */
 int recognise_rational(long double x, Num *out) {
   if (!(fabsl(x) < 1e14L)) return 0;
-  return fraction_of(x, 1e-12L * fmaxl(fabsl(x), 1), 1e10L, out) || fraction_of(x, 1e-17L * fabsl(x), 1e14L, out);
+  return fraction_of(x, 1e-12L * fmaxl(fabsl(x), 1), 1e10L, out) || fraction_of(x, LONG_TOLERANCE(1e-17L) * fabsl(x), 1e14L, out);
 }
 
 static long double value_at(const Choices *c, uint32_t choice, uint32_t k) { return c->at[choice][c->param[k]]; }

@@ -1,6 +1,7 @@
 /* Solution space of B0 u + B1 u' = 0: the space of all coefficients, restricted by equations at random states until it contains u' with u. */
 #include <math.h>
 
+#include "base/tolerance.h"
 #include "symmetry/search_frame.h"
 
 enum { SPARE_ROWS = 12 };
@@ -40,7 +41,10 @@ static Sparse sparse_rows(Arena *a, const DenseRows *space) {
 }
 
 /* Rounding in products with the rows of a space: eps over the smallest pivot that they were solved with, about 1/gap. */
-static long double rounding_of(const DenseRows *space) { return space->gap > 0 ? fmaxl(1e-15L, 30 / space->gap) : 1e-15L; }
+static long double rounding_of(const DenseRows *space) {
+  const long double least = LONG_TOLERANCE(1e-15L);
+  return space->gap > 0 ? fmaxl(least, 30 / space->gap) : least;
+}
 
 /* to[n] = products of a row with the rows of the space, all of length about 1. A product far below 1 is rounding and becomes 0, as a kernel scales
  * columns. */

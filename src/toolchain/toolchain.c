@@ -39,6 +39,11 @@ static int try_place(Arena *a, const char *lib, const char *include, Toolchain *
   return 1;
 }
 
+/* The path of an installed folder, which the Makefile gives from lagc's own folder on, or whole. */
+static const char *installed(Arena *a, const char *own, const char *folder) {
+  return folder[0] == '/' ? folder : arena_printf(a, "%s/%s", own, folder);
+}
+
 int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error) {
   const char *cc = getenv("CC"), *home = getenv("LAG_HOME"), *own = own_folder(a, argv0);
   static const char *const none[] = {NULL};
@@ -52,7 +57,7 @@ int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, cons
     }
   }
   found = found || try_place(a, own, arena_printf(a, "%s/../runtime/include", own), t);
-  found = found || try_place(a, arena_printf(a, "%s/../lib", own), arena_printf(a, "%s/../include", own), t);
+  found = found || try_place(a, installed(a, own, LAGC_LIBDIR), installed(a, own, LAGC_INCLUDEDIR), t);
   if (!found) {
     *error = arena_printf(a, "the runtime (liblag.a and lag.h) is not found beside %s; run `make`, or set LAG_HOME", own);
     return 0;

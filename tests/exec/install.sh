@@ -69,6 +69,13 @@ else
   skip "a program, through pkg-config" "no pkg-config"
 fi
 
+shared() {
+  "$CC" -shared -Wl,-z,text -Wl,--no-undefined -o "$TMP/liblag.so" -Wl,--whole-archive "$prefix/lib/liblag.a" -Wl,--no-whole-archive -lm
+}
+check "liblag goes into a shared object" shared
+no_compiler() { "$MAKE" CC=/nowhere/cc BUILD="$TMP/none" help && "$MAKE" CC=/nowhere/cc BUILD="$TMP/none" clean && [ ! -e "$TMP/none" ]; }
+check "help and clean need no compiler" no_compiler
+
 # ---- lagc, from the installed tree, in another folder ----
 lagc_away() { (cd "$away" && unset LAG_HOME && "$prefix/bin/lagc" "$@"); }
 check "lagc check" lagc_away check "$prefix/share/lagc/models/double_pendulum.lag"
