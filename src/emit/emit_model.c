@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/hash.h"
 #include "emit/embedded_math.h"
 #include "emit/variable_tables.h"
 #include "emit/emit_impl.h"
@@ -357,9 +358,7 @@ static const char *or_null(uint32_t n, const char *name) { return n ? name : "NU
 
 /* Digest of the equations' C text (FNV-1a, 64 bits, in hexadecimal), by which a saved state is tied to its equations. */
 static const char *digest_text(Arena *a, const char *text) {
-  uint64_t h = 14695981039346656037u;
-  for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
-  return arena_printf(a, "%016llx", (unsigned long long)h);
+  return arena_printf(a, "%016llx", (unsigned long long)hash_bytes(FNV1A_START, text, strlen(text)));
 }
 
 /* Table `curves`: input, number of rows and array of each input that is a table. */
