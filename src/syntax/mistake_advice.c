@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "base/suggest.h"
+#include "base/words.h"
 #include "syntax/parse.h"
 
 /* ---- words ---- */
