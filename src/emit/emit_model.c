@@ -322,23 +322,18 @@ static int has_long_tables(const IrUnit *u) {
 }
 
 static uint32_t work_size(const IrUnit *u) {
+  ProgList all = unit_programs(u);
   uint32_t most = 0;
-  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->jumps, u->constraints.position, u->constraints.velocity, u->charge_values, u->charge_powers, u->switch_values};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    if (all[i] && prog_work_size(all[i]) > most) most = prog_work_size(all[i]);
-  for (uint32_t i = 0; i < u->events.n; i++)
-    if (prog_work_size(u->events.at[i].action) > most) most = prog_work_size(u->events.at[i].action);
-  for (uint32_t i = 0; i < u->scenes.n; i++)
-    if (prog_work_size(u->scenes.at[i].observe) > most) most = prog_work_size(u->scenes.at[i].observe);
+  for (uint32_t i = 0; i < all.n; i++)
+    if (prog_work_size(all.at[i]) > most) most = prog_work_size(all.at[i]);
   return most;
 }
 
 /* Whether a linear system of that kind is solved by a loop. */
 static int needs_solver(const IrUnit *u, SolveKind kind) {
-  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->charge_powers, u->switch_values};
+  ProgList all = unit_programs(u);
   int some = 0;
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= prog_solves(all[i], kind);
-  for (uint32_t i = 0; i < u->scenes.n; i++) some |= prog_solves(u->scenes.at[i].observe, kind);
+  for (uint32_t i = 0; i < all.n; i++) some |= prog_solves(all.at[i], kind);
   return some;
 }
 
