@@ -31,18 +31,11 @@ enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
 /* --- identifiers --- */
 
-/* Unique identifier of scene, or event, i: names that C spells alike get suffixes. */
+/* Unique identifier of scene i: names that C spells alike get suffixes. */
 static const char *scene_id(const IrUnit *u, uint32_t i) {
   CNames ids = cnames_new(u->arena);
   const char *id = "";
   for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, u->scenes.at[k].name);
-  return id;
-}
-
-static const char *event_id(const IrUnit *u, uint32_t i) {
-  CNames ids = cnames_new(u->arena);
-  const char *id = "";
-  for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, u->events.at[k].name);
   return id;
 }
 
@@ -140,7 +133,7 @@ static void emit_action(const File *f, uint32_t i) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "q1", "v1", "z1", "w", NULL}, *const written[] = {"q1", "v1", "z1"};
   const char *comment = arena_printf(f->a, "What the event %s does.", f->u->events.at[i].name);
   const char *head = arena_printf(f->a, "static int act_%s(%s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, LAG_REAL *w)",
-                                  event_id(f->u, i), emit_state_args);
+                                  cname_of_event(f->u, i), emit_state_args);
   emit_function(f, f->u->events.at[i].action, comment, head, own, written);
 }
 
@@ -154,7 +147,7 @@ static void emit_events(const File *f) {
   sb_printf(f->out, "\nstatic int act(int k, %s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n", emit_state_args);
   sb_puts(f->out, "  switch (k) {\n");
   for (uint32_t i = 0; i < u->events.n; i++)
-    sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", event_id(u, i));
+    sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
   sb_puts(f->out, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
 }
 
