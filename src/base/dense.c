@@ -232,3 +232,25 @@ int dense_invert(uint32_t n, long double *a, long double *inverse) {
   }
   return 1;
 }
+
+long double dense_largest(const long double *x, size_t n) {
+  long double most = 0;
+  for (size_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
+  return most;
+}
+
+int dense_solve_rows(Arena *a, uint32_t n, const long double *m, uint32_t count, long double *rows) {
+  size_t w = (size_t)n + count;
+  long double *both = ARENA_ARRAY(a, long double, n * w);
+  uint32_t *pivot = ARENA_ARRAY(a, uint32_t, n);
+  for (size_t i = 0; i < n; i++) {
+    memcpy(both + i * w, m + i * n, n * sizeof *m);
+    for (size_t k = 0; k < count; k++) both[i * w + n + k] = rows[k * n + i];
+  }
+  dense_echelon(n, (uint32_t)w, both, 1e-13L * dense_largest(m, (size_t)n * n), pivot);
+  for (size_t i = 0; i < n; i++) {
+    if (pivot[i] != i || both[i * w + i] == 0) return 0;
+    for (size_t k = 0; k < count; k++) rows[k * n + i] = both[i * w + n + k];
+  }
+  return 1;
+}

@@ -2,12 +2,19 @@
 #ifndef LAGC_DENSE_H
 #define LAGC_DENSE_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "base/arena.h"
 
 /* Solves a x = b for a[n*n], row-major, as sparse_solve does. */
 uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double *b, long double tolerance, long double *null);
+
+/* Largest absolute value of x[n]; 0 for none. */
+long double dense_largest(const long double *x, size_t n);
+
+/* Solves m x = b for each row b of rows[count*n], in place, for m[n*n]. 0: m is singular. */
+int dense_solve_rows(Arena *a, uint32_t n, const long double *m, uint32_t count, long double *rows);
 
 /* Inverts a[n*n] into inverse[n*n] by Gauss-Jordan elimination with partial pivoting; a is destroyed. Returns 0 where a is singular. */
 int dense_invert(uint32_t n, long double *a, long double *inverse);

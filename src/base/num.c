@@ -319,6 +319,12 @@ void num_format_double(char *out, double x) {
   }
 }
 
+int num_parse_double(const char *text, double *x) {
+  char *end;
+  *x = strtod(text, &end);
+  return *text && strspn(text, "+-.0123456789eE") == strlen(text) && !*end && isfinite(*x);
+}
+
 void num_print(StrBuf *out, Num a) {
   if (!a.den) {
     char text[32];

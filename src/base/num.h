@@ -61,4 +61,7 @@ void num_print(StrBuf *out, Num a);
 /* The shortest decimal text that reads back as x; needs 32 bytes. */
 void num_format_double(char *out, double x);
 
+/* Reads a finite decimal number; 0: the text is none, as inf, nan and 0x1p3, which strtod reads. */
+int num_parse_double(const char *text, double *x);
+
 #endif

@@ -47,13 +47,3 @@ Name suggest(const char *wrong, const Name *candidates, size_t n) {
   }
   return found;
 }
-
-int has_word(const char *words, const char *word) {
-  size_t n = strlen(word);
-  for (const char *s = words; *s; s += strspn(s, " ")) {
-    size_t len = strcspn(s, " ");
-    if (len == n && strncmp(s, word, n) == 0) return 1;
-    s += len;
-  }
-  return 0;
-}

@@ -92,12 +92,13 @@ static int differs(CounterexampleSearch *s) {
 
 /* --- states to look at --- */
 
+static int is_negative(const Symbol *sym) { return sym->sign == SIGN_NEGATIVE || sym->sign == SIGN_NONPOSITIVE; }
+
 static void other_params(CounterexampleSearch *s) {
   const Model *m = s->m;
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Symbol *sym = expr_symbol(s->g, m->params.at[i].sym);
-    int negative = sym->sign == SIGN_NEGATIVE || sym->sign == SIGN_NONPOSITIVE;
-    s->symbols[m->params.at[i].sym] = (negative ? -1 : 1) * (Real)(i % 5 + 2);
+    s->symbols[m->params.at[i].sym] = (is_negative(sym) ? -1 : 1) * (Real)(i % 5 + 2);
   }
 }
 
@@ -122,8 +123,6 @@ static void random_state(CounterexampleSearch *s, uint32_t seed) {
   if (seed % 2) sample_state(s->g, seed, s->symbols);
   else sample_state_wide(s->g, seed, s->symbols);
 }
-
-static int is_negative(const Symbol *sym) { return sym->sign == SIGN_NEGATIVE || sym->sign == SIGN_NONPOSITIVE; }
 
 /* A state with sizes from 1e-6 to 1e12 of every symbol or, in every second state, of about a third of them. */
 static void far_state(CounterexampleSearch *s, uint32_t seed) {
@@ -288,13 +287,6 @@ static int in_equations(const Eqns *e, SymId sym) {
   return 0;
 }
 
-/* Whether a symbol only says which contact is closed. */
-static int is_switch(const Model *m, SymId sym) {
-  for (uint32_t i = 0; i < m->contacts.n; i++)
-    if (m->contacts.at[i].closed == sym) return 1;
-  return 0;
-}
-
 /* Tapes for the values of parameters, and for parameters that follow from others at every state. */
 static void gather_params(CounterexampleSearch *s) {
   const Model *m = s->m;
@@ -324,7 +316,7 @@ static void gather_free(CounterexampleSearch *s) {
   const Model *m = s->m;
   Arena *a = m->arena;
   Unit *si = ARENA_NEW(a, Unit);
-  *si = (Unit){.factor = num_int(1), .offset = num_int(0), .text = ""};
+  *si = unit_si(DIM_ANY, "");
   for (int rates = 0; rates < 2; rates++)
     for (uint32_t i = 0; i < m->coords.n; i++) {
       const Coord *c = &m->coords.at[i];
@@ -335,7 +327,7 @@ static void gather_free(CounterexampleSearch *s) {
   for (uint32_t i = 0; i < m->states.n; i++) vec_push(a, &s->free, ((FreeSymbol){m->states.at[i].z, &m->states.at[i].unit, 0, 1}));
   vec_push(a, &s->free, ((FreeSymbol){m->time, si, 0, is_in_sides(s, m->time)}));
   for (uint32_t i = 0; i < m->inputs.n; i++)
-    if (!is_switch(m, m->inputs.at[i].sym)) vec_push(a, &s->free, ((FreeSymbol){m->inputs.at[i].sym, &m->inputs.at[i].unit, 0, 1}));
+    if (!model_is_contact_switch(m, m->inputs.at[i].sym)) vec_push(a, &s->free, ((FreeSymbol){m->inputs.at[i].sym, &m->inputs.at[i].unit, 0, 1}));
   int moves = expr_contains(s->g, s->left, is_solved_for, NULL) || expr_contains(s->g, s->right, is_solved_for, NULL); /* then M and f matter */
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/sparse_solve.h"
+#include "base/words.h"
 #include "claims/nearby_rank.h"
 #include "mech/frobenius.h"
 #include "mech/constrain.h"
@@ -17,8 +18,6 @@ static int is_dispensable(StateSolver *s, const Eqns *e, uint32_t k, uint32_t ra
   unsigned char *without = ARENA_ARRAY(e->m->arena, unsigned char, e->constraints.n);
   return states_rank(s, k, without) == rank;
 }
-
-static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 
 static const char *kind_of(const Eqns *e, uint32_t k) {
   const Constraints *all = &e->constraints;

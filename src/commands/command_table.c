@@ -245,12 +245,3 @@ int option_takes_next(Command c, const char *word) {
 
 int command_simulates(Command c) { return ((STEPS | C(MODES) | C(COST)) & 1u << c) != 0; }
 int command_reads_model(Command c) { return (MODELS & 1u << c) != 0; }
-
-int is_choice(const char *choices, const char *word, size_t n) {
-  for (const char *s = choices; *s; s += strspn(s, " ")) {
-    size_t len = strcspn(s, " ");
-    if (len == n && strncmp(s, word, n) == 0) return 1;
-    s += len;
-  }
-  return 0;
-}

@@ -63,7 +63,4 @@ int option_takes_next(Command c, const char *word);
 int command_simulates(Command c);
 int command_reads_model(Command c);
 
-/* Whether a word of n bytes is one of the choices, which are separated by spaces. */
-int is_choice(const char *choices, const char *word, size_t n);
-
 #endif

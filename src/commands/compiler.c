@@ -53,7 +53,7 @@ int compiler_is_source(Compiler *c, const char *path) {
 int compiler_write(Compiler *c, const char *path, const StrBuf *text) {
   const char *why;
   if (path && c->sources && compiler_is_source(c, path)) return STATUS_USAGE;
-  if (file_write(c->arena, path ? path : "-", sb_text(text), text->n, &why)) return STATUS_OK;
+  if (file_write(path ? path : "-", sb_text(text), text->n, &why)) return STATUS_OK;
   return usage_error(arena_printf(c->arena, "cannot write %s: %s", path ? path : "standard output", why));
 }
 

@@ -8,6 +8,7 @@
 #include <ctype.h>
 #include <string.h>
 
+#include "base/words.h"
 #include "toolchain/runtime_methods.h"
 #include "commands/options.h"
 #include "commands/commands.h"

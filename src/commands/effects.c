@@ -53,10 +53,8 @@ static int run_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, con
 
 /* --accuracy: the smallest set of effects. */
 static int find_least(Compiler *c, EffectStudy *s) {
-  char *end;
   EffectMeasurement *measured = NULL;
-  s->accuracy = strtod(c->o.accuracy, &end);
-  if (*end || !(s->accuracy > 0)) return usage_error(arena_printf(c->arena, "--accuracy %s: a difference that does not matter, relative and positive; for example 1e-6", c->o.accuracy));
+  if (!num_parse_double(c->o.accuracy, &s->accuracy) || !(s->accuracy > 0)) return usage_error(arena_printf(c->arena, "--accuracy %s: a difference that does not matter, relative and positive; for example 1e-6", c->o.accuracy));
   if (!(s->error <= s->accuracy / 10)) {
     fprintf(stderr, "lagc: --accuracy %g: the error of integration, %.2g, is not well below it; add --tol with a smaller number, or --step\n", s->accuracy, s->error);
     return STATUS_RUN;

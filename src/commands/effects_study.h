@@ -39,7 +39,7 @@ typedef struct {
   uint32_t base;       /* variant of the empty set */
   VEC(EffectRow) rows;
 
-  const char *method, *chosen;
+  const char *method;
   double span, error; /* length of the run [s]; error of integration, NaN: not known */
   EffectMeasurement *measured; /* [variants.n] */
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "base/suggest.h"
+#include "base/words.h"
 #include "commands/command_table.h"
 #include "commands/commands.h"
 #include "commands/options.h"
@@ -64,7 +65,7 @@ static int put_named_options(StrBuf *out, const char *topic, int before) {
   topic += strspn(topic, "-");
   for (size_t i = 0; option_row(i); i++) {
     const OptionRow *o = option_row(i);
-    if (strcmp(o->name + 2, topic) != 0 && (!o->brief || strcmp(o->brief + 1, topic) != 0) && !(o->takes == TAKES_CHOICE && is_choice(o->hint, topic, strlen(topic)))) continue;
+    if (strcmp(o->name + 2, topic) != 0 && (!o->brief || strcmp(o->brief + 1, topic) != 0) && !(o->takes == TAKES_CHOICE && has_word(o->hint, topic))) continue;
     if (before && !found) sb_putc(out, '\n');
     const char *head = arena_printf(out->arena, "%s of %s:", found ? "and" : "option", commands_text(out->arena, o->commands));
     page_words(out, head, strlen(head), 0, 0);

@@ -4,7 +4,7 @@
 #include <ctype.h>
 #include <string.h>
 
-#include "base/suggest.h"
+#include "base/words.h"
 #include "commands/terminal_page.h"
 
 #include "commands/language.h" /* static const char *const language[]: generated from grammar/LANGUAGE.md */
@@ -36,15 +36,6 @@ void reference_chapters(Arena *a, Chapters *out) {
 const char *chapter_title(Arena *a, const Chapter *c) {
   const char *title = c->lines[0] + strspn(c->lines[0], "# ");
   return arena_strndup(a, title, strcspn(title, "\n"));
-}
-
-const char *word_at(Arena *a, const char *words, size_t i) {
-  words += strspn(words, " ");
-  for (; i && *words; i--) {
-    words += strcspn(words, " ");
-    words += strspn(words, " ");
-  }
-  return *words ? arena_strndup(a, words, strcspn(words, " ")) : NULL;
 }
 
 /* Whether the line has, before `end` (a | or a colon), code in backticks that begins with the word. */

@@ -21,9 +21,6 @@ void reference_chapters(Arena *a, Chapters *out);
 /* The text of the chapter's heading. */
 const char *chapter_title(Arena *a, const Chapter *c);
 
-/* Word i of words separated by spaces, or NULL. */
-const char *word_at(Arena *a, const char *words, size_t i);
-
 /* Appends the chapter's text on a word: rows of tables that begin with it; for one of the chapter's own words also items of
  * lists that do, or, without any, the whole chapter. Returns 0 when there is nothing. */
 int chapter_print(StrBuf *out, const Chapter *c, const char *word);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/suggest.h"
+#include "base/words.h"
 #include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
 static const char *usage(Arena *a, Command c) {
@@ -49,7 +50,7 @@ static int check_choices(Arena *a, const OptionRow *row, const char *value, cons
   int several = row->takes == TAKES_CHOICES, ok = value[0] != '\0';
   for (const char *s = value; ok && *s;) {
     size_t n = several ? strcspn(s, ",") : strlen(s);
-    ok = is_choice(row->hint, s, n);
+    ok = has_word_n(row->hint, s, n);
     s += n + (s[n] == ',');
   }
   if (!ok) *error = arena_printf(a, "%s takes %s%s, not `%s`", row->name, comma_separated(a, row->hint), several ? ", with commas between several" : "", value);
@@ -58,11 +59,11 @@ static int check_choices(Arena *a, const OptionRow *row, const char *value, cons
 
 /* Advice: the command or option that writes files of this suffix. */
 static const char *advice_for_suffix(Command c, const char *suffix) {
-  if (c == CMD_PLOT && is_choice("png pdf jpg jpeg gif webp eps ps", suffix, strlen(suffix))) return ", which browsers and `rsvg-convert` turn into other kinds";
+  if (c == CMD_PLOT && has_word("png pdf jpg jpeg gif webp eps ps", suffix)) return ", which browsers and `rsvg-convert` turn into other kinds";
   if (c == CMD_RUN && strcmp(suffix, "json") == 0) return "; --json prints the report as JSON";
   if (c == CMD_RUN && strcmp(suffix, "svg") == 0) return "; --svg FILE draws";
-  if (c != CMD_ANIMATE && is_choice("html htm", suffix, strlen(suffix))) return "; `lagc animate` writes HTML";
-  if (c != CMD_HEADER && is_choice("h hh hpp hxx", suffix, strlen(suffix))) return "; `lagc header` writes headers";
+  if (c != CMD_ANIMATE && has_word("html htm", suffix)) return "; `lagc animate` writes HTML";
+  if (c != CMD_HEADER && has_word("h hh hpp hxx", suffix)) return "; `lagc header` writes headers";
   if (c != CMD_EMIT && strcmp(suffix, "c") == 0) return "; `lagc emit` writes C for the runtime, `lagc derive --format c` the accelerations";
   return "";
 }
@@ -72,9 +73,9 @@ static int check_kind(Arena *a, Command c, const OptionRow *row, const char *pat
   const char *other = lag_outfile_other_type(path, suffixes), *name = row->brief ? row->brief : row->name;
   if (!other) return 1;
   const char *writer = row->brief ? command_find(c)->name : row->name, *way = row->brief ? advice_for_suffix(c, other) : "";
-  const char *kind = !*suffixes ? (c == CMD_BUILD ? "a program" : "text") : is_choice(suffixes, "npy", 3) ? "CSV, or NumPy where the name ends in .npy"
-                   : is_choice(suffixes, "svg", 3) ? "SVG" : is_choice(suffixes, "html", 4) ? "HTML" : is_choice(suffixes, "h", 1) ? "a C header"
-                   : is_choice(suffixes, "tex", 3) ? "LaTeX" : is_choice(suffixes, "json", 4) ? "JSON" : "C";
+  const char *kind = !*suffixes ? (c == CMD_BUILD ? "a program" : "text") : has_word_n(suffixes, "npy", 3) ? "CSV, or NumPy where the name ends in .npy"
+                   : has_word_n(suffixes, "svg", 3) ? "SVG" : has_word_n(suffixes, "html", 4) ? "HTML" : has_word_n(suffixes, "h", 1) ? "a C header"
+                   : has_word_n(suffixes, "tex", 3) ? "LaTeX" : has_word_n(suffixes, "json", 4) ? "JSON" : "C";
   int stem = (int)(other - path) - !*suffixes;
   *error = arena_printf(a, "%s %s: %s writes %s%s; write %s %.*s%.*s", name, path, writer, kind, way, name, stem, path, (int)strcspn(suffixes, " "), suffixes);
   return 0;
@@ -87,7 +88,7 @@ static int check_format(Arena *a, Options *o, const char **error) {
   if (!o->output || !output || !format) return 1;
   const char *suffixes = "";
   for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
-    if (!o->format && is_choice(format->hint, formats[i][0], strlen(formats[i][0])) && lag_outfile_has_suffix(o->output, formats[i][1])) o->format = formats[i][0];
+    if (!o->format && has_word(format->hint, formats[i][0]) && lag_outfile_has_suffix(o->output, formats[i][1])) o->format = formats[i][0];
     if (o->format && strcmp(o->format, formats[i][0]) == 0) suffixes = formats[i][1];
   }
   return check_kind(a, o->command, output, o->output, suffixes, error);
@@ -228,7 +229,7 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
     *error = unknown_option(a, o, arg);
     return 0;
   }
-  if (o->command == CMD_COMPLETION && (!arg || !is_choice("bash zsh fish", arg, strlen(arg)))) {
+  if (o->command == CMD_COMPLETION && (!arg || !has_word("bash zsh fish", arg))) {
     *error = "completion for which shell? `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`";
     return 0;
   }

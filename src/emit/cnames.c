@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/hash.h"
+
 /* Reserved words: keywords and names of C and C++, and names that emitted text uses. */
 static const char *const reserved[] = {
   "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
@@ -94,40 +96,36 @@ int cname_is_library(const char *id) {
   return 0;
 }
 
-CNames cnames_new(Arena *a) {
-  enum { CAP = 64 };
-  return (CNames){.arena = a, .table = ARENA_ARRAY(a, CName, CAP), .cap = CAP};
-}
+CNames cnames_new(Arena *a) { return (CNames){.arena = a, .table = idtable(a, 0)}; }
 
-/* Slot of a name, or the empty slot for it (FNV-1a, open addressing). */
-static CName *place(const CNames *c, const char *name) {
-  uint32_t h = 2166136261u;
-  for (const char *s = name; *s; s++) h = (h ^ (unsigned char)*s) * 16777619u;
-  uint32_t i = h & (c->cap - 1);
-  while (c->table[i].name && strcmp(c->table[i].name, name) != 0) i = (i + 1) & (c->cap - 1);
-  return &c->table[i];
+static uint32_t hash_of(const char *name) { return (uint32_t)hash_bytes(FNV1A_START, name, strlen(name)); }
+
+/* The entry of a taken name, or NULL. */
+static CName *find(const CNames *c, const char *name) {
+  uint32_t hash = hash_of(name), slot = idtable_start(&c->table, hash), id;
+  while (idtable_next(&c->table, hash, &slot, &id))
+    if (strcmp(c->taken.at[id].name, name) == 0) return &c->taken.at[id];
+  return NULL;
 }
 
 void cnames_reserve(CNames *c, const char *name) {
-  if (c->taken.n * 2 >= c->cap) {
-    CNames bigger = *c;
-    bigger.cap = 2 * c->cap;
-    bigger.table = ARENA_ARRAY(c->arena, CName, bigger.cap);
-    for (uint32_t i = 0; i < c->cap; i++)
-      if (c->table[i].name) *place(&bigger, c->table[i].name) = c->table[i];
-    *c = bigger;
-  }
-  CName *at = place(c, name);
-  if (at->name) return;
-  *at = (CName){name, 2};
-  vec_push(c->arena, &c->taken, name);
+  if (find(c, name)) return;
+  vec_push(c->arena, &c->taken, ((CName){name, 2}));
+  idtable_add(&c->table, hash_of(name), c->taken.n - 1);
 }
 
 const char *cnames_take(CNames *c, const char *name) {
   const char *stem = cname(c->arena, name), *full = stem;
   size_t n = strlen(stem);
   const char *join = n && stem[n - 1] == '_' ? "" : "_";
-  while (place(c, full)->name) full = arena_printf(c->arena, "%s%s%d", stem, join, place(c, stem)->next++);
+  while (find(c, full)) full = arena_printf(c->arena, "%s%s%d", stem, join, find(c, stem)->next++);
   cnames_reserve(c, full);
   return full;
+}
+
+const char *cname_of_event(const IrUnit *u, uint32_t i) {
+  CNames ids = cnames_new(u->arena);
+  const char *id = "";
+  for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, u->events.at[k].name);
+  return id;
 }

@@ -2,9 +2,11 @@
 #ifndef LAGC_CNAMES_H
 #define LAGC_CNAMES_H
 
+#include "base/id_table.h"
 #include "base/intern.h"
 #include "base/strbuf.h"
 #include "base/vec.h"
+#include "ir/unit.h"
 
 /* An identifier taken in a C scope. */
 typedef struct {
@@ -14,9 +16,8 @@ typedef struct {
 
 typedef struct {
   Arena *arena;
-  VEC(const char *) taken; /* in the order they were taken */
-  CName *table;            /* hash table of the taken names; open addressing */
-  uint32_t cap;
+  VEC(CName) taken; /* in the order they were taken */
+  IdTable table;    /* of `taken` */
 } CNames;
 
 CNames cnames_new(Arena *a);
@@ -32,6 +33,9 @@ const char *cname(Arena *a, const char *name);
 
 /* User's name in the letters of an identifier, for use after a prefix: may begin with a digit, and be a keyword. */
 const char *cname_letters(Arena *a, const char *name);
+
+/* Identifier of event i of a unit: names that C spells alike get suffixes. */
+const char *cname_of_event(const IrUnit *u, uint32_t i);
 
 /* Whether id is a function of the C library, whose name an object with external linkage must not have. */
 int cname_is_library(const char *id);

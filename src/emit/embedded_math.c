@@ -28,24 +28,16 @@ void math_kkt_solver(const IrUnit *u, const char *prefix, const char *lower, Str
 }
 
 static int calls(const Prog *p, const char *name) {
-  for (uint32_t k = 0; p && k < prog_parts(p); k++)
+  for (uint32_t k = 0; k < prog_parts(p); k++)
     for (Slot s = 1; s < prog_part(p, k)->ins.n; s++)
       if (prog_part(p, k)->ins.at[s].op == IR_FN1 && strcmp(prog_part(p, k)->ins.at[s].text, name) == 0) return 1;
   return 0;
 }
 
-static int scene_calls(const IrScene *s, uint32_t params, const char *name) {
-  int some = calls(s->start, name) | calls(s->observe, name) | calls(s->exact, name);
-  for (uint32_t i = 0; i < params; i++) some |= calls(s->params[i], name);
-  return some;
-}
-
 static int unit_calls(const IrUnit *u, const char *name) {
-  int some = calls(u->accel, name) | calls(u->derived, name) | calls(u->energy, name) | calls(u->inputs, name) | calls(u->linear, name) | calls(u->charge_values, name) | calls(u->charge_powers, name) | calls(u->switch_values, name);
-  some |= calls(u->variation, name) | calls(u->second, name) | calls(u->event_values, name) | calls(u->jumps, name);
-  if (u->taylor) some |= calls(u->taylor->first, name);
-  for (uint32_t i = 0; i < u->events.n; i++) some |= calls(u->events.at[i].action, name);
-  for (uint32_t i = 0; i < u->scenes.n; i++) some |= scene_calls(&u->scenes.at[i], u->p.n, name);
+  ProgList all = unit_programs(u);
+  int some = 0;
+  for (uint32_t i = 0; i < all.n; i++) some |= calls(all.at[i], name);
   return some;
 }
 

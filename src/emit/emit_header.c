@@ -42,7 +42,7 @@ static const char **event_enumerators(Header *h, CNames *taken) {
 static const char *const *globals_of(Header *h) {
   const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 20);
   uint32_t n = 0;
-  for (uint32_t i = 0; i < h->taken.taken.n; i++) all[n++] = h->taken.taken.at[i];
+  for (uint32_t i = 0; i < h->taken.taken.n; i++) all[n++] = h->taken.taken.at[i].name;
   all[n++] = arena_printf(h->a, "%s_solve", h->lower);
   all[n++] = arena_printf(h->a, "%s_solve_definite", h->lower);
   all[n++] = arena_printf(h->a, "%s_cubic", h->lower);

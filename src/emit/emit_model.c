@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/hash.h"
 #include "emit/embedded_math.h"
 #include "emit/variable_tables.h"
 #include "emit/emit_impl.h"
@@ -30,18 +31,11 @@ enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
 /* --- identifiers --- */
 
-/* Unique identifier of scene, or event, i: names that C spells alike get suffixes. */
+/* Unique identifier of scene i: names that C spells alike get suffixes. */
 static const char *scene_id(const IrUnit *u, uint32_t i) {
   CNames ids = cnames_new(u->arena);
   const char *id = "";
   for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, u->scenes.at[k].name);
-  return id;
-}
-
-static const char *event_id(const IrUnit *u, uint32_t i) {
-  CNames ids = cnames_new(u->arena);
-  const char *id = "";
-  for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, u->events.at[k].name);
   return id;
 }
 
@@ -139,7 +133,7 @@ static void emit_action(const File *f, uint32_t i) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "q1", "v1", "z1", "w", NULL}, *const written[] = {"q1", "v1", "z1"};
   const char *comment = arena_printf(f->a, "What the event %s does.", f->u->events.at[i].name);
   const char *head = arena_printf(f->a, "static int act_%s(%s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, LAG_REAL *w)",
-                                  event_id(f->u, i), emit_state_args);
+                                  cname_of_event(f->u, i), emit_state_args);
   emit_function(f, f->u->events.at[i].action, comment, head, own, written);
 }
 
@@ -153,7 +147,7 @@ static void emit_events(const File *f) {
   sb_printf(f->out, "\nstatic int act(int k, %s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n", emit_state_args);
   sb_puts(f->out, "  switch (k) {\n");
   for (uint32_t i = 0; i < u->events.n; i++)
-    sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", event_id(u, i));
+    sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
   sb_puts(f->out, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
 }
 
@@ -321,23 +315,18 @@ static int has_long_tables(const IrUnit *u) {
 }
 
 static uint32_t work_size(const IrUnit *u) {
+  ProgList all = unit_programs(u);
   uint32_t most = 0;
-  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->jumps, u->constraints.position, u->constraints.velocity, u->charge_values, u->charge_powers, u->switch_values};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-    if (all[i] && prog_work_size(all[i]) > most) most = prog_work_size(all[i]);
-  for (uint32_t i = 0; i < u->events.n; i++)
-    if (prog_work_size(u->events.at[i].action) > most) most = prog_work_size(u->events.at[i].action);
-  for (uint32_t i = 0; i < u->scenes.n; i++)
-    if (prog_work_size(u->scenes.at[i].observe) > most) most = prog_work_size(u->scenes.at[i].observe);
+  for (uint32_t i = 0; i < all.n; i++)
+    if (prog_work_size(all.at[i]) > most) most = prog_work_size(all.at[i]);
   return most;
 }
 
 /* Whether a linear system of that kind is solved by a loop. */
 static int needs_solver(const IrUnit *u, SolveKind kind) {
-  const Prog *all[] = {u->accel, u->energy, u->event_values, u->linear, u->charge_powers, u->switch_values};
+  ProgList all = unit_programs(u);
   int some = 0;
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) some |= prog_solves(all[i], kind);
-  for (uint32_t i = 0; i < u->scenes.n; i++) some |= prog_solves(u->scenes.at[i].observe, kind);
+  for (uint32_t i = 0; i < all.n; i++) some |= prog_solves(all.at[i], kind);
   return some;
 }
 
@@ -357,9 +346,7 @@ static const char *or_null(uint32_t n, const char *name) { return n ? name : "NU
 
 /* Digest of the equations' C text (FNV-1a, 64 bits, in hexadecimal), by which a saved state is tied to its equations. */
 static const char *digest_text(Arena *a, const char *text) {
-  uint64_t h = 14695981039346656037u;
-  for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
-  return arena_printf(a, "%016llx", (unsigned long long)h);
+  return arena_printf(a, "%016llx", (unsigned long long)hash_bytes(FNV1A_START, text, strlen(text)));
 }
 
 /* Table `curves`: input, number of rows and array of each input that is a table. */

@@ -174,12 +174,7 @@ static void inputs(const Header *h) {
 
 /* --- events --- */
 
-static const char *event_id(const Header *h, uint32_t i) {
-  CNames ids = cnames_new(h->a);
-  const char *id = "";
-  for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, h->u->events.at[k].name);
-  return arena_printf(h->a, "%s_act_%s", h->lower, id);
-}
+static const char *event_id(const Header *h, uint32_t i) { return arena_printf(h->a, "%s_act_%s", h->lower, cname_of_event(h->u, i)); }
 
 static void action(const Header *h, uint32_t i) {
   const char **out = ARENA_ARRAY(h->a, const char *, 4), **own = ARENA_ARRAY(h->a, const char *, 4);

@@ -49,10 +49,7 @@ static Prog *factor_once(const Prog *p) {
     f.map[s] = sum ? sum : prog_ins(f.to, prog_import(f.to, p, f.map, *i));
     prog_name(f.to, f.map[s], i->name);
   }
-  for (uint32_t k = 0; k < p->stores.n; k++) {
-    Store st = p->stores.at[k];
-    prog_store(f.to, st.array, st.index, f.map[st.slot], st.comment);
-  }
+  prog_copy_stores(f.to, p, f.map);
   return prog_tidy(f.to);
 }
 

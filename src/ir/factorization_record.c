@@ -62,11 +62,10 @@ static void solve_pair(Prog *p, const FactorRecord *f, uint32_t k, const Slot *b
 
 /* By the matrix that another function left factored at its place. */
 static void solve_loop(Prog *p, const FactorBlock *m, const Slot *b, Slot *x) {
-  Slot *rhs = ARENA_ARRAY(p->arena, Slot, m->n);
+  Slot *rhs = ARENA_ARRAY(p->arena, Slot, m->n), *y = ARENA_ARRAY(p->arena, Slot, m->n);
   for (uint32_t i = 0; i < m->n; i++) rhs[i] = b[m->at[i]];
-  vec_push(p->arena, &p->solves, ((Solve){.n = m->n, .place = m->place, .rhs = rhs}));
-  Slot s = prog_ins(p, (Ins){.op = IR_SOLVE, .index = p->solves.n - 1});
-  for (uint32_t i = 0; i < m->n; i++) x[m->at[i]] = prog_ins(p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
+  prog_solve(p, (Solve){.n = m->n, .place = m->place, .rhs = rhs}, y);
+  for (uint32_t i = 0; i < m->n; i++) x[m->at[i]] = y[i];
 }
 
 void factor_record_solve(Prog *p, const FactorRecord *f, Slot *b, const Slot *s, Slot *x) {

@@ -156,9 +156,7 @@ static Slot *multiplied_by_loop(const Split *r, const Solve *k, uint32_t inverse
   Arena *a = r->left->arena;
   Slot *x = ARENA_ARRAY(a, Slot, k->n), *rhs = ARENA_ARRAY(a, Slot, k->n);
   for (uint32_t i = 0; i < k->n; i++) rhs[i] = r->map[k->rhs[i]];
-  vec_push(a, &r->left->solves, ((Solve){.n = k->n, .inverse = inverse, .rhs = rhs}));
-  Slot s = prog_ins(r->left, (Ins){.op = IR_SOLVE, .index = r->left->solves.n - 1});
-  for (uint32_t i = 0; i < k->n; i++) x[i] = prog_ins(r->left, (Ins){.op = IR_SOLVED, .a = s, .index = i});
+  prog_solve(r->left, (Solve){.n = k->n, .inverse = inverse, .rhs = rhs}, x);
   return x;
 }
 
@@ -202,10 +200,7 @@ static Prog *split_program(Hoist *h, const Prog *p) {
       prog_name(left, map[s], i->name);
     }
   }
-  for (uint32_t k = 0; k < p->stores.n; k++) {
-    Store st = p->stores.at[k];
-    prog_store(left, st.array, st.index, map[st.slot], st.comment);
-  }
+  prog_copy_stores(left, p, map);
   return left;
 }
 

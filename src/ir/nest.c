@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 
+#include "base/hash.h"
 #include "ir/nest_impl.h"
 #include "ir/roll.h"
 
@@ -14,7 +15,6 @@ enum { FEWEST_PIECES = 8, MOST_VALUES = 2000 };
 /* A group: pieces with one canonical form. */
 typedef struct {
   CanonicalForm tape;
-  uint64_t hash;
   VEC(int64_t) columns; /* indices of all pieces, one after the other */
   VEC(uint32_t) pieces;
 } PieceGroup;
@@ -29,8 +29,7 @@ typedef struct {
   Local *local;
   CanonicalForm tape;
   VEC(PieceGroup) groups;     /* groups of one wave */
-  uint32_t *table;      /* hash table of `groups`, from 1; open addressing */
-  uint32_t table_cap;
+  IdTable table;        /* of `groups` */
   VEC(uint32_t) ready;  /* pieces, from 1, whose hubs are complete */
   VEC(Slot) complete;   /* hubs whose terms are all known, to be processed */
   VEC(FoundNest) found;
@@ -41,27 +40,13 @@ typedef struct {
 
 /* --- groups --- */
 
-static uint64_t hash_words(const CanonicalForm *t) {
-  uint64_t h = t->words.n;
-  for (uint32_t k = 0; k < t->words.n; k++) h = (h ^ t->words.at[k]) * 0x100000001b3u;
-  return h ^ h >> 29;
+static uint32_t hash_words(const CanonicalForm *t) {
+  uint64_t h = hash_bytes(FNV1A_START, (const char *)t->words.at, t->words.n * sizeof *t->words.at);
+  return (uint32_t)(h ^ h >> 32);
 }
 
 static int same_words(const CanonicalForm *x, const CanonicalForm *y) {
   return x->words.n == y->words.n && x->columns.n == y->columns.n && memcmp(x->words.at, y->words.at, x->words.n * sizeof *x->words.at) == 0;
-}
-
-static void table_insert(Search *s, uint32_t number) {
-  uint32_t k = (uint32_t)s->groups.at[number - 1].hash & (s->table_cap - 1);
-  while (s->table[k]) k = (k + 1) & (s->table_cap - 1);
-  s->table[k] = number;
-}
-
-static void grow_table(Search *s) {
-  if (2 * (s->groups.n + 1) < s->table_cap) return;
-  s->table_cap *= 2;
-  s->table = ARENA_ARRAY(s->c.a, uint32_t, s->table_cap);
-  for (uint32_t k = 1; k <= s->groups.n; k++) table_insert(s, k);
 }
 
 #define COPY(a, v) \
@@ -82,14 +67,11 @@ static CanonicalForm copy_tape(Arena *a, const CanonicalForm *t) {
 }
 
 static PieceGroup *group_of(Search *s, const CanonicalForm *t) {
-  uint64_t hash = hash_words(t);
-  grow_table(s);
-  for (uint32_t k = (uint32_t)hash & (s->table_cap - 1); s->table[k]; k = (k + 1) & (s->table_cap - 1)) {
-    PieceGroup *x = &s->groups.at[s->table[k] - 1];
-    if (x->hash == hash && same_words(&x->tape, t)) return x;
-  }
-  vec_push(s->c.a, &s->groups, ((PieceGroup){.tape = copy_tape(s->c.a, t), .hash = hash}));
-  table_insert(s, s->groups.n);
+  uint32_t hash = hash_words(t), slot = idtable_start(&s->table, hash), id;
+  while (idtable_next(&s->table, hash, &slot, &id))
+    if (same_words(&s->groups.at[id].tape, t)) return &s->groups.at[id];
+  vec_push(s->c.a, &s->groups, ((PieceGroup){.tape = copy_tape(s->c.a, t)}));
+  idtable_add(&s->table, hash, s->groups.n - 1);
   return &s->groups.at[s->groups.n - 1];
 }
 
@@ -124,7 +106,7 @@ static void find_nests(Search *s, const PieceGroup *x) {
 /* Finds the nests of one wave: the pieces ready.at[from] ... */
 static void search_wave(Search *s, uint32_t from) {
   s->groups.n = 0;
-  memset(s->table, 0, s->table_cap * sizeof *s->table);
+  s->table = idtable(s->c.a, 0);
   for (uint32_t k = from; k < s->ready.n; k++) {
     Piece *q = &s->c.pieces.at[s->ready.at[k] - 1];
     if (!q->apart || !q->gives.n || q->n > MOST_VALUES) continue;
@@ -386,9 +368,8 @@ static uint32_t length(const Prog *p) {
 
 static Search search(const Prog *p, unsigned ends) {
   Arena *a = p->arena;
-  Search s = {.c = nest_partition(p, ends), .table_cap = 256};
+  Search s = {.c = nest_partition(p, ends)};
   s.local = ARENA_ARRAY(a, Local, p->ins.n);
-  s.table = ARENA_ARRAY(a, uint32_t, s.table_cap);
   s.nested = ARENA_ARRAY(a, uint32_t, s.c.pieces.n + 1);
   s.terms = ARENA_ARRAY(a, uint32_t, p->ins.n);
   s.last = ARENA_ARRAY(a, uint32_t, p->ins.n);

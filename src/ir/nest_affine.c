@@ -89,27 +89,28 @@ static uint32_t split(Group *g, const uint32_t *array, uint32_t first, int64_t m
   return n;
 }
 
-/* --- sorting: a merge, since qsort takes no context --- */
+/* --- sorting --- */
 
-static int before(const Group *g, uint32_t x, uint32_t y) {
+static int before(const void *group, uint32_t x, uint32_t y) {
+  const Group *g = group;
   const int64_t *a = g->columns + (size_t)x * g->width, *b = g->columns + (size_t)y * g->width;
   for (uint32_t k = 0; k < g->width; k++)
     if (a[k] != b[k]) return a[k] < b[k];
   return x < y;
 }
 
-static void sort(Group *g) {
-  uint32_t *from = g->order, *to = ARENA_ARRAY(g->a, uint32_t, g->n);
-  for (uint32_t size = 1; size < g->n; size *= 2) {
-    for (uint32_t left = 0; left < g->n; left += 2 * size) {
-      uint32_t i = left, middle = left + size < g->n ? left + size : g->n, j = middle, end = middle + size < g->n ? middle + size : g->n;
-      for (uint32_t k = left; k < end; k++) to[k] = j == end || (i < middle && before(g, from[i], from[j])) ? from[i++] : from[j++];
+void nest_sort(Arena *a, uint32_t *order, uint32_t n, int (*comes_first)(const void *data, uint32_t x, uint32_t y), const void *data) {
+  uint32_t *from = order, *to = ARENA_ARRAY(a, uint32_t, n);
+  for (uint32_t size = 1; size < n; size *= 2) {
+    for (uint32_t left = 0; left < n; left += 2 * size) {
+      uint32_t i = left, middle = left + size < n ? left + size : n, j = middle, end = middle + size < n ? middle + size : n;
+      for (uint32_t k = left; k < end; k++) to[k] = j == end || (i < middle && comes_first(data, from[i], from[j])) ? from[i++] : from[j++];
     }
     uint32_t *t = from;
     from = to;
     to = t;
   }
-  if (from != g->order) memcpy(g->order, from, g->n * sizeof *from);
+  if (from != order) memcpy(order, from, n * sizeof *from);
 }
 
 /* --- rows --- */
@@ -191,7 +192,7 @@ static Fit fit_of(const Group *g, const Growing *w, uint32_t count) {
 }
 
 static void fit_shape(Group *g, Fits *fits, Pieces *left) {
-  sort(g);
+  nest_sort(g->a, g->order, g->n, before, g);
   find_varying(g);
   Rows rows = find_rows(g);
   for (uint32_t i = 0; i < rows.n;) {

@@ -150,4 +150,7 @@ Fit nest_tables(const Indices *x, const uint32_t *pieces, uint32_t n);
 /* The body of a nest; outer[nouter]: slots of the program around it that the body reads. */
 const Prog *nest_body(const Partition *c, const CanonicalForm *t, const Fit *f, const Slot **outer, uint32_t *nouter);
 
+/* Sorts order[n] by a merge, since the order depends on data, which qsort does not pass on. */
+void nest_sort(Arena *a, uint32_t *order, uint32_t n, int (*before)(const void *data, uint32_t x, uint32_t y), const void *data);
+
 #endif

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/union_find.h"
 #include "ir/nest_impl.h"
 
 /* A sum of FEWEST_TERMS is long; a value with more than FEW users is shared. */
@@ -212,18 +213,6 @@ static void find_stored(Partition *c) {
 
 /* --- pieces --- */
 
-static Slot root_of(Slot *parent, Slot s) {
-  while (parent[s] != s) s = parent[s] = parent[parent[s]];
-  return s;
-}
-
-static void join(Slot *parent, Slot a, Slot b) {
-  a = root_of(parent, a);
-  b = root_of(parent, b);
-  if (a < b) parent[b] = a;
-  else parent[a] = b;
-}
-
 /* Whether a value belongs to a piece. */
 static int in_piece(const Partition *c, Slot s) {
   IrOp op = op_of(c, s);
@@ -240,7 +229,7 @@ static Slot *find_users(const Partition *c, Slot *parent) {
   for (Slot s = 1; s < c->p->ins.n; s++)
     for (int k = 0; k < 3; k++) {
       Slot x = operand(&c->p->ins.at[s], k);
-      if (x && c->hub[x]) user[x] = same_or_mixed(user[x], in_piece(c, s) ? root_of(parent, s) : MIXED);
+      if (x && c->hub[x]) user[x] = same_or_mixed(user[x], in_piece(c, s) ? union_find_root(parent, s) : MIXED);
     }
   for (uint32_t k = 0; k < c->p->stores.n; k++) user[c->p->stores.at[k].slot] = MIXED;
   return user;
@@ -252,7 +241,7 @@ static int is_of_one_piece(Partition *c, Slot *parent, Slot sum, Slot user) {
   nest_terms(c, sum, c->terms);
   for (uint32_t k = 0; k < c->terms->n; k++) {
     Slot x = c->terms->at[k].value;
-    if (c->hub[x] || (in_piece(c, x) && root_of(parent, x) != user)) return 0;
+    if (c->hub[x] || (in_piece(c, x) && union_find_root(parent, x) != user)) return 0;
   }
   return 1;
 }
@@ -264,16 +253,16 @@ static int return_hubs(Partition *c, Slot *parent) {
   const Slot *user = find_users(c, parent);
   for (Slot s = 1; s < c->p->ins.n; s++) {
     if ((c->hub[s] != HUB_SHARED && c->hub[s] != HUB_COMMON) || user[s] == MIXED || !user[s]) continue;
-    if (c->hub[s] == HUB_COMMON && !is_of_one_piece(c, parent, s, root_of(parent, user[s]))) continue;
+    if (c->hub[s] == HUB_COMMON && !is_of_one_piece(c, parent, s, union_find_root(parent, user[s]))) continue;
     c->hub[s] = HUB_NO;
-    join(parent, s, user[s]);
+    union_find_join(parent, s, user[s]);
     some = 1;
   }
   for (Slot s = 1; s < c->p->ins.n; s++) {
     Slot sum = c->sum[s];
     if (!sum || c->hub[sum]) continue;
     c->sum[s] = 0; /* sums come after their partial sums */
-    join(parent, s, sum);
+    union_find_join(parent, s, sum);
   }
   return some;
 }
@@ -281,19 +270,18 @@ static int return_hubs(Partition *c, Slot *parent) {
 static void find_pieces(Partition *c) {
   enum { TURNS = 3 };
   const Prog *p = c->p;
-  Slot *parent = ARENA_ARRAY(c->a, Slot, p->ins.n);
-  for (Slot s = 0; s < p->ins.n; s++) parent[s] = s;
+  Slot *parent = union_find_new(c->a, p->ins.n);
   for (Slot s = 1; s < p->ins.n; s++)
     for (int k = 0; k < 3 && in_piece(c, s); k++) {
       Slot x = operand(&p->ins.at[s], k);
-      if (in_piece(c, x) && !c->hub[x]) join(parent, s, x);
+      if (in_piece(c, x) && !c->hub[x]) union_find_join(parent, s, x);
     }
   for (int turn = 0; turn < TURNS && return_hubs(c, parent); turn++) {}
   for (Slot s = 1; s < p->ins.n; s++)
     if (c->hub[s] == HUB_COMMON) c->hub[s] = HUB_SUM;
   for (Slot s = 1; s < p->ins.n; s++) {
     if (!in_piece(c, s)) continue;
-    Slot r = root_of(parent, s);
+    Slot r = union_find_root(parent, s);
     if (r == s) vec_push(c->a, &c->pieces, ((Piece){.apart = 1}));
     c->piece[s] = r == s ? c->pieces.n : c->piece[r];
     c->pieces.at[c->piece[s] - 1].n++;

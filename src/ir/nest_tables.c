@@ -52,27 +52,26 @@ static void split_column(Table *t, uint32_t k) {
 
 /* --- orders --- */
 
+typedef struct {
+  const Table *t;
+  uint32_t key;
+} ByKey;
+
 /* Order by the key, then by all other values. */
-static int before(const Table *t, uint32_t key, uint32_t x, uint32_t y) {
-  if (t->values.at[key][x] != t->values.at[key][y]) return t->values.at[key][x] < t->values.at[key][y];
-  for (uint32_t k = 0; k < t->values.n; k++)
-    if (t->values.at[k][x] != t->values.at[k][y]) return t->values.at[k][x] < t->values.at[k][y];
+static int before(const void *by_key, uint32_t x, uint32_t y) {
+  const ByKey *by = by_key;
+  uint32_t *const *values = by->t->values.at;
+  if (values[by->key][x] != values[by->key][y]) return values[by->key][x] < values[by->key][y];
+  for (uint32_t k = 0; k < by->t->values.n; k++)
+    if (values[k][x] != values[k][y]) return values[k][x] < values[k][y];
   return x < y;
 }
 
 static uint32_t *sorted(const Table *t, uint32_t key) {
-  uint32_t *from = ARENA_ARRAY(t->x->a, uint32_t, t->n), *to = ARENA_ARRAY(t->x->a, uint32_t, t->n);
-  for (uint32_t k = 0; k < t->n; k++) from[k] = k;
-  for (uint32_t size = 1; size < t->n; size *= 2) {
-    for (uint32_t left = 0; left < t->n; left += 2*size) {
-      uint32_t i = left, middle = left + size < t->n ? left + size : t->n, j = middle, end = middle + size < t->n ? middle + size : t->n;
-      for (uint32_t k = left; k < end; k++) to[k] = j == end || (i < middle && before(t, key, from[i], from[j])) ? from[i++] : from[j++];
-    }
-    uint32_t *swap = from;
-    from = to;
-    to = swap;
-  }
-  return from;
+  uint32_t *order = ARENA_ARRAY(t->x->a, uint32_t, t->n);
+  for (uint32_t k = 0; k < t->n; k++) order[k] = k;
+  nest_sort(t->x->a, order, t->n, before, &(ByKey){t, key});
+  return order;
 }
 
 /* The value in row k, or in turn k. An empty row may have any. */

@@ -133,10 +133,7 @@ static void rebuild(ProductCse *s) {
       s->made[at - 1] = prog_op(s->to, IR_MUL, slot_of(s, pair->a), slot_of(s, pair->b));
     }
   }
-  for (uint32_t k = 0; k < p->stores.n; k++) {
-    Store st = p->stores.at[k];
-    prog_store(s->to, st.array, st.index, s->map[st.slot], st.comment);
-  }
+  prog_copy_stores(s->to, p, s->map);
 }
 
 Prog *prog_product_cse(Prog *p) {

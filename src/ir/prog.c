@@ -7,8 +7,7 @@ Prog *prog_new(Arena *a) {
   Prog *p = ARENA_NEW(a, Prog);
   p->arena = a;
   vec_push(a, &p->ins, ((Ins){0}));
-  p->table_cap = 256;
-  p->table = ARENA_ARRAY(a, uint32_t, p->table_cap);
+  p->table = idtable(a, 128);
   return p;
 }
 
@@ -21,8 +20,7 @@ Prog *prog_new_like(const Prog *p) {
   r->stores.cap = p->stores.n + 1;
   r->stores.at = ARENA_ARRAY(p->arena, Store, r->stores.cap);
   vec_push(p->arena, &r->ins, ((Ins){0}));
-  for (r->table_cap = 256; r->table_cap < 2 * (p->ins.n + 1);) r->table_cap *= 2;
-  r->table = ARENA_ARRAY(p->arena, uint32_t, r->table_cap);
+  r->table = idtable(p->arena, p->ins.n + 1);
   return r;
 }
 
@@ -46,24 +44,10 @@ static int same(const Ins *x, const Ins *y) {
   return 1;
 }
 
-static void insert(Prog *p, Slot s) {
-  uint32_t k = hash_ins(&p->ins.at[s]) & (p->table_cap - 1);
-  while (p->table[k]) k = (k + 1) & (p->table_cap - 1);
-  p->table[k] = s;
-}
-
 static Slot append(Prog *p, Ins i) {
   vec_push(p->arena, &p->ins, i);
-  Slot s = p->ins.n - 1;
-  if (!is_pure(i.op)) return s;
-  if (p->ins.n * 2 > p->table_cap) {
-    p->table_cap *= 2;
-    p->table = ARENA_ARRAY(p->arena, uint32_t, p->table_cap);
-    for (Slot k = 1; k < s; k++)
-      if (is_pure(p->ins.at[k].op)) insert(p, k);
-  }
-  insert(p, s);
-  return s;
+  if (is_pure(i.op)) idtable_add(&p->table, hash_ins(&i), p->ins.n - 1);
+  return p->ins.n - 1;
 }
 
 static int is_num(const Prog *p, Slot s, int64_t value) {
@@ -112,8 +96,9 @@ Slot prog_ins(Prog *p, Ins i) {
   Ins key = i;
   int commutes = i.op == IR_ADD || i.op == IR_MUL;
   for (int turn = 0; turn <= commutes; turn++) {
-    for (uint32_t k = hash_ins(&key) & (p->table_cap - 1); p->table[k]; k = (k + 1) & (p->table_cap - 1))
-      if (same(&p->ins.at[p->table[k]], &key)) return p->table[k];
+    uint32_t hash = hash_ins(&key), slot = idtable_start(&p->table, hash), known;
+    while (idtable_next(&p->table, hash, &slot, &known))
+      if (same(&p->ins.at[known], &key)) return known;
     key.a = i.b;
     key.b = i.a;
   }
@@ -126,6 +111,19 @@ void prog_title(Prog *p, const char *text) { prog_ins(p, (Ins){.op = IR_TITLE, .
 
 void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *comment) {
   vec_push(p->arena, &p->stores, ((Store){array, index, s, comment}));
+}
+
+void prog_copy_stores(Prog *to, const Prog *from, const Slot *map) {
+  for (uint32_t k = 0; k < from->stores.n; k++) {
+    const Store *s = &from->stores.at[k];
+    prog_store(to, s->array, s->index, map[s->slot], s->comment);
+  }
+}
+
+void prog_solve(Prog *p, Solve k, Slot *x) {
+  vec_push(p->arena, &p->solves, k);
+  Slot s = prog_ins(p, (Ins){.op = IR_SOLVE, .index = p->solves.n - 1});
+  for (uint32_t i = 0; i < k.n + k.m; i++) x[i] = prog_ins(p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
 }
 
 void prog_name(Prog *p, Slot s, Name name) {
@@ -243,10 +241,7 @@ Prog *prog_tidy(const Prog *p) {
       prog_name(r, map[s], i.name);
     }
   }
-  for (uint32_t i = 0; i < p->stores.n; i++) {
-    Store st = p->stores.at[i];
-    prog_store(r, st.array, st.index, map[st.slot], st.comment);
-  }
+  prog_copy_stores(r, p, map);
   return r;
 }
 

@@ -5,6 +5,7 @@
 #ifndef LAGC_PROG_H
 #define LAGC_PROG_H
 
+#include "base/id_table.h"
 #include "base/intern.h"
 #include "base/num.h"
 #include "base/spline.h"
@@ -159,8 +160,7 @@ typedef struct Prog {
   uint32_t cells;     /* number of sums of ARR_CELL */
   int folds_constants;        /* constants are folded at once, and x/number becomes x*(1/number) */
   const char *fault;  /* a pass left it malformed (ir/passes.h), and how; NULL: none did */
-  uint32_t *table;    /* hash table of value numbering */
-  uint32_t table_cap;
+  IdTable table;      /* of instructions, for value numbering */
 } Prog;
 
 typedef struct {
@@ -179,6 +179,12 @@ Slot prog_op(Prog *p, IrOp op, Slot a, Slot b);
 Slot prog_num(Prog *p, Num n);
 void prog_title(Prog *p, const char *text);
 void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *comment);
+
+/* Appends the stores of `from`, their slots renumbered by map[slot]. */
+void prog_copy_stores(Prog *to, const Prog *from, const Slot *map);
+
+/* Appends the solve and its solution x[n + m]. */
+void prog_solve(Prog *p, Solve k, Slot *x);
 
 /* Gives a value the user's or the theory's name, unless it has a name or is a leaf. */
 void prog_name(Prog *p, Slot s, Name name);

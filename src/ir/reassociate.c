@@ -178,10 +178,7 @@ static Prog *reassociate(const Prog *p, const uint32_t *loads, int fused) {
     }
     prog_name(b.to, b.map[s], i->name);
   }
-  for (uint32_t k = 0; k < p->stores.n; k++) {
-    Store st = p->stores.at[k];
-    prog_store(b.to, st.array, st.index, b.map[st.slot], st.comment);
-  }
+  prog_copy_stores(b.to, p, b.map);
   return b.to;
 }
 

@@ -53,10 +53,7 @@ Prog *prog_schedule_by_store(const Prog *p) {
     if (p->ins.at[s].op == IR_PIVOT) compute(&d, s);
   for (uint32_t k = 0; k < p->stores.n; k++)
     if (p->stores.at[k].slot) compute(&d, p->stores.at[k].slot);
-  for (uint32_t k = 0; k < p->stores.n; k++) {
-    Store st = p->stores.at[k];
-    prog_store(d.to, st.array, st.index, d.map[st.slot], st.comment);
-  }
+  prog_copy_stores(d.to, p, d.map);
   return d.to;
 }
 
@@ -122,9 +119,6 @@ Prog *prog_schedule_by_path(const Prog *p, int calls_first) {
     map[d[k].slot] = prog_ins(to, prog_import(to, p, map, *i));
     prog_name(to, map[d[k].slot], i->name);
   }
-  for (uint32_t k = 0; k < p->stores.n; k++) {
-    Store st = p->stores.at[k];
-    prog_store(to, st.array, st.index, map[st.slot], st.comment);
-  }
+  prog_copy_stores(to, p, map);
   return to;
 }

@@ -7,13 +7,6 @@
 
 #include "jets/text_eval_impl.h"
 
-static const TextValue NOTHING = {0};
-
-static TextValue unknown(TextEval *t, const char *why) {
-  if (!t->why) t->why = why;
-  return NOTHING;
-}
-
 static TextValue number_of(TextEval *t, Num n) { return (TextValue){.at = {tape_number(t->tape, n)}, .bare = 1}; }
 
 /* --- frames --- */
@@ -97,13 +90,6 @@ static void finish(TextEval *t, Frame *f, Frame *caller) {
 }
 
 /* --- sums and products --- */
-
-static int whole(const TextEval *t, const TextValue *v, int64_t *out) {
-  Num n;
-  if (v->n || !tape_is_number(t->tape, v->at[0], &n) || n.den != 1) return 0;
-  *out = n.num;
-  return 1;
-}
 
 /* Starts a loop; 0: empty or unknown range, the value is set. */
 static int loop_enter(TextEval *t, Frame *f, AstId id) {

@@ -36,6 +36,21 @@ typedef struct Frame {
   AstId *guard;   /* [i] the sum, product or `if` whose body or branch begins at node first + i, or 0 */
 } Frame;
 
+static const TextValue NOTHING = {0};
+
+static inline TextValue unknown(TextEval *t, const char *why) {
+  if (!t->why) t->why = why;
+  return NOTHING;
+}
+
+/* Reads a whole number, as of an index or a range; 0: v is none. */
+static inline int whole(const TextEval *t, const TextValue *v, int64_t *out) {
+  Num n;
+  if (v->n || !tape_is_number(t->tape, v->at[0], &n) || n.den != 1) return 0;
+  *out = n.num;
+  return 1;
+}
+
 /* text_eval_node.c: value of node `id` from its operands' values; sets f->waits and f->needs where a definition is needed first. */
 TextValue text_node(TextEval *t, Frame *f, AstId id);
 

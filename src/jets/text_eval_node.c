@@ -3,13 +3,6 @@
 
 #include "jets/text_eval_impl.h"
 
-static const TextValue NOTHING = {0};
-
-static TextValue unknown(TextEval *t, const char *why) {
-  if (!t->why) t->why = why;
-  return NOTHING;
-}
-
 static const TextValue *operand(const Frame *f, AstId id) { return &f->value[id - f->first]; }
 static TextValue scalar(Ref r, int bare) { return (TextValue){.at = {r}, .bare = bare}; }
 static Ref binary_op(TextEval *t, TapeOp op, Ref a, Ref b) { return tape_op(t->tape, op, a, b, 0); }
@@ -244,13 +237,6 @@ static TextValue name_node(TextEval *t, Frame *f, Name name) {
   if (!is_one_of(name, energies)) return NOTHING;
   t->needs_energies |= !t->lagrangian;
   return t->lagrangian ? scalar(energy_called(t, name), 0) : NOTHING;
-}
-
-static int whole(const TextEval *t, const TextValue *v, int64_t *out) {
-  Num n;
-  if (!tape_is_number(t->tape, v->at[0], &n) || n.den != 1) return 0;
-  *out = n.num;
-  return 1;
 }
 
 static TextValue index_node(TextEval *t, Frame *f, const AstExpr *x) {

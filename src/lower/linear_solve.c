@@ -3,6 +3,7 @@
  * A positive definite mass matrix is eliminated in straight-line code (eliminate.c, gram_schmidt.c) unless that would be long. Otherwise M falls into
  * blocks of coupled coordinates: one by division, two by Cramer's rule, more by a loop, in an order of narrow band, with partial
  * pivoting where M may be indefinite. Coordinates that a constraint couples are one block, solved with their multipliers. */
+#include "base/union_find.h"
 #include "ir/band.h"
 #include "lower/lower_impl.h"
 
@@ -32,26 +33,14 @@ typedef VEC(Expr) ExprVec;
 
 /* --- blocks --- */
 
-static uint32_t find_root(uint32_t *parent, uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-static void join(uint32_t *parent, uint32_t i, uint32_t j) {
-  uint32_t a = find_root(parent, i), b = find_root(parent, j);
-  if (a < b) parent[b] = a;
-  else parent[a] = b;
-}
-
 /* label[i]: the first coordinate of the block of coordinate i. */
 static uint32_t *label_blocks(const Eqns *e, uint32_t nrows) {
-  uint32_t *parent = ARENA_ARRAY(e->m->arena, uint32_t, e->n + 1);
+  uint32_t *parent = union_find_new(e->m->arena, e->n);
   const Entries *H = &e->system.H, *A = &e->constraints.A;
-  for (uint32_t i = 0; i < e->n; i++) parent[i] = i;
-  for (uint32_t k = 0; k < H->n; k++) join(parent, H->at[k].row, H->at[k].col);
+  for (uint32_t k = 0; k < H->n; k++) union_find_join(parent, H->at[k].row, H->at[k].col);
   for (uint32_t k = 1; k < A->n && A->at[k].row < nrows; k++)
-    if (A->at[k].row == A->at[k - 1].row) join(parent, A->at[k].col, A->at[k - 1].col);
-  for (uint32_t i = 0; i < e->n; i++) parent[i] = find_root(parent, i);
+    if (A->at[k].row == A->at[k - 1].row) union_find_join(parent, A->at[k].col, A->at[k - 1].col);
+  for (uint32_t i = 0; i < e->n; i++) parent[i] = union_find_root(parent, i);
   return parent;
 }
 
@@ -203,9 +192,7 @@ static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
     for (size_t j = 0; j < i; j++) full[i * n + j] = 0; /* the loop reads the upper triangle only */
   Solve k = {.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .matrix = full, .rhs = rhs};
   if (m) list_filled(a, &k);
-  vec_push(a, &l->p->solves, k);
-  Slot s = prog_ins(l->p, (Ins){.op = IR_SOLVE, .index = l->p->solves.n - 1});
-  for (uint32_t i = 0; i < n + m; i++) x[i] = prog_ins(l->p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
+  prog_solve(l->p, k, x);
 }
 
 /* Whether M has a block of more than two coordinates. */

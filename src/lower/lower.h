@@ -9,7 +9,6 @@
 #include "mech/event_derivatives.h"
 #include "mech/linearise.h"
 #include "series/series.h"
-#include "series/series.h"
 #include "ir/unit.h"
 #include "mech/eqns.h"
 #include "mech/switching_surfaces.h"
@@ -17,8 +16,7 @@
 
 Prog *lower_accel_traced(const Eqns *e, int libm, StrBuf *trace); /* the same, with a listing after each pass */
 Prog *lower_accel(const Eqns *e, int libm); /* out 0: a[nq], out 1: zd[nz]; libm: sin and cos are calls of the C library, not inline */
-IrSystem lower_system(const Eqns *e); /* M, f and the rates of the states, with inputs replaced by their formulas; */
-IrSystem lower_system(const Eqns *e); /* both unsolved and solved */
+IrSystem lower_system(const Eqns *e); /* M, f and the rates of the states, with inputs replaced by their formulas; both unsolved and solved */
 Prog *lower_energy(const Eqns *e);  /* out 0: e[2], the energy and its scale */
 Prog *lower_charges(const Eqns *e); /* out 0: value and scale of each charge but the energy */
 Prog *lower_charge_rates(const Eqns *e);  /* out 0: time derivative of each charge, the energy first; NULL: all are conserved */

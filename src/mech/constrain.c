@@ -10,14 +10,6 @@
 
 static int is_holonomic(const Eqns *e, const Constraint *k) { return !(expr_kinds(e->g, k->c) & 1u << SYM_VEL); }
 
-/* x at q' = 0. */
-static Expr at_rest(const Eqns *e, Expr x) {
-  ExprGraph *g = e->g;
-  Expr *rest = ARENA_ARRAY(e->m->arena, Expr, expr_symbol_count(g) + 1);
-  for (uint32_t i = 0; i < e->n; i++) rest[e->m->coords.at[i].v] = expr_int(g, 0);
-  return simplify(g, expr_substitute(g, x, rest, expr_symbol_count(g) + 1, "_at_rest"));
-}
-
 /* dx/dt without the part with q''. */
 static Expr rate(const Eqns *e, Expr x, const char *suffix) {
   const Model *m = e->m;
@@ -68,17 +60,11 @@ static int check_contradiction(const Eqns *e, const Constraint *k) {
   return 1;
 }
 
-static int is_contact(const Model *m, uint32_t i) {
-  for (uint32_t k = 0; k < m->contacts.n; k++)
-    if (m->contacts.at[k].constraint == i) return 1;
-  return 0;
-}
-
 /* At most as many constraints as coordinates; contacts do not count, since they are not all closed at once. */
 static int check_count(const Eqns *e) {
   const Model *m = e->m;
   uint32_t held = 0, i = 0;
-  while (i < m->constraints.n && (held += !is_contact(m, i)) <= e->n) i++;
+  while (i < m->constraints.n && (held += !contact_of_constraint(m, &m->constraints.at[i])) <= e->n) i++;
   if (held <= e->n) return 1;
   const Constraint *k = &m->constraints.at[i];
   diag_error(m->diags, k->span, "there are more constraints than coordinates: `%s` is number %u, of %u coordinates", k->name, e->n + 1, e->n);
@@ -158,7 +144,7 @@ int constrain(Eqns *e) {
 int constraints_do_no_work(const Eqns *e) {
   const Constraints *k = &e->constraints;
   for (uint32_t i = 0; i < k->n; i++) {
-    int moves = i < k->nholonomic ? (expr_kinds(e->g, k->c[i]) & 1u << SYM_TIME) != 0 : !expr_is_zero(e->g, at_rest(e, k->r[i]));
+    int moves = i < k->nholonomic ? (expr_kinds(e->g, k->c[i]) & 1u << SYM_TIME) != 0 : !expr_is_zero(e->g, eqns_at_rest(e, k->r[i]));
     if (moves) return 0;
   }
   return 1;

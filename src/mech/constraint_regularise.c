@@ -8,7 +8,7 @@
 #include "mech/consistent_start.h"
 #include "sym/eval.h"
 
-static int is_fixed(const Eqns *e, Expr x) { return !(expr_kinds(e->g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) && !expr_is_zero(e->g, x); }
+static int is_fixed(const Eqns *e, Expr x) { return expr_is_constant(e->g, x) && !expr_is_zero(e->g, x); }
 
 /* Diagonal entry j of M if constant, else 0. */
 static Expr inertia_of(const Eqns *e, uint32_t j) {

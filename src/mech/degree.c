@@ -1,6 +1,8 @@
 /* One pass over the nodes of x, arguments first, with a map of degrees. */
 #include "mech/degree.h"
 
+#include "sym/diff.h"
+
 /* Degree of x from the map, which keeps degree + 1: 0 is no entry. */
 static uint8_t kept(const ExprMap *degrees, Expr x) { return (uint8_t)(expr_map_get(degrees, x) - 1); }
 
@@ -27,7 +29,7 @@ static uint8_t of_product(const ExprGraph *g, Expr x, const ExprMap *degrees) {
 
 static uint8_t of_node(const ExprGraph *g, Expr x, const ExprMap *degrees) {
   ExprOp op = expr_op(g, x);
-  if (!(expr_kinds(g, x) & 1u << SYM_VEL)) return 0;
+  if (!has_velocities(g, x)) return 0;
   if (op == EX_SYM) return 1;
   if (op == EX_DEF) return kept(degrees, expr_arg(g, x, 0));
   return op == EX_SUM ? of_sum(g, x, degrees) : op == EX_PROD ? of_product(g, x, degrees) : NO_DEGREE;
@@ -38,4 +40,11 @@ uint8_t velocity_degree(ExprGraph *g, Arena *arena, Expr x) {
   ExprList all = expr_topo(g, &x, 1);
   for (uint32_t i = 0; i < all.n; i++) expr_map_set(&degrees, all.at[i], of_node(g, all.at[i], &degrees) + 1u);
   return kept(&degrees, x);
+}
+
+int is_linear_in_velocities(ExprGraph *g, Expr x, uint32_t n) {
+  ExprPartials d = expr_gradient_sparse(g, x, SYM_VEL, n);
+  for (uint32_t i = 0; i < d.n; i++)
+    if (has_velocities(g, d.at[i].e)) return 0;
+  return 1;
 }

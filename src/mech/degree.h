@@ -10,4 +10,9 @@ enum { NO_DEGREE = 255 };
 /* 0 to 254; NO_DEGREE: terms of different degrees, or velocities outside sums, products and whole powers. Creates no node. */
 uint8_t velocity_degree(ExprGraph *g, Arena *arena, Expr x);
 
+static inline int has_velocities(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & 1u << SYM_VEL) != 0; }
+
+/* Whether x is linear in the n velocities, as Coriolis and magnetic terms are: no part of the mass matrix. */
+int is_linear_in_velocities(ExprGraph *g, Expr x, uint32_t n);
+
 #endif

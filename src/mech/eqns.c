@@ -1,6 +1,8 @@
 /* Access to the equations. */
 #include "mech/eqns.h"
 
+#include "sym/simplify.h"
+
 Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
   uint32_t row = i > j ? i : j, col = i > j ? j : i, lo = 0, hi = e->mass.n;
   while (lo < hi) {
@@ -18,3 +20,10 @@ uint32_t eqns_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
 SymId eqns_coordinate(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].q : e->m->states.at[e->first.at[i]].z; }
 
 const Expr *eqns_momenta(const Eqns *e) { return e->first.n ? e->first.theta : e->m->across ? e->momenta : e->p; }
+
+Expr eqns_at_rest(const Eqns *e, Expr x) {
+  uint32_t n = expr_symbol_count(e->g) + 1;
+  Expr *rest = ARENA_ARRAY(e->m->arena, Expr, n);
+  for (uint32_t i = 0; i < e->n; i++) rest[e->m->coords.at[i].v] = expr_int(e->g, 0);
+  return simplify(e->g, expr_substitute(e->g, x, rest, n, "_at_rest"));
+}

@@ -113,4 +113,7 @@ const Expr *eqns_momenta(const Eqns *e);
 /* M[i][j]; the zero node where the entry is zero. */
 Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j);
 
+/* x at q' = 0, simplified. */
+Expr eqns_at_rest(const Eqns *e, Expr x);
+
 #endif

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "base/dense.h"
+#include "base/union_find.h"
 #include "mech/lagrange.h"
 #include "mech/antisymmetric_solve.h"
 #include "sym/diff.h"
@@ -172,21 +173,11 @@ static void collect(FirstOrderBuilder *w) {
 
 /* --- blocks --- */
 
-static uint32_t root(uint32_t *up, uint32_t i) {
-  while (up[i] != i) i = up[i] = up[up[i]];
-  return i;
-}
-
 /* Numbers the connected components of the form by their first coordinates (union-find). Returns their number. */
 static uint32_t find_blocks(FirstOrderBuilder *w) {
-  uint32_t *up = ARENA_ARRAY(w->arena, uint32_t, w->n), *block = ARENA_ARRAY(w->arena, uint32_t, w->n), count = 0;
-  for (uint32_t i = 0; i < w->n; i++) up[i] = i;
-  for (uint32_t k = 0; k < w->to->form.n; k++) {
-    uint32_t a = root(up, w->to->form.at[k].row), b = root(up, w->to->form.at[k].col);
-    if (a < b) up[b] = a;
-    else up[a] = b;
-  }
-  for (uint32_t i = 0; i < w->n; i++) block[i] = root(up, i) == i ? count++ : block[root(up, i)];
+  uint32_t *up = union_find_new(w->arena, w->n), *block = ARENA_ARRAY(w->arena, uint32_t, w->n), count = 0;
+  for (uint32_t k = 0; k < w->to->form.n; k++) union_find_join(up, w->to->form.at[k].row, w->to->form.at[k].col);
+  for (uint32_t i = 0; i < w->n; i++) block[i] = union_find_root(up, i) == i ? count++ : block[union_find_root(up, i)];
   w->to->block = block;
   return count;
 }

@@ -21,12 +21,6 @@ typedef struct {
   Expr *form, *d;
 } Forms;
 
-static Expr at_rest(const Eqns *e, Expr x) {
-  Expr *rest = ARENA_ARRAY(e->m->arena, Expr, expr_symbol_count(e->g) + 1);
-  for (uint32_t i = 0; i < e->n; i++) rest[e->m->coords.at[i].v] = expr_int(e->g, 0);
-  return simplify(e->g, expr_substitute(e->g, x, rest, expr_symbol_count(e->g) + 1, "_at_rest"));
-}
-
 /* Adds x = d_j omega_k, the share of coefficient k in d omega_jk = d_j omega_k - d_k omega_j. */
 static void add_derivative(Forms *f, uint32_t i, uint32_t j, uint32_t k, Expr x) {
   Expr *d = f->d + (size_t)i * f->w * f->w, *jk = &d[j * f->w + k], *kj = &d[k * f->w + j];
@@ -58,7 +52,7 @@ static Forms make_forms(const Eqns *e) {
   f.d = ARENA_ARRAY(e->m->arena, Expr, (size_t)f.m * f.w * f.w);
   for (uint32_t k = 0; k < all->A.n; k++) f.form[all->A.at[k].row * f.w + all->A.at[k].col] = all->A.at[k].e;
   for (uint32_t i = 0; i < all->n; i++) {
-    Expr b = at_rest(e, all->r[i]);
+    Expr b = eqns_at_rest(e, all->r[i]);
     if (!expr_is_zero(e->g, b)) f.form[i * f.w + e->n] = b;
     if (i >= all->nholonomic) differentiate(&f, i);
   }
@@ -215,7 +209,7 @@ Expr frobenius_leaf(const Eqns *e, Expr r) {
   for (uint32_t i = 0; i < n; i++) a[i] = expr_int(g, 0), q[i] = m->coords.at[i].q;
   ExprPartials row = expr_gradient_sparse(g, r, SYM_VEL, n);
   for (uint32_t i = 0; i < row.n; i++) a[row.at[i].index] = row.at[i].e;
-  a[n] = at_rest(e, r), q[n] = m->time;
+  a[n] = eqns_at_rest(e, r), q[n] = m->time;
   Expr leaf = expr_potential(g, a, q, n + 1);
   for (uint32_t i = 0; i <= n; i++) {
     Expr x = expr_diff(g, leaf, q[i]);

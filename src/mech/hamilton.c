@@ -135,7 +135,7 @@ static Hamilton hamilton_equations(LegendreTransform *w) {
     force = expr_add(g, short_form(w, force), short_form(w, pull));
     w->force[i] = expr_add(g, force, short_form(w, other));
   }
-  return (Hamilton){1, NULL, w->p, w->inverse, w->a, H, w->rate, w->force};
+  return (Hamilton){1, NULL, w->p, H, w->rate, w->force};
 }
 
 static int is_quadratic(const Eqns *e) {

@@ -13,8 +13,6 @@ typedef struct {
   int is_closed;       /* 0: no closed form; only p and why_not are set */
   const char *why_not;
   const SymId *p;      /* [n] symbols of momenta, p_x */
-  const Expr *inverse; /* [n*n] inverse of M; zero nodes where it is zero */
-  const Expr *a;       /* [n] momenta at rest: magnetic terms */
   Expr H;
   const Expr *rate;    /* [n] q' in q, p, t */
   const Expr *force;   /* [n] p' in q, p, z, t, inputs and multipliers */

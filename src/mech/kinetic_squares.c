@@ -4,13 +4,12 @@
 #include <math.h>
 
 #include "base/dense.h"
+#include "mech/degree.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
 #include "sym/prove.h"
 
 enum { COORDINATES_MOST = 8, FORMS_MOST = 32 };
-
-static int has_velocities(const Eqns *e, Expr x) { return (expr_kinds(e->g, x) & 1u << SYM_VEL) != 0; }
 
 typedef struct {
   const Eqns *e;
@@ -25,18 +24,10 @@ static int add_form(Squares *s, Expr weight, Expr base) {
   ExprPartials d = expr_gradient_sparse(e->g, base, SYM_VEL, e->n);
   Expr *row = s->W + (size_t)s->of.n * e->n;
   for (uint32_t i = 0; i < d.n; i++) {
-    if (has_velocities(e, d.at[i].e)) return 0;
+    if (has_velocities(e->g, d.at[i].e)) return 0;
     row[d.at[i].index] = d.at[i].e;
   }
   s->weight[s->of.n++] = weight;
-  return 1;
-}
-
-/* Linear in velocities: no part of M. */
-static int is_linear(const Eqns *e, Expr x) {
-  ExprPartials d = expr_gradient_sparse(e->g, x, SYM_VEL, e->n);
-  for (uint32_t i = 0; i < d.n; i++)
-    if (has_velocities(e, d.at[i].e)) return 0;
   return 1;
 }
 
@@ -46,7 +37,7 @@ static int collect_squares(Squares *s, Expr weight, Expr x) {
   ExprGraph *g = e->g;
   Expr moving = 0;
   Num power = num_int(1), p;
-  if (is_linear(e, x)) return 1;
+  if (is_linear_in_velocities(e->g, x, e->n)) return 1;
   if (expr_op(g, x) == EX_SUM) {
     int taken = 1;
     for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM) && taken; i++) {
@@ -57,7 +48,7 @@ static int collect_squares(Squares *s, Expr weight, Expr x) {
   }
   for (uint32_t i = 0; i < expr_pairs(g, x, EX_PROD); i++) {
     Expr base = expr_pair(g, x, EX_PROD, i, &p);
-    if (!has_velocities(e, base)) {
+    if (!has_velocities(e->g, base)) {
       Expr still = expr_pow_num(g, base, p);
       weight = expr_mul(g, weight, still);
     } else if (!moving) {

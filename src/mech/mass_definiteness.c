@@ -1,19 +1,10 @@
 /* Positive definiteness from L = sum of terms: signs of the terms first, then squares against products of velocities (Gershgorin). */
 #include "mech/mass_definiteness.h"
 
+#include "mech/degree.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
 #include "sym/print.h"
-
-static int has_velocities(const Eqns *e, Expr x) { return (expr_kinds(e->g, x) & 1u << SYM_VEL) != 0; }
-
-/* Linear in q', as Coriolis and magnetic terms are: no part of the mass matrix. */
-static int is_linear(const Eqns *e, Expr term) {
-  ExprPartials d = expr_gradient_sparse(e->g, term, SYM_VEL, e->n);
-  for (uint32_t i = 0; i < d.n; i++)
-    if (has_velocities(e, d.at[i].e)) return 0;
-  return 1;
-}
 
 static int is_nonnegative(const Eqns *e, Expr x) {
   ExprSign sign = expr_sign(e->g, x);
@@ -26,7 +17,7 @@ static int terms_are_nonnegative(const Eqns *e, Expr l) {
     Num c;
     Expr term = expr_pair(e->g, l, EX_SUM, i, &c);
     int positive = num_sign(c) > 0 && is_nonnegative(e, term);
-    if (has_velocities(e, term) && !positive && !is_linear(e, term)) return 0;
+    if (has_velocities(e->g, term) && !positive && !is_linear_in_velocities(e->g, term, e->n)) return 0;
   }
   return 1;
 }
@@ -69,7 +60,7 @@ static int add_quadratic_term(SquareBounds *q, Expr factor, Num c, Expr term) {
   for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++) {
     Num p;
     Expr base = expr_pair(g, term, EX_PROD, i, &p);
-    if (!has_velocities(e, base)) {
+    if (!has_velocities(e->g, base)) {
       Expr still = expr_pow_num(g, base, p);
       factor = expr_mul(g, factor, still);
     } else {
@@ -99,7 +90,7 @@ static int add_quadratic_term(SquareBounds *q, Expr factor, Num c, Expr term) {
 }
 
 static int add_term(SquareBounds *q, Expr factor, Num c, Expr term) {
-  return !has_velocities(q->e, term) || add_quadratic_term(q, factor, c, term) || is_linear(q->e, term);
+  return !has_velocities(q->e->g, term) || add_quadratic_term(q, factor, c, term) || is_linear_in_velocities(q->e->g, term, q->e->n);
 }
 
 static int squares_dominate(const Eqns *e, Expr l) {
@@ -124,9 +115,9 @@ static int squares_dominate(const Eqns *e, Expr l) {
 int mass_is_definite(const Eqns *e, const LinearSystem *s, Expr lagrangian) {
   /* A nonnegative form that is quadratic in q' has a positive semidefinite Hessian; quadratic: the entries of H and C contain no velocities. */
   for (uint32_t i = 0; i < s->H.n; i++)
-    if (has_velocities(e, s->H.at[i].e)) return 0;
+    if (has_velocities(e->g, s->H.at[i].e)) return 0;
   for (uint32_t i = 0; i < s->C.n; i++)
-    if (has_velocities(e, s->C.at[i].e)) return 0;
+    if (has_velocities(e->g, s->C.at[i].e)) return 0;
   return terms_are_nonnegative(e, lagrangian) || squares_dominate(e, lagrangian);
 }
 
@@ -134,9 +125,8 @@ int mass_is_definite_by_values(const Eqns *e, const LinearSystem *s, Expr lagran
   const Model *m = e->m;
   ExprGraph *g = e->g;
   uint32_t n = expr_symbol_count(g) + 1, some = 0;
-  long double *value = ARENA_ARRAY(m->arena, long double, n);
+  long double *value = model_constants(m);
   Expr *with = ARENA_ARRAY(m->arena, Expr, n);
-  value[m->pi] = 3.14159265358979323846264338327950288L;
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];
     if (p->value) expr_eval(g, &p->value, 1, value, &value[p->sym]);
@@ -178,14 +168,13 @@ static int may_be_positive(const Eqns *e, Expr entry) {
 
 void mass_warn_nonpositive(const Eqns *e) {
   const Model *m = e->m;
-  long double *value = ARENA_ARRAY(m->arena, long double, expr_symbol_count(e->g) + 1), inertia;
+  long double *value = model_constants(m), inertia;
   uint8_t *warned = ARENA_ARRAY(m->arena, uint8_t, m->params.n + 1);
-  value[m->pi] = 3.14159265358979323846264338327950288L;
   for (uint32_t i = 0; i < m->params.n; i++)
     if (m->params.at[i].value) expr_eval(e->g, &m->params.at[i].value, 1, value, &value[m->params.at[i].sym]);
   for (uint32_t i = 0; i < e->mass.n; i++) {
     MassEntry x = e->mass.at[i];
-    if (x.row != x.col || (expr_kinds(e->g, x.e) & ~(1u << SYM_PARAM | 1u << SYM_CONST))) continue;
+    if (x.row != x.col || !expr_is_constant(e->g, x.e)) continue;
     expr_eval(e->g, &x.e, 1, value, &inertia);
     if (!(inertia < 0) && !(inertia == 0 && !m->constraints.n)) continue;
     uint32_t k = find_offending_param(e, x.e, value);

@@ -7,7 +7,7 @@
 
 /* Kinds of entries: d2L/dq dq, d2L/dq' dq, d2L/dq' dq', dQ/dq, dQ/dq'. QQ and VV are lower triangles; a row of VQ belongs to
  * a velocity. */
-typedef enum { SECOND_QQ, SECOND_VQ, SECOND_VV, SECOND_FQ, SECOND_FV, SECOND_PARTS } SecondPart;
+typedef enum { SECOND_QQ, SECOND_VQ, SECOND_VV, SECOND_FQ, SECOND_FV } SecondPart;
 
 typedef struct {
   SecondPart part;

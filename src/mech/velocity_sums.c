@@ -4,6 +4,7 @@
 
 #include <stdlib.h>
 
+#include "mech/degree.h"
 #include "sym/diff.h"
 
 /* Least number of moving terms of a sum: up to 12 coordinates a dense system takes no more operations. */
@@ -22,8 +23,6 @@ typedef struct {
   ExprMap number; /* by term of the current sum: its index from 1 */
 } Sums;
 
-static int has_velocities(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & 1u << SYM_VEL) != 0; }
-
 static int is_long(const ExprGraph *g, Expr e) {
   uint32_t some = 0;
   for (uint32_t k = 0; expr_op(g, e) == EX_SUM && k < expr_pairs(g, e, EX_SUM) && some < FEWEST; k++) {
@@ -31,13 +30,6 @@ static int is_long(const ExprGraph *g, Expr e) {
     some += has_velocities(g, expr_pair(g, e, EX_SUM, k, &unused)) != 0;
   }
   return some == FEWEST;
-}
-
-static int is_linear(ExprGraph *g, Expr e, uint32_t n) {
-  ExprPartials d = expr_gradient_sparse(g, e, SYM_VEL, n);
-  for (uint32_t k = 0; k < d.n; k++)
-    if (has_velocities(g, d.at[k].e)) return 0;
-  return 1;
 }
 
 /* Adds the long linear sums among the factors of a product that is nonlinear in velocities. */
@@ -51,7 +43,7 @@ static void find_in_product(Sums *s, Expr product, uint32_t n, ExprMap *seen) {
   for (uint32_t k = 0; k < pairs && moving > 1; k++) {
     Num power;
     Expr x = expr_pair(s->g, product, EX_PROD, k, &power);
-    if (expr_map_get(seen, x) || !is_long(s->g, x) || !is_linear(s->g, x, n)) continue;
+    if (expr_map_get(seen, x) || !is_long(s->g, x) || !is_linear_in_velocities(s->g, x, n)) continue;
     expr_map_set(seen, x, 1);
     vec_push(s->a, &s->sums, ((Sum){.e = x, .pairs = expr_pairs(s->g, x, EX_SUM)}));
   }

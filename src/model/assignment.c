@@ -1,4 +1,5 @@
 /* Targets of assignments (`start`, `exact`, `param`, maps of symmetries): left sides, lists, and values for whole families. */
+#include "base/words.h"
 #include "model/builder.h"
 
 Target read_target(const Builder *b, AstId id) {
@@ -42,37 +43,31 @@ const AstExpr *list_behind(const Builder *b, AstId id, const AstUnit **unit) {
   return x->kind == AST_LIST ? x : NULL;
 }
 
-static uint32_t count_list(const Builder *b, const AstExpr *list) {
-  uint32_t n = 0;
-  for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) n++;
-  return n;
-}
-
 static uint64_t count_along(const IndexRange *r, uint32_t k) {
   return r->hi[k] < r->lo[k] ? 0 : (uint64_t)(r->hi[k] - r->lo[k] + 1);
 }
 
-static uint64_t count_in(const IndexRange *r) {
+uint64_t range_count(const IndexRange *r) {
   uint64_t n = 1;
   for (uint32_t k = 0; k < r->n; k++) n *= count_along(r, k);
   return n;
 }
 
 static int report_count(Builder *b, const AstExpr *list, const char *what, const char *wanted) {
-  uint32_t n = count_list(b, list);
-  diag_error(b->diags, list->span, "%s has %u element%s, and %s", what, n, n == 1 ? "" : "s", wanted);
+  uint32_t n = ast_list_length(b->ast, list->args);
+  diag_error(b->diags, list->span, "%s has %u element%s, and %s", what, n, plural(n), wanted);
   return 0;
 }
 
 /* Elements of a list of rows; each row is a list, with or without a unit of its own. */
 static int row_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const IndexRange *r, Name name, Elements *out) {
   uint64_t rows = count_along(r, 0), columns = count_along(r, 1);
-  if (count_list(b, list) != rows)
+  if (ast_list_length(b->ast, list->args) != rows)
     return report_count(b, list, "the list", arena_printf(b->arena, "`%s` has %llu rows", name, (unsigned long long)rows));
   for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) {
     const AstUnit *own;
     const AstExpr *row = list_behind(b, i, &own);
-    if (!row || count_list(b, row) != columns)
+    if (!row || ast_list_length(b->ast, row->args) != columns)
       return row ? report_count(b, row, "this row", arena_printf(b->arena, "those of `%s` have %llu", name, (unsigned long long)columns))
                  : report_count(b, list, "the list", "some are rows and some are not");
     for (AstId k = row->args; k; k = ast_expr(b->ast, k)->next) vec_push(b->arena, out, ((Element){k, own ? own : behind}));
@@ -93,8 +88,8 @@ int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const 
     diag_help(b->diags, "a list gives a family its members; a vector is written `(a, b)`");
     return 0;
   }
-  if (count_list(b, list) != count_in(r))
-    return report_count(b, list, "the list", arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)count_in(r)));
+  if (ast_list_length(b->ast, list->args) != range_count(r))
+    return report_count(b, list, "the list", arena_printf(b->arena, "`%s` has %llu members", name, (unsigned long long)range_count(r)));
   for (AstId i = list->args; i; i = ast_expr(b->ast, i)->next) vec_push(b->arena, out, ((Element){i, behind}));
   return 1;
 }
@@ -164,15 +159,6 @@ static int read_ranges(Builder *b, const Target *p, const Entity *e, AstId lhs, 
   return empty || (index_in_range(b, e, r->lo, span) && index_in_range(b, e, r->hi, span));
 }
 
-/* Next member of the ranges, row by row; 0 after the last. */
-static int next_in(const IndexRange *r, int64_t *at) {
-  for (uint32_t k = r->n; k-- > 0;) {
-    if (++at[k] <= r->hi[k]) return 1;
-    at[k] = r->lo[k];
-  }
-  return 0;
-}
-
 /* Assigns the elements of a list, one to each member. */
 static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list, const AstUnit *behind) {
   Elements elements = {0};
@@ -180,7 +166,7 @@ static void give_list(const Assign *s, const IndexRange *r, const AstExpr *list,
   int64_t at[2] = {r->lo[0], r->lo[1]};
   for (uint32_t i = 0; i < elements.n; i++) {
     give_member(s, at, elements.at[i].id, element_value(s->b, &elements.at[i], s->assigner->where, s->assigner->effect));
-    next_in(r, at);
+    range_next(r, at);
   }
 }
 
@@ -190,15 +176,15 @@ static void give_formula(const Assign *s, const IndexRange *r, AstId rhs) {
   uint32_t outer = b->index.n;
   int64_t at[2] = {r->lo[0], r->lo[1]};
   int named = r->name[0] || r->name[1];
-  Value v = named || !count_in(r) ? (Value){0} : resolve(b, rhs, s->assigner->where, s->assigner->effect);
-  if (!count_in(r)) return;
+  Value v = named || !range_count(r) ? (Value){0} : resolve(b, rhs, s->assigner->where, s->assigner->effect);
+  if (!range_count(r)) return;
   do {
     b->index.n = outer;
     for (uint32_t k = 0; k < r->n; k++)
       if (r->name[k]) vec_push(b->arena, &b->index, ((IndexVar){r->name[k], at[k]}));
     if (named) v = resolve(b, rhs, s->assigner->where, s->assigner->effect);
     if (!give_member(s, at, rhs, v)) break;
-  } while (next_in(r, at));
+  } while (range_next(r, at));
   b->index.n = outer;
 }
 

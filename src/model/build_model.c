@@ -457,3 +457,9 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   warn_signs(b);
   return ast->diags->errors ? NULL : b->m;
 }
+
+long double *model_constants(const Model *m) {
+  long double *values = ARENA_ARRAY(m->arena, long double, expr_symbol_count(m->g) + 1);
+  values[m->pi] = 3.14159265358979323846264338327950288L;
+  return values;
+}

@@ -162,6 +162,9 @@ uint32_t member_offset(const Entity *e, const int64_t *at);
 /* Advances at[] to the next member, row by row; 0 after the last. */
 int next_member(const Entity *e, int64_t *at);
 
+/* Component k of u x v in space; for vectors of a plane component 2. */
+Expr cross_component(ExprGraph *g, const Expr *u, const Expr *v, int k);
+
 /* Name of a family member: "th[2]", "u[2,1]". */
 Name member_name(Builder *b, Name name, const int64_t *at, uint32_t ndims);
 
@@ -236,6 +239,10 @@ Value element_value(Builder *b, const Element *x, Context where, Name effect);
 
 /* Index range of a whole family. */
 IndexRange entity_range(const Entity *e);
+
+/* Number of members; the next one, row by row, or 0 after the last. */
+uint64_t range_count(const IndexRange *r);
+int range_next(const IndexRange *r, int64_t *at);
 
 /* Assigns values to the members and components of entity e that p names: calls `give` for each scalar, with its index in
  * the model's array. `unit` returns the unit in which a scalar takes bare numbers. */
@@ -315,6 +322,9 @@ SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSi
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what);
 /* resolve_number, with *digits as in base/decimal_literal.h, or NULL. */
 double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits);
+
+/* Value of a formula of numbers and pi. */
+long double constant_value(const Builder *b, Expr e);
 /* Decimal digits of a number times pi^-1, pi^0 or pi^1; NULL for other expressions. */
 const char *expression_digits(Builder *b, Expr e);
 

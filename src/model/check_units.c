@@ -139,7 +139,6 @@ void fill_inferred_units(Builder *b) {
   for (uint32_t i = 0; i < m->inputs.n; i++) fill_unit(b, &m->inputs.at[i].unit);
   for (uint32_t i = 0; i < m->symmetries.n; i++) fill_unit(b, &m->symmetries.at[i].unit);
   m->energy_unit = unit_of_dim(b->dims, b->unitless ? DIM_ANY : b->energy);
-  m->energy_unit = unit_of_dim(b->dims, b->unitless ? DIM_ANY : b->energy);
   for (uint32_t i = 0; i < m->observes.n; i++) fill_unit(b, &m->observes.at[i].unit);
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) fill_unit(b, &m->scene.outputs.at[i].unit);
   for (uint32_t i = 0; i < b->undeclared.n; i++) {

@@ -27,16 +27,13 @@ static double in_declared(Builder *b, Expr x, const Unit *u, const char **digits
   Expr from_zero = num_is_zero(u->offset) ? x : expr_sub(g, x, expr_num(g, u->offset));
   Expr scaled = expr_scale(g, num_div(num_int(1), u->factor), from_zero), turns = expr_pow_num(g, pi, num_int(-u->pi_power));
   Expr e = expr_mul(g, scaled, turns);
-  long double *symbols = ARENA_ARRAY(b->arena, long double, expr_symbol_count(g) + 1), value = 0;
-  symbols[b->m->pi] = 3.14159265358979323846264338327950288L;
-  expr_eval(g, &e, 1, symbols, &value);
   *digits = expression_digits(b, e);
-  return (double)value;
+  return (double)constant_value(b, e);
 }
 
 int model_command_value(const Model *m, AstId target, AstId value, double *out, const char **digits) {
   Builder *b = m->builder;
-  Unit unit = {.dim = dim_base(b->dims, DIM_TIME), .factor = num_int(1), .offset = num_int(0), .text = "s"};
+  Unit unit = unit_si(dim_base(b->dims, DIM_TIME), "s");
   if (target) {
     Value of = resolve(b, target, IN_OBSERVE, NULL);
     if (!of.e) return 0;

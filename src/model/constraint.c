@@ -77,7 +77,7 @@ static Expr symbol_node(const Builder *b, SymId s) { return expr_symbol(b->g, s)
 static SymId add_switch(Builder *b, Name name, Span span) {
   Model *m = b->m;
   Input in = {.name = intern_printf(b, "%s.closed", name), .span = span, .value = expr_int(b->g, 0)};
-  in.unit = (Unit){.dim = DIM_NONE, .factor = num_int(1), .offset = num_int(0), .text = ""};
+  in.unit = unit_si(DIM_NONE, "");
   in.sym = declare_symbol(b, SYM_INPUT, m->inputs.n, in.name, SIGN_NONNEGATIVE, DIM_NONE);
   vec_push(b->arena, &m->inputs, in);
   return in.sym;
@@ -107,7 +107,7 @@ static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *
     return 0;
   }
   double value = expr_is_num(b->g, e->e) ? num_value(expr_number(b->g, e->e)) : 0.5;
-  if (expr_kinds(b->g, e->e) & ~(1u << SYM_PARAM | 1u << SYM_CONST) || value < 0 || value > 1) {
+  if (!expr_is_constant(b->g, e->e) || value < 0 || value > 1) {
     diag_error(b->diags, bounce, "a coefficient of restitution is a number from 0 to 1, or made of parameters");
     return 0;
   }

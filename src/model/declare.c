@@ -188,7 +188,7 @@ static void declare_motion(Builder *b, const AstStmt *st, Name effect) {
   uint32_t first = is_state ? b->m->states.n : b->m->coords.n;
   if (!read_type(b, st, effect, &parts)) return;
   if (!declare_family(b, st, effect, kind, first, parts, &e)) return;
-  Unit unit = parts == ROTATION ? (Unit){.dim = DIM_NONE, .factor = num_int(1), .offset = num_int(0), .text = ""} : declared_unit(b, st, effect);
+  Unit unit = parts == ROTATION ? unit_si(DIM_NONE, "") : declared_unit(b, st, effect);
   if (st->periodic) check_angle(b, st, &unit);
   int64_t at[2] = {1, 1};
   Name stem = plain_name(b, st, effect);
@@ -247,9 +247,7 @@ static int declare_member(Builder *b, const AstStmt *st, uint32_t family, const 
 }
 
 static int fits_family(Builder *b, const AstStmt *st, const IndexRange *r) {
-  uint64_t all = 1;
-  for (uint32_t k = 0; k < r->n; k++) all *= r->hi[k] < r->lo[k] ? 0 : (uint64_t)(r->hi[k] - r->lo[k] + 1);
-  if (all <= FAMILY_MAX) return 1;
+  if (range_count(r) <= FAMILY_MAX) return 1;
   diag_error(b->diags, st->name_span, "a family has at most %d members", FAMILY_MAX);
   return 0;
 }

@@ -21,8 +21,7 @@ static int has_sign(AstSign sign, long double x) {
 
 void warn_signs(Builder *b) {
   const Model *m = b->m;
-  long double *x = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1);
-  x[m->pi] = 3.14159265358979323846264338327950288L;
+  long double *x = model_constants(m);
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];
     if (!p->value) continue;

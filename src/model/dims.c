@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/id_table.h"
 #include "base/vec.h"
 
 /* Power in a product. key < DIM_BASES: a base unit; otherwise unknown key - DIM_BASES. */
@@ -13,8 +14,7 @@ typedef struct {
 
 typedef struct {
   const DimPower *part; /* by increasing key */
-  uint32_t n, hash;
-  uint32_t next;         /* hash chain; 0: end */
+  uint32_t n;
   Dim found;             /* memo of dim_resolved, valid while Dims.time is found_when; 0: none */
   uint32_t found_when;
 } DimVector;
@@ -30,7 +30,7 @@ typedef struct {
   const char *text;
 } Spelling;
 
-enum { BUCKETS = 1024, CACHED = 1024 };
+enum { CACHED = 1024 };
 
 struct Dims {
   Arena *arena;
@@ -40,7 +40,7 @@ struct Dims {
   VEC(Spelling) spellings;
   VEC(uint32_t) solved; /* solved unknowns, in order of solution */
   uint32_t time;        /* incremented when an unknown is solved or a solution undone */
-  uint32_t heads[BUCKETS];
+  IdTable table;        /* of `forms` */
   struct {
     Dim a, b, product;
   } cache[CACHED];
@@ -64,20 +64,22 @@ static int same_parts(const DimVector *f, const DimPower *p, uint32_t n) {
 
 /* Interns the vector in d->scratch, and empties it. */
 static Dim intern_scratch(Dims *d) {
-  uint32_t n = d->scratch.n, hash = hash_parts(d->scratch.at, n), *head = &d->heads[hash % BUCKETS];
+  uint32_t n = d->scratch.n, hash = hash_parts(d->scratch.at, n), slot = idtable_start(&d->table, hash);
   d->scratch.n = 0;
-  for (Dim i = *head; i; i = d->forms.at[i].next)
-    if (d->forms.at[i].hash == hash && same_parts(&d->forms.at[i], d->scratch.at, n)) return i;
+  for (Dim i; idtable_next(&d->table, hash, &slot, &i);)
+    if (same_parts(&d->forms.at[i], d->scratch.at, n)) return i;
   DimPower *copy = ARENA_ARRAY(d->arena, DimPower, n + 1);
   if (n) memcpy(copy, d->scratch.at, n * sizeof *copy);
-  DimVector f = {.part = copy, .n = n, .hash = hash, .next = *head};
+  DimVector f = {.part = copy, .n = n};
   vec_push(d->arena, &d->forms, f);
-  return *head = d->forms.n - 1;
+  idtable_add(&d->table, hash, d->forms.n - 1);
+  return d->forms.n - 1;
 }
 
 Dims *dims_new(Arena *a) {
   Dims *d = ARENA_NEW(a, Dims);
   d->arena = a;
+  d->table = idtable(a, 0);
   vec_push(a, &d->forms, (DimVector){0});
   intern_scratch(d); /* DIM_NONE */
   return d;

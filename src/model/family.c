@@ -9,12 +9,17 @@ uint32_t member_offset(const Entity *e, const int64_t *at) {
   return (uint32_t)(i * (e->parts ? e->parts : 1));
 }
 
-int next_member(const Entity *e, int64_t *at) {
-  for (int k = e->ndims; k-- > 0;) {
-    if (++at[k] <= e->hi[k]) return 1;
-    at[k] = e->lo[k];
+int range_next(const IndexRange *r, int64_t *at) {
+  for (uint32_t k = r->n; k-- > 0;) {
+    if (++at[k] <= r->hi[k]) return 1;
+    at[k] = r->lo[k];
   }
   return 0;
+}
+
+int next_member(const Entity *e, int64_t *at) {
+  IndexRange r = entity_range(e);
+  return range_next(&r, at);
 }
 
 Name member_name(Builder *b, Name name, const int64_t *at, uint32_t ndims) {

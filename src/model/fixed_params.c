@@ -68,8 +68,7 @@ static int is_free_param(const Symbol *s, const void *data) { return s->kind == 
 /* Sets Param.number of fixed parameters: exact if the value is rational, a double if it contains pi or other parameters. */
 static void evaluate(Builder *b) {
   Model *m = b->m;
-  long double *x = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1);
-  x[m->pi] = 3.14159265358979323846264338327950288L;
+  long double *x = model_constants(m);
   for (uint32_t i = 0; i < m->params.n; i++) {
     Param *p = &m->params.at[i];
     expr_eval(b->g, &p->value, 1, x, &x[p->sym]);

@@ -91,13 +91,7 @@ static char find_separator(const Table *t, Piece line) {
   return ' ';
 }
 
-/* Parses a finite decimal number; other input of strtod (inf, nan, 0x1p3) is refused. */
-static int number(const Table *t, Piece p, double *x) {
-  const char *text = text_of(t, p);
-  char *end;
-  *x = strtod(text, &end);
-  return *text && strspn(text, "+-.0123456789eE") == strlen(text) && !*end && isfinite(*x);
-}
+static int number(const Table *t, Piece p, double *x) { return num_parse_double(text_of(t, p), x); }
 
 static void mistake(Table *t, Piece p, const char *what) {
   diag_error(t->b->diags, span_of(t, p), "%s", what);

@@ -57,11 +57,8 @@ static void check_value(Builder *b, const MethodOption *o, const Option *given, 
 }
 
 static void read_method_option(Builder *b, const MethodInfo *m, const AstStmt *st) {
-  static const Unit any = {.dim = DIM_ANY, .text = ""};
   const AstExpr *l = ast_expr(b->ast, st->lhs), *r = ast_expr(b->ast, st->rhs);
-  Unit unit = any;
-  unit.factor = num_int(1);
-  unit.offset = num_int(0);
+  Unit unit = unit_si(DIM_ANY, "");
   if (l->kind != AST_NAME) {
     diag_error(b->diags, l->span, "an option is `name = value`");
     return;

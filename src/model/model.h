@@ -309,4 +309,14 @@ Expr model_resolve_edited(const Model *m, const Expect *x, AstId root, AstId nod
  * in base/decimal_literal.h or NULL. 0, reported, when a run cannot set the target, or the value does not fit it. */
 int model_command_value(const Model *m, AstId target, AstId value, double *out, const char **digits);
 
+/* Whether a symbol is the input that says whether a contact is closed. */
+static inline int model_is_contact_switch(const Model *m, SymId sym) {
+  for (uint32_t i = 0; i < m->contacts.n; i++)
+    if (m->contacts.at[i].closed == sym) return 1;
+  return 0;
+}
+
+/* Values by symbol: pi, and 0 for all others. */
+long double *model_constants(const Model *m);
+
 #endif

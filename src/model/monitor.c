@@ -43,7 +43,7 @@ void set_monitor(Builder *b, const AstStmt *st) {
     return;
   }
   const AstExpr *x = ast_expr(b->ast, st->lhs);
-  Unit none = {.dim = DIM_NONE, .factor = num_int(1), .offset = num_int(0), .text = "1"};
+  Unit none = unit_si(DIM_NONE, "1");
   int charge = charge_named(b, x);
   Monitor mon = {.output = -1 - charge, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
   mon.name = intern(b->ast->names, ast_text(b, st->lhs));

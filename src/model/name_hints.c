@@ -1,5 +1,6 @@
 /* Hints for unknown names: declarations out of reach, habits from paper (xdot, p_x, wt), functions of other languages, nearest names. */
 #include "base/suggest.h"
+#include "base/words.h"
 #include "model/builder.h"
 
 static int declares(const AstStmt *st, Name name) {

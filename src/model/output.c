@@ -27,7 +27,7 @@ const Unit *entity_unit(const Builder *b, const Entity *e) {
 /* Unit of an output: the name's declared unit, otherwise none yet: fill_inferred_units derives it from the dimension. */
 static Unit output_unit(Builder *b, const Entity *e, uint32_t primes, Dim dim) {
   const Unit *own = e ? entity_unit(b, e) : NULL;
-  Unit u = own && own->text[0] ? *own : (Unit){.factor = num_int(1), .offset = num_int(0), .text = ""};
+  Unit u = own && own->text[0] ? *own : unit_si(DIM_ANY, "");
   for (; primes; primes--) u = unit_per_second(b, &u);
   u.dim = dim;
   return u;

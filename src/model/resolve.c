@@ -7,7 +7,7 @@
 #include <math.h>
 
 #include "base/decimal_literal.h"
-#include "base/suggest.h"
+#include "base/words.h"
 #include "model/resolve_impl.h"
 #include "sym/eval.h"
 
@@ -365,13 +365,17 @@ Value resolve(Builder *b, AstId id, Context where, Name effect) {
 
 /* --- values assigned to names with units --- */
 
+long double constant_value(const Builder *b, Expr e) {
+  long double x = 0;
+  expr_eval(b->g, &e, 1, model_constants(b->m), &x);
+  return x;
+}
+
 /* Warns of pi/2 assigned to a name in degrees: a bare number takes the unit, here pi/2 degrees. */
 static void warn_degrees(Builder *b, const Value *v, Span span, const Unit *unit) {
   if (v->n || expr_is_num(b->g, v->e) || !unit->text[0] || dim_resolved(b->dims, unit->dim) != DIM_NONE) return;
   if (num_is_one(unit->factor) && !unit->pi_power) return;
-  long double *symbols = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1), x = 0;
-  symbols[b->m->pi] = 3.14159265358979323846264338327950288L;
-  expr_eval(b->g, &v->e, 1, symbols, &x);
+  long double x = constant_value(b, v->e);
   const char *text = source_text(b, span);
   diag_warning(b->diags, span, "`%s` is taken as %s [%s]", text, arena_printf(b->arena, "%.6Lg", x), unit->text);
   diag_help(b->diags, "write `(%s) [rad]`, or `(%s) [%s]` where that is meant", text, text, unit->text);
@@ -425,9 +429,7 @@ double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, 
   *digits = NULL;
   Expr e = resolve_in(b, id, IN_CONST, NULL, unit);
   if (!e) return NAN;
-  long double *symbols = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1), x = 0;
-  symbols[b->m->pi] = 3.14159265358979323846264338327950288L;
-  expr_eval(b->g, &e, 1, symbols, &x);
+  long double x = constant_value(b, e);
   if (!isfinite((double)x)) {
     diag_error(b->diags, ast_expr(b->ast, id)->span, "%s is not a finite number", what);
     return NAN;

@@ -4,12 +4,6 @@
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
 
-static uint32_t list_length(const Builder *b, AstId first) {
-  uint32_t n = 0;
-  for (AstId i = first; i; i = ast_expr(b->ast, i)->next) n++;
-  return n;
-}
-
 static const struct {
   const char *name;
   ExprOp op;
@@ -42,7 +36,7 @@ int call_takes_vectors(const Eval *ev, const AstExpr *x) {
 }
 
 int arity_is(Eval *ev, const AstExpr *x, uint32_t want) {
-  uint32_t n = list_length(ev->b, x->args);
+  uint32_t n = ast_list_length(ev->b->ast, x->args);
   if (n == want) return 1;
   diag_error(ev->b->diags, x->span, "`%s` takes %u argument%s, here it has %u", x->name, want, want == 1 ? "" : "s", n);
   if (n == 1 && (strcmp(x->name, "dot") == 0 || strcmp(x->name, "d") == 0)) diag_help(ev->b->diags, "a time derivative is written with a prime: `x'`");
@@ -124,12 +118,6 @@ static Value call_dot(Eval *ev, const AstExpr *x) {
   return a_value(dot(ev->b->g, v, w), dim_mul(ev->b->dims, v->dim, w->dim), v->bare && w->bare);
 }
 
-/* v_i w_j - v_j w_i */
-static Expr cross_part(ExprGraph *g, const Value *v, const Value *w, int i, int j) {
-  Expr a = expr_mul(g, v->at[i], w->at[j]), c = expr_mul(g, v->at[j], w->at[i]);
-  return expr_sub(g, a, c);
-}
-
 /* Cross product; a number for plane vectors. */
 static Value call_cross(Eval *ev, const AstExpr *x) {
   ExprGraph *g = ev->b->g;
@@ -137,11 +125,11 @@ static Value call_cross(Eval *ev, const AstExpr *x) {
   if (!two_vectors(ev, x, &v, &w)) return FAILED;
   Value r = {.dim = dim_mul(ev->b->dims, v->dim, w->dim), .bare = v->bare && w->bare};
   if (v->n == 2) {
-    r.e = cross_part(g, v, w, 0, 1);
+    r.e = cross_component(g, v->at, w->at, 2);
     return r;
   }
   r.n = 3;
-  for (int k = 0; k < 3; k++) r.at[k] = cross_part(g, v, w, (k + 1) % 3, (k + 2) % 3);
+  for (int k = 0; k < 3; k++) r.at[k] = cross_component(g, v->at, w->at, k);
   return r;
 }
 
@@ -217,13 +205,13 @@ static const Entity *called_motion(const Eval *ev, const AstExpr *x) {
   int ambiguous;
   const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, &ambiguous);
   int moves = e && (e->kind == ENT_COORD || e->kind == ENT_STATE || e->kind == ENT_LET);
-  return moves && list_length(ev->b, x->args) == 1 ? e : NULL;
+  return moves && ast_list_length(ev->b->ast, x->args) == 1 ? e : NULL;
 }
 
 /* 1 for `F(t)`, the notation of paper for time-dependent quantities. */
 static int is_of_time(const Eval *ev, const AstExpr *x) {
   const AstExpr *argument = x->args ? ast_expr(ev->b->ast, x->args) : NULL;
-  return argument && argument->kind == AST_NAME && strcmp(argument->name, "t") == 0 && list_length(ev->b, x->args) == 1;
+  return argument && argument->kind == AST_NAME && strcmp(argument->name, "t") == 0 && ast_list_length(ev->b->ast, x->args) == 1;
 }
 
 static Value unknown_function(Eval *ev, const AstExpr *x) {

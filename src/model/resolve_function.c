@@ -10,12 +10,6 @@ const Value *function_argument(const Builder *b, const Instance *function, Name 
   return NULL;
 }
 
-static uint32_t count_args(const Builder *b, const Definition *f) {
-  uint32_t n = 0;
-  for (AstId i = f->stmt->args; i; i = ast_expr(b->ast, i)->next) n++;
-  return n;
-}
-
 /* Declares the symbols of an argument, one per component. */
 static Value new_argument(Builder *b, Instance *in, Name name, uint32_t shape) {
   Value v = {.n = shape, .dim = b->unitless ? DIM_ANY : dim_unknown(b->dims, name)};
@@ -41,7 +35,7 @@ void need_rates(Builder *b, Instance *in) {
 Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes) {
   Definition *f = &b->functions.at[function];
   Instance *in = ARENA_NEW(b->arena, Instance);
-  *in = (Instance){.function = function, .nargs = count_args(b, f), .first_unknown = dim_unknowns(b->dims), .next = f->instances};
+  *in = (Instance){.function = function, .nargs = ast_list_length(b->ast, f->stmt->args), .first_unknown = dim_unknowns(b->dims), .next = f->instances};
   in->args = ARENA_ARRAY(b->arena, Value, in->nargs + 1);
   AstId id = f->stmt->args;
   for (uint32_t i = 0; i < in->nargs; i++, id = ast_expr(b->ast, id)->next)
@@ -143,7 +137,7 @@ static Value call_instance(Eval *ev, const AstExpr *x, const Instance *in) {
 Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
   Builder *b = ev->b;
   const Definition *f = &b->functions.at[e->index];
-  uint32_t nargs = count_args(b, f), n = 0, *shapes = ARENA_ARRAY(b->arena, uint32_t, nargs + 1);
+  uint32_t nargs = ast_list_length(b->ast, f->stmt->args), n = 0, *shapes = ARENA_ARRAY(b->arena, uint32_t, nargs + 1);
   if (ev->where < IN_DYNAMICS) {
     diag_error(b->diags, x->span, "`%s` is a function of the model's own, and may not be used here", x->name);
     return FAILED;
@@ -180,7 +174,7 @@ static void forget_instances(Builder *b, uint32_t n) {
 void check_uncalled(Builder *b, uint32_t function) {
   enum { MOST_ARGS = 4 };
   const Definition *f = &b->functions.at[function];
-  uint32_t n = count_args(b, f), tries = 1, mark = dims_mark(b->dims);
+  uint32_t n = ast_list_length(b->ast, f->stmt->args), tries = 1, mark = dims_mark(b->dims);
   uint32_t *shapes = ARENA_ARRAY(b->arena, uint32_t, n + 1);
   if (f->instances) return;
   for (uint32_t i = 0; i < n; i++) tries = n > MOST_ARGS ? 1 : tries * 3;

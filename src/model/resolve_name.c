@@ -257,10 +257,7 @@ Value index_value(Eval *ev, const AstExpr *x) {
   } else if (of->kind == AST_MEMBER && ast_expr(b->ast, of->a)->kind == AST_NAME) {
     Name owner = ast_expr(b->ast, of->a)->name;
     e = scope_own(&b->scope, of->name, owner);
-    if (!e) {
-      diag_error(b->diags, of->span, "no effect in use declares `%s.%s`", owner, of->name);
-      advise_unknown_member(b, owner, of->name);
-    }
+    if (!e) report_no_member(b, of->span, owner, of->name);
   } else if (of->kind != AST_ERROR) {
     diag_error(b->diags, x->span, "an index stands directly behind the name of a family");
   }
@@ -299,8 +296,7 @@ Value member_value(Eval *ev, const AstExpr *x) {
     Value v = name_value(ev, left);
     return ev->waiting ? FAILED : component(ev, x, v);
   }
-  diag_error(b->diags, x->span, "no effect in use declares `%s.%s`", left->name, x->name);
-  advise_unknown_member(b, left->name, x->name);
+  report_no_member(b, x->span, left->name, x->name);
   return FAILED;
 }
 

@@ -40,13 +40,14 @@ Value rotation_product(Builder *b, const Value *p, const Value *q) {
   return r;
 }
 
-/* out = u x v */
+Expr cross_component(ExprGraph *g, const Expr *u, const Expr *v, int k) {
+  int i = (k + 1) % 3, j = (k + 2) % 3;
+  Expr plus = expr_mul(g, u[i], v[j]), minus = expr_mul(g, u[j], v[i]);
+  return expr_sub(g, plus, minus);
+}
+
 static void cross3(ExprGraph *g, const Expr *u, const Expr *v, Expr *out) {
-  for (int k = 0; k < 3; k++) {
-    int i = (k + 1) % 3, j = (k + 2) % 3;
-    Expr plus = expr_mul(g, u[i], v[j]), minus = expr_mul(g, u[j], v[i]);
-    out[k] = expr_sub(g, plus, minus);
-  }
+  for (int k = 0; k < 3; k++) out[k] = cross_component(g, u, v, k);
 }
 
 Value rotation_turn(Builder *b, const Value *q, const Value *v) {

@@ -203,10 +203,10 @@ static void set_value(Builder *b, const AstStmt *st, Name effect) {
 }
 
 static Unit seconds(const Builder *b) {
-  return (Unit){.dim = dim_base(b->dims, DIM_TIME), .factor = num_int(1), .offset = num_int(0), .text = "s"};
+  return unit_si(dim_base(b->dims, DIM_TIME), "s");
 }
 
-static Unit no_unit(void) { return (Unit){.dim = DIM_NONE, .factor = num_int(1), .offset = num_int(0), .text = "1"}; }
+static Unit no_unit(void) { return unit_si(DIM_NONE, "1"); }
 
 static void set_every(Builder *b, const AstStmt *st) {
   Unit s = seconds(b);

@@ -130,7 +130,7 @@ int spin_target(Builder *b, AstId place, Name effect) {
 }
 
 Unit spin_unit(const Builder *b) {
-  return (Unit){.dim = dim_per_second(b->dims, DIM_NONE), .factor = num_int(1), .offset = num_int(0), .text = "rad/s"};
+  return unit_si(dim_per_second(b->dims, DIM_NONE), "rad/s");
 }
 
 /* Target of values for omega(R): assign_values numbers them as vectors of 3 components, rotations have 4. */

@@ -48,7 +48,7 @@ void declare_symmetry(Builder *b, const AstStmt *st, Name effect) {
   Name s = ast_expr(b->ast, st->args)->name;
   Dim dim = b->unitless ? DIM_ANY : dim_unknown(b->dims, s), action = dim_mul(b->dims, b->energy, dim_base(b->dims, DIM_TIME));
   y.parameter = declare_symbol(b, SYM_LOCAL, 0, s, SIGN_UNKNOWN, dim);
-  y.unit = (Unit){.dim = b->unitless ? DIM_ANY : dim_div(b->dims, action, dim), .factor = num_int(1), .offset = num_int(0), .text = ""};
+  y.unit = unit_si(b->unitless ? DIM_ANY : dim_div(b->dims, action, dim), "");
   y.charge = declare_symbol(b, SYM_LOCAL, 0, y.name, SIGN_UNKNOWN, y.unit.dim);
   vec_push(b->arena, &m->symmetries, y);
 }
@@ -196,7 +196,7 @@ static void give_target(Builder *b, uint32_t scalar, Expr value, Span span, void
 /* Adds the map of time, `t -> ...`. */
 static void map_time(Mapping *p, AstId rhs, Name effect) {
   Builder *b = p->b;
-  Unit s = {.dim = b->dim_of.at[b->m->time], .factor = num_int(1), .offset = num_int(0), .text = "s"};
+  Unit s = unit_si(b->dim_of.at[b->m->time], "s");
   Expr to = resolve_in(b, rhs, IN_DYNAMICS, effect, &s);
   if (to) add_move(p, b->m->time, to, ast_expr(b->ast, rhs)->span);
 }

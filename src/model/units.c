@@ -224,7 +224,7 @@ static int apply_factor(Unit *u, const AstUnit *ast, const AstUnitFactor *f, Dim
 }
 
 Unit unit_resolve(const AstUnit *ast, Dims *dims, Diags *diags, Arena *a) {
-  Unit u = {.dim = ast->n ? DIM_NONE : DIM_ANY, .factor = num_int(1), .offset = num_int(0), .text = ""};
+  Unit u = unit_si(ast->n ? DIM_NONE : DIM_ANY, "");
   if (!ast->n) return u;
   u.text = arena_strdup(a, ast->text);
   for (uint32_t i = 0; i < ast->n; i++)
@@ -237,7 +237,7 @@ Unit unit_resolve(const AstUnit *ast, Dims *dims, Diags *diags, Arena *a) {
 }
 
 Unit unit_of_dim(Dims *dims, Dim d) {
-  Unit u = {.dim = d, .factor = num_int(1), .offset = num_int(0), .text = ""};
+  Unit u = unit_si(d, "");
   d = dim_resolved(dims, d);
   if (d != DIM_ANY && d != DIM_NONE && !dim_is_open(dims, d)) u.text = dim_text(dims, d);
   return u;

@@ -17,6 +17,9 @@ typedef struct {
  * No unit written: DIM_ANY, factor 1. */
 Unit unit_resolve(const AstUnit *u, Dims *dims, Diags *diags, Arena *a);
 
+/* SI unit of dimension d, written `text`. */
+static inline Unit unit_si(Dim d, const char *text) { return (Unit){.dim = d, .factor = num_int(1), .offset = num_int(0), .text = text}; }
+
 /* SI unit of a dimension: factor 1; text "" for unknown dimensions and pure numbers. */
 Unit unit_of_dim(Dims *dims, Dim d);
 

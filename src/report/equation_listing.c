@@ -1,6 +1,7 @@
 /* The listing of the equations of motion, the one-line facts, and --dump=eqns. */
 #include "report/equation_listing.h"
 
+#include "base/words.h"
 #include "symmetry/charges.h"
 #include "report/listing_text.h"
 #include "mech/kinetic_squares.h"
@@ -155,8 +156,6 @@ static void energy(Text *t, const Charge *c) {
   if (moves) text_named(t, "dE/dt", "\\dot{E}", c->proof.power, 1);
   text_end(t);
 }
-
-static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 
 /* Degrees of freedom of n first-order coordinates, two of which make one; drag may couple an odd number. */
 static const char *half(const Eqns *e, uint32_t n) { return arena_printf(e->m->arena, "%u%s", n / 2, n % 2 ? " 1/2" : ""); }

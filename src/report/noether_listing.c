@@ -1,5 +1,6 @@
 /* `lagc noether` as text and as LaTeX. */
 #include "symmetry/noether_report.h"
+#include "base/words.h"
 #include "report/listing_text.h"
 
 typedef struct {
@@ -46,8 +47,6 @@ static const char *named_latex(const Page *p, uint32_t k, int dot) {
 
 /* A line of prose; in LaTeX a comment. */
 static void say(Page *p, const char *words) { sb_printf(p->text.out, "%s%s\n", text_latex(&p->text) ? "% " : "", words); }
-
-static const char *plural(uint32_t n) { return n == 1 ? "" : "s"; }
 
 /* --- symmetries --- */
 

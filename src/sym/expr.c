@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/hash.h"
 #include "sym/expr_impl.h"
 
 #define X(NAME, arity, text) text,
@@ -18,8 +19,8 @@ ExprGraph *expr_graph(Arena *a, Interner *names) {
   g->seen = expr_map(a);
   g->work = expr_map(a);
   g->live = expr_map(a);
-  g->table_cap = 1024;
-  g->table = ARENA_ARRAY(a, Expr, g->table_cap);
+  g->table = idtable(a, 512);
+  g->named_table = idtable(a, 32);
   vec_push(a, &g->nodes, ((Node){0}));
   vec_push(a, &g->symbols, ((Symbol){0}));
   g->zero = expr_int(g, 0);
@@ -33,63 +34,40 @@ uint32_t expr_count(const ExprGraph *g) { return g->nodes.n - 1; }
 
 /* --- hash-consing --- */
 
-static uint32_t mix(uint32_t h, uint32_t x) {
-  h ^= x + 0x9e3779b9u + (h << 6) + (h >> 2);
-  return h * 0x85ebca6bu;
-}
-
 static uint32_t hash_parts(ExprOp op, const Expr *args, uint32_t n, Name name) {
-  uint32_t h = mix(0x811c9dc5u, (uint32_t)op);
-  for (uint32_t i = 0; i < n; i++) h = mix(h, args[i]);
-  for (const char *c = name; c && *c; c++) h = mix(h, (unsigned char)*c);
-  return h ^ (h >> 15);
+  uint32_t h = hash_mix(0x811c9dc5u, (uint32_t)op);
+  for (uint32_t i = 0; i < n; i++) h = hash_mix(h, args[i]);
+  for (const char *c = name; c && *c; c++) h = hash_mix(h, (unsigned char)*c);
+  return h;
 }
 
-static uint32_t mix_64(uint32_t h, uint64_t x) { return mix(mix(h, (uint32_t)x), (uint32_t)(x >> 32)); }
+static uint32_t mix_64(uint32_t h, uint64_t x) { return hash_mix(hash_mix(h, (uint32_t)x), (uint32_t)(x >> 32)); }
 
 /* Hash of the fields that num_equal compares; the error of an inexact number is not among them. */
 static uint32_t hash_num(Num n) {
   uint64_t bits = 0;
   memcpy(&bits, &n.approx, sizeof bits);
-  uint32_t h = n.den ? mix_64(mix_64(7, (uint64_t)n.num), (uint64_t)n.den) : mix_64(mix_64(11, bits), n.residue);
-  return h ^ (h >> 15);
+  return n.den ? mix_64(mix_64(7, (uint64_t)n.num), (uint64_t)n.den) : mix_64(mix_64(11, bits), n.residue);
 }
 
-static uint32_t hash_node(const ExprGraph *g, Expr e) {
-  const Node *n = &g->nodes.at[e];
-  if (n->op == EX_NUM) return hash_num(g->numbers.at[n->payload]);
-  return hash_parts((ExprOp)n->op, g->args.at + n->payload, n->nargs, n->name);
-}
-
-static void insert(ExprGraph *g, Expr e, uint32_t hash) {
-  uint32_t i = hash & (g->table_cap - 1);
-  while (g->table[i]) i = (i + 1) & (g->table_cap - 1);
-  g->table[i] = e;
-}
-
-/* Appends a node and enters it into the hash table, which may grow. Symbols stay out: each declaration is its own node. */
-static Expr add_node(ExprGraph *g, Node n, uint32_t hash) {
+static Expr add_node(ExprGraph *g, Node n) {
   if (g->nodes.n >= UINT32_MAX / 2) arena_fail(g->arena);
   vec_push(g->arena, &g->nodes, n);
-  Expr e = g->nodes.n - 1;
-  if (n.op == EX_SYM) return e;
-  if (g->nodes.n * 2 > g->table_cap) {
-    g->table_cap *= 2;
-    g->table = ARENA_ARRAY(g->arena, Expr, g->table_cap);
-    for (Expr i = 1; i < e; i++)
-      if (g->nodes.at[i].op != EX_SYM) insert(g, i, hash_node(g, i));
-  }
-  insert(g, e, hash);
+  return g->nodes.n - 1;
+}
+
+/* Appends a node and enters it into the hash table. */
+static Expr add_hashed(ExprGraph *g, Node n, uint32_t hash) {
+  Expr e = add_node(g, n);
+  idtable_add(&g->table, hash, e);
   return e;
 }
 
 static Expr make_named(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs, Name name) {
-  uint32_t hash = hash_parts(op, args, nargs, name);
-  for (uint32_t i = hash & (g->table_cap - 1); g->table[i]; i = (i + 1) & (g->table_cap - 1)) {
-    const Node *n = &g->nodes.at[g->table[i]];
-    if (n->op == op && n->nargs == nargs && n->name == name &&
-        memcmp(g->args.at + n->payload, args, nargs * sizeof *args) == 0)
-      return g->table[i];
+  uint32_t hash = hash_parts(op, args, nargs, name), slot = idtable_start(&g->table, hash);
+  for (Expr e; idtable_next(&g->table, hash, &slot, &e);) {
+    const Node *n = &g->nodes.at[e];
+    if (n->op == op && n->nargs == nargs && n->name == name && memcmp(g->args.at + n->payload, args, nargs * sizeof *args) == 0) return e;
   }
   Node n = {.op = (uint8_t)op, .nargs = nargs, .payload = g->args.n, .name = name};
   n.sign = (uint8_t)expr_infer_sign(g, op, args, nargs);
@@ -97,7 +75,7 @@ static Expr make_named(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs
     n.kinds |= g->nodes.at[args[i]].kinds;
     vec_push(g->arena, &g->args, args[i]);
   }
-  return add_node(g, n, hash);
+  return add_hashed(g, n, hash);
 }
 
 Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs) {
@@ -107,16 +85,16 @@ Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs) {
 /* --- leaves --- */
 
 Expr expr_num(ExprGraph *g, Num v) {
-  uint32_t hash = hash_num(v);
-  for (uint32_t i = hash & (g->table_cap - 1); g->table[i]; i = (i + 1) & (g->table_cap - 1)) {
-    const Node *n = &g->nodes.at[g->table[i]];
-    if (n->op == EX_NUM && num_equal(g->numbers.at[n->payload], v)) return g->table[i];
+  uint32_t hash = hash_num(v), slot = idtable_start(&g->table, hash);
+  for (Expr e; idtable_next(&g->table, hash, &slot, &e);) {
+    const Node *n = &g->nodes.at[e];
+    if (n->op == EX_NUM && num_equal(g->numbers.at[n->payload], v)) return e;
   }
   int s = num_sign(v);
   Node n = {.op = EX_NUM, .payload = g->numbers.n};
   n.sign = !num_sign_is_sure(v) ? SIGN_UNKNOWN : s > 0 ? SIGN_POSITIVE : s < 0 ? SIGN_NEGATIVE : SIGN_NONNEGATIVE;
   vec_push(g->arena, &g->numbers, v);
-  return add_node(g, n, hash);
+  return add_hashed(g, n, hash);
 }
 
 Expr expr_int(ExprGraph *g, int64_t n) { return expr_num(g, num_int(n)); }
@@ -124,7 +102,7 @@ Expr expr_int(ExprGraph *g, int64_t n) { return expr_num(g, num_int(n)); }
 SymId expr_declare(ExprGraph *g, SymKind kind, uint32_t index, Name name, ExprSign sign) {
   SymId id = g->symbols.n;
   Node n = {.op = EX_SYM, .payload = id, .sign = (uint8_t)sign, .kinds = (uint16_t)(1u << kind)};
-  Expr node = add_node(g, n, 0);
+  Expr node = add_node(g, n); /* stays out of the table: each declaration is its own node */
   Symbol s = {.kind = kind, .index = index, .name = name, .sign = sign, .node = node};
   vec_push(g->arena, &g->symbols, s);
   return id;
@@ -141,22 +119,13 @@ Expr expr_def(ExprGraph *g, Name name, Expr body) {
 
 /* The table entry of (name, body), made if absent. */
 static Named *named_entry(ExprGraph *g, Name name, Expr body) {
-  if (2 * g->named.n >= g->named_cap) {
-    g->named_cap = g->named_cap ? 2 * g->named_cap : 64;
-    g->named_table = ARENA_ARRAY(g->arena, uint32_t, g->named_cap);
-    for (uint32_t k = 0; k < g->named.n; k++) {
-      uint32_t i = hash_parts(EX_DEF, &g->named.at[k].body, 1, g->named.at[k].name) & (g->named_cap - 1);
-      while (g->named_table[i]) i = (i + 1) & (g->named_cap - 1);
-      g->named_table[i] = k + 1;
-    }
-  }
-  uint32_t i = hash_parts(EX_DEF, &body, 1, name) & (g->named_cap - 1);
-  for (; g->named_table[i]; i = (i + 1) & (g->named_cap - 1)) {
-    Named *n = &g->named.at[g->named_table[i] - 1];
+  uint32_t hash = hash_parts(EX_DEF, &body, 1, name), slot = idtable_start(&g->named_table, hash), id;
+  while (idtable_next(&g->named_table, hash, &slot, &id)) {
+    Named *n = &g->named.at[id];
     if (n->name == name && n->body == body) return n;
   }
   vec_push(g->arena, &g->named, ((Named){.name = name, .body = body}));
-  g->named_table[i] = g->named.n;
+  idtable_add(&g->named_table, hash, g->named.n - 1);
   return &g->named.at[g->named.n - 1];
 }
 
@@ -187,6 +156,7 @@ Name expr_def_name(const ExprGraph *g, Expr e) { return g->nodes.at[e].name; }
 ExprSign expr_sign(const ExprGraph *g, Expr e) { return (ExprSign)g->nodes.at[e].sign; }
 int expr_is_num(const ExprGraph *g, Expr e) { return g->nodes.at[e].op == EX_NUM; }
 unsigned expr_kinds(const ExprGraph *g, Expr e) { return g->nodes.at[e].kinds; }
+int expr_is_constant(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
 int expr_is_zero(const ExprGraph *g, Expr e) { return e == g->zero; }
 const char *expr_op_text(ExprOp op) { return op_texts[op]; }
 

@@ -109,6 +109,7 @@ Name expr_def_name(const ExprGraph *g, Expr e);        /* of a DEF; its body is 
 ExprSign expr_sign(const ExprGraph *g, Expr e);
 int expr_is_num(const ExprGraph *g, Expr e);
 unsigned expr_kinds(const ExprGraph *g, Expr e); /* kinds of the symbols in e, as bits 1 << SymKind */
+int expr_is_constant(const ExprGraph *g, Expr e); /* made of numbers, parameters and constants alone */
 int expr_is_zero(const ExprGraph *g, Expr e);
 int expr_is_bool(const ExprGraph *g, Expr e); /* a comparison or logical operation */
 const char *expr_op_text(ExprOp op);

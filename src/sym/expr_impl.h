@@ -2,6 +2,7 @@
 #ifndef LAGC_EXPR_IMPL_H
 #define LAGC_EXPR_IMPL_H
 
+#include "base/id_table.h"
 #include "sym/expr.h"
 
 typedef struct {
@@ -32,8 +33,7 @@ struct ExprGraph {
   VEC(Expr) args;
   VEC(Num) numbers;
   VEC(Symbol) symbols;
-  Expr *table; /* hash of nodes, open addressing */
-  uint32_t table_cap;
+  IdTable table; /* of nodes other than symbols */
   ExprMap seen; /* scratch of expr_topo */
   ExprMap live; /* scratch of reverse sweeps */
   VEC(Contribution) pool;
@@ -41,7 +41,7 @@ struct ExprGraph {
   Expr *found, *spare; /* scratch of expr_topo, used again */
   uint32_t found_cap, spare_n;
   VEC(Named) named;          /* definitions by requested name and body: see expr_def_unique */
-  uint32_t *named_table, named_cap;
+  IdTable named_table;       /* of `named` */
   Expr zero, one, minus_one;
 };
 

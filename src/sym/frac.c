@@ -38,7 +38,7 @@ DenId frac_den_of(FracField *f, const DenFactor *at, uint32_t n) {
     DenFactor one = list[i++];
     while (i < n && list[i].factor == one.factor) one.exp += list[i++].exp;
     if (one.exp == 0) continue;
-    hash = id_mix(id_mix(hash, one.factor), one.exp);
+    hash = hash_mix(hash_mix(hash, one.factor), one.exp);
     list[out++] = one;
   }
   uint32_t slot = idtable_start(&f->den_table, hash), id;

@@ -33,7 +33,7 @@ void normal_set_gen_info(Normal *n, GenId x, GenInfo info) {
 
 static uint32_t hash_key(const uint32_t *key, uint32_t len) {
   uint32_t h = len;
-  for (uint32_t i = 0; i < len; i++) h = id_mix(h, key[i]);
+  for (uint32_t i = 0; i < len; i++) h = hash_mix(h, key[i]);
   return h;
 }
 

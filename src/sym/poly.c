@@ -77,7 +77,7 @@ static GenId find_reducible(const PolyRing *r, const MonoPow *at, uint32_t n) {
 /* The id of a monomial without zero exponents. */
 static MonoId mono_intern(PolyRing *r, const MonoPow *at, uint32_t n) {
   uint32_t hash = n;
-  for (uint32_t i = 0; i < n; i++) hash = id_mix(id_mix(hash, at[i].gen), (uint32_t)at[i].exp);
+  for (uint32_t i = 0; i < n; i++) hash = hash_mix(hash_mix(hash, at[i].gen), (uint32_t)at[i].exp);
   uint32_t slot = idtable_start(&r->mono_table, hash), id;
   while (idtable_next(&r->mono_table, hash, &slot, &id)) {
     const Mono *m = &r->monos.at[id];
@@ -452,9 +452,9 @@ int poly_div_exact(PolyRing *r, Poly a, Poly b, Poly *q) {
 PolyId poly_intern(PolyRing *r, Poly a) {
   uint32_t hash = a.n;
   for (uint32_t i = 0; i < a.n; i++) {
-    hash = id_mix(hash, a.at[i].mono);
-    hash = id_mix(hash, (uint32_t)a.at[i].c.num);
-    hash = id_mix(hash, (uint32_t)a.at[i].c.den);
+    hash = hash_mix(hash, a.at[i].mono);
+    hash = hash_mix(hash, (uint32_t)a.at[i].c.num);
+    hash = hash_mix(hash, (uint32_t)a.at[i].c.den);
   }
   uint32_t slot = idtable_start(&r->poly_table, hash), id;
   while (idtable_next(&r->poly_table, hash, &slot, &id))

@@ -16,7 +16,8 @@
 
 #include "base/num.h"
 #include "base/vec.h"
-#include "sym/idtable.h"
+#include "base/hash.h"
+#include "base/id_table.h"
 
 typedef uint32_t GenId;
 typedef uint32_t MonoId; /* monomials are interned; 0 is the monomial 1 */

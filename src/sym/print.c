@@ -44,8 +44,6 @@ typedef struct {
 } Factor;
 
 /* Whether e contains symbols other than parameters and constants. */
-static int varies(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) != 0; }
-
 /* Position of a factor in a product: numbers and sums of parameters, parameters, coordinates, functions, velocities:
  * (m1 + m2)*g*l*sin(th)*th'. */
 static int rank_of(ExprGraph *g, Expr e) {
@@ -60,7 +58,7 @@ static int rank_of(ExprGraph *g, Expr e) {
         case SYM_ACC: return 8;
       }
       return 4;
-    case EX_SUM: return varies(g, e) ? 3 : 0;
+    case EX_SUM: return !expr_is_constant(g, e) ? 3 : 0;
     case EX_DEF: return 5;
     default: return 6; /* functions, and powers as bases */
   }

@@ -32,8 +32,6 @@ typedef struct {
 
 typedef VEC(RateCandidate) RateCandidates;
 
-static int is_constant(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
-
 static void add_guess(SymmetrySearch *s, RateCandidates *all, Expr root, int is_double) {
   int negative = choice_value(&s->choices, CHOICE_FIRST, root) < 0;
   Expr square = expr_neg(s->g, expr_pow_num(s->g, root, num_int(2)));
@@ -63,7 +61,7 @@ static RateCandidates rate_candidates(SymmetrySearch *s) {
   if (e->n && !e->mass_known) eqns_derive_mass(e);
   for (uint32_t i = 0; i < e->n; i++) {
     Expr m = simplify(g, eqns_mass(e, i, i)), k = simplify(g, expr_diff(g, e->dLdq[i], s->ansatz->q[i]));
-    if (expr_is_zero(g, m) || !is_constant(g, m) || !is_constant(g, k)) continue;
+    if (expr_is_zero(g, m) || !expr_is_constant(g, m) || !expr_is_constant(g, k)) continue;
     kappa[i] = simplify(g, expr_div(g, k, m));
     if (!expr_is_zero(g, k)) {
       int grows = choice_value(&s->choices, CHOICE_FIRST, kappa[i]) > 0;
@@ -73,7 +71,7 @@ static RateCandidates rate_candidates(SymmetrySearch *s) {
     for (uint32_t j = 0; j < i; j++) {
       Expr one = expr_diff(g, e->dLdq[i], s->ansatz->v[j]), other = expr_diff(g, e->dLdq[j], s->ansatz->v[i]);
       Expr b = simplify(g, expr_sub(g, one, other));
-      if (kappa[j] == kappa[i] && is_constant(g, b) && !expr_is_zero(g, b)) add_coupled(s, &all, simplify(g, expr_div(g, b, m)), kappa[i]);
+      if (kappa[j] == kappa[i] && expr_is_constant(g, b) && !expr_is_zero(g, b)) add_coupled(s, &all, simplify(g, expr_div(g, b, m)), kappa[i]);
     }
   }
   return all;
@@ -163,7 +161,7 @@ static void rates_in_text(SymmetrySearch *s, Exprs *circular, Exprs *exponential
     ExprOp op = expr_op(g, all.at[i]);
     if (op != EX_SIN && op != EX_COS && op != EX_EXP) continue;
     Expr rate = simplify(g, expr_diff(g, expr_arg(g, all.at[i], 0), s->e->m->time));
-    if (expr_is_zero(g, rate) || !is_constant(g, rate)) continue;
+    if (expr_is_zero(g, rate) || !expr_is_constant(g, rate)) continue;
     if (choice_value(&s->choices, CHOICE_FIRST, rate) < 0) rate = expr_neg(g, rate);
     add_once(s, op == EX_EXP ? exponential : circular, rate);
   }

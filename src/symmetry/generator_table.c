@@ -5,15 +5,10 @@
 #include <complex.h>
 #include <math.h>
 
+#include "base/dense.h"
 #include "symmetry/search_frame.h"
 
 #include "sym/diff.h"
-
-static long double largest(const long double *x, size_t n) {
-  long double most = 0;
-  for (size_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
-  return most;
-}
 
 static void multiply(uint32_t n, const long double *a, const long double *b, long double *to) {
   memset(to, 0, (size_t)n * n * sizeof *to);
@@ -36,7 +31,7 @@ static void clear_rounding(long double *m, size_t n, long double size) {
     if (fabsl(m[i]) < 1e-12L * size) m[i] = 0;
 }
 
-static long double size_of(const SolutionSpace *s) { return fmaxl(largest(s->A, (size_t)s->space.n * s->space.n), 1e-3L) * (long double)(s->space.n + 1); }
+static long double size_of(const SolutionSpace *s) { return fmaxl(dense_largest(s->A, (size_t)s->space.n * s->space.n), 1e-3L) * (long double)(s->space.n + 1); }
 
 /* Orthonormal basis of the x with m^k x = 0 for some k up to `most`: the kernel of m[n*n], then the x that m maps into it, and so on. *depth: the
  * k needed. */
@@ -82,7 +77,7 @@ int table_same_shape(const GeneratorTable *a, const GeneratorTable *b) {
 
 static void reduce(GeneratorTable *t) {
   uint32_t width = t->blocks * t->shown;
-  long double size = largest(t->at, (size_t)t->rows * width);
+  long double size = dense_largest(t->at, (size_t)t->rows * width);
   t->rows = dense_echelon(t->rows, width, t->at, 1e-9L * size, t->pivot);
 }
 
@@ -97,7 +92,7 @@ GeneratorTable table_powers(Arena *a, const SolutionSpace *s, uint32_t shown) {
     for (uint32_t m = 0; m < TIME_BLOCKS_MOST; m++) {
       add_solution(s, at, factor, shown, t.at + (size_t)r * width + (size_t)m * shown);
       apply(n, s->A, at, next);
-      clear_rounding(next, n, largest(at, n) * size);
+      clear_rounding(next, n, dense_largest(at, n) * size);
       memcpy(at, next, n * sizeof *at);
       factor /= m + 1;
     }

@@ -63,8 +63,7 @@ int raise_generator(Arena *a, const Ansatz *s, const Num *M, uint32_t blocks, Ex
 
 /* Sets to 0 the elements that are rounding beside the largest of a row. */
 static void clear_rounding(long double *row, size_t width) {
-  long double most = 0;
-  for (size_t k = 0; k < width; k++) most = fmaxl(most, fabsl(row[k]));
+  long double most = dense_largest(row, width);
   for (size_t k = 0; k < width; k++)
     if (fabsl(row[k]) < 1e-13L * most) row[k] = 0;
 }

@@ -28,8 +28,6 @@ typedef struct {
   VEC(Form) all;       /* affine nodes that are not constant */
 } Forms;
 
-static int is_constant(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
-
 static Expr *zeros(Arena *a, ExprGraph *g, size_t n) {
   Expr *x = ARENA_ARRAY(a, Expr, n + 1);
   for (size_t i = 0; i < n; i++) x[i] = expr_int(g, 0);
@@ -53,7 +51,7 @@ static const Expr *form_of(const Forms *f, Expr x) {
 /* to += factor * x for a constant or a form x; 0: x is neither. */
 static int add_scaled(const Forms *f, Expr factor, Expr x, Expr *to) {
   const Expr *c = form_of(f, x);
-  if (!c && !is_constant(f->g, x)) return 0;
+  if (!c && !expr_is_constant(f->g, x)) return 0;
   if (!c) to[f->n] = expr_add(f->g, to[f->n], expr_mul(f->g, factor, x));
   for (uint32_t i = 0; c && i <= f->n; i++) to[i] = expr_add(f->g, to[i], expr_mul(f->g, factor, c[i]));
   return 1;
@@ -74,7 +72,7 @@ static int read_product(const Forms *f, Expr x, Expr *to) {
   for (uint32_t i = 0; i < expr_pairs(f->g, x, EX_PROD); i++) {
     Num power;
     Expr base = expr_pair(f->g, x, EX_PROD, i, &power);
-    if (is_constant(f->g, base)) factor = expr_mul(f->g, factor, expr_pow_num(f->g, base, power));
+    if (expr_is_constant(f->g, base)) factor = expr_mul(f->g, factor, expr_pow_num(f->g, base, power));
     else if (form || !num_is_one(power)) return 0;
     else form = base;
   }
@@ -106,7 +104,7 @@ static Forms forms_in(Arena *a, ExprGraph *g, ExprList nodes, const SymId *symbo
   Forms f = {.arena = a, .g = g, .symbol = symbol, .n = n, .place = expr_map(a)};
   for (uint32_t k = 0; k < nodes.n; k++) {
     Expr *c = zeros(a, g, n + 1);
-    if (is_constant(g, nodes.at[k]) || !read_form(&f, nodes.at[k], c) || !is_usable(&f, c)) continue;
+    if (expr_is_constant(g, nodes.at[k]) || !read_form(&f, nodes.at[k], c) || !is_usable(&f, c)) continue;
     vec_push(a, &f.all, ((Form){nodes.at[k], c}));
     expr_map_set(&f.place, nodes.at[k], f.all.n);
   }
@@ -427,7 +425,7 @@ static int derive_mass(const Eqns *e, LinearForms *f) {
       if (!expr_is_zero(g, mixed) && prove_zero(g, mixed, NULL) != PROVED_ZERO) return 0;
     }
     f->mass[i] = simplify(g, expr_diff(g, f->p[i], e->m->coords.at[i].v));
-    if (!is_constant(g, f->mass[i])) return 0;
+    if (!expr_is_constant(g, f->mass[i])) return 0;
   }
   return 1;
 }

@@ -423,13 +423,6 @@ static Expr power_of_constraints(ProofWork *w, Noether *to) {
 
 static int is_other_state(const Eqns *e, uint32_t i) { return !e->m->states.at[i].coordinate; }
 
-/* Whether an input is no user's input, but the switch of a contact (open or closed). */
-static int is_switch(const Model *m, const Input *in) {
-  for (uint32_t i = 0; i < m->contacts.n; i++)
-    if (m->contacts.at[i].closed == in->sym) return 1;
-  return 0;
-}
-
 /* tau dL/dt from everything in L besides q and t: states with their flow, inputs with the derivative of their formula. */
 static Expr power_of_change(const ProofWork *w, Noether *to) {
   ExprGraph *g = w->g;
@@ -440,7 +433,7 @@ static Expr power_of_change(const ProofWork *w, Noether *to) {
     if (is_other_state(w->e, i)) seed[m->states.at[i].z] = w->e->flow[i];
   for (uint32_t i = 0; i < m->inputs.n; i++) {
     const Input *in = &m->inputs.at[i];
-    if (!(expr_kinds(g, m->lagrangian) & 1u << SYM_INPUT) || !expr_contains_sym(g, m->lagrangian, in->sym) || is_switch(m, in)) continue;
+    if (!(expr_kinds(g, m->lagrangian) & 1u << SYM_INPUT) || !expr_contains_sym(g, m->lagrangian, in->sym) || model_is_contact_switch(m, in->sym)) continue;
     if (in->value) seed[in->sym] = expr_diff(g, in->value, m->time);
     to->by_formulas |= in->value != 0;
     to->power_unknown |= !in->value;

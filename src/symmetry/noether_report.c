@@ -162,7 +162,7 @@ int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t
 
 static void add_condition(const Eqns *e, Conditions *to, Expr base) {
   ExprSign sign = expr_sign(e->g, base);
-  int constant = !(expr_kinds(e->g, base) & ~(1u << SYM_PARAM | 1u << SYM_CONST));
+  int constant = expr_is_constant(e->g, base);
   if (!constant || sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE) return;
   for (uint32_t i = 0; i < to->n; i++)
     if (to->at[i] == base) return;

@@ -62,39 +62,16 @@ static void make_tape(BracketFit *w) {
   w->tape = eval_tape(w->g, roots, w->roots);
 }
 
-/* Solves m x = b for each row b of `rows`, [count*n], in place; m[n*n]. 0: m has no inverse. */
-static int solve(Arena *a, uint32_t n, const long double *m, uint32_t count, long double *rows) {
-  size_t w = (size_t)n + count;
-  long double *both = ARENA_ARRAY(a, long double, n * w + 1), largest = 0;
-  uint32_t *pivot = ARENA_ARRAY(a, uint32_t, n + 1);
-  for (size_t i = 0; i < n; i++) {
-    for (size_t j = 0; j < n; j++) largest = fmaxl(largest, fabsl(both[i * w + j] = m[i * n + j]));
-    for (size_t k = 0; k < count; k++) both[i * w + n + k] = rows[k * n + i];
-  }
-  dense_echelon(n, (uint32_t)w, both, 1e-13L * largest, pivot);
-  for (size_t i = 0; i < n; i++) {
-    if (pivot[i] != i || both[i * w + i] == 0) return 0;
-    for (size_t k = 0; k < count; k++) rows[k * n + i] = both[i * w + n + k];
-  }
-  return 1;
-}
-
 /* Replaces the derivatives by q and v with those in phase space. 0: M (or omega) has no inverse. */
 static int to_phase_space(const BracketFit *w, long double *out) {
   size_t n = w->n, r = w->r;
   long double *by_q = out + r, *by_v = by_q + r * n, *form = by_v + r * n, *slope = form + n * n;
   if (!w->e->n) memcpy(by_v, by_q, r * n * sizeof *by_v);
-  if (!solve(w->scratch, w->n, form, w->r, by_v)) return 0;
+  if (!dense_solve_rows(w->scratch, w->n, form, w->r, by_v)) return 0;
   for (size_t a = 0; a < r && w->e->n; a++)
     for (size_t i = 0; i < n; i++)
       for (size_t j = 0; j < n; j++) by_q[a * n + j] -= by_v[a * n + i] * slope[i * n + j];
   return 1;
-}
-
-static long double largest(const long double *x, size_t n) {
-  long double most = 0;
-  for (size_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
-  return most;
 }
 
 /* Brackets [pairs] at a state from derivatives in phase space; size[pairs] keeps the largest products of derivatives so far, the measure for
@@ -107,7 +84,7 @@ static void all_brackets(const BracketFit *w, const long double *out, long doubl
       const long double *aq = by_q + a * n, *bq = by_q + b * n, *ap = by_p + a * n, *bp = by_p + b * n;
       *to = 0;
       for (size_t i = 0; i < n; i++) *to += aq[i] * bp[i] - (w->e->n ? ap[i] * bq[i] : 0);
-      *size = fmaxl(*size, largest(aq, n) * largest(bp, n) + largest(ap, n) * largest(bq, n));
+      *size = fmaxl(*size, dense_largest(aq, n) * dense_largest(bp, n) + dense_largest(ap, n) * dense_largest(bq, n));
     }
 }
 
@@ -177,7 +154,7 @@ static int fit(const BracketFit *w, uint32_t choice, long double *c) {
   if (!draw_sample(w, choice, &x)) return 0;
   for (size_t pair = 0; pair < w->pairs; pair++)
     for (size_t s = 0; s < m; s++) c[pair * m + s] = x.brackets[s * w->pairs + pair];
-  if (!solve(w->scratch, m, x.charges, w->pairs, c)) return 0;
+  if (!dense_solve_rows(w->scratch, m, x.charges, w->pairs, c)) return 0;
   for (size_t pair = 0; pair < w->pairs; pair++) check_fit(w, &x, pair, c + pair * m);
   return 1;
 }
@@ -273,8 +250,6 @@ static Expr recognise(const BracketFit *w, long double *const *fits, size_t plac
   return known ? known : recognise_monomial(&w->choices, x);
 }
 
-static int is_constant(const BracketFit *w, Expr x) { return (expr_kinds(w->g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
-
 /* The constant of a bracket, its difference from the combination of charges: by simplification, or recognised and then proved. */
 static void find_bracket_constant(const BracketFit *w, Bracket *k, long double *const *fits, size_t place, int bold) {
   ExprGraph *g = w->g;
@@ -282,7 +257,7 @@ static void find_bracket_constant(const BracketFit *w, Bracket *k, long double *
   for (uint32_t i = 0; i < w->r; i++) sum = expr_add(g, sum, expr_mul(g, k->c[i], w->charge[i]));
   left = simplify(g, expr_sub(g, k->value, sum));
   k->constant = left;
-  k->proved = is_constant(w, left);
+  k->proved = expr_is_constant(w->g, left);
   if (k->proved) return;
   k->constant = recognise(w, fits, place + w->r, bold);
   if (k->constant) k->proved = forms_prove_zero(w->in_forms ? NULL : w->forms, g, expr_sub(g, left, k->constant)) == PROVED_ZERO;

@@ -261,9 +261,6 @@ static int block_turns(const CoordinateNames *e, const GeneratorRow *r, uint32_t
   return 1;
 }
 
-/* Whether the linear part of block 0 is antisymmetric. */
-static int only_turns(const CoordinateNames *e, const GeneratorRow *r) { return block_turns(e, r, 0); }
-
 /* Whether any block shifts a coordinate that the linear part of block 0 leaves fixed. */
 static int shifts_beside(const CoordinateNames *e, const GeneratorRow *r) {
   for (uint32_t i = 0; i < e->n; i++) {
@@ -277,7 +274,7 @@ static int shifts_beside(const CoordinateNames *e, const GeneratorRow *r) {
 
 /* Name of a linear part in block 0 with shifts in one block or several. */
 static const char *affine_name(const CoordinateNames *e, const GeneratorRow *r, Parts p) {
-  if (!only_turns(e, r)) return r->turns ? "rotation about another point, in the metric of the kinetic energy" : "affine map of the coordinates";
+  if (!block_turns(e, r, 0)) return r->turns ? "rotation about another point, in the metric of the kinetic energy" : "affine map of the coordinates";
   if (shifts_beside(e, r)) return "screw: a rotation and a translation at once";
   return p.shift > 1 ? "rotation about a point that moves" : "rotation about another point";
 }
@@ -306,7 +303,7 @@ static void name_linear(const CoordinateNames *e, const GeneratorRow *r, FoundSy
     const char *whole = all && bodies > 1 ? "total angular momentum" : "angular momentum";
     to->name = space || axis != 2 ? arena_printf(e->arena, "%s about %s", whole, axis_text(axis)) : whole;
   } else if (mixes_bodies(e, r)) to->name = "angular momentum of a part of the motion";
-  else to->name = only_turns(e, r) ? "rotation among coordinates" : r->turns ? "rotation in the metric of the kinetic energy" : "linear map of the coordinates";
+  else to->name = block_turns(e, r, 0) ? "rotation among coordinates" : r->turns ? "rotation in the metric of the kinetic energy" : "linear map of the coordinates";
 }
 
 static int stretches(const CoordinateNames *e, const GeneratorRow *r) {

@@ -95,12 +95,10 @@ static void try_cyclic(TrialWork *w) {
 
 /* --- shifts along solutions --- */
 
-static int is_constant(const ExprGraph *g, Expr x) { return (expr_kinds(g, x) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
-
 /* kappa of q'' = kappa q + ..., coordinate i's own equation; 0: mass or stiffness is zero or not constant. */
 static Expr own_rate(const TrialWork *w, uint32_t i) {
   Expr m = simplify(w->g, eqns_mass(w->e, i, i)), k = simplify(w->g, expr_diff(w->g, w->e->dLdq[i], eqns_coordinate(w->e, i)));
-  if (expr_is_zero(w->g, m) || expr_is_zero(w->g, k) || !is_constant(w->g, m) || !is_constant(w->g, k)) return 0;
+  if (expr_is_zero(w->g, m) || expr_is_zero(w->g, k) || !expr_is_constant(w->g, m) || !expr_is_constant(w->g, k)) return 0;
   return simplify(w->g, expr_div(w->g, k, m));
 }
 

@@ -156,4 +156,11 @@ Ast *ast_new(Arena *a, Interner *names, Sources *sources, Diags *diags);
 
 static inline const AstExpr *ast_expr(const Ast *ast, AstId id) { return &ast->exprs.at[id]; }
 
+/* Number of arguments or elements in the list that begins with `first`. */
+static inline uint32_t ast_list_length(const Ast *ast, AstId first) {
+  uint32_t n = 0;
+  for (; first; first = ast_expr(ast, first)->next) n++;
+  return n;
+}
+
 #endif

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "base/suggest.h"
+#include "base/words.h"
 #include "syntax/parse.h"
 
 /* ---- words ---- */
@@ -58,14 +58,6 @@ const char *parse_advice(const char *word) { return advice_for_word(word, W_ANY)
 
 /* ---- tokens ---- */
 
-static int has(const TokKind *set, int n, TokKind kind) {
-  for (int i = 0; i < n; i++)
-    if (set[i] == kind) return 1;
-  return 0;
-}
-
-static int ends_operand(const Token *t) { return (token_flags(t->kind) & T_OPERAND) != 0; }
-
 /* Functions that people write without parentheses on paper. */
 static int is_function(const char *name) {
   return name && has_word("sin cos tan exp log ln sqrt asin acos atan sinh cosh tanh abs", name);
@@ -80,13 +72,13 @@ static int sets_next(const Parse *cx) {
 }
 
 /* Whether a block is expected, and not a list or another expression. */
-static int wants_block(const TokKind *set, int n) { return has(set, n, TOK_LBRACE) && !has(set, n, TOK_NUMBER); }
+static int wants_block(const TokKind *set, int n) { return token_is_in(set, n, TOK_LBRACE) && !token_is_in(set, n, TOK_NUMBER); }
 
 /* Two statements on one line. */
 static const char *missing_end(const Parse *cx) {
   const Token *t = &cx->current;
   const Filter *f = cx->filter;
-  if (t->kind != TOK_IDENT || !ends_operand(&cx->before) || cx->open.span.end || sets_next(cx)) return NULL;
+  if (t->kind != TOK_IDENT || !token_ends_operand(cx->before.kind) || cx->open.span.end || sets_next(cx)) return NULL;
   if (token_statement(t->name, f->where[f->depth]) == TOK_IDENT) return NULL;
   return arena_printf(cx->ast->arena, "put a `;` before `%s`, or a new line: a statement ends there", t->name);
 }
@@ -94,7 +86,7 @@ static const char *missing_end(const Parse *cx) {
 /* Two adjacent names where a list is expected. */
 static const char *missing_comma(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current;
-  if (t->kind != TOK_IDENT || !has(set, n, TOK_COMMA) || cx->open.span.end) return NULL;
+  if (t->kind != TOK_IDENT || !token_is_in(set, n, TOK_COMMA) || cx->open.span.end) return NULL;
   switch (cx->filter->word) {
     case TOK_PARAM: case TOK_CONST: case TOK_INPUT: case TOK_LET: case TOK_START: case TOK_FLOW: case TOK_EXACT:
       return sets_next(cx) ? arena_printf(cx->ast->arena, "put a `,` before `%s`", t->name) : NULL;
@@ -131,8 +123,8 @@ static const char *unexpected_call(const Parse *cx) {
 }
 
 static const char *unexpected_comma(const TokKind *set, int n) {
-  if (has(set, n, TOK_IN) || has(set, n, TOK_RANGE)) return "a range is written `i in 1..N`";
-  return has(set, n, TOK_RPAREN) ? "what has several arguments is a function, and its name has no `.`: `pow(x, 2)`" : NULL;
+  if (token_is_in(set, n, TOK_IN) || token_is_in(set, n, TOK_RANGE)) return "a range is written `i in 1..N`";
+  return token_is_in(set, n, TOK_RPAREN) ? "what has several arguments is a function, and its name has no `.`: `pow(x, 2)`" : NULL;
 }
 
 static const char *after_method(const Parse *cx) {
@@ -144,30 +136,30 @@ static const char *misshapen_title(const Parse *cx, const TokKind *set, int n) {
   TokKind word = cx->filter->word;
   if (word != TOK_MODEL && word != TOK_SCENE && word != TOK_EFFECT) return NULL;
   if (cx->before.kind == word) return arena_printf(cx->ast->arena, "a name comes first: `%s NAME \"what it is\"`", token_word(word));
-  if (has(set, n, TOK_STRING) && cx->current.kind != TOK_END && cx->current.kind != TOK_COLON)
+  if (token_is_in(set, n, TOK_STRING) && cx->current.kind != TOK_END && cx->current.kind != TOK_COLON)
     return "a name has letters, digits and `_`; a description stands in quotes";
   return NULL;
 }
 
 static const char *unexpected_assign(const Parse *cx, const TokKind *set, int n) {
   TokKind word = cx->filter->word;
-  if (word == TOK_EVENT && has(set, n, TOK_RISING)) return "an event is where an expression passes zero: `event e: x - 1 rising { … }`";
-  if (has(set, n, TOK_EQ)) return "write `==` to compare";
-  if (has(set, n, TOK_IN)) return "a range is written `i in 1..N`";
+  if (word == TOK_EVENT && token_is_in(set, n, TOK_RISING)) return "an event is where an expression passes zero: `event e: x - 1 rising { … }`";
+  if (token_is_in(set, n, TOK_EQ)) return "write `==` to compare";
+  if (token_is_in(set, n, TOK_IN)) return "a range is written `i in 1..N`";
   if (word == TOK_COORD || word == TOK_STATE) return "where it starts stands in a scene: `start x = …`";
   return NULL;
 }
 
 static const char *unexpected_comparison(const Parse *cx, const TokKind *set, int n) {
   if (cx->filter->word == TOK_CONTACT) return "a contact is written `contact NAME: g >= 0, restitution = e`";
-  if (cx->filter->word == TOK_EVENT && has(set, n, TOK_RISING)) return "an event is where an expression passes zero: `x - 1 rising { … }`";
-  return has(set, n, TOK_AND) ? "comparisons do not chain: write `a < b and b < c`" : NULL;
+  if (cx->filter->word == TOK_EVENT && token_is_in(set, n, TOK_RISING)) return "an event is where an expression passes zero: `x - 1 rising { … }`";
+  return token_is_in(set, n, TOK_AND) ? "comparisons do not chain: write `a < b and b < c`" : NULL;
 }
 
 /* `constraint x^2 + y^2 = l^2`: the name is missing. */
 static const char *missing_name(const Parse *cx, const TokKind *set, int n) {
   TokKind word = cx->filter->word;
-  if (cx->before.kind != word && (!has(set, n, TOK_COLON) || has(set, n, TOK_TIMES))) return NULL;
+  if (cx->before.kind != word && (!token_is_in(set, n, TOK_COLON) || token_is_in(set, n, TOK_TIMES))) return NULL;
   switch (word) {
     case TOK_CONSTRAINT: return "a constraint has a name: `constraint NAME: x^2 + y^2 = l^2`";
     case TOK_CONTACT: return "a contact has a name: `contact NAME: y >= 0, restitution = 0.5`";
@@ -180,16 +172,16 @@ static const char *missing_name(const Parse *cx, const TokKind *set, int n) {
 static const char *after_gap(const Parse *cx, const TokKind *set, int n) {
   TokKind t = cx->current.kind;
   if (cx->filter->word != TOK_CONTACT) return NULL;
-  if (has(set, n, TOK_RESTITUTION) || (t == TOK_COMMA && has(set, n, TOK_END)))
+  if (token_is_in(set, n, TOK_RESTITUTION) || (t == TOK_COMMA && token_is_in(set, n, TOK_END)))
     return "a contact has a restitution and nothing else, `contact NAME: y >= 0, restitution = 0.5`; it slides without friction: a `force` or `dissipation` can brake it";
-  return t == TOK_END && has(set, n, TOK_COMMA) ? "a contact has a restitution: `contact NAME: y >= 0, restitution = 0.5`" : NULL;
+  return t == TOK_END && token_is_in(set, n, TOK_COMMA) ? "a contact has a restitution: `contact NAME: y >= 0, restitution = 0.5`" : NULL;
 }
 
 /* `start x = 1, span 5`: a word that begins a statement stands in a list. */
 static const char *word_in_list(const Parse *cx, const TokKind *set, int n) {
   const Token *b = &cx->before;
   const Filter *f = cx->filter;
-  if (!has(set, n, TOK_ASSIGN) || b->kind != TOK_IDENT || token_statement(b->name, f->where[f->depth]) == TOK_IDENT) return NULL;
+  if (!token_is_in(set, n, TOK_ASSIGN) || b->kind != TOK_IDENT || token_statement(b->name, f->where[f->depth]) == TOK_IDENT) return NULL;
   return arena_printf(cx->ast->arena, "`%s` begins a statement of its own: a new line, or a `;`, stands before it", b->name);
 }
 
@@ -202,36 +194,36 @@ const char *advice_for_token(const Parse *cx, const TokKind *set, int n) {
   if (name || gap) return name ? name : gap;
   const char *word = word_in_list(cx, set, n);
   if (word) return word;
-  if (cx->filter->word == TOK_METHOD && has(set, n, TOK_LPAREN)) return after_method(cx);
-  if (cx->filter->word == TOK_MONITOR && !has(set, n, TOK_TIMES) && ends_operand(b) && (token_flags(t->kind) & T_BINARY))
+  if (cx->filter->word == TOK_METHOD && token_is_in(set, n, TOK_LPAREN)) return after_method(cx);
+  if (cx->filter->word == TOK_MONITOR && !token_is_in(set, n, TOK_TIMES) && token_ends_operand(b->kind) && (token_flags(t->kind) & T_BINARY))
     return "a monitor watches a name, or what stands in parentheses: `monitor (x + y) 1e-6`";
   switch (t->kind) {
     case TOK_COMMA: return unexpected_comma(set, n);
-    case TOK_RANGE: return has(set, n, TOK_RBRACKET) ? "a family has a size: `x[N]` has the members 1 to N" : NULL;
+    case TOK_RANGE: return token_is_in(set, n, TOK_RBRACKET) ? "a family has a size: `x[N]` has the members 1 to N" : NULL;
     case TOK_UNIT: return b->kind == TOK_UNIT ? "an index touches what it belongs to, and a unit does not: `x[N] [m]`" : NULL;
-    case TOK_EQ: return has(set, n, TOK_ASSIGN) ? "write `=`: it states an equation; `==` compares two numbers" : NULL;
+    case TOK_EQ: return token_is_in(set, n, TOK_ASSIGN) ? "write `=`: it states an equation; `==` compares two numbers" : NULL;
     case TOK_ASSIGN: return unexpected_assign(cx, set, n);
     case TOK_COLON:
       if (wants_block(set, n)) return "a block begins with `{`";
-      return has(set, n, TOK_ASSIGN) ? arena_printf(a, "write `%s = …`", b->name ? b->name : "NAME") : NULL;
+      return token_is_in(set, n, TOK_ASSIGN) ? arena_printf(a, "write `%s = …`", b->name ? b->name : "NAME") : NULL;
     case TOK_END: case TOK_RBRACE:
-      if (cx->filter->word == TOK_MONITOR && has(set, n, TOK_NUMBER)) return "a monitor has a limit: `monitor energy 1e-8`";
+      if (cx->filter->word == TOK_MONITOR && token_is_in(set, n, TOK_NUMBER)) return "a monitor has a limit: `monitor energy 1e-8`";
       if (t->kind == TOK_RBRACE) return NULL;
-      if (cx->filter->word == TOK_PARAM && has(set, n, TOK_ASSIGN)) return "a parameter has a value, which scenes can change: `param m = 1 [kg]`";
+      if (cx->filter->word == TOK_PARAM && token_is_in(set, n, TOK_ASSIGN)) return "a parameter has a value, which scenes can change: `param m = 1 [kg]`";
       return wants_block(set, n) ? "a block begins with `{`" : NULL;
-    case TOK_INDEX: return has(set, n, TOK_UNIT) ? "a unit stands apart from the name: `u [N]`" : NULL;
+    case TOK_INDEX: return token_is_in(set, n, TOK_UNIT) ? "a unit stands apart from the name: `u [N]`" : NULL;
     case TOK_PRIME: 
       if (b->kind == TOK_IDENT && b->span.begin == t->span.begin) return "a dot above a letter is a time derivative, as a `'` is: declare the name without it";
       return b->kind == TOK_END ? "a `'` never continues a line: put it on the line of its name" : NULL;
     case TOK_RPAREN: case TOK_RBRACKET:
-      return has(set, n, TOK_TIMES) && !cx->open.span.end ? arena_printf(a, "this `%s` closes nothing", token_word(t->kind)) : NULL;
+      return token_is_in(set, n, TOK_TIMES) && !cx->open.span.end ? arena_printf(a, "this `%s` closes nothing", token_word(t->kind)) : NULL;
     case TOK_LT: case TOK_LE: case TOK_GT: case TOK_GE: case TOK_NE: return unexpected_comparison(cx, set, n);
     case TOK_IN: case TOK_AND: case TOK_OR: case TOK_NOT:
-      return has(set, n, TOK_IDENT) ? arena_printf(a, "`%s` is a reserved word", token_word(t->kind)) : NULL;
+      return token_is_in(set, n, TOK_IDENT) ? arena_printf(a, "`%s` is a reserved word", token_word(t->kind)) : NULL;
     case TOK_IDENT: case TOK_NUMBER: case TOK_LPAREN: case TOK_SUM: case TOK_PRODUCT:
-      if (t->kind == TOK_LPAREN && has(set, n, TOK_ASSIGN)) return unexpected_call(cx);
+      if (t->kind == TOK_LPAREN && token_is_in(set, n, TOK_ASSIGN)) return unexpected_call(cx);
       if (t->kind == TOK_NUMBER && b->kind == TOK_LPAREN && cx->filter->word == TOK_START) return "a start is written `start x = 1, x' = 0`";
-      return has(set, n, TOK_TIMES) && ends_operand(b) ? missing_operator(cx) : NULL;
+      return token_is_in(set, n, TOK_TIMES) && token_ends_operand(b->kind) ? missing_operator(cx) : NULL;
     default: return NULL;
   }
 }

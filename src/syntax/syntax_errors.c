@@ -30,15 +30,9 @@ static const char *describe(const Parse *cx, const Token *t) {
   return arena_printf(cx->ast->arena, "`%.*s`", len, text);
 }
 
-static int has(const TokKind *set, int n, TokKind kind) {
-  for (int i = 0; i < n; i++)
-    if (set[i] == kind) return 1;
-  return 0;
-}
-
 /* Whether "an operator" covers k where `set` is expected; a comparison only where comparisons are. */
 static int is_operator(const TokKind *set, int n, TokKind k) {
-  if (k >= TOK_LT && k <= TOK_GE) return has(set, n, TOK_LT);
+  if (k >= TOK_LT && k <= TOK_GE) return token_is_in(set, n, TOK_LT);
   return k >= TOK_PLUS && k <= TOK_OR;
 }
 
@@ -53,9 +47,9 @@ static void add_word(Words *w, const char *word) {
 }
 
 static void add_groups(Words *w, const TokKind *set, int n) {
-  int number = has(set, n, TOK_NUMBER), name = has(set, n, TOK_IDENT);
-  int operators = has(set, n, TOK_TIMES);
-  if (has(set, n, TOK_LAGRANGIAN)) add_word(w, "a statement");
+  int number = token_is_in(set, n, TOK_NUMBER), name = token_is_in(set, n, TOK_IDENT);
+  int operators = token_is_in(set, n, TOK_TIMES);
+  if (token_is_in(set, n, TOK_LAGRANGIAN)) add_word(w, "a statement");
   else if (number && name) add_word(w, "an expression");
   else if (name) add_word(w, "a name");
   else if (number) add_word(w, "a number");
@@ -64,11 +58,11 @@ static void add_groups(Words *w, const TokKind *set, int n) {
 
 static int in_a_group(const TokKind *set, int n, TokKind k) {
   if (k == TOK_IDENT || k == TOK_NUMBER || (k >= TOK_MODEL && k <= TOK_STOP)) return 1;
-  int operand = has(set, n, TOK_NUMBER) && has(set, n, TOK_IDENT);
+  int operand = token_is_in(set, n, TOK_NUMBER) && token_is_in(set, n, TOK_IDENT);
   if (operand && (token_flags(k) & T_START)) return 1;
-  int after_operand = has(set, n, TOK_TIMES) || has(set, n, TOK_PRIME);
+  int after_operand = token_is_in(set, n, TOK_TIMES) || token_is_in(set, n, TOK_PRIME);
   if (after_operand && (k == TOK_PRIME || k == TOK_INDEX || k == TOK_DOT || k == TOK_UNIT || k == TOK_LPAREN)) return 1;
-  return has(set, n, TOK_TIMES) && is_operator(set, n, k);
+  return token_is_in(set, n, TOK_TIMES) && is_operator(set, n, k);
 }
 
 static Words expected_words(const Parse *cx, const TokKind *set, int n) {
@@ -78,12 +72,12 @@ static Words expected_words(const Parse *cx, const TokKind *set, int n) {
     TokKind k = set[i];
     if (in_a_group(set, n, k) || k == TOK_FINISH || k == TOK_END || k == TOK_COUNT) continue;
     /* an index, a type or a unit may follow most names: not worth listing */
-    if (k == TOK_INDEX || ((k == TOK_UNIT || k == TOK_COLON) && has(set, n, TOK_UNIT) && n > 1)) continue;
+    if (k == TOK_INDEX || ((k == TOK_UNIT || k == TOK_COLON) && token_is_in(set, n, TOK_UNIT) && n > 1)) continue;
     const char *word = token_word(k);
     int phrase = k == TOK_STRING || k == TOK_UNIT;
     add_word(&w, phrase ? word : arena_printf(cx->ast->arena, "`%s`", word));
   }
-  if (has(set, n, TOK_END)) add_word(&w, "the end of the statement");
+  if (token_is_in(set, n, TOK_END)) add_word(&w, "the end of the statement");
   else if (!w.n) add_word(&w, "the end");
   return w;
 }
@@ -154,7 +148,7 @@ static int report_open_bracket(Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current;
   if (t->kind != TOK_END || !open->span.end || !(token_flags(cx->before.kind) & T_OPERAND)) return 0;
   TokKind close = open->kind == TOK_LPAREN ? TOK_RPAREN : open->kind == TOK_INDEX ? TOK_RBRACKET : TOK_RBRACE;
-  if (!has(set, n, close)) return 0;
+  if (!token_is_in(set, n, close)) return 0;
   diag_error(cx->ast->diags, t->span, "expected `%s`, found %s", token_word(close), describe(cx, t));
   diag_also(cx->ast->diags, open->span, "this `%s` is still open", token_word(open->kind));
   return 1;

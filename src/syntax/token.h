@@ -136,6 +136,15 @@ typedef struct {
 const char *token_word(TokKind kind);
 unsigned token_flags(TokKind kind);
 
+static inline int token_ends_operand(TokKind kind) { return (token_flags(kind) & T_OPERAND) != 0; }
+
+/* Whether `kind` is in set[n]. */
+static inline int token_is_in(const TokKind *set, int n, TokKind kind) {
+  for (int i = 0; i < n; i++)
+    if (set[i] == kind) return 1;
+  return 0;
+}
+
 /* The statement word spelled `name` that may stand in one of the places `where`, or TOK_IDENT. */
 TokKind token_statement(Name name, unsigned where);
 

@@ -110,8 +110,6 @@ static int at_line_end(Filter *f) {
 
 /* ---- words ---- */
 
-static int ends_operand(const Filter *f) { return (token_flags(f->prev) & T_OPERAND) != 0; }
-
 static int sets_a_name(TokKind next) {
   return next == TOK_ASSIGN || next == TOK_DOT || next == TOK_PRIME || next == TOK_INDEX;
 }
@@ -146,11 +144,11 @@ static TokKind slot_word(Filter *f, const Token *t) {
     return strcmp(t->name, "restitution") == 0 ? TOK_RESTITUTION : TOK_IDENT;
   if (f->word == TOK_SYMMETRY && peek(f)->kind == TOK_IDENT && (f->prev == TOK_COLON || f->prev == TOK_COMMA))
     return strcmp(t->name, "for") == 0 ? TOK_FOR : TOK_IDENT;
-  if (peek(f)->kind == TOK_LPAREN && !ends_operand(f)) {
+  if (peek(f)->kind == TOK_LPAREN && !token_ends_operand(f->prev)) {
     if (strcmp(t->name, "sum") == 0) return TOK_SUM;
     if (strcmp(t->name, "product") == 0) return TOK_PRODUCT;
   }
-  if (!ends_operand(f) || f->brackets.n) return TOK_IDENT;
+  if (!token_ends_operand(f->prev) || f->brackets.n) return TOK_IDENT;
   for (size_t i = 0; i < sizeof slots / sizeof *slots; i++)
     if (slots[i].statement == f->word && strcmp(t->name, token_word(slots[i].word)) == 0) return slots[i].word;
   return TOK_IDENT;

@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/hash.h"
 #include "base/vec.h"
 #include "toolchain/files.h"
 
@@ -64,19 +65,14 @@ void cache_remove_stale_builds(Arena *a) {
 
 /* --- entries --- */
 
-static uint64_t hash_more(uint64_t h, const char *s, size_t n) {
-  for (size_t i = 0; i < n; i++) h = (h ^ (unsigned char)s[i]) * 1099511628211u;
-  return h;
-}
-
 /* Size and FNV-1a checksum of a file, as text; NULL when it cannot be read. */
 static const char *checksum(Arena *a, const char *path) {
   FILE *f = fopen(path, "rb");
-  uint64_t h = 1469598103934665603u;
+  uint64_t h = FNV1A_START;
   char block[16384];
   long long size = 0;
   if (!f) return NULL;
-  for (size_t n; (n = fread(block, 1, sizeof block, f)) > 0; size += (long long)n) h = hash_more(h, block, n);
+  for (size_t n; (n = fread(block, 1, sizeof block, f)) > 0; size += (long long)n) h = hash_bytes(h, block, n);
   int bad = ferror(f);
   fclose(f);
   return bad ? NULL : arena_printf(a, "%lld %016llx\n", size, (unsigned long long)h);
@@ -100,7 +96,7 @@ int cache_is_whole(Arena *a, const char *path) {
 
 void cache_seal(Arena *a, const char *path) {
   const char *why, *sum = checksum(a, path);
-  if (sum && file_write(a, seal_of(a, path), sum, strlen(sum), &why)) chmod(seal_of(a, path), 0600);
+  if (sum && file_write(seal_of(a, path), sum, strlen(sum), &why)) chmod(seal_of(a, path), 0600);
 }
 
 typedef struct {

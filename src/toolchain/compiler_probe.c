@@ -41,7 +41,7 @@ const char *probe_flag(Arena *a, const char *cc, const char *optimise, const cha
   StrBuf text = strbuf(a);
   size_t found = 0;
   for (size_t i = 0; i < N_LINES; i++) sb_puts(&text, probe_text[i]);
-  if (!file_write(a, source, sb_text(&text), text.n, &why)) return "";
+  if (!file_write(source, sb_text(&text), text.n, &why)) return "";
   if (is_suspect(a, cc, source))
     while (found < N_FLAGS && fails_with(a, cc, optimise, flags[found], source, program)) found++;
   remove(source);

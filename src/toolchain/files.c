@@ -45,10 +45,9 @@ static int write_text(const char *path, const char *text, size_t n, const char *
   return close_outfile(&o, fwrite(text, 1, n, o.f) == n && fflush(o.f) == 0, error);
 }
 
-int file_write(Arena *a, const char *path, const char *text, size_t n, const char **error) {
+int file_write(const char *path, const char *text, size_t n, const char **error) {
   sigset_t before;
   struct stat st;
-  (void)a;
   int direct = strcmp(path, "-") == 0 || (stat(path, &st) == 0 && !S_ISREG(st.st_mode)); /* a pipe may wait for its reader for ever */
   if (direct) return write_text(path, text, n, error);
   hold_interruptions(&before);

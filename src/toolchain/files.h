@@ -8,7 +8,7 @@
 
 /* Writes text[n] to path ("-": standard output) through a temporary file beside it (runtime/io/outfile.h). On failure
  * returns 0 with the reason in *error (part of an English sentence), and path is unchanged. */
-int file_write(Arena *a, const char *path, const char *text, size_t n, const char **error);
+int file_write(const char *path, const char *text, size_t n, const char **error);
 
 /* Copies the file `from` to path in the same way, as an executable. */
 int file_install(const char *path, const char *from, const char **error);

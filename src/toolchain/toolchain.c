@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/hash.h"
 #include "base/vec.h"
 #include "toolchain/cache.h"
 #include "toolchain/files.h"
@@ -146,7 +147,7 @@ static int build_in(Arena *a, const Toolchain *t, const SourceText *texts, size_
   int ok = 1;
   for (size_t i = 0; i < n && ok; i++) {
     const char *why;
-    ok = file_write(a, arena_printf(a, "%s/%s", f->path, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
+    ok = file_write(arena_printf(a, "%s/%s", f->path, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
     if (!ok) *error = arena_printf(a, "cannot write in %s: %s", f->path, why);
   }
   ok = ok && compile_with_tmpdir(a, t, f->path, texts, n, error);
@@ -185,30 +186,25 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
 
 /* --- simulators in the cache --- */
 
-static uint64_t hash_more(uint64_t h, const char *s, size_t n) {
-  for (size_t i = 0; i < n; i++) h = (h ^ (unsigned char)s[i]) * 1099511628211u;
-  return h;
-}
-
 /* A library is identified by path, size and modification time. */
 static uint64_t hash_library(Arena *a, uint64_t h, const char *path) {
   struct stat st;
   if (stat(path, &st) != 0) return h;
   const char *text = arena_printf(a, "%s %lld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec, st.st_mtim.tv_nsec);
-  return hash_more(h, text, strlen(text));
+  return hash_bytes(h, text, strlen(text));
 }
 
 static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceText *texts, size_t n) {
-  for (size_t i = 0; i < n; i++) h = hash_more(h, texts[i].text, strlen(texts[i].text) + 1);
-  h = hash_more(h, t->cc, strlen(t->cc) + 1);
-  h = hash_more(h, t->optimise, strlen(t->optimise) + 1);
+  for (size_t i = 0; i < n; i++) h = hash_bytes(h, texts[i].text, strlen(texts[i].text) + 1);
+  h = hash_bytes(h, t->cc, strlen(t->cc) + 1);
+  h = hash_bytes(h, t->optimise, strlen(t->optimise) + 1);
   h = hash_library(a, h, arena_printf(a, "%s/lib%s.a", t->lib, t->library));
   return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
 }
 
 /* The cache entry's name: a 128-bit hash of texts, compiler and libraries. */
 static const char *name_of(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
-  uint64_t h1 = hash_all(a, 1469598103934665603u, t, texts, n), h2 = hash_all(a, 0x9e3779b97f4a7c15u, t, texts, n);
+  uint64_t h1 = hash_all(a, FNV1A_START, t, texts, n), h2 = hash_all(a, 0x9e3779b97f4a7c15u, t, texts, n);
   return arena_printf(a, "%016llx%016llx", (unsigned long long)h1, (unsigned long long)h2);
 }
 

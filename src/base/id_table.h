@@ -5,8 +5,8 @@
  *   while (idtable_next(&t, hash, &at, &id))
  *     if (things[id] is the one) return id;
  *   idtable_add(&t, hash, new_id); */
-#ifndef LAGC_IDTABLE_H
-#define LAGC_IDTABLE_H
+#ifndef LAGC_ID_TABLE_H
+#define LAGC_ID_TABLE_H
 
 #include <stdint.h>
 
@@ -22,10 +22,12 @@ typedef struct {
   uint32_t cap, n;
 } IdTable;
 
-static inline uint32_t id_mix(uint32_t h, uint32_t x) {
-  h ^= x + 0x9e3779b9u + (h << 6) + (h >> 2);
-  h *= 0x85ebca6bu;
-  return h ^ (h >> 15);
+/* An empty table with room for n entries before it grows. */
+static inline IdTable idtable(Arena *a, uint32_t n) {
+  IdTable t = {.arena = a, .cap = 64};
+  while (t.cap < 2 * n) t.cap *= 2;
+  t.slots = ARENA_ARRAY(a, IdSlot, t.cap);
+  return t;
 }
 
 static inline uint32_t idtable_start(const IdTable *t, uint32_t hash) {
@@ -54,8 +56,8 @@ static inline void idtable_put(IdTable *t, IdSlot s) {
 
 static inline void idtable_add(IdTable *t, uint32_t hash, uint32_t id) {
   if (2 * (t->n + 1) > t->cap) {
-    IdTable bigger = {.arena = t->arena, .cap = t->cap ? 2 * t->cap : 64, .n = t->n};
-    bigger.slots = ARENA_ARRAY(t->arena, IdSlot, bigger.cap);
+    IdTable bigger = idtable(t->arena, t->n + 1);
+    bigger.n = t->n;
     for (uint32_t i = 0; i < t->cap; i++)
       if (t->slots[i].id1) idtable_put(&bigger, t->slots[i]);
     *t = bigger;
