@@ -1,6 +1,7 @@
 #!/bin/sh
 # Runs suites of tests; `make test` calls it with what it built (see RUN_TESTS in the Makefile).
 #   sh tests/run.sh [--long | --bless | --bench] [PREFIX...]     only suites whose names, with or without their folder, begin with a PREFIX
+# JOBS: suites at a time (a job a processor); TIMES=1: each suite's processor time beside its wall time, and their sum.
 #
 # A suite is a file, found by its name; there is no list.
 #   tests/unit/test_NAME.c         built into $BIN/test_NAME (cmocka)            suite unit/test_NAME
@@ -21,13 +22,14 @@
 #   BIN, BUILD, TMP                built test programs; the build folder; a folder of the suite's own, empty
 #   CC, CLANG, CXX, GSL, MAKE      GSL is `yes` or empty
 #   LAG_TREE                       value of LAG_HOME with which LAGC_SAN and LAGC_CLANG find the runtime
+#   LAGC_OPTIMISE                  -O0 in `make test`, whose simulators run for less time than they compile for; unset, so -O2, elsewhere
 # Every suite leaves its output in $BUILD/test/log. The last line is `N passed, N failed`.
 cd "$(dirname "$0")/.." || exit 2
 unset MAKEFLAGS MFLAGS MAKELEVEL
 export LAGC LAGC_SAN SAN_FLAGS LAGC_CLANG LIBLAG LIBS INC BIN BUILD CC CLANG CXX GSL MAKE
 export CMOCKA_MESSAGE_OUTPUT=TAP
 export UBSAN_OPTIONS="print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}"
-: "${BUILD:=build}" "${BIN:=$BUILD/test/bin}" "${JOBS:=2}"
+: "${BUILD:=build}" "${BIN:=$BUILD/test/bin}" "${JOBS:=$(nproc 2>/dev/null || echo 2)}"
 logs=$BUILD/test/log
 # Simulators that tests make are kept apart from the user's own.
 XDG_CACHE_HOME=$(pwd)/$BUILD/test/cache
@@ -43,10 +45,14 @@ case ${1:-} in
   --run-one) kind=one ;;
 esac
 case ${1:-} in --*) shift ;; esac
+case $kind in
+  test | bless) export LAGC_OPTIMISE="${LAGC_OPTIMISE:--O0}" ;;
+  long | bench) unset LAGC_OPTIMISE ;;
+esac
 
 seconds() { date +%s.%N 2>/dev/null; }
 
-# ---- one suite: its output to NAME.log, `status seconds` to NAME.done ----
+# ---- one suite: its output to NAME.log, `status begin end processor_seconds` to NAME.done ----
 if [ "$kind" = one ]; then
   suite=$1
   limit=$2
@@ -63,7 +69,10 @@ if [ "$kind" = one ]; then
   begin=$(seconds)
   timeout -k 5 "$limit" "$@" >"$log" 2>&1 </dev/null
   status=$?
-  echo "$status $begin $(seconds)" >"$logs/$suite.part"
+  end=$(seconds)
+  times >"$logs/$suite.part" # a line of the shell itself, a line of its children: `0m0.10s 0m0.02s`, user and system
+  used=$(awk 'NR == 2 { for (i = 1; i <= 2; i++) { split($i, t, /[ms]/); sum += 60*t[1] + t[2] } printf "%.1f", sum }' "$logs/$suite.part")
+  echo "$status $begin $end $used" >"$logs/$suite.part"
   mv "$logs/$suite.part" "$logs/$suite.done"
   exit 0
 fi
@@ -173,11 +182,11 @@ for s in $suites; do
   while [ ! -f "$logs/$s.done" ]; do
     if ! kill -0 "$runner" 2>/dev/null && [ ! -f "$logs/$s.done" ]; then
       echo "run.sh: the runner of suites died before $s"
-      echo "1 126 0 0" >"$logs/$s.done"
+      echo "126 0 0 0" >"$logs/$s.done"
     fi
     sleep 0.05
   done
-  read -r status begin end <"$logs/$s.done"
+  read -r status begin end used <"$logs/$s.done"
   took=$(awk -v a="$begin" -v b="$end" 'BEGIN { printf "%.1f", b - a }')
   if [ "$kind" = bench ]; then
     echo "$s ($took s)"
@@ -195,7 +204,7 @@ for s in $suites; do
   line="$dots $1 passed"
   [ "$2" = 0 ] || line="$line, $2 FAILED"
   [ "$3" = 0 ] || line="$line, $3 skipped"
-  printf '%s  %s s\n' "$line" "$took"
+  printf '%s  %s s%s\n' "$line" "$took" "${TIMES:+, processor $used s}"
   printf '%s\n' "$verdict" | tail -n +2
 done
 wait "$runner" 2>/dev/null
