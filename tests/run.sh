@@ -106,6 +106,10 @@ found() {
   done
 }
 
+# Suites known to take long: they begin first where there is no record of a run.
+slow='unit/test_nest unit/test_rt_cost unit/test_lift unit/test_found unit/test_syntax unit/test_rt_energy unit/test_sym exec/random_models
+  exec/run_contradictions exec/includes exec/run_scenes exec/run_facts exec/run_modes exec/run_pictures'
+slow=$(echo $slow)
 suites=$(found "$@")
 if [ -z "$suites" ]; then
   [ $# = 0 ] || { echo "no suite's name begins with: $*"; exit 1; }
@@ -126,10 +130,19 @@ mkdir -p "$LAG_TREE"
 ln -sfn "$(pwd)/$BUILD" "$LAG_TREE/lib"
 ln -sfn "$(pwd)/runtime/include" "$LAG_TREE/include"
 
-# ---- run them, $JOBS at a time; report in order ----
+# ---- run them, $JOBS at a time, the slowest first; report in order ----
+# The slowest first, as the last run found them, so that none of them is left to run alone; a suite without a record counts as 5 s.
+slowest_first() {
+  for s in $suites; do
+    used=
+    [ -f "$logs/$s.done" ] && read -r _ _ _ used <"$logs/$s.done"
+    echo "${used:-$(case " $slow " in *" $s "*) echo 30 ;; *) echo 5 ;; esac)} $s"
+  done | sort -s -k1,1nr | cut -d ' ' -f 2
+}
+order=$(slowest_first)
 for s in $suites; do rm -f "$logs/$s.done"; done
 # shellcheck disable=SC2086 # a list of words
-printf '%s\n' $suites | xargs -P "$JOBS" -I SUITE sh tests/run.sh --run-one SUITE "$limit" &
+printf '%s\n' $order | xargs -P "$JOBS" -I SUITE sh tests/run.sh --run-one SUITE "$limit" &
 runner=$!
 trap 'kill "$runner" 2>/dev/null; exit 130' INT TERM
 
@@ -211,6 +224,7 @@ wait "$runner" 2>/dev/null
 # shellcheck disable=SC2086 # a list of words
 if [ "$kind" = bench ] && [ "$failed" = 0 ]; then sh tests/bench/lib_results.sh "$logs" $suites && echo 'see tests/bench/RESULTS.md'; fi
 
+[ -z "${TIMES:-}" ] || (cd "$logs" && for s in $suites; do cat "$s.done"; done) | awk '{ sum += $4 } END { printf "processor time of all suites: %.0f s\n", sum }'
 line="$passed passed, $failed failed"
 [ "$skipped" = 0 ] || line="$line, $skipped skipped"
 echo "$line"

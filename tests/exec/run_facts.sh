@@ -23,7 +23,7 @@ build() {
     model=$(sed -n 's/^const lag_model \([A-Za-z0-9_]*\) = {.*/\1/p' "$dir/$1_$s.c")
     # Scenes with different effects have different models of one name: rename them, to link all into one program.
     # shellcheck disable=SC2086
-    $CC -std=c11 -O1 -ffp-contract=off ${SAN:-} -I"$INC" "-D$model=${model}__$s" -c "$dir/$1_$s.c" -o "$dir/$1_$s.o" || return 1
+    $CC -std=c11 "${LAGC_OPTIMISE:--O1}" -ffp-contract=off ${SAN:-} -I"$INC" "-D$model=${model}__$s" -c "$dir/$1_$s.c" -o "$dir/$1_$s.o" || return 1
     objects="$objects $dir/$1_$s.o"
     declared="$declared $symbol,"
     listed="$listed &$symbol,"
