@@ -260,6 +260,14 @@ test:
 	$(SETUP) test
 	@$(MAKE) --no-print-directory build-tests
 	$(RUN_TESTS) $(T)
+# Unit and golden suites, without sanitizers: one build, of the compiler and of the runtime for doubles.
+QUICK_BIN := $(BUILD)/test/quick
+check-quick: BIN   := $(QUICK_BIN)
+check-quick: CLANG :=
+check-quick:
+	$(SETUP) test
+	$(QUIET) BIN=$(QUICK_BIN) SAN_BUILD=$(BUILD) SAN_FLAGS= TEST_OPT=-O0 PRECISIONS= $(BUILD)/lagc $(LIBLAG) $(UNIT_SRC:tests/unit/%.c=$(QUICK_BIN)/%)
+	$(RUN_TESTS) $(if $(T),$(T),unit/ golden/)
 test-long:
 	$(SETUP) test
 	@$(MAKE) --no-print-directory build-tests
@@ -295,7 +303,9 @@ else
 	$(QUIET) $(TEST_BIN)
 endif
 
-TEST_CC = $(CC) -std=c11 -Wall -Wextra $(CPPFLAGS_ALL) -O1 -g $(SAN_FLAGS) -MMD -MP -MF $@.d -o $@ $<
+# Optimisation of the test programs themselves; check-quick compiles them at -O0, in half the time.
+TEST_OPT ?= -O1
+TEST_CC = $(CC) -std=c11 -Wall -Wextra $(CPPFLAGS_ALL) $(TEST_OPT) -g $(SAN_FLAGS) -MMD -MP -MF $@.d -o $@ $<
 # tests/unit/test_rt_*: of the runtime. The rest of tests/unit: of the compiler.
 $(BIN)/test_rt_%: tests/unit/test_rt_%.c $(SAN_RT)
 	@mkdir -p $(@D)
@@ -411,6 +421,8 @@ help:
 	@echo 'make demo         installs what is missing, then compiles and runs models/double_pendulum.lag'
 	@echo 'make test         installs what is missing, then runs every test'
 	@echo '                  T="unit/test_num golden": only suites whose names begin so'
+	@echo '                  TIMES=1: the processor time of each suite; JOBS=4: suites at a time, one a processor unless given'
+	@echo 'make check-quick  unit and golden tests only, without sanitizers: half a minute'
 	@echo 'make test-long    the suites that take minutes'
 	@echo 'make hard         hard cases with published digits: a row each, error beside what is allowed'
 	@echo 'make bench        instructions and times next to peers, to tests/bench/RESULTS.md; nothing fails by being slow'
@@ -431,4 +443,4 @@ ifneq ($(BUILDS),)
 endif
 
 FORCE:
-.PHONY: FORCE all demo run-demo gallery test test-long bless hard bench build-tests fuzz fuzz-coverage mutants install uninstall clean help
+.PHONY: FORCE all demo run-demo gallery test check-quick test-long bless hard bench build-tests fuzz fuzz-coverage mutants install uninstall clean help

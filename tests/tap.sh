@@ -1,5 +1,8 @@
 # shellcheck shell=sh
 # Helpers for suites that are scripts: `. tests/tap.sh` at their head, `tap_end` at their end.
+# A suite that is run without tests/run.sh finds the build of `make` here, and a folder of its own.
+: "${LAGC:=build/lagc}" "${CC:=cc}" "${BUILD:=build}" "${INC:=runtime/include}"
+[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 tap_n=0
 tap_bad=0
 
@@ -55,6 +58,39 @@ says() {
   if [ "$tap_status" = 0 ]; then cat "$TMP/out" >>"$TMP/err"; fi
   [ "$tap_got" = "$tap_status" ] && grep -qF -e "$tap_words" "$TMP/err"
 }
+
+# golden NAME FILE STATUS COMMAND...: the command ends with this status and prints this file; with BLESS the file is rewritten.
+golden() {
+  tap_want=$2 tap_status=$3
+  tap_title=$1
+  shift 3
+  "$@" >"$TMP/tap_text" 2>&1
+  tap_got=$?
+  if [ -n "${BLESS:-}" ] && [ "$tap_got" = "$tap_status" ]; then cp "$TMP/tap_text" "$tap_want"; fi
+  check "$tap_title" tap_golden
+}
+tap_golden() {
+  [ "$tap_got" = "$tap_status" ] || echo "exit status $tap_got, expected $tap_status"
+  diff -u "$tap_want" "$TMP/tap_text" && [ "$tap_got" = "$tap_status" ]
+}
+
+# relay COMMAND...: the command's own TAP results, as part of this suite's; a command without a plan is a failure.
+# RELAY_PREFIX: words before each name.
+relay() {
+  "$@" >"$TMP/tap_relay" 2>&1
+  while IFS= read -r tap_line; do
+    case $tap_line in
+      "ok "* | "not ok "*)
+        tap_n=$((tap_n + 1))
+        case $tap_line in not*) tap_bad=$((tap_bad + 1)) ;; esac
+        printf '%s %s - %s%s\n' "${tap_line%%ok *}ok" "$tap_n" "${RELAY_PREFIX:-}" "${tap_line#*ok * - }"
+        ;;
+      "# "*) printf '%s\n' "$tap_line" ;;
+    esac
+  done <"$TMP/tap_relay"
+  grep -q '^1\.\.' "$TMP/tap_relay" || check "$1 runs to its end" tap_fail "$TMP/tap_relay"
+}
+tap_fail() { tail -n 20 "$1"; false; }
 
 skip() {
   tap_n=$((tap_n + 1))

@@ -45,11 +45,22 @@ static const char *installed(Arena *a, const char *own, const char *folder) {
   return folder[0] == '/' ? folder : arena_printf(a, "%s/%s", own, folder);
 }
 
+/* $LAGC_OPTIMISE, -O0 to -O3; -O2 when it is not set; NULL when it is something else. */
+static const char *optimisation(void) {
+  const char *o = getenv("LAGC_OPTIMISE");
+  if (!o || !o[0]) return "-O2";
+  return o[0] == '-' && o[1] == 'O' && o[2] >= '0' && o[2] <= '3' && !o[3] ? o : NULL;
+}
+
 int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error) {
   const char *cc = getenv("CC"), *home = getenv("LAG_HOME"), *own = own_folder(a, argv0);
   static const char *const none[] = {NULL};
-  *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc", .optimise = "-O2", .library = "lag", .flags = none};
+  *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc", .optimise = optimisation(), .library = "lag", .flags = none};
   int found = 0;
+  if (!t->optimise) {
+    *error = arena_printf(a, "LAGC_OPTIMISE is %s; it takes -O0, -O1, -O2 or -O3", getenv("LAGC_OPTIMISE"));
+    return 0;
+  }
   if (home && home[0]) {
     found = try_place(a, arena_printf(a, "%s/lib", home), arena_printf(a, "%s/include", home), t);
     if (!found) {

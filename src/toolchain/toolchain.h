@@ -13,7 +13,7 @@ typedef struct {
   const char *library;   /* lag; lag_long or lag_quad: the runtime in another precision */
   const char *const *flags; /* matching flags for emitted C, NULL-terminated */
   const char *needs;     /* one more library to link, or NULL */
-  const char *optimise;  /* -O2; -O0 where compilation takes longer than the run */
+  const char *optimise;  /* -O2 or $LAGC_OPTIMISE; -O0 where compilation takes longer than the run */
 } Toolchain;
 
 typedef struct {
@@ -22,7 +22,7 @@ typedef struct {
 } SourceText;
 
 /* Finds the runtime: in $LAG_HOME, or beside the running executable (a build tree or an installation).
- * argv0: the name that lagc was called by. Returns 0, with *error, when it is not found. */
+ * argv0: the name that lagc was called by. Returns 0, with *error, when it is not found or $LAGC_OPTIMISE is no level. */
 int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error);
 
 /* SwitchingFunctions the toolchain to a precision: double, long or quad. Returns 0, with *error, when the runtime was not built for it. */

@@ -2,6 +2,7 @@
 # make install: installed files, a user's program through pkg-config, and lagc outside the source tree.
 # make uninstall: nothing is left.
 . tests/tap.sh
+unset LAGC_OPTIMISE # as users build
 
 prefix=$TMP/usr
 install_it() { "$MAKE" BUILD="$BUILD" install PREFIX="$prefix"; }

@@ -1,20 +1,12 @@
 #!/bin/sh
-# models/double_pendulum.lag, three ways. Prints TAP.
+# models/double_pendulum.lag, three ways.
 #   1. the emitted accelerations against hand-written ones (double_pendulum.c) at 100,000 states;
 #   2. the same with one sign, or sin for cos, changed in the emitted C, for every place there is: nine of ten must be noticed
 #      (the text may hold terms that cancel, whose signs do not matter; those not noticed are shown);
 #   3. the run from 90/90 degrees by rk45 at tolerance 1e-10 against one by GSL's rk8pd: 1e-7 at t = 10 in every coordinate.
-cd "$(dirname "$0")/../.." || exit 2
-: "${LAGC:=build/lagc}" "${CC:=cc}" "${BUILD:=build}" "${INC:=runtime/include}"
-dir=$(mktemp -d) || exit 2
-trap 'rm -rf "$dir"' EXIT
+. tests/tap.sh
+dir=$TMP
 warn='-std=c11 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror'
-n=0
-failed=0
-result() { # result STATUS NAME
-  n=$((n + 1))
-  if [ "$1" = 0 ]; then echo "ok $n - $2"; else failed=$((failed + 1)); echo "not ok $n - $2"; fi
-}
 # shellcheck disable=SC2086 # lists of words
 compile() { $CC $warn -O1 -ffp-contract=off ${SAN:-} -I"$INC" "$@"; }
 
@@ -24,9 +16,7 @@ if echo '#include <quadmath.h>
 int main(void) { return sinq(0.0Q) != 0; }' >"$dir/try.c" && $CC "$dir/try.c" -o "$dir/try" -lquadmath 2>/dev/null; then
   compile -c tests/exec/double_pendulum.c -o "$dir/judge.o" && compile "$dir/model.c" "$dir/judge.o" -lquadmath -lm -o "$dir/check" ||
     { echo "Bail out! the check does not compile"; exit 1; }
-  "$dir/check" >"$dir/out"
-  sed -n '/^1\.\./!p' "$dir/out"
-  n=2 failed=$(grep -c '^not ok' "$dir/out")
+  relay "$dir/check"
 
   # --- 2. one mistake at a time, in the text of derive and accel without its comments
   sed -e 's|/\*[^*]*\*/||g' "$dir/model.c" >"$dir/plain.c"
@@ -60,30 +50,26 @@ int main(void) { return sinq(0.0Q) != 0; }' >"$dir/try.c" && $CC "$dir/try.c" -o
     $CC -std=c11 -O0 -w -I"$INC" "$m" "$dir/judge.o" -lquadmath -lm -o "$dir/mutant" || { missed=$mutants; break; }
     "$dir/mutant" 200 >/dev/null && unseen="$unseen $m" missed=$((missed + 1))
   done
-  [ "$mutants" -ge 10 ] && [ $((10*missed)) -le "$mutants" ]
-  result $? "of $mutants mistakes planted in the emitted C, $((mutants - missed)) are noticed"
+  nine_of_ten() { [ "$mutants" -ge 10 ] && [ $((10*missed)) -le "$mutants" ]; }
+  check "of $mutants mistakes planted in the emitted C, $((mutants - missed)) are noticed" nine_of_ten
   for m in $unseen; do diff "$dir/plain.c" "$m" | sed 's/^/# /'; done
 else
-  n=1
-  echo "ok 1 - the accelerations by hand # SKIP no libquadmath"
+  skip "the accelerations by hand" "no libquadmath"
 fi
 
 # --- 3. GSL's integrator
 final() { sed -n 's/.*"final": {\([^}]*\)}.*/\1/p' "$1" | tr ',' '\n' | sed 's/^ *"\(.*\)": /\1 /'; }
-"$LAGC" run models/double_pendulum.lag swing --json >"$dir/rk45.json"
-result $? "rk45 from 90/90 degrees"
+swing() { "$LAGC" run models/double_pendulum.lag swing "$@" --json >"$dir/json" && final "$dir/json" >"$dir/final"; }
+check "rk45 from 90/90 degrees" swing
 if "$LAGC" run models/double_pendulum.lag --method help 2>/dev/null | grep -q gsl-rk8pd; then
-  "$LAGC" run models/double_pendulum.lag swing --method gsl-rk8pd --json >"$dir/gsl.json"
-  result $? "gsl-rk8pd from 90/90 degrees"
-  final "$dir/rk45.json" >"$dir/a"
-  final "$dir/gsl.json" >"$dir/b"
-  paste "$dir/a" "$dir/b" | awk '{ d = $2 - $4; if (d < 0) d = -d; if ($1 != $3 || !(d <= 1e-7)) bad = 1; print "# " $1 " " $2 " " $4 " differ by " d; seen++ }
-    END { exit bad || seen < 4 }' >"$dir/differ"
-  result $? "they agree at t = 10 to 1e-7 in every coordinate"
-  cat "$dir/differ"
+  mv "$dir/final" "$dir/a"
+  check "gsl-rk8pd from 90/90 degrees" swing --method gsl-rk8pd
+  agree() {
+    paste "$dir/a" "$dir/final" | awk '{ d = $2 - $4; if (d < 0) d = -d; if ($1 != $3 || !(d <= 1e-7)) bad = 1; print $1 " " $2 " " $4 " differ by " d; seen++ }
+      END { exit bad || seen < 4 }'
+  }
+  check "they agree at t = 10 to 1e-7 in every coordinate" agree
 else
-  n=$((n + 1))
-  echo "ok $n - agreement with GSL # SKIP the runtime was built without GSL"
+  skip "agreement with GSL" "the runtime was built without GSL"
 fi
-echo "1..$n"
-[ "$failed" = 0 ]
+tap_end

@@ -1,11 +1,9 @@
 #!/bin/sh
-# Known results of each model (models/NAME.facts) against emitted C of its scenes and liblag. Prints TAP.
+# Known results of each model (models/NAME.facts) against emitted C of its scenes and liblag.
 #   sh tests/exec/run_facts.sh [NAME...]
 # tests/exec/facts.c describes the format of facts. The last checks test this suite: wrong facts must fail.
-cd "$(dirname "$0")/../.." || exit 2
-: "${LAGC:=build/lagc}" "${CC:=cc}" "${BUILD:=build}" "${INC:=runtime/include}"
-dir=$(mktemp -d) || exit 2
-trap 'rm -rf "$dir"' EXIT
+. tests/tap.sh
+dir=$TMP
 gsl_flags= gsl_libs=
 if echo '#include <gsl/gsl_sf_lambert.h>
 int main(void) { return gsl_sf_lambert_W0(0.0) != 0.0; }' >"$dir/try.c" && $CC "$dir/try.c" -o "$dir/try" -lgsl -lgslcblas -lm 2>/dev/null; then
@@ -25,7 +23,7 @@ build() {
     model=$(sed -n 's/^const lag_model \([A-Za-z0-9_]*\) = {.*/\1/p' "$dir/$1_$s.c")
     # Scenes with different effects have different models of one name: rename them, to link all into one program.
     # shellcheck disable=SC2086
-    $CC -std=c11 -O1 -ffp-contract=off ${SAN:-} -I"$INC" "-D$model=${model}__$s" -c "$dir/$1_$s.c" -o "$dir/$1_$s.o" || return 1
+    $CC -std=c11 "${LAGC_OPTIMISE:--O1}" -ffp-contract=off ${SAN:-} -I"$INC" "-D$model=${model}__$s" -c "$dir/$1_$s.c" -o "$dir/$1_$s.o" || return 1
     objects="$objects $dir/$1_$s.o"
     declared="$declared $symbol,"
     listed="$listed &$symbol,"
@@ -38,36 +36,16 @@ const lag_scene *const facts_scenes[] = {$listed NULL};" >"$dir/$1_scenes.c"
   $CC -std=c11 ${SAN:-} -I"$INC" "$dir/$1_scenes.c" "$dir/facts.o" $objects "$BUILD/liblag.a" $gsl_libs -lm -o "$dir/$1"
 }
 
-n=0
-failed=0
 for facts in models/*.facts; do
   name=$(basename "$facts" .facts)
   case " ${*:-$name} " in *" $name "*) ;; *) continue ;; esac
-  if ! build "$name" "$facts" 2>"$dir/err"; then
-    n=$((n + 1)) failed=$((failed + 1))
-    echo "not ok $n - $name: its scenes compile"
-    sed 's/^/# /' "$dir/err"
-    continue
-  fi
-  "$dir/$name" "$name" "$facts" >"$dir/out"
-  # Renumber: one plan for all models.
-  sed '$d' "$dir/out" | awk -v n="$n" '/^ok |^not ok /{ n++; sub(/ok [0-9]+/, "ok " n) } { print }'
-  failed=$((failed + $(grep -c '^not ok' "$dir/out")))
-  n=$((n + $(grep -c -e '^ok' -e '^not ok' "$dir/out")))
+  if build "$name" "$facts" 2>"$dir/err"; then relay "$dir/$name" "$name" "$facts"; else empty "$name: its scenes compile" "$(cat "$dir/err")"; fi
 done
 
 # Every model has its facts, and its hand-written equations are proved; every fact below is wrong.
 for lag in models/*.lag; do
-  n=$((n + 1))
-  if [ -f "${lag%.lag}.facts" ]; then echo "ok $n - $lag has facts"; else failed=$((failed + 1)); echo "not ok $n - $lag has facts"; fi
-  n=$((n + 1))
-  if "$LAGC" check "$lag" >"$dir/out" 2>&1; then
-    echo "ok $n - $lag: $(tail -n 1 "$dir/out")"
-  else
-    failed=$((failed + 1))
-    echo "not ok $n - $lag: its expectations are proved"
-    sed 's/^/# /' "$dir/out"
-  fi
+  check "$lag has facts" test -f "${lag%.lag}.facts"
+  check "$lag: its expectations are proved" "$LAGC" check "$lag"
 done
 cat >"$dir/wrong.facts" <<'WRONG'
 free      | x(0) = 2                        | 1e-3 | another start
@@ -81,19 +59,10 @@ free      | x(1) = cos(2*1) 3               | 1e-3 | not an expression
 free k=-1 | x(0) = 1                        | 1e-3 | not allowed
 free      | x(0) = 1                        | 1e-3 |
 WRONG
-if build spring "$dir/wrong.facts" 2>/dev/null; then
+all_wrong() {
+  build spring "$dir/wrong.facts" || return 1
   "$dir/spring" spring "$dir/wrong.facts" >"$dir/out"
-  status=$?
-else
-  status=2
-fi
-n=$((n + 1))
-if [ "$status" = 1 ] && [ "$(grep -c '^not ok' "$dir/out")" = 10 ]; then
-  echo "ok $n - wrong facts fail"
-else
-  failed=$((failed + 1))
-  echo "not ok $n - wrong facts fail"
-  sed 's/^/# /' "$dir/out"
-fi
-echo "1..$n"
-[ "$failed" = 0 ]
+  [ $? = 1 ] && [ "$(grep -c '^not ok' "$dir/out")" = 10 ] || { sed 's/^/| /' "$dir/out"; return 1; }
+}
+check "wrong facts fail" all_wrong
+tap_end

@@ -1,39 +1,21 @@
 #!/bin/sh
-# Families and vectors against the same model written out by hand, as TAP: both put out the same numbers, or
+# Families and vectors against the same model written out by hand: both put out the same numbers, or
 # `lagc check` proves the equations of the other; and large families, within limits of time and memory.
-#   sh tests/exec/run_families.sh
-cd "$(dirname "$0")/../.." || exit 2
-: "${LAGC:=build/lagc}"
-dir=$(mktemp -d) || exit 2
-trap 'rm -rf "$dir"' EXIT
-n=0
-failed=0
-
-result() { # NAME STATUS
-  n=$((n + 1))
-  if [ "$2" = 0 ]; then
-    echo "ok $n - $1"
-  else
-    failed=$((failed + 1))
-    echo "not ok $n - $1"
-    sed 's/^/# /' "$dir/out" | tail -20
-  fi
-}
+. tests/tap.sh
+dir=$TMP
 
 # same NAME MODEL_A MODEL_B SED [SETTINGS...]: the two put out the same columns, to 1e-9, after SED renames those of A
 same() {
   name=$1 a=$2 b=$3
   shift 3
-  { "$LAGC" run "$a" "$@" --output "$dir/a.csv" && "$LAGC" run "$b" --output "$dir/b.csv"; } >"$dir/out" 2>&1
-  status=$?
-  if [ "$status" = 0 ]; then
+  check "$name" same_rows "$@"
+}
+same_rows() {
+  "$LAGC" run "$a" "$@" --output "$dir/a.csv" && "$LAGC" run "$b" --output "$dir/b.csv" &&
     paste -d, "$dir/a.csv" "$dir/b.csv" | grep -v '^#' | awk -F, 'NR > 1 {
       for (i = 1; i <= NF/2; i++) { d = $i - $(i + NF/2); if (d < 0) d = -d; if (d > worst) worst = d }
       rows++
-    } END { printf "worst %g in %d rows of %d columns\n", worst, rows, NF/2; exit !(rows > 50 && NF > 5 && worst < 1e-9) }' >"$dir/out"
-    status=$?
-  fi
-  result "$name" "$status"
+    } END { printf "worst %g in %d rows of %d columns\n", worst, rows, NF/2; exit !(rows > 50 && NF > 5 && worst < 1e-9) }'
 }
 
 cat >"$dir/chain3.lag" <<'LAG'
@@ -116,29 +98,18 @@ param k[2] = 1 > 0
 lagrangian = dot(r', r')/2 - k[1]*r.x^2 - k[2]*r.y^2
 scene s { start r = (1, 2); span 1 }
 LAG
-refused() { # refused WORDS ARGS...: exit status 2, and these words
-  words=$1
-  shift
-  "$LAGC" "$@" >"$dir/out" 2>&1
-  [ $? = 2 ] && grep -q -F -e "$words" "$dir/out"
-}
-refused "r has parts: set r.x, and so on" run "$dir/vector.lag" r=1
-result "a vector has parts" $?
-refused "r' has parts: set r.x', and so on" run "$dir/vector.lag" "r'=1"
-result "and so has its velocity" $?
-refused "k = -1: the model declares k[1] > 0" run "$dir/vector.lag" k=-1
-result "a family of the wrong sign" $?
-"$LAGC" plot "$dir/vector.lag" --y r -o "$dir/r.svg" >"$dir/out" 2>&1 && [ "$(grep -c '>r\.[xy]<' "$dir/r.svg")" = 2 ]
-result "an output that is a vector" $?
-refused "kk: no such parameter, coordinate or input in model vector" run "$dir/vector.lag" kk=1
-result "a name that is none" $?
+check "a vector has parts" says 2 "r has parts: set r.x, and so on" "$LAGC" run "$dir/vector.lag" r=1
+check "and so has its velocity" says 2 "r' has parts: set r.x', and so on" "$LAGC" run "$dir/vector.lag" "r'=1"
+check "a family of the wrong sign" says 2 "k = -1: the model declares k[1] > 0" "$LAGC" run "$dir/vector.lag" k=-1
+two_curves() { "$LAGC" plot "$dir/vector.lag" --y r -o "$dir/r.svg" && [ "$(grep -c '>r\.[xy]<' "$dir/r.svg")" = 2 ]; }
+check "an output that is a vector" two_curves
+check "a name that is none" says 2 "kk: no such parameter, coordinate or input in model vector" "$LAGC" run "$dir/vector.lag" kk=1
 
 # proved NAME MODEL...: its expectations hold
 proved() {
   name=$1
   shift
-  "$LAGC" check "$@" >"$dir/out" 2>&1
-  result "$name" $?
+  check "$name" "$LAGC" check "$@"
 }
 
 sed 's/^const N = .*/const N = 2/; /^scene/,$d' models/chain.lag >"$dir/double.lag"
@@ -152,14 +123,14 @@ proved "a chain of one is the pendulum" "$dir/single.lag"
 large() { # NAME SECONDS KIBIBYTES COMMAND...
   name=$1 seconds=$2 memory=$3
   shift 3
-  (ulimit -t "$seconds" -v "$memory"; "$@") >"$dir/out" 2>&1
-  result "$name" $?
+  check "$name" limited "$@"
 }
+limited() { (ulimit -t "$seconds" -v "$memory"; "$@"); }
 large "a string of 10000 masses" 30 1500000 "$LAGC" derive models/string.lag -D N=10000 --ops
-"$LAGC" derive tests/bench/models/bodies.lag -D N=40 --ops >"$dir/out" 2>&1 && grep -q ', 780 square roots$' "$dir/out"
-result "40 bodies: a square root of each of 40*39/2 pairs" $?
-"$LAGC" derive models/slider_crank.lag --ops | awk '{ print; exit !($1 <= 208) }'
-result "slider_crank: the products that many share are found" $?
+roots() { "$LAGC" derive tests/bench/models/bodies.lag -D N=40 --ops | tee "$dir/out" && grep -q ', 780 square roots$' "$dir/out"; }
+check "40 bodies: a square root of each of 40*39/2 pairs" roots
+shared() { "$LAGC" derive models/slider_crank.lag --ops | awk '{ print; exit !($1 <= 208) }'; }
+check "slider_crank: the products that many share are found" shared
 # The text has 3 MB; its derivation needs some 400 MB.
 for f in text latex; do
   large "a string of 10000 masses, printed as $f" 30 1000000 "$LAGC" derive models/string.lag -D N=10000 --format $f
@@ -176,8 +147,8 @@ lagrangian = q'^2/2 - up[N] - down[1] + sum(i in 1..1000000, i)*0
 LAG
 large "a hundred thousand lets, each defined by the next" 30 1500000 "$LAGC" check "$dir/long.lag"
 for f in chain string; do
-  "$LAGC" emit models/$f.lag -o "$dir/$f.c" >"$dir/out" 2>&1 && grep -q "$([ $f = chain ] && echo th_3 || echo u_8)" "$dir/$f.c"
-  result "the members of $f have names in C" $?
+  named() { "$LAGC" emit models/$f.lag -o "$dir/$f.c" && grep -q "$([ $f = chain ] && echo th_3 || echo u_8)" "$dir/$f.c"; }
+  check "the members of $f have names in C" named
 done
 # The attraction of 66 pairs in loops, where two outputs show one pair each: that pair is computed once.
 cat >"$dir/pairs.lag" <<'LAG'
@@ -191,7 +162,6 @@ observe d [J] = k/norm(r[2] - r[1])
 observe e [J] = k/norm(r[5] - r[3])
 scene s { start r[i in 1..N] = (cos(6.28*i/N), sin(6.28*i/N)); span 1 [s]; output U, d, e }
 LAG
-"$LAGC" emit "$dir/pairs.lag" -o "$dir/pairs.c" >"$dir/out" 2>&1 && [ "$(grep -cE '^  out\[[12]\] = w[0-9]+; /\* [de] \*/$' "$dir/pairs.c")" = 2 ]
-result "what loops add and outputs show is computed once" $?
-echo "1..$n"
-[ "$failed" = 0 ]
+once() { "$LAGC" emit "$dir/pairs.lag" -o "$dir/pairs.c" && [ "$(grep -cE '^  out\[[12]\] = w[0-9]+; /\* [de] \*/$' "$dir/pairs.c")" = 2 ]; }
+check "what loops add and outputs show is computed once" once
+tap_end

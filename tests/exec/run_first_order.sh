@@ -14,7 +14,7 @@ emit $cases/vortices_3.lag
 emit models/lotka_volterra.lag cycle
 emit models/guiding_centre.lag banana
 check "the scenes compile" "$CC" -std=c11 -O2 -ffp-contract=off -I"$INC" "$TMP"/*.c tests/exec/first_order.c "$BUILD/liblag.a" -lm -o "$TMP/first_order"
-tap_of "$TMP/first_order"
+relay "$TMP/first_order"
 
 # final MODEL STEP: by gauss with 4 stages, the largest error of the last numbers of expected.txt, over their tolerances
 final() {

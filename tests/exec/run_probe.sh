@@ -1,8 +1,8 @@
 #!/bin/sh
 # The probe for compilers that store wrong numbers (src/toolchain/compiler_probe.in): its verdict on this compiler, and lagc and make after a failure.
-: "${LAGC:=build/lagc}" "${CC:=cc}" "${MAKE:=make}"
-[ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
+: "${MAKE:=make}"
 . tests/tap.sh
+unset LAGC_OPTIMISE # the flags that users get
 export XDG_CACHE_HOME="$TMP/cache"
 
 # probe COMPILER FLAGS...: its exit status.
@@ -58,4 +58,13 @@ makes() { # CC: number of times the flag stands in the commands of make -n
 several() { [ "$(makes "$TMP/bin/wrong")" -gt 100 ]; }
 check "make: the flag where numbers are wrong" several
 is "make: no flag where nothing is wrong" 0 "$(makes "$CC")"
+
+# ---- LAGC_OPTIMISE: the same bits at every level, and no other words
+. tests/exec/lib_levels.sh
+for words in "double_pendulum swing" "slider_crank" "kepler --method taylor" "bouncing_ball"; do
+  check "the same rows at -O0 and at -O2: $words" same_rows $words
+done
+for level in -O9 O0 '-O2 -ffast-math' -Ofast; do
+  check "LAGC_OPTIMISE='$level' is refused" says 2 'it takes -O0, -O1, -O2 or -O3' env LAGC_OPTIMISE="$level" "$LAGC" build models/pendulum.lag -o "$TMP/sim"
+done
 tap_end

@@ -108,6 +108,26 @@ blessed_in_ci() { (export CI=1 && BUILD=out BIN=bin sh "$tree/tests/run.sh" --bl
 not() { ! "$@"; }
 check "never in CI" not blessed_in_ci
 check "a prefix without a suite is a mistake" fails nothing
+check "TIMES=1 shows processor time" env TIMES=1 BUILD=out BIN=bin sh -c "sh '$tree/tests/run.sh' a/good | grep -q 'processor [0-9.]* s$'"
+check "and its sum" env TIMES=1 BUILD=out BIN=bin sh -c "sh '$tree/tests/run.sh' a/good | grep -q '^processor time of all suites: [0-9]* s$'"
+suite a/slowest <<'END'
+i=0; while [ $i -lt 300000 ]; do i=$((i + 1)); done
+date +%s.%N
+echo "ok 1 - slow"
+echo "1..1"
+END
+suite a/fast <<'END'
+date +%s.%N
+echo "ok 1 - fast"
+echo "1..1"
+END
+slowest_begins() {
+  for _ in 1 2; do JOBS=1 run a/fast a/slowest >/dev/null; done
+  sort -n "$tree/out/test/log/a/fast.log" "$tree/out/test/log/a/slowest.log" | grep -m 1 -e '^[0-9]*\.' >"$TMP/first"
+  grep -qFx -f "$TMP/first" "$tree/out/test/log/a/slowest.log"
+}
+check "the slowest suite of the last run begins" slowest_begins
+rm "$tree/tests/a/slowest.sh" "$tree/tests/a/fast.sh"
 is "suites come in order, each once" "a/bad a/crashes" \
   "$(run a/crashes a/b a/bad | sed -n 's/^\(a[^ ]*\) .*/\1/p' | sort -u | tr '\n' ' ' | sed 's/ $//')"
 tap_end

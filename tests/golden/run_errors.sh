@@ -1,29 +1,14 @@
 #!/bin/sh
-# Golden tests of the messages of `lagc check`, as TAP:
+# Golden tests of the messages of `lagc check`:
 #   tests/golden/err/sem_NAME.lag + .expected    a bad model: exit status 1, the messages exactly, nothing on stdout
 #   tests/golden/err/warn_NAME.lag + .expected   a good one that draws warnings: exit status 0, the messages exactly
 #   tests/golden/ok/NAME.lag                     a good one, the near miss of an error: exit status 0, no messages
 # rows.txt lists refused constructs, each with its file and its near miss.
 # Every bad model is also given to the commands that write files: none may be left, whole or in part.
 # LAGC names the compiler; BLESS=1 rewrites the expectations, on purpose.
-cd "$(dirname "$0")/../.." || exit 2
-lagc=${LAGC:-build/lagc}
-tmp=${TMP:-${TMPDIR:-/tmp}}/golden_errors.$$
-mkdir -p "$tmp/out" || exit 2
-trap 'rm -rf "$tmp"' EXIT
-n=0
-failed=0
-
-result() { # NAME PROBLEM
-  n=$((n + 1))
-  if [ -z "$2" ]; then
-    echo "ok $n - $1"
-  else
-    failed=$((failed + 1))
-    echo "not ok $n - $1"
-    printf '%s\n' "$2" | sed 's/^/# /'
-  fi
-}
+. tests/tap.sh
+tmp=$TMP
+mkdir -p "$tmp/out"
 
 for lag in tests/golden/err/sem_*.lag tests/golden/err/warn_*.lag tests/golden/ok/*.lag; do
   want=${lag%.lag}.expected
@@ -36,16 +21,16 @@ for lag in tests/golden/err/sem_*.lag tests/golden/err/warn_*.lag tests/golden/o
   esac
   # shellcheck disable=SC2086 # a command and its option
   set -- $command
-  "$lagc" "$1" "$lag" ${2:+"$2"} >"$tmp/stdout" 2>"$tmp/stderr"
+  "$LAGC" "$1" "$lag" ${2:+"$2"} >"$tmp/stdout" 2>"$tmp/stderr"
   code=$?
   problem=
-  if [ -n "$BLESS" ] && [ "$code" = "$status" ] && [ "$want" != /dev/null ]; then cp "$tmp/stderr" "$want"; fi
+  if [ -n "${BLESS:-}" ] && [ "$code" = "$status" ] && [ "$want" != /dev/null ]; then cp "$tmp/stderr" "$want"; fi
   [ "$code" = "$status" ] || problem="exit status $code, expected $status
 "
   if [ "$status" != 0 ] && [ -s "$tmp/stdout" ]; then problem="${problem}something on stdout
 "; fi
   cmp -s "$want" "$tmp/stderr" || problem=$problem$(diff -u "$want" "$tmp/stderr")
-  result "$lag" "$problem"
+  empty "$lag" "$problem"
 done
 
 # ---- each row has its message, and a near miss ----
@@ -55,11 +40,11 @@ while IFS='|' read -r row err words ok; do
   grep -qF -e "$words" "tests/golden/err/$err.expected" || problem="no \`$words\` in err/$err.expected
 "
   [ -f "tests/golden/ok/$ok.lag" ] || problem="${problem}there is no ok/$ok.lag"
-  result "row: $row" "$problem"
+  empty "row: $row" "$problem"
 done <"$tmp/rows"
 for lag in tests/golden/ok/*.lag; do
   name=${lag##*/}
-  grep -q "|${name%.lag}\$" "$tmp/rows" || result "$lag is the near miss of a row" "rows.txt does not name it"
+  grep -q "|${name%.lag}\$" "$tmp/rows" || empty "$lag is the near miss of a row" "rows.txt does not name it"
 done
 
 # ---- nothing is written ----
@@ -67,7 +52,7 @@ mkdir "$tmp/cache"
 for lag in tests/golden/err/sem_*.lag; do
   problem=
   for command in emit build derive header; do
-    XDG_CACHE_HOME=$tmp/cache "$lagc" $command "$lag" -o "$tmp/out/file" >"$tmp/stdout" 2>"$tmp/stderr"
+    XDG_CACHE_HOME=$tmp/cache "$LAGC" $command "$lag" -o "$tmp/out/file" >"$tmp/stdout" 2>"$tmp/stderr"
     code=$?
     # `derive` and `emit` read one scene, and do not report mistakes in others
     if [ "$code" = 0 ] && [ "$command" != build ]; then
@@ -81,7 +66,6 @@ for lag in tests/golden/err/sem_*.lag; do
     rm -rf "$tmp/out"
     mkdir "$tmp/out"
   done
-  result "$lag leaves no file" "$problem"
+  empty "$lag leaves no file" "$problem"
 done
-echo "1..$n"
-[ "$failed" = 0 ]
+tap_end

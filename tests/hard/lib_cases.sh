@@ -42,17 +42,5 @@ compile_cases() {
   "$CC" -std=c11 -O1 -ffp-contract=off -Wall -Wextra -I"$INC" ${GSL:+-DWITH_GSL} $hard/hard.c "$TMP"/*.c.o ${GSL:+"$BUILD/liblag_gsl.a"} "$BUILD/liblag.a" $LIBS -o "$1"
 }
 
-# The TAP results of the command, as part of this suite's.
-tap_of() {
-  "$@" >"$TMP/out"
-  while read -r line; do
-    case $line in
-      "ok "*) check "${line#ok * - }" true ;;
-      "not ok "*) check "${line#not ok * - }" false ;;
-      "# "*) echo "$line" ;;
-    esac
-  done <"$TMP/out"
-}
-
 # hard_runs TIER [CASE | METHOD ...]: by the program that compile_cases made.
 hard_runs() { "$TMP/hard" $hard/cases.json $hard/expected.txt $hard/runs.txt "$@"; }

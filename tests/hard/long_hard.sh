@@ -5,7 +5,7 @@
 
 check "the cases are emitted, with what every method needs" emit_cases all
 check "and compile" compile_cases "$TMP/hard"
-tap_of hard_runs long
+relay hard_runs long
 
 # A pendulum in Cartesian coordinates, adaptive, over 1000 s: off the circle by less than 1e-12 at every output. (Without projection rk45 at
 # 1e-9 is 1e-3 off by then.)

@@ -13,7 +13,7 @@ mkdir "$TMP/quad" && mv "$TMP/hard_quad.c" "$TMP/quad"
 check "the cases compile for doubles" compile_cases "$TMP/hard"
 check "and in quadruple precision" compile_precise quad "$TMP/hard_quad" "$TMP"/*.c "$TMP/quad/hard_quad.c"
 quad() { "$TMP/hard_quad" $hard/cases.json $hard/expected.txt $hard/runs.txt quad; }
-tap_of quad
+relay quad
 far() { ! hard_runs quad >"$TMP/out" && ! grep '^ok' "$TMP/out" | grep -v 'refused\|lagrange-top-steady'; }
 check "doubles reach none but steady motion" far
 tap_end

@@ -7,7 +7,7 @@ check "the cases are emitted" emit_cases taylor
 check "and compile" compile_cases "$TMP/hard"
 # A tolerance of 1e-15 relative to each coordinate, however small it is; dop853 takes ever smaller steps where a coordinate
 # passes through zero, and needs a floor.
-tap_of hard_runs quick
+relay hard_runs quick
 
 # The errors of taylor are a hundredth of the tolerance. rb-dzhanibekov leaves the unstable axis again and again, and
 # multiplies the rounding of every build and processor by as much: a tenth.

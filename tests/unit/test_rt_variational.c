@@ -1,7 +1,7 @@
 /* variational, gauss and the implicit form of the Verlet family: exact digits of the algorithm, solutions, which forms are the
  * same map and which are not, forces, what Newton's method costs and how it fails, what symmetries conserve. Expected values:
  * closed forms, trajectories of the algorithm itself in 40- and 60-digit arithmetic by an independent script, and dop853.
- * Orders are measured in quadruple precision: tests/exec/run_quad.sh. LAG_STEPS: steps of the long runs. */
+ * Orders are measured in quadruple precision: tests/exec/long_quad.sh. LAG_STEPS: steps of the long runs. */
 #include "test_rt_systems.h"
 
 #include "methods/band_matrix.h"

@@ -1,13 +1,14 @@
 #!/bin/sh
 # Methods in quadruple precision: tests/exec/quad_methods.c on models that lagc emits.
-: "${LAGC:=build/lagc}" "${BUILD:=build}" "${CC:=cc}" "${TMP:=$(mktemp -d)}"
+. tests/tap.sh
 . tests/exec/lib_precision.sh
-has_precision quad || { echo '1..0 # SKIP there is no gcc with libquadmath'; exit 0; }
+has_precision quad || skip_all "there is no gcc with libquadmath"
 for m in models/pendulum models/double_pendulum models/kepler tests/exec/models/magnet tests/exec/models/shaken; do
   sed '/^scene .*{/a\
   method gauss' $m.lag >"$TMP/model.lag" # gauss needs other derivatives than those requested here
   "$LAGC" emit "$TMP/model.lag" --method taylor --with linear -o "$TMP/$(basename $m).c" || exit 1
 done
 precise quad tests/exec/quad_methods.c >"$TMP/methods.c"
-compile_precise quad "$TMP/quad" "$TMP"/*.c || exit 1
-"$TMP/quad"
+check "the methods compile in quadruple precision" compile_precise quad "$TMP/quad" "$TMP"/*.c
+relay "$TMP/quad"
+tap_end
