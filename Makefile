@@ -145,6 +145,9 @@ $(BUILD)/gen/commands/complete_%.h: src/commands/complete.%
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
+# One version: LAG_VERSION of lag.h.
+$(BUILD)/obj/src/main.o: SRC_FLAGS += -DLAGC_VERSION='"$(VERSION)"'
+$(BUILD)/obj/src/main.o: runtime/include/lag.h
 $(BUILD)/obj/src/base/method_table.o: SRC_FLAGS += $(if $(GSL),-DLAGC_WITH_GSL)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
 $(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen/emit/lag_kkt.h
