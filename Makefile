@@ -198,6 +198,9 @@ $(BUILD)/gen/commands/complete_%.h: src/commands/complete.%
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
+# One version: LAG_VERSION of lag.h.
+$(BUILD)/obj/src/main.o: SRC_FLAGS += -DLAGC_VERSION='"$(VERSION)"'
+$(BUILD)/obj/src/main.o: runtime/include/lag.h
 $(BUILD)/obj/src/base/method_table.o: SRC_FLAGS += $(if $(GSL),-DLAGC_WITH_GSL)
 $(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_BIN)"' '-DLAGC_INCLUDEDIR="$(INCLUDE_FROM_BIN)"'
 $(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)

@@ -12,8 +12,6 @@
 #include "commands/commands.h"
 #include "syntax/parse.h"
 
-#define LAGC_VERSION "0.1"
-
 enum { MEMORY_LIMIT_MIB = 2048 };
 
 static int do_command(Compiler *c) {

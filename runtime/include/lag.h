@@ -19,7 +19,7 @@
 extern "C" {
 #endif
 
-#define LAG_VERSION "0.1"
+#define LAG_VERSION "0.1.0"
 
 /* Status codes, beside LAG_OK and LAG_ESINGULAR of lag_model.h. */
 enum {

@@ -61,6 +61,8 @@ with_pkg_config() {
   "$CC" -std=c11 -Wall -Wextra -o "$away/main" "$away/main.c" $(pkg-config --cflags --libs "$1") && "$away/main"
 }
 version=$(sed -n 's/^.define LAG_VERSION "\(.*\)"/\1/p' runtime/include/lag.h)
+is "lagc has the version of liblag" "lagc $version" "$("$prefix/bin/lagc" version)"
+is "and the newest release of CHANGELOG.md" "$version" "$(sed -n 's/^## \([0-9][0-9.]*\),.*/\1/p' CHANGELOG.md | head -n 1)"
 if command -v pkg-config >/dev/null; then
   check "a program, through pkg-config" with_pkg_config liblag
   is "it runs" "oscillator $version rk45" "$("$away/main" 2>&1)"

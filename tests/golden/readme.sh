@@ -1,9 +1,9 @@
 #!/bin/sh
-# README.md and models/README.md show output of commands: a block after `<!-- printed by: COMMAND -->` is that command's
-# output, to the byte. README's tutorial is followed in a folder of its own: a block after `<!-- file: NAME -->` is such a
+# README.md, models/README.md and models/TUTORIAL.md show output of commands: a block after `<!-- printed by: COMMAND -->` is that
+# command's output, to the byte. README and the tutorial are followed in folders of their own: a block after `<!-- file: NAME -->` is such a
 # file, one after `<!-- added to: NAME -->` goes to its end, and one after `<!-- session -->` has commands after `$ ` and their
 # output, where numbers may differ in the last digits, and times at will. BLESS=1 rewrites blocks. Their links, and those of
-# src/README.md and grammar/LANGUAGE.md, lead to files.
+# src/README.md, CONTRIBUTING.md and grammar/LANGUAGE.md, lead to files.
 . tests/tap.sh
 
 shows() { # shows PAGE
@@ -41,23 +41,10 @@ shows() { # shows PAGE
 }
 shows README.md
 shows models/README.md
+shows models/TUTORIAL.md
 
-# ---- the tutorial ----
+# ---- sessions ----
 case $LAGC in /*) tools=$(dirname "$LAGC") ;; *) tools=$(pwd)/$(dirname "$LAGC") ;; esac
-mkdir -p "$TMP/lesson" "$TMP/steps"
-# steps/NN.KIND, and for a file its name in steps/NN.name
-awk -v dir="$TMP/steps/" '
-  /^<!-- (file|added to): .* -->$/ { kind = $2 == "file:" ? "file" : "added"; name = $0; sub(/^[^:]*: /, "", name); sub(/ -->$/, "", name); next }
-  /^<!-- session -->$/ { kind = "session"; next }
-  kind && /^```/ {
-    if (out) { close(out); out = kind = ""; next }
-    n++
-    out = sprintf("%s%02d.%s", dir, n, kind)
-    if (kind != "session") { print name >sprintf("%s%02d.name", dir, n); close(sprintf("%s%02d.name", dir, n)) }
-    next
-  }
-  out { print >out }' README.md
-
 session() { # a session's block on standard input -> the block with the present output
   while IFS= read -r line; do
     case $line in
@@ -78,42 +65,64 @@ same_session() {
     {
       if ((getline line <other) <= 0) { print "missing: " $0; exit 1 }
       n = split($0, a, " "); m = split(line, b, " ")
-      for (i = 1; i <= n || i <= m; i++) if (!same(a[i], b[i])) { print "README: " $0; print "now:    " line; exit 1 }
+      for (i = 1; i <= n || i <= m; i++) if (!same(a[i], b[i])) { print "page:   " $0; print "now:    " line; exit 1 }
     }
     END { if ((getline line <other) > 0) { print "now, too: " line; exit 1 } }' "$TMP/a"
 }
-for step in "$TMP"/steps/*; do
-  base=${step%.*}
-  case $step in
-    *.file) cp "$step" "$TMP/lesson/$(cat "$base.name")" ;;
-    *.added) cat "$step" >>"$TMP/lesson/$(cat "$base.name")" ;;
-    *.session)
-      session <"$step" >"$base.now"
-      [ -n "$BLESS" ] || check "tutorial: $(sed -n 's/^\$ //p' "$step" | paste -s -d ';' -)" same_session "$step" "$base.now"
-      if same_session "$step" "$base.now" >/dev/null; then cp "$step" "$base.now"; fi
-      ;;
-  esac
-done
-made() { [ -s "$TMP/lesson/orbit.svg" ] && tail -n 1 "$TMP/lesson/double.html" | grep -q '</html>'; }
-check "the tutorial leaves a picture and an animation" made
-if [ -n "$BLESS" ]; then
+follows() { # follows PAGE
+  page=$1
+  rm -rf "$TMP/lesson" "$TMP/steps"
+  mkdir -p "$TMP/lesson" "$TMP/steps"
+  ln -s "$(pwd)/models" "$TMP/lesson/models"
+  ln -s "$tools" "$TMP/lesson/build"
+  # steps/NN.KIND, and for a file its name in steps/NN.name
   awk -v dir="$TMP/steps/" '
-    /^<!-- (file|added to): .* -->$/ || /^<!-- session -->$/ { print; kind = $2; next }
-    kind && /^```/ && !inside {
-      print
+    /^<!-- (file|added to): .* -->$/ { kind = $2 == "file:" ? "file" : "added"; name = $0; sub(/^[^:]*: /, "", name); sub(/ -->$/, "", name); next }
+    /^<!-- session -->$/ { kind = "session"; next }
+    kind && /^```/ {
+      if (out) { close(out); out = kind = ""; next }
       n++
-      inside = 1
-      while (kind == "session" && (getline line <sprintf("%s%02d.now", dir, n)) > 0) print line
+      out = sprintf("%s%02d.%s", dir, n, kind)
+      if (kind != "session") { print name >sprintf("%s%02d.name", dir, n); close(sprintf("%s%02d.name", dir, n)) }
       next
     }
-    inside && /^```/ { inside = 0; kind = "" }
-    inside && kind == "session" { next }
-    { print }' README.md >"$TMP/blessed.md"
-  cmp -s "$TMP/blessed.md" README.md || cp "$TMP/blessed.md" README.md
-fi
+    out { print >out }' "$page"
+  for step in "$TMP"/steps/*; do
+    base=${step%.*}
+    case $step in
+      *.file) cp "$step" "$TMP/lesson/$(cat "$base.name")" ;;
+      *.added) cat "$step" >>"$TMP/lesson/$(cat "$base.name")" ;;
+      *.session)
+        session <"$step" >"$base.now"
+        [ -n "$BLESS" ] || check "$page: $(sed -n 's/^\$ //p' "$step" | paste -s -d ';' -)" same_session "$step" "$base.now"
+        if same_session "$step" "$base.now" >/dev/null; then cp "$step" "$base.now"; fi
+        ;;
+    esac
+  done
+  if [ -n "$BLESS" ]; then
+    awk -v dir="$TMP/steps/" '
+      /^<!-- (file|added to): .* -->$/ || /^<!-- session -->$/ { print; kind = $2; next }
+      kind && /^```/ && !inside {
+        print
+        n++
+        inside = 1
+        while (kind == "session" && (getline line <sprintf("%s%02d.now", dir, n)) > 0) print line
+        next
+      }
+      inside && /^```/ { inside = 0; kind = "" }
+      inside && kind == "session" { next }
+      { print }' "$page" >"$TMP/blessed.md"
+    cmp -s "$TMP/blessed.md" "$page" || cp "$TMP/blessed.md" "$page"
+  fi
+}
+follows README.md
+[ -n "$BLESS" ] || check "README leaves a picture" [ -s "$TMP/lesson/motion.svg" ]
+follows models/TUTORIAL.md
+made() { [ -s "$TMP/lesson/orbit.svg" ] && tail -n 1 "$TMP/lesson/double.html" | grep -q '</html>'; }
+check "the tutorial leaves a picture and an animation" made
 
 links() {
-  for page in README.md src/README.md models/README.md grammar/LANGUAGE.md; do
+  for page in README.md src/README.md models/README.md models/TUTORIAL.md .github/CONTRIBUTING.md grammar/LANGUAGE.md; do
     sed 's/`[^`]*`//g' "$page" | grep -o ']([^)#]*)' | sed 's/^](//; s/)$//' | while read -r link; do
       case $link in *://*) continue ;; esac
       [ -e "$(dirname "$page")/$link" ] || echo "$page: no $link"
