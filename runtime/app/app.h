@@ -139,11 +139,11 @@ void lag_section_note(App *app, int k);
 int lag_tangent_columns_open(App *app);
 int lag_tangent_columns_row(App *app);
 void lag_report_tangent(App *app, FILE *f);
-void lag_report_tangent_json(App *app, FILE *f);
+void lag_report_tangent_json(App *app, Json *j);
 
 /* charges_report.c: the report on energy and other charges; in JSON also on monitors. */
 void lag_report_charges(const App *app, FILE *f);
-void lag_report_charges_json(const App *app, FILE *f);
+void lag_report_charges_json(const App *app, Json *j);
 /* Whether the energy error exceeds the tolerance by far because the mass matrix was almost singular. */
 int lag_report_lost_digits(const App *app, const lag_charge_stats *energy);
 
@@ -170,11 +170,13 @@ int lag_event_log_open(App *app);
 void lag_event_log_note(void *app, int k, double t, const double *before, const double *after);
 void lag_event_log_free(App *app);
 void lag_report_events(const App *app, FILE *f);
-void lag_report_events_json(const App *app, FILE *f);
+void lag_report_events_json(const App *app, Json *j);
 
 /* report.c */
 void lag_report_text(App *app, FILE *f);
 void lag_report_json(App *app, FILE *f);
+/* Members model, scene, method, chosen, status. */
+void lag_report_json_head(const App *app, Json *j);
 /* s[n] := method with the options that differ from their defaults, "rk45(tol=1e-09)". */
 void lag_report_method(const App *app, char *s, size_t n);
 
