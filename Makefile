@@ -14,7 +14,7 @@ DESTDIR ?=
 T       ?=
 
 CPPFLAGS_ALL := -D_XOPEN_SOURCE=700
-SRC_FLAGS    := $(CPPFLAGS_ALL) -Isrc -I$(BUILD)/gen
+SRC_FLAGS    := $(CPPFLAGS_ALL) -Isrc -Iruntime -I$(BUILD)/gen
 RT_FLAGS     := $(CPPFLAGS_ALL) -Iruntime/include -Iruntime -I$(BUILD)/gen -ffp-contract=off
 VERSION      := $(shell sed -n 's/^.define LAG_VERSION "\(.*\)"/\1/p' runtime/include/lag.h 2>/dev/null)
 

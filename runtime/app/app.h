@@ -70,7 +70,9 @@ typedef struct App {
 
 /* args.c: parses and checks the command line. 0, or EXIT_USAGE after a message. */
 int lag_args_parse(Args *a, int argc, char **argv);
-/* *x := the number that is the whole text; returns 1. Else a message with the name `what` and an example; returns 0. */
+/* *x := the decimal number that is the whole text, maybe infinite; else 0. Other forms that strtod takes (inf, nan, 0x1p3) are none. */
+int lag_args_decimal(const char *text, double *x);
+/* The same for finite numbers. Else a message with the name `what` and an example; returns 0. */
 int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x);
 /* Prints an error to standard error after the program's name; returns EXIT_USAGE. */
 #if defined(__GNUC__)

@@ -28,6 +28,14 @@ typedef struct Table {
 int lag_table_init(Table *t, const lag_sim *sim, int keep);
 void lag_table_free(Table *t);
 int lag_table_add(Table *t, const double *row);
+static inline double lag_table_cell(const Table *t, size_t row, int col)
+{
+  return t->data[row * (size_t)t->ncols + (size_t)col];
+}
+/* Widens [lo, hi] by the finite values of a column. */
+void lag_table_range(const Table *t, int col, double *lo, double *hi);
+/* The longest of year, day and hour of which a span [s] holds two, in seconds; *name: its unit. 0: none. */
+double lag_long_time_unit(double span, const char **name);
 /* For pictures: converts the time to years, days or hours where the rows span two or more of these; not where no column has a unit. */
 void lag_table_scale_time(Table *t);
 
