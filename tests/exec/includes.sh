@@ -1,6 +1,6 @@
 #!/bin/sh
 # Who may include whom. Data flows one way, from text to C, and each folder of src/ sees only what lies before it;
-# the compiler and the runtime never meet; GSL is met in one folder. src/README.md has the reasons.
+# the compiler and the runtime share runtime/numeric only; GSL is met in one folder. src/README.md has the reasons.
 . tests/tap.sh
 
 # FOLDER: the folders whose headers it may include. `mech/eqns.h` etc.: these files only.
