@@ -4,6 +4,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "numeric/dense.h"
+
 /* Reciprocal of the largest size in row i. */
 static double factor_of(int n, const double *size, int i)
 {
@@ -15,51 +17,15 @@ static double factor_of(int n, const double *size, int i)
   return most > 0 && isfinite(most) ? 1 / most : 1;
 }
 
-static void swap(double *a, double *b)
-{
-  double x = *a;
-  *a = *b;
-  *b = x;
-}
-
-/* Brings the largest element of the remaining A to (k, k), by swaps. Returns its size. */
-static double complete_pivot(int n, int k, double *A, double *b, double *noise, double *column)
-{
-  int row = k, col = k;
-
-  for (int i = k; i < n; i++) {
-    for (int j = k; j < n; j++) {
-      if (fabs(A[i * n + j]) > fabs(A[row * n + col])) {
-        row = i;
-        col = j;
-      }
-    }
-  }
-  for (int j = 0; j < n && row != k; j++) {
-    swap(&A[k * n + j], &A[row * n + j]);
-  }
-  swap(&b[k], &b[row]);
-  swap(&noise[k], &noise[row]);
-  for (int i = 0; i < n && col != k; i++) {
-    swap(&A[i * n + k], &A[i * n + col]);
-  }
-  swap(&column[k], &column[col]);
-  return fabs(A[k * n + k]);
-}
-
 /* Eliminates column k below row k. Errors add as if independent. */
-static void eliminate(int n, int k, double *A, double *b, double *noise)
+static void eliminate_column(int n, int k, double *A, double *b, double *noise)
 {
   for (int i = k + 1; i < n; i++) {
-    double factor = A[i * n + k] / A[k * n + k];
-    if (factor == 0.0) {
-      continue;
+    double factor = lag_eliminate_row(n, A, k, i);
+    if (factor != 0.0) {
+      b[i] -= factor * b[k];
+      noise[i] = hypot(hypot(noise[i], factor * noise[k]), DBL_EPSILON * factor * b[k]);
     }
-    for (int j = k; j < n; j++) {
-      A[i * n + j] -= factor * A[k * n + j];
-    }
-    b[i] -= factor * b[k];
-    noise[i] = hypot(hypot(noise[i], factor * noise[k]), DBL_EPSILON * factor * b[k]);
   }
 }
 
@@ -77,9 +43,15 @@ int lag_complete_pivot_solve(int n, double *A, const double *size, double *b, do
     column[i] = i;
     x[i] = 0;
   }
-  while (rank < n && complete_pivot(n, rank, A, b, noise, column) > 8 * n * DBL_EPSILON) {
-    eliminate(n, rank, A, b, noise);
-    rank++;
+  for (int row, col; rank < n; rank++) {
+    double pivot = lag_complete_pivot(n, rank, A, &row, &col);
+    lag_swap(&b[rank], &b[row]);
+    lag_swap(&noise[rank], &noise[row]);
+    lag_swap(&column[rank], &column[col]);
+    if (!(pivot > 8 * n * DBL_EPSILON)) {
+      break;
+    }
+    eliminate_column(n, rank, A, b, noise);
   }
   for (int k = rank; k-- > 0;) {
     double sum = b[k];

@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "core/core.h"
 
@@ -87,7 +86,7 @@ int lag_variant_run(Variant *v, double t0, double t1)
 /* Kind of component i of [q|v|z]: 0, 1, 2; *index: its place within that kind. */
 static int part_of(const lag_model *m, int i, int *index)
 {
-  int part = i < m->nq ? 0 : i < 2 * m->nq ? 1 : 2;
+  int part = lag_component_kind(m, i);
 
   *index = i - part * m->nq;
   return part;
@@ -276,25 +275,17 @@ int lag_variant_weight(const Variant *along, const Variant *with, const Variant 
 
 /* ---- Times */
 
-static double processor_seconds(void)
-{
-  struct timespec now;
-
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* Mean time of one call over `loops` passes through all states of the run. */
 static double time_calls(Variant *v, int loops, double *dy)
 {
-  double begun = processor_seconds();
+  double begun = lag_processor_seconds();
 
   for (int k = 0; k < loops; k++) {
     for (int i = 0; i < v->nstates; i++) {
       lag_rhs(&v->sim->pb, v->t[i], v->y + (size_t)i * (size_t)v->n, dy);
     }
   }
-  return (processor_seconds() - begun) / loops / v->nstates;
+  return (lag_processor_seconds() - begun) / loops / v->nstates;
 }
 
 int lag_variants_time(Variant *v, int n)

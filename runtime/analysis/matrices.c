@@ -7,6 +7,7 @@
 
 #include "analysis/decoupled_blocks.h"
 #include "analysis/perturbation_noise.h"
+#include "numeric/dense.h"
 
 /* ---- Entries */
 
@@ -194,13 +195,6 @@ static int solve_block(Matrices *m, Pool *pool, const lag_algebra *algebra, int 
   return rc;
 }
 
-static void swap(double *a, double *b)
-{
-  double x = *a;
-  *a = *b;
-  *b = x;
-}
-
 /* Sorts values ascending; divides vectors by the weights; counts directions of falling and of constant energy. */
 static void sort_values(Matrices *m)
 {
@@ -211,10 +205,10 @@ static void sort_values(Matrices *m)
     for (int i = k + 1; i < nq; i++) {
       least = m->values[i] < m->values[least] ? i : least;
     }
-    swap(&m->values[k], &m->values[least]);
-    swap(&m->zero[k], &m->zero[least]);
+    lag_swap(&m->values[k], &m->values[least]);
+    lag_swap(&m->zero[k], &m->zero[least]);
     for (int i = 0; i < nq; i++) {
-      swap(&m->vectors[i * nq + k], &m->vectors[i * nq + least]);
+      lag_swap(&m->vectors[i * nq + k], &m->vectors[i * nq + least]);
     }
     m->lowering += m->values[k] < -m->zero[k];
     m->flat += fabs(m->values[k]) <= m->zero[k];

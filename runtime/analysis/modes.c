@@ -9,6 +9,7 @@
 
 #include "analysis/matrices.h"
 #include "analysis/spectrum.h"
+#include "numeric/dense.h"
 
 typedef struct ModeSearch {
   Modes *out;
@@ -84,13 +85,6 @@ static int add_mode(ModeSearch *w, Mode mode, const double *re, const double *im
 
 /* ---- Zero modes */
 
-static void swap(double *a, double *b)
-{
-  double x = *a;
-  *a = *b;
-  *b = x;
-}
-
 /* A basis of the kernel with as many zeros as possible: Gauss-Jordan elimination of its vectors, measured in scales. */
 static void reduce_kernel(ModeSearch *w)
 {
@@ -115,7 +109,7 @@ static void reduce_kernel(ModeSearch *w)
       return;
     }
     for (int i = 0; i < n; i++) {
-      swap(&v[i * k + done], &v[i * k + col]);
+      lag_swap(&v[i * k + done], &v[i * k + col]);
       v[i * k + done] /= pivot;
     }
     for (int j = 0; j < k; j++) {

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "numeric/dense.h"
+
 /* Distance of M[n * n] from a singular matrix: the least pivot of symmetric elimination relative to size[n], the usual diagonal. M is destroyed. */
 static double least_pivot(int n, double *M, const double *size)
 {
@@ -12,10 +14,7 @@ static double least_pivot(int n, double *M, const double *size)
     double pivot = M[k * n + k];
     least = size[k] > 0 ? fmin(least, fabs(pivot) / size[k]) : least;
     for (int i = k + 1; i < n && pivot != 0.0; i++) {
-      double factor = M[i * n + k] / pivot;
-      for (int j = k + 1; j < n && factor != 0.0; j++) {
-        M[i * n + j] -= factor * M[k * n + j];
-      }
+      lag_eliminate_row(n, M, k, i);
     }
   }
   return least;

@@ -46,8 +46,7 @@ int lag_samples_take(Samples *s, lag_sim *sim)
   return LAG_OK;
 }
 
-/* Kind of component i: 0 coordinate, 1 velocity, 2 state. */
-static int kind_of(const lag_model *m, int i)
+int lag_component_kind(const lag_model *m, int i)
 {
   return i < m->nq ? 0 : i < 2 * m->nq ? 1 : 2;
 }
@@ -67,7 +66,7 @@ void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale
   /* Neighbours of one kind and unit share the largest of their scales. */
   for (int i = 1; i <= n; i++) {
     lag_sim_state_info(sim, first, NULL, 0, unit, sizeof unit);
-    if (i < n && kind_of(m, i) == kind_of(m, first)) {
+    if (i < n && lag_component_kind(m, i) == lag_component_kind(m, first)) {
       lag_sim_state_info(sim, i, NULL, 0, other, sizeof other);
       if (strcmp(unit, other) == 0) {
         continue;
@@ -98,7 +97,7 @@ double lag_cost_error(const Samples *a, const Samples *b, const double *scale)
 
 /* ---- One setting */
 
-static double processor_seconds(void)
+double lag_processor_seconds(void)
 {
   struct timespec now;
 
@@ -158,9 +157,9 @@ static int run_setting(CostMethod *m, const CostScene *scene, const Samples *ref
       return rc;
     }
     own->rows = reference->rows;
-    double begin = processor_seconds();
+    double begin = lag_processor_seconds();
     rc = lag_samples_take(own, sim);
-    times[n] = processor_seconds() - begin;
+    times[n] = lag_processor_seconds() - begin;
     if (rc) {
       snprintf(m->why, sizeof m->why, "%s", lag_sim_message(sim));
     } else {

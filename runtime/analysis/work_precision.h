@@ -58,6 +58,10 @@ typedef struct CostMethod {
  * processor time]. LAG_OK, also where no run has a result (m->why); LAG_ENOMEM. */
 int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, double longest);
 
+/* Kind of component i of a state: 0 coordinate, 1 velocity, 2 state. Processor time of this process [s]. */
+int lag_component_kind(const lag_model *m, int i);
+double lag_processor_seconds(void);
+
 /* Marks the Pareto front of all runs. */
 void lag_pareto_front(CostMethod *m, int n);
 

@@ -70,7 +70,9 @@ typedef struct App {
 
 /* args.c: parses and checks the command line. 0, or EXIT_USAGE after a message. */
 int lag_args_parse(Args *a, int argc, char **argv);
-/* *x := the number that is the whole text; returns 1. Else a message with the name `what` and an example; returns 0. */
+/* *x := the decimal number that is the whole text, maybe infinite; else 0. Other forms that strtod takes (inf, nan, 0x1p3) are none. */
+int lag_args_decimal(const char *text, double *x);
+/* The same for finite numbers. Else a message with the name `what` and an example; returns 0. */
 int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x);
 /* Prints an error to standard error after the program's name; returns EXIT_USAGE. */
 #if defined(__GNUC__)
@@ -139,11 +141,11 @@ void lag_section_note(App *app, int k);
 int lag_tangent_columns_open(App *app);
 int lag_tangent_columns_row(App *app);
 void lag_report_tangent(App *app, FILE *f);
-void lag_report_tangent_json(App *app, FILE *f);
+void lag_report_tangent_json(App *app, Json *j);
 
 /* charges_report.c: the report on energy and other charges; in JSON also on monitors. */
 void lag_report_charges(const App *app, FILE *f);
-void lag_report_charges_json(const App *app, FILE *f);
+void lag_report_charges_json(const App *app, Json *j);
 /* Whether the energy error exceeds the tolerance by far because the mass matrix was almost singular. */
 int lag_report_lost_digits(const App *app, const lag_charge_stats *energy);
 
@@ -170,11 +172,13 @@ int lag_event_log_open(App *app);
 void lag_event_log_note(void *app, int k, double t, const double *before, const double *after);
 void lag_event_log_free(App *app);
 void lag_report_events(const App *app, FILE *f);
-void lag_report_events_json(const App *app, FILE *f);
+void lag_report_events_json(const App *app, Json *j);
 
 /* report.c */
 void lag_report_text(App *app, FILE *f);
 void lag_report_json(App *app, FILE *f);
+/* Members model, scene, method, chosen, status. */
+void lag_report_json_head(const App *app, Json *j);
 /* s[n] := method with the options that differ from their defaults, "rk45(tol=1e-09)". */
 void lag_report_method(const App *app, char *s, size_t n);
 

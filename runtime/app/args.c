@@ -27,18 +27,23 @@ int lag_app_error(const Args *a, const char *format, ...)
   return EXIT_USAGE;
 }
 
-/* Decimal numbers only; other forms that strtod takes (inf, nan, 0x1p3) are refused. */
-int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x)
+int lag_args_decimal(const char *text, double *x)
 {
   char *end;
-  size_t plain = strspn(text, "+-.0123456789eE");
 
   *x = strtod(text, &end);
+  return end != text && *end == '\0' && strspn(text, "+-.0123456789eE") == strlen(text);
+}
+
+int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x)
+{
+  int decimal = lag_args_decimal(text, x);
+
   if (strchr(text, '[')) {
     lag_app_error(a, "%s: \"%s\" has a unit, and a simulator takes numbers in the units that --help shows, times in s; lagc run converts", what, text);
     return 0;
   }
-  if (end == text || *end || plain != strlen(text)) {
+  if (!decimal) {
     lag_app_error(a, "%s: \"%s\" is not a number; write for example %s", what, text, example);
     return 0;
   }
@@ -94,19 +99,14 @@ static const Option *find_option(const char *name, size_t n)
 static int unknown_option(const Args *a, const char *text, size_t n)
 {
   char name[64];
-  const char *best = NULL;
-  int least = LAG_NO_TYPO;
+  lag_nearest near = {.name = name};
 
   snprintf(name, sizeof name, "%.*s", (int)(n < 60 ? n : 60), text);
   for (int i = 0; i < NOPTIONS; i++) {
-    int d = lag_typo_distance(name, options[i].name);
-    if (d < least) {
-      least = d;
-      best = options[i].name;
-    }
+    lag_try_nearest(&near, options[i].name);
   }
-  return best ? lag_app_error(a, "unknown option --%s; did you mean --%s?", name, best)
-              : lag_app_error(a, "unknown option --%s; see --help", name);
+  return near.best ? lag_app_error(a, "unknown option --%s; did you mean --%s?", name, near.best)
+                   : lag_app_error(a, "unknown option --%s; see --help", name);
 }
 
 /* Parses the long option at argv[*i]; its value follows "=" or is the next argument. */

@@ -110,46 +110,33 @@ void lag_report_charges(const App *app, FILE *f)
   }
 }
 
-static void field(FILE *f, const char *name, double x)
-{
-  fprintf(f, "\"%s\": ", name);
-  lag_json_number(f, x);
-  fputs(", ", f);
-}
-
-void lag_report_charges_json(const App *app, FILE *f)
+void lag_report_charges_json(const App *app, Json *j)
 {
   static const char *const trends[] = {
       [LAG_TREND_UNKNOWN] = NULL, [LAG_TREND_ROUNDING] = "rounding", [LAG_TREND_OSCILLATES] = "oscillates", [LAG_TREND_GROWS] = "grows"};
   const lag_scene *s = app->scene;
 
-  fputs("\"charges\": {", f);
+  lag_json_begin(j, "charges", '{');
   for (int k = 0; k < lag_sim_ncharges(app->sim); k++) {
     lag_charge_stats c;
     lag_sim_charge(app->sim, k, &c);
-    fputs(k ? ", " : "", f);
-    lag_json_string(f, c.name);
-    fprintf(f, ": {\"is\": \"%s\", ", c.flags & LAG_CONSERVED ? "conserved" : c.flags & LAG_BALANCED ? "balanced" : "not known");
-    field(f, "initial", c.begin);
-    field(f, "final", c.now);
-    field(f, "work", c.work);
-    field(f, "drift", c.drift);
-    field(f, "drift_absolute", c.absolute);
-    fputs("\"unit\": ", f);
-    lag_json_string(f, c.unit);
-    fputs(", ", f);
-    field(f, "slope", c.slope);
-    field(f, "slope_error", c.slope_error);
-    fputs("\"trend\": ", f);
-    lag_json_string(f, trends[c.trend]);
-    putc('}', f);
+    lag_json_begin(j, c.name, '{');
+    lag_json_string(j, "is", c.flags & LAG_CONSERVED ? "conserved" : c.flags & LAG_BALANCED ? "balanced" : "not known");
+    lag_json_number(j, "initial", c.begin);
+    lag_json_number(j, "final", c.now);
+    lag_json_number(j, "work", c.work);
+    lag_json_number(j, "drift", c.drift);
+    lag_json_number(j, "drift_absolute", c.absolute);
+    lag_json_string(j, "unit", c.unit);
+    lag_json_number(j, "slope", c.slope);
+    lag_json_number(j, "slope_error", c.slope_error);
+    lag_json_string(j, "trend", trends[c.trend]);
+    lag_json_end(j, '}');
   }
-  fputs("}, \"monitors\": {", f);
+  lag_json_end(j, '}');
+  lag_json_begin(j, "monitors", '{');
   for (int i = 0; i < s->nmonitors; i++) {
-    fputs(i ? ", " : "", f);
-    lag_json_string(f, s->monitors[i].name);
-    fputs(": ", f);
-    lag_json_number(f, lag_sim_monitor_drift(app->sim, i));
+    lag_json_number(j, s->monitors[i].name, lag_sim_monitor_drift(app->sim, i));
   }
-  fputs("}, ", f);
+  lag_json_end(j, '}');
 }

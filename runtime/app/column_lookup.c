@@ -36,17 +36,12 @@ static int is_part(const char *column, const char *name)
 /* Prints that there is no such column; returns -1. */
 static int no_column(const App *app, const char *name)
 {
-  const char *best = NULL;
-  int least = LAG_NO_TYPO;
+  lag_nearest near = {.name = name};
 
   for (int i = 0; i < app->table.ncols; i++) {
-    int d = lag_typo_distance(name, app->table.cols[i].name);
-    if (d < least) {
-      least = d;
-      best = app->table.cols[i].name;
-    }
+    lag_try_nearest(&near, app->table.cols[i].name);
   }
-  lag_app_error(&app->args, best ? "no output is named %s; did you mean %s?" : "no output is named %s", name, best);
+  lag_app_error(&app->args, near.best ? "no output is named %s; did you mean %s?" : "no output is named %s", name, near.best);
   return -1;
 }
 

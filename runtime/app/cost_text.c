@@ -160,46 +160,43 @@ void lag_cost_json(FILE *f, const App *app, const Cost *c)
   if (c->target > 0) {
     lag_cost_cheapest(c->method, c->nmethods, c->target, &cheapest);
   }
-  fputs("{\"model\": ", f);
-  lag_json_string(f, app->scene->model->name);
-  fputs(", \"scene\": ", f);
-  lag_json_string(f, app->scene->name);
-  fputs(", \"until\": ", f);
-  lag_json_number(f, s->t[s->rows - 1]);
-  fputs(", \"reference\": ", f);
-  lag_json_string(f, c->reference_name);
-  fputs(", \"uncertainty\": ", f);
-  lag_json_number(f, s->uncertainty);
-  fputs(", \"target\": ", f);
-  lag_json_number(f, c->target > 0 ? c->target : NAN);
-  fputs(", \"methods\": [", f);
+  Json j = {.f = f};
+  lag_json_begin(&j, NULL, '{');
+  lag_json_string(&j, "model", app->scene->model->name);
+  lag_json_string(&j, "scene", app->scene->name);
+  lag_json_number(&j, "until", s->t[s->rows - 1]);
+  lag_json_string(&j, "reference", c->reference_name);
+  lag_json_number(&j, "uncertainty", s->uncertainty);
+  lag_json_number(&j, "target", c->target > 0 ? c->target : NAN);
+  lag_json_begin(&j, "methods", '[');
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
     char name[96];
     name_of(m, name, sizeof name);
-    fputs(i ? ", {\"method\": " : "{\"method\": ", f);
-    lag_json_string(f, name);
-    fputs(", \"order\": ", f);
-    lag_json_number(f, m->order);
-    fputs(", \"refused\": ", f);
-    lag_json_string(f, m->why[0] ? m->why : NULL);
-    fputs(", \"runs\": [", f);
+    lag_json_begin(&j, NULL, '{');
+    lag_json_string(&j, "method", name);
+    lag_json_number(&j, "order", m->order);
+    lag_json_string(&j, "refused", m->why[0] ? m->why : NULL);
+    lag_json_begin(&j, "runs", '[');
     for (int k = 0; k < m->nruns; k++) {
       const CostRun *r = &m->run[k];
-      fprintf(f, k ? ", {\"%s\": " : "{\"%s\": ", adaptive(m) ? "tolerance" : "step");
-      lag_json_number(f, r->knob);
-      fputs(", \"error\": ", f);
-      lag_json_number(f, r->error);
-      fputs(", \"seconds\": ", f);
-      lag_json_number(f, r->time);
-      fputs(", \"spread\": ", f);
-      lag_json_number(f, r->spread);
-      fprintf(f, ", \"steps\": %lld, \"calls\": %lld, \"front\": %s, \"cheapest\": %s}", r->steps, r->calls, r->best ? "true" : "false",
-              r == cheapest ? "true" : "false");
+      lag_json_begin(&j, NULL, '{');
+      lag_json_number(&j, adaptive(m) ? "tolerance" : "step", r->knob);
+      lag_json_number(&j, "error", r->error);
+      lag_json_number(&j, "seconds", r->time);
+      lag_json_number(&j, "spread", r->spread);
+      lag_json_count(&j, "steps", r->steps);
+      lag_json_count(&j, "calls", r->calls);
+      lag_json_truth(&j, "front", r->best);
+      lag_json_truth(&j, "cheapest", r == cheapest);
+      lag_json_end(&j, '}');
     }
-    fputs("]}", f);
+    lag_json_end(&j, ']');
+    lag_json_end(&j, '}');
   }
-  fputs("]}\n", f);
+  lag_json_end(&j, ']');
+  lag_json_end(&j, '}');
+  putc('\n', f);
 }
 
 /* ---- Picture */

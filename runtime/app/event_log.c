@@ -111,21 +111,18 @@ void lag_report_events(const App *app, FILE *f)
   }
 }
 
-void lag_report_events_json(const App *app, FILE *f)
+void lag_report_events_json(const App *app, Json *j)
 {
   const lag_model *m = app->scene->model;
 
-  fputs("\"events\": {", f);
+  lag_json_begin(j, "events", '{');
   for (int k = 0; k < m->nev; k++) {
     double first, last;
-    long long n = lag_sim_event_times(app->sim, k, &first, &last);
-    fputs(k ? ", " : "", f);
-    lag_json_string(f, m->ev[k].name);
-    fprintf(f, ": {\"count\": %lld, \"first\": ", n);
-    lag_json_number(f, first);
-    fputs(", \"last\": ", f);
-    lag_json_number(f, last);
-    putc('}', f);
+    lag_json_begin(j, m->ev[k].name, '{');
+    lag_json_count(j, "count", lag_sim_event_times(app->sim, k, &first, &last));
+    lag_json_number(j, "first", first);
+    lag_json_number(j, "last", last);
+    lag_json_end(j, '}');
   }
-  fputs("}, ", f);
+  lag_json_end(j, '}');
 }

@@ -189,14 +189,13 @@ static void put_text(FILE *f, App *app, const Lyapunov *l)
   conclude(f, l);
 }
 
-static void json_list(FILE *f, const char *name, const Lyapunov *l, double (*value)(const Lyapunov *, int))
+static void json_list(Json *j, const char *name, const Lyapunov *l, double (*value)(const Lyapunov *, int))
 {
-  fprintf(f, ", \"%s\": [", name);
+  lag_json_begin(j, name, '[');
   for (int i = 0; i < l->k; i++) {
-    fputs(i ? ", " : "", f);
-    lag_json_number(f, value(l, i));
+    lag_json_number(j, NULL, value(l, i));
   }
-  putc(']', f);
+  lag_json_end(j, ']');
 }
 
 static double at_half(const Lyapunov *l, int i)
@@ -204,45 +203,33 @@ static double at_half(const Lyapunov *l, int i)
   return l->at_half[i];
 }
 
-static void json_field(FILE *f, const char *name, double x)
-{
-  fprintf(f, ", \"%s\": ", name);
-  lag_json_number(f, x);
-}
-
 static void put_json(FILE *f, const App *app, const Lyapunov *l)
 {
-  int all = l->k == l->n;
+  int all = l->k == l->n, sign = lag_lyapunov_sign(l, 0);
+  double error, dimension = lag_lyapunov_dimension(l, &error), entropy_error, entropy = lag_lyapunov_entropy(l, &entropy_error);
+  Json j = {.f = f};
 
-  fputs("{\"model\": ", f);
-  lag_json_string(f, app->scene->model->name);
-  fputs(", \"scene\": ", f);
-  lag_json_string(f, app->scene->name);
-  fputs(", \"method\": ", f);
-  lag_json_string(f, lag_sim_method(app->sim)->name);
-  fputs(", \"chosen\": ", f);
-  lag_json_string(f, app->why[0] ? app->why : NULL);
-  fputs(", \"status\": ", f);
-  lag_json_string(f, app->status < 0 ? "failed" : lag_status_name(app->status));
-  json_field(f, "from", l->begun);
-  json_field(f, "until", l->t);
-  fprintf(f, ", \"steps\": %lld, \"blocks\": %d", l->steps, l->nblocks);
-  json_list(f, "exponents", l, lag_lyapunov_exponent);
-  json_list(f, "spread", l, lag_lyapunov_spread);
-  json_list(f, "errors", l, lag_lyapunov_error);
-  json_list(f, "at_half", l, at_half);
-  json_field(f, "sum", all ? lag_lyapunov_exponent(l, l->k) : NAN);
-  json_field(f, "sum_spread", all ? lag_lyapunov_spread(l, l->k) : NAN);
-  json_field(f, "divergence", lag_lyapunov_divergence(l));
-  json_field(f, "sum_error", all ? lag_lyapunov_error(l, l->k) : NAN);
-  double error, dimension = lag_lyapunov_dimension(l, &error);
-  json_field(f, "dimension", dimension);
-  json_field(f, "dimension_error", error);
-  double entropy = lag_lyapunov_entropy(l, &error);
-  json_field(f, "entropy", all && lag_lyapunov_sign(l, 0) > 0 ? entropy : NAN);
-  json_field(f, "entropy_error", all && lag_lyapunov_sign(l, 0) > 0 ? error : NAN);
-  fprintf(f, ", \"chaotic\": %s", l->nblocks < 2 || lag_lyapunov_sign(l, 0) == 0 ? "null" : lag_lyapunov_sign(l, 0) > 0 ? "true" : "false");
-  fputs("}\n", f);
+  lag_json_begin(&j, NULL, '{');
+  lag_report_json_head(app, &j);
+  lag_json_number(&j, "from", l->begun);
+  lag_json_number(&j, "until", l->t);
+  lag_json_count(&j, "steps", l->steps);
+  lag_json_count(&j, "blocks", l->nblocks);
+  json_list(&j, "exponents", l, lag_lyapunov_exponent);
+  json_list(&j, "spread", l, lag_lyapunov_spread);
+  json_list(&j, "errors", l, lag_lyapunov_error);
+  json_list(&j, "at_half", l, at_half);
+  lag_json_number(&j, "sum", all ? lag_lyapunov_exponent(l, l->k) : NAN);
+  lag_json_number(&j, "sum_spread", all ? lag_lyapunov_spread(l, l->k) : NAN);
+  lag_json_number(&j, "divergence", lag_lyapunov_divergence(l));
+  lag_json_number(&j, "sum_error", all ? lag_lyapunov_error(l, l->k) : NAN);
+  lag_json_number(&j, "dimension", dimension);
+  lag_json_number(&j, "dimension_error", error);
+  lag_json_number(&j, "entropy", all && sign > 0 ? entropy : NAN);
+  lag_json_number(&j, "entropy_error", all && sign > 0 ? entropy_error : NAN);
+  lag_json_truth(&j, "chaotic", l->nblocks < 2 || sign == 0 ? -1 : sign > 0);
+  lag_json_end(&j, '}');
+  putc('\n', f);
 }
 
 /* ---- The command */

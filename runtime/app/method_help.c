@@ -5,7 +5,7 @@
 #include "app/app.h"
 
 enum { WIDTH = 80 };
-#define ROW "  %-16s %-5s %-5s %-5s %-10s %-6s %-6s %-6s %-5s %s\n"
+#define ROW "  %-16s %-5s %-5s %-5s %-10s %-6s %-6s %-5s %s\n"
 
 /* Prints text wrapped to WIDTH columns; the first line is indented by `first`, the others by `indent`. */
 static void wrapped(FILE *f, const char *text, int first, int indent)
@@ -23,11 +23,6 @@ static void wrapped(FILE *f, const char *text, int first, int indent)
     text += n + (text[n] == ' ');
   }
   putc('\n', f);
-}
-
-static const lag_method *method(const App *app, int i)
-{
-  return i < lag_nmethods ? lag_methods[i] : app->extras.methods[i - lag_nmethods];
 }
 
 /* text := the order, "5", or "2-8" where options choose it. */
@@ -52,7 +47,7 @@ static void row(const lag_method *m, FILE *f)
           is & LAG_METHOD_SYMMETRIC ? is & LAG_METHOD_SYMPLECTIC ? "both" : "symmetric"
           : is & LAG_METHOD_SYMPLECTIC ? "symplectic" : "-",
           is & LAG_METHOD_SPLITS ? "partly" : is & LAG_METHOD_NEWTON ? "yes" : "no",
-          is & LAG_METHOD_CONSERVATIVE ? "no" : "yes", is & LAG_METHOD_FLOWS ? "alone" : is & LAG_METHOD_NO_STATES ? "no" : "yes",
+          is & LAG_METHOD_FLOWS ? "alone" : is & LAG_METHOD_NO_STATES ? "no" : "yes",
           m->tangent ? "yes" : "no", is & LAG_METHOD_CONSTRAINTS ? "yes" : "no");
 }
 
@@ -86,8 +81,9 @@ int lag_app_explain_method(const App *app, const char *name, FILE *f)
 {
   char order[32], dense[32], text[500];
 
-  for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
-    const lag_method *m = method(app, i);
+  const lag_method *m;
+
+  for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) {
     unsigned is = m->flags;
     if (strcmp(m->name, name) != 0) {
       continue;
@@ -95,8 +91,7 @@ int lag_app_explain_method(const App *app, const char *name, FILE *f)
     snprintf(text, sizeof text, "%s, of order %s (dense output %s), %s steps%s%s%s%s%s%s.", m->name, order_text(m, m->order, order, sizeof order),
              order_text(m, m->dense_order, dense, sizeof dense), is & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed",
              is & LAG_METHOD_SYMPLECTIC ? ", symplectic" : "", is & LAG_METHOD_SYMMETRIC ? ", symmetric" : "",
-             is & LAG_METHOD_CONSERVATIVE ? ", for models without forces, explicit time and states"
-             : is & LAG_METHOD_FLOWS ? ", for models of coordinates alone or of states alone"
+             is & LAG_METHOD_FLOWS ? ", for models of coordinates alone or of states alone"
              : is & LAG_METHOD_NO_STATES ? ", for models without states" : "",
              is & LAG_METHOD_SPLITS ? "; Newton's method where the model is not separable" : is & LAG_METHOD_NEWTON ? "; Newton's method" : "",
              is & LAG_METHOD_CONSTRAINTS ? "; with constraints or without" : "; not for models with constraints", saved(m));
@@ -110,18 +105,19 @@ int lag_app_explain_method(const App *app, const char *name, FILE *f)
 
 void lag_app_list_methods(const App *app, FILE *f)
 {
-  fprintf(f, ROW, "method", "order", "dense", "steps", "keeps", "Newton", "forces", "states", "deriv", "holds");
-  for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
-    row(method(app, i), f);
+  const lag_method *m;
+
+  fprintf(f, ROW, "method", "order", "dense", "steps", "keeps", "Newton", "states", "deriv", "holds");
+  for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) {
+    row(m, f);
   }
   putc('\n', f);
-  wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. both: symplectic and symmetric. Newton: whether each step solves "
+  wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. both: symplectic and symmetric; what a symplectic method keeps it does not keep where there are forces or explicit time. Newton: whether each step solves "
              "equations by Newton's method; partly: unless the model is separable, with constant mass matrix, and accelerations that do not "
-             "depend on velocities. forces: whether the model may have forces and explicit time; what a symplectic method keeps without "
-             "them it does not keep with them. states: whether it may have a `state`; alone: without coordinates, or where L is linear in "
+             "depend on velocities. states: whether the model may have a `state`; alone: without coordinates, or where L is linear in "
              "all velocities. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). holds: whether its steps end on "
              "constraints. Options, with their defaults:", 0, 0);
-  for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {
-    words(method(app, i), f);
+  for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) {
+    words(m, f);
   }
 }

@@ -161,64 +161,61 @@ void lag_modes_reason(const Modes *s, char *text, size_t n)
 /* ---- JSON */
 
 /* A JSON object of a state in declared units; with im a mode shape, entries [re, im]. */
-static void json_vector(FILE *f, const lag_model *m, const double *re, const double *im)
+static void json_vector(Json *j, const char *name, const lag_model *m, const double *re, const double *im)
 {
-  putc('{', f);
+  lag_json_begin(j, name, '{');
   for (int i = 0; i < m->nq + m->nz; i++) {
     const lag_var *v = lag_modes_variable(m, i);
-    fputs(i ? ", " : "", f);
-    lag_json_string(f, v->name);
-    fputs(im ? ": [" : ": ", f);
-    lag_json_number(f, (re[i] - (im ? 0 : v->offset)) / v->factor);
     if (im) {
-      fputs(", ", f);
-      lag_json_number(f, im[i] / v->factor);
-      putc(']', f);
+      lag_json_begin(j, v->name, '[');
+      lag_json_number(j, NULL, re[i] / v->factor);
+      lag_json_number(j, NULL, im[i] / v->factor);
+      lag_json_end(j, ']');
+    } else {
+      lag_json_number(j, v->name, (re[i] - v->offset) / v->factor);
     }
   }
-  putc('}', f);
+  lag_json_end(j, '}');
 }
 
-static void json_head(FILE *f, const App *app, const char *status)
+static void json_head(Json *j, const App *app, const char *status)
 {
-  fputs("{\"model\": ", f);
-  lag_json_string(f, app->scene->model->name);
-  fputs(", \"scene\": ", f);
-  lag_json_string(f, app->scene->name);
-  fputs(", \"status\": ", f);
-  lag_json_string(f, status);
+  lag_json_begin(j, NULL, '{');
+  lag_json_string(j, "model", app->scene->model->name);
+  lag_json_string(j, "scene", app->scene->name);
+  lag_json_string(j, "status", status);
 }
 
 static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Modes *s, double *x)
 {
   const lag_model *m = app->scene->model;
   char text[300];
+  Json j = {.f = f};
 
   lag_modes_reason(s, text, sizeof text);
-  json_head(f, app, "ok");
-  fputs(", \"verdict\": ", f);
-  lag_json_string(f, lag_verdict_name(s->verdict));
-  fputs(", \"reason\": ", f);
-  lag_json_string(f, text);
-  fputs(", \"note\": ", f);
-  lag_json_string(f, lag_modes_caution(app, r));
-  fprintf(f, ", \"steps\": %d, \"start\": ", r->steps);
-  json_vector(f, m, r->start, NULL);
-  fputs(", \"equilibrium\": ", f);
+  json_head(&j, app, "ok");
+  lag_json_string(&j, "verdict", lag_verdict_name(s->verdict));
+  lag_json_string(&j, "reason", text);
+  lag_json_string(&j, "note", lag_modes_caution(app, r));
+  lag_json_count(&j, "steps", r->steps);
+  json_vector(&j, "start", m, r->start, NULL);
   lag_modes_unknowns(r, x);
-  json_vector(f, m, x, NULL);
-  fprintf(f, ", \"pairs\": %s, \"modes\": [", s->pairs ? "true" : "false");
+  json_vector(&j, "equilibrium", m, x, NULL);
+  lag_json_truth(&j, "pairs", s->pairs != 0);
+  lag_json_begin(&j, "modes", '[');
   for (int i = 0; i < s->n; i++) {
     const Mode *k = &s->mode[i];
-    fputs(i ? ", {\"re\": " : "{\"re\": ", f);
-    lag_json_number(f, k->re);
-    fputs(", \"im\": ", f);
-    lag_json_number(f, k->im);
-    fprintf(f, ", \"free\": %s, \"repeats\": %d, \"shape\": ", k->free ? "true" : "false", k->repeats);
-    json_vector(f, m, k->shape_re, k->shape_im);
-    putc('}', f);
+    lag_json_begin(&j, NULL, '{');
+    lag_json_number(&j, "re", k->re);
+    lag_json_number(&j, "im", k->im);
+    lag_json_truth(&j, "free", k->free != 0);
+    lag_json_count(&j, "repeats", k->repeats);
+    json_vector(&j, "shape", m, k->shape_re, k->shape_im);
+    lag_json_end(&j, '}');
   }
-  fputs("]}\n", f);
+  lag_json_end(&j, ']');
+  lag_json_end(&j, '}');
+  putc('\n', f);
 }
 
 /* ---- The command */
@@ -226,7 +223,7 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
 static int not_found(const App *app, const Equilibrium *r)
 {
   const lag_model *m = app->scene->model;
-  int i = r->worst, nq = m->nq, at = i < nq ? nq + i : nq + i;
+  int i = r->worst, nq = m->nq, at = nq + i;
   const lag_var *v = lag_modes_variable(m, i);
   char unit[80] = "";
 
@@ -234,8 +231,10 @@ static int not_found(const App *app, const Equilibrium *r)
     snprintf(unit, sizeof unit, " %s/s%s", v->unit, i < nq ? "^2" : "");
   }
   if (app->args.json) {
-    json_head(stdout, app, "no equilibrium");
-    fputs("}\n", stdout);
+    Json j = {.f = stdout};
+    json_head(&j, app, "no equilibrium");
+    lag_json_end(&j, '}');
+    putchar('\n');
   }
   if (r->away) {
     lag_app_error(&app->args, "no equilibrium found from the start of scene %s: forces only fade, far away. Where the model has one, start near it: %s=VALUE",
@@ -243,7 +242,7 @@ static int not_found(const App *app, const Equilibrium *r)
     return EXIT_RUN;
   }
   lag_app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s. A force "
-                        "that vanishes nowhere has none: add what holds it, such as a spring; where it vanishes, start near there: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : nq + i] - v->offset) / v->factor,
+                        "that vanishes nowhere has none: add what holds it, such as a spring; where it vanishes, start near there: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : at] - v->offset) / v->factor,
             v->unit[0] ? " " : "", v->unit, v->name, i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
             r->pole ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
   return EXIT_RUN;

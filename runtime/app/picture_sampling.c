@@ -159,7 +159,7 @@ int lag_sampling_close(App *app)
 static double fine_enough(const App *app)
 {
   const Table *t = &app->table;
-  double span = fabs(t->data[(t->nrows - 1) * (size_t)t->ncols] - t->data[0]), raw = span / (double)app->sampling.rows.kept;
+  double span = fabs(lag_table_cell(t, t->nrows - 1, 0) - lag_table_cell(t, 0, 0)), raw = span / (double)app->sampling.rows.kept;
 
   return lag_tick_step(0, raw / 1.6, 1);
 }

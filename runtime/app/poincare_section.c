@@ -9,26 +9,22 @@
 int lag_section_choose(App *app)
 {
   const lag_model *m = app->scene->model;
-  const char *name = app->args.section, *near = NULL;
-  int least = LAG_NO_TYPO;
+  const char *name = app->args.section;
+  lag_nearest near = {.name = name};
 
   app->section = -1;
   for (int k = 0; name && k < m->nev; k++) {
-    int d = lag_typo_distance(name, m->ev[k].name);
-    if (d == 0) {
+    if (strcmp(name, m->ev[k].name) == 0) {
       app->section = k;
       return 0;
     }
-    if (d < least) {
-      least = d;
-      near = m->ev[k].name;
-    }
+    lag_try_nearest(&near, m->ev[k].name);
   }
   if (!name) {
     return 0;
   }
-  if (near) {
-    return lag_app_error(&app->args, "--section %s: there is no such event; did you mean \"%s\"?", name, near);
+  if (near.best) {
+    return lag_app_error(&app->args, "--section %s: there is no such event; did you mean \"%s\"?", name, near.best);
   }
   return lag_app_error(&app->args, "--section %s: scene %s has no such event; name one, or lagc run %s --section 'EXPR rising' makes it", name,
                    app->scene->name, app->program->source);

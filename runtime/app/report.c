@@ -199,28 +199,25 @@ static void exact(const App *app, FILE *f)
   }
 }
 
-static void exact_json(const App *app, FILE *f)
+static void exact_json(const App *app, Json *j)
 {
   const lag_scene *c = app->scene;
 
   if (c->nexact == 0) {
     return;
   }
-  fputs("\"exact\": {", f);
+  lag_json_begin(j, "exact", '{');
   for (int k = 0; k < c->nexact; k++) {
     Column v;
     double largest, now;
     state_var(app, c->exact_of[k], &v);
     lag_sim_exact(app->sim, k, &largest, &now);
-    fputs(k ? ", " : "", f);
-    lag_json_string(f, v.name);
-    fputs(": {\"largest\": ", f);
-    lag_json_number(f, largest);
-    fputs(", \"final\": ", f);
-    lag_json_number(f, now);
-    putc('}', f);
+    lag_json_begin(j, v.name, '{');
+    lag_json_number(j, "largest", largest);
+    lag_json_number(j, "final", now);
+    lag_json_end(j, '}');
   }
-  fputs("}, ", f);
+  lag_json_end(j, '}');
 }
 
 /* --verbose: source of sines and cosines, and contraction of products and sums; results depend on both bit by bit. */
@@ -276,8 +273,8 @@ void lag_report_text(App *app, FILE *f)
   }
 }
 
-/* JSON fields of outputs at the end, except coordinates, velocities and states, so that no name appears twice. */
-static void final_outputs(App *app, FILE *f)
+/* JSON members: outputs at the end, except coordinates, velocities and states, so that no name appears twice. */
+static void final_outputs(App *app, Json *j)
 {
   int n = app->scene->model->nq * 2 + app->scene->model->nz, nout = lag_sim_noutputs(app->sim);
 
@@ -287,66 +284,57 @@ static void final_outputs(App *app, FILE *f)
   for (int i = 0; i < nout; i++) {
     const Column *o = &app->table.cols[i + 1];
     int seen = 0;
-    for (int j = 0; j < n && !seen; j++) {
+    for (int k = 0; k < n && !seen; k++) {
       Column c;
-      state_var(app, j, &c);
+      state_var(app, k, &c);
       seen = strcmp(c.name, o->name) == 0;
     }
     if (!seen) {
-      fputs(", ", f);
-      lag_json_string(f, o->name);
-      fputs(": ", f);
-      lag_json_number(f, app->row[i + 1]);
+      lag_json_number(j, o->name, app->row[i + 1]);
     }
   }
 }
 
-static void field_string(FILE *f, const char *name, const char *value)
-{
-  fprintf(f, "\"%s\": ", name);
-  lag_json_string(f, value);
-  fputs(", ", f);
-}
-
-static void field_number(FILE *f, const char *name, double x)
-{
-  fprintf(f, "\"%s\": ", name);
-  lag_json_number(f, x);
-  fputs(", ", f);
-}
-
-static void constraints_json(const App *app, FILE *f)
+static void constraints_json(const App *app, Json *j)
 {
   const lag_model *m = app->scene->model;
   const lag_constraints *of = m->constraints;
-  int moved = 0, redundant = 0;
 
   if (!of) {
     return;
   }
-  fprintf(f, "\"constraints\": %d, \"rank\": %d, \"redundant\": [", of->n - m->ncontacts, lag_sim_rank(app->sim));
+  lag_json_count(j, "constraints", of->n - m->ncontacts);
+  lag_json_count(j, "rank", lag_sim_rank(app->sim));
+  lag_json_begin(j, "redundant", '[');
   for (int k = 0; k < of->n; k++) {
     if (is_redundant(app, k)) {
-      fputs(redundant++ ? ", " : "", f);
-      lag_json_string(f, of->of[k].name);
+      lag_json_string(j, NULL, of->of[k].name);
     }
   }
-  fprintf(f, "], \"rank_beside\": %d, \"start_moved\": {", lag_sim_nearby_rank(app->sim));
+  lag_json_end(j, ']');
+  lag_json_count(j, "rank_beside", lag_sim_nearby_rank(app->sim));
+  lag_json_begin(j, "start_moved", '{');
   for (int i = 0; i < 2 * m->nq; i++) {
     Column c;
     double asked = lag_sim_requested_start(app->sim, i), begin = lag_sim_actual_start(app->sim, i);
     if (asked != begin) {
       state_var(app, i, &c);
-      fputs(moved++ ? ", " : "", f);
-      lag_json_string(f, c.name);
-      fputs(": [", f);
-      lag_json_number(f, asked);
-      fputs(", ", f);
-      lag_json_number(f, begin);
-      putc(']', f);
+      lag_json_begin(j, c.name, '[');
+      lag_json_number(j, NULL, asked);
+      lag_json_number(j, NULL, begin);
+      lag_json_end(j, ']');
     }
   }
-  fputs("}, ", f);
+  lag_json_end(j, '}');
+}
+
+void lag_report_json_head(const App *app, Json *j)
+{
+  lag_json_string(j, "model", app->scene->model->name);
+  lag_json_string(j, "scene", app->scene->name);
+  lag_json_string(j, "method", lag_sim_method(app->sim)->name);
+  lag_json_string(j, "chosen", app->why[0] ? app->why : NULL);
+  lag_json_string(j, "status", app->status < 0 ? "failed" : lag_status_name(app->status));
 }
 
 void lag_report_json(App *app, FILE *f)
@@ -355,55 +343,54 @@ void lag_report_json(App *app, FILE *f)
   int n = 2 * m->nq + m->nz;
   const char *why;
   lag_stats st;
+  Json j = {.f = f};
 
   lag_sim_stats(app->sim, &st);
-  putc('{', f);
-  field_string(f, "model", m->name);
-  field_string(f, "scene", app->scene->name);
-  field_string(f, "method", lag_sim_method(app->sim)->name);
-  field_string(f, "chosen", app->why[0] ? app->why : NULL);
-  field_string(f, "status", app->status < 0 ? "failed" : lag_status_name(app->status));
-  field_string(f, "message", app->status < 0 ? lag_sim_message(app->sim) : NULL);
-  field_number(f, "t_end", st.t);
-  fprintf(f, "\"steps\": %lld, \"rejected\": %lld, \"rhs_calls\": %lld, ", st.steps, st.rejected, st.rhs_calls);
-  field_string(f, "form", form(app, &why));
-  fprintf(f, "\"newton_systems\": %lld, \"newton_iterations\": %lld, ", st.systems, st.iterations);
-  fprintf(f, "\"wall_s\": %.6g, ", app->wall); /* 6 digits in any precision */
-  field_number(f, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null where energy is not conserved */
+  lag_json_begin(&j, NULL, '{');
+  lag_report_json_head(app, &j);
+  lag_json_string(&j, "message", app->status < 0 ? lag_sim_message(app->sim) : NULL);
+  lag_json_number(&j, "t_end", st.t);
+  lag_json_count(&j, "steps", st.steps);
+  lag_json_count(&j, "rejected", st.rejected);
+  lag_json_count(&j, "rhs_calls", st.rhs_calls);
+  lag_json_string(&j, "form", form(app, &why));
+  lag_json_count(&j, "newton_systems", st.systems);
+  lag_json_count(&j, "newton_iterations", st.iterations);
+  lag_json_name(&j, "wall_s");
+  fprintf(f, "%.6g", app->wall); /* 6 digits in any precision */
+  lag_json_number(&j, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null where energy is not conserved */
   lag_charge_stats energy = {.absolute = NAN};
   if (lag_sim_ncharges(app->sim)) {
     lag_sim_charge(app->sim, 0, &energy);
   }
-  field_number(f, "energy_drift_absolute", m->flags & LAG_CONSERVES_ENERGY ? energy.absolute : NAN);
-  field_number(f, "unresolved_period", st.unresolved);
-  fprintf(f, "\"rows_without_value\": %lld, ", app->empty_rows);
+  lag_json_number(&j, "energy_drift_absolute", m->flags & LAG_CONSERVES_ENERGY ? energy.absolute : NAN);
+  lag_json_number(&j, "unresolved_period", st.unresolved);
+  lag_json_count(&j, "rows_without_value", app->empty_rows);
   if (lag_report_lost_digits(app, &energy)) {
-    fputs("\"digits_lost\": {", f);
-    field_number(f, "t", energy.energy_jump_t);
-    field_number(f, "energy_step", energy.energy_jump);
-    field_string(f, "coordinate", energy.mass_condition_of);
-    fputs("\"condition\": ", f);
-    lag_json_number(f, energy.mass_condition);
-    fputs("}, ", f);
+    lag_json_begin(&j, "digits_lost", '{');
+    lag_json_number(&j, "t", energy.energy_jump_t);
+    lag_json_number(&j, "energy_step", energy.energy_jump);
+    lag_json_string(&j, "coordinate", energy.mass_condition_of);
+    lag_json_number(&j, "condition", energy.mass_condition);
+    lag_json_end(&j, '}');
   }
-  lag_report_charges_json(app, f);
-  lag_report_events_json(app, f);
-  exact_json(app, f);
-  lag_report_tangent_json(app, f);
-  field_string(f, "math", m->math);
-  field_string(f, "build", app->program->build);
-  field_number(f, "constraint_residual", st.constraint); /* null without constraints */
-  field_number(f, "constraint_rate_residual", st.constraint_rate);
-  constraints_json(app, f);
-  fputs("\"final\": {", f);
+  lag_report_charges_json(app, &j);
+  lag_report_events_json(app, &j);
+  exact_json(app, &j);
+  lag_report_tangent_json(app, &j);
+  lag_json_string(&j, "math", m->math);
+  lag_json_string(&j, "build", app->program->build);
+  lag_json_number(&j, "constraint_residual", st.constraint); /* null without constraints */
+  lag_json_number(&j, "constraint_rate_residual", st.constraint_rate);
+  constraints_json(app, &j);
+  lag_json_begin(&j, "final", '{');
   for (int i = 0; i < n; i++) {
     Column c;
     double x = state_var(app, i, &c);
-    fputs(i ? ", " : "", f);
-    lag_json_string(f, c.name);
-    fputs(": ", f);
-    lag_json_number(f, x);
+    lag_json_number(&j, c.name, x);
   }
-  final_outputs(app, f);
-  fputs("}}\n", f);
+  final_outputs(app, &j);
+  lag_json_end(&j, '}');
+  lag_json_end(&j, '}');
+  putc('\n', f);
 }

@@ -90,11 +90,9 @@ static char *trim(char *s)
 static void add_option(Choice *c, const char *name, const char *value)
 {
   lag_option *o = &c->opt[c->n++];
-  char *end;
 
   *o = (lag_option){.name = name};
-  o->value = strtod(value, &end);
-  if (*end || strspn(value, "+-.0123456789eE") != strlen(value) || end == value) {
+  if (!lag_args_decimal(value, &o->value)) {
     o->text = value;
   }
 }
@@ -143,21 +141,17 @@ static int parse_method(const Args *a, Choice *c)
 /* Suggests the nearest name, or lists all methods. */
 int lag_app_unknown_method(const App *app, const char *name)
 {
-  const lag_method *near = NULL, *m;
-  int least = LAG_NO_TYPO;
+  const lag_method *m;
+  lag_nearest near = {.name = name};
 
   for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) {
-    int d = lag_typo_distance(name, m->name);
-    if (d < least) {
-      least = d;
-      near = m;
-    }
+    lag_try_nearest(&near, m->name);
   }
   if (strncmp(name, "gsl-", 4) == 0 && strcmp(LAG_PRECISION, "double") != 0) {
     return lag_app_error(&app->args, "method %s computes with doubles, this run in " LAG_PRECISION " precision; dop853 and taylor do, too", name);
   }
-  if (near) {
-    return lag_app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near->name);
+  if (near.best) {
+    return lag_app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near.best);
   }
   lag_app_error(&app->args, "unknown method %s", name);
   lag_app_list_methods(app, stderr);

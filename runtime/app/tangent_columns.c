@@ -119,7 +119,7 @@ void lag_report_tangent(App *app, FILE *f)
   putc('\n', f);
 }
 
-void lag_report_tangent_json(App *app, FILE *f)
+void lag_report_tangent_json(App *app, Json *out)
 {
   int n = components(app);
   char name[96];
@@ -128,18 +128,15 @@ void lag_report_tangent_json(App *app, FILE *f)
     return;
   }
   const double *J = app->row + app->table.ncols - n * n;
-  fputs("\"tangent\": {", f);
+  lag_json_begin(out, "tangent", '{');
   for (int i = 0; i < n; i++) {
-    for (int j = 0; j <= n; j++) { /* j = 0: the name of the row; then its n entries */
-      lag_sim_state_info(app->sim, j ? j - 1 : i, name, sizeof name, NULL, 0);
-      fputs(j == 0 ? (i ? ", " : "") : j > 1 ? ", " : "", f);
-      lag_json_string(f, name);
-      fputs(j ? ": " : ": {", f);
-      if (j) {
-        lag_json_number(f, J[i * n + j - 1]);
-      }
+    lag_sim_state_info(app->sim, i, name, sizeof name, NULL, 0);
+    lag_json_begin(out, name, '{');
+    for (int j = 0; j < n; j++) {
+      lag_sim_state_info(app->sim, j, name, sizeof name, NULL, 0);
+      lag_json_number(out, name, J[i * n + j]);
     }
-    putc('}', f);
+    lag_json_end(out, '}');
   }
-  fputs("}, ", f);
+  lag_json_end(out, '}');
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/dense.h"
 
 /* Layout of `work`. */
 typedef struct LinearLayout {
@@ -64,55 +65,6 @@ int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, d
   return LAG_OK;
 }
 
-static void swap_rows(double *a, double *b, size_t n)
-{
-  for (size_t j = 0; j < n; j++) {
-    double x = a[j];
-    a[j] = b[j];
-    b[j] = x;
-  }
-}
-
-/* B[n * k] := M^-1 B by Gaussian elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed., section 3.4); M[n * n] is
- * destroyed. LAG_ESINGULAR: no pivot. */
-static int solve_columns(size_t n, size_t k, double *M, double *B)
-{
-  for (size_t c = 0; c < n; c++) {
-    size_t best = c;
-    for (size_t i = c + 1; i < n; i++) {
-      best = fabs(M[i * n + c]) > fabs(M[best * n + c]) ? i : best;
-    }
-    if (!(fabs(M[best * n + c]) > 0)) {
-      return LAG_ESINGULAR;
-    }
-    if (best != c) {
-      swap_rows(M + best * n, M + c * n, n);
-      swap_rows(B + best * k, B + c * k, k);
-    }
-    for (size_t i = c + 1; i < n; i++) {
-      double factor = M[i * n + c] / M[c * n + c];
-      for (size_t j = c + 1; j < n && factor != 0.0; j++) {
-        M[i * n + j] -= factor * M[c * n + j];
-      }
-      for (size_t j = 0; j < k && factor != 0.0; j++) {
-        B[i * k + j] -= factor * B[c * k + j];
-      }
-    }
-  }
-  for (size_t c = n; c-- > 0;) {
-    for (size_t i = c + 1; i < n; i++) {
-      double factor = M[c * n + i];
-      for (size_t j = 0; j < k && factor != 0.0; j++) {
-        B[c * k + j] -= factor * B[i * k + j];
-      }
-    }
-    for (size_t j = 0; j < k; j++) {
-      B[c * k + j] /= M[c * n + c];
-    }
-  }
-  return LAG_OK;
-}
-
 /* J by forward differences, column by column; backward where the model has no value ahead. */
 static int difference_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work)
 {
@@ -148,5 +100,5 @@ int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *
   LinearLayout p = parts_of(m, work);
   int rc = lag_rhs(pb, t, y, p.rate);
   rc = rc ? rc : lag_linearise(pb, t, y, p.rate + m->nq, J, p.M, work);
-  return rc ? rc : solve_columns((size_t)m->nq, (size_t)pb->n, p.M, J);
+  return rc ? rc : lag_solve_dense((size_t)m->nq, (size_t)pb->n, p.M, J) ? LAG_ESINGULAR : LAG_OK;
 }

@@ -5,59 +5,28 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/dense.h"
 #include "numeric/magnitudes.h"
-
-static void swap(double *a, double *b)
-{
-  double x = *a;
-  *a = *b;
-  *b = x;
-}
-
-/* Brings the largest element of the remaining K to (k, k), by swaps. Returns its size. */
-static double complete_pivot(int n, int k, double *K, int *column)
-{
-  int row = k, col = k;
-
-  for (int i = k; i < n; i++) {
-    for (int j = k; j < n; j++) {
-      if (fabs(K[i * n + j]) > fabs(K[row * n + col])) {
-        row = i;
-        col = j;
-      }
-    }
-  }
-  for (int j = 0; j < n; j++) {
-    swap(&K[k * n + j], &K[row * n + j]);
-  }
-  for (int i = 0; i < n; i++) {
-    swap(&K[i * n + k], &K[i * n + col]);
-  }
-  int was = column[k];
-  column[k] = column[col];
-  column[col] = was;
-  return fabs(K[k * n + k]);
-}
 
 int lag_massless_direction(int n, double *K, double *x, int *column, double *part)
 {
   double first = 0, size = 0;
-  int r = 0;
+  int r = 0, row, col;
 
   for (int i = 0; i < n; i++) {
     column[i] = i;
   }
   for (; r < n; r++) {
-    size = complete_pivot(n, r, K, column);
+    size = lag_complete_pivot(n, r, K, &row, &col);
+    int was = column[r];
+    column[r] = column[col];
+    column[col] = was;
     first = r == 0 ? size : first;
     if (r == n - 1 || !(size > 1e-15 * first)) {
       break;
     }
     for (int i = r + 1; i < n; i++) {
-      double factor = K[i * n + r] / K[r * n + r];
-      for (int j = r; j < n; j++) {
-        K[i * n + j] -= factor * K[r * n + j];
-      }
+      lag_eliminate_row(n, K, r, i);
     }
   }
   *part = first > 0 ? size / first : 0;

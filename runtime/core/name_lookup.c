@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/edit_distance.h"
 
 static int find_in(const lag_var *vars, int n, const char *name, size_t length)
 {
@@ -115,42 +116,26 @@ int lag_family_member(const lag_model *m, const char *name, int k, char *part, s
   return 0;
 }
 
-static int min3(int a, int b, int c)
-{
-  int m = a < b ? a : b;
-  return m < c ? m : c;
-}
-
-int lag_edit_distance(const char *a, const char *b)
-{
-  enum { MOST = 63 };
-  int d[3][MOST + 1], na = (int)strlen(a), nb = (int)strlen(b);
-
-  if (na > MOST || nb > MOST) {
-    return strcmp(a, b) ? MOST : 0;
-  }
-  for (int j = 0; j <= nb; j++) {
-    d[0][j] = j;
-  }
-  for (int i = 1; i <= na; i++) {
-    int *row = d[i % 3], *up = d[(i + 2) % 3], *up2 = d[(i + 1) % 3];
-    row[0] = i;
-    for (int j = 1; j <= nb; j++) {
-      row[j] = min3(up[j] + 1, row[j - 1] + 1, up[j - 1] + (a[i - 1] != b[j - 1]));
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && up2[j - 2] + 1 < row[j]) {
-        row[j] = up2[j - 2] + 1;
-      }
-    }
-  }
-  return d[na % 3][nb];
-}
-
 int lag_typo_distance(const char *name, const char *known)
 {
-  int n = (int)strlen(name), d = lag_edit_distance(name, known);
+  size_t na = strlen(name), nb = strlen(known);
+  if (na > LAG_LONGEST_WORD || nb > LAG_LONGEST_WORD) {
+    return strcmp(name, known) ? LAG_NO_TYPO : 0;
+  }
+  int n = (int)na, d = lag_edit_distance(name, na, known, nb, 2) / 2;
   int guess = n == 1 && known[0] && !known[1] && tolower((unsigned char)name[0]) != tolower((unsigned char)known[0]);
 
   return guess || d > n / 3 + 1 ? LAG_NO_TYPO : d;
+}
+
+void lag_try_nearest(lag_nearest *near, const char *known)
+{
+  int d = lag_typo_distance(near->name, known);
+
+  if (d < (near->best ? near->least : LAG_NO_TYPO)) {
+    near->least = d;
+    near->best = known;
+  }
 }
 
 int lag_nearest_name(const lag_model *m, const char *name, char *best, size_t nbest)

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/fnv1a.h"
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), CHARGE_DOUBLES = sizeof(Charge) / sizeof(double) };
 
@@ -238,10 +239,7 @@ int lag_sim_load(lag_sim *s, const double *x)
 /* FNV-1a hash of text with its final 0, so that "ab","c" and "a","bc" differ. */
 static unsigned long long hash(unsigned long long h, const char *text)
 {
-  do {
-    h = (h ^ (unsigned char)*text) * 0x100000001b3ull;
-  } while (*text++);
-  return h;
+  return lag_fnv1a(h, text, strlen(text) + 1);
 }
 
 unsigned long long lag_sim_signature(const lag_sim *s)
@@ -250,7 +248,7 @@ unsigned long long lag_sim_signature(const lag_sim *s)
     return 0;
   }
   const lag_model *m = s->scene->model;
-  unsigned long long h = hash(0xcbf29ce484222325ull, m->name);
+  unsigned long long h = hash(LAG_FNV1A_START, m->name);
   const struct {
     int n;
     const lag_var *vars;

@@ -335,10 +335,6 @@ static int check_method(lag_sim *s, const lag_method *method)
   if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can", method->name);
   }
-  if ((needs & LAG_METHOD_CONSERVATIVE) && !(has & LAG_CONSERVES_ENERGY)) {
-    return lag_fail(s, LAG_EMETHOD, "method %s needs a model without forces, dissipation or explicit time; rk45 and dop853 do not",
-                    method->name);
-  }
   int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !m->constraints;
   if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH)) {
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min, max and tables; dop853 does not", method->name);

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/dense.h"
 
 static size_t block(const lag_sim *s)
 {
@@ -204,29 +205,17 @@ static int apply_saltation(lag_sim *s, const Jump *j)
   return lag_not_finite(n * k, s->tangent) < 0;
 }
 
-/* log |det S| by Gaussian elimination in `a`, a copy of S. */
+/* log |det S|, in `a`, a copy of S. */
 static double log_det(int n, const double *S, double *a)
 {
   double log_of = 0;
 
   memcpy(a, S, (size_t)(n * n) * sizeof *a);
+  if (lag_eliminate((size_t)n, 0, a, a)) {
+    return -HUGE_VAL;
+  }
   for (int c = 0; c < n; c++) {
-    int top = c;
-    for (int i = c + 1; i < n; i++) {
-      top = fabs(a[i * n + c]) > fabs(a[top * n + c]) ? i : top;
-    }
-    for (int j = c; j < n && top != c; j++) {
-      double x = a[c * n + j];
-      a[c * n + j] = a[top * n + j];
-      a[top * n + j] = x;
-    }
     log_of += log(fabs(a[c * n + c]));
-    for (int i = c + 1; i < n && a[c * n + c] != 0.0; i++) {
-      double x = a[i * n + c] / a[c * n + c];
-      for (int j = c; j < n; j++) {
-        a[i * n + j] -= x * a[c * n + j];
-      }
-    }
   }
   return log_of;
 }

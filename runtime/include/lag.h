@@ -208,7 +208,6 @@ enum {
   LAG_METHOD_SYMPLECTIC = 2,
   LAG_METHOD_SYMMETRIC = 4,
   LAG_METHOD_VARIATION = 8,    /* needs derivatives of L: lag_model.variation and second */
-  LAG_METHOD_CONSERVATIVE = 16, /* refuses models with forces, dissipation or explicit time */
   LAG_METHOD_STEPS_TO = 32,    /* dense() is inaccurate: must step exactly to each time of output */
   LAG_METHOD_NO_SAVE = 64,     /* work holds pointers: its state cannot be saved */
   LAG_METHOD_NO_STATES = 128,  /* refuses models with states (nz > 0) */

@@ -10,11 +10,6 @@
 
 enum { RESOLUTION = 100000, TICKS = 1000000000 };
 
-static double cell(const Table *t, size_t row, int col)
-{
-  return t->data[row * (size_t)t->ncols + (size_t)col];
-}
-
 /* Writes a JavaScript string; no character in it can start or end a tag. */
 static void script_string(FILE *f, const char *s)
 {
@@ -35,14 +30,8 @@ static void choose_resolution(const Table *t, const Animation *a, double *zero, 
 {
   double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
 
-  for (size_t i = 0; i < t->nrows; i++) {
-    for (int k = 0; k < 2 * a->npoints; k++) {
-      double x = cell(t, i, a->cols[k]);
-      if (isfinite(x)) {
-        lo[k % 2] = fmin(lo[k % 2], x);
-        hi[k % 2] = fmax(hi[k % 2], x);
-      }
-    }
+  for (int k = 0; k < 2 * a->npoints; k++) {
+    lag_table_range(t, a->cols[k], &lo[k % 2], &hi[k % 2]);
   }
   double least = fmin(lo[0], lo[1]), most = fmax(hi[0], hi[1]), extent = fmax(hi[0] - lo[0], hi[1] - lo[1]);
   *zero = least <= most ? least / 2 + most / 2 : 0;
@@ -55,17 +44,13 @@ static void choose_resolution(const Table *t, const Animation *a, double *zero, 
  * seconds, that makes the run last about twenty seconds. */
 static double choose_speed(double span)
 {
-  static const double units[] = {31557600, 86400, 3600};
+  const char *name;
+  double unit = lag_long_time_unit(span, &name);
 
   if (span == 0.0 || (span >= 1 && span <= 90)) {
     return 1;
   }
-  for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
-    if (span >= 2 * units[i]) {
-      return units[i] * lag_tick_step(0, span / units[i], 20);
-    }
-  }
-  return lag_tick_step(0, span, 20);
+  return unit > 0 ? unit * lag_tick_step(0, span / unit, 20) : lag_tick_step(0, span, 20);
 }
 
 /* choose_speed, limited to 280 frames a second: frames are as dense as the motion needs, some seventy a swing, and the eye follows
@@ -89,11 +74,11 @@ static int x_is_index(const Table *t, const Animation *a)
       return 0;
     }
     for (size_t k = 1; k < t->nrows; k++) {
-      if (cell(t, k, x) != cell(t, 0, x)) {
+      if (lag_table_cell(t, k, x) != lag_table_cell(t, 0, x)) {
         return 0;
       }
     }
-    differ |= t->nrows && cell(t, 0, x) != cell(t, 0, a->cols[0]);
+    differ |= t->nrows && lag_table_cell(t, 0, x) != lag_table_cell(t, 0, a->cols[0]);
   }
   return differ;
 }
@@ -105,7 +90,7 @@ static void put_times(FILE *f, const Table *t, double t0, double tick)
 
   fputs("\"dt\": [", f);
   for (size_t i = 1; i < t->nrows; i++) {
-    double at = nearbyint((cell(t, i, 0) - t0) / tick);
+    double at = nearbyint((lag_table_cell(t, i, 0) - t0) / tick);
     fprintf(f, i > 1 ? ",%.0f" : "%.0f", at - before);
     before = at;
   }
@@ -128,7 +113,7 @@ static void put_names(FILE *f, const Table *t, const Animation *a)
 static void put_data(FILE *f, const Table *t, const Animation *a)
 {
   size_t n = t->nrows;
-  double t0 = n ? cell(t, 0, 0) : 0, t1 = n ? cell(t, n - 1, 0) : 0, tick = t1 != t0 ? (t1 - t0) / TICKS : 1, zero, scale;
+  double t0 = n ? lag_table_cell(t, 0, 0) : 0, t1 = n ? lag_table_cell(t, n - 1, 0) : 0, tick = t1 != t0 ? (t1 - t0) / TICKS : 1, zero, scale;
 
   choose_resolution(t, a, &zero, &scale);
   fprintf(f, "{\"t0\": %.17g, \"tick\": %.17g, \"t1\": %.17g, \"speed\": %.6g, \"zero\": %.17g, \"scale\": %.17g,\n", t0, tick, t1,
@@ -144,7 +129,7 @@ static void put_data(FILE *f, const Table *t, const Animation *a)
   fputs("\"v\": [", f);
   for (size_t i = 0; i < n; i++) {
     for (int k = 0; k < 2 * a->npoints; k++) {
-      double x = (cell(t, i, a->cols[k]) - zero) / scale;
+      double x = (lag_table_cell(t, i, a->cols[k]) - zero) / scale;
       fputs(k ? "," : i ? ",\n" : "", f);
       if (isfinite(x)) {
         fprintf(f, "%.0f", nearbyint(x) + 0.0);

@@ -28,6 +28,14 @@ typedef struct Table {
 int lag_table_init(Table *t, const lag_sim *sim, int keep);
 void lag_table_free(Table *t);
 int lag_table_add(Table *t, const double *row);
+static inline double lag_table_cell(const Table *t, size_t row, int col)
+{
+  return t->data[row * (size_t)t->ncols + (size_t)col];
+}
+/* Widens [lo, hi] by the finite values of a column. */
+void lag_table_range(const Table *t, int col, double *lo, double *hi);
+/* The longest of year, day and hour of which a span [s] holds two, in seconds; *name: its unit. 0: none. */
+double lag_long_time_unit(double span, const char **name);
 /* For pictures: converts the time to years, days or hours where the rows span two or more of these; not where no column has a unit. */
 void lag_table_scale_time(Table *t);
 
@@ -37,7 +45,6 @@ typedef struct Rows {
   int open, npy;
   size_t nrows;
   int ncols;
-  size_t npy_header; /* unused */
   const Column *cols;
 } Rows;
 
@@ -113,9 +120,22 @@ typedef struct Animation {
 /* Writes an HTML page that plays the table. -1 with errno set. */
 int lag_html_write(const char *path, const Table *t, const char *title, const Animation *a);
 
-/* JSON: s in quotes, or null for NULL; x with the digits to read back exactly, or null where it is not finite. */
-void lag_json_string(FILE *f, const char *s);
-void lag_json_number(FILE *f, double x);
+/* JSON writer: commas between members are its own. A name is NULL for elements of an array. */
+typedef struct Json {
+  FILE *f;
+  int comma; /* 1: the next member follows another one */
+} Json;
+
+/* Begins a member whose value the caller writes to j->f. */
+void lag_json_name(Json *j, const char *name);
+/* A member that is an object or an array; bracket: one of { [ and then } ]. */
+void lag_json_begin(Json *j, const char *name, char bracket);
+void lag_json_end(Json *j, char bracket);
+/* s in quotes, or null for NULL; x with the digits to read back exactly, or null where it is not finite; true, false, or null for -1. */
+void lag_json_string(Json *j, const char *name, const char *s);
+void lag_json_number(Json *j, const char *name, double x);
+void lag_json_count(Json *j, const char *name, long long n);
+void lag_json_truth(Json *j, const char *name, int yes);
 
 /* A saved state: its head and the n doubles of lag_sim_save. lag_state_parse and lag_state_read allocate data; the caller frees it. */
 typedef struct State {

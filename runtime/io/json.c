@@ -1,15 +1,11 @@
-/* JSON writer (RFC 8259). Enters: a string or a number; leaves: its text, with hidden characters escaped. */
+/* JSON writer (RFC 8259). Enters: names and values in order; leaves: their text, with hidden characters escaped. */
 #include <math.h>
 
 #include "io/io.h"
 #include "io/visible.h"
 
-void lag_json_string(FILE *f, const char *s)
+static void quote(FILE *f, const char *s)
 {
-  if (!s) {
-    fputs("null", f);
-    return;
-  }
   putc('"', f);
   for (size_t n = strlen(s), at = 0; at < n;) {
     unsigned long code;
@@ -28,11 +24,55 @@ void lag_json_string(FILE *f, const char *s)
   putc('"', f);
 }
 
-void lag_json_number(FILE *f, double x)
+void lag_json_name(Json *j, const char *name)
 {
-  if (isfinite(x)) {
-    fputs(lag_number_text(x, (char[64]){0}), f);
-  } else {
-    fputs("null", f);
+  if (j->comma) {
+    fputs(", ", j->f);
   }
+  if (name) {
+    quote(j->f, name);
+    fputs(": ", j->f);
+  }
+  j->comma = 1;
+}
+
+void lag_json_begin(Json *j, const char *name, char bracket)
+{
+  lag_json_name(j, name);
+  putc(bracket, j->f);
+  j->comma = 0;
+}
+
+void lag_json_end(Json *j, char bracket)
+{
+  putc(bracket, j->f);
+  j->comma = 1;
+}
+
+void lag_json_string(Json *j, const char *name, const char *s)
+{
+  lag_json_name(j, name);
+  if (s) {
+    quote(j->f, s);
+  } else {
+    fputs("null", j->f);
+  }
+}
+
+void lag_json_number(Json *j, const char *name, double x)
+{
+  lag_json_name(j, name);
+  fputs(isfinite(x) ? lag_number_text(x, (char[64]){0}) : "null", j->f);
+}
+
+void lag_json_count(Json *j, const char *name, long long n)
+{
+  lag_json_name(j, name);
+  fprintf(j->f, "%lld", n);
+}
+
+void lag_json_truth(Json *j, const char *name, int yes)
+{
+  lag_json_name(j, name);
+  fputs(yes < 0 ? "null" : yes ? "true" : "false", j->f);
 }

@@ -14,19 +14,9 @@
 #include <sys/stat.h>
 
 #include "io/io.h"
+#include "numeric/fnv1a.h"
 
 enum { MOST_BYTES = 256 * 1024 * 1024 };
-
-/* FNV-1a hash, 64 bits. */
-static uint64_t fnv(const char *s, size_t n)
-{
-  uint64_t h = UINT64_C(0xcbf29ce484222325);
-
-  for (size_t i = 0; i < n; i++) {
-    h = (h ^ (unsigned char)s[i]) * UINT64_C(0x100000001b3);
-  }
-  return h;
-}
 
 static void print_state(FILE *f, const State *s)
 {
@@ -57,7 +47,7 @@ int lag_state_write(const char *path, const State *s)
     return -1;
   }
   fwrite(text, 1, size, o.f);
-  fprintf(o.f, "sum %016" PRIx64 "\n", fnv(text, size));
+  fprintf(o.f, "sum %016" PRIx64 "\n", lag_fnv1a(LAG_FNV1A_START, text, size));
   free(text);
   return lag_outfile_close(&o, OUTFILE_SYNC);
 }
@@ -189,7 +179,7 @@ const char *lag_state_parse(char *text, State *s)
   if (strncmp(text, "lag-state 1\n", 12) != 0) {
     return "is not a state saved by --save-state";
   }
-  if (!sum || strtoull(sum + 5, NULL, 16) != fnv(text, (size_t)(sum + 1 - text))) {
+  if (!sum || strtoull(sum + 5, NULL, 16) != lag_fnv1a(LAG_FNV1A_START, text, (size_t)(sum + 1 - text))) {
     return "is damaged: its checksum does not match";
   }
   if (read_head(&p, s) && read_data(&p, s) && p == sum + 1) {

@@ -9,7 +9,7 @@
 #include "io/io.h"
 #include "io/visible.h"
 
-enum { WIDTH = 860, LEFT = 84, RIGHT = 150, TOP = 50, GAP = 26, BOTTOM = 52, MOST_PANELS = 6, MOST_LEGEND = 24, MOST_NAME = 48 };
+enum { WIDTH = 860, LEFT = 84, RIGHT = 150, TOP = 50, GAP = 26, BOTTOM = 52, MOST_PANELS = 6, MOST_LEGEND = 24, MOST_NAME = 48, LINE = 18 };
 
 /* Eight colours distinct for all kinds of colour vision (Okabe and Ito), yellow darkened. */
 static const char *const colour[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7f00", "#444444"};
@@ -59,23 +59,6 @@ static void text(FILE *f, double x, double y, const char *attributes, const char
   fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, attributes);
   lag_write_markup(f, s);
   fputs("</text>\n", f);
-}
-
-static double cell(const Table *t, size_t row, int col)
-{
-  return t->data[row * (size_t)t->ncols + (size_t)col];
-}
-
-/* Widens [lo, hi] by the finite values of a column. */
-static void range_of(const Table *t, int col, double *lo, double *hi)
-{
-  for (size_t i = 0; i < t->nrows; i++) {
-    double x = cell(t, i, col);
-    if (isfinite(x)) {
-      *lo = fmin(*lo, x);
-      *hi = fmax(*hi, x);
-    }
-  }
 }
 
 /* Makes [lo, hi] a drawable interval: not empty, with a margin relative to its length. */
@@ -188,7 +171,7 @@ static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, co
 
   fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"%.1f\" stroke-linecap=\"round\" d=\"", stroke, width);
   for (size_t i = 0; i < t->nrows; i++) {
-    double x = cell(t, i, xcol), y = cell(t, i, ycol);
+    double x = lag_table_cell(t, i, xcol), y = lag_table_cell(t, i, ycol);
     if (isfinite(x) && isfinite(y)) {
       fprintf(f, "M%.2f %.2fh0", px(p, x), py(p, y));
     }
@@ -205,13 +188,13 @@ static void min_max_curve(FILE *f, const Panel *p, const Table *t, int ycol)
   for (size_t i = 0; i < t->nrows; i += per + 1) {
     size_t lo = i, hi = i, end = i + per + 1 < t->nrows ? i + per + 1 : t->nrows;
     for (size_t j = i + 1; j < end; j++) {
-      lo = cell(t, j, ycol) < cell(t, lo, ycol) ? j : lo;
-      hi = cell(t, j, ycol) > cell(t, hi, ycol) ? j : hi;
+      lo = lag_table_cell(t, j, ycol) < lag_table_cell(t, lo, ycol) ? j : lo;
+      hi = lag_table_cell(t, j, ycol) > lag_table_cell(t, hi, ycol) ? j : hi;
     }
     size_t first = lo < hi ? lo : hi, second = lo < hi ? hi : lo;
-    point(f, p, cell(t, first, 0), cell(t, first, ycol), &pen);
+    point(f, p, lag_table_cell(t, first, 0), lag_table_cell(t, first, ycol), &pen);
     if (second != first) {
-      point(f, p, cell(t, second, 0), cell(t, second, ycol), &pen);
+      point(f, p, lag_table_cell(t, second, 0), lag_table_cell(t, second, ycol), &pen);
     }
   }
 }
@@ -253,23 +236,23 @@ static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol)
   int pen = 0;
 
   for (size_t i = 0; i < t->nrows; i++) {
-    double x = px(p, cell(t, i, xcol)), y = py(p, cell(t, i, ycol));
+    double x = px(p, lag_table_cell(t, i, xcol)), y = py(p, lag_table_cell(t, i, ycol));
     int gap = !isfinite(x) || !isfinite(y), begins = !pen;
     if (pen && (gap || !in_sector(&s, x, y)) && drawn < last) {
-      point(f, p, cell(t, last, xcol), cell(t, last, ycol), &pen);
-      s = (Sector){.x = px(p, cell(t, last, xcol)), .y = py(p, cell(t, last, ycol))};
+      point(f, p, lag_table_cell(t, last, xcol), lag_table_cell(t, last, ycol), &pen);
+      s = (Sector){.x = px(p, lag_table_cell(t, last, xcol)), .y = py(p, lag_table_cell(t, last, ycol))};
       drawn = last;
       in_sector(&s, x, y);
     }
     if (gap || begins) {
-      point(f, p, cell(t, i, xcol), cell(t, i, ycol), &pen);
+      point(f, p, lag_table_cell(t, i, xcol), lag_table_cell(t, i, ycol), &pen);
       s = (Sector){.x = x, .y = y};
       drawn = i;
     }
     last = i;
   }
   if (pen && drawn < last) {
-    point(f, p, cell(t, last, xcol), cell(t, last, ycol), &pen);
+    point(f, p, lag_table_cell(t, last, xcol), lag_table_cell(t, last, ycol), &pen);
   }
 }
 
@@ -319,26 +302,34 @@ static void label_of(const char *name, const char *unit, double room, char *s, s
   snprintf(s, n, unit[0] ? "%s [%s]" : "%s", short_name, unit);
 }
 
+/* Line i of a legend: curve k and its name. */
+static void legend_line(FILE *f, const Panel *p, int i, int k, const char *name)
+{
+  char stroke[64];
+  double y = p->y + 12 + LINE * i, x = p->x + p->w + 14;
+
+  stroke_of(k, stroke, sizeof stroke);
+  fprintf(f, "<path d=\"M%.1f %.1fh20\" %s stroke-width=\"2.5\"/>\n", x, y, stroke);
+  text(f, x + 27, y + 4, "", name);
+}
+
 /* Line i of a legend for `total` series, with room for `room` lines; the last may say "and N more". */
 static void legend(FILE *f, const Panel *p, int i, int total, int room, int k, const char *name)
 {
-  char stroke[64], s[160];
-  double y = p->y + 12 + 18 * i, x = p->x + p->w + 14;
+  char s[160];
 
   if (i + 1 < room || (i + 1 == room && total == room)) {
-    stroke_of(k, stroke, sizeof stroke);
-    fprintf(f, "<path d=\"M%.1f %.1fh20\" %s stroke-width=\"2.5\"/>\n", x, y, stroke);
     truncate_text(name, MOST_NAME, s, sizeof s);
-    text(f, x + 27, y + 4, "", s);
+    legend_line(f, p, i, k, s);
   } else if (i + 1 == room) {
     snprintf(s, sizeof s, "and %d more", total - i);
-    text(f, x, y + 4, "", s);
+    text(f, p->x + p->w + 14, p->y + 12 + LINE * i + 4, "", s);
   }
 }
 
 static int legend_room(const Panel *p)
 {
-  return (int)(p->h / 18) < MOST_LEGEND ? (int)(p->h / 18) : MOST_LEGEND;
+  return (int)(p->h / LINE) < MOST_LEGEND ? (int)(p->h / LINE) : MOST_LEGEND;
 }
 
 /* The panel of one unit, with all its series and their legend. */
@@ -351,7 +342,7 @@ static void unit_panel(FILE *f, const Table *t, const PlottedCurves *d, Panel *p
   p->y1 = -HUGE_VAL;
   for (int i = 0; i < d->n; i++) {
     if (strcmp(t->cols[d->y[i]].unit, unit) == 0) {
-      range_of(t, d->y[i], &p->y0, &p->y1);
+      lag_table_range(t, d->y[i], &p->y0, &p->y1);
       total++;
     }
   }
@@ -423,7 +414,7 @@ static void against_time(FILE *f, const Table *t, const char *title, const Plott
 
   label_of(t->cols[0].name, t->cols[0].unit, p.w, xlabel, sizeof xlabel);
   head(f, LEFT + (int)p.w + legend_width(t, d), TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
-  range_of(t, 0, &p.x0, &p.x1);
+  lag_table_range(t, 0, &p.x0, &p.x1);
   widen(&p.x0, &p.x1, 0);
   for (int k = 0; k < n; k++) {
     unit_panel(f, t, d, &p, units[k], k == n - 1);
@@ -480,7 +471,7 @@ static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y)
 
   for (int k = 0; k < 2 && t->nrows; k++) {
     size_t row = k ? t->nrows - 1 : 0;
-    mark(f, px(p, cell(t, row, x)), py(p, cell(t, row, y)), fill[k]);
+    mark(f, px(p, lag_table_cell(t, row, x)), py(p, lag_table_cell(t, row, y)), fill[k]);
     mark(f, p->x + p->w + 20, p->y + 16 + 20 * k, fill[k]);
     text(f, p->x + p->w + 32, p->y + 20 + 20 * k, "", name[k]);
   }
@@ -505,8 +496,8 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
              .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL};
 
   for (int i = 0; i < d->n; i++) {
-    range_of(t, d->x[i], &p.x0, &p.x1);
-    range_of(t, d->y[i], &p.y0, &p.y1);
+    lag_table_range(t, d->x[i], &p.x0, &p.x1);
+    lag_table_range(t, d->y[i], &p.y0, &p.y1);
   }
   widen(&p.x0, &p.x1, x ? 0.05 : 0);
   widen(&p.y0, &p.y1, 0.05);
@@ -548,7 +539,7 @@ static void series_curve(FILE *f, const Panel *p, const Series *s, int k)
 
 int lag_svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n)
 {
-  enum { LINE = 18, NAMES = 190 };
+  enum { NAMES = 190 };
   double high = n * LINE + 12;
   Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - NAMES, .h = high > 460 ? high : 460,
              .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL, .xlabel = xlabel, .powers = 1};
@@ -570,12 +561,8 @@ int lag_svg_chart(const char *path, const char *title, const char *xlabel, const
   head(o.f, WIDTH, TOP + (int)p.h + BOTTOM, title);
   axes(o.f, &p, ylabel, 1);
   for (int k = 0; k < n; k++) {
-    char stroke[64];
-    double y = p.y + 12 + LINE * k, x = p.x + p.w + 14;
     series_curve(o.f, &p, &s[k], k);
-    stroke_of(k, stroke, sizeof stroke);
-    fprintf(o.f, "<path d=\"M%.1f %.1fh20\" %s stroke-width=\"2.5\"/>\n", x, y, stroke);
-    text(o.f, x + 27, y + 4, "", s[k].name);
+    legend_line(o.f, &p, k, k, s[k].name);
   }
   fputs("</svg>\n", o.f);
   return lag_outfile_close(&o, OUTFILE_KEEP);

@@ -54,27 +54,49 @@ int lag_table_add(Table *t, const double *row)
   return 0;
 }
 
-void lag_table_scale_time(Table *t)
+void lag_table_range(const Table *t, int col, double *lo, double *hi)
+{
+  for (size_t i = 0; i < t->nrows; i++) {
+    double x = lag_table_cell(t, i, col);
+    if (isfinite(x)) {
+      *lo = fmin(*lo, x);
+      *hi = fmax(*hi, x);
+    }
+  }
+}
+
+double lag_long_time_unit(double span, const char **name)
 {
   static const struct {
     double seconds;
     const char *name;
   } units[] = {{31557600, "yr"}, {86400, "d"}, {3600, "h"}};
-  double span = t->nrows ? fabs(t->data[(t->nrows - 1) * (size_t)t->ncols] - t->data[0]) : 0;
+
+  for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
+    if (span >= 2 * units[k].seconds) {
+      *name = units[k].name;
+      return units[k].seconds;
+    }
+  }
+  return 0;
+}
+
+void lag_table_scale_time(Table *t)
+{
+  const char *name = NULL;
+  double unit = lag_long_time_unit(t->nrows ? fabs(lag_table_cell(t, t->nrows - 1, 0) - t->data[0]) : 0, &name);
   int has_units = 0;
 
   for (int i = 1; i < t->ncols; i++) {
     has_units |= t->cols[i].unit[0] && strcmp(t->cols[i].unit, "rad") != 0;
   }
-  for (size_t k = 0; k < sizeof units / sizeof *units && has_units; k++) {
-    if (span >= 2 * units[k].seconds) {
-      for (size_t i = 0; i < t->nrows; i++) {
-        t->data[i * (size_t)t->ncols] /= units[k].seconds;
-      }
-      strcpy(t->cols[0].unit, units[k].name);
-      return;
-    }
+  if (!has_units || !name) {
+    return;
   }
+  for (size_t i = 0; i < t->nrows; i++) {
+    t->data[i * (size_t)t->ncols] /= unit;
+  }
+  strcpy(t->cols[0].unit, name);
 }
 
 /* Writes a CSV field (RFC 4180): in quotes if it holds a comma, a quote or a line break; quotes are doubled. */

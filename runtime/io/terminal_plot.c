@@ -15,11 +15,6 @@ typedef struct Chart {
   double x0, x1, y0, y1;
 } Chart;
 
-static double value(const Table *t, size_t row, int col)
-{
-  return t->data[row * (size_t)t->ncols + (size_t)col];
-}
-
 static void plot(Chart *c, int x, int y)
 {
   if (x >= 0 && x < 2 * COLS && y >= 0 && y < 4 * c->rows) {
@@ -51,11 +46,7 @@ static void range(const Table *t, int col, double least, double *lo, double *hi)
 {
   *lo = HUGE_VAL;
   *hi = -HUGE_VAL;
-  for (size_t i = 0; i < t->nrows; i++) {
-    double x = value(t, i, col);
-    *lo = isfinite(x) ? fmin(*lo, x) : *lo;
-    *hi = isfinite(x) ? fmax(*hi, x) : *hi;
-  }
+  lag_table_range(t, col, lo, hi);
   if (!(*hi - *lo > least * fmax(fabs(*lo), fabs(*hi)))) {
     double mid = isfinite(*lo) ? *lo : 0;
     *lo = mid - (mid == 0.0 ? 1 : fabs(mid) / 2);
@@ -68,7 +59,7 @@ static void draw(Chart *c, const Table *t, int col_x, int col)
   int have = 0, xa = 0, ya = 0;
 
   for (size_t i = 0; i < t->nrows; i++) {
-    double x = value(t, i, col_x), y = value(t, i, col);
+    double x = lag_table_cell(t, i, col_x), y = lag_table_cell(t, i, col);
     if (!isfinite(x) || !isfinite(y)) {
       have = 0;
       continue;

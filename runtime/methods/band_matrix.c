@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "numeric/dense.h"
+
 static int least(int a, int b)
 {
   return a < b ? a : b;
@@ -24,14 +26,6 @@ static int row_scales(const lag_band_matrix *m, double *scale)
     scale[i] = largest;
   }
   return 0;
-}
-
-static void exchange(double *a, double *b)
-{
-  double x = *a;
-
-  *a = *b;
-  *b = x;
 }
 
 int lag_band_matrix_factor(lag_band_matrix *m, double *scale)
@@ -56,9 +50,9 @@ int lag_band_matrix_factor(lag_band_matrix *m, double *scale)
     }
     m->pivot[k] = p;
     if (p != k) {
-      exchange(&scale[k], &scale[p]);
+      lag_swap(&scale[k], &scale[p]);
       for (int j = k; j <= right; j++) {
-        exchange(lag_band_matrix_at(m, k, j), lag_band_matrix_at(m, p, j));
+        lag_swap(lag_band_matrix_at(m, k, j), lag_band_matrix_at(m, p, j));
       }
     }
     const double *u = lag_band_matrix_at(m, k, k);
@@ -78,7 +72,7 @@ void lag_band_matrix_solve(const lag_band_matrix *m, double *b)
   int n = m->n;
 
   for (int k = 0; k < n; k++) {
-    exchange(&b[k], &b[(int)m->pivot[k]]);
+    lag_swap(&b[k], &b[(int)m->pivot[k]]);
     for (int i = k + 1; i <= least(k + m->band, n - 1); i++) {
       b[i] -= *lag_band_matrix_at(m, i, k) * b[k];
     }

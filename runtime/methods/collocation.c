@@ -16,7 +16,6 @@
  * Dense output: the cubic through both ends for at most two stages, a shorter step for more. */
 #include "methods/collocation.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -24,16 +23,15 @@
 #include "methods/band_matrix.h"
 #include "methods/predictor.h"
 #include "methods/galerkin_rule.h"
+#include "methods/newton.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
 
-enum { MOST_CORRECTIONS = 25, STAGES_WITH_CUBIC = 2 };
+enum { STAGES_WITH_CUBIC = 2 };
 
 /* Saved state of the method, doubles only; CollocationArrays has pointers into x. */
 typedef struct Collocation {
-  double h;      /* the step, > 0 */
-  double t0, dt; /* the last step */
-  double tc;     /* compensation of t: rounding lost so far */
+  lag_fixed_step step;
   double ends;   /* 1: f0, f1 belong to the last step; -1: the model has no value there; 0: not computed */
   lag_rule rule;
   double x[];
@@ -84,7 +82,7 @@ void lag_collocation_reset(void *work, lag_problem *pb)
   CollocationArrays a = arrays(w, pb);
   int m = pb->n * (int)w->rule.free;
 
-  w->tc = w->ends = 0;
+  w->step.tc = w->ends = 0;
   memset(a.comp, 0, (size_t)pb->n * sizeof(double));
   memset(a.history, 0, lag_predictor_size(m) * sizeof(double));
 }
@@ -93,7 +91,7 @@ void lag_collocation_init(void *work, lag_problem *pb, double h, int stages)
 {
   Collocation *w = work;
 
-  w->h = h;
+  w->step.h = h;
   lag_rule_gauss(&w->rule, stages);
   lag_collocation_reset(work, pb);
 }
@@ -103,8 +101,8 @@ int lag_collocation_sound(const void *work, const void *fresh, const lag_problem
   const Collocation *w = work, *f = fresh;
   size_t settings = sizeof(lag_rule) / sizeof(double);
 
-  return w->h == f->h && lag_same_numbers(&w->rule.points, &f->rule.points, settings) && lag_is_sign(w->ends) && isfinite(w->t0) &&
-         isfinite(w->dt) && isfinite(w->tc) && lag_predictor_is_sound(arrays((Collocation *)w, pb).history);
+  return lag_fixed_step_is_sound(&w->step, &f->step) && lag_same_numbers(&w->rule.points, &f->rule.points, settings) && lag_is_sign(w->ends) &&
+         lag_predictor_is_sound(arrays((Collocation *)w, pb).history);
 }
 
 /* ---- The equations u_i = f(t + c_i h, y0 + h sum_k a_ik u_k) */
@@ -179,54 +177,42 @@ static int matrix(const Collocation *w, CollocationArrays *a, lag_problem *pb, c
   return LAG_OK;
 }
 
-/* One Newton correction of u. Returns its largest component, relative to the change of that component over the step. */
-static double correct(const Collocation *w, const CollocationArrays *a, int n, const Step *s)
+/* One Newton correction of u. */
+static lag_correction correct(const Collocation *w, const CollocationArrays *a, int n, const Step *s)
 {
   int m = n * (int)w->rule.free;
-  double part = 0, h = fabs(w->h);
+  lag_correction size = {0, 0};
 
   lag_band_matrix_solve(&a->J, a->R);
   for (int i = 0; i < m; i++) {
-    double du = a->R[i];
-    s->u[i] += du;
-    double scale = h * fabs(s->u[i]) + 0x1p-10 * fabs(s->y0[i % n]);
-    part = fmax(part, du == 0.0 ? 0 : fmin(h * fabs(du) / scale, 1));
+    s->u[i] += a->R[i];
+    size.part = fmax(size.part, lag_relative_correction(fabs(w->step.h), a->R[i], s->u[i], s->y0[i % n]));
   }
-  return part;
-}
-
-/* Whether the next correction would be below rounding, or this one is rounding itself; the rule of discrete_lagrangian.c. */
-static int has_converged(double now, double before, int fresh, int turn)
-{
-  double next = fresh ? 1000 * now * now : now * (now / before);
-
-  if (now == 0.0 || (next <= DBL_EPSILON / 16 && (fresh || now < before))) {
-    return 1;
-  }
-  return turn > 0 && now >= before / 2 && now <= 1e-8;
+  size.rounding = size.part;
+  return size;
 }
 
 /* Newton's method for u, from the guess in u. */
 static int solve(const Collocation *w, CollocationArrays *a, lag_problem *pb, const Step *s)
 {
-  double before = 1;
+  lag_correction before = {1, 1};
 
   pb->systems += s->counted;
-  for (int turn = 0; turn <= MOST_CORRECTIONS; turn++) {
-    int fresh = turn == 0 || before > 1e-3, rc = residual(w, a, pb, s);
+  for (int turn = 0; turn <= LAG_MOST_CORRECTIONS; turn++) {
+    int fresh = lag_newton_needs_matrix(turn, before), rc = residual(w, a, pb, s);
     rc = rc || !fresh ? rc : matrix(w, a, pb, s);
     if (rc) {
       return rc;
     }
-    double now = correct(w, a, pb->n, s);
+    lag_correction now = correct(w, a, pb->n, s);
     pb->iterations += s->counted;
-    if (has_converged(now, before, fresh, turn)) {
+    if (lag_newton_has_converged(now, before, fresh, turn)) {
       return LAG_OK;
     }
     before = now;
   }
   snprintf(pb->words, sizeof pb->words, "in a step of %.3g s Newton's method did not converge in %d corrections; take smaller steps, or radau or dop853",
-           fabs(w->h), MOST_CORRECTIONS);
+           fabs(w->step.h), LAG_MOST_CORRECTIONS);
   pb->detail = pb->words;
   return lag_step_failed(pb, LAG_EMETHOD, s->t);
 }
@@ -246,14 +232,15 @@ int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y)
 {
   Collocation *w = work;
   CollocationArrays a = arrays(w, pb);
-  int n = pb->n, m = n * (int)w->rule.free, rc = LAG_EMETHOD;
-  double dt = w->h * pb->dir, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
-  Step s = {.t = *t, .h = dt, .y0 = y, .comp = a.comp, .u = a.u, .counted = 1};
+  int n = pb->n, m = n * (int)w->rule.free;
+  lag_next_step next;
+  int rc = lag_fixed_step_begin(&w->step, pb, *t, &next);
+  Step s = {.t = *t, .h = next.dt, .y0 = y, .comp = a.comp, .u = a.u, .counted = 1};
 
-  pb->bad_index = -1;
-  if (tb == *t) {
-    return lag_step_failed(pb, LAG_ESTEP, *t);
+  if (rc) {
+    return rc;
   }
+  rc = LAG_EMETHOD;
   if (lag_predictor_guess(a.history, m, a.u)) {
     rc = solve(w, &a, pb, &s);
   }
@@ -271,14 +258,11 @@ int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y)
     for (int k = 0; k < (int)w->rule.free; k++) {
       moved += w->rule.whole[k] * a.u[k * n + j];
     }
-    y[j] = lag_compensated_sum(y[j], dt * moved, &a.comp[j]);
+    y[j] = lag_compensated_sum(y[j], next.dt * moved, &a.comp[j]);
   }
   memcpy(a.y1, y, (size_t)n * sizeof *y);
   w->ends = 0;
-  w->t0 = *t;
-  w->dt = tb - *t;
-  w->tc = tc;
-  *t = tb;
+  lag_fixed_step_end(&w->step, &next, t);
   return LAG_OK;
 }
 
@@ -287,7 +271,7 @@ int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y)
 /* Solves a step of length dt from the start of the last one; slopes into a->other. */
 static int shorter(const Collocation *w, CollocationArrays *a, lag_problem *pb, double dt)
 {
-  Step s = {.t = w->t0, .h = dt, .y0 = a->y0, .u = a->other};
+  Step s = {.t = w->step.t0, .h = dt, .y0 = a->y0, .u = a->other};
   int rc = constant_slope_guess(w, a, pb, &s);
 
   return rc ? rc : solve(w, a, pb, &s);
@@ -299,11 +283,11 @@ static void cubic(Collocation *w, const CollocationArrays *a, lag_problem *pb, d
   int n = pb->n;
 
   if (w->ends == 0.0) {
-    int rc = lag_rhs(pb, w->t0, a->y0, a->f0) || lag_rhs(pb, w->t0 + w->dt, a->y1, a->f1);
+    int rc = lag_rhs(pb, w->step.t0, a->y0, a->f0) || lag_rhs(pb, w->step.t0 + w->step.dt, a->y1, a->f1);
     w->ends = rc || lag_not_finite(n, a->f0) >= 0 || lag_not_finite(n, a->f1) >= 0 ? -1 : 1;
   }
   if (w->ends > 0) {
-    lag_hermite(0, n, w->dt, s, a->y0, a->f0, a->y1, a->f1, y);
+    lag_hermite(0, n, w->step.dt, s, a->y0, a->f0, a->y1, a->f1, y);
     return;
   }
   for (int j = 0; j < n; j++) {
@@ -316,7 +300,7 @@ void lag_collocation_dense(void *work, lag_problem *pb, double t, double *y)
   Collocation *w = work;
   CollocationArrays a = arrays(w, pb);
   int n = pb->n, stages = (int)w->rule.free;
-  double dt = t - w->t0, s = dt / w->dt;
+  double dt = t - w->step.t0, s = dt / w->step.dt;
 
   if (stages <= STAGES_WITH_CUBIC || s <= 0 || s >= 1 || shorter(w, &a, pb, dt) != 0) {
     cubic(w, &a, pb, s, y);
@@ -346,8 +330,8 @@ int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double
   Collocation *w = work;
   CollocationArrays a = arrays(w, pb);
   int n = pb->n, stages = (int)w->rule.free, all = stages + 1;
-  double A[WITH_END * WITH_END] = {0}, c[WITH_END], step = w->h * pb->dir, dt = lag_tangent_span(w->t0, t, step);
-  Step s = {.t = w->t0, .h = dt, .y0 = a.y0, .u = a.u};
+  double A[WITH_END * WITH_END] = {0}, c[WITH_END], step = w->step.h * pb->dir, dt = lag_tangent_span(w->step.t0, t, step);
+  Step s = {.t = w->step.t0, .h = dt, .y0 = a.y0, .u = a.u};
 
   if (dt != step) {
     int rc = shorter(w, &a, pb, dt);
@@ -364,5 +348,5 @@ int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double
   memcpy(A + stages * all, w->rule.whole, (size_t)stages * sizeof *A);
   c[stages] = 1;
   lag_collocation_dense(w, pb, t, scratch + stages * n);
-  return lag_tangent_implicit(all, A, c, pb, w->t0, dt, scratch, k, Y, scratch + WITH_END * n);
+  return lag_tangent_implicit(all, A, c, pb, w->step.t0, dt, scratch, k, Y, scratch + WITH_END * n);
 }

@@ -2,16 +2,14 @@
  * forces at its points. Holds: all derivatives are exact, emitted by the compiler; no finite differences. */
 #include "methods/discrete_lagrangian.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "methods/band_matrix.h"
+#include "methods/newton.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
-
-enum { MOST_CORRECTIONS = 25 };
 
 /* Pointers into lag_discrete.work. */
 typedef struct NewtonArrays {
@@ -224,14 +222,8 @@ static int matrix(const lag_discrete *d, NewtonArrays *w)
   return LAG_OK;
 }
 
-/* Size of a correction. part: its largest component relative to the motion of q over the step. power: sqrt(sum |du R| / sum |u| S),
- * which does not depend on units. */
-typedef struct Size {
-  double part, power;
-} Size;
-
-/* One Newton correction of u; returns its size. */
-static Size correct(const lag_discrete *d, const NewtonArrays *w)
+/* One Newton correction of u. Its size beside rounding is sqrt(sum |du R| / sum |u| S), which does not depend on units. */
+static lag_correction correct(const lag_discrete *d, const NewtonArrays *w)
 {
   double part = 0, work = 0, whole = 0;
 
@@ -245,49 +237,36 @@ static Size correct(const lag_discrete *d, const NewtonArrays *w)
     for (int k = 0; k < w->free; k++) {
       double *u = &d->u[k * w->n + a], du = w->du[a * w->free + k];
       *u += du;
-      double scale = d->size * fabs(*u) + 0x1p-10 * fabs(d->q[a]);
-      part = fmax(part, du == 0.0 ? 0 : fmin(d->size * fabs(du) / scale, 1));
+      part = fmax(part, lag_relative_correction(d->size, du, *u, d->q[a]));
       work += fabs(du * w->R[k * w->n + a]);
       whole += fabs(*u) * w->S[k * w->n + a];
     }
   }
-  return (Size){part, work > 0 ? sqrt(work / whole) : 0};
-}
-
-/* Whether the next correction would be below rounding (a fresh matrix squares errors, an old one contracts them at the same rate),
- * or corrections have stopped shrinking because they are rounding. */
-static int has_converged(Size now, Size before, int fresh, int turn)
-{
-  double next = fresh ? 1000 * now.part * now.part : now.part * (now.part / before.part);
-
-  if (now.part == 0.0 || (next <= DBL_EPSILON / 16 && (fresh || now.part < before.part))) {
-    return 1;
-  }
-  return turn > 0 && now.power >= before.power / 2 && now.power <= 1e-8;
+  return (lag_correction){part, work > 0 ? sqrt(work / whole) : 0};
 }
 
 int lag_discrete_solve(const lag_discrete *d)
 {
   NewtonArrays w = layout(d);
-  Size before = {1, 1};
+  lag_correction before = {1, 1};
   int settled = 0, rc;
   char what[48];
 
   d->pb->systems += d->counted;
-  for (int turn = 0; turn <= MOST_CORRECTIONS; turn++) {
+  for (int turn = 0; turn <= LAG_MOST_CORRECTIONS; turn++) {
     if ((rc = residual(d, &w)) != 0 || settled) {
       return rc && turn > 0 && rc != LAG_EMODEL ? newton_left_domain(d, &w) : rc;
     }
-    int fresh = turn == 0 || before.part > 1e-3;
+    int fresh = lag_newton_needs_matrix(turn, before);
     if (fresh && (rc = matrix(d, &w)) != 0) {
       return rc;
     }
-    Size now = correct(d, &w);
+    lag_correction now = correct(d, &w);
     d->pb->iterations += d->counted;
-    settled = has_converged(now, before, fresh, turn);
+    settled = lag_newton_has_converged(now, before, fresh, turn);
     before = now;
   }
-  snprintf(what, sizeof what, "did not converge in %d corrections", MOST_CORRECTIONS);
+  snprintf(what, sizeof what, "did not converge in %d corrections", LAG_MOST_CORRECTIONS);
   return newton_failed(d, &w, what);
 }
 

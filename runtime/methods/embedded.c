@@ -19,16 +19,11 @@
 #include "methods/steps.h"
 #include "methods/tangent.h"
 
-enum { OPT_STEP, OPT_MAX, OPT_ATOL, OPT_ADAPT };
-
-static const char *const on_off[] = {"on", "off", NULL};
-
-const lag_method_option lag_embedded_options[EMBEDDED_NOPTIONS] = {
+const lag_method_option lag_embedded_options[LAG_NADAPTIVE_OPTIONS] = {
     {"step", "first step to try [s]; 0: chosen from the tolerance", 0, 0, HUGE_VAL, NULL},
-    {"max_step", "largest step [s]; 0: a tenth of the scene's span, or the time since the start", 0, 0, HUGE_VAL,
-     NULL},
-    {"atol", "absolute tolerance [SI]; 0: the same number as the relative one", 0, 0, HUGE_VAL, NULL},
-    {"adapt", "off: every step has the size `step` (0: a 10000th of the scene's span), whatever the error", 0, 0, 1, on_off},
+    LAG_MAX_STEP_OPTION,
+    LAG_ATOL_OPTION,
+    {"adapt", "off: every step has the size `step` (0: a 10000th of the scene's span), whatever the error", 0, 0, 1, lag_on_off},
 };
 
 size_t lag_embedded_size(const EmbeddedPair *pair, const lag_problem *pb, int more)
@@ -43,7 +38,7 @@ void lag_embedded_reset(void *work, lag_problem *pb)
   Embedded *w = work;
 
   w->ready = w->have_extra = 0;
-  w->h = w->h_option;
+  w->h = w->limits.h_option;
   w->err_power = 0;
   w->tc = 0;
   memset(lag_embedded_array(w, pb, EMBEDDED_COMP), 0, (size_t)pb->n * sizeof(double));
@@ -53,10 +48,7 @@ int lag_embedded_init(void *work, lag_problem *pb, const double *opt)
 {
   Embedded *w = work;
 
-  w->fixed = opt[OPT_ADAPT];
-  w->h_option = w->fixed != 0.0 ? lag_step_size(pb, opt[OPT_STEP]) : opt[OPT_STEP];
-  w->h_max = opt[OPT_MAX] > 0 ? opt[OPT_MAX] : pb->span / 10;
-  w->atol = opt[OPT_ATOL] > 0 ? opt[OPT_ATOL] : pb->tol;
+  lag_step_limits_init(&w->limits, pb, opt);
   w->per = 1 / (pb->n ? (double)pb->n : 1);
   lag_embedded_reset(work, pb);
   return LAG_OK;
@@ -67,9 +59,8 @@ int lag_embedded_sound(const void *work, const void *fresh, const lag_problem *p
   const Embedded *w = work, *f = fresh;
 
   (void)pb;
-  return w->h >= 0 && isfinite(w->h) && w->h_option == f->h_option && w->h_max == f->h_max && w->atol == f->atol && w->fixed == f->fixed &&
-         w->per == f->per && lag_is_count(w->ready, 2) && lag_is_sign(w->have_extra) && w->err_power >= 0 && isfinite(w->t0) &&
-         isfinite(w->dt) && isfinite(w->tc) && isfinite(w->t_begin) && lag_is_flag(w->begun);
+  return w->h >= 0 && isfinite(w->h) && lag_step_limits_are_sound(&w->limits, &f->limits) && w->per == f->per && lag_is_count(w->ready, 2) && lag_is_sign(w->have_extra) && w->err_power >= 0 && isfinite(w->t0) &&
+         isfinite(w->dt) && isfinite(w->tc);
 }
 
 /* Before a step: K1 := f(t, y), Y0 := y, w->h := the step to try. */
@@ -89,25 +80,22 @@ static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, doubl
   }
   w->ready = 1;
   w->have_extra = 0;
-  w->h = w->fixed != 0.0 ? w->h_option * (1 + pb->stretch) : w->h;
-  if (w->begun == 0.0) {
-    w->begun = 1;
-    w->t_begin = t;
-  }
+  w->h = w->limits.fixed != 0.0 ? w->limits.h_option * (1 + pb->stretch) : w->h;
+  lag_step_limits_begin(&w->limits, t);
   if (w->h == 0.0) {
-    lag_tolerance tol = {w->atol, pb->tol};
-    w->h = lag_first_step(pb, &tol, pair->tab->order, w->h_max, t, y, k1, lag_embedded_array(w, pb, EMBEDDED_Y1), k1 + row);
+    lag_tolerance tol = {w->limits.atol, pb->tol};
+    w->h = lag_first_step(pb, &tol, pair->tab->order, w->limits.h_max, t, y, k1, lag_embedded_array(w, pb, EMBEDDED_Y1), k1 + row);
   }
   return LAG_OK;
 }
 
-/* Largest step: the option, or else the time covered so far; and at most pb->longest. */
+/* Largest step, at most pb->longest. */
 static double longest(const Embedded *w, const lag_problem *pb, double t)
 {
-  if (w->fixed != 0.0) {
+  if (w->limits.fixed != 0.0) {
     return HUGE_VAL;
   }
-  double seen = fabs(t - w->t_begin), most = w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
+  double most = lag_longest_step(&w->limits, t);
   return pb->longest > 0 ? lag_min(most, pb->longest) : most;
 }
 
@@ -165,7 +153,7 @@ static double square_along(Embedded *w, lag_problem *pb, double tb, int count, c
     return NAN;
   }
   for (int i = 0; i < n; i++) {
-    double part = e[i] / (w->atol + pb->tol * fmax(fabs(y0[i]), fabs(y1[i])));
+    double part = e[i] / (w->limits.atol + pb->tol * fmax(fabs(y0[i]), fabs(y1[i])));
     sum += part * part;
   }
   return sum * w->per;
@@ -253,7 +241,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
   int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
 
   while (rc == 0) {
-    double wanted = lag_min(w->h, longest(w, pb, *t)), row, gap = w->fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
+    double wanted = lag_min(w->h, longest(w, pb, *t)), row, gap = w->limits.fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
     int clipped = wanted * (1 + 1e-4) >= gap; /* the rest after this step would be too short */
     w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
@@ -269,13 +257,13 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
     if (rc < 0) {
       return rc;
     }
-    if (w->fixed == 0.0 && try_other_size(&search, w, pb, tb, &err)) {
+    if (w->limits.fixed == 0.0 && try_other_size(&search, w, pb, tb, &err)) {
       pb->rejected++;
       rc = 0;
       continue;
     }
-    if (err <= 1 || (w->fixed != 0.0 && !isnan(err))) {
-      if (w->fixed == 0.0) {
+    if (err <= 1 || (w->limits.fixed != 0.0 && !isnan(err))) {
+      if (w->limits.fixed == 0.0) {
         next_size(pair, w, err, retried);
         w->h = clipped ? lag_max(w->h, wanted) : w->h;
       }
@@ -290,7 +278,7 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
       cause = LAG_ESTEP;
       w->h *= fmax(pair->shrink_most, pair->safety * lag_rough_power(err, -0.5 * pair->ratio * pair->beta));
     }
-    if (w->fixed != 0.0) {
+    if (w->limits.fixed != 0.0) {
       return too_small(pair, w, pb, *t, cause);
     }
     retried = 1;

@@ -4,6 +4,7 @@
 #define LAG_METHODS_EMBEDDED_H
 
 #include "lag.h"
+#include "methods/step_control.h"
 #include "methods/tableau.h"
 
 typedef struct EmbeddedPair EmbeddedPair;
@@ -25,15 +26,12 @@ struct EmbeddedPair {
  * aligned to a cache line: a pair of doubles across two lines is slow to read back. */
 struct Embedded {
   double h;         /* the next step to try, > 0; 0: not chosen yet */
-  double h_option, h_max, atol;
-  double fixed;     /* 1: every step has the size h */
+  lag_step_limits limits;
   double ready;     /* 1: K1 = f(t, y) is known; 2: the last stage holds f(t, y) */
   double have_extra; /* extra stages of dense output: 1 known, -1 failed, 0 not computed */
   double err_power; /* PI controller: (error of the last accepted step)^-beta; 0: no such step */
   double t0, dt;    /* the last step */
   double tc;        /* compensation of t: rounding lost so far */
-  double t_begin;   /* start of the first step */
-  double begun;     /* 1: t_begin is set */
   double per;       /* 1/n */
   double across;    /* squared error including the part across the constraints, where err left that part out; else 0 */
   _Alignas(LAG_WORK_ALIGN) double x[];
@@ -42,8 +40,7 @@ struct Embedded {
 /* COMP: rounding that y has lost; COMP1: the same after the step. YS: stage or scratch. K1: first of stages + extra arrays. */
 enum { EMBEDDED_COMP, EMBEDDED_COMP1, EMBEDDED_Y0, EMBEDDED_Y1, EMBEDDED_YS, EMBEDDED_K1 };
 
-enum { EMBEDDED_NOPTIONS = 4 };
-extern const lag_method_option lag_embedded_options[EMBEDDED_NOPTIONS];
+extern const lag_method_option lag_embedded_options[LAG_NADAPTIVE_OPTIONS];
 
 /* Rows have even length, so that loops over pairs have no remainder. Small models share one length, known at compile time. */
 enum { EMBEDDED_SMALL = 8 };
@@ -80,7 +77,7 @@ int lag_embedded_tangent(const EmbeddedPair *pair, void *work, lag_problem *pb, 
 /* The common members of both descriptors; work_size, step, dense and tangent are functions of the file that uses it. */
 #define EMBEDDED_DESCRIPTOR                                                                          \
   .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES | LAG_METHOD_LANDS,                   \
-  .noptions = EMBEDDED_NOPTIONS, .options = lag_embedded_options,                                                    \
+  .noptions = LAG_NADAPTIVE_OPTIONS, .options = lag_embedded_options,                                                    \
   .work_size = work_size, .init = lag_embedded_init, .step = step, .dense = dense, .reset = lag_embedded_reset,      \
   .sound = lag_embedded_sound,                                                                                       \
   .tangent_size = tangent_size, .tangent = tangent

@@ -126,7 +126,7 @@ LAG_ALWAYS_INLINE double embedded_scale(const Embedded *w, const lag_problem *pb
 {
   double a = fabs(y0), b = fabs(y1);
 
-  return w->atol + pb->tol * (a > b ? a : b);
+  return w->limits.atol + pb->tol * (a > b ? a : b);
 }
 
 /* Sum of the squares of the components. */
@@ -168,7 +168,7 @@ LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape a
   int rc = pb->model->constraints ? lag_project_step(pb, tb, w->x + EMBEDDED_Y0 * as.row, y1, w->x + EMBEDDED_COMP1 * as.row) : 0;
 
   if (pb->model->constraints && rc == 0) {
-    rc = w->fixed == 0.0 ? lag_embedded_reversal(w, pb, tb) : 0;
+    rc = w->limits.fixed == 0.0 ? lag_embedded_reversal(w, pb, tb) : 0;
     rc = rc ? rc : lag_crosses_constraint_pole(pb, tb - dt, w->x + EMBEDDED_Y0 * as.row, tb, y1);
   }
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
@@ -196,7 +196,7 @@ LAG_ALWAYS_INLINE double embedded_trial(const lag_tableau *tab, int late, Embedd
   if (err > 1 && pb->model->constraints) {
     err = lag_embedded_error_along(tab, late, w, pb, tb, dt, err);
   }
-  if (late && (err <= 1 || (w->fixed != 0.0 && !isnan(err)))) {
+  if (late && (err <= 1 || (w->limits.fixed != 0.0 && !isnan(err)))) {
     *rc = embedded_end(pb, w, as, tb, dt, k + last * row);
     if (*rc || lag_not_finite(pb->n, k + last * row) >= 0) {
       return NAN;

@@ -29,14 +29,14 @@ void lag_implicit_reset(void *work, lag_problem *pb)
 
   (void)pb;
   w->ready = w->have_path = 0;
-  w->tc = 0;
+  w->step.tc = 0;
 }
 
 void lag_implicit_init(void *work, lag_problem *pb, double h, int order, const lag_rule *rule)
 {
   Implicit *w = work;
 
-  w->h = h;
+  w->step.h = h;
   w->order = order;
   w->substeps = w->part[0] = 1;
   w->rule[0] = *rule;
@@ -74,8 +74,8 @@ int lag_implicit_sound(const void *work, const void *fresh, const lag_problem *p
 {
   const Implicit *w = work, *f = fresh;
 
-  return w->h == f->h && lag_same_numbers(&w->order, &f->order, (size_t)(w->x - &w->order)) && lag_is_flag(w->ready) &&
-         lag_is_count(w->have_path + 2, 3) && isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc) && histories_are_sound(w, pb);
+  return lag_fixed_step_is_sound(&w->step, &f->step) && lag_same_numbers(&w->order, &f->order, (size_t)(w->x - &w->order)) && lag_is_flag(w->ready) &&
+         lag_is_count(w->have_path + 2, 3) && histories_are_sound(w, pb);
 }
 
 /* First step from y: p := dL/dv, compensations and histories := 0. */
@@ -136,27 +136,23 @@ int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y)
 {
   Implicit *w = work;
   ImplicitArrays a = lag_substeps_arrays(w, pb);
-  int rc;
-  double dt = w->h * (1 + pb->stretch) * pb->dir, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
+  lag_next_step next;
+  int rc = lag_fixed_step_begin(&w->step, pb, *t, &next);
 
-  pb->bad_index = -1;
-  if (tb == *t) {
-    return lag_step_failed(pb, LAG_ESTEP, *t);
+  if (rc) {
+    return rc;
   }
   if (w->ready == 0.0 && (rc = begin(w, &a, pb, *t, y)) != 0) {
     return rc;
   }
   memset(a.dq, 0, (size_t)pb->nq * sizeof(double));
   memset(a.dp, 0, (size_t)pb->nq * sizeof(double));
-  if ((rc = (pb->model->constraints ? lag_rattle : chain)(w, &a, pb, *t, tb, y, dt)) != 0) {
+  if ((rc = (pb->model->constraints ? lag_rattle : chain)(w, &a, pb, *t, next.tb, y, next.dt)) != 0) {
     return rc;
   }
   lag_predictor_add(a.history + (size_t)w->substeps * lag_substep_history(pb, w), pb->nq, a.v);
   accept(w, &a, pb, y);
-  w->t0 = *t;
-  w->dt = tb - *t;
-  w->tc = tc;
-  *t = tb;
+  lag_fixed_step_end(&w->step, &next, t);
   return LAG_OK;
 }
 
@@ -164,7 +160,7 @@ int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y)
  * accelerations depend on velocities. */
 static int make_path(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const StepEnds *e, int level)
 {
-  if (lag_rhs(pb, w->t0, a->y0, a->f0) || lag_rhs(pb, w->t0 + w->dt, a->y1, a->f1) || lag_not_finite(pb->n, a->f0) >= 0 ||
+  if (lag_rhs(pb, w->step.t0, a->y0, a->f0) || lag_rhs(pb, w->step.t0 + w->step.dt, a->y1, a->f1) || lag_not_finite(pb->n, a->f0) >= 0 ||
       lag_not_finite(pb->n, a->f1) >= 0) {
     return -2;
   }
@@ -175,9 +171,9 @@ void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y)
 {
   Implicit *w = work;
   ImplicitArrays a = lag_substeps_arrays(w, pb);
-  StepEnds ends = {w->t0, w->dt, a.y0, a.f0, a.y1, a.f1};
+  StepEnds ends = {w->step.t0, w->step.dt, a.y0, a.f0, a.y1, a.f1};
   int level = w->order > 6 ? 2 : w->order > 4 ? 1 : 0;
-  double s = (t - w->t0) / w->dt;
+  double s = (t - w->step.t0) / w->step.dt;
 
   if (w->have_path == 0.0 && w->order > 1) {
     w->have_path = make_path(w, &a, pb, &ends, level);
@@ -228,11 +224,11 @@ static Changes changes(const lag_problem *pb, int k, double *x)
 /* Start of the last step: Y = (dq, dv) becomes (dq, dp), and c->p := p. */
 static int to_momenta(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, int k, double *Y)
 {
-  int nq = pb->nq, m = nq * k, rc = lag_variation(pb, w->t0, a->y0, a->y0 + nq, c->v, c->p, c->force);
+  int nq = pb->nq, m = nq * k, rc = lag_variation(pb, w->step.t0, a->y0, a->y0 + nq, c->v, c->p, c->force);
 
-  rc = rc ? rc : lag_second_derivatives(pb, w->t0, a->y0, a->y0 + nq, c->second);
+  rc = rc ? rc : lag_second_derivatives(pb, w->step.t0, a->y0, a->y0 + nq, c->second);
   if (rc) {
-    return lag_step_refused(pb, rc, w->t0);
+    return lag_step_refused(pb, rc, w->step.t0);
   }
   memcpy(c->dv, Y + m, (size_t)m * sizeof *Y);
   memset(Y + m, 0, (size_t)m * sizeof *Y);
@@ -247,7 +243,7 @@ static int over_substep(const Implicit *w, const ImplicitArrays *a, lag_problem 
   const lag_rule *r = &w->rule[j % 2];
   int nq = pb->nq, rc = 0;
   double h = w->part[j] * dt;
-  lag_discrete d = {.rule = r, .pb = pb, .t = w->t0 + at * dt, .h = h, .size = w->h, .q = a->y0, .dq = c->ql, .p = c->p,
+  lag_discrete d = {.rule = r, .pb = pb, .t = w->step.t0 + at * dt, .h = h, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p,
                     .dp = c->pl, .u = c->u, .force = c->force, .work = a->discrete};
 
   lag_predictor_last(a->history + (size_t)j * lag_substep_history(pb, w), nq * (int)r->free, c->u);
@@ -266,7 +262,7 @@ static int over_substep(const Implicit *w, const ImplicitArrays *a, lag_problem 
 static int to_velocities(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, double t, int whole, int k, double *Y)
 {
   int nq = pb->nq, m = nq * k, rc = 0;
-  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = t, .h = 0, .size = w->h, .q = a->y0, .dq = c->ql, .p = c->p, .dp = c->pl,
+  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = t, .h = 0, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p, .dp = c->pl,
                     .u = c->v, .force = c->force, .work = a->discrete};
 
   memcpy(c->v, a->y1 + nq, (size_t)nq * sizeof *Y);
@@ -281,7 +277,7 @@ int lag_implicit_tangent(void *work, lag_problem *pb, double t, int k, double *Y
   Implicit *w = work;
   ImplicitArrays a = lag_substeps_arrays(w, pb);
   Changes c = changes(pb, k, scratch);
-  double step = w->h * pb->dir, dt = lag_tangent_span(w->t0, t, step), at = 0;
+  double step = w->step.h * pb->dir, dt = lag_tangent_span(w->step.t0, t, step), at = 0;
   int whole = dt == step, rc = to_momenta(w, &a, pb, &c, k, Y);
 
   for (int j = 0; j < (int)w->substeps && rc == 0; j++) {

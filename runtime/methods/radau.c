@@ -51,8 +51,8 @@ static const double error_weight[STAGES] = {-10.04880939982741556246032950764707
 /* Saved state of the method, doubles only; RadauArrays has pointers into x. */
 typedef struct Radau {
   double h;            /* the next step to try, > 0; 0: not chosen yet */
-  double h_option, h_max, rtol, atol;
-  double fixed;        /* 1: every step has the size h */
+  lag_step_limits limits;
+  double rtol, atol;   /* tolerances of the error estimate, which has order 3 */
   double ready;        /* 1: f0 = f(t, y) is known */
   double jacobian_age; /* 0: no Jacobian, 1: at this y, 2: at an earlier y */
   double factored;     /* signed h of the LU factors; 0: none */
@@ -62,7 +62,6 @@ typedef struct Radau {
   double again;        /* 1: the last attempt was rejected */
   double t0, dt;       /* the last step */
   double tc;           /* compensation of t: rounding lost so far */
-  double t_begin, begun; /* start of the first step; 1: it is set */
   double x[];
 } Radau;
 
@@ -114,7 +113,7 @@ static void reset(void *work, lag_problem *pb)
 {
   Radau *w = work;
 
-  w->h = w->h_option;
+  w->h = w->limits.h_option;
   w->ready = w->jacobian_age = w->factored = w->have_path = w->h_accepted = w->again = w->tc = 0;
   w->rate = 1;
   w->unsettled = 1;
@@ -124,13 +123,10 @@ static void reset(void *work, lag_problem *pb)
 static int init(void *work, lag_problem *pb, const double *opt)
 {
   Radau *w = work;
-  double atol = opt[2] > 0 ? opt[2] : pb->tol;
 
-  w->fixed = opt[3];
-  w->h_option = w->fixed != 0.0 ? lag_step_size(pb, opt[0]) : opt[0];
-  w->h_max = opt[1] > 0 ? opt[1] : pb->span / 10;
+  lag_step_limits_init(&w->limits, pb, opt);
   w->rtol = 0.1 * cbrt(pb->tol * pb->tol);
-  w->atol = w->rtol * (atol / pb->tol);
+  w->atol = w->rtol * (w->limits.atol / pb->tol);
   reset(work, pb);
   return LAG_OK;
 }
@@ -145,9 +141,10 @@ static int sound(const void *work, const void *fresh, const lag_problem *pb)
          lag_is_count(a.complex.pivot[pb->n + i], 2 * most + 1)) {
     i++;
   }
-  return i == pb->n && w->h >= 0 && isfinite(w->h) && lag_same_numbers(&w->h_option, &f->h_option, 5) && lag_is_flag(w->ready) &&
+  return i == pb->n && w->h >= 0 && isfinite(w->h) && lag_step_limits_are_sound(&w->limits, &f->limits) && w->rtol == f->rtol &&
+         w->atol == f->atol && lag_is_flag(w->ready) &&
          lag_is_count(w->jacobian_age, 2) && isfinite(w->factored) && lag_is_flag(w->have_path) && w->h_accepted >= 0 && lag_is_flag(w->again) &&
-         isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc) && isfinite(w->t_begin) && lag_is_flag(w->begun);
+         isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc);
 }
 
 /* ---- Linear systems */
@@ -287,7 +284,7 @@ static Outcome newton(Radau *w, const RadauArrays *a, lag_problem *pb, double t,
   w->unsettled = pow(fmax(w->unsettled, DBL_EPSILON), 0.8);
   w->rate = contracts_well;
   pb->systems++;
-  while (o.corrections < (w->fixed != 0.0 ? MOST_WHEN_FIXED : MOST_CORRECTIONS)) {
+  while (o.corrections < (w->limits.fixed != 0.0 ? MOST_WHEN_FIXED : MOST_CORRECTIONS)) {
     if ((o.rc = stages(a, pb, t, y, dt)) != 0) {
       return o;
     }
@@ -311,7 +308,7 @@ static Outcome newton(Radau *w, const RadauArrays *a, lag_problem *pb, double t,
       w->unsettled = w->rate / (1 - w->rate);
       int left = MOST_CORRECTIONS - 1 - o.corrections;
       double end = w->unsettled * size * pow(w->rate, left) / goal; /* predicted error after the last correction allowed */
-      if (end >= 1 && w->fixed == 0.0) {
+      if (end >= 1 && w->limits.fixed == 0.0) {
         o.shrink = 0.8 * pow(fmax(1e-4, fmin(20, end)), -1.0 / (4 + left));
         break;
       }
@@ -457,20 +454,17 @@ static int prepare(Radau *w, const RadauArrays *a, lag_problem *pb, double t, co
   for (int i = 0; i < pb->n; i++) {
     a->scale[i] = w->atol + w->rtol * fabs(y[i]);
   }
-  if (w->begun == 0.0) {
-    w->begun = 1;
-    w->t_begin = t;
-  }
+  lag_step_limits_begin(&w->limits, t);
   if (w->h == 0.0) {
-    w->h = lag_first_step(pb, &tol, 5, w->h_max, t, y, a->f0, a->ys, a->fs);
+    w->h = lag_first_step(pb, &tol, 5, w->limits.h_max, t, y, a->f0, a->ys, a->fs);
   }
   return LAG_OK;
 }
 
-/* Largest step: the option, or else the time covered so far; and at most pb->longest. */
+/* Largest step, at most pb->longest. */
 static double longest(const Radau *w, const lag_problem *pb, double t)
 {
-  double seen = fabs(t - w->t_begin), most = w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
+  double most = lag_longest_step(&w->limits, t);
 
   return pb->longest > 0 ? fmin(most, pb->longest) : most;
 }
@@ -482,7 +476,7 @@ static int conclude(Radau *w, const RadauArrays *a, lag_problem *pb, double tb, 
 
   if (rc) {
     w->h /= 2;
-  } else if (w->fixed != 0.0) {
+  } else if (w->limits.fixed != 0.0) {
     w->jacobian_age = 0;
   } else {
     next_size(w, step_divisor(w, err, corrections, 1), err);
@@ -508,7 +502,7 @@ static int attempt(Radau *w, RadauArrays *a, lag_problem *pb, double t, double t
     w->h *= o.shrink;
     return o.rc;
   }
-  double err = w->fixed != 0.0 ? 0 : error_of(w, a, pb, t, y, dt);
+  double err = w->limits.fixed != 0.0 ? 0 : error_of(w, a, pb, t, y, dt);
   if (err < 1) {
     return conclude(w, a, pb, tb, y, err, o.corrections);
   }
@@ -523,7 +517,7 @@ static int failure_status(const Radau *w, lag_problem *pb, double t, int why)
     return pb->bad_index >= 0 ? LAG_ENAN : LAG_EDOMAIN; /* bad_t is set */
   }
   if (why == DIVERGED) {
-    pb->detail = w->fixed != 0.0 ? "Newton's method did not converge; take smaller steps, or leave out adapt=off"
+    pb->detail = w->limits.fixed != 0.0 ? "Newton's method did not converge; take smaller steps, or leave out adapt=off"
                                  : "Newton's method does not converge, however small the step";
   }
   return lag_step_failed(pb, why == DIVERGED ? LAG_EMETHOD : LAG_ESTEP, t);
@@ -536,9 +530,9 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int rc = prepare(w, &a, pb, *t, y), why = REJECTED;
 
   (void)t_stop;
-  w->h = (w->fixed != 0.0 ? w->h_option : w->h) * (1 + pb->stretch);
+  w->h = (w->limits.fixed != 0.0 ? w->limits.h_option : w->h) * (1 + pb->stretch);
   while (rc == 0) {
-    w->h = w->fixed != 0.0 ? w->h : fmin(w->h, longest(w, pb, *t));
+    w->h = w->limits.fixed != 0.0 ? w->h : fmin(w->h, longest(w, pb, *t));
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
     if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) {
       return failure_status(w, pb, *t, why);
@@ -552,7 +546,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     if (why < 0) {
       return why;
     }
-    if (w->fixed != 0.0) {
+    if (w->limits.fixed != 0.0) {
       return failure_status(w, pb, *t, why);
     }
     w->jacobian_age = w->jacobian_age == 1.0 ? 1 : 0;
@@ -600,7 +594,7 @@ const lag_method lag_radau = {
     .dense_order = 3,
     .doc = "Radau IIA with the exact Jacobian (of constrained models a differenced one), for stiff models. DOI 10.1007/978-3-642-05221-7, IV.8",
     .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_NEWTON | LAG_METHOD_JACOBIAN | LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES,
-    .noptions = EMBEDDED_NOPTIONS,
+    .noptions = LAG_NADAPTIVE_OPTIONS,
     .options = lag_embedded_options,
     .work_size = work_size,
     .init = init,

@@ -13,6 +13,7 @@
 #include "methods/predictor.h"
 #include "methods/substeps.h"
 #include "methods/steps.h"
+#include "numeric/dense.h"
 
 enum { MOST_IMPULSES = 60, MOST_PROJECTIONS = 8 };
 #define LEAST 1e-6
@@ -102,42 +103,6 @@ static int find_changes(const ImplicitArrays *a, lag_problem *pb, double t0)
   return rc;
 }
 
-/* x[n] := B^-1 x by Gauss-Jordan elimination of B[n * n] with full pivoting, for pivots above `least`; x of the remaining equations holds
- * their residuals. r[n] := column of the pivot of each row, -1: none. */
-static void gauss_jordan(double *B, double *x, double *r, int n, double least)
-{
-  for (int i = 0; i < n; i++) {
-    r[i] = -1; /* column of the pivot of row i */
-  }
-  for (int turn = 0; turn < n; turn++) {
-    int row = -1, col = -1;
-    double most = least;
-    for (int i = 0; i < n; i++) {
-      for (int j = 0; j < n && r[i] < 0; j++) {
-        if (fabs(B[i * n + j]) > most) {
-          most = fabs(B[i * n + j]);
-          row = i;
-          col = j;
-        }
-      }
-    }
-    if (row < 0) {
-      break;
-    }
-    r[row] = col;
-    for (int i = 0; i < n; i++) {
-      double factor = i == row ? 0 : B[i * n + col] / B[row * n + col];
-      for (int j = 0; j < n && factor != 0.0; j++) {
-        B[i * n + j] = j == col ? 0 : B[i * n + j] - factor * B[row * n + j];
-      }
-      x[i] -= factor * x[row];
-    }
-  }
-  for (int i = 0; i < n; i++) { /* each row has its pivot left, and columns without pivot, whose unknowns are 0 */
-    x[i] = r[i] < 0 ? x[i] : x[i] / B[i * n + (int)r[i]];
-  }
-}
-
 /* Adds to b->end_jacobian the derivatives of the coefficients of velocity constraints by the end of the block. These coefficients vanish at the
  * origin for x*y' = y*x'; a block over that place, where they change sign, is found only by the full Newton matrix. */
 static int add_rate_derivatives(const ImplicitArrays *a, lag_problem *pb, double t1, double h)
@@ -192,7 +157,7 @@ static int end_to_start_change(const ImplicitArrays *a, lag_problem *pb, double 
   rc = rc == 0 && of->nholonomic < n ? add_rate_derivatives(a, pb, t1, h) : rc;
   if (rc == 0) {
     memcpy(b->c, b->g, (size_t)n * sizeof(double));
-    gauss_jordan(b->end_jacobian, b->c, b->r, n, least);
+    lag_gauss_jordan(n, b->end_jacobian, b->c, b->r, least);
     memset(b->g, 0, (size_t)n * sizeof(double));
     for (int i = 0; i < n; i++) {
       if (b->r[i] >= 0) {

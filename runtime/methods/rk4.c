@@ -12,10 +12,8 @@
 
 /* Saved state of the method, doubles only; x holds the arrays of n named below. */
 typedef struct Rk4 {
-  double h;       /* the step, >= 0 */
-  double ready;   /* 1: K1 = f(t, y) is known */
-  double t0, dt;  /* the last step began at t0 and was dt long */
-  double tc;      /* compensation of t: rounding lost so far */
+  lag_fixed_step step;
+  double ready; /* 1: K1 = f(t, y) is known */
   double x[];
 } Rk4;
 
@@ -36,7 +34,7 @@ static void reset(void *work, lag_problem *pb)
   Rk4 *w = work;
 
   w->ready = 0;
-  w->tc = 0;
+  w->step.tc = 0;
   memset(w->x + COMP * pb->n, 0, (size_t)pb->n * sizeof(double));
 }
 
@@ -44,7 +42,7 @@ static int init(void *work, lag_problem *pb, const double *opt)
 {
   Rk4 *w = work;
 
-  w->h = lag_step_size(pb, opt[0]);
+  w->step.h = lag_step_size(pb, opt[0]);
   reset(work, pb);
   return LAG_OK;
 }
@@ -54,7 +52,7 @@ static int sound(const void *work, const void *fresh, const lag_problem *pb)
   const Rk4 *w = work, *f = fresh;
 
   (void)pb;
-  return w->h == f->h && lag_is_flag(w->ready) && isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc);
+  return lag_fixed_step_is_sound(&w->step, &f->step) && lag_is_flag(w->ready);
 }
 
 /* K1..K4 := the four stages, YS := their weighted sum, the increment of y divided by h. */
@@ -88,14 +86,10 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int n = pb->n, rc;
   size_t bytes = (size_t)n * sizeof(double);
   double *y1 = w->x + Y1 * n, *comp = w->x + COMP * n, *ys = w->x + YS * n;
-  double dt = w->h * (1 + pb->stretch) * pb->dir, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
+  lag_next_step next;
 
   (void)t_stop;
-  pb->bad_index = -1;
-  if (tb == *t) {
-    return lag_step_failed(pb, LAG_ESTEP, *t);
-  }
-  if ((rc = stages(w, pb, *t, y, dt)) != 0) {
+  if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0 || (rc = stages(w, pb, *t, y, next.dt)) != 0) {
     return rc;
   }
   /* A failure must leave y and its compensation unchanged: test before the sums. */
@@ -105,22 +99,19 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   memcpy(w->x + F0 * n, w->x + K1 * n, bytes);
   memcpy(w->x + Y0 * n, y, bytes);
   for (int i = 0; i < n; i++) {
-    y1[i] = lag_compensated_sum(y[i], dt * ys[i], &comp[i]);
+    y1[i] = lag_compensated_sum(y[i], next.dt * ys[i], &comp[i]);
   }
   w->ready = 0;
-  if ((rc = lag_project_step(pb, tb, y, y1, comp)) != 0) {
-    return lag_step_not_projected(pb, rc, tb);
+  if ((rc = lag_project_step(pb, next.tb, y, y1, comp)) != 0) {
+    return lag_step_not_projected(pb, rc, next.tb);
   }
-  rc = lag_step_rhs(pb, tb, y1, w->x + K1 * n);
+  rc = lag_step_rhs(pb, next.tb, y1, w->x + K1 * n);
   if (rc) {
     return rc;
   }
   memcpy(y, y1, bytes);
   w->ready = 1;
-  w->t0 = *t;
-  w->dt = tb - *t;
-  w->tc = tc;
-  *t = tb;
+  lag_fixed_step_end(&w->step, &next, t);
   return LAG_OK;
 }
 
@@ -129,7 +120,7 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
   const Rk4 *w = work;
   int n = pb->n;
 
-  lag_hermite(pb->nq, pb->nz, w->dt, (t - w->t0) / w->dt, w->x + Y0 * n, w->x + F0 * n, w->x + Y1 * n,
+  lag_hermite(pb->nq, pb->nz, w->step.dt, (t - w->step.t0) / w->step.dt, w->x + Y0 * n, w->x + F0 * n, w->x + Y1 * n,
               w->x + K1 * n, y);
 }
 
@@ -148,9 +139,9 @@ static size_t tangent_size(const lag_problem *pb, int k)
 static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
 {
   Rk4 *w = work;
-  double dt = lag_tangent_span(w->t0, t, w->h * pb->dir);
+  double dt = lag_tangent_span(w->step.t0, t, w->step.h * pb->dir);
 
-  return lag_tangent_explicit(&tableau, pb, w->t0, dt, w->x + Y0 * pb->n, k, Y, scratch);
+  return lag_tangent_explicit(&tableau, pb, w->step.t0, dt, w->x + Y0 * pb->n, k, Y, scratch);
 }
 
 const lag_method lag_rk4 = {

@@ -3,6 +3,21 @@
 
 #include <math.h>
 
+const char *const lag_on_off[] = {"on", "off", NULL};
+
+void lag_step_limits_init(lag_step_limits *l, const lag_problem *pb, const double *opt)
+{
+  l->fixed = opt[LAG_OPT_ADAPT];
+  l->h_option = l->fixed != 0.0 ? lag_step_size(pb, opt[LAG_OPT_STEP]) : opt[LAG_OPT_STEP];
+  l->h_max = opt[LAG_OPT_MAX] > 0 ? opt[LAG_OPT_MAX] : pb->span / 10;
+  l->atol = opt[LAG_OPT_ATOL] > 0 ? opt[LAG_OPT_ATOL] : pb->tol;
+}
+
+int lag_step_limits_are_sound(const lag_step_limits *l, const lag_step_limits *fresh)
+{
+  return lag_same_numbers(&l->h_option, &fresh->h_option, 4) && isfinite(l->t_begin) && lag_is_flag(l->begun);
+}
+
 double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y)
 {
   double s = 0;

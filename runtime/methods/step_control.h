@@ -12,6 +12,39 @@ typedef struct lag_tolerance {
   double absolute, relative;
 } lag_tolerance;
 
+/* Options of adaptive steps, and the largest step that they allow; part of a method's saved state. */
+typedef struct lag_step_limits {
+  double h_option, h_max, atol;
+  double fixed;          /* 1: every step has the size h_option */
+  double t_begin, begun; /* start of the first step; 1: it is set */
+} lag_step_limits;
+
+/* The first options of an adaptive method, in this order. */
+enum { LAG_OPT_STEP, LAG_OPT_MAX, LAG_OPT_ATOL, LAG_OPT_ADAPT, LAG_NADAPTIVE_OPTIONS };
+extern const char *const lag_on_off[];
+#define LAG_MAX_STEP_OPTION {"max_step", "largest step [s]; 0: a tenth of the scene's span, or the time since the start", 0, 0, HUGE_VAL, NULL}
+#define LAG_ATOL_OPTION {"atol", "absolute tolerance [SI]; 0: the same number as the relative one", 0, 0, HUGE_VAL, NULL}
+
+void lag_step_limits_init(lag_step_limits *l, const lag_problem *pb, const double *opt);
+int lag_step_limits_are_sound(const lag_step_limits *l, const lag_step_limits *fresh);
+
+/* Before each step: notes the time of the first one. */
+static inline void lag_step_limits_begin(lag_step_limits *l, double t)
+{
+  if (l->begun == 0.0) {
+    l->begun = 1;
+    l->t_begin = t;
+  }
+}
+
+/* Largest step: the option, or else the time covered so far. */
+static inline double lag_longest_step(const lag_step_limits *l, double t)
+{
+  double seen = fabs(t - l->t_begin);
+
+  return l->h_max > 0 ? l->h_max : seen > 0 ? seen : HUGE_VAL;
+}
+
 /* Minimum and maximum of two numbers; b where a is NaN. */
 static inline double lag_min(double a, double b) { return a < b ? a : b; }
 static inline double lag_max(double a, double b) { return a > b ? a : b; }

@@ -16,6 +16,45 @@ static inline double lag_compensated_sum(double s, double d, double *c)
   return r;
 }
 
+/* Steps of equal size: head of a method's saved state. */
+typedef struct lag_fixed_step {
+  double h;      /* the step, > 0 */
+  double t0, dt; /* the last step began at t0 and was dt long */
+  double tc;     /* compensation of t: rounding lost so far */
+} lag_fixed_step;
+
+static inline int lag_fixed_step_is_sound(const lag_fixed_step *s, const lag_fixed_step *fresh)
+{
+  return s->h == fresh->h && isfinite(s->t0) && isfinite(s->dt) && isfinite(s->tc);
+}
+
+/* A step from t to tb, of signed length dt; tc: compensation of tb. */
+typedef struct lag_next_step {
+  double dt, tb, tc;
+} lag_next_step;
+
+/* LAG_ESTEP: the step is lost in the rounding of t. */
+static inline int lag_fixed_step_begin(const lag_fixed_step *s, lag_problem *pb, double t, lag_next_step *next)
+{
+  next->dt = s->h * (1 + pb->stretch) * pb->dir;
+  next->tc = s->tc;
+  next->tb = lag_compensated_sum(t, next->dt, &next->tc);
+  pb->bad_index = -1;
+  if (next->tb == t) {
+    pb->bad_t = t;
+    return LAG_ESTEP;
+  }
+  return LAG_OK;
+}
+
+static inline void lag_fixed_step_end(lag_fixed_step *s, const lag_next_step *next, double *t)
+{
+  s->t0 = *t;
+  s->dt = next->tb - *t;
+  s->tc = next->tc;
+  *t = next->tb;
+}
+
 /* The option `step` of fixed-step methods. */
 #define LAG_STEP_OPTION {"step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL}
 

@@ -97,7 +97,7 @@ int lag_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, dou
   const lag_rule *r = &w->rule[k % 2];
   int nq = pb->nq, m = nq * (int)r->free, rc = LAG_EMETHOD;
   double *history = a->history + (size_t)k * lag_substep_history(pb, w), h = w->part[k] * dt;
-  lag_discrete d = {.rule = r, .pb = pb, .t = t + at * dt, .h = h, .size = w->h, .q = y, .dq = a->ql, .p = a->p,
+  lag_discrete d = {.rule = r, .pb = pb, .t = t + at * dt, .h = h, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
                     .dp = a->pl, .u = u, .force = a->force, .work = a->discrete, .counted = 1};
 
   lag_substeps_gather(a, nq);
@@ -131,7 +131,7 @@ int lag_substeps_velocity(const Implicit *w, const ImplicitArrays *a, lag_proble
 {
   int nq = pb->nq;
   const double *history = a->history + (size_t)w->substeps * lag_substep_history(pb, w);
-  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = tb, .h = 0, .size = w->h, .q = y, .dq = a->ql, .p = a->p,
+  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = tb, .h = 0, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
                     .dp = a->pl, .u = a->v, .force = a->force, .work = a->discrete};
 
   lag_substeps_gather(a, nq);

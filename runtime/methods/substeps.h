@@ -8,14 +8,13 @@
 #include "lag.h"
 #include "methods/composition.h"
 #include "methods/galerkin_rule.h"
+#include "methods/steps.h"
 
 /* Saved state of the method, doubles only; ImplicitArrays has pointers into x. */
 typedef struct Implicit {
-  double h;         /* the step, > 0 */
+  lag_fixed_step step;
   double ready;     /* 1: p belongs to the present q and v */
   double have_path; /* dense output: 1 built, -1 Hermite only, -2 cubic only, 0 not built */
-  double t0, dt;    /* the last step began at t0 and was dt long */
-  double tc;        /* compensation of t: rounding lost so far */
   double order, substeps;            /* order of the method, substeps a step */
   double part[2 * LAG_MAX_DRIFTS]; /* lengths of the substeps, parts of h */
   lag_rule rule[2], momentum;     /* rules of even and odd substeps; rule of v from p */

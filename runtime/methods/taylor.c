@@ -21,20 +21,19 @@
 #include "core/rhs.h"
 #include "lag.h"
 #include "methods/rough_math.h"
+#include "methods/step_control.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
 
 enum { WINDOW = 5, LEAST_ORDER = 6, AIM = 2 };
 
-enum { OPT_STEP, OPT_MAX, OPT_ATOL, OPT_ADAPT, OPT_ORDER, NOPTIONS };
-
-static const char *const on_off[] = {"on", "off", NULL};
+enum { OPT_ORDER = LAG_NADAPTIVE_OPTIONS, NOPTIONS };
 
 static const lag_method_option options[NOPTIONS] = {
     {"step", "size of the step [s] where adapt is off; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL},
-    {"max_step", "largest step [s]; 0: a tenth of the scene's span, or the time since the start", 0, 0, HUGE_VAL, NULL},
-    {"atol", "absolute tolerance [SI]; 0: the same number as the relative one", 0, 0, HUGE_VAL, NULL},
-    {"adapt", "off: every step has the size `step`, whatever the error", 0, 0, 1, on_off},
+    LAG_MAX_STEP_OPTION,
+    LAG_ATOL_OPTION,
+    {"adapt", "off: every step has the size `step`, whatever the error", 0, 0, 1, lag_on_off},
     {"order", "order of the series; 0: chosen from the tolerance and what an order costs", 0, 0, LAG_TAYLOR_ORDER, NULL},
 };
 
@@ -42,14 +41,13 @@ static const lag_method_option options[NOPTIONS] = {
 typedef struct Taylor {
   double order, bits; /* bits: -log2 of the relative error of a step, from target_bits() */
   double per_order[WINDOW]; /* 1/k of the orders in the root test, from the highest down */
-  double h_option, h_max, fixed;
   double floor;     /* absolute/relative tolerance, the least size of a component in error norms */
+  lag_step_limits limits;
   double ready;     /* 1: series[now] is expanded at t, y */
   double now;       /* 0 or 1: series of the next step; the other one is of the last step */
   double t0, dt;    /* the last step */
   double unit[2];   /* signed unit of time of each series */
   double noise;     /* defect found to be rounding, in tolerances; decays by a tenth a step */
-  double t_begin, begun; /* start of the first step; 1: it is set */
   double tc;        /* fixed steps: compensation of t */
   double x[];
 } Taylor;
@@ -144,10 +142,8 @@ static int init(void *work, lag_problem *pb, const double *opt)
   for (int i = 0; i < WINDOW; i++) {
     w->per_order[i] = 1 / fmax(w->order - i, 1);
   }
-  w->fixed = opt[OPT_ADAPT];
-  w->h_option = lag_step_size(pb, opt[OPT_STEP]);
-  w->h_max = opt[OPT_MAX] > 0 ? opt[OPT_MAX] : pb->span / 10;
-  w->floor = opt[OPT_ATOL] > 0 ? opt[OPT_ATOL] / pb->tol : 1;
+  lag_step_limits_init(&w->limits, pb, opt);
+  w->floor = w->limits.atol / pb->tol;
   for (int i = 0; i < pb->model->nu; i++) {
     follows(w, pb)[i] = isnan(pb->hold[i]) && pb->model->inputs;
   }
@@ -159,10 +155,9 @@ static int sound(const void *work, const void *fresh, const lag_problem *pb)
 {
   const Taylor *w = work, *f = fresh;
 
-  return lag_same_numbers(&w->order, &f->order, (size_t)(&w->ready - &w->order)) &&
+  return lag_same_numbers(&w->order, &f->order, (size_t)(&w->floor + 1 - &w->order)) && lag_step_limits_are_sound(&w->limits, &f->limits) &&
          lag_same_numbers(follows((Taylor *)w, pb), follows((Taylor *)f, pb), (size_t)pb->model->nu) && lag_is_flag(w->ready) && lag_is_flag(w->now) &&
-         isfinite(w->t0) && isfinite(w->dt) && isfinite(w->unit[0]) && isfinite(w->unit[1]) && isfinite(w->noise) && isfinite(w->t_begin) &&
-         lag_is_flag(w->begun) && isfinite(w->tc);
+         isfinite(w->t0) && isfinite(w->dt) && isfinite(w->unit[0]) && isfinite(w->unit[1]) && isfinite(w->noise) && isfinite(w->tc);
 }
 
 /* Order 0 of series[which] at t, y. Returns 0 or the model's status; > 0 with pb->bad_index >= 0 where a rate is not finite. */
@@ -214,10 +209,7 @@ static int expand(Taylor *w, lag_problem *pb, double which, double unit)
 /* Expands the series at t, y where none is known: at the start, and after an event. */
 static int prepare(Taylor *w, lag_problem *pb, double t, const double *y)
 {
-  if (w->begun == 0.0) {
-    w->begun = 1;
-    w->t_begin = t;
-  }
+  lag_step_limits_begin(&w->limits, t);
   if (w->ready != 0.0) {
     return LAG_OK;
   }
@@ -276,14 +268,6 @@ static double error_of(Taylor *w, lag_problem *pb, double dt)
   return worst / pb->tol;
 }
 
-/* Largest step: the option, or else the time covered so far. */
-static double longest(const Taylor *w, double t)
-{
-  double seen = fabs(t - w->t_begin);
-
-  return w->h_max > 0 ? w->h_max : seen > 0 ? seen : HUGE_VAL;
-}
-
 /* Y1, COMP1 := the state at t + dt and its compensation. */
 static void advance(Taylor *w, lag_problem *pb, const double *y, double dt)
 {
@@ -323,11 +307,11 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   if (rc) {
     return rc;
   }
-  double h = root_test_step(w, pb, y), most = longest(w, *t), last = HUGE_VAL;
-  h = w->fixed != 0.0 ? w->h_option : h < most ? h : most;
+  double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t), last = HUGE_VAL;
+  h = w->limits.fixed != 0.0 ? w->limits.h_option : h < most ? h : most;
   h = isfinite(h) ? h : 1;
   for (;;) {
-    double tc = w->tc, tb = w->fixed != 0.0 ? lag_compensated_sum(*t, pb->dir * h, &tc) : *t + pb->dir * h;
+    double tc = w->tc, tb = w->limits.fixed != 0.0 ? lag_compensated_sum(*t, pb->dir * h, &tc) : *t + pb->dir * h;
     double dt = tb - *t; /* the step between two times as rounded */
     if (!(fabs(dt) > 4 * DBL_EPSILON * fabs(*t)) || h < DBL_MIN / DBL_EPSILON) {
       return cause == LAG_ESTEP || cause == LAG_ESINGULAR ? lag_step_failed(pb, cause, *t) : cause;
@@ -341,7 +325,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     if (error > last / 2) { /* the defect did not shrink with the step: rounding */
       w->noise = error;
     }
-    if (error <= 1 || error <= 2 * w->noise || (w->fixed != 0.0 && rc == 0)) {
+    if (error <= 1 || error <= 2 * w->noise || (w->limits.fixed != 0.0 && rc == 0)) {
       w->noise *= 0.9;
       accept(w, pb, t, y, dt, tb);
       w->tc = tc;
@@ -349,7 +333,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     }
     cause = rc ? (pb->bad_index >= 0 ? LAG_ENAN : rc < 0 ? LAG_ESINGULAR : LAG_EDOMAIN) : LAG_ESTEP;
     pb->bad_t = tb;
-    if (w->fixed != 0.0) {
+    if (w->limits.fixed != 0.0) {
       return cause;
     }
     last = rc ? HUGE_VAL : error;

@@ -19,11 +19,9 @@
 
 /* Saved state of the explicit methods, doubles only; x holds the arrays of n named below, then the path of step_interpolant.h. */
 typedef struct Verlet {
-  double h;         /* the step, > 0 */
+  lag_fixed_step step;
   double ready;     /* 1: F1 = f(t, y) is known */
   double have_path; /* dense output: 1 built, -1 failed, 0 not built */
-  double t0, dt;    /* the last step began at t0 and was dt long */
-  double tc;        /* compensation of t: rounding lost so far */
   double x[];
 } Verlet;
 
@@ -59,7 +57,7 @@ static void reset(void *work, lag_problem *pb)
     return;
   }
   w->ready = w->have_path = 0;
-  w->tc = 0;
+  w->step.tc = 0;
   memset(w->x + COMP * pb->n, 0, (size_t)pb->n * sizeof(double));
 }
 
@@ -72,7 +70,7 @@ static int init(const Member *m, void *work, lag_problem *pb, const double *opt)
     lag_implicit_compose(work, pb, h, m->any);
     return LAG_OK;
   }
-  w->h = h;
+  w->step.h = h;
   reset(work, pb);
   return LAG_OK;
 }
@@ -84,7 +82,7 @@ static int sound(const void *work, const void *fresh, const lag_problem *pb)
   if (!is_explicit(pb)) {
     return lag_implicit_sound(work, fresh, pb);
   }
-  return w->h == f->h && lag_is_flag(w->ready) && lag_is_sign(w->have_path) && isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc);
+  return lag_fixed_step_is_sound(&w->step, &f->step) && lag_is_flag(w->ready) && lag_is_sign(w->have_path);
 }
 
 /* Adds one kick to the increment of v. */
@@ -160,28 +158,24 @@ static int step(const lag_composition *c, void *work, lag_problem *pb, double *t
   Verlet *w = work;
   int n = pb->n, rc;
   size_t bytes = (size_t)n * sizeof(double);
-  double dt = w->h * pb->dir, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
+  lag_next_step next;
 
-  pb->bad_index = -1;
-  if (tb == *t) {
-    return lag_step_failed(pb, LAG_ESTEP, *t);
+  if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0) {
+    return rc;
   }
   if (w->ready == 0.0 && (rc = lag_step_rhs(pb, *t, y, w->x + F1 * n)) != 0) {
     return rc;
   }
   memcpy(w->x + F0 * n, w->x + F1 * n, bytes);
   w->ready = w->have_path = 0; /* until this step succeeds */
-  if ((rc = compose(c, w, pb, *t, tb, y, dt)) != 0) {
+  if ((rc = compose(c, w, pb, *t, next.tb, y, next.dt)) != 0) {
     return rc;
   }
   memcpy(w->x + Y0 * n, y, bytes);
   memcpy(y, w->x + Y1 * n, bytes);
   memcpy(w->x + COMP * n, w->x + COMP1 * n, bytes);
   w->ready = 1;
-  w->t0 = *t;
-  w->dt = tb - *t;
-  w->tc = tc;
-  *t = tb;
+  lag_fixed_step_end(&w->step, &next, t);
   return LAG_OK;
 }
 
@@ -189,17 +183,17 @@ static void dense(const lag_composition *c, void *work, lag_problem *pb, double 
 {
   Verlet *w = work;
   int n = pb->n;
-  StepEnds ends = {w->t0, w->dt, w->x + Y0 * n, w->x + F0 * n, w->x + Y1 * n, w->x + F1 * n};
+  StepEnds ends = {w->step.t0, w->step.dt, w->x + Y0 * n, w->x + F0 * n, w->x + Y1 * n, w->x + F1 * n};
   double *path = w->x + NARRAYS * n;
 
   if (c->order == 1) {
-    lag_interpolant_cubic(pb->nq, &ends, (t - w->t0) / w->dt, y);
+    lag_interpolant_cubic(pb->nq, &ends, (t - w->step.t0) / w->step.dt, y);
     return;
   }
   if (c->refine > 0 && w->have_path == 0.0) {
     w->have_path = lag_interpolant_make(path, pb, &ends, c->refine, 1) == 0 ? 1 : -1;
   }
-  lag_interpolant_at(path, pb, &ends, w->have_path > 0 ? c->refine : 0, (t - w->t0) / w->dt, y);
+  lag_interpolant_at(path, pb, &ends, w->have_path > 0 ? c->refine : 0, (t - w->step.t0) / w->step.dt, y);
 }
 
 static size_t tangent_size(const lag_problem *pb, int k)
@@ -220,13 +214,13 @@ static int tangent(const lag_composition *c, void *work, lag_problem *pb, double
 {
   Verlet *w = work;
   int n = pb->n, nq = pb->nq, rc = 0;
-  double dt = lag_tangent_span(w->t0, t, w->h * pb->dir), at = 0, *rest;
+  double dt = lag_tangent_span(w->step.t0, t, w->step.h * pb->dir), at = 0, *rest;
   lag_tangent all = lag_tangent_layout(pb, k, scratch, &rest);
   double *y = rest, *f = y + n, *F = f + n;
 
   memcpy(y, w->x + Y0 * n, (size_t)n * sizeof *y);
   for (int s = 0; s <= c->stages; s++) {
-    if ((rc = lag_tangent_at(&all, w->t0 + at * dt, y, f)) != 0) {
+    if ((rc = lag_tangent_at(&all, w->step.t0 + at * dt, y, f)) != 0) {
       return rc;
     }
     lag_tangent_times(&all, Y, F);

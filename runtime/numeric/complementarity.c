@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "numeric/dense.h"
+
 /* Relative sizes that count as rounding: of a pivot, whose row then depends on others, and of a right-hand side. */
 const double lag_lcp_zero_pivot = 1e-10;
 static const double no_value = 1e-13;
@@ -26,24 +28,12 @@ static void pivot(int n, double *T, double *q, int r, int s)
   }
 }
 
-static void swap(double *a, double *b)
-{
-  double was = *a;
-
-  *a = *b;
-  *b = was;
-}
-
 /* Swaps rows and columns r and s, after two pivots that have moved each pair to the other's place. */
 static void exchange(int n, double *T, double *q, int r, int s)
 {
-  swap(&q[r], &q[s]);
-  for (int j = 0; j < n; j++) {
-    swap(&T[r * n + j], &T[s * n + j]);
-  }
-  for (int i = 0; i < n; i++) {
-    swap(&T[i * n + r], &T[i * n + s]);
-  }
+  lag_swap(&q[r], &q[s]);
+  lag_swap_rows((size_t)n, T, (size_t)r, (size_t)s);
+  lag_swap_columns((size_t)n, (size_t)n, T, (size_t)r, (size_t)s);
 }
 
 /* Scales M to a diagonal of ones, and q with it. */

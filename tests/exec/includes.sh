@@ -5,7 +5,7 @@
 
 # FOLDER: the folders whose headers it may include. `mech/eqns.h` etc.: these files only.
 allowed='
-src/base      base/
+src/base      base/ numeric/
 src/sym       sym/ base/
 src/syntax    syntax/ base/
 src/model     model/ syntax/ sym/ base/
@@ -27,7 +27,7 @@ runtime/core      core/ numeric/ lag.h lag_model.h
 runtime/constraints constraints/ core/core.h core/rhs.h numeric/ lag.h lag_model.h lag_kkt.h
 runtime/methods   methods/ core/rhs.h numeric/ lag.h lag_model.h
 runtime/analysis  analysis/ core/ numeric/ lag.h lag_model.h
-runtime/io        io/ lag.h lag_model.h
+runtime/io        io/ numeric/ lag.h lag_model.h
 runtime/app       app/ core/ io/ analysis/ numeric/ lag.h lag_model.h
 runtime/gsl       gsl/ lag.h lag_model.h
 '
@@ -41,7 +41,7 @@ runtime/include/lag_math.h  lag_sincos.h
 private='syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
   model/scope.h sym/expr_impl.h sym/ops.def lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h methods/tableau.h methods/embedded.h methods/embedded_trial.h
   methods/steps.h methods/composition.h methods/step_interpolant.h methods/galerkin_rule.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
-  methods/predictor.h methods/band_matrix.h methods/step_control.h methods/substeps.h'
+  methods/predictor.h methods/band_matrix.h methods/newton.h methods/step_control.h methods/substeps.h'
 
 # Every #include as `FILE HEADER`; <stdio.h> keeps its brackets.
 list=$TMP/list
@@ -124,7 +124,7 @@ alone() {
   done 2>&1
 }
 empty "headers of the compiler compile alone" \
-  "$(alone src "-std=c11 -D_POSIX_C_SOURCE=200809L -Isrc -I$BUILD/gen" "$CC" c)"
+  "$(alone src "-std=c11 -D_POSIX_C_SOURCE=200809L -Isrc -Iruntime -I$BUILD/gen" "$CC" c)"
 empty "headers of the runtime compile alone" \
   "$(alone runtime "-std=c11 -D_POSIX_C_SOURCE=200809L -Iruntime/include -Iruntime" "$CC" c)"
 if [ -n "$CXX" ]; then

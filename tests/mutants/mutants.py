@@ -225,7 +225,7 @@ def code_of(path, flags):
 
 
 def flags_of(path):
-    return "-Isrc -Ibuild/gen" if path.startswith("src") else "-Iruntime/include -Iruntime -Ibuild/gen -ffp-contract=off"
+    return "-Isrc -Iruntime -Ibuild/gen" if path.startswith("src") else "-Iruntime/include -Iruntime -Ibuild/gen -ffp-contract=off"
 
 
 def equivalents():
