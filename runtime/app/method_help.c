@@ -117,8 +117,8 @@ void lag_app_list_methods(const App *app, FILE *f)
   putc('\n', f);
   wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. both: symplectic and symmetric. Newton: whether each step solves "
              "equations by Newton's method; partly: unless the model is separable, with constant mass matrix, and accelerations that do not "
-             "depend on velocities. forces: whether the model may have forces and explicit time; what a symplectic method keeps without "
-             "them it does not keep with them. states: whether it may have a `state`; alone: without coordinates, or where L is linear in "
+             "depend on velocities. forces: whether the model may have forces and explicit time; with them a symplectic method "
+             "keeps neither energy nor the two-form. states: whether it may have a `state`; alone: without coordinates, or where L is linear in "
              "all velocities. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). holds: whether its steps end on "
              "constraints. Options, with their defaults:", 0, 0);
   for (int i = 0; i < lag_nmethods + app->extras.nmethods; i++) {

@@ -266,7 +266,7 @@ static int refuse_start(Start *w, int exactly)
     return lag_fail(w->sim, LAG_EINVAL, "the start contradicts its constraints: %s%s; without `exactly` the nearest start is taken",
                     w->pb->words, w->holonomic ? "" : ", in its velocities");
   }
-  return lag_fail(w->sim, LAG_EINVAL, "no start obeys the constraints: from the one given, none is found nearer than this: %s%s",
+  return lag_fail(w->sim, LAG_EINVAL, "no start obeys the constraints; the nearest state found from the given start: %s%s",
                   w->pb->words, w->holonomic ? "" : " in its rate");
 }
 
@@ -469,8 +469,8 @@ static int check_inertia(Start *w)
   if (lag_rhs(pb, w->sim->scene->t0, w->y, w->best) != LAG_ESINGULAR || !(lag_mass_condition(pb, w->sim->scene->t0, w->y, &which) > 1e12)) {
     return LAG_OK;
   }
-  return lag_fail(w->sim, LAG_EINVAL, "the mass matrix is singular: nothing says how %s moves, which has no inertia at the start, and no "
-                  "constraint moves it; give it a mass, or a constraint that depends on it", pb->model->q[which].name);
+  return lag_fail(w->sim, LAG_EINVAL, "the mass matrix is singular: %s has no inertia at the start, and no "
+                  "constraint determines its motion; give it a mass, or a constraint that depends on it", pb->model->q[which].name);
 }
 
 /* Undoes moves below the last digit of the largest component of the same unit. */

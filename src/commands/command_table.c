@@ -9,22 +9,22 @@
 static const CommandRow commands[] = {
   {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric] [--verbose]", "parse, derive, prove symmetries and `expect` lines",
    "Parses and derives the model for every scene (or the one named), and proves or refutes its `expect` lines. "
-   "Proved is what is true for all states at which both sides have real values; what is refuted is shown to differ at one. "
+   "A proved line holds for all states at which both sides have real values; a refuted one comes with a state at which the sides differ. "
    "Exit status 0 when all is well, 1 when not.\n\n"
-   "Every command compares what it compiles with the text of the model, evaluated by Taylor arithmetic at random states; --verbose says what was compared."},
+   "Every command compares what it compiles with the text of the model, evaluated by Taylor arithmetic at random states; --verbose lists the comparisons."},
   {CMD_DERIVE, "derive", NULL, "MODEL [SCENE] [--format text|latex|c] [--ops] [--hamiltonian] [-o FILE]", "print the equations of motion",
    "Prints the equations of motion: momenta, M q'' = f, energy, and the operation count; with --hamiltonian momenta, H(q, p) and "
    "Hamilton's equations, where the mass matrix is inverted in closed form: blocks of up to three coordinates with short results."},
   {CMD_NOETHER, "noether", "symmetries", "MODEL [SCENE] [--format text|latex|json] [-o FILE]", "find symmetries and conserved quantities",
    "Searches for the symmetries of L: transformations of coordinates, affine in them with coefficients that depend on time, and of time, that change "
-   "L by a total derivative dF/dt at most. Each one that is comma_separated is proved, with its generator, its F and its charge; then come the Poisson "
+   "L by a total derivative dF/dt at most. Every symmetry listed is proved, and shown with its generator, its F and its charge; then come the Poisson "
    "brackets of the charges, declared symmetries, cyclic coordinates, and a scaling that maps solutions to solutions.\n\n"
-   "Without a scene, of the model without effects, and what each effect alone makes of the charges: dQ/dt = 0 becomes a balance."},
+   "Without a scene: symmetries of the model without effects, and for each effect alone the balance that replaces dQ/dt = 0."},
   {CMD_RUN, "run", NULL, "MODEL [SCENE] [name=value ...] [options]", "simulate",
    "Builds the simulator (or takes it from the cache) and runs it.\n\n"
    "  name=value            a parameter, a start (th=1.2, \"th'=0.5\", th='90[deg]',\n"
    "                        th=pi/3) or an input; a bare number is in the declared\n"
-   "                        unit; drag.c=0.2 for one of an effect, m=3 for a family\n"
+   "                        unit; drag.c=0.2 for a parameter of an effect, m=3 for a family\n"
    "  u=FILE.csv            a table for the input u; 'u=2*sin(t/(1 [s]))' a formula"},
   {CMD_PLOT, "plot", "picture", "MODEL [SCENE] [name=value ...] [--x EXPR --y EXPR | --phase EXPR]", "simulate and draw, as SVG",
    "Runs the model and draws it: all outputs against time, or one quantity against another. "
@@ -42,28 +42,28 @@ static const CommandRow commands[] = {
    "along it. Needs GSL. Exit status 3: no equilibrium was found.\n\n"
    "  name=value            a parameter, another start (th=3), an input to hold"},
   {CMD_LYAPUNOV, "lyapunov", "exponents", "MODEL [SCENE] [name=value ...] [--until T] [--exponents K] [--json]", "Lyapunov exponents: how fast neighbouring motions part",
-   "Runs the scene for long with the exact tangent of its flow, and prints the Lyapunov exponents: the mean rates at which small "
+   "Runs the scene for a long time with the exact tangent of its flow, and prints the Lyapunov exponents: the mean rates at which small "
    "changes of the start grow, in the space of coordinates, velocities and states. The spread is the standard error from 20 blocks of the time "
-   "measured; `at half the time` is what the estimate was then. An exponent that is zero comes near it as log(t)/t only. "
+   "measured; `at half the time` is the estimate halfway. An exponent of zero is approached only as log(t)/t. "
    "Method and steps are chosen as for `lagc run`: --method, --tol, --step.\n\n"
    "  name=value            a parameter, another start, an input: as for lagc run"},
-  {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [-o FILE.svg]", "what accuracy costs in time: all methods, side by side",
-   "Runs every method that can honour the model over a range of tolerances or steps, and prints for each run its error, its time, "
-   "its calls of the right-hand side; for each method the order that was measured; and which settings nothing beats. The error is "
-   "the largest difference, at 16 times, from a reference by Taylor series in the highest precision that there is, relative to the "
+  {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [-o FILE.svg]", "time against accuracy of all methods, side by side",
+   "Runs every method that supports the model over a range of tolerances or steps, and prints for each run its error, its time, "
+   "its calls of the right-hand side; for each method its measured order; and which settings are the best at their error. The error is "
+   "the largest difference, at 16 times, from a reference by Taylor series in the highest precision available, relative to the "
    "largest value of its kind and unit. Times are those of this processor, now.\n\n"
    "  name=value            a parameter, another start, an input, as for `lagc run`\n\n"
    "Exit status 3: no setting reaches the target."},
-  {CMD_EFFECTS, "effects", NULL, "MODEL [SCENE] [name=value ...] [--accuracy X] [--json]", "what each effect costs, and whether the result needs it",
-   "Runs the scene, and it again without each effect that it uses, and with each that it does not. Prints for each effect its operations "
+  {CMD_EFFECTS, "effects", NULL, "MODEL [SCENE] [name=value ...] [--accuracy X] [--json]", "the cost of each effect, and whether the result needs it",
+   "Runs the scene, then without each effect that it uses, and with each effect that it does not use. Prints for each effect its operations "
    "and its share of the time of a call of the right-hand side; its weight, the largest ratio of |acceleration with - without it| to "
    "|acceleration| on the way; the difference that it makes, the largest at 16 times of the run and at its end, relative to the largest value of "
-   "its kind and unit; and whether that is more than twice the error of integration, which a run with a hundredth of the tolerance, or half the step, tells. "
+   "its kind and unit; and whether the difference exceeds twice the error of integration, measured by a run with a hundredth of the tolerance, or half the step. "
    "An effect is left out together with those that require it. `shared` are operations that several effects need. Method, steps and end are chosen as for "
    "`lagc run`: --method, --tol, --step, --until. `lagc help effect` says more.\n\n"
    "  name=value            a parameter, another start, an input, as for `lagc run`\n\n"
-   "With --accuracy X it looks for the smallest set of the scene's effects that differs by at most X, all effects that are left out together; runs say so, of "
-   "all sets where the scene has up to ten effects. Prints the `use` line."},
+   "With --accuracy X it searches for the smallest set of the scene's effects whose run differs from the scene's by at most X: by running "
+   "all sets where the scene has up to ten effects. Prints the `use` line of that set."},
   {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--method NAME] [--with linear]", "make a simulator",
    "Compiles the model to a simulator with all its scenes; `SIMULATOR --help` lists its options, which are those of "
    "`lagc run`."},
@@ -74,21 +74,21 @@ static const CommandRow commands[] = {
    "and in one file of a program\n\n"
    "  #define PEND_IMPLEMENTATION\n"
    "  #include \"pend.h\"\n\n"
-   "The others include it without the #define. Its first lines say how it is used. With PEND_LANES defined as 4 or 8 it computes so many "
+   "The others include it without the #define. Its first lines say how it is used. With PEND_LANES defined as 4 or 8 it computes 4 or 8 "
    "states at once."},
   {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [--method NAME] [--with linear] [-o FILE.c]", "write C for the runtime",
-   "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). What integrates them is "
-   "liblag, whose interface is lag.h:\n\n"
+   "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). They are integrated by "
+   "liblag; its interface is lag.h:\n\n"
    "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)\n\n"
-   "With -DLAG_LANES=4 or 8 its functions take vectors of so many doubles: so many states at once."},
+   "With -DLAG_LANES=4 or 8 its functions take vectors of 4 or 8 doubles: as many states at once."},
   {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
    "Lists the methods of integration: their order, what they keep, what they need of a model, and their options."},
   {CMD_CACHE, "cache", NULL, "[--clear]", "show or empty the cache of simulators",
-   "Shows where simulators are kept, how many, their size and its limit, beyond which those go that were used longest ago. They are run only from "
-   "a folder that is yours and that nobody else can write. LAGC_CACHE_MIB sets another limit, in MiB."},
+   "Shows the folder of the simulators, their number, their size and its limit, beyond which those used longest ago are removed. "
+   "Simulators are run only from a folder of yours that nobody else can write. LAGC_CACHE_MIB sets another limit, in MiB."},
   {CMD_HELP, "help", NULL, "[TOPIC]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics."},
-  {CMD_COMPLETION, "completion", NULL, "bash|zsh|fish", "print a script of completion for a shell",
-   "Prints what makes a shell complete the commands and options of lagc, and the scenes, parameters, methods and names of "
+  {CMD_COMPLETION, "completion", NULL, "bash|zsh|fish", "print the completion script of a shell",
+   "Prints the script by which a shell completes the commands and options of lagc, and the scenes, parameters, methods and names of "
    "the model in question. `make install` puts it where these shells look; without it,\n\n"
    "  source <(lagc completion bash)    in ~/.bashrc\n"
    "  source <(lagc completion zsh)     in ~/.zshrc, after compinit\n"
@@ -109,8 +109,8 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 static const OptionRow options[] = {
   {"--allow-numeric", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(allow_numeric),
-   "an expectation that is not decided by the prover, but agrees numerically as far as rounding lets one see, does not fail the check"},
-  {"--verbose", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(verbose), "also say what of the compiled programs was compared with the text, and at how many states"},
+   "an expectation that is not proved, but holds numerically up to rounding, does not fail the check"},
+  {"--verbose", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(verbose), "also list the parts of the compiled programs that were compared with the text, and the number of states"},
   {"--format", NULL, "text|latex|c", TAKES_CHOICE, "text latex c", C(DERIVE), OWN(format),
    "as text, as LaTeX, or as the C function that computes the accelerations"},
   {"--format", NULL, "text|latex|json", TAKES_CHOICE, "text latex json", C(NOETHER), OWN(format), "as text, as LaTeX, or as one JSON object"},
@@ -121,12 +121,12 @@ static const OptionRow options[] = {
    "one more column: any expression of the model, --observe 'l*sin(th)'; can be repeated"},
   {"--section", NULL, "'EXPR rising'", TAKES_EXPR, "", C(RUN) | C(PLOT), OWN(section),
    "a Poincare section: one row, or one point, each time EXPR crosses zero; or falling, or crossing (both ways). For an angle that turns: 'sin(th2) rising'"},
-  {"--y", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(y), "draws this against time, all members of a family,"},
-  {"--x", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(x), "or against this: a path, with one scale for both axes where their units agree"},
+  {"--y", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(y), "draws EXPR against time, all members of a family,"},
+  {"--x", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(x), "or against this EXPR: a path, with one scale for both axes where their units agree"},
   {"--phase", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(phase), "its rate against it: --phase th draws th' against th"},
   {"--points", NULL, "'X,Y X,Y'", TAKES_EXPR, "", C(ANIMATE), OWN(points),
    "the points to draw, each two expressions, joined by rods in this order; of families all members. Without it: the model's x,y; or "
-   "x1,y1 x2,y2 ...; or px,py; or what its only coordinate gives; or the vectors among its coordinates; or a family, at its numbers"},
+   "x1,y1 x2,y2 ...; or px,py; or a point of its only coordinate; or the vectors among its coordinates; or a family, at its numbers"},
   {"--from", NULL, "'X,Y'", TAKES_EXPR, "", C(ANIMATE), OWN(from), "where the first rod begins; default: the origin"},
   {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), OWN(no_rods), "points only"},
   {"--trace", NULL, NULL, TAKES_NOTHING, "", C(ANIMATE), PASSED, "the path of the last point, fading"},
@@ -144,23 +144,23 @@ static const OptionRow options[] = {
   {"--method", NULL, "NAME", TAKES_METHOD, "", STEPS, PASSED,
    "method of integration, NAME or \"NAME(option=value, ...)\"; `lagc help methods` lists them"},
   {"--method", NULL, "NAME", TAKES_METHOD, "", C(BUILD) | C(EMIT), OWN(method),
-   "with what this method needs of the model besides accelerations; the scenes' own methods need no mention"},
-  {"--quadrature", NULL, "NAME", TAKES_TEXT, "", STEPS, PASSED, "of the method variational: midpoint, trapezoid, gauss or lobatto"},
-  {"--order", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "of the method variational"},
-  {"--stages", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "of the method gauss"},
+   "include the derivatives that this method needs; those of the scenes' own methods are always included"},
+  {"--quadrature", NULL, "NAME", TAKES_TEXT, "", STEPS, PASSED, "quadrature of the method variational: midpoint, trapezoid, gauss or lobatto"},
+  {"--order", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "order of the method variational"},
+  {"--stages", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "number of stages of the method gauss"},
   {"--tol", NULL, "X", TAKES_NUMBER, "", STEPS, PASSED, "tolerance, absolute and relative"},
   {"--step", NULL, "H", TAKES_NUMBER, "", STEPS, PASSED, "step [s]; the first one tried where the method chooses its own"},
   {"--target", NULL, "X", TAKES_NUMBER, "", C(COST), PASSED, "names the cheapest setting whose error is at most X"},
   {"--methods", NULL, "NAME,NAME", TAKES_TEXT, "", C(COST), PASSED, "only these methods"},
   {"--longest", NULL, "S", TAKES_NUMBER, "", C(COST), PASSED, "no method goes on to finer settings after a run of S seconds; default: 0.5"},
   {"--until", NULL, "T", TAKES_NUMBER, "", SIMULATE | C(COST) | C(EFFECTS), PASSED, "run to time T [s]; before the start: backwards"},
-  {"--accuracy", NULL, "X", TAKES_NUMBER, "", C(EFFECTS), OWN(accuracy), "a difference that does not matter, relative; names the smallest set of effects that comes so near"},
+  {"--accuracy", NULL, "X", TAKES_NUMBER, "", C(EFFECTS), OWN(accuracy), "relative difference that does not matter; finds the smallest set of effects within it"},
   {"--until", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "measure to time T [s]; default: 20 spans of the scene"},
-  {"--transient", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "what is left out at the beginning [s]; default: a tenth"},
+  {"--transient", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "time left out at the beginning [s]; default: a tenth"},
   {"--exponents", NULL, "K", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "only the K largest"},
   {"--every", NULL, "DT", TAKES_NUMBER, "", SIMULATE, PASSED, "time between rows [s]; default: as the scene says, or a 1000th of the span; in pictures, as the motion needs"},
   {"--tangent", NULL, NULL, TAKES_NOTHING, "", C(RUN), PASSED,
-   "the tangent of the flow: how each coordinate, velocity and state follows those at the start, dx/dy(0), as columns more and in the report"},
+   "the tangent of the flow: derivatives of each coordinate, velocity and state by those at the start, dx/dy(0), as more columns and in the report"},
   {"--svg", NULL, "FILE.svg", TAKES_FILE, "svg", SIMULATE, PASSED, "a picture of all output against time"},
   {"--svg", NULL, "FILE.svg", TAKES_FILE, "svg", C(LYAPUNOV), PASSED, "a picture of the estimates as they settle"},
   {"--plot-x", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "with --plot-y NAME: the picture shows one output against another"},
@@ -178,25 +178,25 @@ static const OptionRow options[] = {
   {"--json", NULL, NULL, TAKES_NOTHING, "", C(EFFECTS), OWN(json), "the table as one JSON object"},
   {"--events", NULL, "FILE.csv", TAKES_FILE, "csv npy", SIMULATE, PASSED, "each event with its time and the state before and after it"},
   {"--quiet", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(LYAPUNOV) | C(COST), PASSED, "no report"},
-  {"--verbose", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report also says whose sines and cosines the run took, and how products and sums were rounded"},
+  {"--verbose", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report also names the source of sines and cosines, and the rounding of products and sums"},
   {"--save-state", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED, "write the complete state at the end;"},
   {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
-   "go on from there, with the same scene, method and values: results are those of an uninterrupted run, bit by bit"},
+   "continue from a saved state, with the same scene, method and values: results are those of an uninterrupted run, bit by bit"},
 
   {"--precision", NULL, "double|long|quad", TAKES_CHOICE, "double long quad", SIMULATE | C(LYAPUNOV) | C(BUILD), OWN(precision),
-   "the numbers that the simulator computes with: of 16, 19 or 34 digits; without the gsl-* methods but for double"},
+   "floating-point numbers of the simulator: 16, 19 or 34 digits; the gsl-* methods need double"},
   {"--clear", NULL, NULL, TAKES_NOTHING, "", C(CACHE), OWN(clear), "removes all simulators from the cache"},
   {"--define", "-D", "CONST=VALUE", TAKES_DEFINE, "", MODELS, OWN(defines), "gives a `const` of the model another value"},
   {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", STEPS | C(MODES) | C(COST) | C(BUILD), OWN(no_gsl),
    "leave the gsl-* methods out: a binary that links GSL is GPL-3 as a whole"},
   {"--math", NULL, "own|libm", TAKES_CHOICE, "own libm", STEPS | C(MODES) | C(COST) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(math),
-   "sin and cos from functions that the emitted C brings along (own, the default: faster, the same digits with every C library), "
+   "sin and cos from functions in the emitted C (own, the default: faster, the same digits with every C library), "
    "or from the C library"},
   {"--with", NULL, "linear", TAKES_CHOICE, "linear", C(BUILD) | C(EMIT), OWN(with), "with the exact linearisation of the model"},
   {"--fix", NULL, "NAME,NAME", TAKES_PARAMS, "all", SIMULATE | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(fix),
-   "makes numbers of these parameters, with the values that the scene gives them: fewer operations, and no other value at the command line; "
-   "a family by its name, drag.c for one of an effect; all: all of them"},
-  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns prog", MODELS, OWN(dump), "what the stages of the compiler yield: ast, model, eqns, prog"},
+   "turns these parameters into numbers, with the scene's values: fewer operations, but no other value on the command line; "
+   "a family by its name, drag.c for a parameter of an effect; all: all parameters"},
+  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns prog", MODELS, OWN(dump), "print the results of the compiler's stages: ast, model, eqns, prog"},
   {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION) | C(CACHE), OWN(help), "this help"},
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };

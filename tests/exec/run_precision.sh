@@ -79,7 +79,7 @@ start_of=th
 check "a radian in degrees" begins 57.295779513082320876798154814105 "$(start "$TMP/pend.lag" 'th=1[rad]')"
 check "a time" begins 31.41592653589793238462643383279 "$(quad "$TMP/osc.lag" --until '10*pi' | sed -n 's/^reached t = //p')"
 # Refused: numbers with fewer digits.
-check "a formula whose digits lagc does not know" refuses 2 "write others as decimals" "$TMP/osc.lag" --precision quad 'x=2^0.5'
+check "a formula whose digits lagc does not know" refuses 2 "write other values as decimals" "$TMP/osc.lag" --precision quad 'x=2^0.5'
 check "the coefficients of dop853" refuses 2 "have digits for a tolerance of 1e-27" "$TMP/osc.lag" --precision quad --method dop853 --tol 1e-30
 check "past what quad gives" refuses 2 "write 9e-34 or more" "$TMP/osc.lag" --precision quad --tol 1e-35
 check "GSL has doubles" refuses 2 "gsl-rk8pd computes with doubles" "$TMP/osc.lag" --precision quad --method gsl-rk8pd
@@ -87,7 +87,7 @@ check "NumPy files have doubles" refuses 2 "write to a .csv file" "$TMP/osc.lag"
 sed 's/k = 0.1/k = 0.10000000000000000000000001/' "$TMP/osc.lag" >"$TMP/long.lag"
 check "a number of the model with too many digits" refuses 0 ":3:11: warning: this number is rounded to 17 digits" "$TMP/long.lag" --precision quad
 sed 's/10\*k/1.234567890123456*1.234567890123457/' "$TMP/osc.lag" >"$TMP/long.lag"
-check "a product of numbers with too many digits" refuses 0 "numbers of the model multiply to" "$TMP/long.lag" --precision quad
+check "a product of numbers with too many digits" refuses 0 "a product of numbers of the model" "$TMP/long.lag" --precision quad
 check "doubles say nothing" says_nothing
 # Saved runs go on in their precision, bit by bit, and in no other.
 quad "$TMP/osc.lag" --until 3 --save-state "$TMP/state" >/dev/null
