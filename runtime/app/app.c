@@ -53,7 +53,7 @@ static int choose_end(App *app)
                      app->until);
   }
   if (app->resumed && (app->until - t) * (t - app->scene->t0) < 0) {
-    return lag_app_error(a, "%s stands at t = %g s; --until %g would go back", a->resume, t, app->until);
+    return lag_app_error(a, "%s is at t = %g s; --until %g would go back", a->resume, t, app->until);
   }
   return 0;
 }

@@ -179,10 +179,10 @@ static int check_analysis(const Args *a)
   for (size_t i = 0; what && i < sizeof others / sizeof *others; i++) {
     if (others[i].given && !(others[i].takes & what)) {
       return lag_app_error(a, "%s has no meaning for %s", others[i].name,
-                       what == COST ? "what accuracy costs: all methods are run, at many tolerances and steps; --methods NAME,NAME takes some of them"
-                       : what == MODES ? "modes of small motion: they take name=value and --json"
-                       : what == EFFECTS ? "what effects do: it takes name=value, --until and a method"
-                                       : "Lyapunov exponents: they take name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
+                       what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some"
+                       : what == MODES ? "--modes, which takes name=value and --json"
+                       : what == EFFECTS ? "--effects, which takes name=value, --until and a method"
+                                       : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
     }
   }
   if (!a->cost && (a->target || a->longest || a->methods || a->against)) {
@@ -236,16 +236,16 @@ static int check(const Args *a)
     return lag_app_error(a, "--events - and --json both write to standard output; give --events a file name");
   }
   if ((a->plot_x || a->plot_y) && !a->svg && !a->sketch) {
-    return lag_app_error(a, "--plot-x and --plot-y say what --svg FILE or --sketch draws; add one of them");
+    return lag_app_error(a, "--plot-x and --plot-y need a picture: add --svg FILE or --sketch");
   }
   if (a->plot_x && !a->plot_y) {
-    return lag_app_error(a, "--plot-x %s: against what? add --plot-y NAME", a->plot_x);
+    return lag_app_error(a, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x);
   }
   if ((a->points || a->from || a->trace || a->no_rods) && !a->html) {
-    return lag_app_error(a, "--points, --from, --trace and --no-rods say what --html FILE shows; add it");
+    return lag_app_error(a, "--points, --from, --trace and --no-rods need an animation: add --html FILE");
   }
   if (a->html && !a->points) {
-    return lag_app_error(a, "--html %s: which points? add --points 'X,Y X,Y ...' with the names of outputs", a->html);
+    return lag_app_error(a, "--html %s: points are missing; add --points 'X,Y X,Y ...' with the names of outputs", a->html);
   }
   if (a->section && a->html) {
     return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");

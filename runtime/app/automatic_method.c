@@ -70,7 +70,7 @@ int lag_app_choose_automatically(App *app, const lag_option *opt, int n)
     if (plain == &lag_rk45) {
       snprintf(why, size, "rk45, since the tolerance is above %g", above_rk45);
     } else if (exponents && tol < below_taylor) {
-      snprintf(why, size, "dop853, since tangent vectors cost it less than taylor");
+      snprintf(why, size, "dop853, since tangent vectors cost less with dop853 than with taylor");
     } else if (tol < below_taylor && app->scene->model->constraints) {
       snprintf(why, size, "dop853, since taylor cannot hold constraints, with the tolerance below %g", below_taylor);
     } else {

@@ -37,9 +37,9 @@ static void put_trend(const App *app, const lag_charge_stats *c, FILE *f)
 static const char *why_not(const App *app, const lag_charge_stats *c)
 {
   if (c->flags & LAG_JUMPS) {
-    return "it jumps where L does";
+    return "jumps where L does";
   }
-  return lag_method_balances(lag_sim_method(app->sim)) ? "not conserved, or not known to be" : "not conserved, and the method tells too little between steps for a balance";
+  return lag_method_balances(lag_sim_method(app->sim)) ? "not conserved, or not known to be" : "not conserved; the dense output of the method is too coarse for a balance";
 }
 
 static void put_energy(const App *app, const lag_charge_stats *c, FILE *f)
@@ -52,7 +52,7 @@ static void put_energy(const App *app, const lag_charge_stats *c, FILE *f)
   }
   fprintf(f, "(%.3g%s%s; ", c->absolute, space, c->unit);
   if (!(c->flags & LAG_CONSERVED)) {
-    fprintf(f, "forces and explicit time brought %.6g%s%s; ", c->work, space, c->unit);
+    fprintf(f, "work of forces and explicit time: %.6g%s%s; ", c->work, space, c->unit);
   }
   fprintf(f, "%s)", size);
 }
@@ -63,7 +63,7 @@ static void put_charge(const App *app, const lag_charge_stats *c, FILE *f)
   if (c->flags & LAG_CONSERVED) {
     fputs(")", f);
   } else if (c->flags & LAG_BALANCED) {
-    fprintf(f, "; forces brought %.6g)", c->work);
+    fprintf(f, "; change by forces: %.6g)", c->work);
   } else {
     fprintf(f, "; %s)", why_not(app, c));
   }
@@ -80,7 +80,7 @@ int lag_report_lost_digits(const App *app, const lag_charge_stats *energy)
 static void put_lost_digits(const App *app, const lag_charge_stats *c, FILE *f)
 {
   if (lag_report_lost_digits(app, c)) {
-    fprintf(f, "accuracy: a tolerance of %.3g was asked for, and the energy is kept to %.2g: beside t = %.9g s, where a step changed it by %.2g, the mass matrix is "
+    fprintf(f, "accuracy: a tolerance of %.3g was asked for, and the energy is kept to %.2g: near t = %.9g s, where a step changed the energy by %.2g, the mass matrix is "
                "almost singular (its condition is %s%.2g, by the inertia of %s) and accelerations have about %.0f digits less; a `rotation` instead of angles, or other "
                "coordinates, has no such place (lagc help rotations)\n",
             lag_sim_tolerance(app->sim), c->drift, c->energy_jump_t, c->energy_jump, c->mass_condition > 1e15 ? "above " : "", fmin(c->mass_condition, 1e15), c->mass_condition_of, floor(log10(fmin(c->mass_condition, 1e15))));

@@ -51,7 +51,7 @@ static int record_samples(BareScene *b, const lag_method *method, double tol, Sa
   rc = rc ? rc : lag_sim_set_tolerance(sim, tol);
   rc = rc ? rc : lag_samples_take(s, sim);
   if (rc) {
-    lag_app_error(a, "no reference, by %s(tol=%g): %s", method->name, tol, lag_sim_message(sim));
+    lag_app_error(a, "the reference run by %s(tol=%g) failed: %s", method->name, tol, lag_sim_message(sim));
   }
   lag_sim_free(sim);
   return rc ? EXIT_RUN : 0;

@@ -62,8 +62,8 @@ static void table(FILE *f, const Cost *c)
               isnan(r->spread) ? "-" : spread, r->steps, r->calls, k == 0 ? "  " : "", k == 0 ? order_of(m, order, sizeof order) : "");
     }
   }
-  fputs("* nothing else is both faster and more accurate. time: of the processor, the median; +- half of what the middle half of\n"
-        "the times spans. order: the slope of log error against log steps, last where rounding does not show\n", f);
+  fputs("* no other run is both faster and more accurate. time: median processor time; +- half of the interquartile range of the\n"
+        "times. order: slope of log error against log steps, at the smallest errors above rounding\n", f);
 }
 
 /* The fastest run of a method with at most this error; NULL: none. */
@@ -128,10 +128,10 @@ static void target(FILE *f, const App *app, const Cost *c)
 
   if (m) {
     lag_cost_options(m, run, options, sizeof options);
-    fprintf(f, "\nan error of %g at least cost: %s (error %.2e, %.4g ms)\n  lagc run %s %s %s\n", c->target, options, run->error,
+    fprintf(f, "\ncheapest setting for an error of %g: %s (error %.2e, %.4g ms)\n  lagc run %s %s %s\n", c->target, options, run->error,
             1e3 * run->time, app->program->source, app->scene->name, options);
   } else {
-    fprintf(f, "\nno setting has an error of %g or less; ask for more, or for slower runs: --longest SECONDS\n", c->target);
+    fprintf(f, "\nno setting has an error of %g or less; raise --target, or allow longer runs: --longest SECONDS\n", c->target);
   }
 }
 
@@ -225,7 +225,7 @@ int lag_cost_picture(const char *path, const App *app, const Cost *c)
     }
     n++;
   }
-  snprintf(title, sizeof title, "%s, %s: what accuracy costs", app->scene->model->name, app->scene->name);
+  snprintf(title, sizeof title, "%s, %s: time against error", app->scene->model->name, app->scene->name);
   if (series && values) {
     rc = lag_svg_chart(path, title, "error", "processor time [s]", series, n);
   }

@@ -35,7 +35,7 @@ static int choose_times(App *app, double *from)
     return EXIT_USAGE;
   }
   if (turning < 0 || turning >= app->until - t0) {
-    return lag_app_error(a, "--transient %g: it is what is left out at the beginning, between 0 and %g s", turning, app->until - t0);
+    return lag_app_error(a, "--transient %g: the time left out at the beginning must be between 0 and %g s", turning, app->until - t0);
   }
   *from = t0 + turning;
   return 0;
@@ -126,8 +126,8 @@ static void caution(FILE *f, const Lyapunov *l)
   double sum = lag_lyapunov_exponent(l, l->k), divergence = lag_lyapunov_divergence(l), size = fabs(lag_lyapunov_exponent(l, l->k - 1));
 
   if (fabs(sum - divergence) > 1e-3 * fmax(size, fabs(divergence)) + 3 * lag_lyapunov_error(l, l->k)) {
-    fprintf(f, "note: the sum should be the mean divergence of the flow, %.6g: the steps are too long for what decays fastest; take smaller ones, "
-               "or believe the first exponents only\n", divergence);
+    fprintf(f, "note: the sum should be the mean divergence of the flow, %.6g: the steps are too long for the fastest decay; take smaller steps, "
+               "or trust only the first exponents\n", divergence);
   }
 }
 
@@ -166,7 +166,7 @@ static void put_text(FILE *f, App *app, const Lyapunov *l)
     fprintf(f, "chosen: %s\n", app->why);
   }
   if (!(l->t > l->begun)) {
-    fprintf(f, "no step of the run lies after t = %g s, from where on it is measured; run longer: --until\n", l->from);
+    fprintf(f, "no step of the run ends after t = %g s, where the measurement begins; run longer: --until\n", l->from);
     return;
   }
   fprintf(f, "measured from t = %.6g to %.6g s, over %lld step%s\n", l->begun, l->t, l->steps, l->steps == 1 ? "" : "s");

@@ -57,7 +57,7 @@ static int refuse(const App *app)
   }
   if (m->constraints) {
     return lag_app_error(a, "modes with %s are not computed yet (%s): %s", m->ncontacts ? "contacts" : "constraints", m->constraints->of[0].name,
-                     m->ncontacts ? "take a model without them" : "give the model coordinates that need none, such as angles");
+                     m->ncontacts ? "take a model without them" : "describe the model by coordinates that need no constraints, such as angles");
   }
   if (!m->linear) {
     return lag_app_error(a, "this simulator was built without the model's linearisation; write lagc modes %s, or build it with: lagc "
@@ -87,7 +87,7 @@ const char *lag_modes_caution(const App *app, const Equilibrium *r)
     return "the mass matrix is nearly singular here: a coordinate has lost its meaning";
   }
   if (!(app->scene->model->flags & LAG_SMOOTH)) {
-    return "the model has if, abs, sign, min, max or roots: where they switch here, small motion is that of one side";
+    return "the model has if, abs, sign, min, max or roots: where they switch at the equilibrium, the modes are those of one side";
   }
   return NULL;
 }
@@ -125,7 +125,7 @@ void lag_modes_reason(const Modes *s, char *text, size_t n)
     snprintf(text, n, "the energy, less the work of constant forces, has a minimum here, and nothing raises it (Lagrange, Dirichlet, Kelvin)");
     return;
   case LAG_NEUTRAL:
-    snprintf(text, n, "no force along the zero modes%s%s", s->drifts ? ", where a push goes on for ever" : "",
+    snprintf(text, n, "no force along the zero modes%s%s", s->drifts ? ", so a push causes an endless drift" : "",
              m[last].re == 0.0 && m[last].im == 0.0              ? "; there are no others"
              : s->lowering == 0 && s->pairs ? "; the energy has a minimum in all other directions"
                                             : "; all other modes decay");
@@ -136,10 +136,10 @@ void lag_modes_reason(const Modes *s, char *text, size_t n)
              s->lowering, s->lowering == 1 ? "" : "s");
     return;
   case LAG_DEGENERATE:
-    snprintf(text, n, "a zero mode: to second order there is no force along it, and what comes after is not linear");
+    snprintf(text, n, "a zero mode: the linearisation has no force along it, so it does not decide stability");
     return;
   case LAG_FREE_SEPARATELY:
-    snprintf(text, n, "no force along each zero mode alone, but along some together, and what comes after the second order is not linear");
+    snprintf(text, n, "no force along each zero mode alone, but along some together, so the linearisation does not decide stability");
     return;
   case LAG_COORDINATE_POLE:
     snprintf(text, n, "a coordinate has lost its meaning here, as a longitude does at a pole; these are the modes of the others, and "
@@ -149,8 +149,8 @@ void lag_modes_reason(const Modes *s, char *text, size_t n)
     snprintf(text, n, "the forces' derivatives jump here, or have no limit, so that no motion is small enough to be linear");
     return;
   case LAG_DEFECTIVE:
-    snprintf(text, n, "a multiple frequency with too few shapes: small motion grows in proportion to time, until what is not "
-                      "linear counts");
+    snprintf(text, n, "a multiple frequency with too few shapes: small motion grows in proportion to time, until the "
+                      "nonlinear terms matter");
     return;
   case LAG_CENTRE:
     snprintf(text, n, "some modes neither grow nor decay, and no energy is known that is conserved and has a minimum here");
@@ -237,12 +237,12 @@ static int not_found(const App *app, const Equilibrium *r)
     putchar('\n');
   }
   if (r->away) {
-    lag_app_error(&app->args, "no equilibrium found from the start of scene %s: forces only fade, far away. Where the model has one, start near it: %s=VALUE",
+    lag_app_error(&app->args, "no equilibrium found from the start of scene %s: forces only vanish at infinity. Where the model has one, start near it: %s=VALUE",
               app->scene->name, v->name);
     return EXIT_RUN;
   }
   lag_app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s. A force "
-                        "that vanishes nowhere has none: add what holds it, such as a spring; where it vanishes, start near there: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : at] - v->offset) / v->factor,
+                        "that vanishes nowhere has none: add a force that balances it, such as a spring; where it vanishes, start near there: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : at] - v->offset) / v->factor,
             v->unit[0] ? " " : "", v->unit, v->name, i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
             r->pole ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
   return EXIT_RUN;

@@ -177,7 +177,7 @@ void lag_sampling_warn(App *app, char *note, size_t size)
     snprintf(note, size, "rows every %s s are too coarse for this motion, and straight lines join them: leave --every out, or write --every %g",
              app->args.every, fine_enough(app));
   } else if (f->rows.part > 32 * PART) {
-    snprintf(note, size, "the run is too long to be shown finely: lines stray by up to %.2g %% of the picture; an earlier --until shows it better",
+    snprintf(note, size, "the run is too long to be shown finely: lines are off by up to %.2g %% of the picture; an earlier --until shows it better",
              100 * f->rows.part);
   }
   if (note[0] && !app->args.quiet) {

@@ -69,13 +69,13 @@ static void singular(const App *app, FILE *f)
 {
   int n = 0;
 
-  fprintf(f, "; singular: %d beside it", lag_sim_nearby_rank(app->sim));
+  fprintf(f, "; singular: %d nearby", lag_sim_nearby_rank(app->sim));
   for (int i = 0; i < app->scene->model->nq; i++) {
     if (lag_sim_is_undetermined(app->sim, i) && n++ < MOST_LINES) {
-      fprintf(f, "%s%s'", n == 1 ? ", and what the start says of " : ", ", app->scene->model->q[i].name);
+      fprintf(f, "%s%s'", n == 1 ? ", and the starting value of " : ", ", app->scene->model->q[i].name);
     }
   }
-  fprintf(f, "%s%s", n > MOST_LINES ? ", ..." : "", n ? " decides which way it goes" : "");
+  fprintf(f, "%s%s", n > MOST_LINES ? ", ..." : "", n ? " decides the branch of the motion" : "");
 }
 
 /* Constraints: changes of the start, rank, redundant ones, largest residuals. */
@@ -122,8 +122,8 @@ static void caveat(const App *app, const lag_stats *st, FILE *f)
   unsigned has = app->scene->model->flags;
 
   if (isfinite(st->unresolved)) {
-    fprintf(f, "note: steps are longer than half a period, about %.2g s, of what swings fastest here: its motion means nothing, whatever the energy does; take "
-               "--step %.0e or less, or radau, which damps it out, or dop853, which follows it\n", st->unresolved, st->unresolved / 20);
+    fprintf(f, "note: steps are longer than half a period, about %.2g s, of the fastest oscillation: its motion is wrong, even if the energy is kept; take "
+               "--step %.0e or less, or radau, which damps the oscillation, or dop853, which resolves it\n", st->unresolved, st->unresolved / 20);
   }
   if (!(m->flags & LAG_METHOD_SYMPLECTIC)) {
     return;
@@ -189,7 +189,7 @@ static void exact(const App *app, FILE *f)
     lag_sim_exact(app->sim, k, &largest, &now);
     const char *unit = strcmp(v.unit, "degC") == 0 ? "K" : v.unit; /* a difference */
     if (isnan(largest)) {
-      fprintf(f, "exact %s: the closed form has no finite value at some states of the run, and nothing is known of the deviation\n", v.name);
+      fprintf(f, "exact %s: the closed form has no finite value at some states of the run, so the deviation is not known\n", v.name);
     } else {
       fprintf(f, "exact %s: largest deviation %.3g%s%s, final %.3g\n", v.name, largest, unit[0] ? " " : "", unit, now);
     }
@@ -257,7 +257,7 @@ void lag_report_text(App *app, FILE *f)
   }
   exact(app, f);
   if (app->empty_rows) {
-    fprintf(f, "note: the output %s has no finite value at t = %.9g s; so it is in %lld of %lld rows\n", app->table.cols[app->empty_column].name, app->empty_t,
+    fprintf(f, "note: the output %s has no finite value at t = %.9g s; the same in %lld of %lld rows\n", app->table.cols[app->empty_column].name, app->empty_t,
             app->empty_rows, app->rows_put);
   }
   lag_report_events(app, f);

@@ -104,7 +104,7 @@ void lag_report_tangent(App *app, FILE *f)
     fprintf(f, "tangent: %d by %d, in the rows of -o and in --json\n", n, n);
     return;
   }
-  fprintf(f, "tangent: how the state follows that at the start\n  %-14s", "");
+  fprintf(f, "tangent: derivative of the state by the state at the start\n  %-14s", "");
   for (int j = 0; j < n; j++) {
     lag_sim_state_info(app->sim, j, name, sizeof name, NULL, 0);
     fprintf(f, " %14.10s(0)", name);

@@ -278,8 +278,8 @@ static int check_inertia(Start *w)
   if (lag_rhs(pb, w->sim->scene->t0, w->y, w->best) != LAG_ESINGULAR || !(lag_mass_condition(pb, w->sim->scene->t0, w->y, &which) > 1e12)) {
     return LAG_OK;
   }
-  return lag_fail(w->sim, LAG_EINVAL, "the mass matrix is singular: nothing says how %s moves, which has no inertia at the start, and no "
-                  "constraint moves it; give it a mass, or a constraint that depends on it", pb->model->q[which].name);
+  return lag_fail(w->sim, LAG_EINVAL, "the mass matrix is singular: %s has no inertia at the start, and no "
+                  "constraint determines its motion; give it a mass, or a constraint that depends on it", pb->model->q[which].name);
 }
 
 /* Undoes moves below the last digit of the largest component of the same unit. */

@@ -90,7 +90,7 @@ static int report_pole(lag_problem *pb, double t, int i, int k)
   const lag_constraint *c = &pb->model->constraints->of[k];
   char line[32];
 
-  snprintf(pb->words, sizeof pb->words, "at t = %.9g s what constraint %s%s demands of %s has a pole: no step leads over it", t, c->name,
+  snprintf(pb->words, sizeof pb->words, "at t = %.9g s constraint %s%s prescribes a motion of %s with a pole, which no step can cross", t, c->name,
            lag_line_text(c, line), pb->model->q[i].name);
   pb->detail = pb->words;
   pb->bad_t = t;

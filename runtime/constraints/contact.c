@@ -74,11 +74,11 @@ static int find_touching(ContactSet *w, const char *who, int event)
 static int check_restitution(lag_sim *s, int i, double e)
 {
   if (!isnan(e) && !(e >= -no_speed && e <= 1 + no_speed)) {
-    return lag_fail(s, LAG_EINVAL, "the contact %s has a restitution of %.3g: it is between 0 and 1", constraint_of(s, i)->name, e);
+    return lag_fail(s, LAG_EINVAL, "the contact %s has a restitution of %.3g, which must be between 0 and 1", constraint_of(s, i)->name, e);
   }
   if (s->run->dir < 0 && e < 1 - no_speed) {
-    return lag_fail(s, LAG_EINVAL, "at t = %.9g s the contact %s, of restitution %.3g, ends the run backwards in time: an impact that takes energy "
-                    "does not tell what was before it", s->run->t, constraint_of(s, i)->name, e);
+    return lag_fail(s, LAG_EINVAL, "at t = %.9g s the contact %s, of restitution %.3g, ends the run backwards in time: an impact that loses energy "
+                    "cannot be reversed", s->run->t, constraint_of(s, i)->name, e);
   }
   return LAG_OK;
 }

@@ -259,7 +259,7 @@ static int report_unmet(lag_problem *pb, const ConstraintScratch *w, double t, c
 
   if (k >= 0) {
     lag_report_residual(pb, k, holonomic, fabs(holonomic ? w->c[k] : w->r[k]),
-                       holonomic ? ", and no small change of the coordinates meets it"
+                       holonomic ? ", and no small change of the coordinates satisfies it"
                                  : " for any velocities: it contradicts the others");
   }
   pb->bad_t = t;

@@ -108,8 +108,8 @@ static int say_wrong(lag_sim *s, double t)
   const lag_constraint *weakest = k >= 0 ? &pb->model->constraints->of[k] : NULL;
 
   if (weakest) {
-    snprintf(pb->words, sizeof pb->words, "of the motions that meet here no step finds the one that led there: constraint %s%s is within %.1g of "
-             "following from the others; rk45 and dop853 may pass",
+    snprintf(pb->words, sizeof pb->words, "several motions meet here, and no step continues the present one: constraint %s%s is within %.1g of "
+             "being redundant; rk45 and dop853 may pass",
              weakest->name, lag_line_text(weakest, line), apart);
     pb->detail = pb->words;
   }

@@ -280,7 +280,7 @@ static int say_lost(lag_sim *s, double t, double before, double d)
   double h = lag_equal_step(s);
 
   return lag_fail(s, LAG_EDRIFT, "at t = %.9g s the energy is off by %.3g%s%s, %.2g times its size in this run: the numbers mean nothing from here on. The step from "
-                  "t = %.9g s, of %.3g s, brought %.3g%s%s of it: it led over a pole of a force, or is too long; %s", t, d, space, unit,
+                  "t = %.9g s, of %.3g s, caused %.3g%s%s of that error: it crosses a pole of a force, or is too long; %s", t, d, space, unit,
                   fabs(d) / fmax(fabs(c->begin), c->scale), s->run->step_t0, s->run->step_t1 - s->run->step_t0, d - before, space, unit,
                   h > 0 ? "take smaller steps, or dop853, which stops in front of a pole" : "take a smaller tolerance");
 }

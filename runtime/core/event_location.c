@@ -384,7 +384,7 @@ static int refine(lag_sim *s, int k)
   if (g * before > 0 && fabs(g / slope) > 4 * DBL_EPSILON * fabs(te)) {
     ends_before(s);
   } else if (slope * r->dir * before >= 0 && fabs(te - r->step_t0) > 1e6 * DBL_EPSILON * fabs(te)) { /* else it is rounding */
-    return lag_fail(s, LAG_EMETHOD, "event %s: at t = %s s a step of %s leads through it, and the velocities at its end do not: it is met too slowly for this tolerance; "
+    return lag_fail(s, LAG_EMETHOD, "event %s: at t = %s s a step of %s crosses it, but the velocities at its end lead back: it is crossed too slowly for this tolerance; "
                     "take a smaller one, or dop853", s->scene->model->ev[k].name, LAG_TEXT(te), s->method->name);
   }
   return LAG_OK;
@@ -408,7 +408,7 @@ static int check_seen(lag_sim *s)
 
   for (int k = 0; k < m->nev; k++) {
     if (s->sign[k] == 0.0 && isnan(s->root[k]) && s->sign_end[k] * s->leaves[k] < 0) {
-      return lag_fail(s, LAG_EMETHOD, "event %s: soon after t = %s s it happens again, within a step of %.3g s of %s, whose path between its ends does not show when; "
+      return lag_fail(s, LAG_EMETHOD, "event %s: soon after t = %s s it fires again, within a step of %.3g s of %s, whose dense output does not resolve the time; "
                       "take a smaller tolerance, or dop853", m->ev[k].name, LAG_TEXT(s->run->step_t0), s->run->step_t1 - s->run->step_t0, s->method->name);
     }
   }

@@ -81,7 +81,7 @@ static int fail_chatter(lag_sim *s, int k, const lag_contact *c, double dt)
   if (++r->chatter < most) {
     return LAG_OK;
   }
-  return lag_fail(s, LAG_EZENO, "contact %s strikes at t = %s s again and again, and neither closes nor opens: the path of %s between its steps is too "
+  return lag_fail(s, LAG_EZENO, "contact %s strikes at t = %s s again and again, and neither closes nor opens: the dense output of %s is too "
                   "rough there; take verlet or dop853", s->scene->model->ev[k].name, LAG_TEXT(r->t), s->method->name);
 }
 

@@ -113,7 +113,7 @@ int lag_crosses_force_pole(lag_sim *s, double t)
     return LAG_OK;
   }
   const lag_model *m = pb->model;
-  snprintf(pb->words, sizeof pb->words, "a pole of %s%s, over which no motion leads", i < 2 * pb->nq ? m->q[i - pb->nq].name : m->z[i - 2 * pb->nq].name,
+  snprintf(pb->words, sizeof pb->words, "a pole of %s%s, which no motion crosses", i < 2 * pb->nq ? m->q[i - pb->nq].name : m->z[i - 2 * pb->nq].name,
            i < 2 * pb->nq ? "''" : "'");
   pb->detail = pb->words;
   pb->bad_t = s->run->t + pole * (t - s->run->t);

@@ -93,8 +93,8 @@ static int judge_monitor(lag_sim *s, int i, double drift)
   }
   int rough = m->output < 0 && !lag_charge_flags(s, -1 - m->output) && !lag_method_balances(s->method);
   return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %s s%s%s%s", m->name, drift, m->limit, LAG_TEXT(s->run->t),
-                  rough ? "; what forces bring is not part of it, as " : "", rough ? s->method->name : "",
-                  rough ? " tells too little between its steps: take dop853" : "");
+                  rough ? "; the work of forces is not accounted for, as " : "", rough ? s->method->name : "",
+                  rough ? " has no accurate dense output: take dop853" : "");
 }
 
 /* Reports that the energy has no value. The equations of motion may still have one past the end of L's domain, as those of log(x) at x < 0, and
@@ -103,7 +103,7 @@ static int left_domain(lag_sim *s, double t)
 {
   s->pb.bad_t = t;
   s->pb.bad_index = -1;
-  s->pb.detail = "of its energy: the motion has left where L has values";
+  s->pb.detail = "of its energy: the motion has left the domain of L";
   return lag_explain(s, LAG_ENAN);
 }
 

@@ -322,7 +322,7 @@ static int check_method(lag_sim *s, const lag_method *method)
                     m->constraints->of[0].name);
   }
   if (m->constraints && (has & LAG_MASSLESS) && (needs & LAG_METHOD_VARIATION)) {
-    return lag_fail(s, LAG_EMETHOD, "method %s finds velocities from momenta, and %s has no inertia in this program; `lagc build --method %s` makes one where it has; "
+    return lag_fail(s, LAG_EMETHOD, "method %s finds velocities from momenta, and %s has no inertia in this program; `lagc build --method %s` builds a program where it has; "
                     "rk45 and dop853 need none", method->name, massless(m), method->name);
   }
   if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) {
@@ -354,7 +354,7 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
     return LAG_EINVAL;
   }
   if (!method || nopt < 0 || (nopt > 0 && !opt)) {
-    return lag_fail(s, LAG_EINVAL, "no method, or options that are not there");
+    return lag_fail(s, LAG_EINVAL, "no method, or no array of options");
   }
   int rc = begun(s);
   double *values;
@@ -571,7 +571,7 @@ int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *cont
     return rc;
   }
   if (kind != LAG_IS_U) {
-    return kind == LAG_IS_NOTHING ? unknown_name(s, name) : lag_fail(s, LAG_EINVAL, "%s is no input: lag_sim_set sets it", name);
+    return kind == LAG_IS_NOTHING ? unknown_name(s, name) : lag_fail(s, LAG_EINVAL, "%s is not an input; set it by lag_sim_set", name);
   }
   lag_signal before = s->signal[i];
   s->signal[i] = (lag_signal){fn, context};

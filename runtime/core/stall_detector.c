@@ -115,8 +115,8 @@ static void say_switch(lag_sim *s, int k, double t)
   if (c->line) {
     snprintf(line, sizeof line, " in line %d", c->line);
   }
-  snprintf(s->pb.words, sizeof s->pb.words, "it stays where %s is 0: the force of `%s`%s jumps there, and on both sides leads back, as dry friction does where a "
-           "body sticks, which is not supported; smooth it, as tanh(v/w) does sign(v), or let an event stop the run", c->surface, c->text, line);
+  snprintf(s->pb.words, sizeof s->pb.words, "it stays where %s is 0: the force of `%s`%s jumps there and pulls back from both sides, as dry friction does on a "
+           "body that sticks, which is not supported; smooth the force, as tanh(v/w) for sign(v), or let an event stop the run", c->surface, c->text, line);
   s->pb.detail = s->pb.words;
   s->pb.bad_t = t;
 }
@@ -173,12 +173,12 @@ static int has_shrinking_steps(lag_sim *s, double t)
     return LAG_ESTALL;
   }
   if (k < 0 || apart > dependent) {
-    snprintf(pb->words, sizeof pb->words, "the last %d steps led on by %.3g s only: a force or a constraint jumps here, and the motion does not leave the "
-             "place; smooth it, as sqrt(x^2 + w^2) does abs(x), or let a contact or an event do what happens", MOST, led);
+    snprintf(pb->words, sizeof pb->words, "the last %d steps advanced the time by only %.3g s: a force or a constraint jumps here, and the motion does not leave the "
+             "place; smooth it, as sqrt(x^2 + w^2) for abs(x), or model the jump as a contact or an event", MOST, led);
   } else {
     const lag_constraint *weakest = &pb->model->constraints->of[k];
-    snprintf(pb->words, sizeof pb->words, "the last %d steps led on by %.3g s only: constraint %s%s is within %.1g of following from the others, "
-             "and no step is accurate to the tolerance; a larger one, or steps of equal size (adapt=off, rk4, variational), may pass", MOST, led,
+    snprintf(pb->words, sizeof pb->words, "the last %d steps advanced the time by only %.3g s: constraint %s%s is within %.1g of being redundant, "
+             "and no step is accurate to the tolerance; a larger tolerance, or steps of equal size (adapt=off, rk4, variational), may pass", MOST, led,
              weakest->name, lag_line_text(weakest, line), apart);
   }
   pb->detail = pb->words;
@@ -238,8 +238,8 @@ static int is_below_resolution(lag_sim *s, double t)
   if (!(change > part * size)) {
     return 0;
   }
-  snprintf(pb->words, sizeof pb->words, "%s = %.3g is known to %.1g only in " LAG_PRECISION " precision, and that decides about the forces; start an angle within a turn, or "
-           "measure from elsewhere" LAG_MORE_PRECISION, pb->model->q[which].name, s->y[which], fabs(s->y[which]) * DBL_EPSILON);
+  snprintf(pb->words, sizeof pb->words, "%s = %.3g is known to %.1g only in " LAG_PRECISION " precision, and the forces change within that; start an angle within one turn, or "
+           "measure the coordinate from another origin" LAG_MORE_PRECISION, pb->model->q[which].name, s->y[which], fabs(s->y[which]) * DBL_EPSILON);
   pb->detail = pb->words;
   pb->bad_t = t;
   return 1;

@@ -33,7 +33,8 @@ static int check(lag_sim *s)
   int in_p = m->nq > 0 && (s->method->flags & LAG_METHOD_VARIATION) && !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
 
   if (m->constraints) {
-    return lag_fail(s, LAG_EMETHOD, "there is no tangent of a motion with constraints yet (%s): give the model coordinates that need none",
+    return lag_fail(s, LAG_EMETHOD, "there is no tangent of a motion with constraints yet (%s): describe the model by coordinates that "
+                                    "need no constraints",
                     m->constraints->of[0].name);
   }
   if (!s->method->tangent) {
@@ -246,10 +247,10 @@ int lag_tangent_jump(lag_sim *s, int k, int more)
     return LAG_OK;
   }
   if (!m->linear) {
-    return refuse(s, k, "what that does to neighbouring motions needs derivatives, which `lagc build --with linear` builds in");
+    return refuse(s, k, "its effect on neighbouring motions needs derivatives, which `lagc build --with linear` builds in");
   }
   if (more) {
-    return refuse(s, k, "another one does at the same time, and neighbouring motions may meet them in either order");
+    return refuse(s, k, "another event does so at the same time, and neighbouring motions may meet the two in either order");
   }
   Jump j = jump_layout(s);
   if (njump(s) && (lag_inputs(pb, t) || m->linear->jumps(t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, j.d, s->work))) {

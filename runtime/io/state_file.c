@@ -187,7 +187,7 @@ const char *lag_state_parse(char *text, State *s)
   }
   free(s->data);
   s->data = NULL;
-  return "is damaged: its lines are not those of a saved state";
+  return "is damaged: its format is not that of a saved state";
 }
 
 int lag_state_read(const char *path, State *s, const char **why)
@@ -196,7 +196,7 @@ int lag_state_read(const char *path, State *s, const char **why)
 
   *s = (State){0};
   if (stat(path, &is) == 0 && !S_ISREG(is.st_mode)) { /* reading a pipe would block */
-    *why = "is no regular file";
+    *why = "is not a regular file";
     return 1;
   }
   char *text = read_whole_file(path);

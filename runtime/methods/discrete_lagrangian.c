@@ -201,7 +201,7 @@ static int newton_left_domain(const lag_discrete *d, const NewtonArrays *w)
     }
   }
   residual(d, w);
-  return newton_failed(d, w, "leads to where the model has no values");
+  return newton_failed(d, w, "leaves the domain of the model");
 }
 
 /* Factors Newton's matrix at the present u. LAG_OK, or a failure. */

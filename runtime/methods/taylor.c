@@ -218,7 +218,7 @@ static int prepare(Taylor *w, lag_problem *pb, double t, const double *y)
     return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, t) : lag_step_refused(pb, rc, t);
   }
   if (!expand(w, pb, w->now, guess_unit(w, pb, y))) {
-    pb->detail = "its Taylor series does not exist here; dop853 needs none";
+    pb->detail = "the Taylor series does not exist here; dop853 needs none";
     return lag_step_failed(pb, LAG_ENAN, t);
   }
   w->ready = 1;

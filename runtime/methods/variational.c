@@ -52,7 +52,8 @@ static int gauss_order(const double *opt)
 static const char *variational_refuses(const lag_model *model, const double *opt)
 {
   return model->constraints && opt[OPT_ORDER] > 2
-             ? "with constraints it has order 2: of a higher order they would have to hold at points within the step, too; verlet4, verlet6 and "
+             ? "with constraints only order 2 is possible: higher orders would need the constraints at points within the step, too; "
+               "verlet4, verlet6 and "
                "verlet8 compose steps of order 2"
              : NULL;
 }
@@ -170,7 +171,7 @@ const lag_method lag_gauss = {
     .order_least = 2,
     .order_most = 8,
     .dense_order = 4,
-    .doc = "Gauss collocation in q and p, Newton's method; where L is linear in the velocities, or there are states alone, in these. DOI "
+    .doc = "Gauss collocation in q and p, or in the states of models without coordinates, by Newton's method. DOI "
            "10.1007/3-540-30666-8, VI.4 and VI.6",
     .flags = PROPERTIES | LAG_METHOD_FLOWS,
     .noptions = 2,

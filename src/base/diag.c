@@ -136,5 +136,5 @@ void diags_print(const Diags *d, StrBuf *out) {
     if (one->note) print_one(d, out, DIAG_NOTE, one->note_span, one->note);
   }
   if (d->list.n > DIAG_MAX)
-    sb_printf(out, "lagc: note: %u more messages are not shown\n", d->unshown + 1);
+    sb_printf(out, "lagc: note: %u more messages not shown\n", d->unshown + 1);
 }

@@ -83,7 +83,7 @@ FILE *source_open(const char *path, const char **error) {
   int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC); /* a pipe without a writer must not block */
   FILE *f = NULL;
   if (fd < 0) *error = strerror(errno);
-  else if (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) *error = "it is no regular file";
+  else if (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) *error = "it is not a regular file";
   else if (!(f = fdopen(fd, "rb"))) *error = strerror(errno);
   if (!f && fd >= 0) close(fd);
   return f;

@@ -47,7 +47,7 @@ static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r,
     return;
   }
   diag_error(d, x->span, "%s", text);
-  const char *cure = "write it in another form, or take agreement in numbers for enough: `lagc check --allow-numeric`";
+  const char *cure = "write it in another form, or accept agreement in numbers: `lagc check --allow-numeric`";
   diag_help(d, "%s", r->inexact ? arena_printf(e->m->arena, EXACT_NUMBERS "; %s", cure) : cure);
 }
 
@@ -66,7 +66,7 @@ static ExpectResult judge(const Eqns *e, const CaseSymbols *symbols, const Expec
   if (proved) return r; /* EXPECT_PROVED */
   r.inexact = !numbers_are_exact(e, x);
   int somewhere_false = v == PROVED_NONZERO && !e->constraints.n; /* constraints exclude states */
-  r.missing = !w.states ? NULL : somewhere_false ? "the difference that there is" : w.missing;
+  r.missing = !w.states ? NULL : somewhere_false ? "the difference that the proof finds" : w.missing;
   r.verdict = w.text ? EXPECT_REFUTED : w.states && !r.missing ? EXPECT_AGREES : EXPECT_UNKNOWN;
   return r;
 }
@@ -74,11 +74,11 @@ static ExpectResult judge(const Eqns *e, const CaseSymbols *symbols, const Expec
 static void report_unknown(const Eqns *e, const Expect *x, const ExpectResult *r) {
   if (r->missing) {
     diag_error(e->m->diags, x->span, "expect %s is not decided: no proof is found, and no state that was compared shows %s", r->label, r->missing);
-    diag_help(e->m->diags, "expect it for one side alone, or write it in another form%s", r->inexact ? "; " EXACT_NUMBERS : "");
+    diag_help(e->m->diags, "state the expectation for one side of the switch alone, or in another form%s", r->inexact ? "; " EXACT_NUMBERS : "");
     return;
   }
-  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a value that means something", r->label);
-  diag_help(e->m->diags, "write it where its roots and logarithms are defined, and in numbers of ordinary size%s", r->inexact ? "; " EXACT_NUMBERS : "");
+  diag_error(e->m->diags, x->span, "expect %s is not decided: no state tried gives both sides a meaningful value", r->label);
+  diag_help(e->m->diags, "state the expectation where its roots and logarithms are defined, with numbers of ordinary size%s", r->inexact ? "; " EXACT_NUMBERS : "");
 }
 
 /* --- parameters that follow from others, and contacts --- */

@@ -41,8 +41,8 @@ static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, 
     return;
   }
   sb_printf(out, "  constraint %s (line %u): %s%s", c->name, place.line, kind_of(e, k), c->inside ? ", the unit length of a rotation" : "");
-  if (!counts[k]) sb_puts(out, has_slope(e, s, symbols, k) ? "; follows from those before it" : "; its derivatives vanish at the start");
-  if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the least one is taken");
+  if (!counts[k]) sb_puts(out, has_slope(e, s, symbols, k) ? "; follows from the constraints before it" : "; its derivatives vanish at the start");
+  if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the multipliers of least norm are taken");
   sb_putc(out, '\n');
 }
 
@@ -51,17 +51,17 @@ static void show_singular(const Eqns *e, StateSolver *s, const long double *symb
   long double *loose = ARENA_ARRAY(e->m->arena, long double, e->n + 1);
   uint32_t beside = nearby_rank(e, s, symbols, loose), shown = 0;
   if (beside <= rank) return;
-  sb_printf(out, "  singular start: the rank is %u beside it", beside);
+  sb_printf(out, "  singular start: the rank is %u near it", beside);
   for (uint32_t i = 0; i < e->n; i++)
     if (loose[i] > 0) sb_printf(out, "%s%s'", shown++ ? ", " : "; the constraints do not determine ", e->m->coords.at[i].name);
-  sb_printf(out, "%s\n", shown ? " here, and what the start says of them decides which way it goes" : "");
+  sb_printf(out, "%s\n", shown ? " here; their start values decide which way the motion goes" : "");
   states_at(s, symbols);
 }
 
 static void show_integrability(const Eqns *e, StateSolver *s, StrBuf *out) {
   static const char *const words[] = {[INTEGRABLE_NO] = "are not integrable: the system is nonholonomic",
                                       [INTEGRABLE_PROVED] = "are integrable: they could be stated for positions",
-                                      [INTEGRABLE_UNDECIDED] = "look integrable; that is not decided"};
+                                      [INTEGRABLE_UNDECIDED] = "are integrable at all states tried; not proved"};
   const Constraints *all = &e->constraints;
   if (all->nholonomic == all->n) return;
   sb_printf(out, "  constraints on velocities %s\n", words[frobenius(e, s)]);
@@ -106,7 +106,7 @@ static uint32_t contradicting(const Eqns *e, StateSolver *s, const long double *
 
 static int report_contradiction(const Eqns *e, uint32_t k, const char *why) {
   const Model *m = e->m;
-  diag_error(m->diags, e->constraints.of[k]->span, "scene %s: the constraint `%s` contradicts those before it: %s", m->scene.name,
+  diag_error(m->diags, e->constraints.of[k]->span, "scene %s: the constraint `%s` contradicts the constraints before it: %s", m->scene.name,
              e->constraints.of[k]->name, why);
   diag_help(m->diags, "leave one of them out, or make them agree");
   return 0;
@@ -116,13 +116,13 @@ static int report_contradiction(const Eqns *e, uint32_t k, const char *why) {
 static int check_agreement(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts) {
   const Model *m = e->m;
   uint32_t n = expr_symbol_count(e->g) + 1, k = contradicting(e, s, symbols, counts);
-  if (k != UINT32_MAX) return report_contradiction(e, k, "at the start it follows from them, and demands another acceleration");
+  if (k != UINT32_MAX) return report_contradiction(e, k, "at the start it follows from them, but demands another acceleration");
   long double *later = ARENA_ARRAY(m->arena, long double, n);
   for (uint32_t i = 0; i < n; i++) later[i] = symbols[i];
   later[m->time] += (m->scene.has_span ? (long double)m->scene.t1 - m->scene.t0 : 1) / 1024;
   StartResult r = start_find(e, s, later);
   if (r.kind == LAG_START_NONE || r.kind == LAG_START_BROKEN)
-    return report_contradiction(e, r.constraint, arena_printf(m->arena, "at t = %.3Lg s no state obeys them%s", later[m->time], start_residual_text(e, &r)));
+    return report_contradiction(e, r.constraint, arena_printf(m->arena, "at t = %.3Lg s no state obeys them all%s", later[m->time], start_residual_text(e, &r)));
   return 1;
 }
 
@@ -136,7 +136,7 @@ static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbo
   if (sparse_is_regular_on_kernel(m->arena, e->n, e->constraints.n, states_system(s), null)) return 1;
   for (uint32_t j = 0; j < e->n; j++)
     if (fabsl(null[j]) > fabsl(null[most]) * (1 + 1e-9L)) most = j;
-  diag_error(m->diags, m->coords.at[most].span, "scene %s: nothing says how `%s` moves: it has no inertia at the start, and no constraint moves it", m->scene.name,
+  diag_error(m->diags, m->coords.at[most].span, "scene %s: the motion of `%s` is undetermined: it has no inertia at the start, and no constraint moves it", m->scene.name,
              m->coords.at[most].name);
   diag_help(m->diags, "give it a mass, or a constraint that depends on it");
   return 0;
@@ -156,7 +156,7 @@ static int check_contacts(const Eqns *e, const long double *symbols) {
     long double gap = value[2 * i], back = value[2 * i + 1];
     const char *wrong = gap < -1e-12L * (far > 1 ? far : 1) ? arena_printf(m->arena, "the start is inside the contact `%s`: its gap is %.3Lg", k->name, gap)
                         : isnan(gap) ? arena_printf(m->arena, "the contact `%s` has no value at the start", k->name)
-                        : !(back >= 0 && back <= 1) ? arena_printf(m->arena, "the contact `%s` has a restitution of %.3Lg: it is between 0 and 1", k->name, back)
+                        : !(back >= 0 && back <= 1) ? arena_printf(m->arena, "the contact `%s` has a restitution of %.3Lg, which must be between 0 and 1", k->name, back)
                                                     : NULL;
     if (!wrong) continue;
     diag_error(m->diags, k->span, "scene %s: %s", m->scene.name, wrong);
@@ -184,7 +184,7 @@ static int check_mass(const Eqns *e) {
   if (sparse_is_regular_on_kernel(m->arena, e->n, 0, states_system(s), null)) return 1;
   for (uint32_t j = 0; j < e->n; j++)
     if (fabsl(null[j]) > fabsl(null[most]) * (1 + 1e-9L)) most = j;
-  diag_error(m->diags, m->coords.at[most].span, "scene %s: the mass matrix is singular at the start: nothing says how `%s` moves from there", m->scene.name, m->coords.at[most].name);
+  diag_error(m->diags, m->coords.at[most].span, "scene %s: the mass matrix is singular at the start: the acceleration of `%s` is undetermined there", m->scene.name, m->coords.at[most].name);
   diag_help(m->diags, "start elsewhere, or take coordinates without such a place: a body's `coord R: rotation` has no pole (`lagc help rotations`)");
   return 0;
 }
@@ -197,7 +197,8 @@ int mobility_show(const Eqns *e, StrBuf *out) {
   StartResult start = start_find(e, s, symbols);
   if (start.kind != LAG_START_FOUND) {
     if (says_start(e->m)) start_report(e, &start);
-    else sb_printf(out, "scene %s: %u constraint%s; it gives no start, and from 0 none is found that obeys `%s`%s\n", e->m->scene.name, all->n,
+    else sb_printf(out, "scene %s: %u constraint%s; the scene gives no start, and from 0 no state is found "
+                        "that obeys `%s`%s\n", e->m->scene.name, all->n,
                    plural(all->n), all->of[start.constraint]->name, start_residual_text(e, &start));
     return !says_start(e->m);
   }

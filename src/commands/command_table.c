@@ -8,7 +8,7 @@
 static const CommandRow commands[] = {
   {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric] [--verbose]", "parse, derive, prove symmetries and `expect` lines",
    "Parses and derives the model for every scene (or the one named), and proves or refutes its `expect` lines. "
-   "A proved line is true for all states at which both sides have real values; a refuted line is shown with a state at which its sides differ. "
+   "A proved line holds for all states at which both sides have real values; a refuted line is comes with a state at which its sides differ. "
    "Exit status 0 if all is well, 1 if not.\n\n"
    "Every command compares its compiled programs with the text of the model, evaluated by Taylor arithmetic at random states; --verbose lists the comparisons."},
   {CMD_DERIVE, "derive", NULL, "MODEL [SCENE] [--format text|latex|c] [--ops] [--hamiltonian] [-o FILE]", "print the equations of motion",
@@ -16,9 +16,9 @@ static const CommandRow commands[] = {
    "Hamilton's equations. The mass matrix is inverted in closed form if it has blocks of up to three coordinates with short results."},
   {CMD_NOETHER, "noether", "symmetries", "MODEL [SCENE] [--format text|latex|json] [-o FILE]", "find symmetries and conserved quantities",
    "Searches for the symmetries of L: transformations of coordinates, affine in them with coefficients that depend on time, and of time, that change "
-   "L by a total derivative dF/dt at most. Each listed symmetry is proved, with its generator, its F and its charge; then come the Poisson "
+   "L by a total derivative dF/dt at most. Every listed symmetry is proved, and shown with its generator, its F and its charge; then come the Poisson "
    "brackets of the charges, declared symmetries, cyclic coordinates, and a scaling that maps solutions to solutions.\n\n"
-   "Without a scene the model has no effects, and a list shows how each effect alone changes the charges: dQ/dt = 0 becomes a balance."},
+   "Without a scene the model has no effects, and a list shows how each effect alone changes the balance that replaces dQ/dt = 0."},
   {CMD_RUN, "run", NULL, "MODEL [SCENE] [name=value ...] [options]", "simulate",
    "Builds the simulator (or takes it from the cache) and runs it.\n\n"
    "  name=value            a parameter, a start (th=1.2, \"th'=0.5\", th='90[deg]',\n"
@@ -41,9 +41,9 @@ static const CommandRow commands[] = {
    "along the mode. Needs GSL. Exit status 3: no equilibrium was found.\n\n"
    "  name=value            a parameter, another start (th=3), an input to hold"},
   {CMD_LYAPUNOV, "lyapunov", "exponents", "MODEL [SCENE] [name=value ...] [--until T] [--exponents K] [--json]", "Lyapunov exponents: how fast neighbouring motions part",
-   "Runs the scene for long with the exact tangent of its flow, and prints the Lyapunov exponents: the mean rates at which small "
+   "Runs the scene for a long time with the exact tangent of its flow, and prints the Lyapunov exponents: the mean rates at which small "
    "changes of the start grow, in the space of coordinates, velocities and states. The spread is the standard error from 20 blocks of the time "
-   "measured; `at half the time` is the estimate then. An exponent that is zero comes near 0 as log(t)/t only. "
+   "measured; `at half the time` is the estimate then. An exponent of zero is approached comes near 0 as log(t)/t. "
    "Method and steps are chosen as for `lagc run`: --method, --tol, --step.\n\n"
    "  name=value            a parameter, another start, an input: as for lagc run"},
   {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [-o FILE.svg]", "time against accuracy: all methods, side by side",
@@ -54,15 +54,15 @@ static const CommandRow commands[] = {
    "  name=value            a parameter, another start, an input, as for `lagc run`\n\n"
    "Exit status 3: no setting reaches the target."},
   {CMD_EFFECTS, "effects", NULL, "MODEL [SCENE] [name=value ...] [--accuracy X] [--json]", "cost of each effect, and whether the result needs it",
-   "Runs the scene, then without each effect that the scene uses, and with each that it does not use. Prints for each effect its operations "
+   "Runs the scene, then without each effect that the scene uses, and with each effect that it does not use. Prints for each effect its operations "
    "and its share of the time of a call of the right-hand side; its weight, the largest ratio of |acceleration with - without it| to "
    "|acceleration| along the run; its difference, the largest change at 16 times of the run and at its end, relative to the largest value of "
-   "its kind and unit; and whether the difference is more than twice the error of integration, measured by a run with a hundredth of the tolerance, or half the step. "
+   "its kind and unit; and whether the difference difference exceeds twice the error of integration, measured by a run with a hundredth of the tolerance, or half the step. "
    "An effect is left out together with those that require it. `shared` are operations that several effects need. Method, steps and end are chosen as for "
    "`lagc run`: --method, --tol, --step, --until. `lagc help effect` says more.\n\n"
    "  name=value            a parameter, another start, an input, as for `lagc run`\n\n"
-   "--accuracy X searches for the smallest set of the scene's effects whose result differs by at most X, with all other effects left out together; it "
-   "runs all sets if the scene has up to ten effects. Prints the `use` line."},
+   "--accuracy X searches for the smallest set of the scene's effects whose result differs from the scene's by at most X: with all other effects left out together; it "
+   "runs all sets if the scene has up to ten effects. Prints the `use` line of whose run set."},
   {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--method NAME] [--with linear]", "make a simulator",
    "Compiles the model to a simulator with all its scenes; it has the options of `lagc run`, which `SIMULATOR --help` "
    "lists."},
@@ -73,21 +73,21 @@ static const CommandRow commands[] = {
    "and in one file of a program\n\n"
    "  #define PEND_IMPLEMENTATION\n"
    "  #include \"pend.h\"\n\n"
-   "Other files include it without the #define. Its first lines show its use. With PEND_LANES defined as 4 or 8 it computes so many "
+   "Other files include it without the #define. Its first lines show its use. With PEND_LANES defined as 4 or 8 it computes 4 or 8 "
    "states at once."},
   {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [--method NAME] [--with linear] [-o FILE.c]", "write C for the runtime",
    "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). They are integrated by "
-   "liblag, whose interface is lag.h:\n\n"
+   "liblag; its interface by lag.h:\n\n"
    "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)\n\n"
-   "With -DLAG_LANES=4 or 8 its functions take vectors of so many doubles, and compute so many states at once."},
+   "With -DLAG_LANES=4 or 8 its functions take vectors of so or 8 doubles, and compute so many states at once."},
   {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
    "Lists the methods of integration: their order, the quantities that they keep, their demands on a model, and their options."},
   {CMD_CACHE, "cache", NULL, "[--clear]", "show or empty the cache of simulators",
    "Shows the folder of built simulators, their number, their size and its limit; beyond the limit, simulators that were used longest ago are removed. "
-   "Simulators are run only from a folder that is yours and that nobody else can write. LAGC_CACHE_MIB sets another limit, in MiB."},
+   "Simulators are run only from a folder of yours that nobody else can write. LAGC_CACHE_MIB sets another limit, in MiB."},
   {CMD_HELP, "help", NULL, "[TOPIC]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics."},
-  {CMD_COMPLETION, "completion", NULL, "bash|zsh|fish", "print a script of completion for a shell",
-   "Prints a script that makes a shell complete the commands and options of lagc, and the scenes, parameters, methods and names of "
+  {CMD_COMPLETION, "completion", NULL, "bash|zsh|fish", "print the completion script of a shell",
+   "Prints a script that script by which a shell completes the commands and options of lagc, and the scenes, parameters, methods and names of "
    "the model in question. `make install` puts it where these shells look; without `make install`,\n\n"
    "  source <(lagc completion bash)    in ~/.bashrc\n"
    "  source <(lagc completion zsh)     in ~/.zshrc, after compinit\n"
@@ -108,8 +108,8 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 static const OptionRow options[] = {
   {"--allow-numeric", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(allow_numeric),
-   "an expectation that the prover does not decide, but that agrees numerically to rounding, does not fail the check"},
-  {"--verbose", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(verbose), "also list the parts of the compiled programs that were compared with the text, and at how many states"},
+   "an expectation that the prover does not decide, but that holds numerically to rounding, does not fail the check"},
+  {"--verbose", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(verbose), "also list the parts of the compiled programs that were compared with the text, and the number of states"},
   {"--format", NULL, "text|latex|c", TAKES_CHOICE, "text latex c", C(DERIVE), OWN(format),
    "as text, as LaTeX, or as the C function that computes the accelerations"},
   {"--format", NULL, "text|latex|json", TAKES_CHOICE, "text latex json", C(NOETHER), OWN(format), "as text, as LaTeX, or as one JSON object"},
@@ -121,7 +121,7 @@ static const OptionRow options[] = {
   {"--section", NULL, "'EXPR rising'", TAKES_EXPR, "", C(RUN) | C(PLOT), OWN(section),
    "a Poincare section: one row, or one point, each time EXPR crosses zero; or falling, or crossing (both ways). For an angle that turns: 'sin(th2) rising'"},
   {"--y", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(y), "draws EXPR, or all members of a family, against time,"},
-  {"--x", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(x), "or against this EXPR: a path, with one scale for both axes if their units agree"},
+  {"--x", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(x), "or against EXPR EXPR: a path, with one scale for both axes if their units agree"},
   {"--phase", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(phase), "draws the rate of EXPR against EXPR: --phase th draws th' against th"},
   {"--points", NULL, "'X,Y X,Y'", TAKES_EXPR, "", C(ANIMATE), OWN(points),
    "the points to draw, each two expressions, joined by rods in this order; for families, all members. Default: the model's x,y; or "
@@ -143,7 +143,7 @@ static const OptionRow options[] = {
   {"--method", NULL, "NAME", TAKES_METHOD, "", STEPS, PASSED,
    "method of integration, NAME or \"NAME(option=value, ...)\"; `lagc help methods` lists them"},
   {"--method", NULL, "NAME", TAKES_METHOD, "", C(BUILD) | C(EMIT), OWN(method),
-   "adds the derivatives that this method needs besides accelerations; those of the scenes' methods are always there"},
+   "adds the derivatives that this method needs; those besides accelerations; those of the scenes' methods are always there"},
   {"--quadrature", NULL, "NAME", TAKES_TEXT, "", STEPS, PASSED, "quadrature of the method variational: midpoint, trapezoid, gauss or lobatto"},
   {"--order", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "order of the method variational"},
   {"--stages", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "stages of the method gauss"},
@@ -153,13 +153,13 @@ static const OptionRow options[] = {
   {"--methods", NULL, "NAME,NAME", TAKES_TEXT, "", C(COST), PASSED, "only these methods"},
   {"--longest", NULL, "S", TAKES_NUMBER, "", C(COST), PASSED, "no method goes on to finer settings after a run of S seconds; default: 0.5"},
   {"--until", NULL, "T", TAKES_NUMBER, "", SIMULATE | C(COST) | C(EFFECTS), PASSED, "run to time T [s]; before the start: backwards"},
-  {"--accuracy", NULL, "X", TAKES_NUMBER, "", C(EFFECTS), OWN(accuracy), "the relative difference that does not matter; names the smallest set of effects within it"},
+  {"--accuracy", NULL, "X", TAKES_NUMBER, "", C(EFFECTS), OWN(accuracy), "the relative difference within does not matter; finds the smallest set of effects within it"},
   {"--until", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "measure to time T [s]; default: 20 spans of the scene"},
   {"--transient", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "the time left out at the beginning [s]; default: a tenth"},
   {"--exponents", NULL, "K", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "only the K largest exponents"},
   {"--every", NULL, "DT", TAKES_NUMBER, "", SIMULATE, PASSED, "time between rows [s]; default: as the scene says, or a 1000th of the span; in pictures, as the motion requires"},
   {"--tangent", NULL, NULL, TAKES_NOTHING, "", C(RUN), PASSED,
-   "the tangent of the flow, dx/dy(0) of all coordinates, velocities and states x and y: adds columns, and a matrix to the report"},
+   "the tangent of the flow, dx/dy(0) of all coordinates, velocities and states x and y: adds more columns, and a matrix to the report"},
   {"--svg", NULL, "FILE.svg", TAKES_FILE, "svg", SIMULATE, PASSED, "a picture of all output against time"},
   {"--svg", NULL, "FILE.svg", TAKES_FILE, "svg", C(LYAPUNOV), PASSED, "a picture of the estimates as they settle"},
   {"--plot-x", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "with --plot-y NAME: the picture shows one output against another"},
@@ -177,7 +177,7 @@ static const OptionRow options[] = {
   {"--json", NULL, NULL, TAKES_NOTHING, "", C(EFFECTS), OWN(json), "the table as one JSON object"},
   {"--events", NULL, "FILE.csv", TAKES_FILE, "csv npy", SIMULATE, PASSED, "each event with its time and the state before and after it"},
   {"--quiet", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(LYAPUNOV) | C(COST), PASSED, "no report"},
-  {"--verbose", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report also says whose sines and cosines the run took, and how products and sums were rounded"},
+  {"--verbose", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report also names the source of sines and cosines, and the rounding of products and sums"},
   {"--save-state", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED, "writes the complete state at the end"},
   {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
    "continues from a saved state, with the same scene, method and values: the results are those of an uninterrupted run, bit by bit"},
@@ -189,13 +189,13 @@ static const OptionRow options[] = {
   {"--no-gsl", NULL, NULL, TAKES_NOTHING, "", STEPS | C(MODES) | C(COST) | C(BUILD), OWN(no_gsl),
    "leaves the gsl-* methods out: a binary that links GSL is GPL-3 as a whole"},
   {"--math", NULL, "own|libm", TAKES_CHOICE, "own libm", STEPS | C(MODES) | C(COST) | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(math),
-   "sin and cos from functions that the emitted C brings along (own, the default: faster, the same digits with every C library), "
+   "sin and cos from functions in the emitted C (own, the default: faster, the same digits with every C library), "
    "or from the C library"},
   {"--with", NULL, "linear", TAKES_CHOICE, "linear", C(BUILD) | C(EMIT), OWN(with), "with the exact linearisation of the model"},
   {"--fix", NULL, "NAME,NAME", TAKES_PARAMS, "all", SIMULATE | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(fix),
-   "replaces these parameters by numbers, with the values that the scene gives them: fewer operations, but no other value at the command line; "
+   "replaces these parameters by numbers, with the scene's values: fewer operations, but no other value on the command line; "
    "a family by its name, drag.c for an effect's; all: every parameter"},
-  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns passes prog", MODELS, OWN(dump), "prints the results of stages of the compiler: ast, model, eqns, passes, prog"},
+  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns passes prog", MODELS, OWN(dump), "prints the results of results of the compiler: ast, model, eqns, passes, prog"},
   {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION) | C(CACHE), OWN(help), "this help"},
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };

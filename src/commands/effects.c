@@ -47,7 +47,7 @@ static int run_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, con
   status = process_run_as(c->arena, program, argv, &said);
   *measured = effects_read(s, said, sets->n, &rest);
   fputs(rest, stderr);
-  if (status == STATUS_OK && !*measured) return usage_error("the simulator of `lagc effects` did not say what it measured");
+  if (status == STATUS_OK && !*measured) return usage_error("the simulator of `lagc effects` printed no measurements");
   return status;
 }
 

@@ -81,7 +81,7 @@ EffectStudy *effects_plan(const Model *scene) {
   if (!s->graph.n || s->graph.n > MOST_EFFECTS) {
     diag_error(scene->diags, scene->span, s->graph.n ? "the model has %u effects; `lagc effects` compares up to %d" : "the model has no effects to compare",
                s->graph.n, MOST_EFFECTS);
-    diag_help(scene->diags, "an effect is what scenes turn on: `effect drag { ... }`, and `use drag` in a scene");
+    diag_help(scene->diags, "declare an effect with `effect drag { ... }`, and turn it on with `use drag` in a scene");
     return NULL;
   }
   for (uint32_t i = 0; i < s->graph.n; i++)

@@ -77,8 +77,9 @@ static void put_least(const EffectStudy *s, StrBuf *out) {
     return;
   }
   EffectSet gone = s->used & ~s->least;
-  sb_printf(out, "without %s the difference is %.2g, below %g, as the runs say; %s (%u %s run)\n  %s\n", joined(s, gone), s->least_difference, s->accuracy,
-            s->exhaustive ? "no smaller set will do" : "found by leaving out one after the other", s->tried, s->tried == 1 ? "set was" : "sets were",
+  sb_printf(out, "without %s the difference is %.2g, below %g, measured by runs; %s (%u %s run)\n  %s\n", joined(s, gone), s->least_difference, s->accuracy,
+            s->exhaustive ? "no smaller set is enough" : "found by leaving out one after the other", s->tried,
+            s->tried == 1 ? "set was" : "sets were",
             effects_use(s, s->least));
 }
 

@@ -17,7 +17,7 @@ static const char *unknown_command(Arena *a, const char *word) {
   size_t n = 0;
   for (const CommandRow *row; n < CMD_COUNT && (row = command_row(n)) != NULL && row->help; n++) names[n] = row->name;
   size_t len = strlen(word);
-  if (len > 4 && strcmp(word + len - 4, ".lag") == 0) return arena_printf(a, "say what to do with %s: `lagc run %s`, `lagc derive %s`, `lagc check %s`", word, word, word, word);
+  if (len > 4 && strcmp(word + len - 4, ".lag") == 0) return arena_printf(a, "a command is missing before %s: `lagc run %s`, `lagc derive %s`, `lagc check %s`", word, word, word, word);
   Name near = suggest(word, names, n);
   if (near) return arena_printf(a, "unknown command `%s`: did you mean `%s`?", word, near);
   return arena_printf(a, "unknown command `%s`; `lagc help` lists them", word);
@@ -135,7 +135,7 @@ static const char *unknown_option(Arena *a, const Options *o, const char *word) 
     if (option_row(i)->commands & 1u << o->command && n < 64) names[n++] = option_row(i)->name;
   Name near = suggest(arg, names, n), meant = meant_option(arg);
   for (size_t i = 0; i < n && meant; i++)
-    if (strcmp(names[i], meant) == 0) return arena_printf(a, "`lagc %s` has no option `%s`: `%s` is what it is called here", row->name, arg, meant);
+    if (strcmp(names[i], meant) == 0) return arena_printf(a, "`lagc %s` has no option `%s`; here it is called `%s`", row->name, arg, meant);
   if (near) return arena_printf(a, "`lagc %s` has no option `%s`: did you mean `%s`?", row->name, arg, near);
   return arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them", row->name, arg, row->name);
 }
@@ -230,7 +230,7 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
     return 0;
   }
   if (o->command == CMD_COMPLETION && (!arg || !has_word("bash zsh fish", arg))) {
-    *error = "completion for which shell? `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`";
+    *error = "which shell? write `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`";
     return 0;
   }
   return 1;

@@ -53,7 +53,7 @@ int points_split(Arena *a, const char *text, PointTexts *points, const char **er
     }
     PointText p = {text_trimmed(a, s, (size_t)(comma - s)), text_trimmed(a, comma + 1, (size_t)(end - comma - 1))};
     if (!p.x[0] || !p.y[0]) {
-      *error = arena_printf(a, "\"%s\": a point lacks one of its two parts, x,y", text);
+      *error = arena_printf(a, "\"%s\": a point lacks x or y", text);
       return 0;
     }
     vec_push(a, points, p);

@@ -10,8 +10,8 @@ static int warn_literal(const Ast *ast, const char *precision) {
   for (AstId i = 1; i < ast->exprs.n; i++) {
     const AstExpr *e = ast_expr(ast, i);
     if (e->kind != AST_NUM || num_is_exact(e->number) || e->span.end - e->span.begin <= SAFE) continue;
-    diag_warning(ast->diags, e->span, "this number is rounded to 17 digits before --precision %s counts", precision);
-    diag_help(ast->diags, "where more matter, make it a parameter or a start, and give the digits as name=value");
+    diag_warning(ast->diags, e->span, "this number is rounded to 17 digits, fewer than --precision %s computes with", precision);
+    diag_help(ast->diags, "if more digits matter, make it a parameter or a start, and give them as name=value");
     return 1;
   }
   return 0;
@@ -25,7 +25,7 @@ void precision_warn(const Ast *ast, const ExprGraph *g, const char *precision) {
     if (!expr_is_num(g, e) || num_is_exact(expr_number(g, e))) continue;
     num_format_double(text, num_value(expr_number(g, e)));
     if (strspn(text, "-0.123456789") - (text[0] == '-') - (strchr(text, '.') != NULL) <= SAFE) continue;
-    fprintf(stderr, "lagc: warning: --precision %s: numbers of the model multiply to %s, rounded to 17 digits; where more matter, make them "
+    fprintf(stderr, "lagc: warning: --precision %s: a product of numbers of the model, %s, is rounded to 17 digits; if more digits matter, make them "
             "parameters\n", precision, text);
     return;
   }

@@ -69,7 +69,7 @@ static int prepare_section(RequestBuilder *k, const char **error) {
   text = text_trimmed(k->arena, text, strlen(text));
   int direction = section_direction(text, &n);
   if (direction < 0) {
-    *error = arena_printf(k->arena, "--section %s: crossed in which direction? write --section '%s rising', falling or crossing (both)", text, text);
+    *error = arena_printf(k->arena, "--section %s: a direction is missing; write --section '%s rising', falling or crossing (both)", text, text);
     return 0;
   }
   const Source *source = source_add(k->ast->sources, "--section", text, n);
@@ -93,7 +93,7 @@ static int prepare_plot(RequestBuilder *k, const char **error) {
   const Options *o = k->o;
   const char *x = o->phase ? o->phase : o->x, *y = o->phase ? derivative_text(k, o->phase) : o->y;
   if (o->phase && (o->x || o->y)) *error = "--phase EXPR draws the rate of EXPR against it; leave out --x and --y";
-  else if (x && !y) *error = arena_printf(k->arena, "--x %s: against what? add --y EXPR", x);
+  else if (x && !y) *error = arena_printf(k->arena, "--x %s: the other axis is missing; add --y EXPR", x);
   if (*error) return 0;
   add_argument(k, "--svg", file_name(k, "svg"));
   if (x && !(x = add_output(k, o->phase ? "--phase" : "--x", x))) return 0;
@@ -219,7 +219,7 @@ static int prepare_animate(RequestBuilder *k, const char **error) {
     f = find_points(k);
     if (!f.points && !find_vectors(k, &f)) return 0;
     if (!f.points) {
-      *error = "which points? the model has no x,y, no x1,y1 x2,y2 ..., no px,py and no vector among its coordinates; write "
+      *error = "no points to draw: the model has no x,y, no x1,y1 x2,y2 ..., no px,py and no vector among its coordinates; write "
                "--points 'X,Y X,Y', each two expressions";
       return 0;
     }

@@ -113,8 +113,8 @@ static const char *converted_value(Converter *c, const char *name, const char *v
   if ((name && !target) || !id || !model_command_value(c->model, target, id, &x, &digits)) return NULL;
   if (options_more_digits(c->o) && digits) return digits;
   if (options_more_digits(c->o)) {
-    diag_error(c->ast->diags, ast_expr(c->ast, id)->span, "--precision %s needs more digits of this than lagc computes", c->o->precision);
-    diag_help(c->ast->diags, "it knows those of fractions, and of multiples of pi: write others as decimals");
+    diag_error(c->ast->diags, ast_expr(c->ast, id)->span, "--precision %s needs more digits of this value than lagc computes", c->o->precision);
+    diag_help(c->ast->diags, "lagc has all digits of fractions and of multiples of pi; write other values as decimals");
     return NULL;
   }
   char *text = arena_alloc(c->arena, ROOM);

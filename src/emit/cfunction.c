@@ -26,7 +26,7 @@ static const char *const logic =
  * header gets a status for it. */
 static const char *const positive =
   "#ifndef LAG_POSITIVE\n"
-  "#define LAG_POSITIVE(d) LAG_PIVOT(!((d) <= LAG_C(0.0))) /* what is no number is for who gets it to find */\n"
+  "#define LAG_POSITIVE(d) LAG_PIVOT(!((d) <= LAG_C(0.0))) /* NaN passes: the caller finds its cause */\n"
   "#endif\n";
 static const char *const positive_of_header =
   "#ifndef LAG_POSITIVE\n"
@@ -44,7 +44,7 @@ static const char *const solver =
   "  LAG_MASK regular = LAG_C(0.0) == LAG_C(0.0);\n"
   "  for (int k = 0; k < n; k++) {\n"
   "    const int end = band < n - k ? k + band + 1 : n, right = band < n - end ? end + band : n;\n"
-  "    for (int i = k + 1; i < end; i++) { /* the largest of column k comes to row k */\n"
+  "    for (int i = k + 1; i < end; i++) { /* the largest element of column k is moved to row k */\n"
   "      const LAG_REAL here = LAG_FN(fabs)(M[i*n + k]);\n"
   "      const LAG_MASK larger = LAG_OR(here > LAG_FN(fabs)(M[k*n + k]), here != here);\n"
   "      if (!LAG_ANY(larger)) continue;\n"

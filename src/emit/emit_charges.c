@@ -27,11 +27,11 @@ void emit_charges(const File *f) {
   if (!u->charges.n) return;
   if (u->charge_values) {
     const char *head = arena_printf(f->a, "static int charge_values(%s, LAG_REAL *out, LAG_REAL *w)", emit_state_args);
-    emit_function(f, u->charge_values, "The charges of symmetries, and the scales that their drifts are compared with.", head, own, written);
+    emit_function(f, u->charge_values, "The charges of symmetries, and the scales of their drifts.", head, own, written);
   }
   if (u->charge_powers) {
     const char *head = arena_printf(f->a, "static int charge_powers(%s, LAG_REAL *out, LAG_REAL *w)", emit_state_args);
-    emit_function(f, u->charge_powers, "By what the energy, and those charges, change a second.", head, own, written);
+    emit_function(f, u->charge_powers, "Rates of change of the energy and of these charges.", head, own, written);
   }
   table(f);
   sb_printf(f->out, "\nstatic const lag_charges charges = {\n  .n = %u, .of = charge_table, .values = %s, .powers = %s,\n};\n", u->charges.n,

@@ -152,10 +152,10 @@ static void write_head(const Header *h, const char *equations) {
   if (u->fixed[0]) sb_printf(h->out, " * Parameters that are numbers here: %s.\n", u->fixed_values);
   sb_printf(h->out, " * One evaluation of the equations of motion: %s.\n", op_count_text(u->accel, h->a));
   sb_printf(h->out, " * %s\n", math_source_text(u));
-  sb_puts(h->out, " * C99 or C++, <math.h> only; allocates nothing, keeps nothing. All values are in SI units.\n");
+  sb_puts(h->out, " * C99 or C++, <math.h> only; no allocation, no state kept between calls. All values are in SI units.\n");
   sb_puts(h->out, " * This text may be used for any purpose without conditions (0BSD).\n");
   if (u->contacts.n)
-    sb_printf(h->out, " * Contacts: a step knows nothing of them. The loop below calls %s_events, %s_act and %s_hold; one without these falls through.\n", h->lower, h->lower, h->lower);
+    sb_printf(h->out, " * Contacts: a step ignores them. The loop below calls %s_events, %s_act and %s_hold; one without these falls through.\n", h->lower, h->lower, h->lower);
   write_usage(h);
   if (equations) comment_lines(h, equations);
   sb_puts(h->out, " */\n");

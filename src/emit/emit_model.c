@@ -124,9 +124,9 @@ static void emit_variation(const File *f) {
   const IrUnit *u = f->u;
   if (!u->variation) return;
   const char *head = arena_printf(f->a, "static int variation(%s,\n    LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w)", emit_state_args);
-  emit_function(f, u->variation, "dL/dq, the momenta dL/dq', and the generalised forces that are in no L.", head, own, written);
+  emit_function(f, u->variation, "dL/dq, the momenta dL/dq', and the generalised forces outside of L.", head, own, written);
   head = arena_printf(f->a, "static int second(%s, LAG_REAL *h, LAG_REAL *w)", emit_state_args);
-  emit_function(f, u->second, arena_printf(f->a, "Their derivatives, those that are not zero: %s.", op_count_text(u->second, f->a)), head, own2, written2);
+  emit_function(f, u->second, arena_printf(f->a, "Their nonzero derivatives: %s.", op_count_text(u->second, f->a)), head, own2, written2);
 }
 
 static void emit_action(const File *f, uint32_t i) {
@@ -156,7 +156,7 @@ static void emit_switches(const File *f) {
   const IrUnit *u = f->u;
   if (!u->switches.n) return;
   const char *head = arena_printf(f->a, "static int switch_values(%s, LAG_REAL *out, LAG_REAL *w)", emit_state_args);
-  emit_function(f, u->switch_values, "Forces jump where one of these is 0.", head, own, written);
+  emit_function(f, u->switch_values, "Switching functions: forces jump where one of them is 0.", head, own, written);
   sb_puts(f->out, "\nstatic const lag_switch switch_table[] = {\n");
   for (uint32_t i = 0; i < u->switches.n; i++) {
     const IrSwitch *s = &u->switches.at[i];
@@ -194,7 +194,7 @@ static void emit_jumps(const File *f) {
   enum { A_LINE = 8 };
   if (!u->jumps) return;
   const char *head = arena_printf(f->a, "static int jumps(%s, LAG_REAL *d, LAG_REAL *w)", emit_state_args);
-  emit_function(f, u->jumps, "What events do to small changes: derivatives of their functions, and of what their actions set.", head, own, written);
+  emit_function(f, u->jumps, "Linearised events: derivatives of their functions and of the values that their actions set.", head, own, written);
   sb_puts(f->out, "\nstatic const lag_jump jump_table[] = {");
   for (uint32_t i = 0; i < u->jump_at.n; i++)
     sb_printf(f->out, "%s{%u, %d, %u},", i % A_LINE ? " " : "\n  ", u->jump_at.at[i].event, u->jump_at.at[i].row, u->jump_at.at[i].col);
@@ -283,7 +283,7 @@ static void emit_start(const File *f, const IrScene *s, const char *id) {
 
 static void emit_observe(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
-  const char *comment = arena_printf(f->a, "What the scene %s puts out.", s->name);
+  const char *comment = arena_printf(f->a, "Outputs of the scene %s.", s->name);
   const char *head = arena_printf(f->a, "static int observe_%s(%s, LAG_REAL *out, LAG_REAL *w)", id, emit_state_args);
   emit_function(f, s->observe, comment, head, own, written);
 }

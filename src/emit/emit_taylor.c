@@ -245,10 +245,10 @@ static void work(const TaylorWriter *w) {
   if (sums_fit_registers(s)) sb_printf(w->out, "enum { TAYLOR_STATE = %u, TAYLOR_PAIRED = %u, TAYLOR_SQUARED = %u, TAYLOR_PER_PAIR = sizeof(taylor_pair)/sizeof(LAG_REAL) };\n",
                             even(2 * s->nq + s->nz), even(s->sums), even(s->squares));
   sb_puts(w->out, "typedef struct {\n"
-    "  LAG_REAL a[LAG_TAYLOR_ORDER][TAYLOR_SUMS]; /* by order: what sums are made of  */\n"
+    "  LAG_REAL a[LAG_TAYLOR_ORDER][TAYLOR_SUMS]; /* by order: the factors of the sums */\n"
     "  LAG_REAL b[LAG_TAYLOR_ORDER][TAYLOR_SQUARES];\n"
     "  LAG_REAL s[TAYLOR_SUMS];\n"
-    "  LAG_REAL c[TAYLOR_CONSTANTS];              /* what order 0 leaves for all others */\n");
+    "  LAG_REAL c[TAYLOR_CONSTANTS];              /* constants computed by order 0 */\n");
   if (s->room) sb_printf(w->out, "  LAG_REAL m[%u];\n", s->room);
   sb_puts(w->out, "} taylor_work;\n");
 }

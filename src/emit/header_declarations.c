@@ -11,7 +11,7 @@ static const char *const options =
   "#else\n#define LAG_REAL double\n#endif\n#endif\n\n"
   "/* Linkage. */\n"
   "#ifndef LAG_API\n#ifdef LAG_STATIC\n#define LAG_API static inline\n#else\n#define LAG_API\n#endif\n#endif\n\n"
-  "/* What functions return. */\n"
+  "/* Status codes of functions. */\n"
   "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1 /* the mass matrix is singular at this state, or not positive definite as elsewhere */\n};\n";
 
 /* --- indices --- */
@@ -181,12 +181,12 @@ static const char *const docs[FN_COUNT] = {
   [FN_START] = "The state at the start of the scene.",
   [FN_INPUTS] = "The inputs u[LAG_NU] at time t by the model's formulas and tables; a table holds its end values outside.",
   [FN_ACCEL] = "Accelerations a[LAG_NQ], rates zd[LAG_NZ] of the states: what an integrator needs.",
-  [FN_ENERGY] = "e[0]: the energy p q' - L; e[1]: |p q'| + |L|, what its drift is compared with.",
-  [FN_CHARGES] = "out[2*k]: the charge of symmetry k; out[2*k + 1]: the sizes of its terms, what its drift is compared with.",
-  [FN_POWERS] = "What they change by a second: out[0] is that of the energy, out[k + 1] that of symmetry k.",
-  [FN_OBSERVE] = "What the scene puts out: out[LAG_NOUT].",
+  [FN_ENERGY] = "e[0]: the energy p q' - L; e[1]: |p q'| + |L|, the scale of its drift.",
+  [FN_CHARGES] = "out[2*k]: the charge of symmetry k; out[2*k + 1]: the magnitude of its terms, the scale of its drift.",
+  [FN_POWERS] = "Rates of change per second: out[0] of the energy, out[k + 1] of the charge of symmetry k.",
+  [FN_OBSERVE] = "Outputs of the scene: out[LAG_NOUT].",
   [FN_EVENTS] = "The event functions g[LAG_NEV].",
-  [FN_ACT] = "What an event does to the state; *stop becomes 1 when it ends the run.",
+  [FN_ACT] = "Applies the action of an event to the state; *stop becomes 1 if the event ends the run.",
   [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, by the metric of the mass matrix; _rk4_step does so itself.",
   [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was. Events, and contacts, are the caller's.",
   [FN_RK4_STEP_WITH] = "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",

@@ -187,7 +187,7 @@ static void action(const Header *h, uint32_t i) {
   for (uint32_t k = 0; k < n; k++) sb_printf(&head, ", %s_REAL *%s", h->upper, own[k]);
   sb_putc(&head, ')');
   CStyle st = style_for(h, own_names(h, own), out);
-  CFunction c = {.comment = arena_printf(h->a, "What the event %s does: q1, v1, z1 hold the state after it.", h->u->events.at[i].name),
+  CFunction c = {.comment = arena_printf(h->a, "Action of the event %s: q1, v1, z1 hold the state after it.", h->u->events.at[i].name),
                  .head = header_wrapped(h, sb_text(&head)), .returns = 1, .own_work = 1};
   cfunction(h->u->events.at[i].action, &st, &c, h->out);
 }

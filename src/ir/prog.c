@@ -253,7 +253,7 @@ static const char *verify_nest(const Prog *p, Slot s) {
   for (Slot k = 1; k < n->body->ins.n; k++) {
     const Ins *i = &n->body->ins.at[k];
     if (i->op == IR_LOAD && !ir_is_scalar(i->array) && i->index >= (i->array == ARR_OUTER ? n->nouter : n->n))
-      return arena_printf(p->arena, "nest %u loads what is not there", s);
+      return arena_printf(p->arena, "a load of nest %u has an index out of range", s);
   }
   return prog_verify(n->body);
 }
@@ -273,7 +273,7 @@ const char *prog_verify(const Prog *p) {
     if (i->op == IR_SOLVED && p->ins.at[i->a].op != IR_SOLVE) return arena_printf(p->arena, "instruction %u has no solve", s);
   }
   for (uint32_t k = 0; k < p->stores.n; k++)
-    if (p->stores.at[k].slot >= p->ins.n) return "a store of nothing";
+    if (p->stores.at[k].slot >= p->ins.n) return "a store names no instruction";
   return NULL;
 }
 

@@ -99,7 +99,7 @@ static CheckVerdict check_direction(Check *c, const char *name, Span span, const
   BoundedSum momentum = {0}, slope = {0}, force = {0};
   if (!check_run_text(c)) return DISMISSED;
   BoundedSum residual = check_residual(c);
-  CheckVerdict v = check_compare(c, &residual, 0, span, "what is left of the equation of motion of", name);
+  CheckVerdict v = check_compare(c, &residual, 0, span, "the residual of the equation of motion of", name);
   if (!variation || v != AGREES) return v;
   Real of[3] = {0};
   for (int k = 0; k < 3; k++)

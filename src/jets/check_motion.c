@@ -216,7 +216,7 @@ static CheckVerdict check_taylor(Check *c) {
       BoundedSum t;
       Real said, difference = taylor_difference(s, x, h, i, i < s->nq ? c->a_error[i] : c->zd_error[i - s->nq], a, zd, &t, &said);
       differs |= difference > 64 * 1024 * t.sum.e + 1e-9L * t.size;
-      if (shorter) v = worse(v, check_compare(c, &t, said, c->m->span, "what follows from Taylor coefficients of", i < s->nq ? c->m->coords.at[i].name : c->m->states.at[i - s->nq].name));
+      if (shorter) v = worse(v, check_compare(c, &t, said, c->m->span, "the rate from Taylor coefficients of", i < s->nq ? c->m->coords.at[i].name : c->m->states.at[i - s->nq].name));
     }
     if (!differs) return AGREES;
   }

@@ -57,7 +57,7 @@ static CheckVerdict check_events(Check *c) {
     const TextAction *a = &o->actions.at[i];
     if (!a->value || !check_run(c, c->u->events.at[a->event].action, set)) continue;
     v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, a->value, 0, 0), set[a->kind == SYM_COORD ? 0 : a->kind == SYM_VEL ? 1 : 2][a->index],
-                               m->events.at[a->event].span, "what is set by the event", m->events.at[a->event].name));
+                               m->events.at[a->event].span, "the value set by the event", m->events.at[a->event].name));
   }
   return v;
 }

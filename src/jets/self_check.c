@@ -122,7 +122,7 @@ void self_check_print(const Eqns *e, const SelfCheck *statistics, StrBuf *out) {
   sb_printf(out, "compared with the text%s%s: %u value%s at %u state%s, %u of them far from the start", m->scene.name ? ", scene " : "", m->scene.name ? m->scene.name : "",
             statistics->values, statistics->values == 1 ? "" : "s", statistics->states, statistics->states == 1 ? "" : "s", statistics->far);
   if (statistics->directions) sb_printf(out, "; equations of motion along %u displacement%s at each", statistics->directions, statistics->directions == 1 ? "" : "s");
-  sb_puts(out, statistics->states ? "\n" : ": nothing was decided\n");
+  sb_puts(out, statistics->states ? "\n" : ": no state allowed a comparison\n");
   if (statistics->unsupported) sb_printf(out, "  not compared: the equations of motion, whose text has `%s`, which the comparison does not evaluate\n", statistics->unsupported);
   if (statistics->outputs) sb_printf(out, "  not compared: the outputs %s\n", statistics->outputs);
 }

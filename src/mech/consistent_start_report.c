@@ -30,14 +30,14 @@ void start_report(const Eqns *e, const StartResult *r) {
       return;
     case LAG_START_FLAT:
       diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` vanish where it holds, so that no force can hold it", scene, k->name);
-      diag_help(m->diags, "write it so that they do not: x = 0 in place of x^2 = 0");
+      diag_help(m->diags, "write a constraint whose derivatives do not vanish: x = 0 in place of x^2 = 0");
       return;
     case LAG_START_STEEP:
       diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` have no value where it holds", scene, k->name);
-      diag_help(m->diags, "write it so that they have: x = 1 in place of sqrt(x - 1) = 0");
+      diag_help(m->diags, "write a constraint whose derivatives have values: x = 1 in place of sqrt(x - 1) = 0");
       return;
     case LAG_START_NONE:
       diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`%s", scene, k->name, off);
-      diag_help(m->diags, "start nearer to where it holds; at a place where its derivatives vanish no direction leads there");
+      diag_help(m->diags, "start nearer to a state that obeys it; where its derivatives vanish no direction leads there");
   }
 }

@@ -40,7 +40,7 @@ static int check_contains(const Eqns *e, const Constraint *k, const ExprPartials
     return 0;
   }
   diag_error(d, k->span, "the constraint `%s` contains no coordinate", k->name);
-  diag_help(d, "it says something of parameters and time alone, which no force can bring about");
+  diag_help(d, "a condition on parameters and time alone cannot be met by any force");
   return 0;
 }
 

@@ -222,7 +222,8 @@ int eqns_check_numbers(const Eqns *e) {
     }
     if (num_is_imprecise(n)) {
       diag_error(m->diags, span, "rounding leaves fewer than six digits of a number in the equations of motion");
-      diag_help(m->diags, "numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits; write what such numbers come to");
+      diag_help(m->diags, "numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits; write the result of such a "
+                          "difference as one number");
       return 0;
     }
   }

@@ -29,7 +29,8 @@ static void warn_of_momentum(const Eqns *e, uint32_t i, const ExprJumps *said) {
   Name q = expr_symbol(e->g, eqns_coordinate(e, i))->name;
   for (uint32_t k = 0; k < all.n; k++) {
     if (is_among(said, all.at[k].node)) continue;
-    diag_warning(m->diags, place_of(m, all.at[k].node), "the momentum of `%s` jumps here, and the equations of motion have no impulse for it", q);
+    diag_warning(m->diags, place_of(m, all.at[k].node), "the momentum of `%s` jumps here, and the equations of motion lack the impulse of the jump",
+                 q);
     diag_help(m->diags, "smooth it, or let an event of the same place set the velocity: `event NAME: t - 1 [s] rising { %s' = ... }`", q);
   }
 }
@@ -45,8 +46,8 @@ static void warn_of_corners(const Eqns *e) {
     for (uint32_t i = 0; i < jumps.n; i++) {
       if (!expr_contains(e->g, jumps.at[i].side, is_of_motion, m)) continue;
       Span place = expr_map_get(&m->written, jumps.at[i].node) ? place_of(m, jumps.at[i].node) : all->of[k]->span;
-      diag_warning(m->diags, place, "the constraint `%s` has a corner here, and what a motion does at it is not known", all->of[k]->name);
-      diag_help(m->diags, "round it, as sqrt(x^2 + w^2) does abs(x); or use contacts, whose impacts have a law");
+      diag_warning(m->diags, place, "the constraint `%s` has a corner here, and no equation says how a motion passes it", all->of[k]->name);
+      diag_help(m->diags, "round it, as sqrt(x^2 + w^2) for abs(x); or use contacts, whose impacts have a law");
     }
   }
 }
@@ -56,9 +57,9 @@ static void warn_of_switches(const Eqns *e) {
   const Model *m = e->m;
   SwitchingSurfaces all = switching_surfaces(e);
   for (uint32_t i = 0; i < all.n; i++) {
-    diag_warning(m->diags, all.at[i].span, "a force jumps where `%s` is 0, and a motion that it holds there, as dry friction does, cannot be followed: the run ends when it gets stuck",
+    diag_warning(m->diags, all.at[i].span, "a force jumps where `%s` is 0; a motion that sticks there, as under dry friction, cannot be followed: the run ends where it sticks",
                  all.at[i].surface);
-    diag_help(m->diags, "smooth it, as tanh(v/w) does sign(v) with a small velocity w, and take radau; or let an event stop the run there");
+    diag_help(m->diags, "smooth it, as tanh(v/w) for sign(v) with a small velocity w, and take radau; or let an event stop the run there");
   }
 }
 
@@ -72,8 +73,8 @@ void discontinuity_warn(const Eqns *e) {
   ExprJumps all = discontinuities_of(e, m->lagrangian);
   for (uint32_t i = 0; i < all.n; i++) {
     if (!expr_contains(e->g, all.at[i].side, is_of_motion, m)) continue;
-    diag_warning(m->diags, place_of(m, all.at[i].node), "L jumps here, and the equations of motion have no impulse for it");
-    diag_help(m->diags, "forces are derivatives on each side of the jump: smooth it, as tanh(x/w) does sign(x), or let an event or a contact do what happens there");
+    diag_warning(m->diags, place_of(m, all.at[i].node), "L jumps here, and the equations of motion lack the impulse of the jump");
+    diag_help(m->diags, "forces are derivatives on each side of the jump: smooth it, as tanh(x/w) for sign(x), or let an event or a contact give the impulse");
     vec_push(m->arena, &said, all.at[i]);
   }
   ExprJumps known = {said.at, said.n};

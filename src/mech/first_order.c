@@ -246,10 +246,11 @@ static void report_singular(const FirstOrderBuilder *w, const Block *b) {
   Span span = w->m->lagrangian_span;
   if (w->to->closed && w->n % 2) {
     diag_error(d, span, "L is linear in the velocities, and has an odd number of coordinates, %u: they do not determine their motion", w->n);
-    diag_help(d, "of first order, coordinates come in pairs, as positions and momenta do; one whose rate is known is a `state` with a `flow`");
+    diag_help(d, "of first order, coordinates come in pairs, as positions and momenta do; declare a coordinate whose rate is known as a `state` "
+                 "with a `flow`");
   } else if (b->n == 1) {
-    diag_error(d, state_of(w, b->at[0])->span, "L is linear in the velocities, and does not determine that of `%s`", state_of(w, b->at[0])->name);
-    diag_help(d, "terms like x*y' must couple the coordinates in pairs; what is a total time derivative does not count");
+    diag_error(d, state_of(w, b->at[0])->span, "L is linear in the velocities, and does not determine the velocity of `%s`", state_of(w, b->at[0])->name);
+    diag_help(d, "terms like x*y' must couple the coordinates in pairs; total time derivatives do not count");
   } else {
     diag_error(d, span, "L is linear in the velocities, and does not determine them: the two-form of %s is singular in every state", names_of(w, b, NULL, b->n));
     diag_help(d, "with dL/dq_i' = theta_i, the matrix dtheta_j/dq_i - dtheta_i/dq_j must be regular; total time derivatives do not count");

@@ -74,10 +74,10 @@ static const char *invert(LegendreTransform *w) {
     if (block[i] != i) continue;
     for (uint32_t k = i; k < w->n; k++) {
       if (block[k] != i) continue;
-      if (n == BLOCK_MOST) return "the mass matrix couples more than three velocities, and is inverted by the program";
+      if (n == BLOCK_MOST) return "the mass matrix couples more than three velocities, too many for an inverse in closed form";
       at[n++] = k;
     }
-    if (!invert_block(w, at, n)) return "the inverse of the mass matrix is long, and left to the program";
+    if (!invert_block(w, at, n)) return "the inverse of the mass matrix is too long in closed form";
   }
   return NULL;
 }

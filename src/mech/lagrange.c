@@ -287,11 +287,11 @@ static void report_singular(const Eqns *e, const long double *null) {
     diag_error(d, m->lagrangian_span, "the mass matrix is zero: L does not contain velocities");
     diag_help(d, "nothing moves without kinetic energy, or terms like x*y' that make a coordinate the momentum of another");
   } else if (e->mass.n == 0) {
-    diag_error(d, m->lagrangian_span, "the mass matrix is zero: what is not linear in the velocities cancels");
-    diag_help(d, "write L so that they stand in it linearly: it is then one of first order, without accelerations");
+    diag_error(d, m->lagrangian_span, "the mass matrix is zero: all terms that are not linear in the velocities cancel");
+    diag_help(d, "write L linear in the velocities: the equations are then of first order, without accelerations");
   } else if (light) {
     diag_error(d, m->lagrangian_span, "the mass matrix is singular in every state: without inertia: %s; L is linear in these velocities, not in the others", light);
-    diag_help(d, "not yet: Lagrangians of mixed order; give all coordinates inertia, or none, or take what follows at once for a `state` with a `flow`");
+    diag_help(d, "not yet: Lagrangians of mixed order; give all coordinates inertia, or none, or declare a coordinate that follows at once as a `state` with a `flow`");
   } else if (involved == 1) {
     diag_error(d, m->coords.at[last].span, "the mass matrix is singular in every state: `%s` has no inertia%s", m->coords.at[last].name,
                m->constraints.n ? ", and no constraint moves it" : "");

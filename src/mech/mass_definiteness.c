@@ -188,6 +188,6 @@ void mass_warn_nonpositive(const Eqns *e) {
     const Param *p = &m->params.at[k];
     diag_warning(m->diags, p->span, "`%s` is %s, and makes the inertia of `%s` %s", p->name, arena_printf(m->arena, "%.6Lg", value[p->sym]),
                  m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
-    diag_help(m->diags, "give it a positive value; with `> 0` behind it a run refuses others");
+    diag_help(m->diags, "give it a positive value; with `> 0` after it a run refuses others");
   }
 }

@@ -74,7 +74,7 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   if (!effect && st->kind == STMT_KINETIC) b->m->kinetic_span = st->span;
   if (st->kind == STMT_DISSIPATION) b->m->dissipation_span = st->span;
   Value v = resolve(b, st->rhs, IN_DYNAMICS, effect);
-  if (v.e && v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, and a number is wanted here", shape_text(b, v.n));
+  if (v.e && v.n) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "this is %s, but a number is needed here", shape_text(b, v.n));
   en->failed |= st->kind != STMT_DISSIPATION && (!v.e || v.n);
   if (!v.e || v.n) return;
   b->m->domain = domain_and(b, b->m->domain, v.domain);
@@ -315,7 +315,7 @@ static void check_whole(Builder *b) {
   if (b->diags->errors) return; /* a missing part may be one that was refused */
   if (!m->coords.n && !m->states.n) {
     diag_error(b->diags, m->span, "the model has no coordinates and no states");
-    diag_help(b->diags, "declare what moves: `coord x [m]`");
+    diag_help(b->diags, "declare a coordinate: `coord x [m]`");
   }
   if (m->coords.n && !m->lagrangian) {
     diag_error(b->diags, m->coords.at[0].span, "there are coordinates but no Lagrangian");

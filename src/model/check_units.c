@@ -24,7 +24,7 @@ const char *in_dim(const Builder *b, Dim d) { return in_unit(b, dim_text(b->dims
 void explain_dims(Builder *b, Dim x, Dim y) {
   DimCause c;
   Name open = dim_open_name(b->dims, x) ? dim_open_name(b->dims, x) : dim_open_name(b->dims, y);
-  if (open && y != DIM_ANY) diag_help(b->diags, "whatever unit `%s` has, they differ by [%s]", open, dim_text(b->dims, dim_div(b->dims, x, y)));
+  if (open && y != DIM_ANY) diag_help(b->diags, "for any unit of `%s` they differ by [%s]", open, dim_text(b->dims, dim_div(b->dims, x, y)));
   if (!dim_cause(b->dims, x, &c) && !dim_cause(b->dims, y, &c)) return;
   diag_also(b->diags, c.why, "here `%s`, which is declared without a unit, is %s", c.name, in_dim(b, c.is));
 }
@@ -73,7 +73,7 @@ int need_pure(Eval *ev, AstId arg, const char *what) {
   if (dim_equate(b->dims, v->dim, DIM_NONE, span)) return 1;
   diag_error(b->diags, span, "%s takes a pure number or an angle; `%s` is in [%s]", what, ast_short(b, arg), shown_unit(b, v));
   if (strcmp(what, "an exponent") == 0 && ast_expr(b->ast, arg)->kind == AST_UNIT)
-    diag_help(b->diags, "a unit belongs to what stands directly before it, here to the exponent: write `5 [N/s^2]*t^2`, or `(5*t^2) [...]`");
+    diag_help(b->diags, "a unit belongs to the operand directly before it, here to the exponent: write `5 [N/s^2]*t^2`, or `(5*t^2) [...]`");
   else if (!dim_is_open(b->dims, dim_resolved(b->dims, v->dim)))
     diag_help(b->diags, "where a number in it has a unit, write it: `[%s]`", dim_text(b->dims, dim_pow(b->dims, v->dim, num_int(-1))));
   explain_dims(b, v->dim, DIM_ANY);
@@ -89,7 +89,7 @@ int refuse_point(Eval *ev, AstId operand, const char *why) {
   Expr e = value_of(ev, operand)->e;
   StrBuf kelvin = strbuf(b->arena);
   if (expr_is_num(b->g, e)) num_print(&kelvin, num_double(num_value(expr_number(b->g, e))));
-  diag_error(b->diags, x->span, "`%s` is a point on a scale with a zero of its own, and %s", ast_short(b, operand), why);
+  diag_error(b->diags, x->span, "`%s` is a temperature on a scale with an offset, and %s", ast_short(b, operand), why);
   diag_help(b->diags, "for a difference write `%s [K]`, for the temperature itself `%s [K]`", number, kelvin.n ? sb_text(&kelvin) : "...");
   return 0;
 }

@@ -38,7 +38,7 @@ int model_command_value(const Model *m, AstId target, AstId value, double *out, 
     Value of = resolve(b, target, IN_OBSERVE, NULL);
     if (!of.e) return 0;
     if (of.n || !setting_unit(b, of.e, &unit)) {
-      diag_error(b->diags, ast_expr(b->ast, target)->span, "`%s` is nothing that a run sets", ast_short(b, target));
+      diag_error(b->diags, ast_expr(b->ast, target)->span, "a run cannot set `%s`", ast_short(b, target));
       if (of.n) diag_help(b->diags, "it is %s: set its components, `%s.x=...`", shape_text(b, of.n), ast_text(b, target));
       else diag_help(b->diags, "parameters, inputs, and the starts of coordinates, velocities and states are set so");
       return 0;

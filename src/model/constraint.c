@@ -14,7 +14,7 @@ static int is_refused(Builder *b, Expr c, const char *what, Name name, Span span
   unsigned kinds = expr_kinds(b->g, c);
   if (kinds & 1u << SYM_STATE) {
     diag_error(b->diags, span, "the %s `%s` contains a state: constraints hold between coordinates", what, name);
-    diag_help(b->diags, "declare what it constrains as a coordinate");
+    diag_help(b->diags, "declare the constrained quantity as a coordinate");
     return 1;
   }
   if (kinds & 1u << SYM_INPUT) {
@@ -96,7 +96,7 @@ static uint32_t add_switched_event(Builder *b, const Contact *c, const char *suf
 static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *gap, const Value *e) {
   Span span = ast_expr(b->ast, st->lhs)->span, bounce = ast_expr(b->ast, st->rhs)->span;
   if (gap->n || e->n) {
-    diag_error(b->diags, gap->n ? span : bounce, "this is %s, and a number is wanted here", shape_text(b, gap->n ? gap->n : e->n));
+    diag_error(b->diags, gap->n ? span : bounce, "this is %s, but a number is needed here", shape_text(b, gap->n ? gap->n : e->n));
     return 0;
   }
   unsigned kinds = expr_kinds(b->g, gap->e);

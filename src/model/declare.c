@@ -58,7 +58,7 @@ static int check_brackets(Builder *b, const AstStmt *st, Name effect) {
   }
   if (!dims_are_units(b, st)) return 1;
   const char *index = ast_text(b, st->dims);
-  diag_error(b->diags, st->name_span, "`%s[%s]` stands for a family, and `%s` is no constant", st->name, index, index);
+  diag_error(b->diags, st->name_span, "`%s[%s]` declares a family, but `%s` is not a constant", st->name, index, index);
   diag_help(b->diags, "a unit stands apart: `%s [%s]`", st->name, index);
   declare_refused(b, st, effect);
   return 0;
@@ -122,7 +122,7 @@ static void report_rotation(Builder *b, const AstStmt *st) {
     diag_error(b->diags, st->unit.span, "a rotation has no unit: its four numbers are those of a unit quaternion");
     diag_help(b->diags, "write `coord %s: rotation`", st->name);
   } else {
-    diag_error(b->diags, st->name_span, "a rotation is no angle, and `periodic` is one");
+    diag_error(b->diags, st->name_span, "a rotation is not an angle, and cannot be `periodic`");
     diag_help(b->diags, "write `coord %s: rotation`", st->name);
   }
 }
@@ -175,8 +175,8 @@ static void add_coord(Builder *b, const AstStmt *st, Name name, Unit unit) {
 /* Periodic coordinates have period 2 pi: they must be angles. */
 static void check_angle(Builder *b, const AstStmt *st, const Unit *unit) {
   if (dim_equate(b->dims, unit->dim, DIM_NONE, st->name_span)) return;
-  diag_error(b->diags, st->name_span, "`%s` is periodic, and in [%s]: no angle", st->name, unit->text);
-  diag_help(b->diags, "angles are in [rad], [deg] or [rev]; of other coordinates leave `periodic` out");
+  diag_error(b->diags, st->name_span, "`%s` is periodic but in [%s], which is not an angle", st->name, unit->text);
+  diag_help(b->diags, "angles are in [rad], [deg] or [rev]; leave `periodic` out for other coordinates");
 }
 
 /* Declares coordinates and states. Where L is linear in all velocities, coordinates are stored as states. */

@@ -27,8 +27,8 @@ void warn_signs(Builder *b) {
     if (!p->value) continue;
     expr_eval(b->g, &p->value, 1, x, &x[p->sym]);
     if (expr_is_num(b->g, p->value) || has_sign(p->sign, x[p->sym])) continue;
-    diag_warning(b->diags, p->span, "`%s` is declared %s, and comes to %s", p->name, sign_texts[p->sign], arena_printf(b->arena, "%.6Lg", x[p->sym]));
-    diag_help(b->diags, "a run refuses this: give it, or what it is made of, another value");
+    diag_warning(b->diags, p->span, "`%s` is declared %s, but its value is %s", p->name, sign_texts[p->sign], arena_printf(b->arena, "%.6Lg", x[p->sym]));
+    diag_help(b->diags, "a run refuses this value: change it, or the parameters it depends on");
   }
 }
 
@@ -38,7 +38,7 @@ void check_sign(Builder *b, const Param *p, Span span) {
   ExprSign s = expr_sign(b->g, p->value);
   int zero = expr_is_zero(b->g, p->value), above = s == SIGN_POSITIVE, below = s == SIGN_NEGATIVE;
   int wrong = p->sign == SIGN_GT ? below || zero : p->sign == SIGN_GE ? below : p->sign == SIGN_LT ? above || zero : above;
-  if (wrong) diag_error(b->diags, span, "`%s` is declared %s, and this value is not", p->name, sign_texts[p->sign]);
+  if (wrong) diag_error(b->diags, span, "`%s` is declared %s, but this value is not", p->name, sign_texts[p->sign]);
 }
 
 /* The parameter declaration in progress. */

@@ -246,7 +246,7 @@ void collect_uses(Builder *b, const AstStmt *scene) {
     else if (!find_named(b->ast, STMT_EFFECT, x->name)) report_unnamed(b->ast, STMT_EFFECT, x->name_span, x->name);
     else if (used_before(scene, x)) {
       diag_warning(b->diags, x->name_span, "the scene `%s` uses the effect `%s` twice", scene->name, x->name);
-      diag_also(b->diags, used_before(scene, x)->name_span, "it is on from here");
+      diag_also(b->diags, used_before(scene, x)->name_span, "it is turned on here");
     }
     else if (!uses_effect(b, x->name)) vec_push(b->arena, &b->m->effects, x->name);
   }
@@ -286,7 +286,7 @@ static void report_excluded(Builder *b, const AstStmt *effect, const AstStmt *x)
     for (const AstStmt *s = b->ast->first; s != effect; s = s->next)
       if (s->kind == STMT_EFFECT && s->name == x->name) return;
   diag_error(b->diags, x->span, "the effects `%s` and `%s` exclude each other, and the scene `%s` uses both", effect->name, x->name, b->m->scene.name);
-  diag_help(b->diags, "use one of them; `use none` turns off what the scene has from others by `like`");
+  diag_help(b->diags, "use one of them; `use none` turns off effects inherited by `like`");
   const AstStmt *use = use_of(b, x->name);
   if (use) diag_also(b->diags, use->name_span, "`%s` is used here", x->name);
 }

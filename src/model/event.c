@@ -64,7 +64,7 @@ static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
     if (kind == SYM_COORD || kind == SYM_VEL || kind == SYM_STATE) continue;
     diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "an event can set a coordinate, a velocity or a state");
     if (kind == SYM_RATE && b->m->first_order) diag_help(b->diags, "L is linear in the velocities: `%s` follows from the coordinates", ast_text(b, st->lhs));
-    else diag_help(b->diags, "what an event changes is a `state`: `state k`, with `flow k' = 0` where nothing else does");
+    else diag_help(b->diags, "declare a value that an event changes as a `state`: `state k`, with `flow k' = 0` where nothing else changes it");
     return;
   }
   SymId sym = expr_sym_id(b->g, target.e);
@@ -104,7 +104,7 @@ void add_event(Builder *b, const AstStmt *st, Name effect) {
   check_name_is_new(b, "event", ev.name, effect, st->name_span);
   check_set_once(b, st);
   Value g = resolve(b, st->lhs, IN_DYNAMICS, effect);
-  if (g.n) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "this is %s, and a number is wanted here", shape_text(b, g.n));
+  if (g.n) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "this is %s, but a number is needed here", shape_text(b, g.n));
   ev.g = g.e;
   add_actions(b, st, effect, &ev);
   if (g.e) vec_push(b->arena, &b->m->events, ev);
@@ -117,7 +117,7 @@ void add_section(Builder *b, const Section *s) {
   Value g = resolve(b, s->expr, IN_OBSERVE, NULL);
   if (!g.e) return;
   if (g.n) {
-    diag_error(b->diags, span, "this is %s, and a number is wanted here", shape_text(b, g.n));
+    diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, g.n));
     diag_help(b->diags, "a section is where one number is zero: name a component");
     return;
   }

@@ -49,7 +49,7 @@ int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, in
 
 void report_many_indices(Builder *b, Span span) {
   diag_error(b->diags, span, "a family has one index, or two");
-  diag_help(b->diags, "count two of them by one: `u[(i - 1)*K + j]`, in a family of N*K");
+  diag_help(b->diags, "combine two indices into one: `u[(i - 1)*K + j]`, in a family of N*K");
 }
 
 int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out) {

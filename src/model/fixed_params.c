@@ -23,8 +23,8 @@ static const Entity *find_param(Builder *b, const char *word, int *off) {
     diag_error(b->diags, (Span){0}, "--fix %s: more than one effect in use declares it", word);
     diag_help(b->diags, "say which: --fix %s.%s", e->effect, name);
   } else if (e) {
-    diag_error(b->diags, (Span){0}, "--fix %s: it is %s; parameters are fixed", word, ent_kind_text(e->kind));
-    if (e->kind == ENT_CONST) diag_help(b->diags, "constants are fixed as it is: -D %s=...", word);
+    diag_error(b->diags, (Span){0}, "--fix %s: this is %s; only parameters can be fixed", word, ent_kind_text(e->kind));
+    if (e->kind == ENT_CONST) diag_help(b->diags, "constants are set when compiling: -D %s=...", word);
   } else {
     VEC(Name) known = {0};
     for (uint32_t i = 0; i < b->scope.all.n; i++) {
@@ -75,8 +75,8 @@ static void evaluate(Builder *b) {
     if (!p->fixed) continue;
     p->number = expr_is_num(b->g, p->value) ? expr_number(b->g, p->value) : num_double((double)x[p->sym]);
     if (!expr_contains(b->g, p->value, is_free_param, m)) continue;
-    diag_error(b->diags, p->span, "--fix: `%s` is made of other parameters, and they are not fixed", p->name);
-    diag_help(b->diags, "fix them, too, or --fix all; what follows from fixed parameters need not be fixed itself");
+    diag_error(b->diags, p->span, "--fix: `%s` depends on other parameters, which are not fixed", p->name);
+    diag_help(b->diags, "fix them, too, or use --fix all; parameters that depend only on fixed ones need no --fix");
   }
 }
 

@@ -188,13 +188,13 @@ static int read_number(Table *t, Piece line, uint32_t column, const char *what, 
   Builder *b = t->b;
   uint32_t n = fields(t, line, column, field);
   if (n <= column) {
-    mistake(t, line, arena_printf(b->arena, "the %s stands in column %u, and this row has %u", what, column + 1, n));
+    mistake(t, line, arena_printf(b->arena, "the %s is in column %u, but this row has %u", what, column + 1, n));
     diag_help(b->diags, "a row is `time, value`; a comment begins with `#`");
     return 0;
   }
   if (number(t, *field, x)) return 1;
   if (field->begin == field->end) mistake(t, (Piece){field->begin, field->begin + 1}, arena_printf(b->arena, "the %s is missing", what));
-  else mistake(t, *field, arena_printf(b->arena, "the %s is no number", what));
+  else mistake(t, *field, arena_printf(b->arena, "the %s is not a number", what));
   if (memchr(t->file.text + field->begin, ',', field->end - field->begin)) diag_help(b->diags, "numbers are written with a point: `0.5`");
   else diag_help(b->diags, "numbers are decimal and finite: `0.5`, `1e-3`; the row can be left out, or commented out with `#`");
   return 0;
@@ -206,7 +206,7 @@ static void read_row(Table *t, Piece line) {
   const char *nul = memchr(t->file.text + line.begin, '\0', line.end - line.begin);
   if (nul) {
     uint32_t place = (uint32_t)(nul - t->file.text);
-    mistake(t, (Piece){place, place + 1}, "this byte is no text");
+    mistake(t, (Piece){place, place + 1}, "this byte is not text");
     diag_help(t->b->diags, "a table is a text of numbers");
     return;
   }

@@ -35,7 +35,7 @@ static void unknown_option(Builder *b, const MethodInfo *m, const AstExpr *name)
   Name near = suggest(name->name, names.at, names.n);
   diag_error(b->diags, name->span, "the method `%s` has no option `%s`", m->name, name->name);
   if (near) diag_help(b->diags, "did you mean `%s`? `lagc methods` lists the options", near);
-  else if (names.n) diag_help(b->diags, "its options: %s; `lagc methods` tells what they mean", list_options(b, m));
+  else if (names.n) diag_help(b->diags, "its options: %s; `lagc methods` explains them", list_options(b, m));
   else diag_help(b->diags, "it has no options");
 }
 

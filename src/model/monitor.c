@@ -39,7 +39,7 @@ static int charge_named(Builder *b, const AstExpr *x) {
 void set_monitor(Builder *b, const AstStmt *st) {
   if (!st->lhs) {
     diag_error(b->diags, st->name_span, "`monitor %s` has no limit", st->name);
-    diag_help(b->diags, "say what the drift may be: `monitor %s 1e-8`; `monitor none` drops what was said before", st->name);
+    diag_help(b->diags, "give the largest drift allowed: `monitor %s 1e-8`; `monitor none` drops the monitors before it", st->name);
     return;
   }
   const AstExpr *x = ast_expr(b->ast, st->lhs);

@@ -84,7 +84,7 @@ static int advise_rate(Builder *b, const char *name) {
 /* Recognises a momentum p_x where none is allowed. */
 static int advise_momentum(Builder *b, const char *name) {
   if (strncmp(name, "p_", 2) != 0 || !has_rate(b, name + 2, strlen(name + 2))) return 0;
-  diag_help(b->diags, "the momentum `%s` may stand in outputs, observables and expectations; here write it with the velocity `%s'`, which is what an event sets", name,
+  diag_help(b->diags, "the momentum `%s` may stand in outputs, observables and expectations; here write it with the velocity `%s'`, which an event sets", name,
             name + 2);
   return 1;
 }
@@ -211,7 +211,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
   if (b->diags->list.n > DIAG_MAX) return; /* the message will not be shown, and the search is linear in the number of names */
   const AstStmt *later = declared_in_use(b, name, effect);
   if (later && span.begin >= later->span.begin && span.end <= later->span.end) {
-    diag_help(b->diags, "its own value cannot contain it");
+    diag_help(b->diags, "the value of a name cannot contain the name itself");
     return;
   }
   if (later) {
@@ -283,7 +283,7 @@ void warn_unit_is_constant(Builder *b, const AstUnit *u) {
   const Entity *e = scope_find(&b->scope, u->at[0].name, NULL, &ambiguous);
   if (!e || e->kind != ENT_CONST) return;
   diag_warning(b->diags, u->span, "`[%s]` is a unit here, not the constant `%s`", u->text, e->name);
-  diag_help(b->diags, "an index touches what it belongs to: `x[%s]`", e->name);
+  diag_help(b->diags, "an index touches its name: `x[%s]`", e->name);
 }
 
 void report_no_member(Builder *b, Span span, Name effect, Name name) {

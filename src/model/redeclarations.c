@@ -53,9 +53,9 @@ static void check_setting(Builder *b, Scope *said, const AstStmt *st, const char
   const Entity *old = key ? scope_own(said, key, NULL) : NULL;
   if (key && !old) scope_add(said, (Entity){.name = key, .span = st->span});
   if (!old) return;
-  diag_error(b->diags, st->span, "`%s` is said twice: the second would win", key);
+  diag_error(b->diags, st->span, "`%s` is given twice: the second would win", key);
   diag_help(b->diags, "leave out one of them");
-  diag_also(b->diags, old->span, "first said here");
+  diag_also(b->diags, old->span, "first given here");
 }
 
 void check_set_once(Builder *b, const AstStmt *block) {

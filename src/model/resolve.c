@@ -93,7 +93,7 @@ static Value node_value(Eval *ev, AstId id) {
       diag_help(b->diags, "`param m[3] = {1, 3, 1/2}`, `start th = {0.1, 0.2}`; a vector is written `(a, b, c)`");
       return FAILED;
     case AST_STRING:
-      diag_error(b->diags, x->span, "a text is no value here");
+      diag_error(b->diags, x->span, "a quoted text is not a value here");
       diag_help(b->diags, "a table from a file gives an input its values: `input u = \"file.csv\"`, or `u = \"file.csv\"` in a scene");
       return FAILED;
     case AST_BIND: case AST_ERROR: return FAILED;
@@ -125,7 +125,7 @@ int operand_fits(Eval *ev, const AstExpr *x, AstId i) {
     return 0;
   }
   if (v->n && !takes_vectors(ev, x)) {
-    diag_error(b->diags, ast_expr(b->ast, i)->span, "`%s` is %s, and a number is wanted here", ast_short(b, i), shape_text(b, v->n));
+    diag_error(b->diags, ast_expr(b->ast, i)->span, "`%s` is %s, but a number is needed here", ast_short(b, i), shape_text(b, v->n));
     if (x->kind == AST_POW && i == x->a) diag_help(b->diags, "the square of a vector is `dot(a, a)`, its length `norm(a)`");
     else diag_help(b->diags, "its components are `.x`, `.y`%s; `dot(a, b)` and `norm(a)` are numbers", v->n > 2 ? ", `.z`" : "");
     return 0;
@@ -166,7 +166,7 @@ static Value usable_value(Eval *ev, const AstExpr *x, Value v) {
     }
     if (has_number(ev->b->g, v.at[k], num_is_imprecise)) {
       diag_error(ev->b->diags, x->span, "rounding leaves fewer than six digits of a number here");
-      diag_help(ev->b->diags, "write what it comes to: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
+      diag_help(ev->b->diags, "write its result as one number: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
       return FAILED;
     }
   }
@@ -391,7 +391,7 @@ Value values_in(Builder *b, Value v, Span span, const Unit *unit) {
   if (is_zero(b, &v) || dim_equate(b->dims, v.dim, unit->dim, span)) return v;
   const char *want = unit->text[0] ? unit->text : dim_text(b->dims, unit->dim);
   const char *wanted = strcmp(want, "1") == 0 ? "a pure number" : arena_printf(b->arena, "[%s]", want);
-  diag_error(b->diags, span, "this value is %s, and %s is wanted here", in_unit(b, shown_unit(b, &v)), wanted);
+  diag_error(b->diags, span, "this value is %s, but %s is needed here", in_unit(b, shown_unit(b, &v)), wanted);
   if (dim_resolved(b->dims, v.dim) == DIM_NONE)
     diag_help(b->diags, "give a number in it its unit, or multiply by `1 [%s]`", dim_text(b->dims, unit->dim));
   explain_dims(b, v.dim, unit->dim);
@@ -400,7 +400,7 @@ Value values_in(Builder *b, Value v, Span span, const Unit *unit) {
 
 Expr value_in(Builder *b, Value v, Span span, const Unit *unit) {
   if (v.e && v.n) {
-    diag_error(b->diags, span, "this is %s, and a number is wanted here", shape_text(b, v.n));
+    diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, v.n));
     return 0;
   }
   return values_in(b, v, span, unit).e;

@@ -75,7 +75,7 @@ static Value call_if(Eval *ev, const AstExpr *x) {
   const Value *c = value_of(ev, x->args), *v = value_of(ev, yes), *w = value_of(ev, no);
   if (!c->e) return FAILED;
   if (!c->condition) {
-    diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` is no condition", ast_short(b, x->args));
+    diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` is not a condition", ast_short(b, x->args));
     diag_help(b->diags, "`if(condition, a, b)` takes a condition first, such as `x > 0`");
     return FAILED;
   }
@@ -232,7 +232,7 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
   Name near = suggest(x->name, known, n);
   if (!e && advise_unknown_function(b, x->name)) return FAILED;
   if (strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0) diag_help(b->diags, "`%s(q)` may stand in `output` and `monitor`, in a scene that says `exact q = ...`", x->name);
-  else if (e && is_of_time(ev, x)) diag_help(b->diags, "`%s` is %s: write `%s`; what depends on time does so by itself", x->name, ent_kind_text(e->kind), x->name);
+  else if (e && is_of_time(ev, x)) diag_help(b->diags, "`%s` is %s: write `%s`; its dependence on time is implied", x->name, ent_kind_text(e->kind), x->name);
   else if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else diag_help(b->diags, "`lagc help functions` lists them; declare your own: `function %s(x) = ...`", x->name);

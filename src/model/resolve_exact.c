@@ -45,7 +45,7 @@ Value start_value(Eval *ev, Value v, Span span, const Value *when) {
     return FAILED;
   }
   if (when->n || !expr_is_zero(b->g, when->e)) {
-    diag_error(b->diags, span, "of the motion only the start is known here: `x(0)`");
+    diag_error(b->diags, span, "only the start value is known here: `x(0)`");
     return FAILED;
   }
   start_symbols(b);

@@ -24,8 +24,8 @@ const char *shape_text(const Builder *b, uint32_t n) {
 void suspend_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span) {
   Builder *b = ev->b;
   if (progress == DOING) {
-    diag_error(b->diags, span, "`%s` is defined by itself", name);
-    diag_help(b->diags, "%s may use only what does not lead back to it", ent_kind_text(kind));
+    diag_error(b->diags, span, "the definition of `%s` is circular", name);
+    diag_help(b->diags, "%s may not depend on itself, directly or through others", ent_kind_text(kind));
     return;
   }
   b->needed_kind = kind;
@@ -48,7 +48,7 @@ static const char *place_text(Context where) {
     case IN_PARAM: return "a parameter's value may contain numbers and parameters declared before it";
     case IN_START: return "a start value may contain numbers and parameters";
     case IN_INPUT: return "an input may contain numbers, parameters and t";
-    case IN_DYNAMICS: return "what equations contain is declared by `let`; observables are for outputs";
+    case IN_DYNAMICS: return "declare a name that equations contain by `let`; observables are for outputs";
     case IN_EXACT: case IN_OBSERVE: case IN_OUTPUT: break;
   }
   return "";

@@ -4,7 +4,7 @@
 /* --- shapes --- */
 
 void report_condition(Builder *b, AstId id) {
-  diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is a condition, no number", ast_short(b, id));
+  diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is a condition, not a number", ast_short(b, id));
   diag_help(b->diags, "`if(condition, a, b)` chooses between two numbers");
 }
 
@@ -121,9 +121,9 @@ static int factor_fits(Eval *ev, uint32_t i, const Value *r) {
   const Value *v = value_of(ev, o.at);
   Span span = ast_expr(b->ast, o.at)->span;
   if (v->n && (o.inverted || r->n)) {
-    diag_error(b->diags, span, o.inverted ? "`%s` is %s, and nothing is divided by a vector" : "`%s` is %s, and so is a factor before it",
+    diag_error(b->diags, span, o.inverted ? "`%s` is %s, and division by a vector is not defined" : "`%s` is %s, and so is a factor before it",
                ast_short(b, o.at), shape_text(b, v->n));
-    diag_help(b->diags, "`dot(a, b)`, `cross(a, b)` and `norm(a)` say what is meant");
+    diag_help(b->diags, "write `dot(a, b)`, `cross(a, b)` or `norm(a)`");
     return 0;
   }
   if (o.inverted && expr_is_zero(b->g, v->e)) {
@@ -247,7 +247,7 @@ static Value compare_value(Eval *ev, const AstExpr *x) {
 
 static int need_condition(Eval *ev, AstId id) {
   if (value_of(ev, id)->condition) return 1;
-  diag_error(ev->b->diags, ast_expr(ev->b->ast, id)->span, "`%s` is no condition", ast_short(ev->b, id));
+  diag_error(ev->b->diags, ast_expr(ev->b->ast, id)->span, "`%s` is not a condition", ast_short(ev->b, id));
   diag_help(ev->b->diags, "`and`, `or` and `not` join comparisons, such as `x > 0`");
   return 0;
 }
@@ -312,7 +312,7 @@ int whole_number(Builder *b, const Value *v, AstId id, int64_t *out) {
   if (!v->e) return 0;
   Num n = expr_is_num(b->g, v->e) ? expr_number(b->g, v->e) : num_ratio(1, 2);
   if (v->n || !num_is_exact(n) || n.den != 1 || !dim_equate(b->dims, v->dim, DIM_NONE, ast_expr(b->ast, id)->span)) {
-    diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is no whole number known when compiling", ast_short(b, id));
+    diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is not a whole number known at compile time", ast_short(b, id));
     diag_help(b->diags, "indices and ranges are made of numbers, constants (`const N = 3`) and indices");
     return 0;
   }

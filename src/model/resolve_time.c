@@ -49,7 +49,7 @@ static unsigned kinds_in(Builder *b, const Value *v) {
 Value time_derivative(Builder *b, Value of, Span span, Context where) {
   unsigned kinds = kinds_in(b, &of), second = 1u << SYM_ACC | 1u << SYM_RATE;
   if (kinds & 1u << SYM_INPUT && where == IN_OUTPUT && b->m->scene.exacts.n) {
-    diag_error(b->diags, span, "an input, and a closed form, has no time derivative");
+    diag_error(b->diags, span, "inputs and closed forms have no time derivative");
     diag_help(b->diags, "a velocity has a closed form of its own: `exact x' = ...`, and then `error(x')`");
     return FAILED;
   }
@@ -61,7 +61,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   if (kinds & second && !(kinds & 1u << SYM_ACC)) {
     diag_error(b->diags, span, b->m->first_order ? "L is linear in the velocities: they follow from the coordinates, and there is no second derivative"
                                                  : "a state has a rate, and no second one");
-    diag_help(b->diags, b->m->first_order ? "write the derivative of what the equations of motion say" : "write the derivative of what its flow says");
+    diag_help(b->diags, b->m->first_order ? "write the derivative of the right side of its equation of motion" : "write the derivative of the right side of its flow");
     return FAILED;
   }
   if (kinds & second) {
@@ -70,7 +70,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   }
   if (kinds & 1u << SYM_LOCAL && has_no_rate(b, &of)) {
     not_yet(b, span, "a time derivative of the energy or a charge, or a third one of a function's argument");
-    diag_help(b->diags, "the energy changes by the power of forces: `force x = F` brings `F*x'`");
+    diag_help(b->diags, "the energy changes by the power of forces: `force x = F` adds the power `F*x'`");
     return FAILED;
   }
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
@@ -79,7 +79,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
   if (b->m->first_order) return r; /* rates are velocities; rates of true states were refused in the first build */
   if (where < IN_OBSERVE && kinds_in(b, &r) & second && !(kinds_in(b, &r) & 1u << SYM_ACC)) {
     diag_error(b->diags, span, "the rate of a state may stand only in `expect`, `observe` and `output`");
-    diag_help(b->diags, "write what its flow says: a `let` may stand for both");
+    diag_help(b->diags, "write the right side of its flow; a `let` may stand for both");
     return FAILED;
   }
   if (where < IN_OBSERVE && kinds_in(b, &r) & second) {

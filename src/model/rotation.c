@@ -104,7 +104,7 @@ static const Value *rotation_argument(Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->args);
   if (!v->e) return NULL;
   if (v->n == ROTATION) return v;
-  diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` is %s, and `%s` is that of a rotation", ast_short(b, x->args), shape_text(b, v->n), x->name);
+  diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` is %s, but `%s` takes a rotation", ast_short(b, x->args), shape_text(b, v->n), x->name);
   if (strcmp(x->name, "omega") == 0 && !v->n) diag_help(b->diags, "the rate of an angle is written with a prime: `th'`; a rotation is declared `coord R: rotation`");
   else diag_help(b->diags, "a rotation is declared `coord R: rotation`, or made by `turn(axis, angle)`");
   return NULL;
@@ -143,7 +143,7 @@ static Value turn_value(Eval *ev, const AstExpr *x) {
   }
   if (is_zero(b, n)) {
     diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` has no direction to turn about", ast_short(b, x->args));
-    diag_help(b->diags, "no turn at all is `turn((0, 0, 1), 0)`, and where a rotation starts that nothing is said of");
+    diag_help(b->diags, "the identity is `turn((0, 0, 1), 0)`, the start of a rotation without a `start`");
     return FAILED;
   }
   if (!need_pure(ev, angle, "an angle")) return FAILED;
@@ -184,10 +184,10 @@ Value rotation_function(Eval *ev, const AstExpr *x) {
 
 static const char *const out_of[] = {
   [TURN_SUM] = "products of rotations are rotations, sums are none: `R*S` turns by S, then by R",
-  [TURN_NEGATION] = "the rotation back is `transpose(R)`",
-  [TURN_DIVISOR] = "the rotation back is `transpose(R)`: `transpose(R)*v` is what v is in the body's frame",
+  [TURN_NEGATION] = "the inverse rotation is `transpose(R)`",
+  [TURN_DIVISOR] = "the inverse rotation is `transpose(R)`: `transpose(R)*v` is v in the body's frame",
   [TURN_SCALED] = "vectors that it turns are scaled: `2*(R*v)`; a turn by another angle is `turn(axis, angle)`",
-  [TURN_BEHIND] = "`R*v` is what v of the body's frame is in space, `transpose(R)*v` what v of space is in the body's frame",
+  [TURN_BEHIND] = "`R*v` takes v from the body's frame to space, `transpose(R)*v` from space to the body's frame",
   [TURN_PLANE] = "rotations turn vectors of 3 components: `R*(x, y, 0)`",
   [TURN_PRIME] = "`omega(R)` is its angular velocity, in its own frame; `R.w'` the rate of one of its four numbers",
   [TURN_UNIT] = "angles have units: `turn((0, 0, 1), 90 [deg])`",
@@ -199,14 +199,14 @@ static const char *const out_of[] = {
 static const char *const refusals[] = {
   [TURN_SUM] = "`%s` is a rotation, and rotations are not added",
   [TURN_NEGATION] = "`%s` is a rotation, and has no sign",
-  [TURN_DIVISOR] = "`%s` is a rotation, and nothing is divided by one",
+  [TURN_DIVISOR] = "`%s` is a rotation, and division by a rotation is not defined",
   [TURN_SCALED] = "`%s` is a rotation, and is not multiplied by a number",
   [TURN_BEHIND] = "`%s` is a rotation, and stands behind the vector",
   [TURN_PLANE] = "`%s` is a vector of 2 components, and a rotation stands before it",
   [TURN_PRIME] = "`%s` is a rotation, and its rate is an angular velocity",
   [TURN_UNIT] = "`%s` is a rotation, and has no unit",
   [TURN_EQUATION] = "`%s` is a rotation: two that are equal may differ in the sign of all four numbers",
-  [TURN_VALUE] = "`%s` is a rotation, and no value of a parameter",
+  [TURN_VALUE] = "`%s` is a rotation, and cannot be the value of a parameter",
   [TURN_NUMBER] = "`%s` is a rotation, neither a number nor a vector",
 };
 

@@ -29,7 +29,7 @@ static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
   for (const AstStmt *s = scene; s;) {
     for (uint32_t i = 0; i < chain.n; i++)
       if (chain.at[i] == s) {
-        diag_error(b->diags, s->name_span, "the scene `%s` is like itself", s->name);
+        diag_error(b->diags, s->name_span, "the scene `%s` inherits from itself", s->name);
         diag_help(b->diags, "`like` must not lead back to the scene");
         s = NULL;
         break;
@@ -309,7 +309,7 @@ static void apply_in_chain(Builder *b, const AstStmt *const *s, const AstStmt *s
   apply(b, st);
   if (!s[1] || b->diags->errors == errors || b->diags->list.at[b->diags->latest].note) return;
   while (s[1]) s++;
-  diag_also(b->diags, (*s)->name_span, "in the scene `%s`, which takes this over by `like`", (*s)->name);
+  diag_also(b->diags, (*s)->name_span, "in the scene `%s`, which inherits this by `like`", (*s)->name);
 }
 
 /* 1 if one of the scenes from *s on has an output statement: its columns replace inherited ones. */

@@ -82,7 +82,7 @@ void set_motion(Builder *b, const AstStmt *st) {
     int is_coord = b->m->states.at[e->index].coordinate;
     if (is_coord) diag_error(b->diags, x->span, "`%s'` follows from the coordinates: L is linear in the velocities, and the motion of first order", name->name);
     else diag_error(b->diags, x->span, "the rate of a state follows from its flow");
-    diag_help(b->diags, exact ? "the %s itself has a closed form: `exact %s = ...`" : "the %s itself starts somewhere: `start %s = ...`",
+    diag_help(b->diags, exact ? "give the closed form of the %s itself: `exact %s = ...`" : "give the start of the %s itself: `start %s = ...`",
               is_coord ? "coordinate" : "state", name->name);
     return;
   }
@@ -110,8 +110,8 @@ static const Entity *spin_entity(Builder *b, AstId call, Name effect, Target *p)
   if (plain && stem->kind == AST_MEMBER) e = scope_own(&b->scope, stem->name, ast_expr(b->ast, stem->a)->name);
   else if (plain) e = scope_find(&b->scope, stem->name, effect, &ambiguous);
   if (e && e->kind == ENT_COORD && e->parts == ROTATION) return e;
-  diag_error(b->diags, x->span, "`%s` is no angular velocity of a rotation among the coordinates", ast_short(b, call));
-  diag_help(b->diags, "`omega(R) = (a, b, c)` says how fast `coord R: rotation` turns, in its own frame");
+  diag_error(b->diags, x->span, "`%s` is not the angular velocity of a rotation coordinate", ast_short(b, call));
+  diag_help(b->diags, "`omega(R) = (a, b, c)` gives the angular velocity of `coord R: rotation`, in its own frame");
   return NULL;
 }
 
@@ -125,7 +125,7 @@ int spin_target(Builder *b, AstId place, Name effect) {
   if (p.indices && !resolve_indices(b, p.indices, effect, &r)) return -2;
   for (uint32_t k = 0; k < r.n; k++) at[k] = r.lo[k];
   if (r.n == e->ndims && index_in_range(b, e, at, ast_expr(b->ast, place)->span)) return (int)(e->index + member_offset(e, at));
-  if (r.n != e->ndims) diag_error(b->diags, ast_expr(b->ast, place)->span, "`%s` names no single rotation", ast_short(b, place));
+  if (r.n != e->ndims) diag_error(b->diags, ast_expr(b->ast, place)->span, "`%s` does not name one rotation", ast_short(b, place));
   return -2;
 }
 
@@ -197,7 +197,7 @@ static void complete_spin_start(Builder *b, const SpinStart *s) {
   for (uint32_t k = 0; k < ROTATION; k++) {
     const Coord *c = &b->m->coords.at[s->coord + k];
     if (starts(b, c->v)) {
-      diag_error(b->diags, s->span, "how fast the rotation turns is said twice: by `omega`, and by `%s'`", c->name);
+      diag_error(b->diags, s->span, "the angular velocity is given twice: by `omega`, and by `%s'`", c->name);
       diag_help(b->diags, "leave out one of them");
       return;
     }

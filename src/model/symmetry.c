@@ -20,7 +20,7 @@ static Name parameter_name(Builder *b, const AstStmt *st, Name effect) {
   const Entity *other = scope_find(&b->scope, s->name, effect, &ambiguous);
   if (s->next) {
     diag_error(b->diags, ast_expr(b->ast, s->next)->span, "a symmetry has one parameter");
-    diag_help(b->diags, "what has two is two symmetries, each with a charge of its own");
+    diag_help(b->diags, "write two symmetries: each has a charge of its own");
     return NULL;
   }
   if (!other) return s->name;
@@ -109,8 +109,8 @@ static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span
   StrBuf text = strbuf(b->arena);
   expr_print(b->g, simplify(b->g, start), PRINT_TEXT, &text);
   if (v == PROVED_NONZERO) diag_error(b->diags, span, "at %s = 0 the symmetry `%s` maps `%s` to `%s`, not to itself", s, p->of->name, name, sb_text(&text));
-  else diag_error(b->diags, span, "that the symmetry `%s` maps `%s` to itself at %s = 0 is not proved: it becomes `%s`", p->of->name, name, s, sb_text(&text));
-  diag_help(b->diags, "write what the transformation does, as a function of %s that begins with `%s`: `%s -> %s + %s`", s, name, name, name, s);
+  else diag_error(b->diags, span, "no proof that the symmetry `%s` maps `%s` to itself at %s = 0: the result is `%s`", p->of->name, name, s, sb_text(&text));
+  diag_help(b->diags, "write the transformed value, a function of %s that equals `%s` at 0: `%s -> %s + %s`", s, name, name, name, s);
   return 0;
 }
 
@@ -154,7 +154,7 @@ static int has_rate(const Mapping *p, Expr to, Expr rate) {
 static void report_no_rate(const Mapping *p, SymId target, Span span) {
   Builder *b = p->b;
   Name s = expr_symbol(b->g, p->of->parameter)->name, turned = rotation_of(b, target), name = turned ? turned : expr_symbol(b->g, target)->name;
-  diag_error(b->diags, span, "what the symmetry `%s` maps `%s` to has no derivative by %s at %s = 0, the same from both sides", p->of->name, name, s, s);
+  diag_error(b->diags, span, "the symmetry `%s` maps `%s` to an expression that is not differentiable by %s at %s = 0", p->of->name, name, s, s);
   const char *as = turned ? arena_printf(b->arena, "`%s -> turn((0, 0, 1), %s)*%s`", name, s, name) : arena_printf(b->arena, "`%s -> %s + %s`", name, name, s);
   diag_help(b->diags, "a charge belongs to a transformation that is smooth in its parameter, as %s is", as);
 }
@@ -167,7 +167,7 @@ static void add_move(const Mapping *p, SymId target, Expr to, Span span) {
     if (y->moves.at[i].target != target) continue;
     diag_error(b->diags, p->target, "the symmetry `%s` maps `%s` twice", y->name, name);
     diag_also(b->diags, y->moves.at[i].span, "first here; all maps are one transformation, of the old coordinates");
-    if (b->index.n) diag_help(b->diags, "maps behind a `for` belong to it, up to the next `for`: what it does not concern stands before it");
+    if (b->index.n) diag_help(b->diags, "maps after a `for` belong to it, up to the next `for`: write other maps before it");
     return;
   }
   Move move = {.target = target, .span = p->map->span};
@@ -208,7 +208,7 @@ static int is_coordinate(const Builder *b, const Entity *e) {
 static void report_target(Builder *b, const Target *p, const AstExpr *name, const Entity *e) {
   const char *what = p->primes ? "a velocity" : ent_kind_text(e->kind);
   diag_error(b->diags, name->span, "`%s` is %s: a symmetry maps coordinates and t", source_text(b, name->span), what);
-  if (p->primes) diag_help(b->diags, "velocities follow from what it does to coordinates and t");
+  if (p->primes) diag_help(b->diags, "maps of velocities follow from those of coordinates and t");
   else if (e->kind == ENT_PARAM) diag_help(b->diags, "another value of a parameter is another model");
   else if (e->kind == ENT_STATE) diag_help(b->diags, "the states of a flow have no momenta");
 }
@@ -257,7 +257,7 @@ void add_symmetry(Builder *b, const AstStmt *st, Name effect) {
     if (b->m->symmetries.at[i].stmt == st && b->m->symmetries.at[i].effect == effect) y = &b->m->symmetries.at[i];
   if (!y) return; /* its name was taken: reported */
   if (!b->m->lagrangian) {
-    diag_error(b->diags, st->span, "a symmetry is one of the Lagrangian, and the model has none");
+    diag_error(b->diags, st->span, "a symmetry needs a Lagrangian, and the model has none");
     return;
   }
   b->group = parameter_name(b, st, effect);

@@ -84,7 +84,7 @@ static void lifted_motion(Text *t) {
     add_product(t, &row[x->col], x->e, u.force[x->row]);
     add_product(t, &rate[x->row], x->e, u.rate[x->col]);
   }
-  text_heading(t, "equations of motion: primes of lets without terms in velocities, F what they pass on");
+  text_heading(t, "equations of motion: w' of a let w without terms in velocities alone, F_w the force that w transmits");
   for (uint32_t k = s->n; k < total; k++) text_equation(t, u.rate[k], rate[k], 0);
   for (uint32_t k = total; k-- > s->n;) text_equation(t, u.force[k], row[k], 0);
   for (uint32_t i = 0; i < s->n; i++) text_equation(t, row[i], s->f[i], i + 1 == s->n && !e->m->states.n);
@@ -143,7 +143,7 @@ static void constraints(Text *t) {
   Expr *rows = ARENA_ARRAY(e->m->arena, Expr, k->n);
   for (uint32_t i = 0; i < k->n; i++) rows[i] = zero;
   for (uint32_t i = 0; i < k->A.n; i++) add_product(t, &rows[k->A.at[i].row], shown(t, k->A.at[i].e), expr_symbol(t->g, e->m->coords.at[k->A.at[i].col].a)->node);
-  text_heading(t, "what they demand of accelerations");
+  text_heading(t, "conditions of the constraints on accelerations");
   for (uint32_t i = 0; i < k->n; i++) text_equation(t, rows[i], shown(t, k->demand[i]), i + 1 == k->n);
   text_end(t);
 }

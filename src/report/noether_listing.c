@@ -106,7 +106,7 @@ static void symmetry(Page *p, uint32_t k) {
   text_heading(t, arena_printf(a, "%s: %s%s%s%s", named(p, "", k, ""), s->name, declared ? "; declared as " : "", declared ? declared : "", s->is.jumps ? "; between jumps of L only" : ""));
   deltas(p, s);
   if (!expr_is_zero(t->g, s->is.F)) text_named(t, "F", "F", s->is.F, 0);
-  if (s->is.over_time) say(p, "  F has the integral over t of what stands as dQ/dt, too");
+  if (s->is.over_time) say(p, "  F also contains the integral over t of dQ/dt below");
   text_named(t, named(p, "", k, ""), named_latex(p, k, 0), s->is.charge, !moves);
   if (moves) text_named(t, named(p, "d", k, "/dt"), named_latex(p, k, 1), s->is.power, 1);
   text_end(t);
@@ -134,7 +134,7 @@ static void symmetries(Page *p) {
   if (f->unproved)
     say(p, arena_printf(a, "%u more direction%s of the solution space not written in closed form, or not proved: not listed", f->unproved, plural(f->unproved)));
   if (f->note) say(p, f->note);
-  if (f->galilean) say(p, "the ten charges of Galileo's group are among them");
+  if (f->galilean) say(p, "the ten charges of the Galilei group are among them");
   for (uint32_t k = 0; k < f->all.n; k++) symmetry(p, k);
   Expr *roots = ARENA_ARRAY(a, Expr, 3 * (size_t)f->all.n + 1);
   for (uint32_t k = 0; k < f->all.n; k++) {
@@ -221,7 +221,7 @@ static void algebra(Page *p) {
   }
   if (outside) say(p, arena_printf(a, "  %u of them %s no combination of these charges", outside, outside == 1 ? "is" : "are"));
   if (open) say(p, arena_printf(a, "  %u of them %s of these charges with coefficients that were not recognised", open, open == 1 ? "is a combination" : "are combinations"));
-  const char *how = x->by_value ? arena_printf(a, "%u of %u proved, all seen at random states", pairs - x->by_value, pairs) : "all proved";
+  const char *how = x->by_value ? arena_printf(a, "%u of %u proved, all checked at random states", pairs - x->by_value, pairs) : "all proved";
   say(p, arena_printf(a, "  %s%s", !x->all.n ? "all Poisson brackets are 0: " : zero ? "the others are 0: " : "", how));
 }
 
@@ -260,7 +260,7 @@ static void effect(Page *p, const EffectVerdict *v) {
     if (!is_broken(v, is, &p->r->found.all.at[k].is)) continue;
     int last = ++shown == broken;
     if (is->charge) other_charge(p, v, &of, k);
-    if (is->charge && is->jumps) say(p, arena_printf(a, "  of %s between jumps of L only:", named(p, "", k, "")));
+    if (is->charge && is->jumps) say(p, arena_printf(a, "  %s, between jumps of L only:", named(p, "", k, "")));
     if (is->charge && !is->power_unknown) text_named(&of, named(p, "d", k, "/dt"), named_latex(p, k, 1), is->power, last);
     else sb_printf(of.out, text_latex(&of) ? "  %s &\\text{ is not known}\n" : "  %s is not known\n", text_latex(&of) ? named_latex(p, k, 1) : named(p, "d", k, "/dt"));
   }

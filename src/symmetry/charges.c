@@ -139,7 +139,7 @@ static void report_broken(const Eqns *e, const Charge *c) {
   const Constraint *k = e->constraints.of[c->proof.broken - 1];
   Diags *d = e->m->diags;
   diag_error(d, c->of->span, "the symmetry `%s` does not keep to the constraint `%s`", c->name, k->name);
-  diag_also(d, k->span, "to first order in its parameter, it changes what is zero here by %s", text_of(e, c->proof.breaks));
+  diag_also(d, k->span, "to first order in its parameter, it changes the left minus the right side of this constraint by %s", text_of(e, c->proof.breaks));
 }
 
 static void report_false(const Eqns *e, const Charge *c) {
@@ -150,18 +150,18 @@ static void report_false(const Eqns *e, const Charge *c) {
   const char *names = wrong_signs(e, c->of, &wrong, &signs), *left = text_of(e, n->remainder);
   const char *what = expr_is_zero(e->g, n->F) ? "delta L" : arena_printf(e->m->arena, "delta L - dF/dt, with F = %s,", text_of(e, n->F));
   diag_error(d, signs == 1 ? wrong->span : c->of->span, "the symmetry `%s` is false: it changes L by more than a total derivative", c->name);
-  if (signs) diag_help(d, "what is left of %s is %s; it would be 0 if what it does to %s had the other sign", what, left, names);
-  else diag_help(d, "what is left of %s is %s", what, left);
+  if (signs) diag_help(d, "the remainder of %s is %s; it would be 0 if the change of %s had the opposite sign", what, left, names);
+  else diag_help(d, "the remainder of %s is %s", what, left);
 }
 
 static void report_undecided(const Eqns *e, const Charge *c) {
   Diags *d = e->m->diags;
   diag_error(d, c->of->span, "the symmetry `%s` is not decided", c->name);
   if (c->proof.unreached) {
-    diag_help(d, "it holds where states were found, but none were on a part of the constraints, %s = 0; leave that part out, if it is not meant", text_of(e, c->proof.unreached));
+    diag_help(d, "it holds at all states found, but none was found on the factor %s = 0 of the constraints; leave that factor out, if it is not meant", text_of(e, c->proof.unreached));
     return;
   }
-  diag_help(d, "neither an F(q, t) with dF/dt = %s was found, nor that there is none", text_of(e, c->proof.remainder));
+  diag_help(d, "no F(q, t) with dF/dt = %s was found, and no proof that there is none", text_of(e, c->proof.remainder));
 }
 
 int charges_judge(const Eqns *e, Name effect) {

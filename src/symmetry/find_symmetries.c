@@ -276,7 +276,7 @@ static void search_autonomous(SymmetrySearch *s) {
   if (!weak && !s->out->unproved) return;
   uint32_t more = try_solution_shifts(s->e, s->out);
   s->out->unproved -= more < s->out->unproved ? more : s->out->unproved;
-  if (weak) s->out->note = "rates or couplings lie so close to one another that some may be missing";
+  if (weak) s->out->note = "rates or couplings lie so close to one another that some symmetries may be missing";
 }
 
 /* Number of solutions at a choice whose rate is complex: they oscillate and grow at once. */
@@ -314,15 +314,15 @@ static void search_work(Arena *scratch, void *data) {
   if (s->out->searched) return;
   try_usual_symmetries(s->e, s->out);
   try_solution_shifts(s->e, s->out);
-  s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and turns of all of a kind together, shifts along solutions of single coordinates";
-  s->out->note = "the linear equations of the search for more could not be solved reliably";
+  s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and rotations of all coordinates of a kind together, shifts of single coordinates along solutions";
+  s->out->note = "the linear equations of the full search could not be solved reliably";
 }
 
 const char *noether_note_on_impacts(const Model *m) {
   uint32_t setting = 0;
-  if (m->contacts.n) return "impacts and contacts change charges: what is said holds between them";
+  if (m->contacts.n) return "impacts and contacts change charges: the balances hold between them";
   for (uint32_t i = 0; i < m->events.n; i++) setting += m->events.at[i].actions.n > 0;
-  return setting ? "events change charges: what is said holds between them" : NULL;
+  return setting ? "events change charges: the balances hold between them" : NULL;
 }
 
 static FoundSymmetries search_from(Eqns *e, uint32_t first) {

@@ -336,8 +336,8 @@ static void compute_brackets(Arena *scratch, void *data) {
 }
 
 static const char *reason_against(const Eqns *e, uint32_t r) {
-  if (e->constraints.n) return "the model has constraints, which take Dirac's brackets";
-  if (!e->n && (e->m->forces.n || e->m->dissipation)) return "L is linear in velocities, and forces change the form that brackets are taken with";
+  if (e->constraints.n) return "the model has constraints, which need Dirac brackets";
+  if (!e->n && (e->m->forces.n || e->m->dissipation)) return "L is linear in velocities, and forces change the two-form of the brackets";
   if (e->m->states.n && e->n) return "the model has states beside its coordinates";
   if (r > CHARGES_MOST) return arena_printf(e->m->arena, "there are more than %d charges", CHARGES_MOST);
   return NULL;

@@ -152,7 +152,7 @@ static void name_shift(const CoordinateNames *e, const GeneratorRow *r, FoundSym
   to->axis = axis;
   to->of_all = axis != AXIS_NONE;
   if (only != UINT32_MAX)
-    to->name = arena_printf(a, magnetic ? "magnetic translation along %s" : has_F ? "translation along %s: momentum less the impulse of what is uniform" : "momentum of %s",
+    to->name = arena_printf(a, magnetic ? "magnetic translation along %s" : has_F ? "translation along %s: momentum less the impulse of the uniform force" : "momentum of %s",
                             e->name[only]);
   else if (axis != AXIS_NONE) to->name = arena_printf(a, magnetic ? "magnetic translation of all bodies along %s" : "total momentum along %s", axis_text(axis));
   else to->name = magnetic ? "magnetic translation" : "momentum along a direction";

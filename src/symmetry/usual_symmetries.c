@@ -149,7 +149,8 @@ int too_large_to_search(const Eqns *e) { return eqns_coordinates(e) > SEARCH_MOS
 
 void try_usual_symmetries(Eqns *e, FoundSymmetries *out) {
   TrialWork w = {.e = e, .g = e->g, .n = eqns_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e, NULL), .out = out};
-  out->ansatz = "of more than a hundred coordinates the energy, momenta of cyclic ones, and translations, boosts and turns of all of a kind together";
+  out->ansatz = "for more than a hundred coordinates: the energy, momenta of cyclic coordinates, and translations, boosts and rotations of all "
+                "coordinates of a kind together";
   out->searched = w.n <= TRY_MOST;
   if (!out->searched) {
     out->note = "there are more than a thousand coordinates";

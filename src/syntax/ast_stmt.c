@@ -199,6 +199,6 @@ Ident ident_dashed(Ast *ast, Span span, Ident a, Ident b) {
 
 AstSign sign_of(Ast *ast, Span span, AstSign sign, Num number) {
   if (num_is_zero(number)) return sign;
-  diag_error(ast->diags, span, "only a sign can be stated here: `> 0`, `>= 0`, `< 0` or `<= 0`");
+  diag_error(ast->diags, span, "only a sign can be declared here: `> 0`, `>= 0`, `< 0` or `<= 0`");
   return SIGN_ANY;
 }

@@ -28,10 +28,10 @@ static const struct {
   {"H hamiltonian", W_MODEL, "write the Lagrangian, `lagrangian = …`: momenta and energy follow"},
   {"D R friction damping damp rayleigh drag loss losses", W_MODEL, "losses are a Rayleigh function, `dissipation = c/2*x'^2`, or a `force`"},
   {"torque moment Q forces", W_MODEL, "a generalised force is given by `force q = …`; of an angle it is a torque"},
-  {"equation equations eq eom ode", W_MODEL, "equations of motion follow from the Lagrangian; `expect x'' = …` has one of yours checked, `flow z' = …` is for a state"},
-  {"import require load using", W_MODEL, "another file is taken in by `include \"file.lag\"`"},
+  {"equation equations eq eom ode", W_MODEL, "equations of motion follow from the Lagrangian; `expect x'' = …` checks one of yours, `flow z' = …` is for a state"},
+  {"import require load using", W_MODEL, "another file is included by `include \"file.lag\"`"},
   {"initial init initials ic start", W_MODEL, "starts stand in a scene: `scene s { start x = 1 }`"},
-  {"simulation simulate sim run experiment case", W_MODEL, "what is simulated is a scene: `scene s { start x = 1; span 20 [s] }`"},
+  {"simulation simulate sim run experiment case", W_MODEL, "a simulation is a scene: `scene s { start x = 1; span 20 [s] }`"},
   {"time tspan duration tmax", W_MODEL, "the time of a run stands in a scene: `span 20 [s]`"},
   {"plot print", W_MODEL, "columns are chosen in a scene: `output x, y every 0.01 [s]`; `lagc plot` draws"},
   {"initial init initials ic", W_SCENE, "a start is set by `start x = 1, x' = 0`"},
@@ -43,7 +43,7 @@ static const struct {
   {"every sample", W_SCENE, "write `output x, y every 0.01 [s]`"},
   {"with effects enable on", W_SCENE, "effects are turned on by `use drag`"},
   {"without disable off", W_SCENE, "`use none` turns all effects off; without `use` none is on"},
-  {"from extends inherit based", W_SCENE, "another scene is taken over by `like OTHER`"},
+  {"from extends inherit based", W_SCENE, "a scene inherits from another by `like OTHER`"},
   {"set let", W_SCENE, "a value is set by `name = 2`, a start by `start x = 1`"},
   {"terminate end halt exit quit", W_EVENT, "the run is ended by `stop`"},
 };
@@ -114,17 +114,17 @@ static const char *missing_operator(const Parse *cx) {
 static const char *unexpected_call(const Parse *cx) {
   const char *name = cx->before.name ? cx->before.name : "f";
   switch (cx->filter->word) {
-    case TOK_LET: return arena_printf(cx->ast->arena, "a function of one's own is `function %s(x) = …`", name);
+    case TOK_LET: return arena_printf(cx->ast->arena, "declare a function of your own by `function %s(x) = …`", name);
     case TOK_FORCE: return "a force acts along a coordinate, `force x = …`, or at a point, `force (px, py) = (…, …)`";
     case TOK_PARAM: case TOK_CONST: case TOK_INPUT: case TOK_OBSERVE: case TOK_COORD: case TOK_STATE:
-      return arena_printf(cx->ast->arena, "a name has no arguments here; a function of one's own is `function %s(x) = …`", name);
+      return arena_printf(cx->ast->arena, "a name has no arguments here; declare a function of your own by `function %s(x) = …`", name);
     default: return "a start is written `start x = 1, x' = 0`";
   }
 }
 
 static const char *unexpected_comma(const TokKind *set, int n) {
   if (token_is_in(set, n, TOK_IN) || token_is_in(set, n, TOK_RANGE)) return "a range is written `i in 1..N`";
-  return token_is_in(set, n, TOK_RPAREN) ? "what has several arguments is a function, and its name has no `.`: `pow(x, 2)`" : NULL;
+  return token_is_in(set, n, TOK_RPAREN) ? "a function with several arguments has no `.` in its name: `pow(x, 2)`" : NULL;
 }
 
 static const char *after_method(const Parse *cx) {
@@ -146,7 +146,7 @@ static const char *unexpected_assign(const Parse *cx, const TokKind *set, int n)
   if (word == TOK_EVENT && token_is_in(set, n, TOK_RISING)) return "an event is where an expression passes zero: `event e: x - 1 rising { … }`";
   if (token_is_in(set, n, TOK_EQ)) return "write `==` to compare";
   if (token_is_in(set, n, TOK_IN)) return "a range is written `i in 1..N`";
-  if (word == TOK_COORD || word == TOK_STATE) return "where it starts stands in a scene: `start x = …`";
+  if (word == TOK_COORD || word == TOK_STATE) return "its start stands in a scene: `start x = …`";
   return NULL;
 }
 
@@ -196,11 +196,11 @@ const char *advice_for_token(const Parse *cx, const TokKind *set, int n) {
   if (word) return word;
   if (cx->filter->word == TOK_METHOD && token_is_in(set, n, TOK_LPAREN)) return after_method(cx);
   if (cx->filter->word == TOK_MONITOR && !token_is_in(set, n, TOK_TIMES) && token_ends_operand(b->kind) && (token_flags(t->kind) & T_BINARY))
-    return "a monitor watches a name, or what stands in parentheses: `monitor (x + y) 1e-6`";
+    return "a monitor watches a name, or an expression in parentheses: `monitor (x + y) 1e-6`";
   switch (t->kind) {
     case TOK_COMMA: return unexpected_comma(set, n);
     case TOK_RANGE: return token_is_in(set, n, TOK_RBRACKET) ? "a family has a size: `x[N]` has the members 1 to N" : NULL;
-    case TOK_UNIT: return b->kind == TOK_UNIT ? "an index touches what it belongs to, and a unit does not: `x[N] [m]`" : NULL;
+    case TOK_UNIT: return b->kind == TOK_UNIT ? "an index touches its name, a unit does not: `x[N] [m]`" : NULL;
     case TOK_EQ: return token_is_in(set, n, TOK_ASSIGN) ? "write `=`: it states an equation; `==` compares two numbers" : NULL;
     case TOK_ASSIGN: return unexpected_assign(cx, set, n);
     case TOK_COLON:

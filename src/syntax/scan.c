@@ -127,7 +127,7 @@ static int scan_refused(Scan *s, Token *t, const char *text, uint32_t code, uint
   if (is_space(code)) return (int)len;
   const char *write = lookalike(code);
   const char *message = code == 0x0307 || code == 0x0308
-      ? "this dot stands above nothing"
+      ? "this dot has no letter under it"
       : arena_printf(s->arena, "`%.*s` is not a sign of this language", (int)len, text);
   return bad(s, t, 0, len, message, write);
 }
@@ -186,7 +186,7 @@ int scan_number(Scan *s, Token *t, const char *text, int n) {
       int letters = n - (int)digits;
       const char *help = arena_printf(s->arena, "`%.*s*%.*s` is a product, `%.*s [%.*s]` has a unit; a name begins with a letter",
                                       (int)digits, text, letters, name, (int)digits, text, letters, name);
-      return bad(s, t, 0, (uint32_t)n, "a number and a name stand together without a sign", help);
+      return bad(s, t, 0, (uint32_t)n, "an operator is missing between a number and a name", help);
     }
   }
   t->kind = TOK_NUMBER;
@@ -199,7 +199,7 @@ int scan_string(Scan *s, Token *t, const char *text, int n) {
   if (n < 2 || text[n - 1] != '"') {
     uint32_t shown = (uint32_t)n;
     while (shown > 1 && text[shown - 1] == '\r') shown--;
-    bad(s, t, 0, shown, "this text is not closed on its line", "put a `\"` at its end");
+    bad(s, t, 0, shown, "this quoted text is not closed on its line", "put a `\"` at its end");
     return n;
   }
   for (int k = 1; k < n - 1; k++)
@@ -237,5 +237,6 @@ int scan_unknown(Scan *s, Token *t, const char *text, int n) {
   if (c < 0x20 || c == 0x7F)
     return bad(s, t, 0, 1, arena_printf(s->arena, "a control character (0x%02X)", c), NULL);
   return bad(s, t, 0, 1, arena_printf(s->arena, "`%c` is not a sign of this language", c),
-             c == '\\' ? "this is no LaTeX: write `x'` for \\dot{x}, `x''` for \\ddot{x}, `a/b` for \\frac{a}{b}, `theta` or `θ` for \\theta" : NULL);
+             c == '\\' ? "this is not LaTeX: write `x'` for \\dot{x}, `x''` for \\ddot{x}, `a/b` for \\frac{a}{b}, `theta` or `θ` for "
+                         "\\theta" : NULL);
 }

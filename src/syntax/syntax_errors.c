@@ -137,7 +137,7 @@ static void report_word(Parse *cx, const Token *t) {
   else if (near) diag_help(d, "did you mean `%s`?", near);
   else if (where & (W_SCENE | W_EVENT)) diag_help(d, t->follows == TOK_LPAREN ? "a start is set by `start %s = …`" : "a value is set with `%s = …`", t->name);
   else if (t->follows != TOK_ASSIGN && ((token_flags(t->follows) & T_BINARY) || t->follows == TOK_PRIME))
-    diag_help(d, "equations of motion follow from the Lagrangian; `expect m*x'' = …` has one of yours checked, `force x = …` adds a force");
+    diag_help(d, "equations of motion follow from the Lagrangian; `expect m*x'' = …` checks one of yours, `force x = …` adds a force");
   else if (t->follows == TOK_ASSIGN) diag_help(d, "a name is given a meaning with `let %s = …` or `param %s = …`", t->name, t->name);
   else diag_help(d, "`lagc help language` shows a model, `lagc help` lists the statements");
 }

@@ -163,7 +163,7 @@ static int build_in(Arena *a, const Toolchain *t, const SourceText *texts, size_
   }
   ok = ok && compile_with_tmpdir(a, t, f->path, texts, n, error);
   if (ok && !file_exists(arena_printf(a, "%s/simulator", f->path))) {
-    *error = arena_printf(a, "cannot write %s/simulator: the C compiler `%s` has made nothing", f->path, t->cc);
+    *error = arena_printf(a, "cannot write %s/simulator: the C compiler `%s` wrote no file", f->path, t->cc);
     ok = 0;
   }
   if (!ok) build_folder_remove(f, NULL);
@@ -185,7 +185,7 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
   BuildFolder f;
   const char *why;
   if (stat(output, &st) == 0 && !S_ISREG(st.st_mode)) {
-    *error = arena_printf(a, "cannot write %s: it is no ordinary file", output);
+    *error = arena_printf(a, "cannot write %s: it is not an ordinary file", output);
     return 0;
   }
   if (!build(a, t, texts, n, &f, error)) return 0;

@@ -105,12 +105,12 @@ check "nothing near" says 'no help on `xyzzy`; `lagc help` lists the topics' hel
 check "two words" says 'one word too many: `b`; usage: lagc help [TOPIC]' help a b
 m=models/pendulum.lag
 check "a mistyped command" says 'unknown command `rum`: did you mean `run`?' rum $m
-check "no command" says "say what to do with $m: \`lagc run $m\`, \`lagc derive $m\`, \`lagc check $m\`" $m
+check "no command" says "a command is missing before $m: \`lagc run $m\`" $m
 check "no model" says 'a model is missing; usage: lagc check MODEL [SCENE] [--allow-numeric] [--verbose]' check
 check "an option of another command" says '`--phase` is an option of `lagc plot`; `lagc help run` lists those of `lagc run`' run $m --phase th
 check "a mistyped option of the simulator is said before one is built" says '`lagc run` has no option `--untill`: did you mean `--until`?' run $m --untill 5
-check "an option by the name that it has elsewhere" says '`lagc run` has no option `--dt`: `--step` is what it is called here' run $m --dt 0.1
-check "with its value behind an equals sign" says '`lagc run` has no option `--rtol`: `--tol` is what it is called here' run $m --rtol=1e-3
+check "an option by the name that it has elsewhere" says '`lagc run` has no option `--dt`; here it is called `--step`' run $m --dt 0.1
+check "with its value behind an equals sign" says '`lagc run` has no option `--rtol`; here it is called `--tol`' run $m --rtol=1e-3
 check "which a command without such an option does not have" says '`lagc check` has no option `--dt`; `lagc help check` lists them' check $m --dt 0.1
 check "one dash" says '`lagc run` has no option `-tol`: did you mean `--tol`?' run $m -tol 1e-9
 check "an option that is nowhere near" says '`lagc check` has no option `--frobnicate`; `lagc help check` lists them' check $m --frobnicate
@@ -120,7 +120,7 @@ check "a value too many" says '--json takes no value' run $m --json=1
 check "a wrong choice" says '--format takes text, latex, c, not `html`' derive $m --format html
 check "a wrong stage" says '--dump takes ast, model, eqns, passes, prog, with commas between several, not `ast,asm`' derive $m --dump ast,asm
 check "a definition that is none" says '-D takes CONST=VALUE, for example -D N=50' derive $m -D N
-check "completion for no shell" says 'completion for which shell? `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`' completion
+check "completion for no shell" says 'which shell? write `lagc completion bash`' completion
 check "-DN=3, -D N=3, --define N=3" sh -c '
   for d in "-DN=3" "-D N=3" "--define=N=3" "--define N=3"; do "$0" derive models/string.lag $d --ops; done | sort -u | awk "END { exit NR != 1 }"' "$LAGC"
 

@@ -147,7 +147,7 @@ for o in "rk4(step=nan)" "rk4(step=inf)" "rk4(step=0x1p3)" "rk45(atol=nan)"; do
 done
 check "a tolerance beyond all numbers" says 2 "must be finite" --method "rk45(atol=1e400)"
 check "one file for two results" says 2 "written twice" fixed -o same --svg same
-check "a device is no state" says 2 "is no regular file" fixed --resume /dev/zero
+check "a device is no state" says 2 "is not a regular file" fixed --resume /dev/zero
 if [ -w /dev/full ]; then
   check "a full disk" says 2 "cannot write" drop -o /dev/full
 fi
@@ -238,7 +238,7 @@ check "html says what it shows" sh -c 'grep -q "^\"rods\": true.*\"names\": \[\[
 check "names with commas and quotes" status 0 swing --html b.html --points 'E "total", T+V,E "total", T+V;E "total", T+V,E "total", T+V' --no-rods
 check "are escaped in a script" sh -c 'grep -qF "[\"E \\u0022total\\u0022, T+V\", " b.html'
 check "html of what points?" says 2 "add --points" swing --html c.html
-check "points of what?" says 2 "add it" swing --points th,th
+check "points of what?" says 2 "add an animation" swing --points th,th
 check "a point that is no output" says 2 "no output is named tt; did you mean t?" swing --html c.html --points th,tt
 check "half a point" says 2 "two names of outputs" swing --html c.html --points th
 check "points in two units" says 2 "needs one unit" swing --html c.html --points 't,th'

@@ -79,7 +79,7 @@ passes_or_says() { # with another rounding the run may pass
   timeout 120 "$LAGC" run tests/hard/cases/mbs_a02_fourbar_N2.lag --method 'dop853(atol=1e-15)' --tol 1e-15 --no-gsl >"$TMP/out" 2>&1
   case $? in
     0) return 0 ;;
-    3) grep -q 'the last 10000 steps led on by [0-9.e-]* s only: constraint [a-z]*\[.\] (line [0-9]*) is within .* a larger one, or steps of equal size' "$TMP/out" && grep -q 'constraint residual: [0-9.]*e-1[56]' "$TMP/out" ;;
+    3) grep -q 'the last 10000 steps advanced the time by only [0-9.e-]* s: constraint [a-z]*\[.\] (line [0-9]*) is within .* a larger tolerance, or steps of equal size' "$TMP/out" && grep -q 'constraint residual: [0-9.]*e-1[56]' "$TMP/out" ;;
     *) return 1 ;;
   esac
 }
@@ -189,12 +189,12 @@ check "leaves the part that is along it" sh -c 'tail -1 "$1" | awk -F, "{ d = \$
 
 # ---- bad input
 check "exactly" refused 'the start contradicts its constraints: constraint rod (line 6) is off by 0.21 m^2' $models/rod.lag exact
-check "no start at all" refused 'no start obeys the constraints: from the one given, none is found nearer than this: constraint' $models/rod.lag far
+check "no start at all" refused 'no start obeys the constraints; .*: constraint' $models/rod.lag far
 check "with the constraint's line" grep -q '(line [67])' "$TMP/err"
 for m in gauss taylor; do
   check "$m refuses" refused "method $m cannot hold constraints (rod); rk45, dop853 and variational can" $models/rod.lag drop --method $m
 done
-check "so do Galerkin methods of higher order" refused 'with constraints it has order 2' $models/rod.lag drop --method 'variational(order=4)'
+check "so do Galerkin methods of higher order" refused 'with constraints only order 2' $models/rod.lag drop --method 'variational(order=4)'
 check "and the tangent" refused 'no tangent of a motion with constraints yet (rod)' $models/rod.lag drop --tangent
 cannot() { # cannot WORDS COMMAND...
   words=$1

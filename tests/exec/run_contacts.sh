@@ -154,7 +154,7 @@ example() { # MODEL SCENE: coordinates and velocities at the end, in $TMP/state
   timeout 20 "$TMP/eg" | tail -n 1 >"$TMP/state"
 }
 state() { cut -d ' ' -f "$1" "$TMP/state"; }
-check "a header says that contacts are the loop's" sh -c "'$LAGC' header '$TMP/ball.lag' | grep -q 'Contacts: a step knows nothing of them. The loop below calls ball_events, ball_act and ball_hold'"
+check "a header says that contacts are the loop's" sh -c "'$LAGC' header '$TMP/ball.lag' | grep -q 'Contacts: a step ignores them. The loop below calls ball_events, ball_act and ball_hold'"
 check "its loop compiles and runs" example ball drop
 check "the ball bounces to rest" near "$(state 1)" 0 1e-8
 check "at rest" near "$(state 2)" 0 0

@@ -81,7 +81,7 @@ if [ -e "$BUILD/liblag_quad.a" ]; then
 else
   skip "a reference with constraints" "no libquadmath"
 fi
-says '^an error of 1e-06 at least cost: --method '
+says '^cheapest setting for an error of 1e-06: --method '
 # The method that it names reaches the stated error, by the pendulum's closed form (checked in models/pendulum.facts).
 named() { sed -n 's/^  lagc run //p' "$TMP/text" >"$TMP/words" && read -r words <"$TMP/words" && sh -c "$LAGC run $words --until 2 --quiet -o $TMP/rows.csv" && [ -s "$TMP/rows.csv" ]; }
 check "the command that it names runs" named

@@ -72,7 +72,7 @@ check 'the model is as it was' cmp "$model" "$dir/own/spring.lag"
 sed 's/^potential = /potential = 2*/; s/^lagrangian = /lagrangian = 2*/' "$model" >"$dir/own/spring.lag"
 check 'resume: other equations' refused 2 'equations differ' "$LAGC" run "$dir/own/spring.lag" --resume "$dir/own/state" --until 2
 
-check 'build: a pipe is not replaced' refused 2 'no ordinary file' "$LAGC" build "$model" -o "$dir/fifo"
+check 'build: a pipe is not replaced' refused 2 'not an ordinary file' "$LAGC" build "$model" -o "$dir/fifo"
 check 'build: it is still a pipe' is_fifo
 cat "$dir/fifo" >"$dir/piped" &
 "$LAGC" emit "$model" -o "$dir/fifo"

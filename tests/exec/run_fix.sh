@@ -80,8 +80,8 @@ check "run --fix" says 2 'm is a number' "$LAGC" run "$two" --fix m m=3
 check "of an effect that is off, it is said" says 0 'note: --fix drive.F: the effect `drive` is off in the scene `rest`, and has nothing to fix there' "$LAGC" derive "$two" rest --fix drive.F
 check "no such parameter" says 1 'did you mean `m`?' "$LAGC" emit "$two" --fix mm
 check "no parameter" says 1 '--fix x: it is a coordinate' "$LAGC" emit "$two" --fix x
-check "a constant" says 1 'constants are fixed as it is: -D n=' "$LAGC" emit "$two" --fix n
-check "made of others" says 1 '`d` is made of other parameters' "$LAGC" emit "$two" --fix d
+check "a constant" says 1 'constants are set when compiling: -D n=' "$LAGC" emit "$two" --fix n
+check "made of others" says 1 '`d` depends on other parameters' "$LAGC" emit "$two" --fix d
 cat "$two" - >"$dir/both.lag" <<'END'
 effect wind { param F = 1 [N]; force x[2] = F }
 scene both { like driven; use wind }

@@ -228,5 +228,5 @@ END
 check "an elastic ball runs backwards" run back s
 # the same motion: from 1 m at rest it has fallen from there 2 sqrt(2/g) earlier
 check "as it runs forwards" near "$(cell -1 2)" "$(calc '1 - 9.81/2*(2*sqrt(2/9.81) - 1)^2')" 1e-10
-check "one that loses energy has no past" fails 2 "does not tell what was before it" back s e=0.5
+check "one that loses energy has no past" fails 2 "cannot be reversed" back s e=0.5
 tap_end

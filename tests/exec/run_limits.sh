@@ -75,7 +75,7 @@ check 'a derivative past the range of a double' limit overflow 1 'a number in th
 { printf "let a = x"; lines 50000 "printf \"'\""; echo; echo "lagrangian = x'^2/2"; } | model primes
 check '50,000 primes' limit primes 1 'second derivative'
 { lines 1000 'printf "let a%d = a%d\n", i, i % 1000 + 1'; echo "lagrangian = x'^2/2"; } | model ring
-check 'a ring of 1,000 lets' limit ring 1 'defined by itself'
+check 'a ring of 1,000 lets' limit ring 1 'is circular'
 { printf "lagrangian = x'^2/2 + "; lines 40 'printf "sum(i in 1..2, "'; printf x; lines 40 'printf ")"'; echo; } | model sums
 check '40 sums inside each other' limit sums 1 'sums inside sums run through more than'
 { lines 20000 'printf "let a%d = q%d\n", i, i'; echo "lagrangian = x'^2/2"; } | model unknown

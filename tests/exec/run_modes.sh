@@ -90,7 +90,7 @@ close "growth rate of the inverted pendulum" "sqrt($g)" "$(of_mode 1 re)"
 
 find_modes $dir/triatomic.lag # 0, k/m, k/m (1 + 2m/M) (Landau & Lifshitz, par. 24, problem 1)
 verdict neutral
-because "a push goes on for ever"
+because "a push causes an endless drift"
 close "translation" 0 "$(of_mode 1 im)" 0
 is "$title: free" true "$(of_mode 1 free)"
 close "all alike" 1 "$(shape 1 x2)"
@@ -99,7 +99,7 @@ close "the middle rests" 0 "$(shape 2 x2)"
 close "antisymmetric" "sqrt(3*(1 + 2/2))" "$(of_mode 3 im)"
 find_modes $dir/triatomic.lag damped # friction 2R = c (relative velocity)^2, c = 0.2: C = (c/k) K, so 2 d = c/k w^2
 verdict neutral
-because "where a push goes on for ever; all other modes decay"
+because "a push causes an endless drift; all other modes decay"
 close "translation is not damped" 0 "$(of_mode 1 re)" 0
 close "decay" "-0.2/3*3/2" "$(of_mode 2 re)"
 close "frequency" "sqrt(3 - 0.1^2)" "$(of_mode 2 im)"
@@ -367,13 +367,13 @@ check "an input that changes" refuses 2 "by its input F, so nothing stays at res
 check "holding another does not help" refuses 2 "hold it: F=0" $dir/driven.lag G=1
 find_modes $dir/driven.lag F=1
 close "an input that is held" 2 "$(at_rest x)" # (1 + 3)/k
-check "no equilibrium: what is left" refuses 3 "x'' is still -1 m/s^2. A force that vanishes nowhere has none: add what holds it, such as a spring; where it vanishes, start near there: x=VALUE" $dir/quartic.lag incline
+check "no equilibrium: what is left" refuses 3 "x'' is still -1 m/s^2. A force that vanishes nowhere has none: add a force that balances it, such as a spring; where it vanishes, start near there: x=VALUE" $dir/quartic.lag incline
 # the advice works as printed
 sed "s/potential = F\*x }/potential = F*x + 1 [N\/m]*x^2 }/" $dir/quartic.lag >"$TMP/held.lag"
 check "held by a spring" sh -c "'$LAGC' modes '$TMP/held.lag' incline | grep -q '^equilibrium: '"
 check "contacts" refuses 2 "modes with contacts are not computed yet (floor): take a model without them" models/room.lag
-check "no equilibrium: it runs away" refuses 3 "forces only fade, far away" $dir/quartic.lag repelled
-check "no equilibrium: it fades at once" refuses 3 "forces only fade, far away" $dir/quartic.lag escaping
+check "no equilibrium: it runs away" refuses 3 "forces only vanish at infinity" $dir/quartic.lag repelled
+check "no equilibrium: it fades at once" refuses 3 "forces only vanish at infinity" $dir/quartic.lag escaping
 check "no equilibrium: and leads nowhere" refuses 3 "no equilibrium found" models/swinging_atwood.lag
 check "no equilibrium, as JSON" sh -c "! '$LAGC' modes $dir/quartic.lag incline --json 2>/dev/null | grep -v '\"status\": \"no equilibrium\"'"
 check "a singular mass matrix" refuses 3 "the mass matrix is singular at the start: choose other coordinates" $dir/spherical.lag pole

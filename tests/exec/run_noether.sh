@@ -51,8 +51,8 @@ check "without a scene effects are off, and each is judged alone" says "effect d
 check "a scene has its own" says "scene air, with wind_resistance" noether models/projectile.lag air
 check "and its balances" says "dQ2/dt = -wind_resistance.k\*sqrt(x'^2 + y'^2)\*x'" noether models/projectile.lag air
 printf "model m\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2\neffect bounce { event wall: x - 1 rising { x' = -x' } }\neffect floor { contact ground: y >= 0, restitution = 0.5 }\n" >"$TMP/bounce.lag"
-check "events of an effect are no part of a balance, which is said" says "^  its events change charges: what is said holds between them" noether "$TMP/bounce.lag"
-check "nor are impacts" says "^  its impacts and contacts change charges: what is said holds between them" noether "$TMP/bounce.lag"
+check "events of an effect are no part of a balance, which is said" says "^  its events change charges: the balances hold between them" noether "$TMP/bounce.lag"
+check "nor are impacts" says "^  its impacts and contacts change charges: the balances hold between them" noether "$TMP/bounce.lag"
 check "which no list of effects follows" is_silent "^effect" noether models/projectile.lag air
 cat >"$TMP/wider.lag" <<'END'
 model m "A planet; with a moon, which is a coordinate of an effect; in a field; and in one that L cannot tell"
@@ -115,7 +115,7 @@ param a = 1
 lagrangian = (x*y' - y*x')/2 - (x^2 + y^2)^2/4
 force x = -a*x'
 END
-check "brackets of an L of first order with forces are refused" says "^no Poisson brackets: L is linear in velocities, and forces change the form" noether "$TMP/pushed.lag"
+check "brackets of an L of first order with forces are refused" says "^no Poisson brackets: L is linear in velocities, and forces change the two-form" noether "$TMP/pushed.lag"
 
 # ---- names ----
 cat >"$TMP/screw.lag" <<'END'

@@ -114,7 +114,7 @@ check "shown with a caret" grep -q '\^~~' err
 check "what is no expression" says 1 '--y:1:4: error: expected `)`' plot "$p" --y '(th' -o none.svg
 check "nothing at all" says 1 'expected an expression' plot "$p" --y '' -o none.svg
 check "units that do not match" says 1 'units do not match' plot "$p" --y 'th + l' -o none.svg
-check "a condition" says 1 'is a condition, no number' run "$p" --observe 'th > 0'
+check "a condition" says 1 'is a condition, not a number' run "$p" --observe 'th > 0'
 check "--x without --y" says 2 'add --y' plot "$p" --x th
 check "--phase with --x" says 2 'leave out --x and --y' plot "$p" --phase th --x th
 check "an unknown scene" says 1 'unknown scene `wied`' plot "$p" wied --phase th
@@ -302,7 +302,7 @@ scene s { start r' = (1, 2); span 1 }
 END
 check "vectors among the coordinates are points" says 0 'points r.x,r.y b[1].x,b[1].y b[2].x,b[2].y;' animate vectors.lag
 check "as many as there are" says 0 'points r.x,r.y b[1].x,b[1].y;' animate vectors.lag -D N=1
-check "which points?" says 2 'which points?' animate two.lag
+check "which points?" says 2 'no points to draw' animate two.lag
 check "half a point" says 2 'each point is x,y' animate "$p" --points 'x,y l' -o none.html
 check "three numbers" says 2 'each point is x,y' animate "$p" --points 'x,y,l' -o none.html
 check "two places to begin from" says 2 'takes one point' animate "$p" --from 'x,y x,y' -o none.html

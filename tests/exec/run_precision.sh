@@ -22,7 +22,7 @@ fi
   check "a compiler without libquadmath" no_quadmath
 check "taylor: the motion has 33 digits" begins $cos10 "$(quad "$TMP/osc.lag" --method taylor --tol 1e-33 | value x)"
 # Refused: numbers with fewer digits.
-check "a formula whose digits lagc does not know" refuses 2 "write others as decimals" "$TMP/osc.lag" --precision quad 'x=2^0.5'
+check "a formula whose digits lagc does not know" refuses 2 "write other values as decimals" "$TMP/osc.lag" --precision quad 'x=2^0.5'
 check "the coefficients of dop853" refuses 2 "have digits for a tolerance of 1e-27" "$TMP/osc.lag" --precision quad --method dop853 --tol 1e-30
 check "past what quad gives" refuses 2 "write 9e-34 or more" "$TMP/osc.lag" --precision quad --tol 1e-35
 check "GSL has doubles" refuses 2 "gsl-rk8pd computes with doubles" "$TMP/osc.lag" --precision quad --method gsl-rk8pd

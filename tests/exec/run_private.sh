@@ -164,7 +164,7 @@ check 'cache: another word' fails_with 2 "$LAGC" cache --nothing
 
 # ---- includes and tables
 mkfifo pipe
-refuses() { timeout 20 "$LAGC" check "$1" >log 2>&1; got=$?; cat log; [ $got = 1 ] && grep -q 'it is no regular file' log; }
+refuses() { timeout 20 "$LAGC" check "$1" >log 2>&1; got=$?; cat log; [ $got = 1 ] && grep -q 'not a regular file' log; }
 for what in pipe /dev/zero "$dir/tmp"; do
   printf 'include "%s"\nmodel m\ncoord x\nlagrangian = x'"'"'^2/2\n' "$what" >inc.lag
   check "include $what" refuses inc.lag
@@ -195,5 +195,5 @@ check 'a table in a message' says '<U+' "$LAGC" check tab.lag
 check 'a line break in a word' says 'word 2 has a line break or a tab' "$LAGC" check "$(printf 'a\nlagc: fine.lag')"
 check 'and in a value' says 'word 4 has a line break or a tab' "$LAGC" run tab.lag -o "$(printf 'a\tb.csv')"
 check "and a simulator's" says 'word 2 has a line break or a tab' ./sim --resume "$(printf 'a\nb')"
-check 'a state from a pipe, which nobody fills' says 'pipe is no regular file' timeout 10 ./sim --resume pipe
+check 'a state from a pipe, which nobody fills' says 'pipe is not a regular file' timeout 10 ./sim --resume pipe
 tap_end

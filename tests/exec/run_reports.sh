@@ -47,7 +47,7 @@ lagrangian = x'^2/2 + 1/x
 scene s { start x = 1; span 10 }
 X
 over() { # MODEL METHOD
-  check "$1: over a pole by $2" ends 3 "FAILED: at t = [0-9.]* s: the model left its domain (a pole of [xz]'*, over which no motion leads); steps of" "$TMP/$1.lag" --method "$2"
+  check "$1: over a pole by $2" ends 3 "FAILED: at t = [0-9.]* s: the model left its domain (a pole of [xz]'*, which no motion crosses); steps of" "$TMP/$1.lag" --method "$2"
 }
 for method in rk4 'rk4(step=0.01)' verlet 'verlet4(step=0.01)' symplectic_euler 'rk45(adapt=off,step=0.01)'; do
   over pole "$method"
@@ -114,7 +114,7 @@ done
 sed "s/sign(x')/sign(\\n  x')/" "$TMP/slide.lag" >"$TMP/slide2.lag"
 check "of a force over two lines the first is shown" ends 3 "the force of .sign(. in line 5 jumps there" "$TMP/slide2.lag"
 check "and is warned of" says 0 '' "$LAGC" check "$TMP/slide.lag"
-check "at the place" grep -q "slide.lag:5:19: warning: a force jumps where .x'. is 0, and a motion that it holds there" "$TMP/err"
+check "at the place" grep -q "slide.lag:5:19: warning: a force jumps where .x'. is 0; a motion that sticks there" "$TMP/err"
 cat >"$TMP/plane.lag" <<'X'
 model plane
 coord x [m], y [m]
@@ -240,7 +240,7 @@ coord x
 lagrangian = x'^2/2 - x^2/2
 scene s { start x = 1; span 5; output x, sqrt(x) every 0.5 }
 X
-check "an output without a value" ends 0 'note: the output sqrt(x) has no finite value at t = 2 s; so it is in 6 of 11 rows' "$TMP/root.lag" -o "$TMP/root.csv"
+check "an output without a value" ends 0 'note: the output sqrt(x) has no finite value at t = 2 s; the same in 6 of 11 rows' "$TMP/root.lag" -o "$TMP/root.csv"
 run "$TMP/root.lag" -o "$TMP/root.csv"
 is "and in JSON" 6 "$(number rows_without_value)"
 tap_end

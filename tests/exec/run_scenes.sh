@@ -69,7 +69,7 @@ bad "a missing requirement" 'the effect `wind` requires `air`' 'scene z { like v
 bad "effects that exclude each other" 'exclude each other' 'scene z { like windy; use storm }'
 bad "the scene's own value of an effect that it does not use" 'not in use here: `use air`' 'scene z { like vacuum; air.c = 2 }'
 bad "a value that the effect does not have" 'did you mean `air.twice`' 'scene z { use air(twicee = 2) }'
-bad "a cycle of two" 'is like itself' 'scene y { like z }
+bad "a cycle of two" 'inherits from itself' 'scene y { like z }
 scene z { like y }'
 bad "a scene like none" 'unknown scene `nowhere`' 'scene z { like nowhere }'
 
@@ -314,7 +314,7 @@ check "monitor none: no monitor" "$LAGC" run "$dir/e.lag" dropped --quiet --meth
 check "and then another" "$LAGC" run "$dir/e.lag" other --quiet --method 'rk4(step=0.5)'
 is "the column of what was dropped is gone" "t [s],x,x',energy,x^2" "$("$LAGC" run "$dir/e.lag" other --quiet -o - 2>/dev/null | sed -n 1p)"
 check "a monitor without a limit" says 1 '`monitor energy` has no limit' sh -c 'echo "scene n { monitor energy }" | cat "$1/e.lag" - >"$1/h.lag"; "$0" check "$1/h.lag"' "$LAGC" "$dir"
-check "an expression needs parentheses" says 1 'what stands in parentheses' \
+check "an expression needs parentheses" says 1 'an expression in parentheses' \
   sh -c 'sed "s/energy 1e-6/x + 1 1e-6/" "$1/e.lag" >"$1/g.lag"; "$0" check "$1/g.lag"' "$LAGC" "$dir"
 check "energy: rk45 holds it" "$LAGC" run "$dir/e.lag" --quiet
 check "energy: rk4 with long steps does not" says 3 'monitor energy: drift' "$LAGC" run "$dir/e.lag" --quiet --method 'rk4(step=0.5)'

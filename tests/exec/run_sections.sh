@@ -77,13 +77,13 @@ refused() { # STATUS TEXT ARGS...
   [ $? = "$status" ] && grep -q -e "$text" "$TMP/out" || { cat "$TMP/out"; return 1; }
 }
 star=models/henon_heiles.lag
-check "no direction" refused 2 "which direction? write --section 'x rising', falling" $star --section x
+check "no direction" refused 2 "a direction is missing; write --section 'x rising', falling" $star --section x
 check "a name that the model has not" refused 1 "unknown name .vx" $star --section 'vx rising'
 check "its mistake is shown with a caret" grep -q '| \^~' "$TMP/out"
 check "and a way out" grep -q '= ' "$TMP/out"
 check "an acceleration" refused 1 "cannot contain accelerations" $star --section "x'' rising"
 check "the energy" refused 1 "cannot contain accelerations.*energy" $star --section 'energy rising'
-check "a vector" refused 1 "a number is wanted here" models/charged_particle.lag --section 'r rising'
+check "a vector" refused 1 "a number is needed here" models/charged_particle.lag --section 'r rising'
 check "with --every" refused 2 "leave one of them out" $star --section 'x rising' --every 1
 check "with --html" refused 2 "leave one of them out" $star --section 'x rising' --html a.html --points x,y
 nearest() { "$TMP/ball" drop --section flor >"$TMP/out" 2>&1; [ $? = 2 ] && grep -q 'did you mean "floor"' "$TMP/out"; }

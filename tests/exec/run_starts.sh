@@ -66,14 +66,14 @@ check "exactly, velocities" refused c 'without `exactly` the nearest start is ta
 contradicts() { # WORDS: check says so, and a run, naming the same constraint, with no rows
   rm -f "$TMP/rows.csv"
   checks "$TMP/one.lag" && return 1
-  says '`b` contradicts those before it: ' "$TMP/check" && says "$1" "$TMP/check" || return 1
+  says '`b` contradicts the constraints before it: ' "$TMP/check" && says "$1" "$TMP/check" || return 1
   runs "$TMP/one.lag" && return 1
   says 'b (line 6) is off by' "$TMP/run" && says 'contradict each other soon after the start' "$TMP/run" && [ ! -e "$TMP/rows.csv" ]
 }
 one 'constraint a: x = 0 [m]' "constraint b: x' = v*(t/1 [s])" 'scene s { span 1 [s] }'
 check "another acceleration" contradicts 'demands another acceleration'
 one 'constraint a: x = 0 [m]' "constraint b: x' = v*(t/1 [s])^2" 'scene s { span 1 [s] }'
-check "the same acceleration, and another speed" contradicts 'no state obeys them; it is off by 9.54e-07 [m/s]' # v (1/1024)^2
+check "the same acceleration, and another speed" contradicts 'no state obeys them all; it is off by 9.54e-07 [m/s]' # v (1/1024)^2
 one 'constraint a: x = 0 [m]' 'constraint b: 2*x = 0 [m]' "constraint c: x' + th'*0 [m] = 0 [m/s]" "scene s { start y = 1 [m], y' = 1 [m/s]; span 1 [s] }"
 check "those that say the same do not contradict" taken 1 3 one
 
@@ -86,7 +86,7 @@ lagrangian = m/2*x'^2 + k/2*z'^2
 constraint b: z*c = x*c
 scene s { start x = 1 [m], x' = 1 [m/s]; span 1 [s] }
 END
-lacks() { rm -f "$TMP/rows.csv"; ! checks "$TMP/ker.lag" && says 'nothing says how `z` moves' "$TMP/check" && ! runs "$TMP/ker.lag" && says 'the mass matrix is singular: nothing says how z moves' "$TMP/run" && [ ! -e "$TMP/rows.csv" ]; }
+lacks() { rm -f "$TMP/rows.csv"; ! checks "$TMP/ker.lag" && says 'the motion of `z` is undetermined' "$TMP/check" && ! runs "$TMP/ker.lag" && says 'the mass matrix is singular: z has no inertia' "$TMP/run" && [ ! -e "$TMP/rows.csv" ]; }
 check "a coordinate without inertia that nothing moves" lacks
 # At one place only: at z = 0 the parabola lets z move without x.
 sed "s/lagrangian = .*/lagrangian = m\/2*x'^2/; s/constraint b: .*/constraint b: x = z^2\/1 [m]/; s/start .*;/start z = 0 [m];/" "$TMP/ker.lag" >"$TMP/apex.lag"
@@ -155,7 +155,7 @@ scene s { start a = 0 [rad]; span 0.1 [s] }
 END
 check "a linkage at its dead centre" taken 1 2 dead
 # a' + b' = c' of any ratio there; beside it b' = 0, or a' = 0
-singular() { says "singular start: the rank is 2 beside it; the constraints do not determine a', b', c' here" "$TMP/check" && says "1 independent at the start; singular: 2 beside it, and what the start says of a', b', c' decides which way it goes" "$TMP/run"; }
+singular() { says "singular start: the rank is 2 near it; the constraints do not determine a', b', c' here" "$TMP/check" && says "1 independent at the start; singular: 2 nearby, and the starting value of a', b', c' decides the branch" "$TMP/run"; }
 check "and that its velocities are not determined" singular
 checks "$TMP/dead.lag"
 check "is said to be there" says 'constraint cx (line 5): holonomic; its derivatives vanish at the start' "$TMP/check"
@@ -165,7 +165,7 @@ one 'constraint a: x = 0 [m]' 'constraint b: 2*x = 0 [m]' 'scene s { start y = 1
 regular() { taken 1 2 one && ! grep singular "$TMP/check" "$TMP/run"; }
 check "what follows from others everywhere is not singular" regular
 one "constraint a: x*x' + y*y' = l*x*th'" "scene s { start th' = 1 [rad/s]; span 1 [s] }"
-velocities() { taken 0 1 one && says "singular start: the rank is 1 beside it; the constraints do not determine x', y'" "$TMP/check" && says "singular: 1 beside it, and what the start says of x', y'" "$TMP/run"; }
+velocities() { taken 0 1 one && says "singular start: the rank is 1 near it; the constraints do not determine x', y'" "$TMP/check" && says "singular: 1 nearby, and the starting value of x', y'" "$TMP/run"; }
 check "a constraint on velocities that is none at the start" velocities
 
 # ---- contacts

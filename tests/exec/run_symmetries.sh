@@ -60,7 +60,7 @@ for setting in "dop853 --tol 1e-11" "rk45 --tol 1e-11" "taylor --tol 1e-11" "rk4
 done
 # the loss is by far larger than the part that is not accounted for
 check "there is work to account for" between "$(of spin work)" -20 -1
-check "the report says what forces did" says '^spin balance: [0-9.e-]* \(from 0.375 kg\*m\^2/s; forces brought -[0-9.]*\)' $planets disturbed
+check "the report says what forces did" says '^spin balance: [0-9.e-]* \(from 0.375 kg\*m\^2/s; change by forces: -[0-9.]*\)' $planets disturbed
 run $planets disturbed --method rk4 --step 0.01 --json && coarse=$(of spin drift)
 run $planets disturbed --method rk4 --step 0.005 --json && fine=$(of spin drift)
 check "rk4: half the step, 2^4 times less" order 4
@@ -209,7 +209,7 @@ check "a line near by" says_of 'x - 3' 'the symmetry .turn. does not keep to the
 check "a line that no start goes to" says_of 'x - 500' 'the symmetry .turn. does not keep to the constraint .c.'
 check "another circle" parts '(x - y)^2 + 2*x*y - 4'
 check "is turned into itself" grep -q 'symmetry turn: \(proved\|holds on the constraints, in numbers\)' "$TMP/out"
-check "a part that there is none of leaves it open" says_of 'x*y + x^2 + y^2 + 1' 'but none were on a part of the constraints, 1 + x^2 + y^2 + x.y = 0'
+check "a part that there is none of leaves it open" says_of 'x*y + x^2 + y^2 + 1' 'but none was found on the factor 1 + x^2 + y^2 + x.y = 0'
 check "a factor that is positive by its signs is no part" parts 'x^2 + 1'
 check "and asks for nothing" grep -q 'symmetry turn: ' "$TMP/out"
 
@@ -232,7 +232,7 @@ refused() {
   check "with the reason" grep -q "$5" "$TMP/out"
 }
 for signs in "+,+,,+" ",-,-,+"; do
-  refused "$signs" 'what is left of delta L is .*x.*; it would be 0 if what it does to `x` or `y` had the other sign'
+  refused "$signs" 'the remainder of delta L is .*x.*; it would be 0 if the change of `x` or `y` had the opposite sign'
 done
 for signs in "-,-,,+" ",-,,-"; do
   refused "$signs" 'at s = 0 the symmetry `turn` maps `[xy]` to `-[xy]`'

@@ -151,7 +151,7 @@ scene both { like go
   start x = 1 }
 X
 check "an event that depends on an input" refused 3 'event wall changes the state at t = .*: it depends on an input' "$TMP/driven.lag"
-check "two at once" refused 3 'event other changes the state at t = .*: another one does at the same time' "$TMP/driven.lag" both
+check "two at once" refused 3 'event other changes the state at t = .*: another event does so at the same time' "$TMP/driven.lag" both
 cat >"$TMP/touch.lag" <<'X'
 model touch
 coord x

@@ -109,12 +109,12 @@ rows_at() { "$LAGC" run pend.lag -o - --quiet "$@" | cut -d, -f1 | tr '\n' ' '; 
 is "--until and --every" "t [s] 0 60 120 " "$(rows_at --until '2 [min]' '--every=1[min]')"
 "$LAGC" run pend.lag --method rk4 --step '1[ms]' >out
 check "--step" grep -q 'rk4(step=0.001)' out
-check "another dimension" says 2 'this value is in [s], and [cm] is wanted here' "$LAGC" run pend.lag 'l=3[s]'
-check "a time in metres" says 2 'this value is in [m], and [s] is wanted here' "$LAGC" run pend.lag --until '3[m]'
+check "another dimension" says 2 'this value is in [s], but [cm] is needed here' "$LAGC" run pend.lag 'l=3[s]'
+check "a time in metres" says 2 'this value is in [m], but [s] is needed here' "$LAGC" run pend.lag --until '3[m]'
 check "an unknown unit" says 2 'unknown unit `sec`' "$LAGC" run pend.lag --until '3[sec]'
 check "an unknown name" says 2 'unknown name `ll`' "$LAGC" run pend.lag 'll=3[m]'
 check "a vector" says 2 'set its components' "$LAGC" run pend.lag 'e=3[m]'
-check "what no run sets" says 2 'nothing that a run sets' "$LAGC" run pend.lag "energy=3[J]"
+check "what no run sets" says 2 'a run cannot set' "$LAGC" run pend.lag "energy=3[J]"
 check "a bracket that stays open" says 2 'the `]` of this unit is missing' "$LAGC" run pend.lag 'l=3[m'
 check "past the numbers there are" says 2 'not a finite number' "$LAGC" run pend.lag 'th=1e308[rad]'
 printf '%s\n' 'model m' 'const e = (1, 0)' 'coord x' "lagrangian = e.x*x'^2" >vector.lag

@@ -7,10 +7,13 @@
 elsewhere='internal error
 -D %s
 --fix
+--precision
+no Hamiltonian
+no symmetries to look for
 lagc effects
 effects to compare
 this does not belong in a scene
-nothing that a run sets
+a run cannot set
 a section is a surface in the space of states
 this is not a finite number
 this is nested too deep'

@@ -28,8 +28,8 @@ below() { awk -v x="$1" -v most="$2" 'BEGIN { print x; exit !(x <= most && -x <=
 "$LAGC" check $points >"$TMP/points.txt"
 check "bodies: one degree of freedom" grep -q '^scene go: 1 degree of freedom; 35 constraints, of rank 34 at the start$' "$TMP/bodies.txt"
 check "points: one degree of freedom" grep -q '^scene go: 1 degree of freedom; 24 constraints, of rank 23 at the start$' "$TMP/points.txt"
-check "bodies: what is redundant is named" grep -q 'constraint fork\[5\] .* follows from those before it; its multiplier is not unique' "$TMP/bodies.txt"
-check "points: what is redundant is named" grep -q 'constraint twist\[5\] .* follows from those before it; its multiplier is not unique' "$TMP/points.txt"
+check "bodies: what is redundant is named" grep -q 'constraint fork\[5\] .* follows from the constraints before it; its multiplier is not unique' "$TMP/bodies.txt"
+check "points: what is redundant is named" grep -q 'constraint twist\[5\] .* follows from the constraints before it; its multiplier is not unique' "$TMP/points.txt"
 is "and all reactions in the loop, but not the lengths of axes" "20 0" \
   "$(grep -c 'not unique' "$TMP/points.txt") $(grep 'unit\[' "$TMP/points.txt" | grep -c 'not unique')"
 

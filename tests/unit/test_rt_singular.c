@@ -67,7 +67,7 @@ static int steps_until(const lag_model *m, double t0, double h, double y1)
     run.t = t0 + (i - 1) * h;
     if (lag_detect_stall(&s, t0 + i * h)) {
       assert_non_null(strstr(s.pb.detail, y1 < 1 ? "constraint second (line 4)" : "a force or a constraint jumps here"));
-      assert_non_null(strstr(s.pb.detail, y1 < 1 ? "a larger one" : "smooth it"));
+      assert_non_null(strstr(s.pb.detail, y1 < 1 ? "a larger tolerance" : "smooth it"));
       assert_true(s.pb.bad_t == t0 + i * h);
       return i;
     }
