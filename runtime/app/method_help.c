@@ -112,7 +112,8 @@ void lag_app_list_methods(const App *app, FILE *f)
     row(m, f);
   }
   putc('\n', f);
-  wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. both: symplectic and symmetric; what a symplectic method keeps it does not keep where there are forces or explicit time. Newton: whether each step solves "
+  wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. both: symplectic and symmetric; with forces or explicit time a "
+             "symplectic method keeps neither energy nor the two-form. Newton: whether each step solves "
              "equations by Newton's method; partly: unless the model is separable, with constant mass matrix, and accelerations that do not "
              "depend on velocities. states: whether the model may have a `state`; alone: without coordinates, or where L is linear in "
              "all velocities. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). holds: whether its steps end on "

@@ -175,7 +175,7 @@ static int refuse_start(Start *s, lag_start_kind kind, int k)
     return lag_fail(s->sim, LAG_EINVAL, "the start contradicts its constraints: %s%s; without `exactly` the nearest start is taken",
                     s->pb->words, positions ? "" : ", in its velocities");
   default:
-    return lag_fail(s->sim, LAG_EINVAL, "no start obeys the constraints: from the one given, none is found nearer than this: %s%s",
+    return lag_fail(s->sim, LAG_EINVAL, "no start obeys the constraints; the nearest state found from the given start: %s%s",
                     s->pb->words, positions ? "" : " in its rate");
   }
 }

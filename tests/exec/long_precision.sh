@@ -31,7 +31,7 @@ check "a time" begins 31.41592653589793238462643383279 "$(quad "$TMP/osc.lag" --
 sed 's/k = 0.1/k = 0.10000000000000000000000001/' "$TMP/osc.lag" >"$TMP/long.lag"
 check "a number of the model with too many digits" refuses 0 ":3:11: warning: this number is rounded to 17 digits" "$TMP/long.lag" --precision quad
 sed 's/10\*k/1.234567890123456*1.234567890123457/' "$TMP/osc.lag" >"$TMP/long.lag"
-check "a product of numbers with too many digits" refuses 0 "numbers of the model multiply to" "$TMP/long.lag" --precision quad
+check "a product of numbers with too many digits" refuses 0 "a product of numbers of the model" "$TMP/long.lag" --precision quad
 check "doubles say nothing" says_nothing
 # Saved runs go on in their precision, bit by bit, and in no other.
 quad "$TMP/osc.lag" --until 3 --save-state "$TMP/state" >/dev/null
