@@ -23,7 +23,7 @@ static const CommandRow commands[] = {
    "Builds the simulator (or takes it from the cache) and runs it.\n\n"
    "  name=value            a parameter, a start (th=1.2, \"th'=0.5\", th='90[deg]',\n"
    "                        th=pi/3) or an input; a bare number is in the declared\n"
-   "                        unit; drag.c=0.2 for an effect's, m=3 for a family\n"
+   "                        unit; drag.c=0.2 for one of an effect, m=3 for a family\n"
    "  u=FILE.csv            a table for the input u; 'u=2*sin(t/(1 [s]))' a formula"},
   {CMD_PLOT, "plot", "picture", "MODEL [SCENE] [name=value ...] [--x EXPR --y EXPR | --phase EXPR]", "simulate and draw, as SVG",
    "Runs the model and draws it: all outputs against time, or one quantity against another. "
