@@ -189,7 +189,7 @@ check "leaves the part that is along it" sh -c 'tail -1 "$1" | awk -F, "{ d = \$
 
 # ---- bad input
 check "exactly" refused 'the start contradicts its constraints: constraint rod (line 6) is off by 0.21 m^2' $models/rod.lag exact
-check "no start at all" refused 'no start obeys the constraints; .*: constraint' $models/rod.lag far
+check "no start at all" refused 'no start obeys the constraints' $models/rod.lag far
 check "with the constraint's line" grep -q '(line [67])' "$TMP/err"
 for m in gauss taylor; do
   check "$m refuses" refused "method $m cannot hold constraints (rod); rk45, dop853 and variational can" $models/rod.lag drop --method $m

@@ -79,7 +79,7 @@ check "scenes keep their own numbers" sh -c '[ "$("$0" heavy --json | sed "s/.*f
 check "run --fix" says 2 'm is a number' "$LAGC" run "$two" --fix m m=3
 check "of an effect that is off, it is said" says 0 'note: --fix drive.F: the effect `drive` is off in the scene `rest`, and has nothing to fix there' "$LAGC" derive "$two" rest --fix drive.F
 check "no such parameter" says 1 'did you mean `m`?' "$LAGC" emit "$two" --fix mm
-check "no parameter" says 1 '--fix x: it is a coordinate' "$LAGC" emit "$two" --fix x
+check "no parameter" says 1 '--fix x: this is a coordinate' "$LAGC" emit "$two" --fix x
 check "a constant" says 1 'constants are set when compiling: -D n=' "$LAGC" emit "$two" --fix n
 check "made of others" says 1 '`d` depends on other parameters' "$LAGC" emit "$two" --fix d
 cat "$two" - >"$dir/both.lag" <<'END'
