@@ -314,8 +314,21 @@ static int has_long_tables(const IrUnit *u) {
   return is_long;
 }
 
+/* Programs whose systems lag_solve and its kin solve in `work`: not the plain outputs, which only a header has, and not derived parameters and Taylor
+ * coefficients, whose factors have functions and room of their own. */
+static ProgList solving_programs(const IrUnit *u) {
+  ProgList all = unit_programs(u), kept = {0};
+  for (uint32_t i = 0; i < all.n; i++) {
+    const Prog *p = all.at[i];
+    int apart = p == u->derived || (u->taylor && (p == u->taylor->first || p == u->taylor->next));
+    for (uint32_t k = 0; k < u->scenes.n; k++) apart |= p == u->scenes.at[k].observe_plain && p != u->scenes.at[k].observe;
+    if (!apart) vec_push(u->arena, &kept, p);
+  }
+  return kept;
+}
+
 static uint32_t work_size(const IrUnit *u) {
-  ProgList all = unit_programs(u);
+  ProgList all = solving_programs(u);
   uint32_t most = 0;
   for (uint32_t i = 0; i < all.n; i++)
     if (prog_work_size(all.at[i]) > most) most = prog_work_size(all.at[i]);
@@ -324,7 +337,7 @@ static uint32_t work_size(const IrUnit *u) {
 
 /* Whether a linear system of that kind is solved by a loop. */
 static int needs_solver(const IrUnit *u, SolveKind kind) {
-  ProgList all = unit_programs(u);
+  ProgList all = solving_programs(u);
   int some = 0;
   for (uint32_t i = 0; i < all.n; i++) some |= prog_solves(all.at[i], kind);
   return some;

@@ -38,11 +38,11 @@ static int read_numbers(Check *c, const Numbers *of) {
 static void note_expression(Check *c, const Tape *t, const Jet *at, Ref r) {
   const TapeIns *i = &t->ins.at[r];
   const Real x = tape_value(t, at, i->a)->c[0][0].v, y = i->b ? tape_value(t, at, i->b)->c[0][0].v : 0, value = tape_value(t, at, r)->c[0][0].v;
-  const char *of = fabsl(value) <= DBL_MAX ? "the derivatives of this expression have" : "this expression has", *format = i->op == TAPE_DIV ? "%.6Lg divided by %.6Lg" : i->b ? "of %.6Lg and %.6Lg" : "of %.6Lg";
+  const char *of = fabsl(value) <= DBL_MAX ? "the derivatives of this expression have" : "this expression has", *format = i->op == TAPE_DIV ? ": %.6Lg divided by %.6Lg" : i->b ? " at %.6Lg and %.6Lg" : " at %.6Lg";
   char operands[80];
   Diags *d = c->m->diags;
   snprintf(operands, sizeof operands, format, x, y);
-  diag_note(d, ast_expr(c->m->builder->ast, i->at)->span, "the run ends here, where %s no finite value: %s", of, operands);
+  diag_note(d, ast_expr(c->m->builder->ast, i->at)->span, "the run ends here, where %s no finite value%s", of, operands);
   diag_help(d, "at %s", check_state_text(c));
 }
 

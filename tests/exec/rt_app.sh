@@ -108,7 +108,7 @@ check "input held constant" sh -c "./sim drop wind=9.81 --json | grep -q '\"y\":
 check "--opt=value and two words" sh -c './sim swing --tol=1e-10 -o t1.csv --quiet && ./sim swing --tol 1e-10 -o t2.csv --quiet && cmp t1.csv t2.csv'
 check "method with options" sh -c './sim swing --method "rk4(step=0.01)" | grep -q "rk4(step=0.01)"'
 check "scene's method and step" sh -c './sim fixed | grep -q "rk4(step=0.001)"'
-check "--method help" sh -c './sim --method help | grep -q "verlet6 *6 *6 *fixed *both *partly *yes *no"'
+check "--method help" sh -c './sim --method help | grep -q "verlet6 *6 *6 *fixed *both *partly *no *yes"'
 check "--help" sh -c './sim --help | grep -q -- --save-state'
 
 # --- mistakes
@@ -238,7 +238,7 @@ check "html says what it shows" sh -c 'grep -q "^\"rods\": true.*\"names\": \[\[
 check "names with commas and quotes" status 0 swing --html b.html --points 'E "total", T+V,E "total", T+V;E "total", T+V,E "total", T+V' --no-rods
 check "are escaped in a script" sh -c 'grep -qF "[\"E \\u0022total\\u0022, T+V\", " b.html'
 check "html of what points?" says 2 "add --points" swing --html c.html
-check "points of what?" says 2 "add an animation" swing --points th,th
+check "points of what?" says 2 "need an animation" swing --points th,th
 check "a point that is no output" says 2 "no output is named tt; did you mean t?" swing --html c.html --points th,tt
 check "half a point" says 2 "two names of outputs" swing --html c.html --points th
 check "points in two units" says 2 "needs one unit" swing --html c.html --points 't,th'

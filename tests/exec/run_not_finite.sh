@@ -33,7 +33,7 @@ places() { # places METHOD LINE:COLUMN WHAT STATE <MODEL
   [ $? = 3 ] && grep -q "place.lag:$2: note: the run ends here, where $3" "$TMP/err" && grep -q "= at $4" "$TMP/err" || { cat "$TMP/out" "$TMP/err"; return 1; }
 }
 for method in dop853 taylor radau 'rk4 --step 0.01'; do
-check "sqrt in a force, by $method" places "$method" 4:16 'it has no finite value: of -[0-9.e-]*$' "x = 0.19" <<'EOF'
+check "sqrt in a force, by $method" places "$method" 4:16 'this expression has no finite value at -[0-9.e-]*$' "x = 0.19" <<'EOF'
 model m
 coord x
 kinetic = x'^2/2
@@ -41,7 +41,7 @@ force x = -3 - sqrt(x - 0.2)
 scene s { start x = 1; span 10; output x }
 EOF
 done
-check "in a function, which an effect asks for" places dop853 3:35 'it has no finite value: of -[0-9.e-]*$' "x = 0.39" <<'EOF'
+check "in a function, which an effect asks for" places dop853 3:35 'this expression has no finite value at -[0-9.e-]*$' "x = 0.39" <<'EOF'
 model m
 coord x
 function height(u) = 2 + 1/4 + 3* log(2*u - 0.8)
@@ -49,20 +49,20 @@ kinetic = x'^2/2
 effect fall { force x = -1 - 1e-9*height(x) }
 scene s { start x = 1; span 10; use fall; output x }
 EOF
-check "a division, in a family" places 'rk4 --step 0.01' 4:46 'it has no finite value: 1 divided by 0$' "x\[1\] = 1, x\[1\]' = -1, x\[2\] = 0" <<'EOF'
+check "a division, in a family" places 'rk4 --step 0.01' 4:46 'this expression has no finite value: 1 divided by 0$' "x\[1\] = 1, x\[1\]' = -1, x\[2\] = 0" <<'EOF'
 model m
 coord x[2]
 kinetic = sum(i in 1..2, x[i]'^2)/2
 potential = sum(i in 1..2, 1e-30*(x[i]^2 +   1/x[i]))
 scene s { start x[1] = 1, x[1]' = -1, x[2] = 0; span 1; output x[1] }
 EOF
-check "derivatives alone" places 'rk4 --step 0.01' 3:31 'its derivatives have no finite value: of 0$' "x = 0" <<'EOF'
+check "derivatives alone" places 'rk4 --step 0.01' 3:31 'the derivatives of this expression have no finite value at 0$' "x = 0" <<'EOF'
 model m
 coord x, y
 lagrangian = x'^2/2 + y'^2/2 -sqrt(x) - y
 scene s { start x = 0; span 1; output x }
 EOF
-check "a flow" places dop853 3:16 'it has no finite value: of -[0-9.e-]*$' "z = 0.4" <<'EOF'
+check "a flow" places dop853 3:16 'this expression has no finite value at -[0-9.e-]*$' "z = 0.4" <<'EOF'
 model m
 state z
 flow z' = -1 - sqrt(z - 0.5)
