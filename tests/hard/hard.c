@@ -64,6 +64,7 @@ static const struct {
 static Fact facts[FACTS];
 static Run runs[RUNS];
 static int nfacts, nruns;
+static int count; /* of runs judged */
 
 /* ---- what is read -------------------------------------------------------------------------------- */
 
@@ -328,7 +329,6 @@ static int next_scene(const char *id, int *i, const char **scene) {
 static int is_fine(const Trial *x) { return x->refused || isinf(x->limit) || x->worst <= (x->limit > 0 ? x->limit : 1); }
 
 static void report(const Run *r, const char *id, const char *scene, const Trial *x, const char *cases) {
-  static int count;
   char why[200], name[2 * NAME];
   int fine = is_fine(x);
   snprintf(name, sizeof name, "%s%s%s", id, strcmp(scene, "go") == 0 ? "" : ", ", strcmp(scene, "go") == 0 ? "" : scene);
@@ -406,5 +406,6 @@ int main(int argc, char **argv) {
       if (first && its && is_asked(argc - 5, argv + 5, id, runs[k].method)) bad |= !run_case(&runs[k], id, argv[1]);
     }
   }
+  if (!getenv("TABLE")) printf("1..%d\n", count);
   return bad;
 }
