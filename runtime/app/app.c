@@ -352,7 +352,7 @@ static int finish(App *app)
   }
   if (a->sketch) {
     FILE *to = a->json ? stderr : f;
-    sketch(to, &app->table, &app->drawn);
+    lag_sketch_write(to, &app->table, &app->drawn);
   }
   if (a->json) {
     lag_report_json(app, stdout);

@@ -105,7 +105,7 @@ typedef struct Series {
 int lag_svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n);
 
 /* Prints the first few curves as text (braille dots). */
-void sketch(FILE *f, const Table *t, const PlottedCurves *d);
+void lag_sketch_write(FILE *f, const Table *t, const PlottedCurves *d);
 
 /* An animation: points whose x and y are columns of the table, all in one unit. */
 typedef struct Animation {

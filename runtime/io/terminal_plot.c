@@ -149,7 +149,7 @@ static void against_time(FILE *f, const Table *t, const PlottedCurves *d, int n)
   }
 }
 
-void sketch(FILE *f, const Table *t, const PlottedCurves *d)
+void lag_sketch_write(FILE *f, const Table *t, const PlottedCurves *d)
 {
   int n = d->n < MOST_CHARTS ? d->n : MOST_CHARTS;
 
