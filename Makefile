@@ -265,12 +265,15 @@ test:
 	$(RUN_TESTS) $(T)
 # Unit and golden suites, without sanitizers: one build, of the compiler and of the runtime for doubles.
 QUICK_BIN := $(BUILD)/test/quick
+# Not those that take more than ten seconds each.
+QUICK     := $(filter-out unit/test_rt_cost unit/test_nest unit/test_lift golden/gallery golden/run_emitted golden/run_steps golden/lib_%, \
+               $(UNIT_SRC:tests/%.c=%) $(patsubst tests/%.sh,%,$(wildcard tests/golden/*.sh)))
 check-quick: BIN   := $(QUICK_BIN)
 check-quick: CLANG :=
 check-quick:
 	$(SETUP) test
 	$(QUIET) BIN=$(QUICK_BIN) SAN_BUILD=$(BUILD) SAN_FLAGS= TEST_OPT=-O0 PRECISIONS= $(BUILD)/lagc $(LIBLAG) $(UNIT_SRC:tests/unit/%.c=$(QUICK_BIN)/%)
-	$(RUN_TESTS) $(if $(T),$(T),unit/ golden/)
+	$(RUN_TESTS) $(or $(T),$(QUICK))
 test-long:
 	$(SETUP) test
 	@$(MAKE) --no-print-directory build-tests

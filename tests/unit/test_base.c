@@ -234,7 +234,7 @@ static void test_arena(void **state) {
   unsigned char *blocks[200];
   for (size_t i = 0; i < 200; i++) {
     blocks[i] = arena_alloc(a, i);
-    assert_true((uintptr_t)blocks[i] % sizeof(max_align_t) == 0);
+    assert_true((uintptr_t)blocks[i] % _Alignof(max_align_t) == 0);
     for (size_t k = 0; k < i; k++) assert_int_equal(blocks[i][k], 0);
     memset(blocks[i], (int)i, i);
   }
