@@ -7,6 +7,6 @@ printf '%s\n' models/*.lag | xargs -P 2 -n 1 sh tests/exec/long_sanitized.sh
 for m in models/*.lag; do empty "$(basename "$m" .lag)" "$(cat "$TMP/$(basename "$m").wrong" 2>&1)"; done
 for suite in golden/run_eqns golden/run_errors golden/run_expect golden/run_syntax golden/run_language golden/run_messages; do
   # shellcheck disable=SC2016
-  check "$suite, by this compiler" env LAGC="$LAGC_SAN" LAG_HOME="$LAG_TREE" TMP="$TMP/golden" sh -c 'mkdir -p "$TMP"; out=$(sh "tests/$0.sh"); code=$?; printf "%s\n" "$out" | grep -A 20 "^not ok"; exit $code' "$suite"
+  check "$suite, by this compiler" env LAGC="$LAGC_SAN" LAG_HOME="$LAG_TREE" TMP="$TMP/$suite" sh -c 'mkdir -p "$TMP"; out=$(sh "tests/$0.sh"); code=$?; printf "%s\n" "$out" | grep -A 20 "^not ok"; exit $code' "$suite"
 done
 tap_end
