@@ -29,7 +29,7 @@ static int do_command(Compiler *c) {
   return STATUS_USAGE;
 }
 
-/* Numbers are folded as doubles. */
+/* Refuses --fix with more digits than a double has: fixed parameters are folded as doubles. */
 static int folds_digits(const Compiler *c) {
   if (!c->o.fix || !options_more_digits(&c->o)) return 1;
   usage_error("--fix makes doubles of parameters: leave it out where --precision has more digits");

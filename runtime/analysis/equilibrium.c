@@ -41,7 +41,7 @@ static void choose_scales(Equilibrium *r)
   }
 }
 
-/* Forces as a whole, and rates as a whole, get the size 1: what they are made of may differ by any factor. */
+/* Row scales that give forces as a whole, and rates as a whole, the size 1: units and magnitudes of models differ by any factor. */
 static int choose_rows(Equilibrium *r)
 {
   int nq = r->sim->pb.nq, n = r->n;

@@ -11,7 +11,7 @@
 int lag_equilibrium_find(Equilibrium *rest, lag_sim *sim, const lag_algebra *algebra);
 void lag_equilibrium_free(Equilibrium *rest);
 
-/* Whether a root is at, or so near that it cannot be told from, the state at rest moved by c times dx[n] (in SI). */
+/* Whether the state at rest moved by c dx[n] (in SI) is a root, or indistinguishable from one. */
 int lag_equilibrium_holds(Equilibrium *rest, const double *dx, double c);
 
 /* Whether another equilibrium lies near that place, nearer to it than to the first one: then they form a curve. */

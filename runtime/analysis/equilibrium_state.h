@@ -5,24 +5,24 @@
 #include "analysis/memory_pool.h"
 #include "core/core.h"
 
-/* The model at rest. Unknowns x[n], n = nq + nz, are coordinates and states over their scale; equations are
- * forces times that scale, so that those of coordinates are energies, and rates over it. */
+/* The model at rest. Unknowns x[n], n = nq + nz, are coordinates and states over their scale; equations are forces times that scale, so
+ * energies, and rates over it. */
 typedef struct Equilibrium {
   Pool pool;
   lag_sim *sim;
   int n;
-  double *start;  /* [n] of the simulation, in SI */
+  double *start;  /* [n] start of the simulation, in SI */
   double *y;      /* [2 nq + nz] the state at rest, or the last one tried */
   double *rate;   /* [2 nq + nz] y' there */
-  double *scale;  /* [n] how far is far: of angles 1 rad, else the largest start in that unit, or one unit */
+  double *scale;  /* [n] scales: of angles 1 rad, else the largest start in that unit, or one unit */
   int steps;      /* that it took */
-  int worst;      /* not found: the equation that is farthest from 0, */
-  int away;       /* and whether forces only fade, far away */
-  double *x, *begin, *from, *first, *trial, *near, *kept; /* [n] unknowns: now, at the start, and of the search */
-  double *f, *row, *J, *W; /* equations, what makes them alike in size, their derivatives; friction */
-  double *dx, *step;       /* [n] of Newton's method */
-  double *values, *noise, *scratch; /* [n + n * n] f and J, and what rounding of the model's numbers makes of them */
-  double *spread; /* [n] how far the root may be from x, by rounding */
+  int worst;      /* not found: the equation with the largest unbalanced force, */
+  int away;       /* 1: forces only fade, far away */
+  double *x, *begin, *from, *first, *trial, *near, *kept; /* [n] unknowns: now, at the start, and points of the search */
+  double *f, *row, *J, *W; /* equations, their row scales, their derivatives; friction matrix */
+  double *dx, *step;       /* [n] Newton step; right-hand side */
+  double *values, *noise, *scratch; /* [n + n * n] f and J, and their perturbation noise */
+  double *spread; /* [n] uncertainty of the root x, by rounding */
   int rank;       /* of J there */
   int pole, rough; /* what regularity.h says of it */
   double delta;
@@ -33,7 +33,7 @@ typedef struct Equilibrium {
  * y' in rate, and M. */
 int lag_equilibrium_equations(void *rest, const double *x, double *f, double *J);
 
-/* y := the state, at rest, of the unknowns x[n]. */
+/* y := the state at rest for the unknowns x[n]. */
 void lag_equilibrium_state(Equilibrium *rest, const double *x);
 
 #endif

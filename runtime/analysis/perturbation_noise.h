@@ -1,5 +1,5 @@
-/* What rounding may change of a model's values: parameters and unknowns are numbers of 53 bits, and what they make can be
- * known no better than that. */
+/* Perturbation noise: parameters and unknowns are numbers of 53 bits, so values of a model are known no better than rounding of these lets them
+ * be. */
 #ifndef LAG_ANALYSIS_PERTURBATION_NOISE_H
 #define LAG_ANALYSIS_PERTURBATION_NOISE_H
 

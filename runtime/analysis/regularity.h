@@ -1,4 +1,5 @@
-/* What makes a place unfit for small motion. Both look at the state at rest and beside it, and leave rest's values undefined. */
+/* Regularity of a place: the reasons why small motion about it means nothing. Both tests evaluate the state at rest and nearby, and leave rest's
+ * values undefined. */
 #ifndef LAG_ANALYSIS_REGULARITY_H
 #define LAG_ANALYSIS_REGULARITY_H
 

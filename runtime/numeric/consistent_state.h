@@ -25,7 +25,7 @@ struct lag_level {
   int exactly;           /* a state that violates a constraint is refused */
   double rounding;       /* DBL_EPSILON of the numbers in which the constraints must hold */
 
-  /* Of the state w->x. Functions that return int return 0 where they have values. */
+  /* Callbacks evaluate the state w->x. Those that return int return 0 where values exist. */
   int (*residuals)(const lag_level *w, double *residual);
   int (*jacobian)(const lag_level *w, double *A);
   int (*terms)(const lag_level *w, double *size);                     /* size of the terms of each constraint */

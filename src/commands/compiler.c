@@ -39,7 +39,6 @@ static int wants_dump(const Compiler *c, const char *stage) {
   return at && (at == c->o.dump || at[-1] == ',') && (at[n] == ',' || at[n] == '\0');
 }
 
-/* A mistyped output must not cost the model, nor a file that it is made of: includes, tables. */
 int compiler_is_source(Compiler *c, const char *path) {
   for (uint32_t i = 0; i < c->sources->files.n; i++) {
     if (!file_same(path, c->sources->files.at[i].path)) continue;
@@ -73,7 +72,6 @@ int compiler_read(Compiler *c) {
   return c->diags->errors ? STATUS_MODEL : STATUS_OK;
 }
 
-/* The equations of what was chosen; NULL with the reasons in c->diags. */
 Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
   ModelChoice with_defines = *choice;
   with_defines.defines = c->o.defines.at;
@@ -84,13 +82,12 @@ Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
   StrBuf listing = strbuf(c->arena);
   if (wants_dump(c, "model")) model_dump(m, &listing);
   Eqns *e = equations_of(m);
-  if (e && !choice->bare) mass_warn_nonpositive(e); /* claims are about all values */
+  if (e && !choice->bare) mass_warn_nonpositive(e); /* claims hold for all values of parameters */
   if (e && wants_dump(c, "eqns")) dump_equations(e, &listing);
   if (listing.n) compiler_write(c, NULL, &listing);
   return e;
 }
 
-/* Of one scene (NULL: the first). */
 Eqns *compiler_derive_scene(Compiler *c, const char *scene) { return compiler_derive(c, &(ModelChoice){.scene = scene}); }
 
 Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice) {
@@ -137,7 +134,6 @@ Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice) {
   return e;
 }
 
-/* Of `emit` and `build`, which emit what it needs. That of a run is the simulator's to judge. */
 int compiler_knows_method(Compiler *c) {
   size_t n = c->o.method ? strcspn(c->o.method, " (") : 0;
   if (!n || method_find(c->o.method, n) || method_may_be_gsl(c->o.method)) return 1;

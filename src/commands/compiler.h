@@ -20,11 +20,11 @@ typedef struct {
   Sources *sources;
   Diags *diags;
   Ast *ast;
-  RunRequest picture; /* of run, plot and animate */
+  RunRequest picture; /* requests of run, plot and animate */
   GivenList given; /* values that the command line gives to names, for run, plot and animate */
   StrBuf told;     /* comparisons with the text, for check --verbose */
   const Eqns *run; /* equations of the scene that the command runs, */
-  IrUnit *run_by;  /* and its programs */
+  IrUnit *run_by;  /* and their programs */
 } Compiler;
 
 /* Prints the messages so far; warnings about unused names too, if there is no error. */

@@ -27,7 +27,7 @@ static int print_hamiltonian(Compiler *c, Eqns *e) {
   return hamiltonian_print(e, c->o.format, &out) ? compiler_write(c, c->o.output, &out) : STATUS_MODEL;
 }
 
-/* What the operations would be without --fix. */
+/* The operation count without --fix. */
 static const char *unfixed_cost(Compiler *c) {
   Eqns *e = compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .unfixed = 1});
   return e ? arena_printf(c->arena, "without --fix: %s\n", op_count_text(compiler_new_unit(c, e)->accel, c->arena)) : "";

@@ -17,14 +17,14 @@ static IrUnit *lower_variant(Compiler *c, EffectList effects, unsigned *wants) {
   Eqns *e = compiler_derive_wanted(c, &(ModelChoice){.scene = c->o.scene, .only = &effects, .given = c->given.at, .ngiven = c->given.n});
   if (!e) return NULL;
   IrUnit *u = compiler_new_unit(c, e);
-  *wants |= derivatives_required(e, &c->o); /* all of them are to run by the first one's method */
+  *wants |= derivatives_required(e, &c->o); /* all variants run by the method of the first */
   unit_require(u, e, *wants);
   unit_add_scene(u, e);
   unit_hoist(u);
   return compiler_agrees(e, u, 0) ? u : NULL;
 }
 
-/* Makes a program of these variants, runs it, and reads what it measured. */
+/* Builds a program of these variants, runs it, and parses its measurements. */
 static int run_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, const char *what, EffectMeasurement **measured) {
   Toolchain tools;
   Units units = {0};
@@ -37,7 +37,7 @@ static int run_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, con
     vec_push(c->arena, &units, u);
   }
   if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return usage_error(error);
-  if (strcmp(what, "runs") == 0) tools.optimise = "-O0"; /* the same bits, and compiling is what takes time */
+  if (strcmp(what, "runs") == 0) tools.optimise = "-O0"; /* same bits; compilation takes longer than the runs */
   Texts texts = simulator_texts(c, &units, tools.gsl);
   int status = simulator_make(c, &tools, &texts, NULL, &path);
   if (status != STATUS_OK) return status;
@@ -51,7 +51,7 @@ static int run_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, con
   return status;
 }
 
-/* --accuracy: the smallest set of effects. */
+/* --accuracy: searches the smallest set of effects. */
 static int find_least(Compiler *c, EffectStudy *s) {
   EffectMeasurement *measured = NULL;
   if (!num_parse_double(c->o.accuracy, &s->accuracy) || !(s->accuracy > 0)) return usage_error(arena_printf(c->arena, "--accuracy %s: a difference that does not matter, relative and positive; for example 1e-6", c->o.accuracy));

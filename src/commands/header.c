@@ -8,7 +8,7 @@
 #include "mech/consistent_start.h"
 #include "report/equation_listing.h"
 
-/* A header is called by its file: pend.h has PEND_IMPLEMENTATION. On standard output, by its model. */
+/* The prefix of a header's names: its file's (pend.h: PEND_IMPLEMENTATION), on standard output the model's. */
 static const char *header_name(Compiler *c, const char *model) {
   const char *path = c->o.output;
   if (!path || strcmp(path, "-") == 0) return model;
@@ -16,7 +16,7 @@ static const char *header_name(Compiler *c, const char *model) {
   return dot ? arena_strndup(c->arena, stem, (size_t)(dot - stem)) : stem;
 }
 
-/* A header does not look for the start that a run takes: it is told. */
+/* Computes the consistent start that a run would find, and stores it in the header's scene. */
 static int bake_start(Compiler *c, const Eqns *e, IrUnit *u) {
   long double *found = ARENA_ARRAY(c->arena, long double, 2 * (size_t)e->n + 1);
   unsigned char *moved = ARENA_ARRAY(c->arena, unsigned char, 2 * (size_t)e->n + 1);

@@ -9,9 +9,9 @@
 #include "jets/nonfinite.h"
 #include "toolchain/last_state_listener.h"
 
-enum { LARGE = 1000 }; /* coordinates: the memory of compiling them is not kept for the run */
+enum { LARGE = 1000 }; /* coordinates, beyond which the compiler's memory is not kept during the run */
 
-/* Whether a file that the simulator would write is one that the model is made of. */
+/* Whether an output of the simulator would overwrite a file of the model. */
 static int writes_source(Compiler *c) {
   for (char *const *a = c->picture.argv.at; *a; a++) {
     const char *eq = strncmp(*a, "--", 2) == 0 ? strchr(*a, '=') : NULL;
@@ -20,14 +20,14 @@ static int writes_source(Compiler *c) {
   return 0;
 }
 
-/* A run ended for want of a finite value: where in the text there is none. */
+/* After a run that ended for want of a finite value: reports the expression of the text that has none. */
 static void tell_last_state(void *compiler, const double *number, uint32_t n) {
   Compiler *c = compiler;
   c->diags->list.n = 0; /* they have been printed */
   if (nonfinite_note(c->run, c->run_by, number, n)) compiler_print_messages(c);
 }
 
-/* run, plot and animate: what they draw becomes outputs of the scene and arguments of its simulator. */
+/* run, plot, animate, modes, lyapunov, cost: builds the simulator and becomes it by exec. */
 int command_run(Compiler *c) {
   const char *path;
   int status = simulator_prepare(c);

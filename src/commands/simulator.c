@@ -14,13 +14,13 @@
 #include "model/model.h"
 #include "toolchain/cache.h"
 
-/* With what the command line asks for besides the scene's outputs. */
+/* The equations of a scene with the outputs, inputs and section of the command line. */
 static Eqns *derive_asked(Compiler *c, const char *scene) {
   return compiler_derive_wanted(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nextra_outputs = c->picture.asked.n,
                                   .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
 }
 
-/* A scene of a unit, and its equations. */
+/* A scene of a unit with its equations. */
 typedef struct {
   const Eqns *e;
   IrUnit *unit;
@@ -29,7 +29,7 @@ typedef struct {
 
 typedef VEC(Lowered) Lowereds;
 
-/* When all programs are there: derived parameters are taken out, and what is left is compared with the text. */
+/* After lowering: hoists derived parameters, and checks every scene against the text. */
 static int finish_units(const Units *units, const Lowereds *of) {
   for (uint32_t i = 0; i < units->n; i++) unit_hoist(units->at[i]);
   for (uint32_t i = 0; i < of->n; i++)
@@ -60,7 +60,6 @@ int simulator_lower(Compiler *c, Units *units) {
   return finish_units(units, &all);
 }
 
-/* A program from these texts at `output`, or in the cache (NULL). */
 int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path) {
   const char *error = NULL;
   *path = output;
@@ -96,7 +95,6 @@ int simulator_of_units(Compiler *c, const Units *units, const char *output, cons
   return simulator_make(c, &tools, &texts, output, path);
 }
 
-/* A simulator in quadruple precision, in the cache; NULL where there is no such precision. */
 const char *simulator_precise(Compiler *c, const Units *units) {
   Toolchain tools;
   const char *error = NULL;
@@ -105,7 +103,6 @@ const char *simulator_precise(Compiler *c, const Units *units) {
   return toolchain_simulator(c->arena, &tools, texts.at, texts.n, &error);
 }
 
-/* What a simulator is told, and the names that it gives values to. */
 int simulator_prepare(Compiler *c) {
   const char *error = NULL;
   if (c->o.scene && !model_has_scene(c->ast, c->o.scene)) return STATUS_MODEL;

@@ -4,10 +4,9 @@
 
 #include "mech/eqns.h"
 
-/* What an event does to small changes of the state: derivatives of its function (row < 0: of g) and of the values that its actions give
- * (row: the component of [q|v|z] that they are given to), by components of the state, and by the time (col 2 n + states).
- * Of g those that are not zero; of a value, those, and that by its own component, so that each row that is set is there.
- * An event that depends on an input has none: what the input is, is for the runtime to say. */
+/* Derivative of an event: of its function g (row < 0) or of the value that an action assigns to component `row` of [q|v|z], by component `col` of
+ * the state, or by time (col = 2 n + states). Of g the nonzero ones; of a value also that by its own component, so that each assigned row is there.
+ * Events that depend on inputs have none, since the compiler does not know the inputs' values. */
 typedef struct {
   uint32_t event;
   int row;

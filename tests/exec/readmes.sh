@@ -22,6 +22,10 @@ empty "files that READMEs of sources name exist" "$(for f in src/README.md src/*
   grep -oE '(^|[^a-zA-Z0-9_{}-])[a-z_0-9]+\.[ch]\b' "$f" | grep -oE '[a-z_0-9]+\.[ch]$' | LC_ALL=C sort -u | grep -vxFf "$TMP/names" | sed "s|^|$f: |"
 done)"
 
+empty "the README of a folder names each of its .c files" "$(for f in $(find src runtime -mindepth 2 -name '*.c' | LC_ALL=C sort); do
+  grep -qE "(^|[^a-z0-9_])$(basename "$f" .c)([^a-z0-9_]|\$)" "$(dirname "$f")/README.md" || echo "$f"
+done)"
+
 empty "each file of sources begins with a comment" "$(for f in $(find src runtime -name '*.[ch]' | LC_ALL=C sort); do
   head -n 1 "$f" | grep -q '^/\*' || echo "$f"
 done)"
