@@ -7,7 +7,7 @@
 #   tests/unit/test_NAME.c         built into $BIN/test_NAME (cmocka)            suite unit/test_NAME
 #   tests/fuzz/fuzz_NAME.c         replays tests/fuzz/corpus/NAME                suite fuzz/fuzz_NAME
 #   tests/FOLDER/NAME.sh           run from the top of the source tree by sh     suite FOLDER/NAME
-#   tests/FOLDER/long_NAME.sh      the same, in `make test-long`
+#   tests/FOLDER/long_NAME.sh      the same, in `make test-long`, which also runs, with SLOW=1, each NAME.sh that has a `slow` check (tests/tap.sh)
 #   tests/bench/NAME.sh            run by `make bench`; its output is shown, and written to tests/bench/RESULTS.md
 #   tests/FOLDER/lib_NAME.sh       no suite: functions that scripts share
 # --bless runs the scripts that know BLESS with BLESS=1: they rewrite their expectations.
@@ -39,15 +39,16 @@ export XDG_CACHE_HOME LAG_TREE
 kind='test'
 limit=600
 case ${1:-} in
-  --long) kind=long limit=3600 JOBS=1 ;;
+  --long) kind=long limit=3600 ;;
   --bless) kind=bless JOBS=1 ;;
   --bench) kind=bench limit=3600 JOBS=1 ;;
   --run-one) kind=one ;;
 esac
 case ${1:-} in --*) shift ;; esac
 case $kind in
-  test | bless) export LAGC_OPTIMISE="${LAGC_OPTIMISE:--O0}" ;;
-  long | bench) unset LAGC_OPTIMISE ;;
+  test | bless) export LAGC_OPTIMISE="${LAGC_OPTIMISE:--O0}" && unset SLOW ;;
+  long) unset LAGC_OPTIMISE && export SLOW=1 ;;
+  bench) unset LAGC_OPTIMISE SLOW ;;
 esac
 
 seconds() { date +%s.%N 2>/dev/null; }
@@ -93,7 +94,7 @@ found() {
       case $f in *.sh) ;; *) continue ;; esac
       grep -q BLESS "$f" || continue
     elif [ "$is" != "$kind" ]; then
-      continue
+      [ "$kind $is" = 'long test' ] && [ "${f%.sh}" != "$f" ] && grep -q 'SLOW\|^ *slow ' "$f" || continue
     fi
     [ $# = 0 ] && echo "$name"
     for prefix; do

@@ -20,6 +20,9 @@ check() {
   fi
 }
 
+# slow CHECK...: a check that `make test` leaves to `make test-long`. There, suites that have one run again, with SLOW=1.
+slow() { [ -z "${SLOW:-}" ] || "$@"; }
+
 # is NAME EXPECTED GOT
 is() {
   tap_expected=$2

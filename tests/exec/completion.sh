@@ -67,8 +67,8 @@ is "shells" 'bash zsh fish' "$(offers completion '')"
 silent() { "$LAGC" complete "$@" >out 2>&1 && ! [ -s out ]; }
 case $LAGC_SAN in /*) san=$LAGC_SAN ;; *) san=$OLDPWD/$LAGC_SAN ;; esac
 sane() {
-  for word in '' s "th'" - --m --method=r --y=2*s -DN --dump=a,; do
-    for first in run plot help check ''; do
+  for word in '' "th'" --method=r -DN ${SLOW:+s - --m --y=2*s --dump=a,}; do
+    for first in run help ${SLOW:+plot check ''}; do
       "$LAGC" complete ${first:+"$first"} cart_pendulum.lag "$word" >out 2>&1
       LAG_HOME=$LAG_TREE "$san" complete ${first:+"$first"} cart_pendulum.lag "$word" >san 2>&1 && cmp out san || { head san; return 1; }
     done

@@ -157,13 +157,33 @@ static double value_now(Fact *f, lag_sim *sim, const char *name) {
   return x;
 }
 
+/* The last run that was asked for a value, and where it stands: facts of one scene, sorted by time, share one integration. */
+static struct {
+  lag_sim *sim;
+  const lag_scene *scene;
+  char settings[LINE];
+  double t; /* what was asked for last */
+} kept;
+
+/* That run at t; a new one where the settings are others or it is already past t. */
+static lag_sim *run_to(Fact *f, double t) {
+  int same = kept.sim && kept.scene == f->scene && strcmp(kept.settings, f->settings) == 0;
+  if (!same || t < kept.t) {
+    lag_sim_free(kept.sim);
+    kept.sim = NULL;
+    kept.sim = open_run(f);
+    kept.scene = f->scene;
+    snprintf(kept.settings, sizeof kept.settings, "%s", f->settings);
+  }
+  kept.t = INFINITY; /* what follows may leave this function by fail() */
+  go(f, kept.sim, t);
+  if (fabs(lag_sim_time(kept.sim) - t) > 1e-9*fabs(t)) fail(f, "the run ended at %g, before %g", lag_sim_time(kept.sim), t);
+  kept.t = t;
+  return kept.sim;
+}
+
 static double value_at(Fact *f, const char *name, double t) {
-  lag_sim *sim = open_run(f);
-  go(f, sim, t);
-  if (fabs(lag_sim_time(sim) - t) > 1e-9*fabs(t)) fail(f, "the run ended at %g, before %g", lag_sim_time(sim), t);
-  double x = value_now(f, sim, name);
-  lag_sim_free(sim);
-  return x;
+  return value_now(f, run_to(f, t), name);
 }
 
 static double end_time(Fact *f) {
@@ -187,8 +207,8 @@ static double hit_time(Fact *f, const char *name, double n) {
 
 /* x[SAMPLES + 1] at equal intervals of time. Returns the interval. */
 static double sample(Fact *f, const char *name, double *x) {
-  double end = end_time(f);
   lag_sim *sim = open_run(f);
+  double end = f->scene->model->nev ? end_time(f) : f->until; /* without events nothing ends a run early */
   double t0 = lag_sim_time(sim), dt = (end - t0)/SAMPLES;
   for (int i = 0; i <= SAMPLES; i++) {
     go(f, sim, i == SAMPLES ? end : t0 + i*dt);
@@ -206,9 +226,8 @@ static double drift(Fact *f, const char *name) {
   return worst;
 }
 
-/* Where it passes zero between a and b: false position (Illinois). */
-static double zero_between(Fact *f, const char *name, double a, double b) {
-  double fa = value_at(f, name, a), fb = value_at(f, name, b);
+/* Where it passes zero between a and b, where it is fa and fb: false position (Illinois). */
+static double zero_between(Fact *f, const char *name, double a, double fa, double b, double fb) {
   for (int i = 0; i < 60 && fabs(b - a) > 1e-15*fabs(b); i++) {
     double c = b - fb*(b - a)/(fb - fa), fc = value_at(f, name, c);
     if (fc == 0) return c;
@@ -231,8 +250,8 @@ static double period(Fact *f, const char *name) {
       count++;
     }
   if (count < 2) fail(f, "`%s` passes zero upwards %d times: no period", name, count);
-  double a = zero_between(f, name, t0 + first*dt, t0 + (first + 1)*dt);
-  double b = zero_between(f, name, t0 + last*dt, t0 + (last + 1)*dt);
+  double a = zero_between(f, name, t0 + first*dt, x[first], t0 + (first + 1)*dt, x[first + 1]);
+  double b = zero_between(f, name, t0 + last*dt, x[last], t0 + (last + 1)*dt, x[last + 1]);
   return (b - a)/(count - 1);
 }
 
@@ -243,11 +262,14 @@ static double extremum(Fact *f, const char *name, double sign) {
   int best = 0;
   for (int i = 1; i <= SAMPLES; i++)
     if (sign*x[i] > sign*x[best]) best = i;
-  double a = t0 + (best > 0 ? best - 1 : 0)*dt, b = t0 + (best < SAMPLES ? best + 1 : SAMPLES)*dt;
+  int left = best > 0 ? best - 1 : 0, right = best < SAMPLES ? best + 1 : SAMPLES;
+  /* Of a parabola, the top stands above its best sample by less than its neighbours stand below: here that is rounding. */
+  if (fabs(x[best] - x[left]) + fabs(x[best] - x[right]) < 1e-15*fmax(1, fabs(x[best]))) return x[best];
+  double a = t0 + left*dt, b = t0 + right*dt;
+  double c = b - g*(b - a), d = a + g*(b - a), fc = value_at(f, name, c), fd = value_at(f, name, d);
   while (b - a > 1e-7*dt + 1e-13*fabs(b)) {
-    double c = b - g*(b - a), d = a + g*(b - a);
-    if (sign*value_at(f, name, c) > sign*value_at(f, name, d)) b = d;
-    else a = c;
+    if (sign*fc > sign*fd) b = d, d = c, fd = fc, c = b - g*(b - a), fc = value_at(f, name, c);
+    else a = c, c = d, fc = fd, d = a + g*(b - a), fd = value_at(f, name, d);
   }
   double inside = value_at(f, name, (a + b)/2);
   return sign*inside > sign*x[best] ? inside : x[best];

@@ -70,8 +70,8 @@ done
 # 40 in a row, so many that a band solver is used. Near 10 s all links come to lie on one line: there rates are not corrected along
 # the remaining 6e-6 = eps^(1/3) of a constraint, where steps err by 1e-8 (cf. the energy): 6e-14 for each link of 80 at random.
 rates=5e-13
-check "forty four-bars" ends 1e-7 "apart=0" -- tests/hard/cases/mbs_a02_fourbar_N10.lag -D N=40 --method dop853 --tol 1e-10
-check "their energy" within "$(number energy_drift)" 0 1e-8
+slow check "forty four-bars" ends 1e-7 "apart=0" -- tests/hard/cases/mbs_a02_fourbar_N10.lag -D N=40 --method dop853 --tol 1e-10
+slow check "their energy" within "$(number energy_drift)" 0 1e-8
 rates=
 
 # ---- a tolerance that no step near there can keep: the run passes, or says in seconds where it creeps
@@ -173,7 +173,7 @@ kept() { # LEN
 check "what a rate keeps is kept: rk45" kept go rk45 "--tol 1e-6" 1e-15
 check "after an event, too" kept cut rk45 "--tol 1e-6" 1e-15
 check "dop853" kept cut dop853 "--tol 1e-9" 1e-15
-check "variational" kept cut variational "--step 1e-2" 1e-10 # Newton's method ends where all coordinates together are rounding
+slow check "variational" kept cut variational "--step 1e-2" 1e-10 # Newton's method ends where all coordinates together are rounding
 keeps() { "$LAGC" check $models/kept.lag go >"$TMP/out" && grep -qF 'constraint rod keeps x^2/2 + y^2/2 as it is' "$TMP/out" && grep -qF 'constraint roll keeps u - r*th - V*sin(w*t)/w as' "$TMP/out" && ! grep -q 'blade keeps' "$TMP/out"; }
 check "lagc check says what they keep" keeps
 

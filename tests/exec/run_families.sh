@@ -133,7 +133,7 @@ shared() { "$LAGC" derive models/slider_crank.lag --ops | awk '{ print; exit !($
 check "slider_crank: the products that many share are found" shared
 # The text has 3 MB; its derivation needs some 400 MB.
 for f in text latex; do
-  large "a string of 10000 masses, printed as $f" 30 1000000 "$LAGC" derive models/string.lag -D N=10000 --format $f
+  slow large "a string of 10000 masses, printed as $f" 30 1000000 "$LAGC" derive models/string.lag -D N=10000 --format $f
 done
 large "a chain of 300 links" 30 1500000 "$LAGC" check models/chain.lag swing -D N=300
 cat >"$dir/long.lag" <<'LAG'
@@ -145,7 +145,7 @@ let up[i in 1..N] = up[i-1]/2 + q
 let down[i in 1..N] = if(i == N, q, down[i+1]/2 + q)
 lagrangian = q'^2/2 - up[N] - down[1] + sum(i in 1..1000000, i)*0
 LAG
-large "a hundred thousand lets, each defined by the next" 30 1500000 "$LAGC" check "$dir/long.lag"
+slow large "a hundred thousand lets, each defined by the next" 30 1500000 "$LAGC" check "$dir/long.lag"
 for f in chain string; do
   named() { "$LAGC" emit models/$f.lag -o "$dir/$f.c" && grep -q "$([ $f = chain ] && echo th_3 || echo u_8)" "$dir/$f.c"; }
   check "the members of $f have names in C" named

@@ -50,13 +50,13 @@ is 'derive says what it does not print' 0 $?
 { echo 'let a1 = x'; lines 60 'printf "let a%d = a%d*sin(a%d) + a%d\n", i + 1, i, i, i'; echo "lagrangian = x'^2/2 + a61"; } | model lets
 check 'a let doubled 60 times' answer lets
 { echo 'let a0 = x'; lines 100000 'printf "let a%d = a%d + x\n", i, i - 1'; echo "lagrangian = x'^2/2 + a100000"; } | model chain
-check 'a chain of 100,000 lets' answer chain 10000000
+slow check 'a chain of 100,000 lets' answer chain 10000000
 { echo 'let a0 = x'; lines 20000 'printf "let a%d = sin(a%d) + x\n", i, i - 1'; echo "lagrangian = x'^2/2 + a20000"; } | model sines
-check 'a chain of 20,000 sines' answer sines 10000000
+slow check 'a chain of 20,000 sines' answer sines 10000000
 { printf "lagrangian = x'^2/2"; lines 20000 'printf " + %d*x^%d", i, i'; echo; } | model sum
-check 'a sum of 20,000 powers' answer sum 10000000
+slow check 'a sum of 20,000 powers' answer sum 10000000
 { printf "lagrangian = x'^2/2 + "; lines 1000 'printf "if(x > %d, ", i'; printf x; lines 1000 'printf ", %d)", i'; echo; } | model ifs
-check '1,000 choices inside each other' answer ifs
+slow check '1,000 choices inside each other' answer ifs
 { lines 1500 'printf "scene s%d { start x = 1 }\neffect e%d { force x = %d }\n", i, i, i'; echo "lagrangian = x'^2/2"; } | model scenes
 check '1,500 scenes and 1,500 effects' answer scenes
 

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Five models, by every command, with a compiler and a runtime under sanitizers. long_sanitized.sh has all of the gallery.
+# Two models, a constraint and an event, by every command, with a compiler and a runtime under sanitizers. long_sanitized.sh has all of the gallery.
 . tests/exec/lib_sanitized.sh
-for name in double_pendulum slider_crank bouncing_ball free_body fput; do
+for name in slider_crank bouncing_ball; do
   empty "$name" "$(every_command "models/$name.lag")"
 done
 # Further code: dry friction that sticks, and the tangent of a flow across events.

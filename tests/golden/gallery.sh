@@ -49,6 +49,7 @@ small() { [ "$(wc -c <"$1")" -lt 30000 ] && tail -n 1 "$1" | grep -qx '</svg>'; 
 sed -n 's/^<!-- drawn by: build\/lagc \(.*\) -o \(.*\) -->$/\2 \1/p' models/README.md >"$TMP/list"
 check "there is a gallery" [ -s "$TMP/list" ]
 while read -r picture words; do
+  case $picture in models/fput.svg) [ -n "${SLOW:-}" ] || continue ;; esac # 20 s of a processor
   check "$picture is drawn" sh -c "$LAGC $words -o $TMP/new.svg --quiet"
   check "$picture is up to date" same_picture "$picture" "$TMP/new.svg"
   check "$picture is small and whole" small "$picture"

@@ -22,20 +22,22 @@ write() { # MODEL KIND COMMAND...: a line of emitted.txt
   esac
   echo "$code $(sum <"$text") $model $*"
 }
+# `make test` has those of every program; the others are made of the same parts.
+all=${SLOW:-}${BLESS:-}
 for m in models/*.lag; do
-  for words in emit "emit --method taylor" "emit --method radau" "emit --method variational --with linear" "emit --fix all" header "derive --format c"; do
+  for words in "emit --method taylor" "emit --method variational --with linear" header ${all:+emit "emit --method radau" "emit --fix all" "derive --format c"}; do
     # shellcheck disable=SC2086 # some words
     write "$m" c $words
   done
-  for words in derive "derive --format latex" "derive --hamiltonian"; do
+  for words in derive ${all:+"derive --format latex" "derive --hamiltonian"}; do
     # shellcheck disable=SC2086
     write "$m" text $words
   done
 done >"$TMP/emitted"
 if [ -n "${BLESS:-}" ]; then cp "$TMP/emitted" tests/golden/emitted.txt; fi
 for m in models/*.lag; do
-  grep -F " $m " tests/golden/emitted.txt >"$TMP/want"
   grep -F " $m " "$TMP/emitted" >"$TMP/got"
+  grep -F " $m " tests/golden/emitted.txt | awk 'NR == FNR { made[substr($0, index($0, "models/"))] = 1; next } made[substr($0, index($0, "models/"))]' "$TMP/got" - >"$TMP/want"
   empty "$m" "$(diff "$TMP/want" "$TMP/got" | grep '^[<>]')"
 done
 tap_end

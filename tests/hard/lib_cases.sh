@@ -37,7 +37,7 @@ emit_cases() {
 # compile_cases PROGRAM: compiles the output of emit_cases, two files at a time.
 compile_cases() {
   for f in "$TMP"/*.c; do echo "$f"; done |
-    xargs -P 2 -I FILE "$CC" -std=c11 -O1 -ffp-contract=off -w -I"$INC" -c FILE -o FILE.o || return 1
+    xargs -P 2 -I FILE "$CC" -std=c11 "${LAGC_OPTIMISE:--O1}" -ffp-contract=off -w -I"$INC" -c FILE -o FILE.o || return 1
   # shellcheck disable=SC2086 # lists of words
   "$CC" -std=c11 -O1 -ffp-contract=off -Wall -Wextra -I"$INC" ${GSL:+-DWITH_GSL} $hard/hard.c "$TMP"/*.c.o ${GSL:+"$BUILD/liblag_gsl.a"} "$BUILD/liblag.a" $LIBS -o "$1"
 }

@@ -1,7 +1,9 @@
 #!/bin/sh
 # runtime/include/lag_math.h: errors of its functions against libquadmath, special values, the same bits from both compilers and in
-# lanes. POINTS arguments a function; long_math.sh takes a million.
-: "${INC:=runtime/include}" "${CC:=cc}" "${POINTS:=60000}"
+# lanes, for 15,000 arguments a function, a million in `make test-long`; and where the coefficients come from.
+: "${INC:=runtime/include}" "${CC:=cc}"
+points=15000
+[ -z "${SLOW:-}" ] || points=1000000
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
@@ -18,7 +20,7 @@ measured() {
   shift 2
   $c -std=gnu11 -O2 -Wall -Wextra -Wno-psabi "$@" -I"$INC" -c tests/math/own.c -o "$TMP/own.o" &&
     $gcc -std=gnu11 -O2 -Wall -Wextra "$@" -Wno-psabi tests/math/ulp.c "$TMP/own.o" -I"$INC" -lquadmath -lm -o "$TMP/ulp" &&
-    { "$TMP/ulp" "$POINTS" >"$TMP/$n.txt" || { cat "$TMP/$n.txt"; return 1; }; }
+    { "$TMP/ulp" "$points" >"$TMP/$n.txt" || { cat "$TMP/$n.txt"; return 1; }; }
 }
 same_sums() { # FILE FILE: those of the functions that are the same in lanes
   grep -v '^sin\|^cos' "$TMP/$1.txt" >"$TMP/a"
@@ -44,7 +46,7 @@ for m in ${machines:-this}; do
   check "$m: 4 and 8 lanes have the same bits" cmp "$TMP/$m.4.txt" "$TMP/$m.8.txt"
   check "$m: and those of a double, but for sin and cos" same_sums "$m.1" "$m.8"
   if [ -n "$clang" ]; then
-    for lanes in 1 4 8; do
+    for lanes in ${SLOW:+1 4} 8; do
       only=
       [ $lanes = 1 ] || only=-DLAG_LANES=$lanes
       check "$m: clang, $lanes" measured "$m.clang$lanes" "$clang" $off $march $only
@@ -53,8 +55,8 @@ for m in ${machines:-this}; do
   else
     skip "$m: clang" "there is no clang"
   fi
-  check "$m: contracted by the compiler" measured "$m.fast" "$gcc" -ffp-contract=fast -O3 $march
-  check "$m: contracted, 8 lanes" measured "$m.fast8" "$gcc" -ffp-contract=fast -O3 $march -DLAG_LANES=8
+  slow check "$m: contracted by the compiler" measured "$m.fast" "$gcc" -ffp-contract=fast -O3 $march
+  slow check "$m: contracted, 8 lanes" measured "$m.fast8" "$gcc" -ffp-contract=fast -O3 $march -DLAG_LANES=8
 done
 cat "$TMP"/*.1.txt "$TMP"/*.8.txt | sed 's/^/# /' # shown where something fails
 
@@ -67,4 +69,11 @@ for c in "$CC" $clang; do
 done
 if [ -n "${CXX:-}" ]; then for s in c++11 c++17; do check "clean: $CXX $s" clean "$CXX" c++ $s; done
 else skip "clean as C++" "no C++ compiler"; fi
+
+# shellcheck disable=SC2043 # the first python3 that has mpmath
+for python in python3 /usr/bin/python3; do
+  $python -c 'import mpmath' 2>/dev/null || continue
+  slow check "the coefficients are those of tests/math/remez.py" $python tests/math/remez.py "$INC/lag_math.h" "$INC/lag_sincos.h"
+  break
+done
 tap_end

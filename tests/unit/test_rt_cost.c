@@ -45,7 +45,7 @@ static const lag_scene half = {.name = "half", .doc = "", .model = &half_model, 
 static int measured(CostMethod *m, Maker *maker, const Samples *reference)
 {
   CostScene scene = {fresh, maker, 0};
-  return lag_cost_measure(m, &scene, reference, scale, 10);
+  return lag_cost_measure(m, &scene, reference, scale, 0.1);
 }
 
 /* Of a thousandth of a second: one step, two, four, until they bring nothing. 41 runs of a few microseconds are far below 0.05 s. */
