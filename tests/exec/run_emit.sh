@@ -35,29 +35,6 @@ check "emitted C computes what its program says, to the last bit" agrees
 
 empty "no dates and no paths in what is emitted" "$(grep -nE "20[0-9][0-9]-|$(pwd)|\.lag" "$TMP"/c/*.c "$TMP"/h/*.h)"
 
-# ---- effects that are off leave no trace
-# Prints a model without its effects and the scenes that use one, or are like such a scene.
-without_effects() {
-  awk '
-    FNR == 1 { pass++ }
-    /^(effect|scene) / { inside = $2; kind = $1; if (kind == "scene") scene = $2 }
-    pass == 1 && kind == "scene" && $1 == "use" && $2 != "none" { drop[scene] = 1 }
-    pass == 1 && kind == "scene" && $1 == "like" && ($2 in drop) { drop[scene] = 1 }
-    pass == 2 && !(kind == "effect" || (kind == "scene" && (inside in drop))) { print }
-    /^}/ || (/}[ \t]*$/ && /^(effect|scene) /) { kind = "" }' "$1" "$1"
-}
-off_is_absent() { # MODEL
-  without_effects "$1" >"$TMP/off.lag"
-  ! grep -q '^effect' "$TMP/off.lag" && grep -q '^scene' "$TMP/off.lag" || return 1
-  for s in $(sed -n 's/^scene \([^ ]*\).*/\1/p' "$TMP/off.lag"); do
-    "$LAGC" emit "$1" "$s" -o "$TMP/with.c" && "$LAGC" emit "$TMP/off.lag" "$s" -o "$TMP/off.c" && cmp "$TMP/with.c" "$TMP/off.c" || return 1
-    "$LAGC" check "$1" "$s" >"$TMP/out" 2>&1 || continue # the scene has no start
-    "$LAGC" header "$1" "$s" >"$TMP/with.h" && "$LAGC" header "$TMP/off.lag" "$s" >"$TMP/off.h" && cmp "$TMP/with.h" "$TMP/off.h" || return 1
-  done
-}
-cp $here/models/*.csv "$TMP"
-for m in $(grep -l '^effect' $models); do check "$m: effects that are off leave no trace" off_is_absent "$m"; done
-
 # ---- errors leave nothing behind
 mkdir -p "$TMP/none"
 printf 'model bad\ncoord x\nlagrangian = x^2 + y\n' >"$TMP/bad.lag"
