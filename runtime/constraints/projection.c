@@ -10,7 +10,7 @@
 
 enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
 
-/* The layout of pb->held; behind it the scratch of constraint_pole.c, and a state for lag_rhs_prepare. */
+/* The layout of pb->held; behind it a state for lag_rhs_prepare. */
 typedef struct ConstraintScratch {
   const lag_constraints *of;
   double *c, *r, *before, *g, *A; /* [n], [n], [n], [n], [njacobian] */
@@ -24,8 +24,7 @@ size_t lag_constraint_scratch_size(const lag_model *m)
 {
   const lag_constraints *of = m->constraints;
 
-  size_t pole = of ? (size_t)(3 * (2 * m->nq + m->nz) + 4 * of->n + 2 * m->nq) : 0; /* scratch of constraint_pole.c */
-  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 5 * m->nq + m->nz + (2 * m->nq + m->nz)) + pole : 0;
+  return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 3 * m->nq + 2 * (2 * m->nq + m->nz)) : 0;
 }
 
 static ConstraintScratch layout(const lag_problem *pb)
@@ -39,11 +38,6 @@ static ConstraintScratch layout(const lag_problem *pb)
     x += sizes[i];
   }
   return w;
-}
-
-double *lag_last_term_sizes(const lag_problem *pb)
-{
-  return layout(pb).terms[0];
 }
 
 int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r)
@@ -447,6 +441,14 @@ int lag_project(lag_problem *pb, double t, double *y, double *lost)
   rc = rc ? rc : newton(pb, &w, t, y, lost, 0);
   pb->detail = rc ? pb->detail : said;
   return rc < LAG_ESINGULAR ? LAG_EMODEL : rc;
+}
+
+int lag_dense_state(lag_sim *s, double t, double *y)
+{
+  s->method->dense(s->method_work, &s->pb, t, y);
+  s->pb.detail = NULL;
+  int rc = lag_project(&s->pb, t, y, NULL);
+  return rc ? lag_explain(s, rc > 0 ? LAG_EMETHOD : rc) : LAG_OK;
 }
 
 /* Largest distance of coordinate i from 0, now or at the start; at least 1e-10 of its unit. */

@@ -55,14 +55,6 @@ const char *lag_sim_message(const lag_sim *s)
   return s ? s->message : "no simulation";
 }
 
-long long lag_sim_event_count(const lag_sim *s, int k)
-{
-  if (!s || k < 0 || k >= s->scene->model->nev) {
-    return 0;
-  }
-  return (long long)s->count[k];
-}
-
 double *lag_sim_output_grid(lag_sim *s)
 {
   return &s->run->row_origin;
@@ -200,6 +192,22 @@ double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, ch
     return lag_sim_state_info(s, i, name, nname, unit, nunit);
   }
   return put_info(&s->scene->outputs[i], 0, name, nname, unit, nunit);
+}
+
+int lag_observe(lag_sim *s, double t, const double *y, double *out)
+{
+  const double doubtful = 1e-3; /* with independence i, forces have an error of rounding/i^2 and of the state's error/i^2 */
+  const lag_scene *c = s->scene;
+  int weakest, rc = lag_inputs(&s->pb, t);
+
+  rc = rc ? rc : lag_closed_form_at(s, t);
+  rc = rc ? rc : c->observe(t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
+  if (rc == 0 && c->forces && c->model->constraints && lag_independence(&s->pb, t, y, &weakest) < doubtful) {
+    for (int i = 0; i < c->nout; i++) {
+      out[i] = c->forces[i] ? NAN : out[i];
+    }
+  }
+  return rc;
 }
 
 static int outputs(lag_sim *s, double t, const double *y, double *out)

@@ -74,13 +74,6 @@ static void values_at(lag_sim *s, double t, const double *y)
   }
 }
 
-static int has_powers(const lag_sim *s)
-{
-  const lag_model *m = s->scene->model;
-
-  return m->charges && m->charges->powers;
-}
-
 int lag_sim_balance(lag_sim *s)
 {
   if (!s) {
@@ -101,9 +94,12 @@ int lag_method_balances(const lag_method *m)
   return m->order_most > 0 || m->order <= m->dense_order + 2;
 }
 
-int lag_can_balance(const lag_sim *s)
+/* Whether the work of forces on charges can be integrated with this model and method. */
+static int can_balance(const lag_sim *s)
 {
-  return has_powers(s) && lag_method_balances(s->method);
+  const lag_charges *c = s->scene->model->charges;
+
+  return c && c->powers && lag_method_balances(s->method);
 }
 
 /* Whether a monitor of the scene is on a charge: its balance is then integrated. */
@@ -226,7 +222,7 @@ void lag_charges_begin(lag_sim *s, double t, const double *y)
 {
   values_at(s, t, y);
   s->run->watched = t;
-  s->run->balanced = lag_can_balance(s) && (s->balances || watches_charges(s->scene));
+  s->run->balanced = can_balance(s) && (s->balances || watches_charges(s->scene));
   for (int k = 0; k < lag_sim_ncharges(s); k++) {
     s->charges[k] = (Charge){.begin = s->charge_now[2 * k], .first = s->charge_now[2 * k], .scale = fmax(s->charge_now[2 * k + 1], 0), .width = 1};
     s->charges[k].balanced = (lag_charge_flags(s, k) & LAG_BALANCED) != 0;

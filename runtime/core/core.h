@@ -24,13 +24,13 @@ typedef struct Run {
   double balanced;       /* 1: the work of forces on charges is integrated along the run */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
   double rank, beside;   /* rank of the constraints at the start; and, at a singular start, their rank a hundredth away from it */
-  double apart, steps_since_rank, steps_until_rank; /* independence of the weakest constraint when last computed; steps since then; steps until the next time */
   double looks, coarse, period; /* steps of equal size: period estimates made; estimates shorter than two steps; the last such period [s] */
   double stall_since;    /* time when the stall detector last judged the pace of steps */
   double energy_jump, energy_jump_t;   /* largest energy change in one step, and its time; replaced only by a change more than twice as large */
   double mass_condition, mass_condition_of; /* condition of the mass matrix at energy_jump_t, and the coordinate of least inertia */
   double chatter, chatter_since; /* impacts that follow another at once and leave the gap open, and the time of the first of them */
   double row_origin, row_every, row_next;  /* output grid, kept here for app/ */
+  double seal;           /* in a saved state: hash of its numbers, and of what they belong to */
 } Run;
 
 /* The monitor of one charge along a run; only doubles, since it is saved. A difference is Q - int P dt - first. */
@@ -87,7 +87,6 @@ struct lag_sim {
   double *y0;            /* [n] at step_t0 */
   double *now;           /* [n] at t */
   double *sign;          /* [nev] sign of g just after `from`: -1, 1; 0 not known yet */
-  double *leaves;        /* [nev] after an event has fired, until it has a sign: the sign of its rate then; 0 not known */
   double *noise;         /* [nev] |g| up to this counts as 0 */
   double *root;          /* [nev] time of the next firing within the step, NaN none */
   double *sign_end;      /* [nev] sign of g at the end of the step */
@@ -102,7 +101,7 @@ struct lag_sim {
   int nodes;             /* and their number */
   int balances;          /* lag_sim_balance was called */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
-  double *method_work;   /* [nwork]; behind it as much again for a step that is tried again */
+  double *method_work;   /* [nwork] */
   size_t nwork;
   double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
   int tangent_columns, tangent_at_event; /* tangent_at_event: the event at this time is already applied to it */
@@ -113,28 +112,6 @@ struct lag_sim {
   void *on_event_context;
   char message[512];
 };
-
-/* One array of the saved block behind Run, in the order in which they lie there, and the numbers that it may hold: saved_state.c refuses others. */
-enum {
-  LAG_SAVED_NUMBER, /* any */
-  LAG_SAVED_FINITE,
-  LAG_SAVED_HELD,   /* finite, or NaN for none */
-  LAG_SAVED_FLAG,   /* 0, 1 */
-  LAG_SAVED_SIGN,   /* -1, 0, 1 */
-  LAG_SAVED_COUNT   /* integer, 0 to 2^53 */
-};
-enum { LAG_SAVED_ARRAYS = 25 };
-typedef struct lag_saved_array {
-  double **at;
-  size_t n;
-  int kind;
-} lag_saved_array;
-/* setup.c: part[LAG_SAVED_ARRAYS] := the arrays of the saved block. */
-void lag_saved_arrays(lag_sim *sim, lag_saved_array *part);
-/* Whether all parameters have the signs that the model declares. */
-int lag_signs_hold(const lag_sim *sim);
-/* charges.c: whether the work of forces on charges can be integrated with this model and method. */
-int lag_can_balance(const lag_sim *sim);
 
 /* An SI value converted to the declared unit of its variable. */
 static inline double lag_declared(const lag_var *v, double si) { return (si - v->offset) / v->factor; }
@@ -148,29 +125,31 @@ double lag_equal_step(const lag_sim *s);
 /* A number for %s in a message. */
 #define LAG_TEXT(x) lag_number_text((x), (char[64]){0})
 
-/* message := the text; returns status. */
+/* failure.c: message := the text; returns status. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
 int lag_fail(lag_sim *sim, int status, const char *format, ...);
 
+/* For lag_explain: pb->detail := the text, pb->bad_t := t; returns status. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 4, 5)))
+#endif
+int lag_note(lag_problem *pb, int status, double t, const char *format, ...);
+
 /* Writes into message why, when and where a step failed. Returns status. */
 int lag_explain(lag_sim *sim, int status);
 
-/* sim.c: y[n] := the dense output at t in the last step, projected onto the constraints. LAG_OK, or a failure with its message. */
+/* projection.c: y[n] := the dense output at t in the last step, projected onto the constraints. LAG_OK, or a failure with its message. */
 int lag_dense_state(lag_sim *sim, double t, double *y);
 
-/* consistent.c: now[n], the requested start, becomes the nearest start on the constraints; sets asked, redundant, loose, run->rank and
+/* consistent_start.c: now[n], the requested start, becomes the nearest start on the constraints; sets asked, redundant, loose, run->rank and
  * run->beside. */
 int lag_consistent_start(lag_sim *sim);
-/* agreement.c: whether constraints that are dependent at the start `now` are compatible soon after it, too; else a failure that names one. */
-int lag_constraint_compatibility(lag_sim *sim);
-/* scene_outputs.c: out[nout] := outputs of the scene [SI] at y, t. Near a singular position of the constraints, multipliers and accelerations are
- * extrapolated along the last step; NaN where there is no step. LAG_OK, or the status of the failed function. */
+/* accessors.c: out[nout] := outputs of the scene [SI] at y, t; those with multipliers or accelerations are NaN near a singular position of the
+ * constraints. LAG_OK, or the status of the failed function. */
 int lag_observe(lag_sim *sim, double t, const double *y, double *out);
-/* project.c: [2 n], sizes of the terms of rates and of constraints where these were last met. */
-double *lag_last_term_sizes(const lag_problem *pb);
-/* rank.c: A[n nq] := Jacobian of all constraints by the coordinates at y, t, row-major; unit[nq] := coordinate scales (lag_scales of lag_kkt.h);
+/* constraint_rank.c: A[n nq] := Jacobian of all constraints by the coordinates at y, t, row-major; unit[nq] := coordinate scales (lag_scales of lag_kkt.h);
  * mass[nq nq] := M unless NULL. 0, or the model's status; then they are undefined. */
 int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass);
 /* The part of pb->ranks that lag_constraint_jacobian does not use: [n nq + nq + n]. */
@@ -199,9 +178,9 @@ int lag_events_spread(lag_sim *sim, const double *at_event, double *spread);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 
-/* landing.c: one step of the method from `now` at *t, into y and *t, resized where it would end at a singular position of the constraints.
- * Returns the method's status; after a failure y and *t are unchanged or undefined. */
-int lag_resized_step(lag_sim *sim, double *t, double t_stop);
+/* branch_change.c: whether the step from `now` to y at t continues another motion, beside a singular position of the constraints. LAG_OK, or
+ * LAG_EMETHOD with the reason in pb. */
+int lag_changes_branch(lag_sim *sim, double t);
 
 /* stall_detector.c: judges the step from `now` to y at t. LAG_OK; LAG_ESTALL or LAG_ESTEP where the motion makes no progress, with the reason in
  * pb. */
@@ -212,7 +191,7 @@ int lag_detect_stall(lag_sim *sim, double t);
 int lag_crosses_force_pole(lag_sim *sim, double t);
 void lag_reset_rate_history(lag_sim *sim);
 
-/* project.c: constraints on velocities that are the rate of a function of positions. keep_nothing: their positions are free. keep: holds the
+/* projection.c: constraints on velocities that are the rate of a function of positions. keep_nothing: their positions are free. keep: holds the
  * functions at their values at y, t. Returns the model's status. */
 void lag_release_integrals(lag_sim *sim);
 int lag_hold_integrals(lag_sim *sim, double t, const double *y);

@@ -311,110 +311,6 @@ static void first_root(lag_sim *s)
   }
 }
 
-/* ---- methods without accurate dense output */
-
-/* Integrates from (a, y) to te itself. y is overwritten. */
-static int integrate_to(lag_sim *s, double a, double te, double *y)
-{
-  int rc = 0;
-
-  s->method->reset(s->method_work, &s->pb);
-  while (rc == 0 && (te - a) * s->run->dir > 0) {
-    rc = s->method->step(s->method_work, &s->pb, &a, y, te);
-  }
-  return rc;
-}
-
-/* *slope := rate of event k's function along the flow at (t, s->ya), over `dt`: a secant over the last bits of time would be noise. Uses yb. */
-static int slope_at(lag_sim *s, int k, double t, double dt, double g, double *slope)
-{
-  int rc = lag_rhs(&s->pb, t, s->ya, s->yb);
-
-  if (rc) {
-    return lag_explain(s, rc);
-  }
-  for (int j = 0; j < s->pb.n; j++) {
-    s->yb[j] = s->ya[j] + dt * s->yb[j];
-  }
-  rc = lag_events_eval(s, t + dt, s->yb, s->g1);
-  *slope = (s->g1[k] - g) / dt;
-  return rc;
-}
-
-/* The step of integrate_to does not reach the event: it ends before it, and the next step will find it. */
-static void ends_before(lag_sim *s)
-{
-  s->run->pending = 0;
-  for (int k = 0; k < s->scene->model->nev; k++) {
-    s->sign_end[k] *= isnan(s->root[k]) ? 1 : -1;
-    s->root[k] = NAN;
-  }
-}
-
-/* Replaces the step by one that ends at event k, by Newton's method within a bracket. The new step may meet the event elsewhere than the old
- * one, or not at all: a multistep method restarts at order 1. */
-static int refine(lag_sim *s, int k)
-{
-  enum { MOST = 100 };
-  Run *r = s->run;
-  double te = s->root[k], before = -s->sign_end[k], lo = r->step_t0, hi = r->step_t1, dt = 1e-6 * (te - lo), g = 0, slope = 1;
-  int done = 0;
-
-  for (int i = 0; i < MOST && !done; i++) {
-    memcpy(s->ya, s->y0, (size_t)s->pb.n * sizeof(double));
-    int rc = integrate_to(s, r->step_t0, te, s->ya);
-    if (rc) {
-      return lag_explain(s, rc);
-    }
-    rc = lag_events_eval(s, te, s->ya, s->g1);
-    g = s->g1[k];
-    rc = rc ? rc : slope_at(s, k, te, dt, g, &slope);
-    if (rc) {
-      return rc;
-    }
-    *(g * before > 0 ? &lo : &hi) = te;
-    double next = te - g / slope, least = 4 * DBL_EPSILON * fabs(te);
-    done = g == 0.0 || fabs(next - te) <= least || (fabs(hi - lo) <= least && (te == hi || hi == r->step_t1));
-    if (!done) {
-      te = (next - lo) * r->dir > 0 && (hi - next) * r->dir > 0 ? next : fabs(hi - lo) <= least ? hi : lo + (hi - lo) / 2;
-    }
-  }
-  s->root[k] = r->step_t1 = r->limit = te;
-  memcpy(s->y, s->ya, (size_t)s->pb.n * sizeof(double));
-  if (g * before > 0 && fabs(g / slope) > 4 * DBL_EPSILON * fabs(te)) {
-    ends_before(s);
-  } else if (slope * r->dir * before >= 0 && fabs(te - r->step_t0) > 1e6 * DBL_EPSILON * fabs(te)) { /* else it is rounding */
-    return lag_fail(s, LAG_EMETHOD, "event %s: at t = %s s a step of %s crosses it, but the velocities at its end lead back: it is crossed too slowly for this tolerance; "
-                    "take a smaller one, or dop853", s->scene->model->ev[k].name, LAG_TEXT(te), s->method->name);
-  }
-  return LAG_OK;
-}
-
-static int refine_first(lag_sim *s)
-{
-  for (int k = 0; k < s->scene->model->nev; k++) {
-    if (s->root[k] == s->run->limit) {
-      return refine(s, k);
-    }
-  }
-  return LAG_OK;
-}
-
-/* Fails where an event that has fired leaves 0 to one side and the step ends on the other: it has fired again, at a time that rough dense output
- * does not show. */
-static int check_seen(lag_sim *s)
-{
-  const lag_model *m = s->scene->model;
-
-  for (int k = 0; k < m->nev; k++) {
-    if (s->sign[k] == 0.0 && isnan(s->root[k]) && s->sign_end[k] * s->leaves[k] < 0) {
-      return lag_fail(s, LAG_EMETHOD, "event %s: soon after t = %s s it fires again, within a step of %.3g s of %s, whose dense output does not resolve the time; "
-                      "take a smaller tolerance, or dop853", m->ev[k].name, LAG_TEXT(s->run->step_t0), s->run->step_t1 - s->run->step_t0, s->method->name);
-    }
-  }
-  return LAG_OK;
-}
-
 int lag_events_locate(lag_sim *s)
 {
   Run *r = s->run;
@@ -439,9 +335,6 @@ int lag_events_locate(lag_sim *s)
   }
   if (rc == 0 && found) {
     first_root(s);
-    if (s->method->flags & LAG_METHOD_STEPS_TO) {
-      rc = refine_first(s);
-    }
   }
-  return rc || found || !(s->method->flags & LAG_METHOD_STEPS_TO) ? rc : check_seen(s);
+  return rc;
 }

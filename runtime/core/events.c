@@ -151,25 +151,8 @@ static int act(lag_sim *s, int k, int *stop, int *changed)
   return rc ? rc : ends && !contact ? fail_zeno(s, k) : LAG_OK;
 }
 
-/* The sign of g_k soon after event k has fired, from its rate; where the last step would not resolve it, minus sign_end if events have changed
- * the state, else 0. Uses ya, yb. */
-static double leaves_to(lag_sim *s, int k, int changed)
-{
-  const Run *r = s->run;
-  double span = r->step_t1 - r->step_t0, dt = 1e-6 * span, *g = s->spare + 9 * s->scene->model->nev;
-
-  if (!(s->method->flags & LAG_METHOD_STEPS_TO) || fabs(span) <= 1e6 * DBL_EPSILON * fabs(r->t) || lag_contact_of(s->scene->model, k) || lag_rhs(&s->pb, r->t, s->now, s->ya)) {
-    return 0;
-  }
-  for (int i = 0; i < s->pb.n; i++) {
-    s->yb[i] = s->now[i] + dt * s->ya[i];
-  }
-  double change = lag_events_eval(s, r->t + dt, s->yb, g) ? 0 : (g[k] - s->g1[k]) / dt * fabs(span);
-  return fabs(change) > s->noise[k] ? sign_of(change * r->dir) : changed ? -s->sign_end[k] : 0;
-}
-
 /* Signs after the events at t. before: g before the actions; spread: rounding of g. */
-static int rearm(lag_sim *s, const double *before, const double *spread, int changed)
+static int rearm(lag_sim *s, const double *before, const double *spread)
 {
   const lag_model *m = s->scene->model;
   int rc = lag_events_eval(s, s->run->t, s->now, s->g1);
@@ -178,11 +161,9 @@ static int rearm(lag_sim *s, const double *before, const double *spread, int cha
     double g = s->g1[k], residue = fabs(before[k]) + 4 * spread[k];
     double same = fmax(2 * residue, 1e-12 * fabs(s->g0[k])); /* g0: a sample of g in this step, for its size */
     int fired = s->root[k] == HUGE_VAL;
-    s->leaves[k] = fired ? 0 : s->leaves[k];
     if (fired && fabs(g) <= same) {
       s->sign[k] = 0;
       s->noise[k] = fmax(2 * fabs(g), 2 * residue);
-      s->leaves[k] = leaves_to(s, k, changed);
     } else if (!fired && !isnan(s->root[k]) && fabs(g - before[k]) <= same) {
       s->sign[k] = -s->sign_end[k]; /* this event is still to come */
     } else if (fired || s->sign_end[k] != 0.0 || fabs(g) > s->noise[k]) { /* else: sign not known yet since it fired */
@@ -218,14 +199,14 @@ int lag_events_fire(lag_sim *s)
     s->root[k] = HUGE_VAL; /* fired */
     rc = act(s, k, &stop, &changed);
   }
-  rc = rc ? rc : rearm(s, before, spread, changed);
+  rc = rc ? rc : rearm(s, before, spread);
   r->from = r->t;
   r->pending = 0;
   if (changed || r->t == r->step_t1) {
     r->have_step = 0;
     memcpy(s->y, s->now, (size_t)s->pb.n * sizeof(double));
   }
-  if (changed || (s->method->flags & LAG_METHOD_STEPS_TO)) {
+  if (changed) {
     s->method->reset(s->method_work, &s->pb);
   }
   if (rc == 0 && !stop && r->have_step != 0.0) {

@@ -9,12 +9,11 @@
  * over the integrable end of a square root by sqrt 2. */
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 
 #include "core/core.h"
 #include "core/rhs.h"
 
-enum { MOST_TURNS = 40, LEAST_TURNS = 12, SHORT = 4, LONG = 8 };
+enum { TURNS = 24, LEAST_TURNS = 12, BACK = 4 };
 
 /* Updates the rates of change of components nq to n; returns the component whose rate is rough (see above) and largest relative to its size; -1:
  * none. */
@@ -57,40 +56,30 @@ static double derivative_at(lag_sim *s, double x, double t, int i)
   return lag_rhs(&s->pb, s->run->t + x * (t - s->run->t), s->ya, s->yb) ? NAN : fabs(s->yb[i]);
 }
 
-/* Whether states a fraction dx of the step apart, near ya, differ by more than rounding. */
-static int are_apart(const lag_sim *s, double dx)
-{
-  const double digits = 4096 * DBL_EPSILON;
-  double apart = 0;
-
-  for (int i = 0; i < s->pb.n; i++) {
-    apart = fmax(apart, fabs((s->y[i] - s->now[i]) * dx) / fmax(fabs(s->ya[i]), DBL_MIN));
-  }
-  return apart > digits;
-}
-
 /* The fraction of the step at which the derivative of component i has a pole; NaN: it has none. */
 static double find_pole(lag_sim *s, double t, int i)
 {
   static const double parts[] = {0.5, 0.45, 0.55};
-  double from = 0, to = 1, a = derivative_at(s, from, t, i), b = derivative_at(s, to, t, i), before[LONG] = {0};
-  int turn = 0;
+  const double falls = 0.4; /* in BACK turns; a pole of first order keeps half or more, a root a third or less */
+  double from = 0, to = 1, a = derivative_at(s, from, t, i), b = derivative_at(s, to, t, i), before[BACK] = {0};
 
-  for (int apart = 1; turn < MOST_TURNS && apart; turn++) {
+  for (int turn = 0; turn < TURNS; turn++) {
     double size = (to - from) * fmin(a, b), x = from, c = NAN;
-    if (!(size > 0) || (turn >= SHORT && size < 0.125 * before[(turn - SHORT) % LONG]) || (turn >= LONG && size < 0.25 * before[turn % LONG])) {
+    if (!(size > 0) || (turn >= BACK && size < falls * before[turn % BACK])) {
       return NAN;
     }
-    before[turn % LONG] = size;
+    before[turn % BACK] = size;
     for (size_t k = 0; k < sizeof parts / sizeof *parts && !isfinite(c); k++) {
       x = from + parts[k] * (to - from);
       c = derivative_at(s, x, t, i);
     }
-    apart = isfinite(c) && are_apart(s, to - from);
+    if (!isfinite(c)) {
+      return turn > LEAST_TURNS ? x : NAN;
+    }
     *(a > b ? &to : &from) = x;
     *(a > b ? &b : &a) = c;
   }
-  return turn > LEAST_TURNS ? from : NAN;
+  return from;
 }
 
 int lag_crosses_force_pole(lag_sim *s, double t)
@@ -101,21 +90,13 @@ int lag_crosses_force_pole(lag_sim *s, double t)
   if (i < 0) {
     return LAG_OK;
   }
-  const char *detail = pb->detail;
-  int index = pb->bad_index;
-  double bad_t = pb->bad_t, calls = pb->rhs_calls, pole = find_pole(s, t, i);
+  double calls = pb->rhs_calls, pole = find_pole(s, t, i);
 
   pb->rhs_calls = calls;
-  pb->detail = detail;
-  pb->bad_t = bad_t;
-  pb->bad_index = index;
   if (isnan(pole)) {
     return LAG_OK;
   }
   const lag_model *m = pb->model;
-  snprintf(pb->words, sizeof pb->words, "a pole of %s%s, which no motion crosses", i < 2 * pb->nq ? m->q[i - pb->nq].name : m->z[i - 2 * pb->nq].name,
-           i < 2 * pb->nq ? "''" : "'");
-  pb->detail = pb->words;
-  pb->bad_t = s->run->t + pole * (t - s->run->t);
-  return LAG_EDOMAIN;
+  const char *name = i < 2 * pb->nq ? m->q[i - pb->nq].name : m->z[i - 2 * pb->nq].name;
+  return lag_note(pb, LAG_EDOMAIN, s->run->t + pole * (t - s->run->t), "a pole of %s%s, which no motion crosses", name, i < 2 * pb->nq ? "''" : "'");
 }

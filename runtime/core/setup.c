@@ -12,39 +12,29 @@
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
 
-void lag_saved_arrays(lag_sim *s, lag_saved_array *part)
-{
-  const lag_model *m = s->scene->model;
-  size_t n = (size_t)s->pb.n, nq = (size_t)s->pb.nq, nev = (size_t)m->nev, nmon = (size_t)s->scene->nmonitors;
-  size_t nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  const lag_saved_array all[LAG_SAVED_ARRAYS] = {
-      {&s->p, (size_t)m->np, LAG_SAVED_FINITE}, {&s->derived, (size_t)m->nderived, LAG_SAVED_NUMBER}, {&s->hold, (size_t)m->nu, LAG_SAVED_HELD},
-      {&s->begin, n, LAG_SAVED_FINITE}, {&s->asked, n, LAG_SAVED_FINITE}, {&s->redundant, nc, LAG_SAVED_FLAG}, {&s->loose, nq, LAG_SAVED_FLAG},
-      {&s->kept, nc, LAG_SAVED_FINITE}, {&s->y, n, LAG_SAVED_FINITE}, {&s->y0, n, LAG_SAVED_FINITE}, {&s->now, n, LAG_SAVED_FINITE},
-      {&s->sign, nev, LAG_SAVED_SIGN}, {&s->leaves, nev, LAG_SAVED_SIGN}, {&s->noise, nev, LAG_SAVED_NUMBER}, {&s->root, nev, LAG_SAVED_NUMBER}, {&s->sign_end, nev, LAG_SAVED_SIGN},
-      {&s->count, nev, LAG_SAVED_COUNT}, {&s->first, nev, LAG_SAVED_FINITE}, {&s->last, nev, LAG_SAVED_FINITE},
-      {&s->interval, nev, LAG_SAVED_NUMBER}, {&s->shorter, nev, LAG_SAVED_COUNT}, {&s->mon_first, nmon, LAG_SAVED_NUMBER},
-      {&s->mon_peak, nmon, LAG_SAVED_NUMBER}, {&s->exact_peak, (size_t)s->scene->nexact, LAG_SAVED_NUMBER},
-      {&s->charge_block, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double), LAG_SAVED_NUMBER}};
-
-  memcpy(part, all, sizeof all);
-}
-
 /* Allocates and lays out the blocks for this method, keeping only the settings of the caller (p, hold). opt: option values, which must live on. */
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
 {
   const lag_model *m = s->scene->model;
-  size_t np = (size_t)(m->np + m->nderived), nu = (size_t)m->nu, fixed = RUN_DOUBLES;
-  lag_saved_array part[LAG_SAVED_ARRAYS];
+  size_t np = (size_t)(m->np + m->nderived), nu = (size_t)m->nu, fixed = RUN_DOUBLES, n = (size_t)s->pb.n, nev = (size_t)m->nev;
+  size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
+  const struct {
+    double **at;
+    size_t n;
+  } part[] = {{&s->p, (size_t)m->np}, {&s->derived, (size_t)m->nderived}, {&s->hold, nu}, {&s->begin, n}, {&s->asked, n}, {&s->redundant, nc},
+              {&s->loose, (size_t)m->nq}, {&s->kept, nc}, {&s->y, n}, {&s->y0, n}, {&s->now, n}, {&s->sign, nev}, {&s->noise, nev},
+              {&s->root, nev}, {&s->sign_end, nev}, {&s->count, nev}, {&s->first, nev}, {&s->last, nev}, {&s->interval, nev}, {&s->shorter, nev},
+              {&s->mon_first, nmon}, {&s->mon_peak, nmon}, {&s->exact_peak, (size_t)s->scene->nexact},
+              {&s->charge_block, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)}};
+  const size_t parts = sizeof part / sizeof *part;
   lag_problem sized = s->pb;
-  lag_saved_arrays(s, part);
-  for (int i = 0; i < LAG_SAVED_ARRAYS; i++) {
+
+  for (size_t i = 0; i < parts; i++) {
     fixed += part[i].n;
   }
   sized.opt = opt;
   size_t before = (fixed + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, work = method->work_size(&sized), total = before + work;
-  size_t again = method->flags & LAG_METHOD_STRETCHES && m->constraints ? work : 0;
-  char *room = calloc((total + again) * sizeof(double) + LINE - 1, 1);
+  char *room = calloc(total * sizeof(double) + LINE - 1, 1);
 
   if (!room) {
     return LAG_ENOMEM;
@@ -59,7 +49,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  for (int i = 0; i < LAG_SAVED_ARRAYS; i++) {
+  for (size_t i = 0; i < parts; i++) {
     *part[i].at = x;
     x += part[i].n;
   }
@@ -284,23 +274,6 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
   return wrong ? lag_fail(s, LAG_EINVAL, "method %s: %s", m->name, wrong) : LAG_OK;
 }
 
-/* The first coordinate whose velocity is in no momentum; if there is none, the first coordinate. */
-static const char *massless(const lag_model *m)
-{
-  const lag_constraints *of = m->constraints;
-
-  for (int i = 0; i < m->nq; i++) {
-    int e = 0;
-    while (e < of->nmass && of->mass[e].row != i && of->mass[e].col != i) {
-      e++;
-    }
-    if (e == of->nmass) {
-      return m->q[i].name;
-    }
-  }
-  return m->q[0].name;
-}
-
 /* Refuses a tolerance finer than the digits of the method's coefficients. */
 static int check_digits(lag_sim *s, const lag_method *method)
 {
@@ -322,8 +295,8 @@ static int check_method(lag_sim *s, const lag_method *method)
                     m->constraints->of[0].name);
   }
   if (m->constraints && (has & LAG_MASSLESS) && (needs & LAG_METHOD_VARIATION)) {
-    return lag_fail(s, LAG_EMETHOD, "method %s finds velocities from momenta, and %s has no inertia in this program; `lagc build --method %s` builds a program where it has; "
-                    "rk45 and dop853 need none", method->name, massless(m), method->name);
+    return lag_fail(s, LAG_EMETHOD, "method %s finds velocities from momenta, and not all coordinates have inertia in this program; `lagc build --method %s` "
+                    "builds a program where they have; rk45 and dop853 need none", method->name, method->name);
   }
   if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) {
     needs = (needs & ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION)) | LAG_METHOD_JACOBIAN;
@@ -334,6 +307,10 @@ static int check_method(lag_sim *s, const lag_method *method)
   }
   if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can", method->name);
+  }
+  if ((needs & LAG_METHOD_STEPS_TO) && m->nev > 0) {
+    return lag_fail(s, LAG_EMETHOD, "method %s does not find events (%s), as its motion within a step is too rough; dop853 and radau do", method->name,
+                    m->ev[0].name);
   }
   int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !m->constraints;
   if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH)) {
@@ -407,17 +384,6 @@ int lag_sim_set_tolerance(lag_sim *s, double tol)
 static int sign_ok(int sign, double x)
 {
   return sign == 1 ? x > 0 : sign == 2 ? x >= 0 : sign == -1 ? x < 0 : sign == -2 ? x <= 0 : 1;
-}
-
-int lag_signs_hold(const lag_sim *s)
-{
-  const lag_model *m = s->scene->model;
-  int i = 0;
-
-  while (i < m->np && sign_ok(m->p[i].sign, s->p[i])) {
-    i++;
-  }
-  return i == m->np;
 }
 
 static const char *sign_text(int sign)

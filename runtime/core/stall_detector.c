@@ -11,9 +11,7 @@
  * or a model that jumps.
  * 3. Equal steps longer than half a period: an implicit method keeps the energy of such an oscillation, and nothing else of it. The square of
  * the frequency is estimated along a step as -(change of acceleration).(change of position)/|change of position|^2. It ends no run; the report
- * tells.
- * 4. Coordinates so large that their last digit changes the forces, as an angle of 1e22. */
-#include <float.h>
+ * tells. */
 #include <math.h>
 #include <stdio.h>
 
@@ -107,7 +105,7 @@ static int stays(lag_sim *s, int k, double t)
   return r0 * first[k] < 0 && r1 * last[k] < 0;
 }
 
-static void say_switch(lag_sim *s, int k, double t)
+static int say_switch(lag_sim *s, int k, double t)
 {
   const lag_switch *c = &s->scene->model->switches[k];
   char line[32] = "";
@@ -115,27 +113,25 @@ static void say_switch(lag_sim *s, int k, double t)
   if (c->line) {
     snprintf(line, sizeof line, " in line %d", c->line);
   }
-  snprintf(s->pb.words, sizeof s->pb.words, "it stays where %s is 0: the force of `%s`%s jumps there and pulls back from both sides, as dry friction does on a "
-           "body that sticks, which is not supported; smooth the force, as tanh(v/w) for sign(v), or let an event stop the run", c->surface, c->text, line);
-  s->pb.detail = s->pb.words;
-  s->pb.bad_t = t;
+  return lag_note(&s->pb, LAG_ESTALL, t, "it stays where %s is 0: the force of `%s`%s jumps there and pulls back from both sides, as dry friction does on a "
+                  "body that sticks, which is not supported; smooth the force, as tanh(v/w) for sign(v), or let an event stop the run", c->surface, c->text,
+                  line);
 }
 
 /* Criterion 1: a sliding motion. */
-static int is_sliding(lag_sim *s, double t)
+static int check_sliding(lag_sim *s, double t)
 {
   const lag_model *m = s->scene->model;
 
   if (sides_at(s, s->run->t, s->now, s->sides) || sides_at(s, t, s->y, s->sides + m->nswitch)) {
-    return 0;
+    return LAG_OK;
   }
   for (int k = 0; k < m->nswitch; k++) {
     if (stays(s, k, t)) {
-      say_switch(s, k, t);
-      return 1;
+      return say_switch(s, k, t);
     }
   }
-  return 0;
+  return LAG_OK;
 }
 
 /* The switching function near whose surface the motion has been: its value is less than its growth in the time `led`. -1: none. */
@@ -150,7 +146,7 @@ static int hangs_at(lag_sim *s, double t, double led)
 }
 
 /* Criterion 2: shrinking steps. */
-static int has_shrinking_steps(lag_sim *s, double t)
+static int check_pace(lag_sim *s, double t)
 {
   const double pace = 1e-5, mean = 1e-2, dependent = 1e-2;
   Run *r = s->run;
@@ -169,21 +165,16 @@ static int has_shrinking_steps(lag_sim *s, double t)
   }
   int at = hangs_at(s, t, led);
   if (at >= 0) {
-    say_switch(s, at, t);
-    return LAG_ESTALL;
+    return say_switch(s, at, t);
   }
   if (k < 0 || apart > dependent) {
-    snprintf(pb->words, sizeof pb->words, "the last %d steps advanced the time by only %.3g s: a force or a constraint jumps here, and the motion does not leave the "
-             "place; smooth it, as sqrt(x^2 + w^2) for abs(x), or model the jump as a contact or an event", MOST, led);
-  } else {
-    const lag_constraint *weakest = &pb->model->constraints->of[k];
-    snprintf(pb->words, sizeof pb->words, "the last %d steps advanced the time by only %.3g s: constraint %s%s is within %.1g of being redundant, "
-             "and no step is accurate to the tolerance; a larger tolerance, or steps of equal size (adapt=off, rk4, variational), may pass", MOST, led,
-             weakest->name, lag_line_text(weakest, line), apart);
+    return lag_note(pb, LAG_ESTEP, t, "the last %d steps advanced the time by only %.3g s: a force or a constraint jumps here, and the motion does not leave "
+                    "the place; smooth it, as sqrt(x^2 + w^2) for abs(x), or model the jump as a contact or an event", MOST, led);
   }
-  pb->detail = pb->words;
-  pb->bad_t = t;
-  return LAG_ESTEP;
+  const lag_constraint *weakest = &pb->model->constraints->of[k];
+  return lag_note(pb, LAG_ESTEP, t, "the last %d steps advanced the time by only %.3g s: constraint %s%s is within %.1g of being redundant, and no step is "
+                  "accurate to the tolerance; a larger tolerance, or steps of equal size (adapt=off, rk4, variational), may pass", MOST, led,
+                  weakest->name, lag_line_text(weakest, line), apart);
 }
 
 /* Criterion 3: counts equal steps longer than half a period. */
@@ -211,55 +202,20 @@ static void look_for_period(lag_sim *s, double t)
   }
 }
 
-/* Criterion 4: coordinates whose last digit is more than a thousandth and changes the derivatives by a tenth. */
-static int is_below_resolution(lag_sim *s, double t)
-{
-  const double small = 1e-3, part = 0.1;
-  lag_problem *pb = &s->pb;
-  double change = 0, size = 0, calls = pb->rhs_calls;
-  int which = -1;
-
-  for (int i = 0; i < pb->nq; i++) {
-    s->ya[i] = fabs(s->y[i]) * DBL_EPSILON > small ? s->y[i] * (1 + DBL_EPSILON) : s->y[i];
-    which = s->ya[i] != s->y[i] && (which < 0 || fabs(s->y[i]) > fabs(s->y[which])) ? i : which;
-  }
-  if (which < 0) {
-    return 0;
-  }
-  lag_copy(pb->n - pb->nq, s->y + pb->nq, s->ya + pb->nq);
-  if (lag_rhs(pb, t, s->y, s->yb) || lag_rhs(pb, t, s->ya, s->yc)) {
-    return 0;
-  }
-  pb->rhs_calls = calls;
-  for (int i = pb->nq; i < pb->n; i++) {
-    change = fmax(change, fabs(s->yb[i] - s->yc[i]));
-    size = fmax(size, fmax(fabs(s->yb[i]), fabs(s->yc[i])));
-  }
-  if (!(change > part * size)) {
-    return 0;
-  }
-  snprintf(pb->words, sizeof pb->words, "%s = %.3g is known to %.1g only in " LAG_PRECISION " precision, and the forces change within that; start an angle within one turn, or "
-           "measure the coordinate from another origin" LAG_MORE_PRECISION, pb->model->q[which].name, s->y[which], fabs(s->y[which]) * DBL_EPSILON);
-  pb->detail = pb->words;
-  pb->bad_t = t;
-  return 1;
-}
-
 int lag_detect_stall(lag_sim *s, double t)
 {
   Run *r = s->run;
   long long steps = (long long)r->steps + 1;
   int rc = 0;
 
-  if (s->scene->model->nswitch && is_sliding(s, t)) {
-    return LAG_ESTALL;
+  if (s->scene->model->nswitch) {
+    rc = check_sliding(s, t);
   }
-  if (steps % MOST == 0 && (rc = has_shrinking_steps(s, t)) != 0) {
-    return rc;
+  if (rc == 0 && steps % MOST == 0) {
+    rc = check_pace(s, t);
   }
-  if ((steps & (steps - 1)) != 0) { /* criteria 3 and 4 are tested after 1, 2, 4, 8, ... steps */
-    return LAG_OK;
+  if (rc == 0 && (steps & (steps - 1)) == 0) { /* after 1, 2, 4, 8, ... steps */
+    look_for_period(s, t);
   }
-  look_for_period(s, t);
-  return is_below_resolution(s, t) ? LAG_ESTALL : LAG_OK;
+  return rc;
 }

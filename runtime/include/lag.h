@@ -72,7 +72,6 @@ typedef struct lag_problem {
   const double *opt;   /* values of the method's options, [method->noptions] */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
-  double stretch;      /* relative change of the step size of methods that stretch; mostly 0 */
   double longest;      /* largest step of embedded methods and radau [s]; 0: no limit */
   double span;         /* length of the scene's span, 0 when it has none; not the end of this run */
   double rhs_calls;    /* counted by lag_rhs */
@@ -151,13 +150,8 @@ int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y
 /* pb->detail := the constraint on positions that y breaks most at t, and that meeting it moves coordinate i by `moved`. Returns LAG_ERETRY. */
 int lag_report_leap(lag_problem *pb, double t, const double *y, int i, double moved);
 
-/* > 0: the motion that the constraints prescribe goes through infinity between the ends of a step, y0 at t0 and y1 at t1, both on the
- * constraints; pb says which constraint, and when. Finite motions, however steep, give 0; so does a pole that changes neither the ends nor the
- * middle of the step. (constraints/constraint_pole.c) */
-int lag_crosses_constraint_pole(lag_problem *pb, double t0, const double *y0, double t1, const double *y1);
-
 /* Independence of the weakest constraint at y, t, from 1 to 0: the part of its gradient that is orthogonal to those before it, times the ratio
- * of its derivatives to its terms. *weakest: its index, or -1. Constraints that are always redundant are left out. (core/scene_outputs.c) */
+ * of its derivatives to its terms. *weakest: its index, or -1. Constraints that are always redundant are left out. (constraints/constraint_rank.c) */
 double lag_independence(lag_problem *pb, double t, const double *y, int *weakest);
 
 /* The largest |x[j]| over the coordinates (or velocities) j with the unit of coordinate i: the scale of its rounding where x[i] itself is small. */
@@ -196,12 +190,6 @@ int lag_not_finite(int n, const double *x);
 void lag_hermite(int nq, int nz, double h, double s, const double *y0, const double *f0, const double *y1,
                  const double *f1, double *y);
 
-/* For lag_method.sound: x is an integer from 0 to most; x is 0 or 1; x is -1, 0 or 1; a[n] equals b[n]. False for NaN. */
-int lag_is_count(double x, double most);
-int lag_is_flag(double x);
-int lag_is_sign(double x);
-int lag_same_numbers(const double *a, const double *b, size_t n);
-
 /* Properties of a method. */
 enum {
   LAG_METHOD_ADAPTIVE = 1,     /* adaptive steps, from the tolerance; else steps are of equal size */
@@ -215,8 +203,6 @@ enum {
   LAG_METHOD_TAYLOR = 256,     /* needs Taylor coefficients: lag_model.taylor */
   LAG_METHOD_JACOBIAN = 2048,  /* needs the linearisation: lag_model.linear */
   LAG_METHOD_CONSTRAINTS = 4096, /* steps end on the constraints of a model that has them */
-  LAG_METHOD_STRETCHES = 16384, /* with constraints: makes its step longer or shorter by lag_problem.stretch */
-  LAG_METHOD_LANDS = 32768,    /* stretches only steps of equal size (adapt = off): its adaptive steps avoid singular positions by themselves */
   LAG_METHOD_FLOWS = 8192,     /* takes models of first order (nq = 0), with the linearisation in place of derivatives of L */
   LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS only where it does not split */
 };
@@ -277,10 +263,6 @@ typedef struct lag_method {
    * doubles. 0, or < 0 as step. Later steps do not depend on whether it was called. NULL: the method has no tangent. */
   size_t (*tangent_size)(const lag_problem *pb, int k);
   int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
-
-  /* Whether work, read from a file, is a block from which the method can continue: flags, counts and indices in range, times finite, settings as
-   * in `fresh`, which init has made with the same options. NULL: any numbers are safe. */
-  int (*sound)(const void *work, const void *fresh, const lag_problem *pb);
 
   double finest; /* the smallest tolerance that the digits of its coefficients support; 0: coefficients have all digits of the scalar */
 } lag_method;
@@ -458,8 +440,6 @@ int lag_sim_judge(lag_sim *sim);
 /* Closed form k of the scene (k < lag_sim_scene(sim)->nexact): the largest |motion - closed form| at the ends of steps so far, and the
  * difference now, both in the declared unit (of degC: K); of angles modulo 2 pi. NaN: the closed form is not finite. */
 void lag_sim_exact(lag_sim *sim, int k, double *largest, double *now);
-/* Number of firings of event k. */
-long long lag_sim_event_count(const lag_sim *sim, int k);
 /* Number of firings of event k, and the times of the first and the last; NaN when there was none. */
 long long lag_sim_event_times(const lag_sim *sim, int k, double *first, double *last);
 /* The last error, "" when there was none. */

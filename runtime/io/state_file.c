@@ -128,7 +128,7 @@ static int read_options(State *s, char *text)
   double n = -1;
   int i = 0;
 
-  if (!number(&text, &n) || !lag_is_count(n, (double)(sizeof s->options / sizeof *s->options))) {
+  if (!number(&text, &n) || !(n >= 0 && n <= (double)(sizeof s->options / sizeof *s->options)) || n != (double)(int)n) {
     return 0;
   }
   s->noptions = (int)n;

@@ -96,15 +96,6 @@ void lag_collocation_init(void *work, lag_problem *pb, double h, int stages)
   lag_collocation_reset(work, pb);
 }
 
-int lag_collocation_sound(const void *work, const void *fresh, const lag_problem *pb)
-{
-  const Collocation *w = work, *f = fresh;
-  size_t settings = sizeof(lag_rule) / sizeof(double);
-
-  return lag_fixed_step_is_sound(&w->step, &f->step) && lag_same_numbers(&w->rule.points, &f->rule.points, settings) && lag_is_sign(w->ends) &&
-         lag_predictor_is_sound(arrays((Collocation *)w, pb).history);
-}
-
 /* ---- The equations u_i = f(t + c_i h, y0 + h sum_k a_ik u_k) */
 
 /* A step to be solved: from y0 at t, of length h; comp[n] is the compensation of y0, or NULL. */

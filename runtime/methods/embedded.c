@@ -54,15 +54,6 @@ int lag_embedded_init(void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
-int lag_embedded_sound(const void *work, const void *fresh, const lag_problem *pb)
-{
-  const Embedded *w = work, *f = fresh;
-
-  (void)pb;
-  return w->h >= 0 && isfinite(w->h) && lag_step_limits_are_sound(&w->limits, &f->limits) && w->per == f->per && lag_is_count(w->ready, 2) && lag_is_sign(w->have_extra) && w->err_power >= 0 && isfinite(w->t0) &&
-         isfinite(w->dt) && isfinite(w->tc);
-}
-
 /* Before a step: K1 := f(t, y), Y0 := y, w->h := the step to try. */
 static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y)
 {
@@ -80,7 +71,7 @@ static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, doubl
   }
   w->ready = 1;
   w->have_extra = 0;
-  w->h = w->limits.fixed != 0.0 ? w->limits.h_option * (1 + pb->stretch) : w->h;
+  w->h = w->limits.fixed != 0.0 ? w->limits.h_option : w->h;
   lag_step_limits_begin(&w->limits, t);
   if (w->h == 0.0) {
     lag_tolerance tol = {w->limits.atol, pb->tol};

@@ -60,7 +60,6 @@ size_t lag_embedded_size(const EmbeddedPair *pair, const lag_problem *pb, int mo
 /* Members of lag_method of the same names. */
 int lag_embedded_init(void *work, lag_problem *pb, const double *opt);
 void lag_embedded_reset(void *work, lag_problem *pb);
-int lag_embedded_sound(const void *work, const void *fresh, const lag_problem *pb);
 int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y);
 
 /* > 0: a coordinate moved against its velocities at both ends of the step to tb, in a model whose constraints contain time. The step led over
@@ -76,10 +75,9 @@ int lag_embedded_tangent(const EmbeddedPair *pair, void *work, lag_problem *pb, 
 
 /* The common members of both descriptors; work_size, step, dense and tangent are functions of the file that uses it. */
 #define EMBEDDED_DESCRIPTOR                                                                          \
-  .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES | LAG_METHOD_LANDS,                   \
+  .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_CONSTRAINTS,                                                               \
   .noptions = LAG_NADAPTIVE_OPTIONS, .options = lag_embedded_options,                                                    \
   .work_size = work_size, .init = lag_embedded_init, .step = step, .dense = dense, .reset = lag_embedded_reset,      \
-  .sound = lag_embedded_sound,                                                                                       \
   .tangent_size = tangent_size, .tangent = tangent
 
 #endif

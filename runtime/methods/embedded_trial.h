@@ -162,14 +162,13 @@ LAG_ALWAYS_INLINE double embedded_error(const lag_tableau *tab, int late, Embedd
 }
 
 /* The last stage: projects the end of the step to the constraints, then k := f there. > 0: a smaller step may help. */
-LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double tb, double dt, double *k)
+LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double tb, double *k)
 {
   double *y1 = w->x + EMBEDDED_Y1 * as.row;
   int rc = pb->model->constraints ? lag_project_step(pb, tb, w->x + EMBEDDED_Y0 * as.row, y1, w->x + EMBEDDED_COMP1 * as.row) : 0;
 
-  if (pb->model->constraints && rc == 0) {
-    rc = w->limits.fixed == 0.0 ? lag_embedded_reversal(w, pb, tb) : 0;
-    rc = rc ? rc : lag_crosses_constraint_pole(pb, tb - dt, w->x + EMBEDDED_Y0 * as.row, tb, y1);
+  if (pb->model->constraints && rc == 0 && w->limits.fixed == 0.0) {
+    rc = lag_embedded_reversal(w, pb, tb);
   }
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
 }
@@ -189,7 +188,7 @@ LAG_ALWAYS_INLINE double embedded_trial(const lag_tableau *tab, int late, Embedd
   EMBEDDED_STAGE(1) EMBEDDED_STAGE(2) EMBEDDED_STAGE(3) EMBEDDED_STAGE(4) EMBEDDED_STAGE(5) EMBEDDED_STAGE(6)
   EMBEDDED_STAGE(7) EMBEDDED_STAGE(8) EMBEDDED_STAGE(9) EMBEDDED_STAGE(10) EMBEDDED_STAGE(11)
   embedded_result(tab, w, as, dt);
-  if (!late && (*rc = embedded_end(pb, w, as, tb, dt, k + last * row)) != 0) {
+  if (!late && (*rc = embedded_end(pb, w, as, tb, k + last * row)) != 0) {
     return NAN;
   }
   double err = embedded_error(tab, late, w, pb, as, dt);
@@ -197,7 +196,7 @@ LAG_ALWAYS_INLINE double embedded_trial(const lag_tableau *tab, int late, Embedd
     err = lag_embedded_error_along(tab, late, w, pb, tb, dt, err);
   }
   if (late && (err <= 1 || (w->limits.fixed != 0.0 && !isnan(err)))) {
-    *rc = embedded_end(pb, w, as, tb, dt, k + last * row);
+    *rc = embedded_end(pb, w, as, tb, k + last * row);
     if (*rc || lag_not_finite(pb->n, k + last * row) >= 0) {
       return NAN;
     }

@@ -55,29 +55,6 @@ void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_compo
   w->substeps = lag_composition_substeps(c, w->part);
 }
 
-/* Whether the histories of substeps, velocities and impulses, read from a file, are valid. */
-static int histories_are_sound(const Implicit *w, const lag_problem *pb)
-{
-  ImplicitArrays a = lag_substeps_arrays((Implicit *)w, pb);
-  int nc = pb->model->constraints ? pb->model->constraints->n : 0;
-
-  for (int k = 0; k <= (int)w->substeps; k++) {
-    if (!lag_predictor_is_sound(a.history + (size_t)k * lag_substep_history(pb, w)) ||
-        (nc && k < (int)w->substeps && !lag_predictor_is_sound(a.block.history + (size_t)k * lag_predictor_size(nc)))) {
-      return 0;
-    }
-  }
-  return 1;
-}
-
-int lag_implicit_sound(const void *work, const void *fresh, const lag_problem *pb)
-{
-  const Implicit *w = work, *f = fresh;
-
-  return lag_fixed_step_is_sound(&w->step, &f->step) && lag_same_numbers(&w->order, &f->order, (size_t)(w->x - &w->order)) && lag_is_flag(w->ready) &&
-         lag_is_count(w->have_path + 2, 3) && histories_are_sound(w, pb);
-}
-
 /* First step from y: p := dL/dv, compensations and histories := 0. */
 static int begin(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y)
 {

@@ -16,7 +16,6 @@ void lag_implicit_init(void *work, lag_problem *pb, double h, int order, const l
 void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_composition *c);
 
 /* Members of lag_method of the same names. Forces enter by the discrete Lagrange-d'Alembert principle at the points of the rules. */
-int lag_implicit_sound(const void *work, const void *fresh, const lag_problem *pb);
 void lag_implicit_reset(void *work, lag_problem *pb);
 int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y);
 void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y);

@@ -42,13 +42,6 @@ void lag_predictor_last(const double *history, int m, double *x)
   memcpy(x, ((const Predictor *)(const void *)history)->x, (size_t)m * sizeof *x);
 }
 
-int lag_predictor_is_sound(const double *history)
-{
-  const Predictor *h = (const void *)history;
-
-  return lag_is_count(h->known, DEGREE + 2) && lag_is_count(h->degree, DEGREE);
-}
-
 /* The largest difference of order j, relative to the size of each component. */
 static double largest_difference(const Predictor *h, int m, int j)
 {

@@ -13,9 +13,6 @@ int lag_predictor_guess(const double *history, int m, double *x);
 /* x := the last value. */
 void lag_predictor_last(const double *history, int m, double *x);
 
-/* Whether a history read from a file has counts in range, as lag_method.sound. */
-int lag_predictor_is_sound(const double *history);
-
 /* Appends the value x. */
 void lag_predictor_add(double *history, int m, const double *x);
 

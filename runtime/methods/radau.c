@@ -131,22 +131,6 @@ static int init(void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
-static int sound(const void *work, const void *fresh, const lag_problem *pb)
-{
-  const Radau *w = work, *f = fresh;
-  RadauArrays a = arrays((Radau *)w, pb);
-  int most = pb->n - 1, i = 0;
-
-  while (i < pb->n && lag_is_count(a.real.pivot[i], most) && lag_is_count(a.complex.pivot[i], 2 * most + 1) &&
-         lag_is_count(a.complex.pivot[pb->n + i], 2 * most + 1)) {
-    i++;
-  }
-  return i == pb->n && w->h >= 0 && isfinite(w->h) && lag_step_limits_are_sound(&w->limits, &f->limits) && w->rtol == f->rtol &&
-         w->atol == f->atol && lag_is_flag(w->ready) &&
-         lag_is_count(w->jacobian_age, 2) && isfinite(w->factored) && lag_is_flag(w->have_path) && w->h_accepted >= 0 && lag_is_flag(w->again) &&
-         isfinite(w->t0) && isfinite(w->dt) && isfinite(w->tc);
-}
-
 /* ---- Linear systems */
 
 /* a->jacobian := df/dy at (t, y); the LU factors become invalid. */
@@ -530,7 +514,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int rc = prepare(w, &a, pb, *t, y), why = REJECTED;
 
   (void)t_stop;
-  w->h = (w->limits.fixed != 0.0 ? w->limits.h_option : w->h) * (1 + pb->stretch);
+  w->h = w->limits.fixed != 0.0 ? w->limits.h_option : w->h;
   while (rc == 0) {
     w->h = w->limits.fixed != 0.0 ? w->h : fmin(w->h, longest(w, pb, *t));
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
@@ -593,7 +577,7 @@ const lag_method lag_radau = {
     .order = 5,
     .dense_order = 3,
     .doc = "Radau IIA with the exact Jacobian (of constrained models a differenced one), for stiff models. DOI 10.1007/978-3-642-05221-7, IV.8",
-    .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_NEWTON | LAG_METHOD_JACOBIAN | LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES,
+    .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_NEWTON | LAG_METHOD_JACOBIAN | LAG_METHOD_CONSTRAINTS,
     .noptions = LAG_NADAPTIVE_OPTIONS,
     .options = lag_embedded_options,
     .work_size = work_size,
@@ -601,7 +585,6 @@ const lag_method lag_radau = {
     .step = step,
     .dense = dense,
     .reset = reset,
-    .sound = sound,
     .tangent_size = tangent_size,
     .tangent = tangent,
 };

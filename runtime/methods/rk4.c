@@ -47,14 +47,6 @@ static int init(void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
-static int sound(const void *work, const void *fresh, const lag_problem *pb)
-{
-  const Rk4 *w = work, *f = fresh;
-
-  (void)pb;
-  return lag_fixed_step_is_sound(&w->step, &f->step) && lag_is_flag(w->ready);
-}
-
 /* K1..K4 := the four stages, YS := their weighted sum, the increment of y divided by h. */
 static int stages(Rk4 *w, lag_problem *pb, double t, const double *y, double dt)
 {
@@ -148,7 +140,7 @@ const lag_method lag_rk4 = {
     .name = "rk4",
     .order = 4,
     .dense_order = 4,
-    .flags = LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES,
+    .flags = LAG_METHOD_CONSTRAINTS,
     .doc = "classical Runge-Kutta, fixed step. Kutta 1901",
     .noptions = 1,
     .options = options,
@@ -157,7 +149,6 @@ const lag_method lag_rk4 = {
     .step = step,
     .dense = dense,
     .reset = reset,
-    .sound = sound,
     .tangent_size = tangent_size,
     .tangent = tangent,
 };

@@ -13,11 +13,6 @@ void lag_step_limits_init(lag_step_limits *l, const lag_problem *pb, const doubl
   l->atol = opt[LAG_OPT_ATOL] > 0 ? opt[LAG_OPT_ATOL] : pb->tol;
 }
 
-int lag_step_limits_are_sound(const lag_step_limits *l, const lag_step_limits *fresh)
-{
-  return lag_same_numbers(&l->h_option, &fresh->h_option, 4) && isfinite(l->t_begin) && lag_is_flag(l->begun);
-}
-
 double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y)
 {
   double s = 0;

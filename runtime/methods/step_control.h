@@ -26,7 +26,6 @@ extern const char *const lag_on_off[];
 #define LAG_ATOL_OPTION {"atol", "absolute tolerance [SI]; 0: the same number as the relative one", 0, 0, HUGE_VAL, NULL}
 
 void lag_step_limits_init(lag_step_limits *l, const lag_problem *pb, const double *opt);
-int lag_step_limits_are_sound(const lag_step_limits *l, const lag_step_limits *fresh);
 
 /* Before each step: notes the time of the first one. */
 static inline void lag_step_limits_begin(lag_step_limits *l, double t)

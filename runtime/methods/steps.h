@@ -23,11 +23,6 @@ typedef struct lag_fixed_step {
   double tc;     /* compensation of t: rounding lost so far */
 } lag_fixed_step;
 
-static inline int lag_fixed_step_is_sound(const lag_fixed_step *s, const lag_fixed_step *fresh)
-{
-  return s->h == fresh->h && isfinite(s->t0) && isfinite(s->dt) && isfinite(s->tc);
-}
-
 /* A step from t to tb, of signed length dt; tc: compensation of tb. */
 typedef struct lag_next_step {
   double dt, tb, tc;
@@ -36,7 +31,7 @@ typedef struct lag_next_step {
 /* LAG_ESTEP: the step is lost in the rounding of t. */
 static inline int lag_fixed_step_begin(const lag_fixed_step *s, lag_problem *pb, double t, lag_next_step *next)
 {
-  next->dt = s->h * (1 + pb->stretch) * pb->dir;
+  next->dt = s->h * pb->dir;
   next->tc = s->tc;
   next->tb = lag_compensated_sum(t, next->dt, &next->tc);
   pb->bad_index = -1;

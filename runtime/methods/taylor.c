@@ -151,15 +151,6 @@ static int init(void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
-static int sound(const void *work, const void *fresh, const lag_problem *pb)
-{
-  const Taylor *w = work, *f = fresh;
-
-  return lag_same_numbers(&w->order, &f->order, (size_t)(&w->floor + 1 - &w->order)) && lag_step_limits_are_sound(&w->limits, &f->limits) &&
-         lag_same_numbers(follows((Taylor *)w, pb), follows((Taylor *)f, pb), (size_t)pb->model->nu) && lag_is_flag(w->ready) && lag_is_flag(w->now) &&
-         isfinite(w->t0) && isfinite(w->dt) && isfinite(w->unit[0]) && isfinite(w->unit[1]) && isfinite(w->noise) && isfinite(w->tc);
-}
-
 /* Order 0 of series[which] at t, y. Returns 0 or the model's status; > 0 with pb->bad_index >= 0 where a rate is not finite. */
 static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y)
 {
@@ -388,7 +379,6 @@ const lag_method lag_taylor_method = {
     .step = step,
     .dense = dense,
     .reset = reset,
-    .sound = sound,
     .tangent_size = tangent_size,
     .tangent = tangent,
 };

@@ -125,11 +125,6 @@ static void gauss_reset(void *work, lag_problem *pb)
   (pb->nq ? lag_implicit_reset : lag_collocation_reset)(work, pb);
 }
 
-static int gauss_sound(const void *work, const void *fresh, const lag_problem *pb)
-{
-  return (pb->nq ? lag_implicit_sound : lag_collocation_sound)(work, fresh, pb);
-}
-
 static size_t gauss_tangent_size(const lag_problem *pb, int k)
 {
   return (pb->nq ? lag_implicit_tangent_size : lag_collocation_tangent_size)(pb, k);
@@ -149,7 +144,7 @@ const lag_method lag_variational = {
     .order_most = 8,
     .dense_order = 2,
     .doc = "discrete Lagrangian, Newton's method. DOI 10.1017/S096249290100006X",
-    .flags = PROPERTIES | LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES,
+    .flags = PROPERTIES | LAG_METHOD_CONSTRAINTS,
     .noptions = 3,
     .options = variational_options,
     .check = variational_check,
@@ -160,7 +155,6 @@ const lag_method lag_variational = {
     .step = step,
     .dense = lag_implicit_dense,
     .reset = lag_implicit_reset,
-    .sound = lag_implicit_sound,
     .tangent_size = lag_implicit_tangent_size,
     .tangent = lag_implicit_tangent,
 };
@@ -183,7 +177,6 @@ const lag_method lag_gauss = {
     .step = gauss_step,
     .dense = gauss_dense,
     .reset = gauss_reset,
-    .sound = gauss_sound,
     .tangent_size = gauss_tangent_size,
     .tangent = gauss_tangent,
 };

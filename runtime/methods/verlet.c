@@ -75,16 +75,6 @@ static int init(const Member *m, void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
-static int sound(const void *work, const void *fresh, const lag_problem *pb)
-{
-  const Verlet *w = work, *f = fresh;
-
-  if (!is_explicit(pb)) {
-    return lag_implicit_sound(work, fresh, pb);
-  }
-  return lag_fixed_step_is_sound(&w->step, &f->step) && lag_is_flag(w->ready) && lag_is_sign(w->have_path);
-}
-
 /* Adds one kick to the increment of v. */
 static void kick(Verlet *w, const lag_problem *pb, double h, const double *f)
 {
@@ -280,7 +270,7 @@ static int tangent(const lag_composition *c, void *work, lag_problem *pb, double
       .dense_order = p,                                                                  \
       .doc = words,                                                                      \
       .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_NEWTON | \
-               LAG_METHOD_CONSTRAINTS | LAG_METHOD_STRETCHES | (properties), \
+               LAG_METHOD_CONSTRAINTS | (properties),                                    \
       .noptions = 1,                                                                     \
       .options = options,                                                                \
       .work_size = size_##id,                                                            \
@@ -288,7 +278,6 @@ static int tangent(const lag_composition *c, void *work, lag_problem *pb, double
       .step = step_##id,                                                                 \
       .dense = dense_##id,                                                               \
       .reset = reset,                                                                    \
-      .sound = sound,                                                                    \
       .tangent_size = tangent_size,                                                      \
       .tangent = tangent_##id,                                                           \
   };

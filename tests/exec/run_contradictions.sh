@@ -93,43 +93,20 @@ for method in verlet variational; do
   near "$method passes a blade that is said twice" 2e-4 0 "$(tail -n 1 "$TMP/rows.csv" | awk -F, '{ a = $2 - sin(3); b = $3 - 1 + cos(3); print (a < 0 ? -a : a) + (b < 0 ? -b : b) }')"
 done
 
-# Poles of prescribed motions: x = tan(t) at pi/2, x = 1/(t - 1/2). No row comes from the other side.
-pole() { # NAME CONSTRAINT
-  cat >"$TMP/$1.lag" <<END
-model $1
+steep() { # CONSTRAINT
+  cat >"$TMP/steep.lag" <<END
+model steep
 coord x [m], y [m]
 param m = 1 [kg] > 0, a = 1 [m], T = 1 [s]
 kinetic = m/2*(x'^2 + y'^2)
-constraint drive: $2
+constraint drive: $1
 scene s { span 3; output x, y every 0.1 }
 END
 }
-pole tangent 'x = a*tan(t/T)'
-pole quotient 'x*(t/T - 1/2) = a'
-before() { # NAME METHOD TIME: the run fails, and has written all rows before that time, and none after it
-  status=0
-  "$LAGC" run "$TMP/$1.lag" --method "$2" -o "$TMP/rows.csv" >/dev/null 2>&1 || status=$?
-  echo "$status $(tail -n 1 "$TMP/rows.csv" | awk -F, -v t="$3" '{ print ($1 < t && $1 > t - 0.11) }')"
-}
-# Poles of even order, where velocities reverse as in any ordinary turn, at times at which no step ends; and poles of velocities alone
-pole second 'x = a/(t/T - 1.3237)^2'
-pole implicit "x*(t/T - 2.0001)^2 = a"
-pole fourth 'x = a/(t/T - 1.2345678)^4'
-pole rate "x'*T = a/(t/T - 1.618)^2"
-for method in dop853 rk45 radau rk4 verlet variational 'rk45(adapt=off)'; do
-  is "$method does not go over the pole of a tangent" '3 1' "$(before tangent "$method" 1.5707963)"
-  is "$method does not go over the pole of a quotient" '3 1' "$(before quotient "$method" 0.5)"
-  is "$method does not go over a pole of second order" '3 1' "$(before second "$method" 1.3237)"
-  is "$method does not go over one that an equation implies" '3 1' "$(before implicit "$method" 2.0001)"
-  is "$method does not go over a pole of fourth order" '3 1' "$(before fourth "$method" 1.2345678)"
-  is "$method does not go over one of velocities" '3 1' "$(before rate "$method" 1.618)"
-done
-"$LAGC" run "$TMP/second.lag" --method verlet -o "$TMP/rows.csv" >"$TMP/report" 2>&1
-check "the run says which constraint, of which coordinate, and when" grep 'FAILED.*at t = 1.3237 s constraint drive (line 5) prescribes a motion of x with a pole' "$TMP/report"
 
 # Steep or under-resolved finite motions are passed: the end is the prescribed one.
 passes() { # CONSTRAINT METHOD END: the end to 1e-9 of it
-  pole steep "x = $1"
+  steep "x = $1"
   "$LAGC" run "$TMP/steep.lag" --method "$2" -o "$TMP/rows.csv" >/dev/null 2>&1 &&
     tail -n 1 "$TMP/rows.csv" | awk -F, -v want="$3" '{ d = $2 - want; if (!($1 == 3 && d*d <= 1e-18*want*want)) { print; exit 1 } }'
 }

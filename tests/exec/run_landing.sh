@@ -1,6 +1,6 @@
 #!/bin/sh
-# Steps that would end at, or next to, a singular position, where constraints are dependent and motions meet: they are resized to end elsewhere,
-# on the same motion.
+# Steps that end at, or next to, a singular position, where constraints are dependent and motions meet: rk45 and dop853 pass on the same motion;
+# steps of equal size, and radau, pass or end the run with the reason. No run continues on another motion.
 : "${LAGC:=build/lagc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
@@ -31,29 +31,31 @@ ends() {
   "$LAGC" run "$TMP/$model.lag" "$@" -o "$TMP/rows.csv" >"$TMP/report" 2>&1 || { grep FAILED "$TMP/report"; return; }
   tail -n 1 "$TMP/rows.csv" | awk -F, '{ a = $2 - 22.141592653589793; b = $3; print (a < 0 ? -a : a) + (b < 0 ? -b : b) }'
 }
+says='several motions meet here, and the step continues another one than the present: constraint loop.[xy] (line 8) is within .* of being redundant; take rk45 or dop853'
+passes_or_says() { # MODEL WITHIN ARGS...
+  model=$1 within=$2
+  shift 2
+  got=$(ends "$model" "$@")
+  echo "$got" | grep -q -e "$says" -e 'constraint loop.[xy] (line 8) is off by .*, and no small change of the coordinates satisfies it' || awk -v d="$got" -v most="$within" 'BEGIN { print d; exit !(d <= most) }'
+}
+says_so() { ends "$@" | grep -q "$says"; }
 for model in rhomb parallelogram; do
-  for method in rk4 verlet4 verlet6 verlet8 variational symplectic_euler; do
-    for step in 1e-2 0.05; do # rk4's own error, with the longer step near the place, is 1e-8
-      near "$model, $method, $step" 1e-7 0 "$(ends $model --method $method --step $step)"
-    done
-  done
-  near "$model, verlet" 1e-3 0 "$(ends $model --method verlet --step 1e-2)" # Verlet's halves turn by step^2 each time
-  near "$model, many steps" 1e-7 0 "$(ends $model --method rk4 --step 1e-3)"
   for method in rk45 dop853; do
     near "$model, $method" 1e-7 0 "$(ends $model --method $method --tol 1e-9)"
   done
-  for method in rk45 dop853; do # a stage of rk45 hits 0.998 + 0.01/5, which once threw the run off; errors 1e-10 to 1e-6
-    for step in 1e-2 0.05; do
-      near "$model, $method, adapt=off, $step" 1e-6 0 "$(ends $model --method "$method(adapt=off, step=$step)")"
+  for method in rk4 verlet4 verlet6 verlet8 variational symplectic_euler; do
+    for step in 0.02 0.013 0.0271; do
+      check "$model, $method, $step" passes_or_says $model 1e-7 --method $method --step $step
     done
+    near "$model, $method, steps that end elsewhere" 1e-7 0 "$(ends $model --method $method --step 0.03)"
   done
-  # radau's steps shrink into such a position. The run may pass; otherwise it ends with a message, and does not continue on another motion.
-  for tol in 1e-6 1e-7 1e-8 1e-9 1e-10; do
-    got=$(ends $model --method radau --tol $tol)
-    case $got in
-    *'several motions meet here, and no step continues the present one: constraint loop.'[xy]' (line 8) is within '*'rk45 and dop853 may pass'*) got=0 ;;
-    esac
-    near "$model, radau, $tol" 1e-3 0 "$got"
+  check "$model, a step that ends there says so" says_so $model --method rk4 --step 0.01
+  near "$model, verlet" 1e-2 0 "$(ends $model --method verlet --step 0.03)" # Verlet's halves turn by step^2 each time
+  for method in rk45 dop853; do
+    check "$model, $method, adapt=off" passes_or_says $model 1e-6 --method "$method(adapt=off,step=0.03)"
+  done
+  for tol in 1e-6 1e-7 1e-8 1e-9 1e-10; do # radau's steps shrink into such a position
+    check "$model, radau, $tol" passes_or_says $model 1e-3 --method radau --tol $tol
   done
 done
 tap_end

@@ -57,15 +57,15 @@ is "what follows from others" again "$(redundant)"
 loose() { "$LAGC" check $model | grep -c 'not unique'; }
 is "multipliers that are not unique" 3 "$(loose)"
 
-# ---- constraints that become dependent on the way: four bars come to lie in a line at t = 1 and 1 + pi, ...; there a multiplier has its limit
-# b = 0, a = c = 1 - t: mass 2 goes round with a' = -1, so lambda(cy) = m y2'' = -m l sin a, and without inertia c has lambda(cx) sin c = lambda(cy) cos c
+# ---- constraints that become dependent on the way: four bars come to lie in a line at t = 1 and 1 + pi, ...; a multiplier has its limit there, and no
+# value within a thousandth of it. b = 0, a = c = 1 - t: mass 2 goes round with a' = -1, so lambda(cy) = m y2'' = -m l sin a, and without inertia c has lambda(cx) sin c = lambda(cy) cos c
 tends() { # EVERY ARGS...
   every=$1
   shift
   "$LAGC" run tests/exec/models/rhomb.lag s --every "$every" -o "$TMP/out.csv" --quiet "$@" || return 1
-  awk -F, 'NR > 1 { d = $5 + cos($2); d = d < 0 ? -d : d; if (!(d <= 1e-3)) { print; bad = 1 } if (!($6*$6 <= 1e-6)) { print; bad = 1 } } END { exit bad || NR < 5 }' "$TMP/out.csv"
+  awk -F, '$5 == "nan" && $6 == "nan" { none++; next } NR > 1 { d = $5 + cos($2); d = d < 0 ? -d : d; if (!(d <= 1e-3)) { print; bad = 1 } if (!($6*$6 <= 1e-6)) { print; bad = 1 } } END { exit bad || none < 1 || none > 2 || NR < 5 }' "$TMP/out.csv"
 }
-for every in 1 0.01; do # 1e-3: effect of 1e-8 between the ends of a step near the line; without the limit 2e21
+for every in 1 0.01; do # 1e-3: effect of 1e-8 between the ends of a step near the line; on it, 2e21
   check "through a line: dop853, rows every $every" tends $every --until 5 --tol 1e-12
   check "rk45" tends $every --until 5 --method rk45 --tol 1e-12
 done
