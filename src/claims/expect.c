@@ -19,7 +19,7 @@ static void report_refuted(const Eqns *e, const Expect *x, const char *label, co
   const Model *m = e->m;
   SuggestedEdit mend = suggest_correction(e, x);
   if (mend.edit) diag_error(m->diags, mend.caret, "expect %s is false: %s", label, mend.edit);
-  else diag_error(m->diags, mend.caret, "expect %s is false, and no single edit found makes it true; the fault seems to be here", label);
+  else diag_error(m->diags, mend.caret, "expect %s is false, and no single edit found makes it true", label);
   diag_help(m->diags, "%s", difference);
 }
 
