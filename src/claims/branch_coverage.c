@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-#include "mech/switching_functions.h"
 #include "sym/eval.h"
 #include "sym/print.h"
 
@@ -38,12 +37,24 @@ static void add(BranchCoverage *s, Expr e, SideKind kind) {
   vec_push(expr_arena(s->g), &s->all, ((Sides){.e = e, .kind = kind}));
 }
 
+/* Adds the functions at whose zeros a comparison, `min`, `max`, `abs` or `sign` in the roots switches. */
+static void add_switches(BranchCoverage *s, ExprList nodes) {
+  ExprGraph *g = s->g;
+  for (uint32_t i = 0; i < nodes.n; i++) {
+    ExprOp op = expr_op(g, nodes.at[i]);
+    int two = op == EX_LT || op == EX_LE || op == EX_EQ || op == EX_MIN || op == EX_MAX;
+    if (!two && op != EX_ABS && op != EX_SIGN) continue;
+    Expr u = expr_arg(g, nodes.at[i], 0);
+    if (two) u = expr_sub(g, u, expr_arg(g, nodes.at[i], 1));
+    if (expr_sign(g, u) == SIGN_UNKNOWN && varies(g, u)) add(s, u, SIGN);
+  }
+}
+
 BranchCoverage *branch_coverage(ExprGraph *g, const Expr *roots, uint32_t n) {
   Arena *a = expr_arena(g);
   BranchCoverage *s = ARENA_NEW(a, BranchCoverage);
   VEC(Expr) tape = {0};
   *s = (BranchCoverage){.g = g};
-  SwitchingFunctions switches = switching_functions(g, roots, n);
   ExprList l = expr_topo(g, roots, n);
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(g, l.at[i]);
@@ -51,8 +62,7 @@ BranchCoverage *branch_coverage(ExprGraph *g, const Expr *roots, uint32_t n) {
     if (expr_is_bool(g, l.at[i])) add(s, l.at[i], TRUTH);
     else if (op >= EX_SIN && op <= EX_CBRT) add(s, l.at[i], VALUE);
   }
-  for (uint32_t i = 0; i < switches.n; i++)
-    if (expr_sign(g, switches.at[i]) == SIGN_UNKNOWN && varies(g, switches.at[i])) add(s, switches.at[i], SIGN);
+  add_switches(s, l);
   for (uint32_t i = 0; i < s->all.n; i++) vec_push(a, &tape, s->all.at[i].e);
   s->tape = eval_tape(g, tape.at, tape.n);
   s->values = ARENA_ARRAY(a, Real, tape.n + 1);

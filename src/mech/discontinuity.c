@@ -1,6 +1,9 @@
 /* Jumps of L, of momenta, constraints and forces, each as a warning at its place in the text. */
 #include "mech/discontinuity.h"
 
+#include "mech/constrain.h"
+#include "mech/switching_surfaces.h"
+
 ExprJumps discontinuities_of(const Eqns *e, Expr x) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
@@ -10,4 +13,81 @@ ExprJumps discontinuities_of(const Eqns *e, Expr x) {
     x = expr_substitute(g, x, formula, expr_symbol_count(g) + 1, "");
   }
   return expr_jumps(g, x);
+}
+
+/* Symbols of the motion: coordinates, velocities, rates, and states that are coordinates of a model of first order. */
+static int is_of_motion(const Symbol *s, const void *model) {
+  const Model *m = model;
+  return s->kind == SYM_COORD || s->kind == SYM_VEL || s->kind == SYM_RATE || (s->kind == SYM_STATE && m->states.at[s->index].coordinate);
+}
+
+/* Span of the node in the text; if the text does not contain it, that of L. */
+static Span place_of(const Model *m, Expr node) {
+  AstId written = expr_map_get(&m->written, node);
+  return written ? ast_expr(m->ast, written)->span : m->lagrangian_span;
+}
+
+static int is_among(const ExprJumps *all, Expr node) {
+  uint32_t i = 0;
+  while (i < all->n && all->at[i].node != node) i++;
+  return i < all->n;
+}
+
+static void warn_of_momentum(const Eqns *e, uint32_t i, const ExprJumps *said) {
+  const Model *m = e->m;
+  ExprJumps all = discontinuities_of(e, eqns_momenta(e)[i]);
+  Name q = expr_symbol(e->g, eqns_coordinate(e, i))->name;
+  for (uint32_t k = 0; k < all.n; k++) {
+    if (is_among(said, all.at[k].node)) continue;
+    diag_warning(m->diags, place_of(m, all.at[k].node), "the momentum of `%s` jumps here, and the equations of motion lack the impulse of the jump",
+                 q);
+    diag_help(m->diags, "smooth it, or let an event of the same place set the velocity: `event NAME: t - 1 [s] rising { %s' = ... }`", q);
+  }
+}
+
+/* Constraints with a corner, as y = abs(x). A projection behind the corner gives the velocity after an impact without rebound, or, if a step
+ * ends on the corner, an arbitrary one. */
+static void warn_of_corners(const Eqns *e) {
+  const Model *m = e->m;
+  const Constraints *all = &e->constraints;
+  for (uint32_t k = 0; k < all->n; k++) {
+    if (contact_of_constraint(m, all->of[k])) continue;
+    ExprJumps jumps = discontinuities_of(e, all->r[k]);
+    for (uint32_t i = 0; i < jumps.n; i++) {
+      if (!expr_contains(e->g, jumps.at[i].side, is_of_motion, m)) continue;
+      Span place = expr_map_get(&m->written, jumps.at[i].node) ? place_of(m, jumps.at[i].node) : all->of[k]->span;
+      diag_warning(m->diags, place, "the constraint `%s` has a corner here, and no equation says how a motion passes it", all->of[k]->name);
+      diag_help(m->diags, "round it, as sqrt(x^2 + w^2) for abs(x); or use contacts, whose impacts have a law");
+    }
+  }
+}
+
+/* Dry friction and relays: a motion may stick where such a force jumps. */
+static void warn_of_switches(const Eqns *e) {
+  const Model *m = e->m;
+  SwitchingSurfaces all = switching_surfaces(e);
+  for (uint32_t i = 0; i < all.n; i++) {
+    diag_warning(m->diags, all.at[i].span, "a force jumps where `%s` is 0; a motion that sticks there, as under dry friction, cannot be followed: the run ends where it sticks",
+                 all.at[i].surface);
+    diag_help(m->diags, "smooth it, as tanh(v/w) for sign(v) with a small velocity w, and take radau; or let an event stop the run there");
+  }
+}
+
+void discontinuity_warn(const Eqns *e) {
+  enum { COORDINATES_MOST = 64 };
+  const Model *m = e->m;
+  uint32_t n = eqns_coordinates(e);
+  VEC(ExprJump) said = {0};
+  warn_of_switches(e);
+  if (!m->lagrangian) return;
+  ExprJumps all = discontinuities_of(e, m->lagrangian);
+  for (uint32_t i = 0; i < all.n; i++) {
+    if (!expr_contains(e->g, all.at[i].side, is_of_motion, m)) continue;
+    diag_warning(m->diags, place_of(m, all.at[i].node), "L jumps here, and the equations of motion lack the impulse of the jump");
+    diag_help(m->diags, "forces are derivatives on each side of the jump: smooth it, as tanh(x/w) for sign(x), or let an event or a contact give the impulse");
+    vec_push(m->arena, &said, all.at[i]);
+  }
+  ExprJumps known = {said.at, said.n};
+  for (uint32_t i = 0; i < n && n <= COORDINATES_MOST; i++) warn_of_momentum(e, i, &known);
+  if (n <= COORDINATES_MOST) warn_of_corners(e);
 }

@@ -12,4 +12,7 @@
 /* The jumps of x, with inputs replaced by their formulas. */
 ExprJumps discontinuities_of(const Eqns *e, Expr x);
 
+/* Warns of each place in the text where L, a momentum, a constraint's rate or a force jumps and the equations do not tell what follows. */
+void discontinuity_warn(const Eqns *e);
+
 #endif
