@@ -37,17 +37,11 @@ static void add(BranchCoverage *s, Expr e, SideKind kind) {
   vec_push(expr_arena(s->g), &s->all, ((Sides){.e = e, .kind = kind}));
 }
 
-/* Adds the functions at whose zeros a comparison, `min`, `max`, `abs` or `sign` in the roots switches. */
-static void add_switches(BranchCoverage *s, ExprList nodes) {
-  ExprGraph *g = s->g;
-  for (uint32_t i = 0; i < nodes.n; i++) {
-    ExprOp op = expr_op(g, nodes.at[i]);
-    int two = op == EX_LT || op == EX_LE || op == EX_EQ || op == EX_MIN || op == EX_MAX;
-    if (!two && op != EX_ABS && op != EX_SIGN) continue;
-    Expr u = expr_arg(g, nodes.at[i], 0);
-    if (two) u = expr_sub(g, u, expr_arg(g, nodes.at[i], 1));
-    if (expr_sign(g, u) == SIGN_UNKNOWN && varies(g, u)) add(s, u, SIGN);
-  }
+Expr switching_function(ExprGraph *g, Expr e) {
+  ExprOp op = expr_op(g, e);
+  if (op == EX_ABS || op == EX_SIGN) return expr_arg(g, e, 0);
+  if (op != EX_LT && op != EX_LE && op != EX_EQ && op != EX_MIN && op != EX_MAX) return 0;
+  return expr_sub(g, expr_arg(g, e, 0), expr_arg(g, e, 1));
 }
 
 BranchCoverage *branch_coverage(ExprGraph *g, const Expr *roots, uint32_t n) {
@@ -62,7 +56,10 @@ BranchCoverage *branch_coverage(ExprGraph *g, const Expr *roots, uint32_t n) {
     if (expr_is_bool(g, l.at[i])) add(s, l.at[i], TRUTH);
     else if (op >= EX_SIN && op <= EX_CBRT) add(s, l.at[i], VALUE);
   }
-  add_switches(s, l);
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr u = switching_function(g, l.at[i]);
+    if (u && expr_sign(g, u) == SIGN_UNKNOWN && varies(g, u)) add(s, u, SIGN);
+  }
   for (uint32_t i = 0; i < s->all.n; i++) vec_push(a, &tape, s->all.at[i].e);
   s->tape = eval_tape(g, tape.at, tape.n);
   s->values = ARENA_ARRAY(a, Real, tape.n + 1);

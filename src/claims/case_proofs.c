@@ -2,6 +2,7 @@
  * the number of proofs PROOFS_MOST. */
 #include "claims/case_proofs.h"
 
+#include "claims/branch_coverage.h"
 #include "mech/states.h"
 #include "sym/diff.h"
 #include "sym/prove.h"
@@ -343,12 +344,8 @@ static int use_switches(Prover *p, const Claim *c) {
   for (uint32_t i = 0; i < c->e->mass.n && c->solved; i++) vec_push(a, &roots, c->e->mass.at[i].e);
   ExprList l = expr_topo(g, roots.at, roots.n);
   for (uint32_t i = 0; i < l.n; i++) {
-    ExprOp op = expr_op(g, l.at[i]);
-    int two = op == EX_LT || op == EX_LE || op == EX_EQ || op == EX_MIN || op == EX_MAX;
-    if (!two && op != EX_ABS && op != EX_SIGN) continue;
-    Expr u = expr_arg(g, l.at[i], 0);
-    if (two) u = expr_sub(g, u, expr_arg(g, l.at[i], 1));
-    int is = use_sides(p, c, without_number(g, u));
+    Expr u = switching_function(g, l.at[i]);
+    int is = u ? use_sides(p, c, without_number(g, u)) : -1;
     if (is >= 0) return is;
   }
   return -1;

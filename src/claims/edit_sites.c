@@ -116,26 +116,6 @@ SiteList edit_sites_of(const Model *m, const Expect *x) {
   uint32_t left = x->lhs_ast - ast_expr(m->ast, x->lhs_ast)->first + 1;
   uint32_t right = x->rhs_ast - ast_expr(m->ast, x->rhs_ast)->first + 1;
   SiteList l = {.m = m, .x = x, .at = ARENA_ARRAY(m->arena, Site, left + right)};
-  for (int side = 0; side < 2 && x->nodes[0]; side++) walk_side(&l, side);
+  for (int side = 0; side < 2; side++) walk_side(&l, side);
   return l;
-}
-
-const char *span_text(const Model *m, Span span) {
-  enum { LONGEST = 44, HEAD = 26, TAIL = 14 };
-  Place p = source_place(m->ast->sources, span.begin);
-  if (!p.file) return "";
-  const char *from = p.file->text + (span.begin - p.file->base), *end = from + (span.end - span.begin);
-  StrBuf b = strbuf(m->arena);
-  for (const char *c = from; c < end; c++) {
-    while (*c == '#' && c + 1 < end && *c != '\n')
-      while (c + 1 < end && *c != '\n') c++;
-    if (!blank(*c)) sb_putc(&b, *c);
-    else if (b.n && b.at[b.n - 1] != ' ') sb_putc(&b, ' ');
-  }
-  const char *text = sb_text(&b);
-  if (b.n <= LONGEST) return text;
-  size_t head = HEAD, tail = b.n - TAIL;
-  while (head && ((unsigned char)text[head] & 0xC0) == 0x80) head--;
-  while (tail < b.n && ((unsigned char)text[tail] & 0xC0) == 0x80) tail++;
-  return arena_printf(m->arena, "%.*s ... %s", (int)head, text, text + tail);
 }

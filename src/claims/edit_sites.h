@@ -34,7 +34,7 @@ typedef struct {
   AstId *up[2];   /* the site above each node of a side */
 } SiteList;
 
-/* The sites of both sides, outer ones first, left side first. Operands of primes, exponents, conditions and indices are no sites. */
+/* The sites of both sides of an expectation that is the only instance of its statement, outer ones first, left side first. Operands of primes, exponents, conditions and indices are no sites. */
 SiteList edit_sites_of(const Model *m, const Expect *x);
 
 /* Values as written: of a node of a side, and of side k; 0: none of its own. */
@@ -48,8 +48,5 @@ Expr edit_replaced(const SiteList *l, const Site *s, Expr with);
 ExprOp edit_function(const AstExpr *x);
 
 int ast_is_sum(AstKind k);
-
-/* The text of a span on one line, without comments, its middle left out where it is long. */
-const char *span_text(const Model *m, Span span);
 
 #endif

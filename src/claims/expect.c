@@ -5,13 +5,12 @@
 #include "claims/case_proofs.h"
 #include "symmetry/charges.h"
 #include "claims/suggest_correction.h"
-#include "claims/edit_sites.h"
 #include "claims/counterexample.h"
 
 /* --- verdicts --- */
 
 static const char *label_of(const Model *m, const Expect *x) {
-  const char *left = span_text(m, ast_expr(m->ast, x->lhs_ast)->span);
+  const char *left = short_text(m->ast, ast_expr(m->ast, x->lhs_ast)->span);
   return x->name ? arena_printf(m->arena, "%s (%s)", left, x->name) : left;
 }
 

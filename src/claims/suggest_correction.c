@@ -247,7 +247,7 @@ static void guess_power(EditSearch *md, const Site *s, const char *text, const N
   }
   Expr base = exponent ? edit_node(&md->sites, s->side, x->a) : s->value, with = base ? expr_pow_num(md->g, base, n) : 0;
   if (exponent) {
-    const char *old = span_text(md->m, exponent->span);
+    const char *old = short_text(md->m->ast, exponent->span);
     Expr shown = expr_num(md->g, n);
     const char *edit = num_is_one(n) ? arena_printf(md->arena, "the exponent `%s` should not be there", old)
                                      : arena_printf(md->arena, "the exponent `%s` should be `%s`", old, text_of(md, shown));
@@ -307,7 +307,7 @@ static void guess_term(EditSearch *md, const Site *s, const char *text, const Mo
 }
 
 static void guess_replacement(EditSearch *md, const Site *s, Expr with, double cost, Span caret) {
-  const char *was = span_text(md->m, caret);
+  const char *was = short_text(md->m->ast, caret);
   guess(md, s, with, cost, caret, arena_printf(md->arena, "`%s` should be `%s`", was, text_of(md, with)));
 }
 
@@ -361,7 +361,7 @@ static void guess_names(EditSearch *md, const Site *s, Expr needed) {
 
 static void guess_at(EditSearch *md, const Site *s, Need *need) {
   if (s->role == SITE_PART || !s->value || edit_replaced(&md->sites, s, s->value) != edit_side(&md->sites, s->side) || !find_need(md, s, need)) return;
-  const char *text = span_text(md->m, s->span);
+  const char *text = short_text(md->m->ast, s->span);
   Monomial ratio = features_fit(md->features, need->ratio), needed = features_fit(md->features, need->needed);
   Monomial difference = features_fit(md->features, need->difference);
   guess_removal(md, s, text, need);
@@ -399,10 +399,11 @@ static int guess_is_proved(EditSearch *md, const Guess *guess) {
 SuggestedEdit suggest_correction(const Eqns *e, const Expect *x) {
   enum { PROOFS = 12 };
   const Model *m = e->m;
+  SuggestedEdit nowhere = {.caret = ast_expr(m->ast, x->rhs_ast)->span};
+  if (!x->nodes[0]) return nowhere;
   EditSearch md = {.e = e, .m = m, .x = x, .g = e->g, .arena = m->arena, .sites = edit_sites_of(m, x)};
   Name name = intern(m->ast->names, "?");
   md.stand_in = expr_declare(e->g, SYM_LOCAL, 0, name, SIGN_UNKNOWN);
-  SuggestedEdit nowhere = {.caret = ast_expr(m->ast, x->rhs_ast)->span};
   if (is_too_large(&md) || !find_states(&md)) return nowhere;
   md.features = gather_features(&md);
   Need *need = ARENA_NEW(md.arena, Need);

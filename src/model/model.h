@@ -302,6 +302,9 @@ CoordList model_coordinates(const Model *m);
 /* Builds the model; NULL after errors, all of which are in ast->diags. Memory is ast->arena's. */
 Model *model_build(Ast *ast, const ModelChoice *choice);
 
+/* Source text of a span on one line, without comments, its middle left out where it is long. */
+const char *short_text(const Ast *ast, Span s);
+
 /* Converts a value from the command line for `target` (0: a time) into a number in the target's declared unit, *digits as
  * in base/decimal_literal.h or NULL. 0, reported, when a run cannot set the target, or the value does not fit it. */
 int model_command_value(const Model *m, AstId target, AstId value, double *out, const char **digits);
