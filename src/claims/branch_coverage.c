@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-#include "mech/switching_functions.h"
 #include "sym/eval.h"
 #include "sym/print.h"
 
@@ -38,12 +37,18 @@ static void add(BranchCoverage *s, Expr e, SideKind kind) {
   vec_push(expr_arena(s->g), &s->all, ((Sides){.e = e, .kind = kind}));
 }
 
+Expr switching_function(ExprGraph *g, Expr e) {
+  ExprOp op = expr_op(g, e);
+  if (op == EX_ABS || op == EX_SIGN) return expr_arg(g, e, 0);
+  if (op != EX_LT && op != EX_LE && op != EX_EQ && op != EX_MIN && op != EX_MAX) return 0;
+  return expr_sub(g, expr_arg(g, e, 0), expr_arg(g, e, 1));
+}
+
 BranchCoverage *branch_coverage(ExprGraph *g, const Expr *roots, uint32_t n) {
   Arena *a = expr_arena(g);
   BranchCoverage *s = ARENA_NEW(a, BranchCoverage);
   VEC(Expr) tape = {0};
   *s = (BranchCoverage){.g = g};
-  SwitchingFunctions switches = switching_functions(g, roots, n);
   ExprList l = expr_topo(g, roots, n);
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(g, l.at[i]);
@@ -51,8 +56,10 @@ BranchCoverage *branch_coverage(ExprGraph *g, const Expr *roots, uint32_t n) {
     if (expr_is_bool(g, l.at[i])) add(s, l.at[i], TRUTH);
     else if (op >= EX_SIN && op <= EX_CBRT) add(s, l.at[i], VALUE);
   }
-  for (uint32_t i = 0; i < switches.n; i++)
-    if (expr_sign(g, switches.at[i]) == SIGN_UNKNOWN && varies(g, switches.at[i])) add(s, switches.at[i], SIGN);
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr u = switching_function(g, l.at[i]);
+    if (u && expr_sign(g, u) == SIGN_UNKNOWN && varies(g, u)) add(s, u, SIGN);
+  }
   for (uint32_t i = 0; i < s->all.n; i++) vec_push(a, &tape, s->all.at[i].e);
   s->tape = eval_tape(g, tape.at, tape.n);
   s->values = ARENA_ARRAY(a, Real, tape.n + 1);

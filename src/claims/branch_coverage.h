@@ -4,6 +4,9 @@
 
 #include "sym/expr.h"
 
+/* The function at whose zeros a comparison, `min`, `max`, `abs` or `sign` switches; 0: e is none of these. */
+Expr switching_function(ExprGraph *g, Expr e);
+
 typedef struct BranchCoverage BranchCoverage;
 
 /* The sides in the roots: true and false of conditions; both signs of the arguments of `min`, `max`, `abs` and `sign` where both are possible; two

@@ -10,7 +10,6 @@
 #include "claims/branch_coverage.h"
 #include "claims/state_error_bounds.h"
 #include "mech/states.h"
-#include "mech/switching_functions.h"
 #include "sym/prove.h"
 
 typedef long double Real;
@@ -36,7 +35,6 @@ typedef struct {
   EvalTape *defaults, *given; /* values of parameters; of those that follow from others */
   VEC(SymId) with_default, followers;
   Real *symbols, *errors, *kept, *out;
-  double cost, budget; /* of a comparison; left for places of switches */
   Real l, r, d;
   int states, digits; /* states compared so far; digits to which the sides agree at ordinary ones */
   int ordinary;       /* the current state is of ordinary size */
@@ -147,49 +145,9 @@ static void whole_state(CounterexampleSearch *s, uint32_t seed) {
   }
 }
 
-/* --- switches --- */
-
-/* Compares at both sides of a switch that switches.h finds, at several distances; at the switch itself only where no derivatives enter. */
-static int try_place(void *data, Real *symbols, SwitchLine line, Real where, int exactly) {
-  static const Real distance[] = {1e-12L, 1e-9L, 1e-6L, 1e-3L, 0.1L};
-  CounterexampleSearch *s = data;
-  Real unit = fabsl(where) > 0 ? fabsl(where) : 1;
-  for (int k = s->inside || !exactly ? 0 : -1; k < 10 && s->budget > 0; k++) {
-    s->budget -= s->cost;
-    Real t = where + (k < 0 ? 0 : (k % 2 ? -1 : 1) * distance[k / 2] * unit);
-    memcpy(s->symbols, symbols, (expr_symbol_count(s->g) + 1) * sizeof *symbols);
-    switch_line_set(line, t, s->symbols);
-    if (differs(s)) return 1;
-  }
-  return 0;
-}
-
-static int try_switches(CounterexampleSearch *s) {
-  enum { BASES = 3 };
-  VEC(Expr) roots = {0};
-  VEC(SymId) free = {0};
-  Arena *a = s->m->arena;
-  vec_push(a, &roots, s->left);
-  vec_push(a, &roots, s->right);
-  for (uint32_t i = 0; i < s->e->n && s->inside; i++) vec_push(a, &roots, s->e->f[i]);
-  for (uint32_t i = 0; i < s->e->mass.n && s->inside; i++) vec_push(a, &roots, s->e->mass.at[i].e);
-  for (uint32_t i = 0; i < s->free.n; i++) vec_push(a, &free, s->free.at[i].sym);
-  SwitchingFunctions all = switching_functions(s->g, roots.at, roots.n);
-  Real *base = ARENA_ARRAY(a, Real, expr_symbol_count(s->g) + 1);
-  for (uint32_t k = 0; k < BASES && all.n; k++) {
-    if (k) random_state(s, k);
-    else simple_state(s, 0);
-    put_params(s, s->given, s->followers.at, s->followers.n);
-    states_complete(s->solver, s->symbols);
-    memcpy(base, s->symbols, (expr_symbol_count(s->g) + 1) * sizeof *base);
-    if (switching_functions_search(s->g, &all, free.at, free.n, base, 17 * k + 1, try_place, s)) return 1;
-  }
-  return 0;
-}
-
 /* --- the search --- */
 
-/* Tries states in order: simple ones, which show a difference best, then random, whole and far ones, then switches. */
+/* Tries states in order: simple ones, which show a difference best, then random, whole and far ones. */
 static int find_difference(CounterexampleSearch *s, int quick) {
   enum { SIMPLE = 12, QUICK = 10, RANDOM = 60, FAR = 120, WHOLE = 120 };
   for (int k = 0; k < SIMPLE; k++) {
@@ -213,7 +171,7 @@ static int find_difference(CounterexampleSearch *s, int quick) {
     far_state(s, seed);
     if (differs(s)) return 1;
   }
-  return try_switches(s);
+  return 0;
 }
 
 /* --- the text of a difference --- */
@@ -356,9 +314,6 @@ Counterexample counterexample_find(const Eqns *e, const Expect *x, int quick) {
   gather_params(&s);
   gather_free(&s);
   s.sides = branch_coverage(g, roots, 2);
-  double width = e->n + e->constraints.n;
-  s.cost = expr_topo(g, roots, 4).n + (s.inside ? width * width * width + 1000 : 100);
-  s.budget = 1e7;
   if (find_difference(&s, quick)) return (Counterexample){.text = difference_text(&s)};
   return (Counterexample){.states = s.states, .digits = s.digits, .missing = branch_coverage_missing(s.sides)};
 }

@@ -1,17 +1,8 @@
-/* Walks each side from its root down, by descending node numbers, and gives every operand its role. */
+/* Walks each side from its root down and gives every operand its role. Values with an edit come from those of the nodes beside the way up. */
 #include "claims/edit_sites.h"
 
-typedef struct {
-  const Model *m;
-  AstId first;
-  Site *of;       /* [node - first] */
-  uint8_t *known; /* [node - first] the node is a site */
-} Walk;
-
-static int is_sum(AstKind k) { return k == AST_ADD || k == AST_SUB; }
 static int is_product(AstKind k) { return k == AST_MUL || k == AST_DIV; }
-
-int site_is_sum(const Model *m, const Site *s) { return is_sum(ast_expr(m->ast, s->node)->kind); }
+int ast_is_sum(AstKind k) { return k == AST_ADD || k == AST_SUB; }
 
 static int blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
@@ -27,94 +18,104 @@ static Span with_parentheses(const Model *m, Span s) {
   return (Span){b - 1 + p.file->base, e + 1 + p.file->base};
 }
 
-static void put(Walk *w, AstId node, const Site *above, SiteRole role) {
-  Site *s = &w->of[node - w->first];
-  Span span = ast_expr(w->m->ast, node)->span;
-  if (role != SITE_ARGUMENT && role != SITE_ROOT && role != SITE_PART) span = with_parentheses(w->m, span);
-  *s = (Site){.node = node, .up = above ? above->node : 0, .left = above ? above->left : s->left, .role = role, .span = span, .with_op = span};
-  w->known[node - w->first] = 1;
+/* --- values with one node replaced --- */
+
+static AstId root_of(const Expect *x, int side) { return side ? x->rhs_ast : x->lhs_ast; }
+
+static Expr *node_at(const SiteList *l, int side, AstId node) { return &l->nodes[side][node - ast_expr(l->m->ast, root_of(l->x, side))->first]; }
+
+Expr edit_node(const SiteList *l, int side, AstId node) { return *node_at(l, side, node); }
+Expr edit_side(const SiteList *l, int k) { return *node_at(l, k, root_of(l->x, k)); }
+
+ExprOp edit_function(const AstExpr *x) {
+  static const struct {
+    const char *name;
+    ExprOp op;
+  } functions[] = {{"sin", EX_SIN}, {"cos", EX_COS}, {"tan", EX_TAN}, {"sinh", EX_SINH}, {"cosh", EX_COSH}, {"tanh", EX_TANH},
+                   {"exp", EX_EXP}, {"log", EX_LOG}, {"asin", EX_ASIN}, {"acos", EX_ACOS}, {"atan", EX_ATAN}};
+  for (size_t k = 0; k < sizeof functions / sizeof *functions && x->kind == AST_CALL && x->args; k++)
+    if (strcmp(x->name, functions[k].name) == 0) return functions[k].op;
+  return EX_NUM;
 }
 
-static void put_operands(Walk *w, const AstExpr *x, const Site *s) {
-  AstKind left = ast_expr(w->m->ast, x->a)->kind;
-  SiteRole role, left_role;
-  if (is_sum(x->kind)) {
-    role = SITE_TERM;
-    left_role = is_sum(left) ? SITE_PART : SITE_TERM;
-  } else if (x->kind == AST_MUL) {
-    role = SITE_FACTOR;
-    left_role = is_product(left) ? SITE_PART : SITE_FACTOR;
-  } else {
-    role = SITE_DIVISOR;
-    left_role = left == AST_DIV ? SITE_PART : SITE_NUMERATOR;
-  }
-  put(w, x->a, s, left_role);
-  put(w, x->b, s, role);
-  Site *b = &w->of[x->b - w->first];
-  b->with_op = span_join(x->op_span, b->span);
-}
-
-/* The arguments of a call that are values: none of d(), all but the condition of if(). */
-static void put_arguments(Walk *w, const AstExpr *x, const Site *s) {
-  if (strcmp(x->name, "d") == 0) return;
-  AstId arg = x->args;
-  if (strcmp(x->name, "if") == 0 && arg) arg = ast_expr(w->m->ast, arg)->next;
-  for (; arg; arg = ast_expr(w->m->ast, arg)->next) put(w, arg, s, SITE_ARGUMENT);
-}
-
-static void put_below(Walk *w, const Site *s) {
-  const AstExpr *x = ast_expr(w->m->ast, s->node);
+/* Value of an operator or a function whose operands have the values a and b. */
+static Expr combined(ExprGraph *g, const AstExpr *x, Expr a, Expr b) {
+  if (!a || !b) return 0;
   switch (x->kind) {
-    case AST_ADD: case AST_SUB: case AST_MUL: case AST_DIV: put_operands(w, x, s); return;
-    case AST_NEG: put(w, x->a, s, s->role == SITE_FACTOR ? SITE_FACTOR : SITE_NUMERATOR); return;
-    case AST_POW: put(w, x->a, s, SITE_BASE); return;
-    case AST_CALL: put_arguments(w, x, s); return;
-    case AST_NUM: case AST_NAME: case AST_PRIME: case AST_UNIT: case AST_MEMBER: case AST_INDEX: case AST_AT: case AST_STRING:
-    case AST_NOT: case AST_LT: case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE: case AST_AND:
-    case AST_OR: case AST_SUM: case AST_PRODUCT: case AST_TUPLE: case AST_LIST: case AST_BIND: case AST_ERROR: return;
+    case AST_ADD: return expr_add(g, a, b);
+    case AST_SUB: return expr_sub(g, a, b);
+    case AST_MUL: return expr_mul(g, a, b);
+    case AST_DIV: return expr_div(g, a, b);
+    case AST_POW: return expr_is_num(g, b) ? expr_pow_num(g, a, expr_number(g, b)) : expr_pow(g, a, b);
+    case AST_NEG: return expr_neg(g, a);
+    case AST_CALL: return strcmp(x->name, "sqrt") == 0 ? expr_sqrt(g, a) : expr_fn(g, edit_function(x), a);
+    default: return 0;
   }
 }
 
-static void walk_side(const Model *m, AstId root, int left, SiteList *out) {
-  AstId first = ast_expr(m->ast, root)->first;
-  Walk w = {.m = m, .first = first};
-  w.of = ARENA_ARRAY(m->arena, Site, root - first + 1);
-  w.known = ARENA_ARRAY(m->arena, uint8_t, root - first + 1);
-  w.of[root - first].left = left;
-  put(&w, root, NULL, SITE_ROOT);
-  w.of[root - first].left = left;
-  for (AstId i = root + 1; i-- > first;) {
-    if (!w.known[i - first]) continue;
-    put_below(&w, &w.of[i - first]);
-    out->at[out->n++] = w.of[i - first];
+Expr edit_replaced(const SiteList *l, const Site *s, Expr with) {
+  AstId root = root_of(l->x, s->side), first = ast_expr(l->m->ast, root)->first, node = s->node;
+  while (node != root && with) {
+    AstId up = l->up[s->side][node - first];
+    const AstExpr *x = ast_expr(l->m->ast, up);
+    Expr a = x->a && node != x->a ? *node_at(l, s->side, x->a) : with, b = x->b && node != x->b ? *node_at(l, s->side, x->b) : with;
+    with = combined(l->m->g, x, a, b);
+    node = up;
+  }
+  return with;
+}
+
+/* --- the walk --- */
+
+static void put(SiteList *l, AstId node, const Site *above, SiteRole role, Span op) {
+  Span span = ast_expr(l->m->ast, node)->span;
+  if (role != SITE_ARGUMENT && role != SITE_PART) span = with_parentheses(l->m, span);
+  Site *s = &l->at[l->n++];
+  *s = (Site){.node = node, .up = above->node, .side = above->side, .role = role, .span = span, .with_op = op.end ? span_join(op, span) : span};
+  l->up[s->side][node - ast_expr(l->m->ast, root_of(l->x, s->side))->first] = above->node;
+}
+
+static void put_operands(SiteList *l, const AstExpr *x, const Site *s) {
+  AstKind left = ast_expr(l->m->ast, x->a)->kind;
+  SiteRole role = ast_is_sum(x->kind) ? SITE_TERM : x->kind == AST_MUL ? SITE_FACTOR : SITE_DIVISOR;
+  int goes_on = ast_is_sum(x->kind) ? ast_is_sum(left) : x->kind == AST_MUL ? is_product(left) : left == AST_DIV;
+  put(l, x->b, s, role, x->op_span);
+  put(l, x->a, s, goes_on ? SITE_PART : role == SITE_DIVISOR ? SITE_NUMERATOR : role, (Span){0, 0});
+}
+
+static void put_below(SiteList *l, const Site *s) {
+  const AstExpr *x = ast_expr(l->m->ast, s->node);
+  if (ast_is_sum(x->kind) || is_product(x->kind)) put_operands(l, x, s);
+  else if (x->kind == AST_NEG) put(l, x->a, s, s->role == SITE_FACTOR ? SITE_FACTOR : SITE_NUMERATOR, (Span){0, 0});
+  else if (x->kind == AST_POW) put(l, x->a, s, SITE_BASE, (Span){0, 0});
+  else if (x->kind == AST_CALL && (edit_function(x) != EX_NUM || strcmp(x->name, "sqrt") == 0)) put(l, x->args, s, SITE_ARGUMENT, (Span){0, 0});
+}
+
+static void walk_side(SiteList *l, int side) {
+  AstId root = root_of(l->x, side), first = ast_expr(l->m->ast, root)->first;
+  uint32_t from = l->n;
+  l->nodes[side] = ARENA_ARRAY(l->m->arena, Expr, root - first + 1);
+  l->up[side] = ARENA_ARRAY(l->m->arena, AstId, root - first + 1);
+  memcpy(l->nodes[side], l->x->nodes[side], (root - first + 1) * sizeof(Expr));
+  Span span = ast_expr(l->m->ast, root)->span;
+  l->at[l->n++] = (Site){.node = root, .side = side, .role = SITE_ROOT, .span = span, .with_op = span};
+  for (uint32_t i = from; i < l->n; i++) {
+    Site above = l->at[i];
+    put_below(l, &above);
+  }
+  for (uint32_t i = l->n; i-- > from;) {
+    Site *s = &l->at[i];
+    const AstExpr *x = ast_expr(l->m->ast, s->node);
+    int chained = ast_is_sum(x->kind) || is_product(x->kind); /* the resolver gives values to whole chains alone */
+    if (chained && !*node_at(l, side, s->node)) *node_at(l, side, s->node) = combined(l->m->g, x, *node_at(l, side, x->a), *node_at(l, side, x->b));
+    s->value = *node_at(l, side, s->node);
   }
 }
 
 SiteList edit_sites_of(const Model *m, const Expect *x) {
   uint32_t left = x->lhs_ast - ast_expr(m->ast, x->lhs_ast)->first + 1;
   uint32_t right = x->rhs_ast - ast_expr(m->ast, x->rhs_ast)->first + 1;
-  SiteList l = {.at = ARENA_ARRAY(m->arena, Site, left + right)};
-  walk_side(m, x->lhs_ast, 1, &l);
-  walk_side(m, x->rhs_ast, 0, &l);
+  SiteList l = {.m = m, .x = x, .at = ARENA_ARRAY(m->arena, Site, left + right)};
+  for (int side = 0; side < 2; side++) walk_side(&l, side);
   return l;
-}
-
-const char *span_text(const Model *m, Span span) {
-  enum { LONGEST = 44, HEAD = 26, TAIL = 14 };
-  Place p = source_place(m->ast->sources, span.begin);
-  if (!p.file) return "";
-  const char *from = p.file->text + (span.begin - p.file->base), *end = from + (span.end - span.begin);
-  StrBuf b = strbuf(m->arena);
-  for (const char *c = from; c < end; c++) {
-    while (*c == '#' && c + 1 < end && *c != '\n')
-      while (c + 1 < end && *c != '\n') c++;
-    if (!blank(*c)) sb_putc(&b, *c);
-    else if (b.n && b.at[b.n - 1] != ' ') sb_putc(&b, ' ');
-  }
-  const char *text = sb_text(&b);
-  if (b.n <= LONGEST) return text;
-  size_t head = HEAD, tail = b.n - TAIL;
-  while (head && ((unsigned char)text[head] & 0xC0) == 0x80) head--;
-  while (tail < b.n && ((unsigned char)text[tail] & 0xC0) == 0x80) tail++;
-  return arena_printf(m->arena, "%.*s ... %s", (int)head, text, text + tail);
 }

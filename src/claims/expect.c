@@ -5,13 +5,12 @@
 #include "claims/case_proofs.h"
 #include "symmetry/charges.h"
 #include "claims/suggest_correction.h"
-#include "claims/edit_sites.h"
 #include "claims/counterexample.h"
 
 /* --- verdicts --- */
 
 static const char *label_of(const Model *m, const Expect *x) {
-  const char *left = span_text(m, ast_expr(m->ast, x->lhs_ast)->span);
+  const char *left = short_text(m->ast, ast_expr(m->ast, x->lhs_ast)->span);
   return x->name ? arena_printf(m->arena, "%s (%s)", left, x->name) : left;
 }
 
@@ -19,7 +18,7 @@ static void report_refuted(const Eqns *e, const Expect *x, const char *label, co
   const Model *m = e->m;
   SuggestedEdit mend = suggest_correction(e, x);
   if (mend.edit) diag_error(m->diags, mend.caret, "expect %s is false: %s", label, mend.edit);
-  else diag_error(m->diags, mend.caret, "expect %s is false, and no single edit found makes it true; the fault seems to be here", label);
+  else diag_error(m->diags, mend.caret, "expect %s is false, and no single edit found makes it true", label);
   diag_help(m->diags, "%s", difference);
 }
 

@@ -6,11 +6,11 @@
 
 #include "base/sparse_solve.h"
 #include "base/words.h"
-#include "claims/nearby_rank.h"
 #include "mech/frobenius.h"
 #include "mech/constrain.h"
 #include "symmetry/noether.h"
 #include "mech/consistent_start.h"
+#include "numeric/consistent_state.h"
 #include "sym/print.h"
 
 /* Whether the rank is the same without constraint k: its multiplier is then not unique. */
@@ -44,6 +44,38 @@ static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, 
   if (!counts[k]) sb_puts(out, has_slope(e, s, symbols, k) ? "; follows from the constraints before it" : "; its derivatives vanish at the start");
   if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the multipliers of least norm are taken");
   sb_putc(out, '\n');
+}
+
+/* --- singular starts: constraints dependent here but not a hundredth away, as for bars in one line --- */
+
+/* Rank of the constraints at the state evaluated last. held[n]: squared length of each coordinate direction's projection on the rows of A. */
+static uint32_t rank_of(const Eqns *e, StateSolver *s, long double *held) {
+  const long double independent = 6e-6L; /* as states_rank */
+  uint32_t n = e->n, at = 0;
+  RowSpan span = row_span(e->m->arena, n);
+  for (uint32_t j = 0; j < n; j++) held[j] = 0;
+  for (uint32_t k = 0; k < e->constraints.n; k++) {
+    const SparseVector *row = states_row(s, k, &at);
+    if (!(row_span_add(&span, row->at, row->n, independent) > independent)) continue;
+    for (uint32_t j = 0; j < n; j++) held[j] += span.left[j] * span.left[j];
+  }
+  return span.rank;
+}
+
+/* The larger rank of the constraints: at a state that obeys them, or at one that is a hundredth away and obeys them, too. loose[n]: the
+ * constraints determine this coordinate's velocity near the state but not at it, where the rank is smaller. symbols: values by symbol. */
+static uint32_t nearby_rank(const Eqns *e, StateSolver *s, const long double *symbols, long double *loose) {
+  Arena *arena = e->m->arena;
+  uint32_t n = e->n, all = expr_symbol_count(e->g) + 1;
+  long double *held = ARENA_ARRAY(arena, long double, n + 1), *held_beside = ARENA_ARRAY(arena, long double, n + 1), *there = ARENA_ARRAY(arena, long double, all);
+  states_at(s, symbols);
+  uint32_t here = rank_of(e, s, held), rank = here;
+  for (uint32_t i = 0; i < all; i++) there[i] = symbols[i];
+  if (n > 1 && start_beside(e, s, there)) rank = rank_of(e, s, held_beside);
+  for (uint32_t i = 0; i < n; i++) loose[i] = 0;
+  if (rank <= here) return here;
+  lag_loose_directions((int)n, held, held_beside, loose);
+  return rank;
 }
 
 /* A line if the start is singular: the rank is larger near it. */
@@ -126,16 +158,22 @@ static int check_agreement(const Eqns *e, StateSolver *s, const long double *sym
   return 1;
 }
 
+/* Index of the largest component, the first of several that are alike. */
+static uint32_t largest_part(const long double *x, uint32_t n) {
+  uint32_t most = 0;
+  for (uint32_t j = 0; j < n; j++)
+    if (fabsl(x[j]) > fabsl(x[most]) * (1 + 1e-9L)) most = j;
+  return most;
+}
+
 /* Whether M is regular on the kernel of the constraints at the start. */
 static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbols) {
   const Model *m = e->m;
-  uint32_t most = 0;
   if (!e->mass_known || (e->definite_mass && !e->singular_mass)) return 1; /* definite_mass does not exclude a singular M */
   long double *null = ARENA_ARRAY(m->arena, long double, e->n + 1);
   states_at(s, symbols);
   if (sparse_is_regular_on_kernel(m->arena, e->n, e->constraints.n, states_system(s), null)) return 1;
-  for (uint32_t j = 0; j < e->n; j++)
-    if (fabsl(null[j]) > fabsl(null[most]) * (1 + 1e-9L)) most = j;
+  uint32_t most = largest_part(null, e->n);
   diag_error(m->diags, m->coords.at[most].span, "scene %s: the motion of `%s` is undetermined: it has no inertia at the start, and no constraint moves it", m->scene.name,
              m->coords.at[most].name);
   diag_help(m->diags, "give it a mass, or a constraint that depends on it");
@@ -174,7 +212,6 @@ static int says_start(const Model *m) {
 /* Without constraints: whether M is regular at the start, as it is not at the pole of angles. */
 static int check_mass(const Eqns *e) {
   const Model *m = e->m;
-  uint32_t most = 0;
   if (!e->n || !e->mass_known || e->constant_mass) return 1;
   long double *null = ARENA_ARRAY(m->arena, long double, e->n + 1);
   StateSolver *s = states_new(e);
@@ -182,8 +219,7 @@ static int check_mass(const Eqns *e) {
   for (uint32_t k = 0; k < e->mass.n; k++)
     if (!isfinite(v.mass[k])) return 1; /* the run says where */
   if (sparse_is_regular_on_kernel(m->arena, e->n, 0, states_system(s), null)) return 1;
-  for (uint32_t j = 0; j < e->n; j++)
-    if (fabsl(null[j]) > fabsl(null[most]) * (1 + 1e-9L)) most = j;
+  uint32_t most = largest_part(null, e->n);
   diag_error(m->diags, m->coords.at[most].span, "scene %s: the mass matrix is singular at the start: the acceleration of `%s` is undetermined there", m->scene.name, m->coords.at[most].name);
   diag_help(m->diags, "start elsewhere, or take coordinates without such a place: a body's `coord R: rotation` has no pole (`lagc help rotations`)");
   return 0;

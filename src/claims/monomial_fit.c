@@ -72,7 +72,8 @@ Features *features_new(ExprGraph *g, const Expr *features, uint32_t n, long doub
   return f;
 }
 
-int small_rational(long double x, Num *out) {
+/* x as a rational with a denominator up to 36, to 10 digits; 0: it is none. */
+static int small_rational(long double x, Num *out) {
   enum { LARGEST = 1000 };
   for (int64_t den = 1; den <= 36; den++) {
     long double num = roundl(x * (long double)den);
@@ -100,12 +101,6 @@ static int exponents(const Features *f, const long double *values, int *e) {
     e[k] = (int)whole;
   }
   return 1;
-}
-
-static long double integer_power(long double x, int e) {
-  long double r = 1;
-  for (int i = 0; i < (e < 0 ? -e : e); i++) r *= x;
-  return e < 0 ? 1 / r : r;
 }
 
 static int is_motion(const Symbol *s, const void *data) {
@@ -147,7 +142,7 @@ Monomial features_fit(const Features *f, const long double *values) {
   long double c = 0;
   for (int i = 0; i < FEATURE_STATES; i++) {
     long double p = 1;
-    for (uint32_t k = 1; k < f->n; k++) p *= integer_power(f->value[k][i], e[k]);
+    for (uint32_t k = 1; k < f->n; k++) p *= powl(f->value[k][i], e[k]);
     if (i == 0) c = values[i] / p;
     else if (fabsl(values[i] - c * p) > 1e-9L * fabsl(values[i])) return none;
   }

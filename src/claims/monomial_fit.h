@@ -24,7 +24,4 @@ typedef struct {
  * solutions of M q'' = f have none such. */
 Monomial features_fit(const Features *f, const long double *values);
 
-/* x as a rational with a denominator up to 36, to 10 digits; 0: it is none. */
-int small_rational(long double x, Num *out);
-
 #endif

@@ -1,158 +1,386 @@
-/* Guesses at edits come from numbers at a few states; the cheapest guess that is proved exactly is the correction. */
-#include "claims/suggest_correction_impl.h"
+/* At a few dozen states each place of the formula is solved for the value that it needs. The needed value, its difference from the written one, or
+ * their ratio is recognised as a monomial of the model's quantities, and named as an edit: the cheapest one that is proved is the correction. */
+#include "claims/suggest_correction.h"
 
 #include <math.h>
 #include <stdlib.h>
 
+#include "claims/case_proofs.h"
+#include "claims/edit_sites.h"
+#include "claims/monomial_fit.h"
+#include "mech/states.h"
 #include "sym/print.h"
 
-/* --- proving --- */
+/* Costs of edits: slips of the pen first, then larger changes. */
+#define COST_SLIP 1.0
+#define COST_POWER 1.2
+#define COST_EXTRA 1.5  /* a superfluous term, factor or divisor */
+#define COST_INVERSE 1.6
+#define COST_NAME 1.8
+#define COST_SCALE 2.0  /* a missing number */
+#define COST_VALUE 3.0  /* a missing term or factor */
+#define COST_FACTOR 0.25 /* each factor of what is missing */
 
-static Expr with_definitions(const Eqns *e, Expr x) {
-  return e->definitions ? expr_substitute(e->g, x, e->definitions, expr_symbol_count(e->g) + 1, "") : x;
-}
+typedef struct {
+  const Site *site;
+  Expr with;
+  long double cost;
+  Span caret;
+  const char *edit;
+} Guess;
 
-/* Proves that the difference is 0 by solving M q'' - A^T lambda = f, A q'' = demand for accelerations and multipliers. Redundant constraints leave
- * that undecided; so would contacts, whose rows are zero while they are open and are left out. */
-static Verdict proof(const Eqns *e, Expr difference) {
-  const Model *m = e->m;
-  const Constraints *c = &e->constraints;
-  ExprGraph *g = e->g;
-  uint32_t n = e->n, w = n, *row = ARENA_ARRAY(m->arena, uint32_t, c->n + 1);
-  for (uint32_t i = 0; i < c->n; i++) row[i] = UINT32_MAX;
-  for (uint32_t k = 0; k < c->A.n; k++)
-    if (row[c->A.at[k].row] == UINT32_MAX && !expr_is_zero(g, with_definitions(e, c->A.at[k].e))) row[c->A.at[k].row] = w++;
-  Expr *M = ARENA_ARRAY(m->arena, Expr, (size_t)w * w + 1), *f = ARENA_ARRAY(m->arena, Expr, w + 1);
-  SymId *acc = ARENA_ARRAY(m->arena, SymId, w + 1);
-  for (size_t i = 0; i < (size_t)w * w; i++) M[i] = expr_int(g, 0);
-  for (uint32_t i = 0; i < n; i++) {
-    acc[i] = m->coords.at[i].a;
-    f[i] = c->n ? with_definitions(e, e->system.f[i]) : e->f[i];
-    for (uint32_t k = 0; k < n; k++) M[i * w + k] = eqns_mass(e, i, k);
-  }
-  for (uint32_t i = 0; i < c->n; i++) {
-    if (row[i] == UINT32_MAX) continue;
-    acc[row[i]] = c->of[i]->multiplier;
-    f[row[i]] = with_definitions(e, c->demand[i]);
-  }
-  for (uint32_t k = 0; k < c->A.n; k++) {
-    uint32_t i = row[c->A.at[k].row], j = c->A.at[k].col;
-    if (i == UINT32_MAX) continue;
-    Expr x = with_definitions(e, c->A.at[k].e);
-    M[i * w + j] = x;
-    M[j * w + i] = expr_neg(g, x);
-  }
-  return prove_solves(g, w, M, f, acc, difference, NULL);
-}
+/* Values of a site at the states. */
+typedef struct {
+  long double written[FEATURE_STATES], needed[FEATURE_STATES], difference[FEATURE_STATES], ratio[FEATURE_STATES];
+} Need;
 
-Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs) {
-  Expr difference = expr_sub(e->g, lhs, rhs);
-  Expr closed = states_substitute(e, with_definitions(e, difference));
-  return proof(e, closed);
-}
+typedef struct {
+  const Eqns *e;
+  const Model *m;
+  const Expect *x;
+  ExprGraph *g;
+  Arena *arena;
+  SymId stand_in;
+  SiteList sites;
+  long double *state[FEATURE_STATES], residual[FEATURE_STATES]; /* residual: left minus right side, as written */
+  const Features *features;
+  VEC(Guess) guesses;
+} EditSearch;
 
 /* --- states --- */
 
-int edit_add_state(EditSearch *md) {
+/* States that obey the equations of motion and at which the sides differ; 0: too few are found. */
+static int find_states(EditSearch *md) {
   enum { ATTEMPTS = 400 };
   Expr sides[2] = {md->x->lhs, md->x->rhs};
-  uint32_t count = expr_symbol_count(md->g) + 1;
-  long double *symbols = ARENA_ARRAY(md->arena, long double, count), out[2];
   EvalTape *tape = eval_tape(md->g, sides, 2);
-  while (md->tried < ATTEMPTS) {
-    sample_state(md->g, ++md->tried, symbols);
-    if (!states_complete(md->solver, symbols)) continue;
-    eval_run(tape, symbols, out);
-    long double r = out[0] - out[1];
-    if (!isfinite(r) || r == 0) continue;
-    md->residual[md->nstates] = r;
-    md->state[md->nstates++] = symbols;
-    return 1;
+  StateSolver *solver = states_new(md->e);
+  uint32_t n = 0;
+  long double out[2];
+  for (uint32_t seed = 1; seed <= ATTEMPTS && n < FEATURE_STATES; seed++) {
+    if (!md->state[n]) md->state[n] = ARENA_ARRAY(md->arena, long double, expr_symbol_count(md->g) + 1);
+    sample_state(md->g, seed, md->state[n]);
+    if (!states_complete(solver, md->state[n])) continue;
+    eval_run(tape, md->state[n], out);
+    md->residual[n] = out[0] - out[1];
+    n += isfinite(md->residual[n]) && md->residual[n] != 0;
   }
-  return 0;
+  return n == FEATURE_STATES;
 }
 
-long double edit_residual(EditSearch *md, Spot *p, uint32_t state, long double value) {
+/* --- the needed value --- */
+
+/* Left minus right side at a state, with `value` at the site whose tape this is. */
+static long double residual_with(EditSearch *md, EvalTape *tape, uint32_t state, long double value, int same_state) {
   long double out[2], *symbols = md->state[state];
   symbols[md->stand_in] = value;
-  if (p->at == (int)state) eval_rerun(p->tape, symbols, md->stand_in, out);
-  else eval_run(p->tape, symbols, out);
-  p->at = (int)state;
+  if (same_state) eval_rerun(tape, symbols, md->stand_in, out);
+  else eval_run(tape, symbols, out);
   return out[0] - out[1];
 }
 
-int edit_holds(EditSearch *md, Spot *p, const long double *values) {
-  for (uint32_t i = 0; i < FEW; i++) {
-    if (!isfinite(values[i])) return 0;
-    long double r = edit_residual(md, p, i, values[i]);
-    if (!(fabsl(r) <= 1e-8L * fabsl(md->residual[i]))) return 0;
+/* The root of the function x -> (x - r)/(c x + d) through three points: exact where the equation is
+ * linear in the place, or a quotient of linear functions of it (Jarratt and Nudds 1965,
+ * DOI 10.1093/comjnl/8.1.62). */
+static long double next_guess(const long double *x, const long double *f) {
+  long double y0 = x[0] - x[2], y1 = x[1] - x[2];
+  long double det = f[0] * y0 * (f[1] - f[2]) - f[1] * y1 * (f[0] - f[2]);
+  return x[2] - f[2] * y0 * y1 * (f[0] - f[1]) / det;
+}
+
+/* The value at the place for which the equation holds at a state; NAN: the iteration does not converge. */
+static long double needed_value(EditSearch *md, EvalTape *tape, uint32_t state, long double written) {
+  enum { STEPS = 12 };
+  long double step = 0.1L * fabsl(written) + 0.01L;
+  long double x[3] = {written, written + step, written - step}, f[3];
+  for (int i = 0; i < 3; i++) f[i] = residual_with(md, tape, state, x[i], i > 0);
+  for (int k = 0; k < STEPS; k++) {
+    long double next = next_guess(x, f);
+    if (!isfinite(next)) return NAN;
+    long double r = residual_with(md, tape, state, next, 1);
+    if (fabsl(r) <= 1e-11L * fabsl(md->residual[state])) return next;
+    for (int i = 0; i < 2; i++) x[i] = x[i + 1], f[i] = f[i + 1];
+    x[2] = next, f[2] = r;
+  }
+  return NAN;
+}
+
+static int find_need(EditSearch *md, const Site *s, Need *need) {
+  Expr stand_in = expr_symbol(md->g, md->stand_in)->node, changed = edit_replaced(&md->sites, s, stand_in), value = s->value;
+  Expr sides[2] = {s->side ? md->x->lhs : changed, s->side ? changed : md->x->rhs};
+  if (!changed) return 0;
+  EvalTape *tape = eval_tape(md->g, sides, 2), *as_written = eval_tape(md->g, &value, 1);
+  for (uint32_t i = 0; i < FEATURE_STATES; i++) {
+    eval_run(as_written, md->state[i], &need->written[i]);
+    need->needed[i] = needed_value(md, tape, i, need->written[i]);
+    if (!isfinite(need->needed[i])) return 0;
+    need->difference[i] = need->needed[i] - need->written[i];
+    need->ratio[i] = need->needed[i] / need->written[i];
+    if (fabsl(need->difference[i]) < 1e-12L * fabsl(need->written[i])) return 0; /* the difference is rounding */
   }
   return 1;
 }
 
-/* --- spots --- */
+/* --- features --- */
 
-/* Site s with its value as written and its tape. */
-static void prepare_spot(EditSearch *md, Spot *p, const Site *s) {
-  *p = (Spot){.site = s, .ast = ast_expr(md->m->ast, s->node), .at = -1};
-  if (s->role == SITE_PART) return;
-  p->value = model_resolve_edited(md->m, md->x, s->node, 0, 0);
-  AstId root = s->left ? md->x->lhs_ast : md->x->rhs_ast;
-  Expr stand_in = expr_symbol(md->g, md->stand_in)->node;
-  Expr changed = model_resolve_edited(md->m, md->x, root, s->node, stand_in);
-  if (!p->value || !changed) return;
-  Expr sides[2] = {s->left ? changed : md->x->lhs, s->left ? md->x->rhs : changed};
-  p->tape = eval_tape(md->g, sides, 2);
+typedef struct {
+  Expr at[FEATURES_MAX];
+  uint32_t n;
+} Pool;
+
+static void pool_add(Pool *pool, Expr e) {
+  for (uint32_t i = 0; i < pool->n; i++)
+    if (pool->at[i] == e) return;
+  if (pool->n < FEATURES_MAX) pool->at[pool->n++] = e;
 }
 
-/* Whether the formula is too long: with a tape for every place, the work grows with its square. */
-static int is_too_large(const EditSearch *md) {
-  enum { PLACES_MAX = 2000, STEPS_MAX = 1000000 };
-  const Ast *ast = md->m->ast;
-  AstId left = md->x->lhs_ast, right = md->x->rhs_ast;
-  uint32_t places = left - ast_expr(ast, left)->first + right - ast_expr(ast, right)->first;
-  Expr sides[2] = {md->x->lhs, md->x->rhs};
-  return places > PLACES_MAX || (uint64_t)places * expr_topo(md->g, sides, 2).n > STEPS_MAX;
+/* Whether e is or contains a whole side: that may not correct the other, or any x'' = formula could become x'' = x''. */
+static int contains_a_side(EditSearch *md, Expr e) {
+  const Expr sides[2] = {md->x->lhs, md->x->rhs};
+  for (int k = 0; k < 2; k++)
+    if (e == sides[k] || (expr_op(md->g, sides[k]) == EX_SYM && expr_contains_sym(md->g, e, expr_sym_id(md->g, sides[k])))) return 1;
+  return 0;
 }
 
-static void prepare_spots(EditSearch *md) {
-  SiteList sites = edit_sites_of(md->m, md->x);
-  md->spots = ARENA_ARRAY(md->arena, Spot, sites.n + 1);
-  md->nspots = sites.n;
-  Expr *values = ARENA_ARRAY(md->arena, Expr, sites.n + 1);
-  long double *out = ARENA_ARRAY(md->arena, long double, sites.n + 1);
-  for (uint32_t i = 0; i < sites.n; i++) {
-    prepare_spot(md, &md->spots[i], &sites.at[i]);
-    values[i] = md->spots[i].value;
+/* Adds the quantities of these kinds in the nodes, sines and cosines; `compounds`: also other functions and sums. */
+static void pool_nodes(Pool *pool, EditSearch *md, ExprList nodes, unsigned quantities, int compounds) {
+  for (uint32_t i = 0; i < nodes.n; i++) {
+    Expr e = nodes.at[i];
+    ExprOp op = expr_op(md->g, e);
+    if (op == EX_SYM && quantities & expr_kinds(md->g, e) && !contains_a_side(md, e)) pool_add(pool, e);
+    if (op == EX_SIN || op == EX_COS) {
+      Expr arg = expr_arg(md->g, e, 0), other = expr_fn(md->g, op == EX_SIN ? EX_COS : EX_SIN, arg);
+      pool_add(pool, op == EX_SIN ? e : other);
+      pool_add(pool, op == EX_SIN ? other : e);
+    }
+    int compound = op == EX_SUM || op == EX_HYPOT || op == EX_EXP || op == EX_TAN || op == EX_LOG;
+    if (compounds && compound && !contains_a_side(md, e)) pool_add(pool, e);
   }
-  EvalTape *tape = eval_tape(md->g, values, sites.n);
-  for (uint32_t k = 0; k < FEW; k++) {
-    eval_run(tape, md->state[k], out);
-    for (uint32_t i = 0; i < sites.n; i++) md->spots[i].written[k] = out[i];
+}
+
+/* Quantities that the needed value of a place may be made of; simple ones first. What is missing often stands elsewhere in the expectations. */
+static const Features *gather_features(EditSearch *md) {
+  const Model *m = md->m;
+  VEC(Expr) own = {0}, all = {0}, dynamics = {0}, inertia = {0};
+  vec_push(md->arena, &own, md->x->lhs);
+  vec_push(md->arena, &own, md->x->rhs);
+  for (uint32_t i = 0; i < m->expects.n; i++) {
+    vec_push(md->arena, &all, m->expects.at[i].lhs);
+    vec_push(md->arena, &all, m->expects.at[i].rhs);
   }
+  for (uint32_t i = 0; i < md->e->n; i++) vec_push(md->arena, &dynamics, md->e->f[i]);
+  for (uint32_t i = 0; i < m->states.n; i++) vec_push(md->arena, &dynamics, md->e->flow[i]);
+  for (uint32_t i = 0; i < md->e->mass.n; i++) vec_push(md->arena, &inertia, md->e->mass.at[i].e);
+  ExprList nodes[] = {expr_topo(md->g, own.at, own.n), expr_topo(md->g, inertia.at, inertia.n), expr_topo(md->g, all.at, all.n),
+                      expr_topo(md->g, dynamics.at, dynamics.n)};
+  const unsigned quantities = 1u << SYM_PARAM | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_RATE;
+  Pool pool = {.n = 0};
+  for (int k = 0; k < 4; k++) pool_nodes(&pool, md, nodes[k], quantities, 0);
+  pool_nodes(&pool, md, nodes[0], 1u << SYM_ACC, 0); /* may be monomials of the others */
+  pool_nodes(&pool, md, nodes[1], quantities, 1);
+  pool_nodes(&pool, md, nodes[0], quantities, 1);
+  pool_nodes(&pool, md, nodes[2], quantities, 1);
+  return features_new(md->g, pool.at, pool.n, md->state);
 }
 
 /* --- guesses --- */
 
-void edit_guess(EditSearch *md, const Spot *p, Expr with, double cost, Span caret, const char *edit) {
-  /* Mistakes are likelier on the right side, where formulas stand. */
-  Guess one = {p, with, cost + (p->site->left ? 0.05L : 0), caret, edit};
-  vec_push(md->arena, &md->guesses, one);
-}
-
-double edit_product_cost(const EditSearch *md, const Spot *p) {
-  int compound = site_is_sum(md->m, p->site) || p->ast->kind == AST_MUL || p->ast->kind == AST_DIV;
-  if (p->site->role == SITE_NUMERATOR && !compound) return 0.1;
-  return p->site->role == SITE_ROOT ? 0.05 : 0;
-}
-
-const char *edit_expr_text(const EditSearch *md, Expr e) {
+static const char *text_of(const EditSearch *md, Expr e) {
   StrBuf b = strbuf(md->arena);
   expr_print(md->g, e, PRINT_TEXT, &b);
   return sb_text(&b);
 }
 
-const char *edit_spot_text(const EditSearch *md, const Spot *p) { return span_text(md->m, p->site->span); }
+static const AstExpr *ast_of(const EditSearch *md, const Site *s) { return ast_expr(md->m->ast, s->node); }
+
+static void guess(EditSearch *md, const Site *s, Expr with, double cost, Span caret, const char *edit) {
+  /* Mistakes are likelier on the right side, where formulas stand. */
+  Guess one = {s, with, cost + (s->side ? 0 : 0.05L), caret, edit};
+  vec_push(md->arena, &md->guesses, one);
+}
+
+/* Whether the values are those of a monomial that is a number. */
+static int is_number(const EditSearch *md, const Monomial *m) { return m->e && expr_is_num(md->g, m->e); }
+
+static int begins_with_minus(const EditSearch *md, const Site *s) {
+  const AstExpr *x = ast_of(md, s);
+  while (ast_is_sum(x->kind) || x->kind == AST_MUL || x->kind == AST_DIV) x = ast_expr(md->m->ast, x->a);
+  return x->kind == AST_NEG;
+}
+
+static void guess_sign(EditSearch *md, const Site *s, const char *text) {
+  if (s->role != SITE_TERM && s->role != SITE_ROOT && s->role != SITE_ARGUMENT) return;
+  const AstExpr *up = s->up ? ast_expr(md->m->ast, s->up) : NULL;
+  int second = s->role == SITE_TERM && up->b == s->node;
+  const char *how = !second ? "should have the opposite sign" : up->kind == AST_SUB ? "should be added, not subtracted" : "should be subtracted, not added";
+  double cost = COST_SLIP;
+  if (!second) cost += begins_with_minus(md, s) ? -0.05 : 0.1; /* a written sign is the likelier mistake */
+  if (s->role == SITE_ARGUMENT && cost > COST_SLIP) cost += 0.2; /* -sin(x) before sin(-x) */
+  if (ast_is_sum(ast_of(md, s)->kind) && s->role != SITE_TERM) cost += 0.6;
+  guess(md, s, expr_neg(md->g, s->value), cost, s->with_op, arena_printf(md->arena, "`%s` %s", text, how));
+}
+
+/* A number as written, alone or with a unit. */
+static void guess_number(EditSearch *md, const Site *s, const char *text, Expr ratio) {
+  const AstExpr *x = ast_of(md, s), *number = x->kind == AST_UNIT ? ast_expr(md->m->ast, x->a) : x;
+  if (number->kind != AST_NUM) return;
+  Num n = num_mul(expr_number(md->g, ratio), number->number);
+  Expr with = expr_mul(md->g, s->value, ratio), shown = expr_num(md->g, n);
+  int superfluous = num_is_one(n) && s->role == SITE_FACTOR && x == number;
+  const char *edit = superfluous ? arena_printf(md->arena, "the factor `%s` should not be there", text)
+                     : x == number ? arena_printf(md->arena, "`%s` should be `%s`", text, text_of(md, shown))
+                                   : arena_printf(md->arena, "`%s` should be `%s [%s]`", text, text_of(md, shown), x->unit.text);
+  guess(md, s, with, COST_SLIP + (num_sign(n) < 0), s->span, edit);
+}
+
+/* The site is a power b^n, or a name or a formula in parentheses, and needs another power of it. */
+static void guess_power(EditSearch *md, const Site *s, const char *text, const Need *need) {
+  const AstExpr *x = ast_of(md, s), *exponent = x->kind == AST_POW ? ast_expr(md->m->ast, x->b) : NULL;
+  if (exponent && exponent->kind != AST_NUM) return;
+  Num was = exponent ? exponent->number : num_int(1);
+  long double r = logl(fabsl(need->needed[0])) / logl(fabsl(need->written[0]));
+  if (!(fabsl(r) < 8)) return;
+  Num n = num_mul(was, num_ratio((int64_t)roundl(12 * r), 12));
+  for (uint32_t i = 0; i < FEATURE_STATES; i++) {
+    long double power = powl(fabsl(need->written[i]), roundl(12 * r) / 12);
+    if (!(fabsl(power - fabsl(need->needed[i])) <= 1e-8L * power)) return;
+  }
+  Expr base = exponent ? edit_node(&md->sites, s->side, x->a) : s->value, with = base ? expr_pow_num(md->g, base, n) : 0;
+  if (exponent) {
+    const char *old = short_text(md->m->ast, exponent->span);
+    Expr shown = expr_num(md->g, n);
+    const char *edit = num_is_one(n) ? arena_printf(md->arena, "the exponent `%s` should not be there", old)
+                                     : arena_printf(md->arena, "the exponent `%s` should be `%s`", old, text_of(md, shown));
+    guess(md, s, with, COST_SLIP, num_is_one(n) ? span_join(x->op_span, exponent->span) : exponent->span, edit);
+    return;
+  }
+  int product = s->role == SITE_FACTOR || s->role == SITE_DIVISOR;
+  if (product && num_equal(n, num_int(-1))) {
+    const char *how = s->role == SITE_FACTOR ? "should divide, not multiply" : "should multiply, not divide";
+    guess(md, s, with, COST_INVERSE, s->with_op, arena_printf(md->arena, "`%s` %s", text, how));
+  }
+  Expr shown = expr_num(md->g, n);
+  if (s->role != SITE_BASE && num_sign(n) > 0)
+    guess(md, s, with, COST_POWER, s->span, arena_printf(md->arena, "`%s` should be `%s^%s`", text, text, text_of(md, shown)));
+}
+
+/* Whether all needed values are `value`, up to rounding. */
+static int needs(const Need *need, long double value) {
+  for (uint32_t i = 0; i < FEATURE_STATES; i++)
+    if (fabsl(need->needed[i] - value) > 1e-9L * fabsl(need->written[i])) return 0;
+  return 1;
+}
+
+static void guess_removal(EditSearch *md, const Site *s, const char *text, const Need *need) {
+  int is_number = ast_of(md, s)->kind == AST_NUM, zero = needs(need, 0);
+  if (zero && is_number) guess(md, s, expr_int(md->g, 0), COST_SLIP, s->span, arena_printf(md->arena, "`%s` should be `0`", text));
+  if (zero && s->role == SITE_TERM) guess(md, s, expr_int(md->g, 0), COST_EXTRA, s->with_op, arena_printf(md->arena, "the term `%s` should not be there", text));
+  if (is_number || (s->role != SITE_FACTOR && s->role != SITE_DIVISOR) || !needs(need, 1)) return;
+  const char *what = s->role == SITE_FACTOR ? "factor" : "divisor";
+  guess(md, s, expr_int(md->g, 1), COST_EXTRA, s->with_op, arena_printf(md->arena, "the %s `%s` should not be there", what, text));
+}
+
+/* Small differences in cost where the same factor fits in several places: a product goes before a name in it, a term or numerator before the whole
+ * side. */
+static double cost_of_place(const EditSearch *md, const Site *s) {
+  AstKind kind = ast_of(md, s)->kind;
+  int compound = ast_is_sum(kind) || kind == AST_MUL || kind == AST_DIV;
+  return s->role == SITE_NUMERATOR && !compound ? 0.1 : s->role == SITE_ROOT ? 0.05 : 0;
+}
+
+/* A missing factor, unless it is long: one that cancels much of the text and puts other things there is no edit. In x'' = formula the formula lacks
+ * it, not x''. */
+static void guess_factor(EditSearch *md, const Site *s, const char *text, const Monomial *missing) {
+  enum { MOST = 12, MOST_MIXED = 5 };
+  int alone = s->role == SITE_ROOT && !s->side && expr_op(md->g, s->value) == EX_SYM, number = is_number(md, missing);
+  if (s->role == SITE_FACTOR || alone || missing->size > (missing->mixed ? MOST_MIXED : MOST)) return;
+  const char *what = missing->divisor ? "divisor" : "factor", *formula = text_of(md, missing->divisor ? missing->divisor : missing->e);
+  double cost = (number ? COST_SCALE + (expr_number(md->g, missing->e).den == 1 ? 0 : 0.2) : COST_VALUE + COST_FACTOR * missing->size) + cost_of_place(md, s);
+  guess(md, s, expr_mul(md->g, s->value, missing->e), cost, s->span, arena_printf(md->arena, "`%s` lacks the %s `%s`", text, what, formula));
+}
+
+static void guess_term(EditSearch *md, const Site *s, const char *text, const Monomial *missing) {
+  int is_sum = ast_is_sum(ast_of(md, s)->kind);
+  if (!is_sum && s->role == SITE_TERM) return;
+  const char *edit = arena_printf(md->arena, "`%s` lacks the term `%s`", text, text_of(md, missing->e));
+  guess(md, s, expr_add(md->g, s->value, missing->e), COST_VALUE + COST_FACTOR * missing->size + (is_sum ? 0 : 0.1), ast_of(md, s)->span, edit);
+}
+
+static void guess_replacement(EditSearch *md, const Site *s, Expr with, double cost, Span caret) {
+  const char *was = short_text(md->m->ast, caret);
+  guess(md, s, with, cost, caret, arena_printf(md->arena, "`%s` should be `%s`", was, text_of(md, with)));
+}
+
+/* The argument of a function, or a single term of it, should be another. */
+static void guess_argument(EditSearch *md, const Site *argument, Expr needed) {
+  Expr lacking = expr_sub(md->g, needed, argument->value);
+  const AstExpr *x = ast_of(md, argument);
+  for (uint32_t i = 0; i < md->sites.n; i++) {
+    const Site *t = &md->sites.at[i];
+    if (t->side != argument->side || t->role != SITE_TERM || t->node < x->first || t->node > argument->node || !t->value) continue;
+    const AstExpr *up = ast_expr(md->m->ast, t->up);
+    Expr with = up->kind == AST_SUB && up->b == t->node ? expr_sub(md->g, t->value, lacking) : expr_add(md->g, t->value, lacking);
+    if (!expr_is_zero(md->g, with) && expr_pairs(md->g, with, EX_SUM) == 1) guess_replacement(md, t, with, COST_NAME - 0.1, t->span);
+  }
+  guess_replacement(md, argument, needed, COST_NAME, x->span);
+}
+
+static const Site *site_of(const EditSearch *md, AstId node) {
+  uint32_t i = 0;
+  while (i < md->sites.n && md->sites.at[i].node != node) i++;
+  return i < md->sites.n ? &md->sites.at[i] : NULL;
+}
+
+/* Another name, another function, or the same function of another argument: the needed value is one quantity. */
+static void guess_name(EditSearch *md, const Site *s, Expr needed) {
+  const AstExpr *x = ast_of(md, s);
+  ExprOp op = expr_op(md->g, needed), was = edit_function(x);
+  int is_function = op == EX_SIN || op == EX_COS || op == EX_TAN || op == EX_EXP || op == EX_LOG;
+  int name = x->kind == AST_NAME || x->kind == AST_PRIME || x->kind == AST_MEMBER;
+  const Site *argument = was == EX_NUM ? NULL : site_of(md, x->args);
+  if (argument && op == was) {
+    guess_argument(md, argument, expr_arg(md->g, needed, 0));
+  } else if (argument && is_function && expr_arg(md->g, needed, 0) == argument->value) {
+    guess_replacement(md, s, needed, COST_SLIP, x->span);
+  } else if ((argument || name) && (is_function || op == EX_SYM)) {
+    int alike = op == EX_SYM && expr_kinds(md->g, s->value) == expr_kinds(md->g, needed);
+    guess_replacement(md, s, needed, COST_NAME + (alike ? 0 : 0.1), x->span);
+  }
+}
+
+/* Where a power needs the same power of one quantity, its base needs that quantity. */
+static void guess_names(EditSearch *md, const Site *s, Expr needed) {
+  const AstExpr *x = ast_of(md, s);
+  Num power = num_int(1);
+  Expr one = expr_pairs(md->g, needed, EX_PROD) == 1 ? expr_pair(md->g, needed, EX_PROD, 0, &power) : needed;
+  const Site *base = x->kind == AST_POW ? site_of(md, x->a) : NULL;
+  const AstExpr *exponent = base ? ast_expr(md->m->ast, x->b) : NULL;
+  if (num_is_one(power)) guess_name(md, s, one);
+  else if (base && exponent->kind == AST_NUM && num_equal(exponent->number, power)) guess_name(md, base, one);
+}
+
+static void guess_at(EditSearch *md, const Site *s, Need *need) {
+  if (s->role == SITE_PART || !s->value || edit_replaced(&md->sites, s, s->value) != edit_side(&md->sites, s->side) || !find_need(md, s, need)) return;
+  const char *text = short_text(md->m->ast, s->span);
+  Monomial ratio = features_fit(md->features, need->ratio), needed = features_fit(md->features, need->needed);
+  Monomial difference = features_fit(md->features, need->difference);
+  guess_removal(md, s, text, need);
+  guess_power(md, s, text, need);
+  if (is_number(md, &ratio) && num_equal(expr_number(md->g, ratio.e), num_int(-1))) guess_sign(md, s, text);
+  else if (ratio.e) guess_factor(md, s, text, &ratio);
+  if (is_number(md, &ratio)) guess_number(md, s, text, ratio.e);
+  if (needed.e) guess_names(md, s, needed.e);
+  if (difference.e) guess_term(md, s, text, &difference);
+}
+
+/* --- the search --- */
+
+/* Whether the formula is too long: with a tape for every place, the work grows with its square. */
+static int is_too_large(const EditSearch *md) {
+  enum { PLACES_MAX = 2000, STEPS_MAX = 1000000 };
+  Expr sides[2] = {md->x->lhs, md->x->rhs};
+  return md->sites.n > PLACES_MAX || (uint64_t)md->sites.n * expr_topo(md->g, sides, 2).n > STEPS_MAX;
+}
 
 static int by_cost(const void *a, const void *b) {
   const Guess *x = a, *y = b;
@@ -163,45 +391,26 @@ static int by_cost(const void *a, const void *b) {
 }
 
 static int guess_is_proved(EditSearch *md, const Guess *guess) {
-  const Site *s = guess->spot->site;
-  AstId root = s->left ? md->x->lhs_ast : md->x->rhs_ast;
-  Expr side = model_resolve_edited(md->m, md->x, root, s->node, guess->with);
-  if (!side) return 0;
-  Expr lhs = s->left ? side : md->x->lhs, rhs = s->left ? md->x->rhs : side;
-  return prove_by_motion(md->e, lhs, rhs) == PROVED_ZERO;
-}
-
-/* The cheapest guess that is proved, or NULL; the list is empty afterwards. */
-static const Guess *best_guess(EditSearch *md) {
-  enum { PROOFS = 12 };
-  Guess *at = md->guesses.at;
-  uint32_t n = md->guesses.n;
-  if (n) qsort(at, n, sizeof *at, by_cost);
-  md->guesses.n = 0;
-  for (uint32_t i = 0; i < n && i < PROOFS; i++)
-    if (guess_is_proved(md, &at[i])) return &at[i];
-  return NULL;
+  const Site *s = guess->site;
+  Expr side = edit_replaced(&md->sites, s, guess->with);
+  return side && prove_by_motion(md->e, s->side ? md->x->lhs : side, s->side ? side : md->x->rhs) == PROVED_ZERO;
 }
 
 SuggestedEdit suggest_correction(const Eqns *e, const Expect *x) {
+  enum { PROOFS = 12 };
   const Model *m = e->m;
-  EditSearch md = {.e = e, .m = m, .x = x, .g = e->g, .arena = m->arena};
+  SuggestedEdit nowhere = {.caret = ast_expr(m->ast, x->rhs_ast)->span};
+  if (!x->nodes[0]) return nowhere;
+  EditSearch md = {.e = e, .m = m, .x = x, .g = e->g, .arena = m->arena, .sites = edit_sites_of(m, x)};
   Name name = intern(m->ast->names, "?");
   md.stand_in = expr_declare(e->g, SYM_LOCAL, 0, name, SIGN_UNKNOWN);
-  md.solver = states_new(e);
-  SuggestedEdit nowhere = {.caret = ast_expr(m->ast, x->rhs_ast)->span};
-  if (is_too_large(&md)) return nowhere;
-  while (md.nstates < FEW)
-    if (!edit_add_state(&md)) return nowhere;
-  prepare_spots(&md);
-  guess_local_edits(&md);
-  const Guess *best = best_guess(&md);
-  if (!best) {
-    while (md.nstates < FEATURE_STATES)
-      if (!edit_add_state(&md)) return nowhere;
-    guess_edits_by_value(&md);
-    best = best_guess(&md);
-  }
-  if (best) return (SuggestedEdit){best->caret, best->edit};
-  return (SuggestedEdit){likeliest_place(&md), NULL};
+  if (is_too_large(&md) || !find_states(&md)) return nowhere;
+  md.features = gather_features(&md);
+  Need *need = ARENA_NEW(md.arena, Need);
+  for (uint32_t i = 0; i < md.sites.n; i++) guess_at(&md, &md.sites.at[i], need);
+  const Guess *guesses = md.guesses.at;
+  if (md.guesses.n) qsort(md.guesses.at, md.guesses.n, sizeof *guesses, by_cost);
+  for (uint32_t i = 0; i < md.guesses.n && i < PROOFS; i++)
+    if (guess_is_proved(&md, &guesses[i])) return (SuggestedEdit){guesses[i].caret, guesses[i].edit};
+  return nowhere;
 }

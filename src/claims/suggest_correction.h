@@ -3,17 +3,13 @@
 #define LAGC_CLAIMS_SUGGEST_CORRECTION_H
 
 #include "mech/eqns.h"
-#include "sym/prove.h"
 
 typedef struct {
   Span caret;
-  const char *edit; /* "`sin(th1)` should be `cos(th1)`"; NULL: no single edit was found, and the caret is at the likeliest place */
+  const char *edit; /* "`sin(th1)` should be `cos(th1)`"; NULL: no single edit was found, and the caret is at the right side */
 } SuggestedEdit;
 
 /* Needs an expectation that does not hold. An edit that it returns is proved to correct it. */
 SuggestedEdit suggest_correction(const Eqns *e, const Expect *x);
-
-/* Whether two sides are equal by the equations of motion: accelerations and multipliers solved for, rates and the energy substituted. */
-Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs);
 
 #endif

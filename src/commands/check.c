@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "symmetry/charges.h"
-#include "mech/discontinuity_warning.h"
+#include "mech/discontinuity.h"
 #include "claims/expect.h"
 #include "claims/mobility.h"
 #include "symmetry/noether_report.h"

@@ -10,7 +10,7 @@
 #include "emit/emit_model.h"
 #include "ir/hoist.h"
 #include "lower/lower.h"
-#include "mech/discontinuity_warning.h"
+#include "mech/discontinuity.h"
 #include "model/model.h"
 #include "toolchain/cache.h"
 

@@ -114,7 +114,7 @@ typedef struct {
   uint32_t input, constraint, impact, release;
 } IrContact;
 
-/* A switching function of mech/switching_surfaces.h. */
+/* A switching function of mech/discontinuity.h. */
 typedef struct {
   const char *surface, *text;
   uint32_t line;

@@ -11,7 +11,7 @@
 #include "series/series.h"
 #include "ir/unit.h"
 #include "mech/eqns.h"
-#include "mech/switching_surfaces.h"
+#include "mech/discontinuity.h"
 #include "mech/variation.h"
 
 Prog *lower_accel_traced(const Eqns *e, int libm, StrBuf *trace); /* the same, with a listing after each pass */

@@ -186,19 +186,6 @@ static int is_contact(const lag_level *w, int k) {
 
 /* --- entry points --- */
 
-/* Whether component i of [q|v] moved by more than rounding of the largest of its unit. */
-static int is_moved(const Eqns *e, const long double *asked, const long double *found, uint32_t i) {
-  const Model *m = e->m;
-  const Coord *q = &m->coords.at[i % e->n];
-  long double most = 0;
-  for (uint32_t j = 0; j < e->n; j++) {
-    SymId at = i < e->n ? m->coords.at[j].q : m->coords.at[j].v;
-    if (strcmp(q->unit.text, m->coords.at[j].unit.text) == 0) most = fmaxl(most, fabsl(found[at]));
-  }
-  SymId at = i < e->n ? q->q : q->v;
-  return fabsl(found[at] - asked[at]) > DBL_EPSILON / 4 * most;
-}
-
 int start_of_scene(const Eqns *e, long double *found, unsigned char *moved) {
   const Model *m = e->m;
   uint32_t all = expr_symbol_count(e->g) + 1;
@@ -209,9 +196,12 @@ int start_of_scene(const Eqns *e, long double *found, unsigned char *moved) {
     if (m->scene.starts.n) start_report(e, &r);
     symbols = asked;
   }
+  long double *most = ARENA_ARRAY(m->arena, long double, e->n + 1);
   for (uint32_t i = 0; i < 2 * e->n; i++) {
-    found[i] = symbols[i < e->n ? m->coords.at[i].q : m->coords.at[i - e->n].v];
-    moved[i] = symbols != asked && is_moved(e, asked, symbols, i);
+    if (i % e->n == 0) largest_of_unit(e, symbols, i == 0, most);
+    SymId at = component(e, i % e->n, i < e->n);
+    found[i] = symbols[at];
+    moved[i] = symbols != asked && fabsl(symbols[at] - asked[at]) > DBL_EPSILON / 4 * most[i % e->n]; /* more than rounding of the largest of its unit */
   }
   return r.kind == LAG_START_FOUND || !m->scene.starts.n;
 }

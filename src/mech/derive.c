@@ -138,10 +138,7 @@ static int dissipation_is_passive(const Eqns *e) {
     ExprSign sign = expr_sign(g, expr_pair(g, R, EX_SUM, i, &c));
     if (num_sign(c) <= 0 || (sign != SIGN_POSITIVE && sign != SIGN_NONNEGATIVE)) return 0;
   }
-  Expr *rest = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(g) + 1);
-  for (SymId s = 1; s <= expr_symbol_count(g); s++)
-    if (expr_symbol(g, s)->kind == SYM_VEL) rest[s] = expr_int(g, 0);
-  if (!expr_is_zero(g, expr_substitute(g, R, rest, expr_symbol_count(g) + 1, ""))) return 0;
+  if (!expr_is_zero(g, eqns_at_rest(e, R))) return 0;
   ExprPartials d = expr_gradient_sparse(g, R, SYM_VEL, e->n);
   for (uint32_t i = 0; i < d.n; i++) {
     ExprPartials dd = expr_gradient_sparse(g, d.at[i].e, SYM_VEL, e->n);

@@ -106,32 +106,12 @@ static int add_form(FirstOrderBuilder *w) {
   return 1;
 }
 
-/* Q_i = sum of f d(point)/dq_i - dR/dq_i'. */
-static Expr *forces(const FirstOrderBuilder *w) {
-  const Model *m = w->m;
-  Expr *Q = ARENA_ARRAY(w->arena, Expr, w->n);
-  for (uint32_t i = 0; i < w->n; i++) Q[i] = expr_int(w->g, 0);
-  for (uint32_t k = 0; k < m->forces.n; k++) {
-    ExprPartials d = expr_gradient_sparse(w->g, m->forces.at[k].point, SYM_STATE, m->states.n);
-    for (uint32_t i = 0; i < d.n; i++) {
-      if (!w->place[d.at[i].index]) continue;
-      Expr part = expr_mul(w->g, m->forces.at[k].f, d.at[i].e), *Qi = &Q[w->place[d.at[i].index] - 1];
-      *Qi = expr_add(w->g, *Qi, part);
-    }
-  }
-  ExprPartials d = m->dissipation ? expr_gradient_sparse(w->g, m->dissipation, SYM_RATE, m->states.n) : (ExprPartials){0};
-  for (uint32_t i = 0; i < d.n; i++) {
-    Expr *Qi = &Q[w->place[d.at[i].index] - 1]; /* rates of other states cannot stand in a dissipation */
-    *Qi = expr_sub(w->g, *Qi, d.at[i].e);
-  }
-  return Q;
-}
-
 /* Adds dQ/dq' to the form, and subtracts Q at q' = 0 from the right-hand side. */
 static int add_forces(FirstOrderBuilder *w) {
-  Expr *Q = forces(w);
+  Expr *of = generalised_forces(w->m, SYM_STATE, SYM_RATE, w->m->states.n), *Q = ARENA_ARRAY(w->arena, Expr, w->n);
   w->e->Q = Q;
   for (uint32_t i = 0; i < w->n; i++) {
+    Q[i] = of[w->to->at[i]];
     ExprPartials d = has_rates(w, Q[i]) ? expr_gradient_sparse(w->g, Q[i], SYM_RATE, w->m->states.n) : (ExprPartials){0};
     for (uint32_t k = 0; k < d.n; k++) {
       Expr part = simplify(w->g, d.at[k].e);

@@ -1,5 +1,5 @@
-/* Integrability by Frobenius' theorem: first in numbers, on the kernel of all forms at random states; then proved, coefficient by
- * coefficient of the wedge product. Potentials of single exact forms by integration. */
+/* Integrability by Frobenius' theorem in numbers, on the kernel of all forms at random states; proved where all forms are closed. Potentials of
+ * single exact forms by integration. */
 #include "mech/frobenius.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "sym/prove.h"
 #include "sym/simplify.h"
 
-enum { MOST_COORDINATES = 64, MOST_FORMS = 3, MOST_DIMENSIONS = 8 };
+enum { MOST_COORDINATES = 64 };
 
 /* The one-forms in coordinates (q, t), w = n + 1: coefficients form[m * w] and exterior derivatives d[m * w * w], antisymmetric. A zero
  * coefficient is the null Expr. */
@@ -125,70 +125,16 @@ static int looks_integrable(const Forms *f, StateSolver *solver) {
 
 /* --- proved --- */
 
-/* Determinant of the forms in the columns at[m], m <= 3. */
-static Expr determinant(const Forms *f, const uint32_t *at) {
-  static const uint8_t order[6][4] = {{0, 1, 2, 0}, {1, 2, 0, 0}, {2, 0, 1, 0}, {0, 2, 1, 1}, {2, 1, 0, 1}, {1, 0, 2, 1}};
-  static const uint8_t order2[2][4] = {{0, 1, 0, 0}, {1, 0, 0, 1}};
-  static const uint32_t permutations[] = {1, 1, 2, 6};
-  ExprGraph *g = f->g;
-  Expr sum = expr_int(g, 0);
-  for (uint32_t p = 0; p < permutations[f->m]; p++) {
-    const uint8_t *o = f->m == 3 ? order[p] : order2[p];
-    Expr product = expr_int(g, o[3] ? -1 : 1);
-    for (uint32_t i = 0; i < f->m; i++) {
-      Expr x = f->form[i * f->w + at[o[i]]];
-      product = expr_mul(g, product, x ? x : expr_int(g, 0));
-    }
-    sum = expr_add(g, sum, product);
-  }
-  return sum;
-}
-
-/* Coefficient of d omega_i ^ omega_1 ^ ... ^ omega_m at the columns at[m + 2], ascending. */
-static Expr coefficient(const Forms *f, uint32_t i, const uint32_t *at) {
-  ExprGraph *g = f->g;
-  Expr sum = expr_int(g, 0);
-  for (uint32_t a = 0; a < f->m + 2; a++)
-    for (uint32_t b = a + 1; b < f->m + 2; b++) {
-      Expr d = f->d[((size_t)i * f->w + at[a]) * f->w + at[b]];
-      uint32_t rest[MOST_FORMS], n = 0;
-      if (!d) continue;
-      for (uint32_t k = 0; k < f->m + 2; k++)
-        if (k != a && k != b) rest[n++] = at[k];
-      Expr product = expr_mul(g, d, determinant(f, rest)); /* moving a and b to the front takes a + b - 1 exchanges */
-      sum = (a + b) % 2 ? expr_add(g, sum, product) : expr_sub(g, sum, product);
-    }
-  return sum;
-}
-
-/* The next combination of n columns out of w; 0 after the last. */
-static int next_columns(uint32_t *at, uint32_t n, uint32_t w) {
-  uint32_t k = n;
-  while (k-- > 0)
-    if (at[k] < w - n + k) {
-      at[k]++;
-      for (uint32_t j = k + 1; j < n; j++) at[j] = at[j - 1] + 1;
-      return 1;
-    }
-  return 0;
-}
-
 static int is_closed(const Forms *f, uint32_t i) {
   for (uint32_t p = 0; p < f->w * f->w; p++)
     if (f->d[(size_t)i * f->w * f->w + p]) return 0;
   return 1;
 }
 
+/* Whether every d omega_i is 0, or there are too few dimensions for a nonholonomic constraint. */
 static int is_proved(const Forms *f) {
-  for (uint32_t i = f->e->constraints.nholonomic; i < f->m; i++) {
-    if (is_closed(f, i) || f->m + 2 > f->w) continue;
-    if (f->m > MOST_FORMS || f->w > MOST_DIMENSIONS) return 0;
-    uint32_t at[MOST_FORMS + 2];
-    for (uint32_t k = 0; k < f->m + 2; k++) at[k] = k;
-    do
-      if (prove_zero(f->g, coefficient(f, i, at), NULL) != PROVED_ZERO) return 0;
-    while (next_columns(at, f->m + 2, f->w));
-  }
+  for (uint32_t i = f->e->constraints.nholonomic; i < f->m; i++)
+    if (!is_closed(f, i) && f->m + 2 <= f->w) return 0;
   return 1;
 }
 

@@ -1,6 +1,7 @@
 /* Legendre transformation: M is inverted by cofactors, block by block; q' = M^-1 (p - a), and p' by differentiating H. */
 #include "mech/hamilton.h"
 
+#include "base/union_find.h"
 #include "mech/lagrange.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
@@ -20,19 +21,6 @@ static Expr node(const LegendreTransform *w, SymId s) { return expr_symbol(w->g,
 static Expr mul3(const LegendreTransform *w, Expr a, Expr b, Expr c) { return expr_mul(w->g, a, expr_mul(w->g, b, c)); }
 
 /* --- the inverse of M --- */
-
-/* block[i] := the least coordinate in the connected component of i in M. */
-static void find_blocks(const LegendreTransform *w, uint32_t *block) {
-  for (uint32_t i = 0; i < w->n; i++) block[i] = i;
-  for (int changed = 1; changed;) {
-    changed = 0;
-    for (uint32_t k = 0; k < w->e->mass.n; k++) {
-      uint32_t i = w->e->mass.at[k].row, j = w->e->mass.at[k].col, least = block[i] < block[j] ? block[i] : block[j];
-      changed |= block[i] != block[j];
-      block[i] = block[j] = least;
-    }
-  }
-}
 
 static Expr minor2(const LegendreTransform *w, const Expr *m, uint32_t n, uint32_t r1, uint32_t r2, uint32_t c1, uint32_t c2) {
   Expr a = expr_mul(w->g, m[r1 * n + c1], m[r2 * n + c2]), b = expr_mul(w->g, m[r1 * n + c2], m[r2 * n + c1]);
@@ -65,15 +53,15 @@ static int invert_block(LegendreTransform *w, const uint32_t *at, uint32_t n) {
 }
 
 static const char *invert(LegendreTransform *w) {
-  uint32_t *block = ARENA_ARRAY(w->arena, uint32_t, w->n + 1);
+  uint32_t *block = union_find_new(w->arena, w->n); /* connected components of M */
   if (w->e->singular_mass) return "the mass matrix is singular";
-  find_blocks(w, block);
+  for (uint32_t k = 0; k < w->e->mass.n; k++) union_find_join(block, w->e->mass.at[k].row, w->e->mass.at[k].col);
   for (size_t i = 0; i < (size_t)w->n * w->n; i++) w->inverse[i] = expr_int(w->g, 0);
   for (uint32_t i = 0; i < w->n; i++) {
     uint32_t at[BLOCK_MOST], n = 0;
-    if (block[i] != i) continue;
+    if (union_find_root(block, i) != i) continue;
     for (uint32_t k = i; k < w->n; k++) {
-      if (block[k] != i) continue;
+      if (union_find_root(block, k) != i) continue;
       if (n == BLOCK_MOST) return "the mass matrix couples more than three velocities, too many for an inverse in closed form";
       at[n++] = k;
     }

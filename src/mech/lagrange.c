@@ -13,6 +13,7 @@
 #include "mech/velocity_sums.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
+#include "sym/prove.h"
 #include "sym/simplify.h"
 
 /* --- derivatives of L --- */
@@ -33,21 +34,18 @@ static Expr *explicit_direction(const Eqns *e) {
   return seed;
 }
 
-/* Q_i = sum over forces of f d(point)/dq_i, minus dR/dq_i'. */
-static const Expr *generalised_forces(const Eqns *e) {
-  const Model *m = e->m;
-  ExprGraph *g = e->g;
-  Expr *Q = ARENA_ARRAY(m->arena, Expr, e->n + 1);
-  for (uint32_t i = 0; i < e->n; i++) Q[i] = expr_int(g, 0);
+Expr *generalised_forces(const Model *m, SymKind q, SymKind v, uint32_t n) {
+  ExprGraph *g = m->g;
+  Expr *Q = ARENA_ARRAY(m->arena, Expr, n + 1);
+  for (uint32_t i = 0; i < n; i++) Q[i] = expr_int(g, 0);
   for (uint32_t k = 0; k < m->forces.n; k++) {
-    ExprPartials d = expr_gradient_sparse(g, m->forces.at[k].point, SYM_COORD, e->n);
+    ExprPartials d = expr_gradient_sparse(g, m->forces.at[k].point, q, n);
     for (uint32_t i = 0; i < d.n; i++) {
       Expr part = expr_mul(g, m->forces.at[k].f, d.at[i].e), *Qi = &Q[d.at[i].index];
       *Qi = expr_add(g, *Qi, part);
     }
   }
-  if (!m->dissipation) return Q;
-  ExprPartials d = expr_gradient_sparse(g, m->dissipation, SYM_VEL, e->n);
+  ExprPartials d = m->dissipation ? expr_gradient_sparse(g, m->dissipation, v, n) : (ExprPartials){0};
   for (uint32_t i = 0; i < d.n; i++) Q[d.at[i].index] = expr_sub(g, Q[d.at[i].index], d.at[i].e);
   return Q;
 }
@@ -82,7 +80,7 @@ static Expr *differentiate(Eqns *e) {
   expr_gradient(g, l, v, e->n, p);
   expr_gradient(g, l, q, e->n, dLdq);
   e->p = p;
-  e->Q = generalised_forces(e);
+  e->Q = generalised_forces(m, SYM_COORD, SYM_VEL, e->n);
   convective_rates(e, p, convective);
   for (uint32_t i = 0; i < e->n; i++) {
     Expr inertial = expr_sub(g, dLdq[i], convective[i]);
@@ -241,20 +239,10 @@ void lagrange_squares(Eqns *e) {
 
 enum { TRIES = 8 };
 
-/* Numbers in (0.5, 2), the same in every run (Knuth's MMIX generator). */
-static long double next_random(uint64_t *state) {
-  *state = *state * 6364136223846793005u + 1442695040888963407u;
-  return 0.5L + 1.5L * (long double)(*state >> 11) / 9007199254740992.0L;
-}
-
-static void random_state(const Eqns *e, uint64_t *state, long double *values) {
-  for (SymId s = 1; s <= expr_symbol_count(e->g); s++) {
-    const Symbol *sym = expr_symbol(e->g, s);
-    long double x = next_random(state);
-    values[s] = sym->sign == SIGN_NEGATIVE || sym->sign == SIGN_NONPOSITIVE ? -x : x;
-    if (sym->kind == SYM_CONST) values[s] = 3.14159265358979323846264338327950288L;
-    if (sym->kind == SYM_VEL) values[s] = x * 0.1L; /* inside the light cone of relativistic models */
-  }
+/* A sample state with slow velocities, inside the light cone of relativistic models. */
+static void slow_state(const Eqns *e, uint32_t seed, long double *values) {
+  sample_state(e->g, seed, values);
+  for (uint32_t i = 0; i < e->n; i++) values[e->m->coords.at[i].v] *= 0.1L;
 }
 
 /* Names of the coordinates whose rows of the mass matrix are zero, if L contains the velocity of one of them; else NULL. */
@@ -329,10 +317,9 @@ int lagrange_check_mass(Eqns *e) {
   long double *symbols = ARENA_ARRAY(arena, long double, expr_symbol_count(e->g) + 1), *values = ARENA_ARRAY(arena, long double, roots + 1);
   long double *null = ARENA_ARRAY(arena, long double, n);
   SparseElements M = {0}, all = {0};
-  uint64_t seed = 1;
   int judged = 0;
-  for (int t = 0; t < TRIES; t++) {
-    random_state(e, &seed, symbols);
+  for (uint32_t seed = 1; seed <= TRIES; seed++) {
+    slow_state(e, seed, symbols);
     for (uint32_t i = 0; i < e->m->contacts.n; i++) symbols[e->m->contacts.at[i].closed] = 0;
     if (!system_at(e, entries, symbols, values, &M, &all)) continue;
     if (m) e->singular_mass = sparse_solve(arena, n, &M, NULL, 1e-13L, NULL) < n;

@@ -19,4 +19,7 @@ int lagrange_check_mass(Eqns *e);
 /* Fills e->mass where the program does without it. */
 void eqns_derive_mass(Eqns *e);
 
+/* Q_i = sum over forces of f d(point)/dq_i, minus dR/dq_i', for n coordinates and velocities of these kinds. */
+Expr *generalised_forces(const Model *m, SymKind q, SymKind v, uint32_t n);
+
 #endif

@@ -138,56 +138,32 @@ int mass_is_definite_by_values(const Eqns *e, const LinearSystem *s, Expr lagran
   return some && mass_is_definite(e, s, expr_substitute(g, lagrangian, with, n, ""));
 }
 
-/* The parameter that makes this entry nonpositive: with a positive value the entry is positive. UINT32_MAX: none. */
-static uint32_t find_offending_param(const Eqns *e, Expr entry, long double *value) {
-  long double inertia;
-  ExprList nodes = expr_topo(e->g, &entry, 1);
-  for (uint32_t i = 0; i < nodes.n; i++) {
-    const Symbol *s = expr_op(e->g, nodes.at[i]) == EX_SYM ? expr_sym_of(e->g, nodes.at[i]) : NULL;
-    if (!s || s->kind != SYM_PARAM) continue;
-    SymId sym = e->m->params.at[s->index].sym;
-    long double was = value[sym];
-    if (!(was <= 0)) continue;
-    value[sym] = was < 0 ? -was : 1;
-    expr_eval(e->g, &entry, 1, value, &inertia);
-    value[sym] = was;
-    if (inertia > 0) return s->index;
-  }
-  return UINT32_MAX;
-}
-
-/* Whether the entry's sign is open for positive parameters, as that of a - b; an entry -m is meant to be negative. */
+/* Whether the entry is not negative for all positive parameters; an entry -m is meant to be. */
 static int may_be_positive(const Eqns *e, Expr entry) {
   const Model *m = e->m;
   uint32_t n = expr_symbol_count(e->g) + 1;
   Expr *with = ARENA_ARRAY(m->arena, Expr, n);
   for (uint32_t i = 0; i < m->params.n; i++)
     if (expr_symbol(e->g, m->params.at[i].sym)->sign == SIGN_UNKNOWN) with[m->params.at[i].sym] = expr_fn(e->g, EX_EXP, expr_symbol(e->g, m->params.at[i].sym)->node);
-  return expr_sign(e->g, expr_substitute(e->g, entry, with, n, "")) == SIGN_UNKNOWN;
+  ExprSign sign = expr_sign(e->g, expr_substitute(e->g, entry, with, n, ""));
+  return sign != SIGN_NEGATIVE && sign != SIGN_NONPOSITIVE;
 }
 
 void mass_warn_nonpositive(const Eqns *e) {
   const Model *m = e->m;
   long double *value = model_constants(m), inertia;
-  uint8_t *warned = ARENA_ARRAY(m->arena, uint8_t, m->params.n + 1);
+  ExprMap judged = expr_map(m->arena);
   for (uint32_t i = 0; i < m->params.n; i++)
     if (m->params.at[i].value) expr_eval(e->g, &m->params.at[i].value, 1, value, &value[m->params.at[i].sym]);
   for (uint32_t i = 0; i < e->mass.n; i++) {
     MassEntry x = e->mass.at[i];
-    if (x.row != x.col || !expr_is_constant(e->g, x.e)) continue;
+    if (x.row != x.col || !expr_is_constant(e->g, x.e) || expr_map_get(&judged, x.e)) continue;
+    expr_map_set(&judged, x.e, 1);
     expr_eval(e->g, &x.e, 1, value, &inertia);
-    if (!(inertia < 0) && !(inertia == 0 && !m->constraints.n)) continue;
-    uint32_t k = find_offending_param(e, x.e, value);
-    if (k == UINT32_MAX && may_be_positive(e, x.e)) {
-      StrBuf entry = strbuf(m->arena);
-      expr_print(e->g, x.e, PRINT_TEXT, &entry);
-      diag_warning(m->diags, m->coords.at[x.row].span, "the values of the parameters make the inertia of `%s` %s", m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
-      diag_help(m->diags, "give them values that make %s positive", sb_text(&entry));
-    }
-    if (k == UINT32_MAX || warned[k]++) continue;
-    const Param *p = &m->params.at[k];
-    diag_warning(m->diags, p->span, "`%s` is %s, and makes the inertia of `%s` %s", p->name, arena_printf(m->arena, "%.6Lg", value[p->sym]),
-                 m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
-    diag_help(m->diags, "give it a positive value; with `> 0` after it a run refuses others");
+    if ((!(inertia < 0) && !(inertia == 0 && !m->constraints.n)) || !may_be_positive(e, x.e)) continue;
+    StrBuf entry = strbuf(m->arena);
+    expr_print(e->g, x.e, PRINT_TEXT, &entry);
+    diag_warning(m->diags, m->coords.at[x.row].span, "the values of the parameters make the inertia of `%s` %s", m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
+    diag_help(m->diags, "give them values that make %s positive; with `> 0` after a parameter a run refuses others", sb_text(&entry));
   }
 }

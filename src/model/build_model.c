@@ -194,7 +194,14 @@ static void add_flow(Builder *b, const AstStmt *st, Name effect) {
 }
 
 static void add_expect(Builder *b, const AstStmt *st, Name effect) {
-  Value l = resolve(b, st->lhs, IN_OBSERVE, effect), r = resolve(b, st->rhs, IN_OBSERVE, effect);
+  AstId sides[2] = {st->lhs, st->rhs};
+  Expr *nodes[2];
+  Value v[2];
+  for (int k = 0; k < 2; k++) {
+    nodes[k] = ARENA_ARRAY(b->arena, Expr, sides[k] - ast_expr(b->ast, sides[k])->first + 1);
+    v[k] = resolve_nodes(b, sides[k], IN_OBSERVE, effect, nodes[k]);
+  }
+  Value l = v[0], r = v[1];
   if (!l.e || !r.e) return;
   if (l.n != r.n) {
     report_shapes(b, st->span, l.n, r.n);
@@ -206,7 +213,7 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
   }
   if (st->name && !b->index.n) check_name_is_new(b, "expectation", st->name, effect, st->name_span);
   Expect x = {.name = st->name, .span = st->span, .lhs_ast = st->lhs, .rhs_ast = st->rhs, .effect = effect};
-  x.is_repeated = l.n || b->index.n;
+  for (int k = 0; k < 2 && !l.n && !b->index.n; k++) x.nodes[k] = nodes[k];
   x.domain = domain_and(b, l.domain, r.domain);
   for (uint32_t k = 0; k < (l.n ? l.n : 1); k++) {
     x.lhs = l.at[k];

@@ -137,13 +137,14 @@ struct Builder {
   int unitless;    /* no name of the model has a unit: dimensions are not checked */
   Name group;      /* group parameter of the symmetry being read, or NULL */
   SymId group_symbol;
-  AstId replaced_node;  /* node replaced by `replacement_expr` (model_resolve_edited); 0: none */
-  Expr replacement_expr;
   int domains;     /* compute Value.domain, for claims */
 };
 
 /* Evaluates an expression of the text; after an error, reported, the value has e = 0. */
 Value resolve(Builder *b, AstId id, Context where, Name effect);
+
+/* The same, with the values of its nodes, nodes[i] for node ast_expr(id)->first + i; 0: a vector, or none of its own (part of a chain). */
+Value resolve_nodes(Builder *b, AstId id, Context where, Name effect, Expr *nodes);
 
 /* Value assigned to a name with a unit: a bare number is multiplied by the unit, any other value must have its
  * dimension. 0 after an error. value_in refuses vectors; resolve_in resolves the expression first. */

@@ -68,7 +68,8 @@ typedef struct {
   Expr lhs, rhs;
   Expr domain; /* condition under which both sides, as written, have real values; 0: wherever the nodes have */
   Name effect; /* the effect around the statement, or NULL */
-  int is_repeated; /* one of several instances of its statement (family, vector): model_resolve_edited refuses it */
+  const Expr *nodes[2]; /* values of the nodes of the left and the right side, in the order of the text (as resolve_nodes); NULL: one of several
+                         * instances of its statement (family, vector) */
 } Expect;
 
 typedef struct {
@@ -231,7 +232,7 @@ typedef struct {
   ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
   SymId energy_sym; /* placeholder for the energy p q' - L in outputs and expects, which mech replaces */
   Unit energy_unit;
-  struct Builder *builder; /* state for model_resolve_edited and the self-check */
+  struct Builder *builder; /* for the self-check */
 } Model;
 
 /* Name of built-in function i; NULL past the end. */
@@ -301,9 +302,8 @@ CoordList model_coordinates(const Model *m);
 /* Builds the model; NULL after errors, all of which are in ast->diags. Memory is ast->arena's. */
 Model *model_build(Ast *ast, const ModelChoice *choice);
 
-/* Resolves the expression `root` of expectation x (or a part of it) again with its node `node` replaced by
- * `with`; node 0: unchanged. 0 where the result has no meaning (a replacement under a prime, say); nothing is reported. */
-Expr model_resolve_edited(const Model *m, const Expect *x, AstId root, AstId node, Expr with);
+/* Source text of a span on one line, without comments, its middle left out where it is long. */
+const char *short_text(const Ast *ast, Span s);
 
 /* Converts a value from the command line for `target` (0: a time) into a number in the target's declared unit, *digits as
  * in base/decimal_literal.h or NULL. 0, reported, when a run cannot set the target, or the value does not fit it. */

@@ -16,7 +16,6 @@
 /* Marks a left operand with the same kind of operator: a chain becomes one n-ary sum (or product), so a sum of a
  * million terms costs one sort. */
 static void mark_chain(Eval *ev, const AstExpr *x) {
-  if (x->a == ev->b->replaced_node) return;
   AstKind left = ast_expr(ev->b->ast, x->a)->kind;
   int additive = x->kind == AST_ADD || x->kind == AST_SUB;
   ev->by_parent[x->a - ev->first] = additive ? left == AST_ADD || left == AST_SUB : left == AST_MUL || left == AST_DIV;
@@ -199,8 +198,7 @@ static int run(Eval *ev) {
     if (to) ev->pc = to;
     AstId i = ev->pc;
     const AstExpr *x = ast_expr(b->ast, i);
-    if (i == b->replaced_node) *value_of(ev, i) = (Value){.e = b->replacement_expr, .dim = DIM_ANY};
-    else if (!ev->by_parent[i - ev->first]) {
+    if (!ev->by_parent[i - ev->first]) {
       Value v = operands_fit(ev, x) ? usable_value(ev, x, node_value(ev, i)) : FAILED;
       if (ev->waiting) return 0;
       if (b->unitless) v.dim = DIM_ANY;
@@ -346,22 +344,21 @@ const Instance *resolve_instance(Builder *b, uint32_t function, const uint32_t *
   return in;
 }
 
-static Value evaluate(Builder *b, AstId id, Context where, Name effect) {
+Value resolve_nodes(Builder *b, AstId id, Context where, Name effect, Expr *nodes) {
+  if (!id) return FAILED;
   EvalStack stack = {0};
   Eval *ev = begin(b, id, where, effect);
   vec_push(b->arena, &stack, ev);
   run_all(b, &stack);
-  return *value_of(ev, id); /* valid: ev is on the free list, but not reused yet */
-}
-
-Value resolve(Builder *b, AstId id, Context where, Name effect) {
-  if (!id) return FAILED;
-  Value v = evaluate(b, id, where, effect);
+  Value v = *value_of(ev, id); /* valid: ev is on the free list, but not reused yet */
+  for (AstId i = ev->first; nodes && i <= id; i++) nodes[i - ev->first] = value_of(ev, i)->n ? 0 : value_of(ev, i)->e;
   if (!v.e) report_missing_message(b, id);
   if (!v.e || !v.condition) return v;
   report_condition(b, id);
   return FAILED;
 }
+
+Value resolve(Builder *b, AstId id, Context where, Name effect) { return resolve_nodes(b, id, where, effect, NULL); }
 
 /* --- values assigned to names with units --- */
 

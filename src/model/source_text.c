@@ -16,12 +16,11 @@ void not_yet(Builder *b, Span span, const char *what) {
   diag_help(b->diags, "lagc understands the syntax but cannot give it meaning in this version");
 }
 
-const char *ast_text(const Builder *b, AstId id) { return source_text(b, ast_expr(b->ast, id)->span); }
-
-const char *source_text(const Builder *b, Span s) {
-  Place p = source_place(b->ast->sources, s.begin);
+/* Text of a span on one line, without comments. */
+static const char *one_line(const Ast *ast, Span s) {
+  Place p = source_place(ast->sources, s.begin);
   if (!p.file || s.end <= s.begin) return "";
-  StrBuf out = strbuf(b->arena);
+  StrBuf out = strbuf(ast->arena);
   const char *from = p.file->text + (s.begin - p.file->base), *end = from + (s.end - s.begin);
   int quoted = 0;
   for (const char *c = from; c < end; c++) {
@@ -35,13 +34,17 @@ const char *source_text(const Builder *b, Span s) {
   return sb_text(&out);
 }
 
-const char *ast_short(const Builder *b, AstId id) {
+const char *short_text(const Ast *ast, Span s) {
   enum { LONGEST = 48 };
-  const char *text = ast_text(b, id);
+  const char *text = one_line(ast, s);
   size_t n = strlen(text);
   if (n <= LONGEST) return text;
   size_t head = LONGEST - 13, tail = n - 10;
   while (head && ((unsigned char)text[head] & 0xC0) == 0x80) head--;
   while (tail < n && ((unsigned char)text[tail] & 0xC0) == 0x80) tail++;
-  return arena_printf(b->arena, "%.*s...%s", (int)head, text, text + tail);
+  return arena_printf(ast->arena, "%.*s...%s", (int)head, text, text + tail);
 }
+
+const char *source_text(const Builder *b, Span s) { return one_line(b->ast, s); }
+const char *ast_text(const Builder *b, AstId id) { return one_line(b->ast, ast_expr(b->ast, id)->span); }
+const char *ast_short(const Builder *b, AstId id) { return short_text(b->ast, ast_expr(b->ast, id)->span); }

@@ -125,7 +125,7 @@ static void edits(void **state) {
   mends(PENDULUM "expect l*th'' - g*sin(th) = 0\n", "- g*sin(th)", "`g*sin(th)` should be added, not subtracted");
   mends(PENDULUM "expect l*th'' + g*cos(th) = 0\n", "cos(th)", "`cos(th)` should be `sin(th)`");
   mends(PENDULUM "expect l*th'' + 2*g*sin(th) = 0\n", "2", "the factor `2` should not be there");
-  mends(PENDULUM "expect l*th'' + g*sin(2*th) = 0\n", "2", "the factor `2` should not be there");
+  mends(PENDULUM "expect l*th'' + g*sin(2*th) = 0\n", "2*th", "`2*th` should be `th`");
   mends(PENDULUM "expect l^2*th'' + g*sin(th) = 0\n", "^2", "the exponent `2` should not be there");
   mends(PENDULUM "expect energy = m/3*l^2*th'^2 - m*g*l*cos(th)\n", "3", "`3` should be `2`");
   mends(PENDULUM "expect energy = m/2*l^2*th' - m*g*l*cos(th)\n", "th'", "`th'` should be `th'^2`");
