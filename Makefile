@@ -206,9 +206,9 @@ $(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_
 $(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
 $(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen/emit/lag_kkt.h
-$(BUILD)/obj/src/toolchain/compiler_probe.o: $(BUILD)/gen/toolchain/probe_text.h
-$(BUILD)/obj/src/commands/language_reference.o: $(BUILD)/gen/commands/language.h
-$(BUILD)/obj/src/commands/completion_scripts.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
+$(BUILD)/obj/src/toolchain/toolchain.o: $(BUILD)/gen/toolchain/probe_text.h
+$(BUILD)/obj/src/commands/help.o: $(BUILD)/gen/commands/language.h
+$(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
 $(BUILD)/gen/base/visible.h: runtime/io/visible.h
 	@mkdir -p $(@D)
 	cp $< $@

@@ -440,9 +440,9 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
   if (rc == 0 && app.args.help) {
     lag_app_help(&app, stdout);
   } else if (rc == 0 && app.args.method && strcmp(app.args.method, "help") == 0) {
-    lag_app_list_methods(&app, stdout);
-  } else if (rc == 0 && app.args.method && strncmp(app.args.method, "help ", 5) == 0 && lag_app_explain_method(&app, app.args.method + 5, stdout)) {
-    rc = 0;
+    lag_app_list_methods(&app, NULL, stdout);
+  } else if (rc == 0 && app.args.method && strncmp(app.args.method, "help ", 5) == 0 && lag_app_find_method(&app, app.args.method + 5)) {
+    lag_app_list_methods(&app, app.args.method + 5, stdout);
   } else if (rc == 0 && app.args.modes) {
     rc = lag_app_modes(&app);
   } else if (rc == 0 && app.args.lyapunov) {

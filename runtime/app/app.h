@@ -10,17 +10,14 @@
 
 enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
 enum { MOST_OPTIONS = 16 };
-enum { OWN_OPTIONS = 3 }; /* method options that are also options of the command line */
-extern const char *const lag_args_method_options[OWN_OPTIONS];
 
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
-  const char *method_options[OWN_OPTIONS]; /* values of --quadrature, --order, --stages */
   const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
   const char *transient, *exponents; /* for --lyapunov */
   const char *target, *longest, *methods, *against; /* for --cost */
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
-  int json, sketch, quiet, verbose, help, trace, no_rods, modes, tangent, lyapunov, cost, reference;
+  int json, sketch, quiet, help, trace, no_rods, modes, tangent, lyapunov, cost, reference;
   char **sets; /* name=value, in order */
   int nsets;
 } Args;
@@ -85,6 +82,8 @@ int lag_app_set_up(App *app);
 int lag_app_set_up_start(App *app);
 /* app->until := end of the run, from --until or the scene; called by both above. 0, or EXIT_USAGE after a message. */
 int lag_app_read_until(App *app);
+/* Whether word[n] is one of the words in a list with spaces; NULL: an empty list. */
+int lag_app_has_word(const char *words, const char *word, size_t n);
 /* Sets one name=value, or all of the command line, in app->sim. */
 int lag_app_set_value(App *app, const char *text);
 int lag_app_set_values(App *app);
@@ -100,10 +99,8 @@ int lag_app_unknown_method(const App *app, const char *name);
  * message. */
 int lag_app_choose_automatically(App *app, const lag_option *opt, int n);
 
-/* method_help.c: the table of all methods; */
-void lag_app_list_methods(const App *app, FILE *f);
-/* the description of one. 0: there is no method of this name. */
-int lag_app_explain_method(const App *app, const char *name, FILE *f);
+/* method_help.c: the table of all methods, or of the one of this name. */
+void lag_app_list_methods(const App *app, const char *name, FILE *f);
 
 /* column_lookup.c: app->drawn := columns of --plot-x and --plot-y, or all. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_curves(App *app);
@@ -132,7 +129,7 @@ int lag_app_interrupted(void);
 /* Refuses outputs that would overwrite the model, this program, the resumed state or each other. 0, or EXIT_USAGE after a message. */
 int lag_app_check_outputs(const App *app);
 
-/* poincare_section.c: --section. 0, or EXIT_USAGE after a message. lag_section_note: event k has happened. */
+/* event_log.c: --section. 0, or EXIT_USAGE after a message. lag_section_note: event k has happened. */
 int lag_section_choose(App *app);
 void lag_section_note(App *app, int k);
 

@@ -58,31 +58,31 @@ typedef struct Option {
   const char *name;
   size_t offset;
   int is_flag;
+  int takes; /* runs and analyses that use the option */
 } Option;
 
-const char *const lag_args_method_options[OWN_OPTIONS] = {"quadrature", "order", "stages"};
+enum { MODES = 1, COST = 2, LYAPUNOV = 4, EFFECTS = 8, REFERENCE = 16, RUN = 32, ANY = 63 };
 
 static const Option options[] = {
-    {"method", offsetof(Args, method), 0}, {"tol", offsetof(Args, tol), 0},
-    {"step", offsetof(Args, step), 0},     {"until", offsetof(Args, until), 0},
-    {"every", offsetof(Args, every), 0},   {"svg", offsetof(Args, svg), 0},
-    {"plot-x", offsetof(Args, plot_x), 0}, {"plot-y", offsetof(Args, plot_y), 0},
-    {"html", offsetof(Args, html), 0},     {"points", offsetof(Args, points), 0},
-    {"from", offsetof(Args, from), 0},     {"no-rods", offsetof(Args, no_rods), 1},
-    {"trace", offsetof(Args, trace), 1},
-    {"save-state", offsetof(Args, save), 0}, {"resume", offsetof(Args, resume), 0},
-    {"events", offsetof(Args, events), 0}, {"section", offsetof(Args, section), 0},
-    {"output", offsetof(Args, out), 0},    {"json", offsetof(Args, json), 1},
-    {"sketch", offsetof(Args, sketch), 1}, {"quiet", offsetof(Args, quiet), 1},
-    {"verbose", offsetof(Args, verbose), 1},
-    {"tangent", offsetof(Args, tangent), 1}, {"modes", offsetof(Args, modes), 1},
-    {"lyapunov", offsetof(Args, lyapunov), 1}, {"transient", offsetof(Args, transient), 0}, {"exponents", offsetof(Args, exponents), 0},
-    {"effects", offsetof(Args, effects), 0}, {"help", offsetof(Args, help), 1},
-    {"cost", offsetof(Args, cost), 1},     {"reference", offsetof(Args, reference), 1},
-    {"target", offsetof(Args, target), 0}, {"longest", offsetof(Args, longest), 0},
-    {"methods", offsetof(Args, methods), 0}, {"against", offsetof(Args, against), 0},
-    {"quadrature", offsetof(Args, method_options[0]), 0}, {"order", offsetof(Args, method_options[1]), 0},
-    {"stages", offsetof(Args, method_options[2]), 0},
+    {"method", offsetof(Args, method), 0, RUN | LYAPUNOV | EFFECTS},
+    {"tol", offsetof(Args, tol), 0, RUN | LYAPUNOV | EFFECTS},
+    {"step", offsetof(Args, step), 0, RUN | LYAPUNOV | EFFECTS}, {"until", offsetof(Args, until), 0, ANY & ~MODES},
+    {"every", offsetof(Args, every), 0, RUN}, {"svg", offsetof(Args, svg), 0, RUN | COST | LYAPUNOV},
+    {"plot-x", offsetof(Args, plot_x), 0, ANY}, {"plot-y", offsetof(Args, plot_y), 0, ANY},
+    {"html", offsetof(Args, html), 0, RUN}, {"points", offsetof(Args, points), 0, ANY},
+    {"from", offsetof(Args, from), 0, ANY}, {"no-rods", offsetof(Args, no_rods), 1, ANY},
+    {"trace", offsetof(Args, trace), 1, ANY}, {"save-state", offsetof(Args, save), 0, RUN},
+    {"resume", offsetof(Args, resume), 0, RUN}, {"events", offsetof(Args, events), 0, RUN},
+    {"section", offsetof(Args, section), 0, RUN}, {"output", offsetof(Args, out), 0, RUN | LYAPUNOV},
+    {"json", offsetof(Args, json), 1, ANY}, {"sketch", offsetof(Args, sketch), 1, RUN},
+    {"quiet", offsetof(Args, quiet), 1, ANY},
+    {"tangent", offsetof(Args, tangent), 1, RUN}, {"modes", offsetof(Args, modes), 1, ANY},
+    {"lyapunov", offsetof(Args, lyapunov), 1, ANY}, {"transient", offsetof(Args, transient), 0, LYAPUNOV},
+    {"exponents", offsetof(Args, exponents), 0, LYAPUNOV}, {"effects", offsetof(Args, effects), 0, ANY},
+    {"help", offsetof(Args, help), 1, ANY}, {"cost", offsetof(Args, cost), 1, ANY},
+    {"reference", offsetof(Args, reference), 1, ANY}, {"target", offsetof(Args, target), 0, COST},
+    {"longest", offsetof(Args, longest), 0, COST}, {"methods", offsetof(Args, methods), 0, COST},
+    {"against", offsetof(Args, against), 0, COST},
 };
 enum { NOPTIONS = sizeof options / sizeof *options };
 
@@ -160,36 +160,27 @@ static int one_argument(Args *a, int argc, char **argv, int *i)
   return 0;
 }
 
-/* Refuses options of a run that an analysis (--modes, --cost, --lyapunov, --effects) does not use. */
+/* Refuses options that a run, or the analysis that is asked for, does not use. */
 static int check_analysis(const Args *a)
 {
-  enum { MODES = 1, COST = 2, LYAPUNOV = 4, EFFECTS = 8 };
-  const int what = a->modes ? MODES : a->cost || a->reference ? COST : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : 0;
-  const struct {
-    const char *name;
-    int given;
-    int takes; /* analyses that use the option */
-  } others[] = {{"--method", a->method != NULL, LYAPUNOV | EFFECTS}, {"--tol", a->tol != NULL, LYAPUNOV | EFFECTS},
-                {"--step", a->step != NULL, LYAPUNOV | EFFECTS},
-                {"--until", a->until != NULL, COST | LYAPUNOV | EFFECTS}, {"--every", a->every != NULL, 0}, {"-o", a->out != NULL, LYAPUNOV},
-                {"--svg", a->svg != NULL, COST | LYAPUNOV}, {"--html", a->html != NULL, 0}, {"--section", a->section != NULL, 0},
-                {"--tangent", a->tangent, 0}, {"--sketch", a->sketch, 0}, {"--events", a->events != NULL, 0},
-                {"--save-state", a->save != NULL, 0}, {"--resume", a->resume != NULL, 0}};
+  const int what = a->modes ? MODES : a->cost ? COST : a->reference ? REFERENCE : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
 
-  for (size_t i = 0; what && i < sizeof others / sizeof *others; i++) {
-    if (others[i].given && !(others[i].takes & what)) {
-      return lag_app_error(a, "%s has no meaning for %s", others[i].name,
-                       what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some"
-                       : what == MODES ? "--modes, which takes name=value and --json"
-                       : what == EFFECTS ? "--effects, which takes name=value, --until and a method"
-                                       : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
+  for (int i = 0; i < NOPTIONS; i++) {
+    const Option *o = &options[i];
+    const void *field = (const char *)a + o->offset;
+    int given = o->is_flag ? *(const int *)field : *(const char *const *)field != NULL;
+    if (!given || o->takes & what) {
+      continue;
     }
-  }
-  if (!a->cost && (a->target || a->longest || a->methods || a->against)) {
-    return lag_app_error(a, "--target, --longest, --methods and --against are for --cost");
-  }
-  if (!a->lyapunov && (a->transient || a->exponents)) {
-    return lag_app_error(a, "--transient and --exponents are for --lyapunov");
+    if (what == RUN || what == REFERENCE) {
+      return o->takes & RUN ? lag_app_error(a, "--%s has no meaning for --reference, which takes name=value and --until", o->name)
+                            : lag_app_error(a, "--%s is for %s", o->name, o->takes & COST ? "--cost" : "--lyapunov");
+    }
+    return lag_app_error(a, "--%s has no meaning for %s", o->name,
+                     what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some"
+                     : what == MODES ? "--modes, which takes name=value and --json"
+                     : what == EFFECTS ? "--effects, which takes name=value, --until and a method"
+                                     : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
   }
   return 0;
 }
@@ -197,12 +188,8 @@ static int check_analysis(const Args *a)
 /* Refuses .npy files in other precisions: NumPy has no type of 34 digits, and those of 19 depend on the machine. */
 static int check_npy(const Args *a)
 {
-  const char *const files[] = {a->out, a->events};
-
-  for (int i = 0; i < 2 && strcmp(LAG_PRECISION, "double") != 0; i++) {
-    if (files[i] && lag_outfile_has_suffix(files[i], "npy")) {
-      return lag_app_error(a, "%s: .npy files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", files[i]);
-    }
+  if (strcmp(LAG_PRECISION, "double") != 0 && a->out && lag_outfile_has_suffix(a->out, "npy")) {
+    return lag_app_error(a, "%s: .npy files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", a->out);
   }
   return 0;
 }
@@ -212,7 +199,7 @@ static int check_kinds(const Args *a)
 {
   const struct {
     const char *option, *path, *suffixes, *writes;
-  } files[] = {{"-o", a->out, "csv npy", "CSV, or NumPy where the name ends in .npy"}, {"--events", a->events, "csv npy", "CSV, or NumPy where the name ends in .npy"},
+  } files[] = {{"-o", a->out, "csv npy", "CSV, or NumPy where the name ends in .npy"}, {"--events", a->events, "csv", "CSV"},
                {"--svg", a->svg, "svg", "SVG"}, {"--html", a->html, "html htm", "HTML"}};
 
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {

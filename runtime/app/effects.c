@@ -191,12 +191,7 @@ static int all_among(const char *words, const char *those)
 {
   for (const char *s = words; *s; s += strspn(s, " ")) {
     size_t n = strcspn(s, " ");
-    const char *t = those;
-    while (*t && !(strcspn(t, " ") == n && memcmp(s, t, n) == 0)) {
-      t += strcspn(t, " ");
-      t += strspn(t, " ");
-    }
-    if (!*t) {
+    if (!lag_app_has_word(those, s, n)) {
       return 0;
     }
     s += n;

@@ -1,4 +1,4 @@
-/* Event log (--events) and the report on events. Enters: events during the run, with the state before and after; leaves:
+/* Event log (--events), rows at events (--section), and the report on events. Enters: events during the run, with the state before and after; leaves:
  * rows of time, name, state before, state after, in declared units with all digits. Holds: a run that is saved and resumed
  * logs each event once, in the part where it happens. */
 #include <math.h>
@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "core/core.h"
 
 enum { MOST_EVENTS = 24 };
 
@@ -29,7 +30,6 @@ static int make_columns(App *app)
   strcpy(t->cols[0].unit, "s");
   strcpy(t->cols[1].name, "event");
   t->cols[1].words = app->log_names;
-  t->cols[1].nwords = m->nev;
   for (int i = 0; i < n; i++) {
     Column *before = &t->cols[2 + i], *after = &t->cols[2 + n + i];
     lag_sim_state_info(app->sim, i, before->name, sizeof before->name, before->unit, sizeof before->unit);
@@ -79,6 +79,40 @@ void lag_event_log_free(App *app)
   lag_table_free(&app->log);
   free(app->log_row);
   free(app->log_names);
+}
+
+/* ---- Poincare section (--section): rows at the crossings of a surface, given as an event that changes nothing. A row is on the surface as
+ * precisely as events are located; a start on the surface is no crossing. */
+
+int lag_section_choose(App *app)
+{
+  const lag_model *m = app->scene->model;
+  const char *name = app->args.section;
+  lag_nearest near = {.name = name};
+
+  app->section = -1;
+  for (int k = 0; name && k < m->nev; k++) {
+    if (strcmp(name, m->ev[k].name) == 0) {
+      app->section = k;
+      return 0;
+    }
+    lag_try_nearest(&near, m->ev[k].name);
+  }
+  if (!name) {
+    return 0;
+  }
+  if (near.best) {
+    return lag_app_error(&app->args, "--section %s: there is no such event; did you mean \"%s\"?", name, near.best);
+  }
+  return lag_app_error(&app->args, "--section %s: scene %s has no such event; name one, or lagc run %s --section 'EXPR rising' makes it", name,
+                   app->scene->name, app->program->source);
+}
+
+void lag_section_note(App *app, int k)
+{
+  if (k == app->section && app->section_rc == 0) {
+    app->section_rc = lag_app_put_row(app);
+  }
 }
 
 /* ---- The report */

@@ -1,5 +1,5 @@
-/* `lagc methods` and --method help: the descriptors of all methods as a table and in words; `--method "help NAME"`: one of
- * them. Holds: lines have at most 80 columns. */
+/* `lagc methods` and --method help: the descriptors of all methods as a table and in words; `--method "help NAME"`: of
+ * one. Holds: lines have at most 80 columns. */
 #include <string.h>
 
 #include "app/app.h"
@@ -51,65 +51,31 @@ static void row(const lag_method *m, FILE *f)
           m->tangent ? "yes" : "no", is & LAG_METHOD_CONSTRAINTS ? "yes" : "no");
 }
 
-static void options(const lag_method *m, FILE *f, int indent)
-{
-  for (int i = 0; i < m->noptions; i++) {
-    const lag_method_option *o = &m->options[i];
-    char number[32], text[400];
-    snprintf(number, sizeof number, "%g", o->value);
-    snprintf(text, sizeof text, "%s = %s: %s", o->name, o->choices ? o->choices[(int)o->value] : number, o->doc);
-    wrapped(f, text, indent, indent + 2);
-  }
-}
-
-static const char *saved(const lag_method *m)
-{
-  return m->flags & LAG_METHOD_NO_SAVE ? "; its state cannot be saved" : "";
-}
-
 static void words(const lag_method *m, FILE *f)
 {
   char text[400];
 
-  snprintf(text, sizeof text, "%s: %s%s", m->name, m->doc, saved(m));
+  snprintf(text, sizeof text, "%s: %s%s", m->name, m->doc, m->flags & LAG_METHOD_NO_SAVE ? "; its state cannot be saved" : "");
   putc('\n', f);
   wrapped(f, text, 2, 4);
-  options(m, f, 6);
-}
-
-int lag_app_explain_method(const App *app, const char *name, FILE *f)
-{
-  char order[32], dense[32], text[500];
-
-  const lag_method *m;
-
-  for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) {
-    unsigned is = m->flags;
-    if (strcmp(m->name, name) != 0) {
-      continue;
-    }
-    snprintf(text, sizeof text, "%s, of order %s (dense output %s), %s steps%s%s%s%s%s%s.", m->name, order_text(m, m->order, order, sizeof order),
-             order_text(m, m->dense_order, dense, sizeof dense), is & LAG_METHOD_ADAPTIVE ? "adaptive" : "fixed",
-             is & LAG_METHOD_SYMPLECTIC ? ", symplectic" : "", is & LAG_METHOD_SYMMETRIC ? ", symmetric" : "",
-             is & LAG_METHOD_FLOWS ? ", for models of coordinates alone or of states alone"
-             : is & LAG_METHOD_NO_STATES ? ", for models without states" : "",
-             is & LAG_METHOD_SPLITS ? "; Newton's method where the model is not separable" : is & LAG_METHOD_NEWTON ? "; Newton's method" : "",
-             is & LAG_METHOD_CONSTRAINTS ? "; with constraints or without" : "; not for models with constraints", saved(m));
-    wrapped(f, text, 0, 0);
-    wrapped(f, m->doc, 0, 0);
-    options(m, f, 2);
-    return 1;
+  for (int i = 0; i < m->noptions; i++) {
+    const lag_method_option *o = &m->options[i];
+    char number[32];
+    snprintf(number, sizeof number, "%g", o->value);
+    snprintf(text, sizeof text, "%s = %s: %s", o->name, o->choices ? o->choices[(int)o->value] : number, o->doc);
+    wrapped(f, text, 6, 8);
   }
-  return 0;
 }
 
-void lag_app_list_methods(const App *app, FILE *f)
+void lag_app_list_methods(const App *app, const char *name, FILE *f)
 {
   const lag_method *m;
 
   fprintf(f, ROW, "method", "order", "dense", "steps", "keeps", "Newton", "states", "deriv", "holds");
   for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) {
-    row(m, f);
+    if (!name || strcmp(name, m->name) == 0) {
+      row(m, f);
+    }
   }
   putc('\n', f);
   wrapped(f, "Where none is named, a run chooses and says why. dense: order between steps. both: symplectic and symmetric; with forces or explicit time a "
@@ -119,6 +85,8 @@ void lag_app_list_methods(const App *app, FILE *f)
              "all velocities. deriv: whether its steps have a derivative (--tangent, lagc lyapunov). holds: whether its steps end on "
              "constraints. Options, with their defaults:", 0, 0);
   for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) {
-    words(m, f);
+    if (!name || strcmp(name, m->name) == 0) {
+      words(m, f);
+    }
   }
 }

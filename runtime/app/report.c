@@ -220,18 +220,6 @@ static void exact_json(const App *app, Json *j)
   lag_json_end(j, '}');
 }
 
-/* --verbose: source of sines and cosines, and contraction of products and sums; results depend on both bit by bit. */
-static void arithmetic(const App *app, FILE *f)
-{
-  static const char flag[] = "-ffp-contract=";
-  const char *math = app->scene->model->math, *build = app->program->build, *contraction = build ? strstr(build, flag) : NULL;
-
-  if (app->args.verbose && (math || contraction)) {
-    fprintf(f, "arithmetic: %s%s%.*s\n", math ? math : "", math && contraction ? "; " : "", contraction ? (int)strcspn(contraction, " ") : 0,
-            contraction ? contraction : "");
-  }
-}
-
 void lag_report_text(App *app, FILE *f)
 {
   const lag_scene *c = app->scene;
@@ -247,7 +235,6 @@ void lag_report_text(App *app, FILE *f)
   verdict(app, f);
   final_state(app, f);
   fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
-  arithmetic(app, f);
   newton(app, &st, f);
   lag_report_charges(app, f);
   constraints(app, &st, f);

@@ -72,7 +72,7 @@ const lag_method *lag_app_find_method(const App *app, const char *name)
 typedef struct Choice {
   char text[512];
   const char *name;
-  lag_option opt[MOST_OPTIONS + 1 + OWN_OPTIONS]; /* from the parentheses or the scene; --step; lag_args_method_options */
+  lag_option opt[MOST_OPTIONS + 1]; /* from the parentheses or the scene; --step */
   int n;
 } Choice;
 
@@ -154,7 +154,7 @@ int lag_app_unknown_method(const App *app, const char *name)
     return lag_app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near.best);
   }
   lag_app_error(&app->args, "unknown method %s", name);
-  lag_app_list_methods(app, stderr);
+  lag_app_list_methods(app, NULL, stderr);
   return EXIT_USAGE;
 }
 
@@ -181,11 +181,6 @@ static int choose_method(App *app)
     *o = (lag_option){.name = "step"};
     if (!lag_args_number(a, "--step", a->step, "--step 1e-3", &o->value)) {
       return EXIT_USAGE;
-    }
-  }
-  for (int i = 0; i < OWN_OPTIONS; i++) {
-    if (a->method_options[i]) {
-      add_option(&c, lag_args_method_options[i], a->method_options[i]);
     }
   }
   if ((rc = check_steps(app, &c)) != 0) {
@@ -215,8 +210,7 @@ static int set_tolerance(App *app)
   return lag_sim_set_tolerance(app->sim, x) ? lag_app_error(a, "--tol: %s", lag_sim_message(app->sim)) : 0;
 }
 
-/* Whether word[n] is one of the words in a list with spaces. */
-static int has_word(const char *words, const char *word, size_t n)
+int lag_app_has_word(const char *words, const char *word, size_t n)
 {
   for (const char *s = words; s && *s; s += strspn(s, " ")) {
     size_t length = strcspn(s, " ");
@@ -240,27 +234,20 @@ static int names_parameter(const char *name, const char *word, size_t n)
   return 0;
 }
 
-/* EXIT_USAGE if `name` is a parameter fixed by --fix; the message has the command that builds a program that takes it. Else 0. */
+/* EXIT_USAGE after a message if `name` is a parameter fixed by --fix; else 0. */
 static int refuse_fixed(const App *app, const char *name)
 {
   const char *fixed = app->scene->model->fixed;
-  char rest[400] = "";
-  int found = 0;
 
   for (const char *s = fixed ? fixed : ""; *s; s += strspn(s, " ")) {
-    size_t n = strcspn(s, " "), used = strlen(rest);
+    size_t n = strcspn(s, " ");
     if (names_parameter(name, s, n)) {
-      found = 1;
-    } else if (used + n + 2 < sizeof rest) {
-      snprintf(rest + used, sizeof rest - used, "%s%.*s", used ? "," : " --fix ", (int)n, s);
+      return lag_app_error(&app->args, "%s is a number in this program (--fix); this builds one that takes all values: lagc build %s -o SIMULATOR", name,
+                       app->program->source);
     }
     s += n;
   }
-  if (!found) {
-    return 0;
-  }
-  return lag_app_error(&app->args, "%s is a number in this program (--fix); this builds one that takes it: lagc build %s -o SIMULATOR%s", name,
-                   app->program->source, rest);
+  return 0;
 }
 
 int lag_app_set_value(App *app, const char *text)
@@ -271,8 +258,8 @@ int lag_app_set_value(App *app, const char *text)
   double x;
 
   snprintf(name, sizeof name, "%.*s", (int)(eq - text), text);
-  if (dot && has_word(app->program->effects, text, (size_t)(dot - text)) &&
-      !has_word(app->scene->model->effects, text, (size_t)(dot - text))) {
+  if (dot && lag_app_has_word(app->program->effects, text, (size_t)(dot - text)) &&
+      !lag_app_has_word(app->scene->model->effects, text, (size_t)(dot - text))) {
     return lag_app_error(a,
                      "%s: effect %.*s is not in scene %s of this build; let the scene use it, then this builds and runs "
                      "it: lagc run %s %s",

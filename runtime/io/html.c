@@ -10,21 +10,6 @@
 
 enum { RESOLUTION = 100000, TICKS = 1000000000 };
 
-/* Writes a JavaScript string; no character in it can start or end a tag. */
-static void script_string(FILE *f, const char *s)
-{
-  putc('"', f);
-  for (; *s; s++) {
-    unsigned char c = (unsigned char)*s;
-    if (c < 0x20 || c == '"' || c == '\\' || c == '<' || c == '>' || c == '&' || c == 0x7f) {
-      fprintf(f, "\\u%04x", c);
-    } else {
-      putc(c, f);
-    }
-  }
-  putc('"', f);
-}
-
 /* Offset and unit of the integers that coordinates are written as: the middle of all, and extent/RESOLUTION. */
 static void choose_resolution(const Table *t, const Animation *a, double *zero, double *scale)
 {
@@ -83,50 +68,45 @@ static int x_is_index(const Table *t, const Animation *a)
   return differ;
 }
 
-/* Writes the times between frames, in ticks. */
-static void put_times(FILE *f, const Table *t, double t0, double tick)
-{
-  double before = 0;
-
-  fputs("\"dt\": [", f);
-  for (size_t i = 1; i < t->nrows; i++) {
-    double at = nearbyint((lag_table_cell(t, i, 0) - t0) / tick);
-    fprintf(f, i > 1 ? ",%.0f" : "%.0f", at - before);
-    before = at;
-  }
-  fputs("],\n", f);
-}
-
-static void put_names(FILE *f, const Table *t, const Animation *a)
-{
-  fputs("\"names\": [", f);
-  for (int i = 0; i < a->npoints; i++) {
-    fputs(i ? ", [" : "[", f);
-    script_string(f, t->cols[a->cols[2 * i]].name);
-    fputs(", ", f);
-    script_string(f, t->cols[a->cols[2 * i + 1]].name);
-    putc(']', f);
-  }
-  fputs("],\n", f);
-}
-
+/* Writes the JSON object that page.html describes. */
 static void put_data(FILE *f, const Table *t, const Animation *a)
 {
   size_t n = t->nrows;
   double t0 = n ? lag_table_cell(t, 0, 0) : 0, t1 = n ? lag_table_cell(t, n - 1, 0) : 0, tick = t1 != t0 ? (t1 - t0) / TICKS : 1, zero, scale;
+  long long before = 0;
+  Json j = {.f = f};
 
   choose_resolution(t, a, &zero, &scale);
-  fprintf(f, "{\"t0\": %.17g, \"tick\": %.17g, \"t1\": %.17g, \"speed\": %.6g, \"zero\": %.17g, \"scale\": %.17g,\n", t0, tick, t1,
-          followable_speed(t, fabs(t1 - t0)), zero, scale);
-  fprintf(f, "\"rods\": %s, \"trace\": %s, \"from\": %s, \"unit\": ", a->rods ? "true" : "false", a->trace ? "true" : "false",
-          a->from ? "true" : "false");
-  script_string(f, a->unit);
-  fprintf(f, ", \"free\": %s, \"note\": ", x_is_index(t, a) ? "true" : "false");
-  script_string(f, a->note ? a->note : "");
-  fputs(", ", f);
-  put_names(f, t, a);
-  put_times(f, t, t0, tick);
-  fputs("\"v\": [", f);
+  lag_json_begin(&j, NULL, '{');
+  lag_json_number(&j, "t0", t0);
+  lag_json_number(&j, "tick", tick);
+  lag_json_number(&j, "t1", t1);
+  lag_json_number(&j, "speed", followable_speed(t, fabs(t1 - t0)));
+  lag_json_number(&j, "zero", zero);
+  lag_json_number(&j, "scale", scale);
+  lag_json_truth(&j, "rods", a->rods);
+  lag_json_truth(&j, "trace", a->trace);
+  lag_json_truth(&j, "from", a->from);
+  lag_json_string(&j, "unit", a->unit);
+  lag_json_truth(&j, "free", x_is_index(t, a));
+  lag_json_string(&j, "note", a->note ? a->note : "");
+  lag_json_begin(&j, "names", '[');
+  for (int i = 0; i < a->npoints; i++) {
+    lag_json_begin(&j, NULL, '[');
+    lag_json_string(&j, NULL, t->cols[a->cols[2 * i]].name);
+    lag_json_string(&j, NULL, t->cols[a->cols[2 * i + 1]].name);
+    lag_json_end(&j, ']');
+  }
+  lag_json_end(&j, ']');
+  lag_json_begin(&j, "dt", '[');
+  for (size_t i = 1; i < n; i++) {
+    long long at = (long long)nearbyint((lag_table_cell(t, i, 0) - t0) / tick);
+    lag_json_count(&j, NULL, at - before);
+    before = at;
+  }
+  lag_json_end(&j, ']');
+  putc('\n', f); /* a line a frame */
+  lag_json_begin(&j, "v", '[');
   for (size_t i = 0; i < n; i++) {
     for (int k = 0; k < 2 * a->npoints; k++) {
       double x = (lag_table_cell(t, i, a->cols[k]) - zero) / scale;

@@ -10,8 +10,7 @@
 
 typedef struct Column {
   char name[96], unit[64];
-  const char *const *words; /* [nwords] text column: a value is the index of its word. NULL: a column of numbers */
-  int nwords;
+  const char *const *words; /* text column of a CSV file: a value is the index of its word. NULL: a column of numbers */
 } Column;
 
 /* A table of output; column 0 is the time. data[nrows * ncols], row-major. */
@@ -89,20 +88,11 @@ double lag_tick_step(double lo, double hi, int n);
 typedef struct PlottedCurves {
   int n, *x, *y;
   const char *xname, *yname; /* axis labels where several columns are drawn; NULL: all columns against time */
+  int powers; /* 1: values are exponents of ten; each row is marked */
 } PlottedCurves;
 
 /* Writes the picture as SVG. -1 with errno set. */
 int lag_svg_write(const char *path, const Table *t, const char *title, const PlottedCurves *d);
-
-/* A curve through points (x, y), all positive. */
-typedef struct Series {
-  char name[96];
-  int n;
-  const double *x, *y;
-} Series;
-
-/* Writes n named curves on two logarithmic axes as SVG. -1 with errno set. */
-int lag_svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n);
 
 /* Prints the first few curves as text (braille dots). */
 void lag_sketch_write(FILE *f, const Table *t, const PlottedCurves *d);

@@ -12,7 +12,7 @@ static void quote(FILE *f, const char *s)
     size_t len = utf8_at(s + at, n - at, &code);
     if (code == '"' || code == '\\') {
       fprintf(f, "\\%c", (int)code);
-    } else if (is_hidden(code)) {
+    } else if (is_hidden(code) || code == '<') { /* in a page no character of a string begins a tag */
       fprintf(f, "\\u%04lx", code);
     } else if (len == 1 && code >= 0x80) { /* a byte that is not UTF-8: U+FFFD, since JSON must be UTF-8 */
       fputs("\\ufffd", f);

@@ -52,46 +52,22 @@ int lag_state_write(const char *path, const State *s)
   return lag_outfile_close(&o, OUTFILE_SYNC);
 }
 
-/* Contents of a file, 0-terminated, malloced; NULL with errno set. */
-static char *read_whole_file(const char *path)
+/* Contents of a file of `size` bytes, 0-terminated, malloced; NULL with errno set. */
+static char *read_whole_file(const char *path, size_t size)
 {
   FILE *f = fopen(path, "rb");
-  char *text = NULL;
-  size_t n = 0, capacity = 0;
+  char *text = f ? malloc(size + 1) : NULL;
 
-  if (!f) {
-    return NULL;
-  }
-  for (;;) {
-    if (n + 1 >= capacity) {
-      char *more = realloc(text, capacity = capacity ? 2 * capacity : 4096);
-      if (!more) {
-        free(text);
-        text = NULL;
-        break;
-      }
-      text = more;
-    }
-    if (n > MOST_BYTES) { /* larger than any state: a device, or another file */
-      free(text);
-      text = NULL;
-      errno = EFBIG;
-      break;
-    }
-    size_t got = fread(text + n, 1, capacity - n - 1, f);
-    n += got;
-    text[n] = '\0';
-    if (got == 0) {
-      break;
-    }
+  if (text) {
+    text[fread(text, 1, size, f)] = '\0';
   }
   if (text && ferror(f)) {
     free(text);
     text = NULL;
   }
-  int error = errno;
-  fclose(f);
-  errno = error;
+  if (f) {
+    fclose(f);
+  }
   return text;
 }
 
@@ -195,11 +171,14 @@ int lag_state_read(const char *path, State *s, const char **why)
   struct stat is;
 
   *s = (State){0};
-  if (stat(path, &is) == 0 && !S_ISREG(is.st_mode)) { /* reading a pipe would block */
-    *why = "is not a regular file";
+  if (stat(path, &is) != 0) {
+    return -1;
+  }
+  if (!S_ISREG(is.st_mode) || is.st_size > MOST_BYTES) { /* reading a pipe would block */
+    *why = S_ISREG(is.st_mode) ? "is larger than any saved state" : "is not a regular file";
     return 1;
   }
-  char *text = read_whole_file(path);
+  char *text = read_whole_file(path, (size_t)is.st_size);
   if (!text) {
     return -1;
   }

@@ -1,6 +1,6 @@
 /* SVG plots. Enters: a table; leaves: an SVG file with one panel for each unit over a common time axis, or one panel with
  * columns against others. Holds: a curve with more points than pixels is reduced to minimum and maximum of each pixel column,
- * so that no peak is lost; a path to corners between which straight lines are off by less than a quarter of a pixel. */
+ * so that no peak is lost; points of a path are at least a third of a pixel apart. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -199,60 +199,21 @@ static void min_max_curve(FILE *f, const Panel *p, const Table *t, int ycol)
   }
 }
 
-/* The sector of directions from a corner (in pixels) whose lines pass near all points since; farthest: of these from the corner. */
-typedef struct Sector {
-  double x, y, first, low, high, farthest;
-} Sector;
-
-/* Whether a line from the corner to (x, y) passes near all points since; if so, narrows the sector to lines near (x, y). */
-static int in_sector(Sector *s, double x, double y)
-{
-  const double near = 0.25, turn = 2 * acos(-1);
-  double r = hypot(x - s->x, y - s->y), way = atan2(y - s->y, x - s->x);
-
-  if (r <= near) {
-    return s->farthest <= near;
-  }
-  if (s->farthest <= near) {
-    s->first = way;
-    s->low = -HUGE_VAL;
-    s->high = HUGE_VAL;
-  }
-  way = remainder(way - s->first, turn);
-  if (way < s->low || way > s->high || r < s->farthest - near) {
-    return 0;
-  }
-  s->low = fmax(s->low, way - asin(near / r));
-  s->high = fmin(s->high, way + asin(near / r));
-  s->farthest = fmax(s->farthest, r);
-  return 1;
-}
-
-/* One column against another, or few rows: a path through the corners only. */
+/* One column against another, or few rows: a path without the points that are nearer than a third of a pixel to the one drawn last. */
 static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol)
 {
-  Sector s = {0};
-  size_t last = 0, drawn = 0;
+  const double near = 0.3;
+  double drawn_x = 0, drawn_y = 0;
   int pen = 0;
 
   for (size_t i = 0; i < t->nrows; i++) {
-    double x = px(p, lag_table_cell(t, i, xcol)), y = py(p, lag_table_cell(t, i, ycol));
-    int gap = !isfinite(x) || !isfinite(y), begins = !pen;
-    if (pen && (gap || !in_sector(&s, x, y)) && drawn < last) {
-      point(f, p, lag_table_cell(t, last, xcol), lag_table_cell(t, last, ycol), &pen);
-      s = (Sector){.x = px(p, lag_table_cell(t, last, xcol)), .y = py(p, lag_table_cell(t, last, ycol))};
-      drawn = last;
-      in_sector(&s, x, y);
+    double x = lag_table_cell(t, i, xcol), y = lag_table_cell(t, i, ycol);
+    if (pen && hypot(px(p, x) - drawn_x, py(p, y) - drawn_y) < near) {
+      continue;
     }
-    if (gap || begins) {
-      point(f, p, lag_table_cell(t, i, xcol), lag_table_cell(t, i, ycol), &pen);
-      s = (Sector){.x = x, .y = y};
-      drawn = i;
-    }
-    last = i;
-  }
-  if (pen && drawn < last) {
-    point(f, p, lag_table_cell(t, last, xcol), lag_table_cell(t, last, ycol), &pen);
+    point(f, p, x, y, &pen);
+    drawn_x = px(p, x);
+    drawn_y = py(p, y);
   }
 }
 
@@ -302,28 +263,20 @@ static void label_of(const char *name, const char *unit, double room, char *s, s
   snprintf(s, n, unit[0] ? "%s [%s]" : "%s", short_name, unit);
 }
 
-/* Line i of a legend: curve k and its name. */
-static void legend_line(FILE *f, const Panel *p, int i, int k, const char *name)
-{
-  char stroke[64];
-  double y = p->y + 12 + LINE * i, x = p->x + p->w + 14;
-
-  stroke_of(k, stroke, sizeof stroke);
-  fprintf(f, "<path d=\"M%.1f %.1fh20\" %s stroke-width=\"2.5\"/>\n", x, y, stroke);
-  text(f, x + 27, y + 4, "", name);
-}
-
 /* Line i of a legend for `total` series, with room for `room` lines; the last may say "and N more". */
 static void legend(FILE *f, const Panel *p, int i, int total, int room, int k, const char *name)
 {
-  char s[160];
+  char s[160], stroke[64];
+  double y = p->y + 12 + LINE * i, x = p->x + p->w + 14;
 
   if (i + 1 < room || (i + 1 == room && total == room)) {
     truncate_text(name, MOST_NAME, s, sizeof s);
-    legend_line(f, p, i, k, s);
+    stroke_of(k, stroke, sizeof stroke);
+    fprintf(f, "<path d=\"M%.1f %.1fh20\" %s stroke-width=\"2.5\"/>\n", x, y, stroke);
+    text(f, x + 27, y + 4, "", s);
   } else if (i + 1 == room) {
     snprintf(s, sizeof s, "and %d more", total - i);
-    text(f, p->x + p->w + 14, p->y + 12 + LINE * i + 4, "", s);
+    text(f, x, y + 4, "", s);
   }
 }
 
@@ -493,7 +446,7 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   char xlabel[176], ylabel[176];
   int x = d->x[0];
   Panel p = {.x = LEFT, .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380, .xlabel = xlabel,
-             .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL};
+             .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL, .powers = d->powers};
 
   for (int i = 0; i < d->n; i++) {
     lag_table_range(t, d->x[i], &p.x0, &p.x1);
@@ -510,62 +463,16 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   axes(f, &p, ylabel, 1);
   for (int i = 0; i < d->n; i++) {
     curve(f, &p, t, d->x[i], d->y[i], i);
+    for (size_t k = 0; k < t->nrows && d->powers; k++) {
+      mark(f, px(&p, lag_table_cell(t, k, d->x[i])), py(&p, lag_table_cell(t, k, d->y[i])), colour[i % 8]);
+    }
     if (d->n > 1) {
       legend(f, &p, i, d->n, legend_room(&p), i, t->cols[d->y[i]].name);
     }
   }
-  if (x && !t->points && d->n == 1) {
+  if (x && !t->points && !d->powers && d->n == 1) {
     mark_ends(f, &p, t, x, d->y[0]);
   }
-}
-
-/* ---- Logarithmic charts */
-
-static void series_curve(FILE *f, const Panel *p, const Series *s, int k)
-{
-  char stroke[64];
-  int pen = 0;
-
-  stroke_of(k, stroke, sizeof stroke);
-  fprintf(f, "<path fill=\"none\" %s stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"", stroke);
-  for (int i = 0; i < s->n; i++) {
-    point(f, p, log10(s->x[i]), log10(s->y[i]), &pen);
-  }
-  fputs("\"/>\n", f);
-  for (int i = 0; i < s->n; i++) {
-    fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"2.6\" fill=\"%s\"/>\n", px(p, log10(s->x[i])), py(p, log10(s->y[i])), colour[k % 8]);
-  }
-}
-
-int lag_svg_chart(const char *path, const char *title, const char *xlabel, const char *ylabel, const Series *s, int n)
-{
-  enum { NAMES = 190 };
-  double high = n * LINE + 12;
-  Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - NAMES, .h = high > 460 ? high : 460,
-             .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL, .xlabel = xlabel, .powers = 1};
-  Outfile o;
-
-  if (lag_outfile_open(&o, path)) {
-    return -1;
-  }
-  for (int k = 0; k < n; k++) {
-    for (int i = 0; i < s[k].n; i++) {
-      p.x0 = fmin(p.x0, log10(s[k].x[i]));
-      p.x1 = fmax(p.x1, log10(s[k].x[i]));
-      p.y0 = fmin(p.y0, log10(s[k].y[i]));
-      p.y1 = fmax(p.y1, log10(s[k].y[i]));
-    }
-  }
-  widen(&p.x0, &p.x1, 0.04);
-  widen(&p.y0, &p.y1, 0.04);
-  head(o.f, WIDTH, TOP + (int)p.h + BOTTOM, title);
-  axes(o.f, &p, ylabel, 1);
-  for (int k = 0; k < n; k++) {
-    series_curve(o.f, &p, &s[k], k);
-    legend_line(o.f, &p, k, k, s[k].name);
-  }
-  fputs("</svg>\n", o.f);
-  return lag_outfile_close(&o, OUTFILE_KEEP);
 }
 
 int lag_svg_write(const char *path, const Table *t, const char *title, const PlottedCurves *d)

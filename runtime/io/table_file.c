@@ -1,9 +1,8 @@
 /* Tables and files of rows. Enters: the columns of a simulation, then one row at a time; leaves: a CSV file (RFC 4180;
  * a header with names and units, numbers with the digits to read back exactly), or a NumPy .npy file.
  *
- * The .npy file is a one-dimensional array of records with one 8-byte field a column (text columns: the length of the longest
- * word); the field's title is "name [unit]": a = numpy.load("f.npy"); a["th"], a["th [deg]"], a.dtype.fields. Format: NumPy
- * Enhancement Proposal 1; version 1.0, and 3.0 where a name is not ASCII. */
+ * The .npy file is a one-dimensional array of records with one 8-byte field a column; the field's title is "name [unit]":
+ * a = numpy.load("f.npy"); a["th"], a["th [deg]"], a.dtype.fields. Format: NumPy Enhancement Proposal 1, version 3.0. */
 #include <errno.h>
 #include <math.h>
 #include <stdint.h>
@@ -130,62 +129,6 @@ static void csv_head(Rows *r)
   putc('\n', r->out.f);
 }
 
-/* Decodes the next UTF-8 character; bytes that are not UTF-8 one by one. */
-static uint32_t next_char(const unsigned char **s)
-{
-  uint32_t c = *(*s)++;
-  int more = c >= 0xF0 ? 3 : c >= 0xE0 ? 2 : c >= 0xC0 ? 1 : 0;
-
-  c &= more == 3 ? 0x07u : more == 2 ? 0x0Fu : more == 1 ? 0x1Fu : 0xFFu;
-  for (; more > 0 && (**s & 0xC0) == 0x80; more--) {
-    c = c << 6 | (*(*s)++ & 0x3Fu);
-  }
-  return c;
-}
-
-/* Length of the longest word of a text column in characters, at least 1. */
-static size_t word_width(const Column *c)
-{
-  size_t most = 1;
-
-  for (int i = 0; i < c->nwords; i++) {
-    size_t n = 0;
-    for (const unsigned char *s = (const unsigned char *)c->words[i]; *s; n++) {
-      next_char(&s);
-    }
-    most = n > most ? n : most;
-  }
-  return most;
-}
-
-static void npy_word(FILE *f, const Column *c, const char *word)
-{
-  const unsigned char *s = (const unsigned char *)word;
-
-  for (size_t n = word_width(c); n > 0; n--) {
-    uint32_t code = *s ? next_char(&s) : 0;
-    fwrite(&code, sizeof code, 1, f);
-  }
-}
-
-static int is_ascii(const Rows *r)
-{
-  for (int i = 0; i < r->ncols; i++) {
-    const Column *c = &r->cols[i];
-    for (const char *s = c->name; *s; s++) {
-      if ((unsigned char)*s >= 128) {
-        return 0;
-      }
-    }
-    for (const char *s = c->unit; *s; s++) {
-      if ((unsigned char)*s >= 128) {
-        return 0;
-      }
-    }
-  }
-  return 1;
-}
-
 /* Writes a Python string literal. */
 static void python_text(FILE *f, const char *s)
 {
@@ -221,11 +164,7 @@ static void npy_dict(Rows *r, FILE *f)
     }
     python_text(f, c->name);
     fputs(c->unit[0] ? "), " : ", ", f);
-    if (c->words) {
-      fprintf(f, "'%cU%zu')", order, word_width(c));
-    } else {
-      fprintf(f, "'%cf8')", order);
-    }
+    fprintf(f, "'%cf8')", order);
   }
   fputs("], 'fortran_order': False, 'shape': (", f);
 }
@@ -242,13 +181,10 @@ static int npy_head(Rows *r)
   }
   npy_dict(r, m);
   fclose(m);
-  int v3 = !is_ascii(r) || size > 60000;
-  size_t fixed = v3 ? 12 : 10, total = (fixed + size + 32 + 63) / 64 * 64, length = total - fixed;
+  size_t fixed = 12, total = (fixed + size + 32 + 63) / 64 * 64, length = total - fixed;
   FILE *f = r->out.f;
-  fwrite("\x93NUMPY", 1, 6, f);
-  putc(v3 ? 3 : 1, f);
-  putc(0, f);
-  for (int i = 0; i < (v3 ? 4 : 2); i++) {
+  fwrite("\x93NUMPY\3\0", 1, 8, f);
+  for (int i = 0; i < 4; i++) {
     putc((int)(length >> 8 * i & 255), f);
   }
   fwrite(dict, 1, size, f);
@@ -280,24 +216,20 @@ int lag_rows_write(Rows *r, const double *row)
     csv_head(r);
   }
   r->nrows++;
+  if (r->npy) {
+    fwrite(row, sizeof *row, (size_t)r->ncols, f);
+    return ferror(f) ? -1 : 0;
+  }
   for (int i = 0; i < r->ncols; i++) {
     const Column *c = &r->cols[i];
-    if (!r->npy && i) {
-      putc(',', f);
-    }
-    if (!c->words && r->npy) {
-      fwrite(&row[i], sizeof row[i], 1, f);
-    } else if (!c->words) {
-      fputs(lag_number_text(row[i], (char[64]){0}), f);
-    } else if (r->npy) {
-      npy_word(f, c, c->words[(int)row[i]]);
-    } else {
+    fputs(i ? "," : "", f);
+    if (c->words) {
       csv_text(f, c->words[(int)row[i]]);
+    } else {
+      fputs(lag_number_text(row[i], (char[64]){0}), f);
     }
   }
-  if (!r->npy) {
-    putc('\n', f);
-  }
+  putc('\n', f);
   return ferror(f) ? -1 : 0;
 }
 

@@ -207,30 +207,20 @@ DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
   return o;
 }
 
-int dense_invert(uint32_t n, long double *a, long double *inverse) {
-  for (uint32_t i = 0; i < n * n; i++) inverse[i] = i % (n + 1) == 0;
-  for (uint32_t c = 0; c < n; c++) {
-    uint32_t best = c;
-    for (uint32_t i = c; i < n; i++)
-      if (fabsl(a[i * n + c]) > fabsl(a[best * n + c])) best = i;
-    long double first = a[best * n + c];
-    if (!(fabsl(first) > 0) || !isfinite(first)) return 0;
-    for (uint32_t k = 0; k < n; k++) {
-      long double x = a[best * n + k], y = inverse[best * n + k];
-      a[best * n + k] = a[c * n + k];
-      inverse[best * n + k] = inverse[c * n + k];
-      a[c * n + k] = x / first;
-      inverse[c * n + k] = y / first;
-    }
-    for (uint32_t i = 0; i < n; i++) {
-      long double ratio = a[i * n + c];
-      for (uint32_t k = 0; i != c && ratio != 0 && k < n; k++) {
-        a[i * n + k] -= ratio * a[c * n + k];
-        inverse[i * n + k] -= ratio * inverse[c * n + k];
-      }
-    }
+int dense_invert(Arena *arena, uint32_t n, const long double *a, long double *inverse) {
+  ArenaMark before = arena_mark(arena);
+  size_t w = 2 * (size_t)n;
+  long double *both = ARENA_ARRAY(arena, long double, n * w + 1);
+  uint32_t *pivot = ARENA_ARRAY(arena, uint32_t, n + 1);
+  for (size_t i = 0; i < n; i++) {
+    memcpy(both + i * w, a + i * n, n * sizeof *a);
+    both[i * w + n + i] = 1;
   }
-  return 1;
+  dense_echelon(n, (uint32_t)w, both, 0, pivot);
+  int regular = n == 0 || (pivot[n - 1] == n - 1 && isfinite(dense_largest(a, (size_t)n * n))); /* else a column without a pivot was passed over */
+  for (size_t i = 0; i < n; i++) memcpy(inverse + i * n, both + i * w + n, n * sizeof *inverse);
+  arena_forget(arena, before);
+  return regular;
 }
 
 long double dense_largest(const long double *x, size_t n) {

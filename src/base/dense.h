@@ -16,8 +16,8 @@ long double dense_largest(const long double *x, size_t n);
 /* Solves m x = b for each row b of rows[count*n], in place, for m[n*n]. 0: m is singular. */
 int dense_solve_rows(Arena *a, uint32_t n, const long double *m, uint32_t count, long double *rows);
 
-/* Inverts a[n*n] into inverse[n*n] by Gauss-Jordan elimination with partial pivoting; a is destroyed. Returns 0 where a is singular. */
-int dense_invert(uint32_t n, long double *a, long double *inverse);
+/* Inverts a[n*n] into inverse[n*n] by Gauss-Jordan elimination with partial pivoting. Returns 0 where a is singular. */
+int dense_invert(Arena *arena, uint32_t n, const long double *a, long double *inverse);
 
 /* Gram-Schmidt step: subtracts from row[n] its projection onto the `rank` orthonormal rows of `before`, twice because of rounding, and
  * normalises the remainder. Returns the remainder's length relative to the row, from 0 to 1. Kahan's "twice is enough", in B. Parlett, The

@@ -22,7 +22,7 @@ typedef struct {
 } MethodOption;
 
 typedef struct {
-  const char *name;
+  const char *name, *does; /* does: first line of the description */
   unsigned flags;
   const MethodOption *options;
 } MethodInfo;

@@ -1,277 +1,122 @@
-/* Exact linear systems: integers of up to 96 limbs of 32 bits, and Bareiss's fraction-free elimination on integer rows. */
+/* Exact linear systems modulo three primes: two make the fractions (P. S. Wang, SYMSAC 1981, DOI 10.1145/800206.806398), the third confirms them. */
 #include "base/rational_solve.h"
 
+#include <math.h>
 #include <string.h>
 
-enum { LIMBS = 96, BITS = 32 };
+__extension__ typedef unsigned __int128 Product;
+__extension__ typedef __int128 Wide;
 
-/* sign * sum of at[i] 2^(32 i); n is 0 for 0, otherwise at[n - 1] is not 0. */
-typedef struct {
-  int sign;
-  uint32_t n;
-  uint32_t at[LIMBS];
-} BigInt;
+enum { PRIMES = 3 };
+static const uint64_t primes[PRIMES] = {4611686018427387847u, 4611686018427387817u, 4611686018427387787u}; /* the largest below 2^62 */
+static const uint64_t MOST = (uint64_t)1 << 61; /* numerators and denominators up to here are unique modulo two primes */
 
-typedef struct {
-  int overflow;
-} Overflow;
+static uint64_t multiply(uint64_t a, uint64_t b, uint64_t p) { return (uint64_t)((Product)a * b % p); }
+static uint64_t subtract(uint64_t a, uint64_t b, uint64_t p) { return a >= b ? a - b : a + p - b; }
 
-static BigInt big_int(int64_t x) {
-  BigInt w = {.sign = x < 0 ? -1 : 1};
-  uint64_t size = x < 0 ? (uint64_t)0 - (uint64_t)x : (uint64_t)x;
-  for (; size; size >>= BITS) w.at[w.n++] = (uint32_t)size;
-  return w;
+/* 1/a = a^(p - 2), by Fermat. */
+static uint64_t inverse(uint64_t a, uint64_t p) {
+  uint64_t r = 1;
+  for (uint64_t n = p - 2; n; n >>= 1, a = multiply(a, a, p))
+    if (n & 1) r = multiply(r, a, p);
+  return r;
 }
 
-static void copy(BigInt *to, const BigInt *from) {
-  to->sign = from->sign;
-  to->n = from->n;
-  memcpy(to->at, from->at, from->n * sizeof *from->at);
+static uint64_t residue(int64_t x, uint64_t p) {
+  uint64_t size = (x < 0 ? (uint64_t)0 - (uint64_t)x : (uint64_t)x) % p;
+  return x < 0 ? subtract(0, size, p) : size;
 }
 
-static void trim(BigInt *x) {
-  while (x->n && !x->at[x->n - 1]) x->n--;
-}
-
-/* --- magnitudes, without signs --- */
-
-static int compare(const BigInt *a, const BigInt *b) {
-  if (a->n != b->n) return a->n < b->n ? -1 : 1;
-  for (uint32_t i = a->n; i-- > 0;)
-    if (a->at[i] != b->at[i]) return a->at[i] < b->at[i] ? -1 : 1;
-  return 0;
-}
-
-/* a += b */
-static void add_magnitudes(Overflow *w, BigInt *a, const BigInt *b) {
-  uint32_t n = a->n > b->n ? a->n : b->n;
-  uint64_t carry = 0;
-  for (uint32_t i = 0; i < n; i++) {
-    carry += (uint64_t)(i < a->n ? a->at[i] : 0) + (i < b->n ? b->at[i] : 0);
-    a->at[i] = (uint32_t)carry;
-    carry >>= BITS;
-  }
-  a->n = n;
-  if (!carry) return;
-  if (n == LIMBS) w->overflow = 1;
-  else a->at[a->n++] = (uint32_t)carry;
-}
-
-/* to = a - b, for a >= b; `to` may be a or b. */
-static void subtract_magnitudes(BigInt *to, const BigInt *a, const BigInt *b) {
-  int64_t borrow = 0;
-  for (uint32_t i = 0; i < a->n; i++) {
-    borrow += (int64_t)a->at[i] - (i < b->n ? b->at[i] : 0);
-    to->at[i] = (uint32_t)borrow;
-    borrow >>= BITS;
-  }
-  to->n = a->n;
-  trim(to);
-}
-
-/* --- arithmetic --- */
-
-/* a -= b */
-static void subtract(Overflow *w, BigInt *a, const BigInt *b) {
-  if (a->n == 0) {
-    copy(a, b);
-    a->sign = -a->sign;
-  } else if (b->n && a->sign != b->sign) add_magnitudes(w, a, b);
-  else if (compare(a, b) >= 0) subtract_magnitudes(a, a, b);
-  else {
-    subtract_magnitudes(a, b, a);
-    a->sign = -a->sign;
-  }
-}
-
-static void multiply(Overflow *w, const BigInt *a, const BigInt *b, BigInt *to) {
-  *to = (BigInt){.sign = a->sign * b->sign, .n = a->n && b->n ? a->n + b->n : 0};
-  if (to->n > LIMBS) {
-    w->overflow = 1;
-    to->n = 0;
-  }
-  for (uint32_t i = 0; i < a->n && to->n; i++) {
-    uint64_t carry = 0;
-    for (uint32_t k = 0; k < b->n || carry; k++) {
-      carry += to->at[i + k] + (k < b->n ? (uint64_t)a->at[i] * b->at[k] : 0);
-      to->at[i + k] = (uint32_t)carry;
-      carry >>= BITS;
+/* Gauss-Jordan elimination of m[n*width] modulo p. Returns 0 where its first n columns are singular. */
+static int eliminate(uint32_t n, uint32_t width, uint64_t *m, uint64_t p) {
+  for (size_t k = 0; k < n; k++) {
+    size_t from = k;
+    while (from < n && !m[from * width + k]) from++;
+    if (from == n) return 0;
+    uint64_t *pivot = m + k * width, scale = inverse(m[from * width + k], p);
+    for (size_t j = 0; j < width; j++) {
+      uint64_t x = m[from * width + j];
+      m[from * width + j] = pivot[j];
+      pivot[j] = multiply(x, scale, p);
     }
-  }
-  trim(to);
-}
-
-/* a 2^shift, shift < 32 */
-static void shift_up(BigInt *a, uint32_t shift) {
-  uint64_t carry = 0;
-  for (uint32_t i = 0; i < a->n; i++) {
-    carry |= (uint64_t)a->at[i] << shift;
-    a->at[i] = (uint32_t)carry;
-    carry >>= BITS;
-  }
-  if (carry) a->at[a->n++] = (uint32_t)carry;
-}
-
-static void shift_down(BigInt *a, uint32_t shift) {
-  for (uint32_t i = 0; i < a->n; i++)
-    a->at[i] = (uint32_t)(((uint64_t)a->at[i] | (i + 1 < a->n ? (uint64_t)a->at[i + 1] << BITS : 0)) >> shift);
-  trim(a);
-}
-
-/* Subtracts q*b from rest[j ..]; where that is negative, adds b back once. Returns the correct quotient digit, q or q - 1. */
-static uint32_t subtract_digit(BigInt *rest, uint32_t j, const BigInt *b, uint64_t q) {
-  int64_t borrow = 0;
-  uint64_t carry = 0;
-  for (uint32_t i = 0; i <= b->n; i++) {
-    carry += i < b->n ? q * b->at[i] : 0;
-    borrow += (int64_t)rest->at[i + j] - (int64_t)(uint32_t)carry;
-    rest->at[i + j] = (uint32_t)borrow;
-    borrow >>= BITS;
-    carry >>= BITS;
-  }
-  if (!borrow) return (uint32_t)q;
-  carry = 0;
-  for (uint32_t i = 0; i <= b->n; i++) {
-    carry += (uint64_t)rest->at[i + j] + (i < b->n ? b->at[i] : 0);
-    rest->at[i + j] = (uint32_t)carry;
-    carry >>= BITS;
-  }
-  return (uint32_t)(q - 1);
-}
-
-/* a becomes the remainder of a / divisor, *quotient the quotient; signs as in C. Knuth, The Art of Computer Programming 2, 4.3.1, algorithm D. */
-static void divide(Overflow *w, BigInt *a, const BigInt *divisor, BigInt *quotient) {
-  BigInt b = *divisor;
-  uint32_t shift = 0;
-  *quotient = (BigInt){.sign = a->sign * b.sign};
-  if (compare(a, &b) < 0) return;
-  if (a->n == LIMBS) {
-    w->overflow = 1;
-    return;
-  }
-  while (!(b.at[b.n - 1] << shift >> (BITS - 1))) shift++;
-  uint32_t n = a->n;
-  shift_up(&b, shift);
-  shift_up(a, shift);
-  for (uint32_t i = a->n; i <= n; i++) a->at[i] = 0;
-  uint64_t top = b.at[b.n - 1], next = b.n > 1 ? b.at[b.n - 2] : 0;
-  for (uint32_t j = n - b.n + 1; j-- > 0;) {
-    uint64_t two = (uint64_t)a->at[j + b.n] << BITS | a->at[j + b.n - 1], q = two / top, rest = two % top;
-    uint64_t below = b.n > 1 ? a->at[j + b.n - 2] : 0;
-    for (; q > UINT32_MAX || (rest <= UINT32_MAX && q * next > (rest << BITS | below)); rest += top) q--;
-    quotient->at[j] = subtract_digit(a, j, &b, q);
-  }
-  quotient->n = n - b.n + 1;
-  a->n = b.n;
-  trim(a);
-  shift_down(a, shift);
-  trim(quotient);
-}
-
-/* a becomes the greatest common divisor of a and b; b is destroyed. */
-static void big_gcd(Overflow *w, BigInt *a, BigInt *b) {
-  BigInt rest, ignored;
-  while (b->n && !w->overflow) {
-    divide(w, a, b, &ignored);
-    copy(&rest, a);
-    copy(a, b);
-    copy(b, &rest);
-  }
-  a->sign = 1;
-}
-
-/* --- numbers --- */
-
-static Num num_of(const BigInt *x) {
-  Num value = num_int(0), base = num_int((int64_t)1 << BITS);
-  for (uint32_t i = x->n; i-- > 0;) {
-    value = num_mul(value, base);
-    value = num_add(value, num_int(x->at[i]));
-  }
-  return x->sign < 0 ? num_neg(value) : value;
-}
-
-static Num ratio(Overflow *w, const BigInt *top, const BigInt *bottom) {
-  BigInt common = *top, other = *bottom, n = *top, d = *bottom, above, below;
-  big_gcd(w, &common, &other);
-  divide(w, &n, &common, &above);
-  divide(w, &d, &common, &below);
-  Num x = num_of(&above);
-  return num_div(x, num_of(&below));
-}
-
-/* --- the system --- */
-
-/* Multiplies a row by the common denominator of its entries: integers. */
-static void scale_to_integers(Overflow *w, uint32_t n, const Num *from, const BigInt *common, BigInt *to) {
-  for (uint32_t k = 0; k < n; k++) {
-    BigInt scaled, factor, number = big_int(from[k].num), denominator = big_int(from[k].den), all = *common;
-    divide(w, &all, &denominator, &factor);
-    multiply(w, &factor, &number, &scaled);
-    copy(&to[k], &scaled);
-  }
-}
-
-/* common becomes its least common multiple with the denominators of from[n]. Returns 0 where a number is not exact. */
-static int add_denominators(Overflow *w, uint32_t n, const Num *from, BigInt *common) {
-  for (uint32_t k = 0; k < n; k++) {
-    if (!num_is_exact(from[k])) return 0;
-    BigInt shared = *common, denominator = big_int(from[k].den), other = denominator, factor, product;
-    big_gcd(w, &shared, &other);
-    divide(w, &denominator, &shared, &factor);
-    multiply(w, common, &factor, &product);
-    copy(common, &product);
+    for (size_t i = 0; i < n; i++) {
+      uint64_t *row = m + i * width, factor = row[k];
+      for (size_t j = k; j < width && i != k && factor; j++) row[j] = subtract(row[j], multiply(factor, pivot[j], p), p);
+    }
   }
   return 1;
 }
 
-/* Exchanges a row with a pivot in column k into row k. Returns 0 where there is none. */
-static int exchange(Arena *a, uint32_t n, uint32_t width, BigInt *m, uint32_t k) {
-  uint32_t from = k;
-  while (from < n && !m[(size_t)from * width + k].n) from++;
-  if (from == n) return 0;
-  if (from == k) return 1;
-  size_t size = width * sizeof *m;
-  BigInt *kept = ARENA_ARRAY(a, BigInt, width);
-  memcpy(kept, m + (size_t)k * width, size);
-  memcpy(m + (size_t)k * width, m + (size_t)from * width, size);
-  memcpy(m + (size_t)from * width, kept, size);
-  return 1;
+/* [A B] modulo p, eliminated; NULL where a number is not exact, or A is singular. */
+static uint64_t *solve_modulo(Arena *a, uint32_t n, const Num *A, uint32_t columns, const Num *B, uint64_t p) {
+  uint32_t width = n + columns;
+  uint64_t *m = ARENA_ARRAY(a, uint64_t, (size_t)n * width + 1);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < width; j++) {
+      Num x = j < n ? A[i * n + j] : B[i * columns + j - n];
+      if (!num_is_exact(x)) return NULL;
+      m[i * width + j] = x.den == 1 ? residue(x.num, p) : multiply(residue(x.num, p), inverse(residue(x.den, p), p), p);
+    }
+  return eliminate(n, width, m, p) ? m : NULL;
 }
 
-/* Eliminates column k from all rows but row k; every entry is divided, exactly, by the previous pivot. */
-static void eliminate(Overflow *w, uint32_t n, uint32_t width, BigInt *m, uint32_t k, const BigInt *before) {
-  const BigInt *pivot = m + (size_t)k * width;
-  BigInt one, other, factor;
-  for (uint32_t i = 0; i < n; i++) {
-    BigInt *row = m + (size_t)i * width;
-    if (i == k) continue;
-    copy(&factor, &row[k]);
-    for (uint32_t j = 0; j < width && !w->overflow; j++) {
-      multiply(w, &pivot[k], &row[j], &one);
-      multiply(w, &factor, &pivot[j], &other);
-      subtract(w, &one, &other);
-      divide(w, &one, before, &row[j]);
+/* *x := the fraction with these residues, by Euclid's algorithm. Returns 0 where there is none up to MOST. */
+static int fraction(const uint64_t r[PRIMES], Num *x) {
+  uint64_t p = primes[0], q = primes[1];
+  Product above = (Product)p * q, below = (Product)p * multiply(subtract(r[1], r[0] % q, q), inverse(p % q, q), q) + r[0];
+  Wide before = 0, factor = 1;
+  while (below > MOST) {
+    Product times = above / below, rest = above % below;
+    Wide next = before - (Wide)times * factor;
+    above = below;
+    below = rest;
+    before = factor;
+    factor = next;
+  }
+  if (factor == 0 || factor > (Wide)MOST || factor < -(Wide)MOST) return 0;
+  *x = num_ratio(factor < 0 ? -(int64_t)below : (int64_t)below, factor < 0 ? -(int64_t)factor : (int64_t)factor);
+  return num_is_exact(*x) && residue(x->num, primes[2]) == multiply(r[2], residue(x->den, primes[2]), primes[2]);
+}
+
+/* Columns of X, [n*(n + columns)] behind the unit matrix, by Gauss-Jordan elimination of numbers that keep error bounds and residues. */
+static Num *solve_rounded(Arena *a, uint32_t n, const Num *A, uint32_t columns, const Num *B) {
+  uint32_t width = n + columns;
+  Num *m = ARENA_ARRAY(a, Num, (size_t)n * width + 1);
+  for (size_t i = 0; i < n; i++) {
+    memcpy(m + i * width, A + i * n, n * sizeof *m);
+    memcpy(m + i * width + n, B + i * columns, columns * sizeof *m);
+  }
+  for (size_t k = 0; k < n; k++) {
+    size_t best = k;
+    for (size_t i = k; i < n; i++)
+      if (fabs(num_value(m[i * width + k])) > fabs(num_value(m[best * width + k]))) best = i;
+    Num *pivot = m + k * width, by = m[best * width + k];
+    for (size_t j = 0; j < width; j++) {
+      Num x = m[best * width + j];
+      m[best * width + j] = pivot[j];
+      pivot[j] = num_div(x, by);
+    }
+    for (size_t i = 0; i < n; i++) {
+      Num *row = m + i * width, factor = row[k];
+      for (size_t j = k; j < width && i != k && !num_is_zero(factor); j++) row[j] = num_sub(row[j], num_mul(factor, pivot[j]));
     }
   }
+  return m;
 }
 
 int rational_solve(Arena *a, uint32_t n, const Num *A, uint32_t columns, const Num *B, Num *X) {
-  Overflow w = {0};
-  uint32_t width = n + columns;
-  BigInt *m = ARENA_ARRAY(a, BigInt, (size_t)n * width + 1), before = big_int(1);
-  for (size_t i = 0; i < n; i++) {
-    BigInt common = big_int(1);
-    if (!add_denominators(&w, n, A + i * n, &common) || !add_denominators(&w, columns, B + i * columns, &common)) return 0;
-    scale_to_integers(&w, n, A + i * n, &common, m + i * width);
-    scale_to_integers(&w, columns, B + i * columns, &common, m + i * width + n);
-  }
-  for (uint32_t k = 0; k < n && !w.overflow; k++) {
-    if (!exchange(a, n, width, m, k)) return 0;
-    eliminate(&w, n, width, m, k, &before);
-    copy(&before, &m[(size_t)k * width + k]);
-  }
-  for (size_t i = 0; i < n && !w.overflow; i++)
-    for (size_t j = 0; j < columns; j++) X[i * columns + j] = ratio(&w, &m[i * width + n + j], &m[i * width + i]);
-  return !w.overflow;
+  uint64_t *m[PRIMES];
+  const Num *rounded = NULL;
+  Num *out = ARENA_ARRAY(a, Num, (size_t)n * columns + 1);
+  for (int k = 0; k < PRIMES; k++)
+    if (!(m[k] = solve_modulo(a, n, A, columns, B, primes[k]))) return 0;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < columns; j++) {
+      size_t at = i * (n + columns) + n + j;
+      if (fraction((const uint64_t[]){m[0][at], m[1][at], m[2][at]}, &out[i * columns + j])) continue;
+      if (!rounded) rounded = solve_rounded(a, n, A, columns, B);
+      out[i * columns + j] = rounded[at];
+    }
+  memcpy(X, out, (size_t)n * columns * sizeof *X);
+  return 1;
 }

@@ -46,60 +46,48 @@ static Matrix matrix_of(Arena *arena, uint32_t n, const SparseElements *a) {
 
 /* --- scales --- */
 
-/* Exponents of the elements that count. Line i < n is row i, line n + j column j; its entries are from[line] .. from[line + 1] - 1, and `other`
- * is the line that crosses there. */
-typedef struct {
-  uint32_t *from, *other;
-  long double *size;
-} Exponents;
+enum { NOT_COUNTED = INT_MIN / 4 };
 
-static Exponents exponents_of(Arena *arena, const Matrix *m) {
+/* Binary exponents of the elements; NOT_COUNTED where one is 0, not finite, or at the level of double rounding beside the largest of its row and
+ * column. */
+static int *exponents_of(Arena *arena, const Matrix *m) {
   const int rounding = 2 * (DBL_MANT_DIG - 1) - 8;
   uint32_t n = m->n, count = m->from[n];
   int *top = ARENA_ARRAY(arena, int, 2 * (size_t)n + 1), *size = ARENA_ARRAY(arena, int, (size_t)count + 1);
-  Exponents e = {ARENA_ARRAY(arena, uint32_t, 2 * (size_t)n + 2), ARENA_ARRAY(arena, uint32_t, 2 * (size_t)count + 1),
-                 ARENA_ARRAY(arena, long double, 2 * (size_t)count + 1)};
-  for (uint32_t i = 0; i < 2 * n; i++) top[i] = INT_MIN / 4;
+  for (uint32_t i = 0; i < 2 * n; i++) top[i] = NOT_COUNTED;
   for (uint32_t k = 0; k < count; k++) {
     const SparseElement *x = &m->at[k];
-    size[k] = INT_MIN / 4;
+    size[k] = NOT_COUNTED;
     if (x->value == 0 || !isfinite(x->value)) continue;
     (void)frexpl(x->value, &size[k]);
     if (size[k] > top[x->row]) top[x->row] = size[k];
     if (size[k] > top[n + x->col]) top[n + x->col] = size[k];
   }
-  uint32_t *next = e.from + 1; /* index of the line's next entry; in the end, of the first entry of the next line */
-  for (int fill = 0; fill < 2; fill++) {
-    for (uint32_t k = 0; k < count; k++) {
-      uint32_t row = m->at[k].row, column = n + m->at[k].col;
-      if (size[k] == INT_MIN / 4) continue;
-      int in_row = 2 * size[k] >= top[row] + top[column] - rounding;
-      if (!in_row) continue;
-      if (fill) e.other[next[row]] = column, e.size[next[row]] = size[k];
-      next[row]++;
-      if (fill) e.other[next[column]] = row, e.size[next[column]] = size[k];
-      next[column]++;
-    }
-    for (uint32_t line = 0, sum = 0; !fill && line < 2 * n; line++) {
-      uint32_t here = next[line];
-      next[line] = sum;
-      sum += here;
-    }
-  }
-  return e;
+  for (uint32_t k = 0; k < count; k++)
+    if (size[k] != NOT_COUNTED && 2 * size[k] < top[m->at[k].row] + top[n + m->at[k].col] - rounding) size[k] = NOT_COUNTED;
+  return size;
 }
 
+/* Line i < n is row i, line n + j column j. */
 static void equilibrate(Arena *arena, const Matrix *m, int *row, int *column) {
-  uint32_t n = m->n;
-  Exponents e = exponents_of(arena, m);
-  long double *scale = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 1), moved = 1;
+  uint32_t n = m->n, *counted = ARENA_ARRAY(arena, uint32_t, 2 * (size_t)n + 1);
+  const int *size = exponents_of(arena, m);
+  long double *scale = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 1), *sum = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 1), moved = 1;
   for (int turn = 0; turn < 60 && moved > 0.1L; turn++) {
     moved = 0;
-    for (uint32_t line = 0; line < 2 * n; line++) {
-      long double sum = 0, was = scale[line];
-      for (uint32_t k = e.from[line]; k < e.from[line + 1]; k++) sum += e.size[k] + scale[e.other[k]];
-      if (e.from[line + 1] > e.from[line]) scale[line] = -sum / (e.from[line + 1] - e.from[line]);
-      moved = fmaxl(moved, fabsl(scale[line] - was));
+    for (uint32_t first = 0; first < 2 * n; first += n) { /* all rows, then all columns */
+      for (uint32_t line = first; line < first + n; line++) counted[line] = 0, sum[line] = 0;
+      for (uint32_t k = 0; k < m->from[n]; k++) {
+        uint32_t line = first ? n + m->at[k].col : m->at[k].row, other = first ? m->at[k].row : n + m->at[k].col;
+        if (size[k] == NOT_COUNTED) continue;
+        sum[line] += size[k] + scale[other];
+        counted[line]++;
+      }
+      for (uint32_t line = first; line < first + n; line++) {
+        long double was = scale[line];
+        if (counted[line]) scale[line] = -sum[line] / counted[line];
+        moved = fmaxl(moved, fabsl(scale[line] - was));
+      }
     }
   }
   for (uint32_t i = 0; i < n; i++) {

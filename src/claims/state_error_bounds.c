@@ -96,7 +96,7 @@ static int bound_unknowns(StateErrorBounds *w, const Real *off, Real *out) {
     if (!n || n > COUPLED_MOST) continue;
     for (uint32_t i = 0; i < n; i++)
       for (uint32_t k = 0; k < n; k++) w->part[i * n + k] = w->K[w->in[i] * width + w->in[k]];
-    if (!dense_invert(n, w->part, w->inverse)) return 0;
+    if (!dense_invert(w->e->m->arena, n, w->part, w->inverse)) return 0;
     for (uint32_t i = 0; i < n; i++) {
       Real sum = 0, loss = 0;
       for (uint32_t k = 0; k < n; k++) {

@@ -61,8 +61,8 @@ static const CommandRow commands[] = {
    "An effect is left out together with those that require it. `shared` are operations that several effects need. Method, steps and end are chosen as for "
    "`lagc run`: --method, --tol, --step, --until. `lagc help effect` says more.\n\n"
    "  name=value            a parameter, another start, an input, as for `lagc run`\n\n"
-   "--accuracy X searches for the smallest set of the scene's effects whose result differs from the scene's by at most X: with all other effects left out together; it "
-   "runs all sets if the scene has up to ten effects. Prints the `use` line of whose run set."},
+   "--accuracy X searches for the smallest set of the scene's effects whose result differs from the scene's by at most X: with all other effects left out together, in "
+   "scenes of up to ten effects. Prints the `use` line of whose run set."},
   {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--method NAME] [--with linear]", "make a simulator",
    "Compiles the model to a simulator with all its scenes; it has the options of `lagc run`, which `SIMULATOR --help` "
    "lists."},
@@ -144,9 +144,6 @@ static const OptionRow options[] = {
    "method of integration, NAME or \"NAME(option=value, ...)\"; `lagc help methods` lists them"},
   {"--method", NULL, "NAME", TAKES_METHOD, "", C(BUILD) | C(EMIT), OWN(method),
    "adds the derivatives that this method needs; those besides accelerations; those of the scenes' methods are always there"},
-  {"--quadrature", NULL, "NAME", TAKES_TEXT, "", STEPS, PASSED, "quadrature of the method variational: midpoint, trapezoid, gauss or lobatto"},
-  {"--order", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "order of the method variational"},
-  {"--stages", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "stages of the method gauss"},
   {"--tol", NULL, "X", TAKES_NUMBER, "", STEPS, PASSED, "tolerance, absolute and relative"},
   {"--step", NULL, "H", TAKES_NUMBER, "", STEPS, PASSED, "step [s]; the first step to try if the method chooses its own steps"},
   {"--target", NULL, "X", TAKES_NUMBER, "", C(COST), PASSED, "names the cheapest setting whose error is at most X"},
@@ -170,14 +167,13 @@ static const OptionRow options[] = {
   {"--from", NULL, "'X,Y'", TAKES_TEXT, "", C(RUN) | C(PLOT), PASSED, "the point where the first rod begins; default: the origin"},
   {"--no-rods", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "points only"},
   {"--trace", NULL, NULL, TAKES_NOTHING, "", C(RUN) | C(PLOT), PASSED, "the path of the last point"},
-  {"--json", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report as one JSON object"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report as one JSON object; it also names the source of sines and cosines, and the build"},
   {"--json", NULL, NULL, TAKES_NOTHING, "", C(LYAPUNOV), PASSED, "exponents and spreads as one JSON object"},
   {"--json", NULL, NULL, TAKES_NOTHING, "", C(COST), PASSED, "all runs as one JSON object"},
   {"--json", NULL, NULL, TAKES_NOTHING, "", C(MODES), PASSED, "all modes as one JSON object"},
   {"--json", NULL, NULL, TAKES_NOTHING, "", C(EFFECTS), OWN(json), "the table as one JSON object"},
-  {"--events", NULL, "FILE.csv", TAKES_FILE, "csv npy", SIMULATE, PASSED, "each event with its time and the state before and after it"},
+  {"--events", NULL, "FILE.csv", TAKES_FILE, "csv", SIMULATE, PASSED, "each event with its time and the state before and after it"},
   {"--quiet", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(LYAPUNOV) | C(COST), PASSED, "no report"},
-  {"--verbose", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "the report also names the source of sines and cosines, and the rounding of products and sums"},
   {"--save-state", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED, "writes the complete state at the end"},
   {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
    "continues from a saved state, with the same scene, method and values: the results are those of an uninterrupted run, bit by bit"},

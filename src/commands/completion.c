@@ -8,12 +8,13 @@
 #include <ctype.h>
 #include <string.h>
 
+#include "base/method_table.h"
 #include "base/words.h"
-#include "toolchain/runtime_methods.h"
 #include "commands/options.h"
 #include "commands/commands.h"
-#include "commands/completion_scripts.h"
-#include "commands/language_reference.h"
+#include "commands/complete_bash.h" /* static const char *const complete_bash[]: generated from the scripts */
+#include "commands/complete_fish.h"
+#include "commands/complete_zsh.h"
 #include "commands/help.h"
 #include "model/model.h"
 #include "commands/settings.h"
@@ -23,7 +24,6 @@
 typedef struct {
   Arena *arena;
   StrBuf *out;
-  const char *argv0;
   const char *word; /* the last one */
   const char *head; /* prefix of every candidate: "--method=", "th + ", or "" */
   Command command;
@@ -123,11 +123,8 @@ static void offer_expression(CommandLine *l) {
 /* ---- values of options ---- */
 
 static void offer_methods(CommandLine *l) {
-  Methods methods = {0};
-  const char *error;
   offer(l, "help", "list them, with their options");
-  if (!methods_list(l->arena, l->argv0, 1, &methods, &error)) return;
-  for (uint32_t i = 0; i < methods.n; i++) offer(l, methods.at[i].name, methods.at[i].does);
+  for (size_t i = 0; method_at(i); i++) offer(l, method_at(i)->name, method_at(i)->does);
 }
 
 static void offer_choices(CommandLine *l, const OptionRow *o) {
@@ -225,9 +222,9 @@ static void offer_word(CommandLine *l) {
   }
 }
 
-static void complete(StrBuf *out, const char *const *words, size_t n, const char *argv0) {
+static void complete(StrBuf *out, const char *const *words, size_t n) {
   if (!n) return;
-  CommandLine l = {.arena = out->arena, .out = out, .argv0 = argv0, .word = words[n - 1], .head = ""};
+  CommandLine l = {.arena = out->arena, .out = out, .word = words[n - 1], .head = ""};
   if (n == 1) {
     offer_commands(&l);
     return;
@@ -241,9 +238,24 @@ static void complete(StrBuf *out, const char *const *words, size_t n, const char
   else if (l.command == CMD_CACHE) offer_options(&l);
 }
 
+/* `lagc completion SHELL`: prints a built-in script. */
+static void print_script(StrBuf *out, const char *shell) {
+  static const struct {
+    const char *shell;
+    const char *const *lines;
+    size_t n;
+  } scripts[] = {
+    {"bash", complete_bash, sizeof complete_bash / sizeof *complete_bash},
+    {"zsh", complete_zsh, sizeof complete_zsh / sizeof *complete_zsh},
+    {"fish", complete_fish, sizeof complete_fish / sizeof *complete_fish},
+  };
+  for (size_t i = 0; i < sizeof scripts / sizeof *scripts; i++)
+    for (size_t k = 0; k < scripts[i].n && strcmp(scripts[i].shell, shell) == 0; k++) sb_puts(out, scripts[i].lines[k]);
+}
+
 int command_completion(Compiler *c) {
   StrBuf out = strbuf(c->arena);
-  if (c->o.command == CMD_COMPLETE) complete(&out, c->o.rest.at, c->o.rest.n, c->argv0);
-  else completion_print_script(&out, c->o.topic);
+  if (c->o.command == CMD_COMPLETE) complete(&out, c->o.rest.at, c->o.rest.n);
+  else print_script(&out, c->o.topic);
   return compiler_write(c, NULL, &out);
 }

@@ -1,21 +1,112 @@
 /* Help pages, put together from the tables of commands and options, the chapters of the reference, and the table of units. */
 #include "commands/help.h"
 
+#include <ctype.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "base/method_table.h"
 #include "base/suggest.h"
 #include "base/words.h"
 #include "commands/command_table.h"
 #include "commands/commands.h"
+#include "commands/language.h" /* static const char *const language[]: generated from grammar/LANGUAGE.md */
 #include "commands/options.h"
 #include "commands/terminal_page.h"
-#include "commands/language_reference.h"
 #include "model/model.h"
 #include "syntax/parse.h"
-#include "toolchain/runtime_methods.h"
+#include "toolchain/toolchain.h"
 
 enum { TERMS = 24 }; /* column of the meanings in lists */
+
+/* ---- chapters of the language reference ---- */
+
+/* A chapter of grammar/LANGUAGE.md runs from a heading (## or ###) to the next. A comment below the heading lists the words that it explains;
+ * the first one names the chapter: <!-- help: scenes scene start span --> */
+typedef struct {
+  const char *const *lines; /* the heading first */
+  size_t n;
+  const char *words; /* "scenes scene start span"; "" where there is no comment */
+} Chapter;
+
+typedef VEC(Chapter) Chapters;
+
+enum { N_LINES = sizeof language / sizeof *language };
+
+static int is_heading(const char *line) { return strncmp(line, "## ", 3) == 0 || strncmp(line, "### ", 4) == 0; }
+
+static const char *words_of(Arena *a, const char *line) {
+  static const char head[] = "<!-- help: ";
+  size_t n = sizeof head - 1;
+  if (strncmp(line, head, n) != 0) return "";
+  const char *end = strstr(line, " -->");
+  return end ? arena_strndup(a, line + n, (size_t)(end - line) - n) : "";
+}
+
+static void reference_chapters(Arena *a, Chapters *out) {
+  int code = 0;
+  for (size_t i = 0; i < N_LINES; i++) {
+    code ^= strncmp(language[i], "```", 3) == 0;
+    if (!code && is_heading(language[i])) {
+      const char *words = i + 1 < N_LINES ? words_of(a, language[i + 1]) : "";
+      vec_push(a, out, ((Chapter){&language[i], 0, words}));
+    }
+    if (out->n) out->at[out->n - 1].n++;
+  }
+}
+
+/* The text of the chapter's heading. */
+static const char *chapter_title(Arena *a, const Chapter *c) {
+  const char *title = c->lines[0] + strspn(c->lines[0], "# ");
+  return arena_strndup(a, title, strcspn(title, "\n"));
+}
+
+/* Whether the line has, before `end` (a | or a colon), code in backticks that begins with the word. */
+static int says_first(const char *line, char end, const char *word) {
+  size_t n = strlen(word);
+  int code = 0;
+  for (const char *s = line; *s && (code || *s != end); s++) {
+    if (*s != '`') continue;
+    code = !code;
+    if (code && strncmp(s + 1, word, n) == 0 && !isalnum((unsigned char)s[n + 1])) return 1;
+  }
+  return 0;
+}
+
+/* Prints line i if it is a row of a table about the word, or, in a chapter that lists the word, an item of a list about
+ * it. Returns 1 when it did. */
+static int print_entry(StrBuf *out, const Chapter *c, size_t i, const char *word) {
+  const char *line = c->lines[i];
+  if (line[0] == '|' && says_first(line + 1, '|', word)) {
+    page_row(out, line);
+    return 1;
+  }
+  if (strncmp(line, "- ", 2) != 0 || !has_word(c->words, word) || !says_first(line, ':', word)) return 0;
+  size_t n = 1;
+  while (i + n < c->n && strncmp(c->lines[i + n], "  ", 2) == 0) n++;
+  page_markdown(out, c->lines + i, n);
+  return 1;
+}
+
+static int names_chapter(const Chapter *c, const char *word) {
+  size_t n = strlen(word);
+  return strncmp(c->words, word, n) == 0 && (c->words[n] == ' ' || c->words[n] == '\0');
+}
+
+/* Appends the chapter's text on a word: rows of tables that begin with it; for one of the chapter's own words also items of
+ * lists that do, or, without any, the whole chapter. Returns 0 when there is nothing. */
+static int chapter_print(StrBuf *out, const Chapter *c, const char *word) {
+  int rows = 0;
+  for (size_t i = 0; i < c->n && !names_chapter(c, word); i++) rows += print_entry(out, c, i, word);
+  if (rows) {
+    const char *chapter = word_at(out->arena, c->words, 0);
+    if (chapter) sb_printf(out, "\n`lagc help %s` says more.\n", chapter);
+    return 1;
+  }
+  if (!has_word(c->words, word)) return 0;
+  page_markdown(out, c->lines, c->n);
+  return 1;
+}
 
 /* ---- commands and options ---- */
 
@@ -208,10 +299,20 @@ int help_print(StrBuf *out, const char *topic, Name *near) {
 
 /* --- the command --- */
 
-/* A program of the runtime prints the methods: `--method help` the table, `--method "help NAME"` one method. */
+/* A program of the runtime, built and cached like a simulator, prints the methods: `--method help` the table, `--method "help NAME"` one method. */
 static int help_methods(Compiler *c, const char *name) {
-  const char *error = NULL, *path = methods_program(c->arena, c->argv0, !c->o.no_gsl, &error);
+  static const char program[] =
+    "#include \"lag.h\"\n\n"
+    "int main(int argc, char **argv) {\n"
+    "  static const lag_program none = {.name = \"\", .doc = \"\", .source = \"\", .effects = \"\"};\n"
+    "  return lag_app_main(argc, argv, &none, %s);\n"
+    "}\n";
+  const char *error = NULL;
   char *argv[] = {"lagc", "--method", name ? arena_printf(c->arena, "help %s", name) : "help", NULL};
+  Toolchain tools;
+  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return usage_error(error);
+  SourceText text = {"runtime_methods.c", arena_printf(c->arena, program, tools.gsl ? "&lag_gsl" : "NULL")};
+  const char *path = toolchain_simulator(c->arena, &tools, &text, 1, &error);
   if (!path) return usage_error(error);
   execv(path, argv);
   return usage_error(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
@@ -219,19 +320,12 @@ static int help_methods(Compiler *c, const char *name) {
 
 int command_help(Compiler *c) {
   StrBuf out = strbuf(c->arena);
-  const char *topic = c->o.topic, *error;
+  const char *topic = c->o.topic;
   Name near;
-  Methods methods = {0};
   if (topic && strcmp(topic, "methods") == 0) return help_methods(c, NULL);
   if (help_print(&out, topic, &near)) return compiler_write(c, NULL, &out);
-  methods_list(c->arena, c->argv0, 1, &methods, &error); /* without a C compiler there are none */
-  VEC(Name) names = {0};
-  for (uint32_t i = 0; i < methods.n; i++) {
-    if (strcmp(methods.at[i].name, topic) == 0) return help_methods(c, topic);
-    vec_push(c->arena, &names, methods.at[i].name);
-  }
-  Name method = suggest(topic, names.at, names.n);
-  near = near ? near : method;
+  if (method_find(topic, strlen(topic))) return help_methods(c, topic);
+  if (!near) near = method_suggest(c->arena, topic);
   return usage_error(near ? arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near)
                          : arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics", topic));
 }

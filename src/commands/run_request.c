@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-#include "commands/point_list.h"
+#include "commands/command_table.h"
+#include "commands/settings.h"
 #include "syntax/parse.h"
 
 typedef struct {
@@ -101,6 +102,66 @@ static int prepare_plot(RequestBuilder *k, const char **error) {
   if (x) add_argument(k, "--plot-x", x);
   if (y) add_argument(k, "--plot-y", y);
   return 1;
+}
+
+/* --- lists of points --- */
+
+typedef struct {
+  const char *x, *y; /* one line, spaces collapsed */
+} PointText;
+
+typedef VEC(PointText) PointTexts;
+
+static int is_blank(char c) { return c && strchr(" \t\r\n", c); }
+
+/* Whether the white space at s, after the character `before`, separates two expressions. */
+static int separates(char before, const char *s) {
+  s += strspn(s, " \t\r\n");
+  if (*s == '\0' || *s == ';' || strchr("+-*/^(,<>=", before)) return 0;
+  if (*s == '+' || *s == '-') return !is_blank(s[1]); /* "a -b" is two, "a - b" one */
+  return !strchr("*/^),<>=[", *s);
+}
+
+/* The end of the point that begins at s; *comma is its first comma outside of brackets, or NULL. */
+static const char *point_end(const char *s, const char **comma) {
+  int depth = 0;
+  char before = ',';
+  *comma = NULL;
+  for (; *s && (*s != ';' || depth); s++) {
+    if (*s == '(' || *s == '[' || *s == '{') depth++;
+    if (*s == ')' || *s == ']' || *s == '}') depth--;
+    if (*s == ',' && depth == 0) {
+      if (*comma) return s;
+      *comma = s;
+    }
+    if (is_blank(*s) && depth == 0 && *comma && separates(before, s)) return s;
+    if (!is_blank(*s)) before = *s;
+  }
+  return s;
+}
+
+/* Splits "x1,y1 x2,y2" or "x1, y1; x2, y2" into the texts of each point. After its comma a point ends at a space that no
+ * operator touches (a sign may follow it). Returns 0, with *error, where a point has not two parts. */
+static int points_split(Arena *a, const char *text, PointTexts *points, const char **error) {
+  for (const char *s = text;;) {
+    s += strspn(s, "; \t\r\n");
+    if (!*s) break;
+    const char *comma, *end = point_end(s, &comma);
+    if (!comma || *end == ',') {
+      *error = arena_printf(a, "\"%s\": each point is x,y, for example 'x1,y1 x2,y2'", text);
+      return 0;
+    }
+    PointText p = {text_trimmed(a, s, (size_t)(comma - s)), text_trimmed(a, comma + 1, (size_t)(end - comma - 1))};
+    if (!p.x[0] || !p.y[0]) {
+      *error = arena_printf(a, "\"%s\": a point lacks x or y", text);
+      return 0;
+    }
+    vec_push(a, points, p);
+    s = end;
+  }
+  if (points->n) return 1;
+  *error = "no point is given; write for example 'x1,y1 x2,y2'";
+  return 0;
 }
 
 /* --- animate --- */
@@ -242,10 +303,7 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   RequestBuilder k = {p, ast, o, ast->arena};
   int ok = 1;
   p->scene = o->scene ? intern(ast->names, o->scene) : NULL;
-  const char *self = o->command == CMD_PLOT ? "lagc plot" : o->command == CMD_ANIMATE ? "lagc animate"
-                   : o->command == CMD_MODES ? "lagc modes" : o->command == CMD_LYAPUNOV ? "lagc lyapunov" : o->command == CMD_COST ? "lagc cost"
-                   : o->command == CMD_EFFECTS ? "lagc effects" : "lagc run";
-  add_argument(&k, self, NULL); /* head of the simulator's messages */
+  add_argument(&k, arena_printf(k.arena, "lagc %s", command_find(o->command)->name), NULL); /* head of the simulator's messages */
   if (o->command == CMD_EFFECTS) add_argument(&k, "--effects", "report");
   for (uint32_t i = 0; i < o->observe.n; i++) ok &= add_output(&k, "--observe", o->observe.at[i]) != NULL;
   ok = ok && prepare_section(&k, error);

@@ -9,6 +9,9 @@
 /* Parses the values of constants. Returns 0 on a mistake, which is in ast->diags. */
 int settings_defines(Ast *ast, Define *defines, uint32_t n);
 
+/* A text on one line, without white space at its ends and with single spaces inside. */
+const char *text_trimmed(Arena *a, const char *text, size_t n);
+
 typedef VEC(CommandInput) GivenList;
 
 /* Moves inputs with a formula or a table, and starts of rotations, from o->rest to *given. Returns 0 on a mistake: see *error, else ast->diags. */

@@ -1,9 +1,9 @@
 /* Simulators of all scenes: Eqns -> IrUnits -> C texts -> program. */
 #include "commands/simulator.h"
 
+#include <stdio.h>
 #include <string.h>
 
-#include "commands/precision_warning.h"
 #include "commands/required_derivatives.h"
 #include "commands/settings.h"
 #include "emit/cnames.h"
@@ -18,6 +18,34 @@
 static Eqns *derive_asked(Compiler *c, const char *scene) {
   return compiler_derive_wanted(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nextra_outputs = c->picture.asked.n,
                                   .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
+}
+
+/* Literals that are no 64-bit fraction were rounded to a double; those of up to SAFE characters lost nothing. */
+static int warn_literal(const Ast *ast, const char *precision) {
+  enum { SAFE = 17 };
+  for (AstId i = 1; i < ast->exprs.n; i++) {
+    const AstExpr *e = ast_expr(ast, i);
+    if (e->kind != AST_NUM || num_is_exact(e->number) || e->span.end - e->span.begin <= SAFE) continue;
+    diag_warning(ast->diags, e->span, "this number is rounded to 17 digits, fewer than --precision %s computes with", precision);
+    diag_help(ast->diags, "if more digits matter, make it a parameter or a start, and give them as name=value");
+    return 1;
+  }
+  return 0;
+}
+
+/* Warns of the first literal that was rounded to a double, or, where there is none, of the first such number in the model's graph. */
+static void precision_warn(const Ast *ast, const ExprGraph *g, const char *precision) {
+  enum { SAFE = 15, ROOM = 32 };
+  if (warn_literal(ast, precision)) return;
+  for (Expr e = 1; e <= expr_count(g); e++) {
+    char text[ROOM];
+    if (!expr_is_num(g, e) || num_is_exact(expr_number(g, e))) continue;
+    num_format_double(text, num_value(expr_number(g, e)));
+    if (strspn(text, "-0.123456789") - (text[0] == '-') - (strchr(text, '.') != NULL) <= SAFE) continue;
+    fprintf(stderr, "lagc: warning: --precision %s: a product of numbers of the model, %s, is rounded to 17 digits; if more digits matter, make them "
+            "parameters\n", precision, text);
+    return;
+  }
 }
 
 /* A scene of a unit with its equations. */

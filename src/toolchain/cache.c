@@ -1,17 +1,14 @@
-/* The cache of simulators: finds a safe folder, seals entries with checksums, removes the least recently used. */
+/* The cache of simulators: finds a safe folder, removes the least recently used entries. */
 #include "toolchain/cache.h"
 
 #include <dirent.h>
-#include <errno.h>
 #include <fcntl.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/hash.h"
 #include "base/vec.h"
 #include "toolchain/files.h"
 
@@ -40,68 +37,22 @@ const char *cache_folder(Arena *a) {
   return dir ? dir : own_folder(a, arena_printf(a, "/tmp/%s", own));
 }
 
-/* A temporary folder in which nobody else can replace a new folder of the user's. */
-static const char *temporary(Arena *a) {
-  const char *const places[] = {getenv("TMPDIR"), "/tmp", "/var/tmp", "."};
-  for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-    BuildFolder probe;
-    if (!places[i] || !places[i][0] || !build_folder_make(a, places[i], &probe)) continue;
-    int safe = dir_is_safe(probe.path);
-    build_folder_remove(&probe, NULL);
-    if (safe) return places[i];
-  }
-  return NULL;
-}
-
-const char *cache_build_folder(Arena *a) {
-  const char *cache = cache_folder(a);
-  return cache ? cache : temporary(a);
-}
-
 void cache_remove_stale_builds(Arena *a) {
-  const char *base = cache_build_folder(a);
-  if (base) build_folder_remove_stale(a, base);
+  const char *dir = cache_folder(a);
+  if (dir) build_folder_remove_stale(a, dir);
 }
 
 /* --- entries --- */
 
-/* Size and FNV-1a checksum of a file, as text; NULL when it cannot be read. */
-static const char *checksum(Arena *a, const char *path) {
-  FILE *f = fopen(path, "rb");
-  uint64_t h = FNV1A_START;
-  char block[16384];
-  long long size = 0;
-  if (!f) return NULL;
-  for (size_t n; (n = fread(block, 1, sizeof block, f)) > 0; size += (long long)n) h = hash_bytes(h, block, n);
-  int bad = ferror(f);
-  fclose(f);
-  return bad ? NULL : arena_printf(a, "%lld %016llx\n", size, (unsigned long long)h);
-}
-
-static const char *seal_of(Arena *a, const char *path) { return arena_printf(a, "%s.sum", path); }
-
-int cache_is_whole(Arena *a, const char *path) {
-  char sealed[64] = "";
-  const char *seal = seal_of(a, path);
-  FILE *f = file_is_own(path) && access(path, X_OK) == 0 && file_is_own(seal) ? fopen(seal, "rb") : NULL;
-  if (!f) return 0;
-  size_t n = fread(sealed, 1, sizeof sealed - 1, f);
-  fclose(f);
-  sealed[n] = '\0';
-  const char *sum = checksum(a, path);
-  int whole = sum && strcmp(sum, sealed) == 0;
+int cache_has(const char *path) {
+  int whole = file_is_own(path) && access(path, X_OK) == 0;
   if (whole) utimensat(AT_FDCWD, path, NULL, 0);
   return whole;
 }
 
-void cache_seal(Arena *a, const char *path) {
-  const char *why, *sum = checksum(a, path);
-  if (sum && file_write(seal_of(a, path), sum, strlen(sum), &why)) chmod(seal_of(a, path), 0600);
-}
-
 typedef struct {
   const char *path;
-  long long size; /* with its seal */
+  long long size;
   struct timespec used;
 } Entry;
 typedef VEC(Entry) Entries;
@@ -116,24 +67,18 @@ static int by_age(const void *x, const void *y) {
 /* All entries, the least recently used first; *total: their size [bytes]. */
 static Entries entries(Arena *a, const char *dir, long long *total) {
   Entries all = {0};
-  struct stat st, seal;
+  struct stat st;
   DIR *d = dir ? opendir(dir) : NULL;
   *total = 0;
   for (struct dirent *e; d && (e = readdir(d));) {
     const char *path = arena_printf(a, "%s/%s", dir, e->d_name);
     if (!is_entry(e->d_name) || lstat(path, &st) != 0) continue;
-    Entry entry = {path, st.st_size + (lstat(seal_of(a, path), &seal) == 0 ? seal.st_size : 0), st.st_mtim};
-    vec_push(a, &all, entry);
-    *total += entry.size;
+    vec_push(a, &all, ((Entry){path, st.st_size, st.st_mtim}));
+    *total += st.st_size;
   }
   if (d) closedir(d);
   if (all.n) qsort(all.at, all.n, sizeof *all.at, by_age);
   return all;
-}
-
-static void remove_entry(Arena *a, const Entry *e) {
-  unlink(e->path);
-  unlink(seal_of(a, e->path));
 }
 
 /* The cache's limit [bytes]: LIMIT_MIB, or LAGC_CACHE_MIB. */
@@ -149,7 +94,7 @@ void cache_limit(Arena *a, const char *keep) {
   Entries all = entries(a, cache_folder(a), &total);
   for (uint32_t i = 0; i < all.n && total > most; i++) {
     if (strcmp(all.at[i].path, keep) == 0) continue;
-    remove_entry(a, &all.at[i]);
+    unlink(all.at[i].path);
     total -= all.at[i].size;
   }
 }
@@ -160,13 +105,13 @@ void cache_print(Arena *a, StrBuf *out) {
   long long total;
   const char *dir = cache_folder(a);
   Entries all = entries(a, dir, &total);
-  sb_printf(out, "folder      %s\n", dir ? dir : "none: there is no folder that only you can write; simulators are built anew each time");
+  sb_printf(out, "folder      %s\n", dir ? dir : "none: set XDG_CACHE_HOME to a folder that only you can write");
   sb_printf(out, "simulators  %u\nsize        %.1f MiB\nlimit       %.0f MiB (LAGC_CACHE_MIB)\n", all.n, mib(total), mib(limit()));
 }
 
 void cache_clear(Arena *a, StrBuf *out) {
   long long total;
   Entries all = entries(a, cache_folder(a), &total);
-  for (uint32_t i = 0; i < all.n; i++) remove_entry(a, &all.at[i]);
+  for (uint32_t i = 0; i < all.n; i++) unlink(all.at[i].path);
   sb_printf(out, "removed %u simulator%s, %.1f MiB\n", all.n, all.n == 1 ? "" : "s", mib(total));
 }

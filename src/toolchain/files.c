@@ -4,7 +4,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +14,7 @@
 
 /* --- files --- */
 
-/* Closes the file, and keeps or drops it. Interruptions are held until then: they would leave the temporary file. */
+/* Closes the file, and keeps or drops it. */
 static int close_outfile(Outfile *o, int ok, const char **error) {
   int why = errno;
   if (lag_outfile_close(o, ok ? OUTFILE_KEEP : OUTFILE_DROP) != 0 && ok) {
@@ -26,16 +25,7 @@ static int close_outfile(Outfile *o, int ok, const char **error) {
   return ok;
 }
 
-static void hold_interruptions(sigset_t *before) {
-  sigset_t held;
-  sigemptyset(&held);
-  sigaddset(&held, SIGINT);
-  sigaddset(&held, SIGTERM);
-  sigaddset(&held, SIGHUP);
-  sigprocmask(SIG_BLOCK, &held, before);
-}
-
-static int write_text(const char *path, const char *text, size_t n, const char **error) {
+int file_write(const char *path, const char *text, size_t n, const char **error) {
   Outfile o;
   errno = 0;
   if (lag_outfile_open(&o, path) != 0) {
@@ -43,17 +33,6 @@ static int write_text(const char *path, const char *text, size_t n, const char *
     return 0;
   }
   return close_outfile(&o, fwrite(text, 1, n, o.f) == n && fflush(o.f) == 0, error);
-}
-
-int file_write(const char *path, const char *text, size_t n, const char **error) {
-  sigset_t before;
-  struct stat st;
-  int direct = strcmp(path, "-") == 0 || (stat(path, &st) == 0 && !S_ISREG(st.st_mode)); /* a pipe may wait for its reader for ever */
-  if (direct) return write_text(path, text, n, error);
-  hold_interruptions(&before);
-  int ok = write_text(path, text, n, error);
-  sigprocmask(SIG_SETMASK, &before, NULL);
-  return ok;
 }
 
 static int copy(FILE *from, FILE *to) {
@@ -66,10 +45,8 @@ static int copy(FILE *from, FILE *to) {
 int file_install(const char *path, const char *from, const char **error) {
   Outfile o;
   struct stat st;
-  sigset_t before;
   FILE *f = fopen(from, "rb");
   int ok = 0;
-  hold_interruptions(&before);
   errno = f ? 0 : errno;
   if (!f || lag_outfile_open(&o, path) != 0) *error = strerror(errno);
   else {
@@ -77,7 +54,6 @@ int file_install(const char *path, const char *from, const char **error) {
     ok = close_outfile(&o, ok && fchmod(fileno(o.f), (st.st_mode | (st.st_mode & 0444) >> 2) & 0777) == 0, error); /* readers may execute it */
   }
   if (f) fclose(f);
-  sigprocmask(SIG_SETMASK, &before, NULL);
   return ok;
 }
 
@@ -132,19 +108,12 @@ static int take_lock(int fd) {
   return fcntl(fd, F_SETLK, &all) == 0 && fstat(fd, &st) == 0 && st.st_nlink > 0;
 }
 
-/* Removes the files in the folder, except `keep` and then the lock. */
-static void remove_files(const char *path, const char *keep) {
-  int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+void build_folder_remove(BuildFolder *f) {
+  int fd = open(f->path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   DIR *d = fd >= 0 ? fdopendir(fd) : NULL;
-  for (struct dirent *e; d && (e = readdir(d));)
-    if (!keep || (strcmp(e->d_name, keep) != 0 && strcmp(e->d_name, "lock") != 0)) unlinkat(fd, e->d_name, 0);
+  for (struct dirent *e; d && (e = readdir(d));) unlinkat(fd, e->d_name, 0);
   if (d) closedir(d);
   else if (fd >= 0) close(fd);
-}
-
-void build_folder_remove(BuildFolder *f, const char *keep) {
-  remove_files(f->path, keep);
-  if (keep) return;
   rmdir(f->path);
   if (f->lock >= 0) close(f->lock);
 }
@@ -156,7 +125,7 @@ static int try_folder(Arena *a, const char *base, BuildFolder *f) {
   f->lock = open(arena_printf(a, "%s/lock", path), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW, 0600);
   if (f->lock >= 0 && take_lock(f->lock)) return 1;
   int why = errno;
-  build_folder_remove(f, NULL);
+  build_folder_remove(f);
   errno = why;
   return 0;
 }
@@ -173,7 +142,7 @@ static void remove_if_stale(Arena *a, const char *path) {
   struct stat st;
   if (lstat(path, &st) != 0 || !S_ISDIR(st.st_mode) || st.st_uid != geteuid()) return;
   BuildFolder f = {path, open(arena_printf(a, "%s/lock", path), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0600)};
-  if (f.lock >= 0 && take_lock(f.lock)) build_folder_remove(&f, NULL);
+  if (f.lock >= 0 && take_lock(f.lock)) build_folder_remove(&f);
   else if (f.lock >= 0) close(f.lock);
 }
 

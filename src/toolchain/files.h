@@ -35,8 +35,8 @@ typedef struct {
 
 /* Makes a build folder in the folder `base`. Returns 0, with errno, on failure. */
 int build_folder_make(Arena *a, const char *base, BuildFolder *f);
-/* Removes the folder and its files; keep: leaves the folder with this file, a program to be run from there. */
-void build_folder_remove(BuildFolder *f, const char *keep);
+/* Removes the folder and its files. */
+void build_folder_remove(BuildFolder *f);
 /* Removes the build folders in `base` whose processes are gone. */
 void build_folder_remove_stale(Arena *a, const char *base);
 

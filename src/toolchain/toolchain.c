@@ -2,23 +2,25 @@
 #include "toolchain/toolchain.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
-#include <signal.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/hash.h"
 #include "base/vec.h"
 #include "toolchain/cache.h"
 #include "toolchain/files.h"
+#include "toolchain/probe_text.h" /* static const char *const probe_text[]: generated from compiler_probe.in */
 #include "toolchain/process.h"
-#include "toolchain/compiler_probe.h"
+
+/* No vector stores in emitted C: the stages of an integrator read results number by number, and store forwarding needs loads of the
+ * size of the store; vector stores cost 5 to 7 ns of latency a stage (make bench T=bench/methods). They are also what triggers the
+ * compiler fault of compiler_probe.in. */
+#define TOOLCHAIN_SCALAR "-fno-tree-slp-vectorize"
 
 /* --- finding the runtime --- */
 
@@ -96,6 +98,52 @@ int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const cha
   return 0;
 }
 
+/* --- the probe for compilers that store wrong numbers --- */
+
+enum { N_LINES = sizeof probe_text / sizeof *probe_text, WRONG = 1 };
+
+/* Runs the compiler with the words `more` after those of cc; returns its exit status. */
+static int run_compiler(Arena *a, const char *cc, const char *const *more, char **said) {
+  Words argv = process_words(a, cc);
+  for (; *more; more++)
+    if (**more) vec_push(a, &argv, arena_strdup(a, *more));
+  vec_push(a, &argv, NULL);
+  return process_run(a, argv.at[0], argv.at, said);
+}
+
+/* Whether the compiler is GCC with AVX-512, the only one known to fail; its predefined macros tell, in 10 ms. */
+static int is_suspect(Arena *a, const char *cc, const char *source) {
+  const char *const more[] = {"-dM", "-E", source, NULL};
+  char *said = NULL;
+  return run_compiler(a, cc, more, &said) == 0 && strstr(said, "#define __AVX512F__ ") && !strstr(said, "#define __clang__ ");
+}
+
+static int fails_with(Arena *a, const char *cc, const char *optimise, const char *flag, const char *source, const char *program) {
+  const char *const more[] = {optimise, TOOLCHAIN_SCALAR, flag, "-o", program, source, NULL};
+  char *said = NULL, *argv[] = {arena_strdup(a, program), NULL};
+  if (run_compiler(a, cc, more, &said) != 0) return 0; /* the build itself will report that */
+  return process_run(a, program, argv, &said) == WRONG;
+}
+
+/* The flag that the compiler `cc` (with its options, as in $CC) needs besides `optimise` and TOOLCHAIN_SCALAR: "" for most. Compilers for processors
+ * with AVX-512 are probed by a program that is written, run and removed in the folder dir. NULL, with *error, when no flag helps. */
+static const char *probe_flag(Arena *a, const char *cc, const char *optimise, const char *dir, const char **error) {
+  static const char *const flags[] = {"", "-march=x86-64-v3"};
+  enum { N_FLAGS = sizeof flags / sizeof *flags };
+  const char *source = arena_printf(a, "%s/probe.c", dir), *program = arena_printf(a, "%s/probe", dir), *why;
+  StrBuf text = strbuf(a);
+  size_t found = 0;
+  for (size_t i = 0; i < N_LINES; i++) sb_puts(&text, probe_text[i]);
+  if (!file_write(source, sb_text(&text), text.n, &why)) return "";
+  if (is_suspect(a, cc, source))
+    while (found < N_FLAGS && fails_with(a, cc, optimise, flags[found], source, program)) found++;
+  remove(source);
+  remove(program);
+  if (found < N_FLAGS) return flags[found];
+  *error = arena_printf(a, "the C compiler `%s` stores wrong numbers, with " TOOLCHAIN_SCALAR " and -march=x86-64-v3 too; set CC to another", cc);
+  return NULL;
+}
+
 /* --- running the compiler --- */
 
 /* Compiles and links with the flags that the simulator reports as LAG_BUILD: no contraction (same bits with and without fused multiply-add),
@@ -123,10 +171,8 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   vec_push(a, &argv, arena_strdup(a, "-lm"));
   vec_push(a, &argv, NULL);
   char *said = NULL;
-  int status = process_run(a, argv.at, &said);
+  int status = process_run(a, argv.at[0], argv.at, &said);
   if (status == 0) return 1;
-  if (interruption_came()) *error = "interrupted";
-  else
   if (status == 127) *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
   else if (t->needs && said && strstr(said, "quadmath"))
     *error = arena_printf(a, "quadruple precision needs libquadmath, which comes with gcc; the C compiler `%s` does not find it: set CC=gcc", t->cc);
@@ -145,10 +191,10 @@ static int compile_with_tmpdir(Arena *a, const Toolchain *t, const char *dir, co
 }
 
 /* Compiles in a new build folder, which stays only on success: f->path/simulator. */
-static int build_in(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
-  const char *base = cache_build_folder(a);
+static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
+  const char *base = cache_folder(a);
   if (!base) {
-    *error = "there is no folder to build in that only you can write: set TMPDIR to one";
+    *error = "there is no folder to build in that only you can write: set XDG_CACHE_HOME to one";
     return 0;
   }
   if (!build_folder_make(a, base, f)) {
@@ -166,17 +212,7 @@ static int build_in(Arena *a, const Toolchain *t, const SourceText *texts, size_
     *error = arena_printf(a, "cannot write %s/simulator: the C compiler `%s` wrote no file", f->path, t->cc);
     ok = 0;
   }
-  if (!ok) build_folder_remove(f, NULL);
-  return ok;
-}
-
-/* Builds likewise; a signal ends the C compiler, and lagc once the folder is removed. */
-static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
-  Interruptions before;
-  interruptions_note(&before);
-  int ok = build_in(a, t, texts, n, f, error);
-  if (ok && interruption_came()) build_folder_remove(f, NULL);
-  interruptions_restore(&before);
+  if (!ok) build_folder_remove(f);
   return ok;
 }
 
@@ -191,7 +227,7 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
   if (!build(a, t, texts, n, &f, error)) return 0;
   int ok = file_install(output, arena_printf(a, "%s/simulator", f.path), &why);
   if (!ok) *error = arena_printf(a, "cannot write %s: %s", output, why);
-  build_folder_remove(&f, NULL);
+  build_folder_remove(&f);
   return ok;
 }
 
@@ -222,18 +258,12 @@ static const char *name_of(Arena *a, const Toolchain *t, const SourceText *texts
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error) {
   const char *cache = cache_folder(a), *path = cache ? arena_printf(a, "%s/%s", cache, name_of(a, t, texts, n)) : NULL;
   BuildFolder f;
-  if (path && cache_is_whole(a, path)) return path;
+  if (path && cache_has(path)) return path;
   if (!build(a, t, texts, n, &f, error)) return NULL;
   const char *made = arena_printf(a, "%s/simulator", f.path);
-  if (!path) { /* the simulator stays in its build folder, locked while it runs; a later command removes both */
-    build_folder_remove(&f, "simulator");
-    return made;
-  }
   int ok = chmod(made, 0700) == 0 && rename(made, path) == 0;
   if (!ok) *error = arena_printf(a, "cannot write %s: %s", path, strerror(errno));
-  build_folder_remove(&f, NULL);
-  if (!ok) return NULL;
-  cache_seal(a, path);
-  cache_limit(a, path);
-  return path;
+  build_folder_remove(&f);
+  if (ok) cache_limit(a, path);
+  return ok ? path : NULL;
 }

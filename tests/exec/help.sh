@@ -135,10 +135,8 @@ check "the header of lagc help header" embeds
 is "lagc help methods is run --method help" "$("$LAGC" run $m --method help)" "$("$LAGC" help methods)"
 
 # ---- methods of integration, by their names ----
-is "a method" "$(printf '%s\n' 'verlet, of order 2 (dense output 2), fixed steps, symplectic, symmetric, for' \
-  'models without states; Newton'"'"'s method where the model is not separable; with' 'constraints or without.' \
-  'Stoermer-Verlet as kick, drift, kick; one force a step. DOI' '10.1103/PhysRev.159.98')" "$(chapter verlet | sed '/^ *step =/,$d')"
-check "and its options" sh -c '"$0" help verlet | grep -q "^  step = "' "$LAGC"
+is "a method: its row" "$(chapter methods | grep '^  verlet ')" "$(chapter verlet | grep '^  verlet ')"
+is "its words and options" "$(chapter methods | sed -n '/^  verlet:/,/^$/p')" "$(chapter verlet | sed -n '/^  verlet:/,/^$/p')"
 no_help() { for w in $(chapter methods | sed -n 's/^  \([a-z0-9_-]*\)  *[0-9].*/\1/p') equilibrium picture; do explains "$w" || echo "$w"; done; }
 empty "every method has help" "$(no_help)"
 check "a mistyped method" says 'no help on `verlett`: did you mean `verlet`?' help verlett

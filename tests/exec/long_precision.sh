@@ -12,7 +12,7 @@ no_doubles() {
 check "no doubles are left in the runtime" no_doubles
 check "in a table" begins $cos10 "$(quad "$TMP/osc.lag" --method taylor --tol 1e-33 -o - --quiet | tail -1 | cut -d , -f 2)"
 check "in JSON" begins $cos10 "$(quad "$TMP/osc.lag" --method taylor --tol 1e-33 --json | sed 's/.*"final": {"x": \([^,]*\),.*/\1/')"
-check "gauss" begins -0.83907152907645245225886394782 "$(quad "$TMP/osc.lag" --method gauss --stages 4 --step 1e-3 | value x)"
+check "gauss" begins -0.83907152907645245225886394782 "$(quad "$TMP/osc.lag" --method 'gauss(stages=4)' --step 1e-3 | value x)"
 check "dop853" begins -0.83907152907645245225 "$(quad "$TMP/osc.lag" --method dop853 --tol 1e-23 | value x)"
 check "the time of an event" begins 1.8540746773013719184338503471952 "$(quad "$TMP/pend.lag" --method taylor --tol 1e-33 | sed -n 's/^stopped by an event at t = //p')"
 check "a span of 20 pi" begins 62.831853071795864769252867665590 "$(quad "$TMP/osc.lag" turns --method taylor --tol 1e-33 | sed -n 's/^reached t = //p')"

@@ -41,16 +41,16 @@ check "the end has a row off the grid" sh -c "tail -1 end.csv | grep -q '^0.25,'
 ./sim swing --until=-1 --every=0.25 -o back.csv --quiet
 check "backwards" sh -c "tail -1 back.csv | grep -q '^-1,' && [ \$(wc -l <back.csv) = 6 ]"
 
-# --- npy: magic, version 1.0, header length a multiple of 64 in all, data of nrows*ncols*8 bytes
+# --- npy: magic, version 3.0, header length a multiple of 64 in all, data of nrows*ncols*8 bytes
 ./sim swing -o a.npy --quiet
 magic=$(od -An -tx1 -N8 a.npy | tr -d ' \n')
-len=$(od -An -tu1 -j8 -N2 a.npy | awk '{print $1 + 256 * $2}')
-check "npy magic and version 1.0" [ "$magic" = 934e554d50590100 ]
-check "npy header is padded to 64" [ $(((len + 10) % 64)) = 0 ]
-check "npy holds the rows" [ "$(wc -c <a.npy)" = $((10 + len + 101 * 3 * 8)) ]
-check "npy header is a dictionary with the shape" sh -c "head -c $((10 + len)) a.npy | grep -a -q \"'fortran_order': False, 'shape': (101,), }\""
-check "npy fields" sh -c "head -c $((10 + len)) a.npy | grep -a -qF '[(\"t [s]\"' || head -c $((10 + len)) a.npy | grep -a -qF '[((\"t [s]\", \"t\"), '"
-od -An -v -tf8 -j$((10 + len)) a.npy | tr -s ' \n' '\n' | sed '/^$/d' | awk 'NR % 3 == 1 { printf "%.6g\n", $1 }' >npy_t
+len=$(od -An -tu1 -j8 -N4 a.npy | awk '{print $1 + 256 * $2}')
+check "npy magic and version 3.0" [ "$magic" = 934e554d50590300 ]
+check "npy header is padded to 64" [ $(((len + 12) % 64)) = 0 ]
+check "npy holds the rows" [ "$(wc -c <a.npy)" = $((12 + len + 101 * 3 * 8)) ]
+check "npy header is a dictionary with the shape" sh -c "head -c $((12 + len)) a.npy | grep -a -q \"'fortran_order': False, 'shape': (101,), }\""
+check "npy fields" sh -c "head -c $((12 + len)) a.npy | grep -a -qF '[(\"t [s]\"' || head -c $((12 + len)) a.npy | grep -a -qF '[((\"t [s]\", \"t\"), '"
+od -An -v -tf8 -j$((12 + len)) a.npy | tr -s ' \n' '\n' | sed '/^$/d' | awk 'NR % 3 == 1 { printf "%.6g\n", $1 }' >npy_t
 sed 1d rows.csv | cut -d, -f1 | awk '{ printf "%.6g\n", $1 }' >csv_t
 check "npy and CSV agree on times" cmp npy_t csv_t
 
@@ -63,10 +63,6 @@ check "head of the log" [ "$(head -1 ev.csv)" = "t [s],event,y [m],y' [m/s],y af
 check "landing, before and after" awk -F, 'NR == 2 { t = sqrt(2/9.81); v = sqrt(2*9.81)
   exit !($2 == "ground" && ($1 - t)^2 < 1e-24 && ($4 + v)^2 < 1e-20 && ($6 - 0.9*v)^2 < 1e-20 && $5 == $3) }' ev.csv
 check "an event without action changes nothing" sh -c "grep apex ev.csv | awk -F, '{ n++; if (\$3 != \$5 || \$4 != \$6) exit 1 } END { exit n != 8 }'"
-check "log as NumPy" status 0 drop --events ev.npy
-check "npy of words" sh -c "head -c 200 ev.npy | grep -a -qF \"(\\\"event\\\", '<U6')\""
-check "npy log: as many rows" sh -c "head -c 400 ev.npy | grep -a -qF \"'shape': (16,), }\""
-check "npy log: words are UTF-32" sh -c 'od -An -c -w4 -v ev.npy | tr -d " \n" | grep -q "g.0.0.0r.0.0.0o.0.0.0u.0.0.0n.0.0.0d.0.0.0"'
 check "json counts, with times" sh -c './sim drop --json | grep -qE "\"events\": \{\"ground\": \{\"count\": 8, \"first\": 0.4515236409857"'
 check "json: never" sh -c './sim drop --until 0.1 --json | grep -qF "\"ground\": {\"count\": 0, \"first\": null, \"last\": null}"'
 check "a log needs events" says 2 "has no events" swing --events none.csv
@@ -234,9 +230,9 @@ check "svg is closed and has both panels" sh -c 'tail -1 p.svg | grep -q "</svg>
 check "svg escapes names" grep -q "E &quot;total&quot;" p.svg
 check "one against the other" status 0 fixed --svg q.svg --plot-x th --plot-y "th'"
 check "html" status 0 swing --html a.html --points th,th
-check "html says what it shows" sh -c 'grep -q "^\"rods\": true.*\"names\": \[\[\"th\", \"th\"\]\]" a.html && tail -1 a.html | grep -q "</html>"'
+check "html says what it shows" sh -c 'grep -q "\"rods\": true.*\"names\": \[\[\"th\", \"th\"\]\]" a.html && tail -1 a.html | grep -q "</html>"'
 check "names with commas and quotes" status 0 swing --html b.html --points 'E "total", T+V,E "total", T+V;E "total", T+V,E "total", T+V' --no-rods
-check "are escaped in a script" sh -c 'grep -qF "[\"E \\u0022total\\u0022, T+V\", " b.html'
+check "are escaped in a script" sh -c 'grep -qF "[\"E \\\"total\\\", T+V\", " b.html'
 check "html of what points?" says 2 "add --points" swing --html c.html
 check "points of what?" says 2 "need an animation" swing --points th,th
 check "a point that is no output" says 2 "no output is named tt; did you mean t?" swing --html c.html --points th,tt

@@ -50,11 +50,10 @@ wrong() { # wrong WORDS ARGS...
   run models/pendulum.lag "$@"
   [ $? = 2 ] && grep -qF -e "$words" "$TMP/err"
 }
-check "options of methods are options of the command line" says "variational(step=0.1, quadrature=lobatto, order=4)" models/pendulum.lag \
-  --method variational --quadrature lobatto --order 4 --step 0.1
-check "also in front of a scene" says "gauss(step=0.1, stages=3)" models/pendulum.lag --stages=3 --method gauss --step 0.1 wide
-check "a method without them says so" wrong 'method rk45 has no option "quadrature"' --method rk45 --quadrature lobatto
-check "an unknown quadrature is refused with those there are" wrong 'it is gauss, lobatto, midpoint, trapezoid' --method variational --quadrature simpson
+check "options of methods" says "variational(step=0.1, quadrature=lobatto, order=4)" models/pendulum.lag --method 'variational(quadrature=lobatto, order=4)' --step 0.1
+check "also in front of a scene" says "gauss(step=0.1, stages=3)" models/pendulum.lag --method 'gauss(stages=3)' --step 0.1 wide
+check "a method without them says so" wrong 'method rk45 has no option "quadrature"' --method 'rk45(quadrature=lobatto)'
+check "an unknown quadrature is refused with those there are" wrong 'it is gauss, lobatto, midpoint, trapezoid' --method 'variational(quadrature=simpson)'
 check "an odd order is refused" wrong "order: write 2, 4, 6 or 8" --method 'variational(order=3)'
 check "half a stage is refused" wrong "stages: write 1, 2, 3 or 4" --method 'gauss(stages=1.5)'
 check "the midpoint rule has one order" wrong "write quadrature=gauss" --method 'variational(quadrature=midpoint, order=4)'
@@ -135,8 +134,8 @@ for o in 'taylor(adapt=off, step=0.1)' 'taylor(order=2, adapt=off, step=0.1)' 'r
   'gauss(step=0.1)' 'radau(adapt=off, step=0.1)'; do
   check "$o: 100 steps to 10 s, no rest of rounding's size" says "^steps 100," models/pendulum.lag --method "$o" --until 10
 done
-check "whose sines a run took" says "^arithmetic: sin and cos: lag_math.h; -ffp-contract=off$" models/pendulum.lag --until 1 --verbose
-check "or the C library's" says "^arithmetic: sin and cos: the C library.*; -ffp-contract=off$" models/pendulum.lag --until 1 --math libm --verbose
+check "whose sines a run took" says '"math": "sin and cos: lag_math.h", "build": ".*-ffp-contract=off' models/pendulum.lag --until 1 --json
+check "or the C library's" says '"math": "sin and cos: the C library.*", "build": ".*-ffp-contract=off' models/pendulum.lag --until 1 --math libm --json
 check "for those who ask" sh -c "'$LAGC' run models/pendulum.lag --until 1 >'$TMP/out' && ! grep -q 'arithmetic\|sin and cos' '$TMP/out'"
 
 # ---- the table

@@ -239,7 +239,7 @@ unbalanced() {
 empty "its tags are closed" "$(unbalanced $page)"
 check "nothing of the template is left" not_grep '@[A-Z]*@' $page
 
-hook() { sed -n 's/^"rods": \([a-z]*\), "trace": \([a-z]*\), "from": \([a-z]*\),.*"names": \(.*\),$/\1 \2 \3 \4/p' "$1"; }
+hook() { sed -n 's/.*"rods": \([a-z]*\), "trace": \([a-z]*\), "from": \([a-z]*\),.*"names": \(.*\), "dt".*/\1 \2 \3 \4/p' "$1"; }
 is "rods, no trace, from the origin" 'true false false [["x1", "y1"], ["x2", "y2"]]' "$(hook $page)"
 check "a cart" a "$models/cart_pendulum.lag" -o b.html
 is "hangs its pendulum from itself" 'true false true [["x", "0"], ["px", "py"]]' "$(hook b.html)"
@@ -268,7 +268,7 @@ is "are taken apart" 'false false false [["l*sin(th)/2", "-l*cos(th)/2"], ["0 [m
 check "one point from another" a "$p" --points 'x,y' --from '0,l' -o b.html
 is "with its rod" 'true false true [["0", "l"], ["x", "y"]]' "$(hook b.html)"
 # page_frames FILE: how many lines its data have, one a frame
-page_frames() { sed -n '/^"v"/,/]}$/p' "$1" | wc -l; }
+page_frames() { sed -n '/^, "v"/,/]}$/p' "$1" | wc -l; }
 check "frames as asked" a "$p" --every 0.001 -o b.html
 is "a row is a frame" "20001" "$(page_frames b.html)"
 # By default frames follow the motion: 5254 swings of Foucault's pendulum are some 70 frames each, in a few MB.

@@ -2,6 +2,7 @@
  * of the runtime, and so needs no second list of names, options and requirements of methods. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "lag.h"
 
@@ -29,7 +30,7 @@ static void list(const lag_method *const *methods, int n)
 {
   for (int i = 0; i < n; i++) {
     const lag_method *m = methods[i];
-    printf("  {\"%s\", 0%s%s%s%s%s%s%s,\n", m->name, m->flags & LAG_METHOD_NO_STATES ? " | METHOD_NO_STATES" : "",
+    printf("  {\"%s\", \"%.*s\", 0%s%s%s%s%s%s%s,\n", m->name, (int)strcspn(m->doc, "\n"), m->doc, m->flags & LAG_METHOD_NO_STATES ? " | METHOD_NO_STATES" : "",
            m->flags & LAG_METHOD_VARIATION ? " | METHOD_VARIATION" : "", m->flags & LAG_METHOD_SPLITS ? " | METHOD_SPLITS" : "",
            m->flags & LAG_METHOD_JACOBIAN ? " | METHOD_JACOBIAN" : "", m->flags & LAG_METHOD_TAYLOR ? " | METHOD_TAYLOR" : "",
            m->flags & LAG_METHOD_FLOWS ? " | METHOD_FLOWS" : "", m->flags & LAG_METHOD_CONSTRAINTS ? " | METHOD_CONSTRAINTS" : "");
@@ -40,7 +41,7 @@ static void list(const lag_method *const *methods, int n)
 int main(void)
 {
   printf("/* The runtime's methods, as liblag describes them: `BLESS=1 make test T=golden/run_method_rows` writes this file.\n"
-         " * {name, flags, options} */\n");
+         " * {name, description, flags, options} */\n");
   list(lag_methods, lag_nmethods);
 #ifdef WITH_GSL
   printf("#ifdef LAGC_WITH_GSL\n");
