@@ -88,8 +88,8 @@ static void test_pairs(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
   for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
-    uint32_t few = check_model(arena_printf(a, BODIES "%s", 12, pairs[k]), 24), many = check_model(arena_printf(a, BODIES "%s", 20, pairs[k]), 40);
-    if (!few || !many || many > few + 8*12) fail_msg("%s12 and 20 bodies leave %u and %u instructions", pairs[k], few, many);
+    uint32_t few = check_model(arena_printf(a, BODIES "%s", 12, pairs[k]), 24), many = check_model(arena_printf(a, BODIES "%s", 16, pairs[k]), 32);
+    if (!few || !many || many > few + 4*12) fail_msg("%s12 and 16 bodies leave %u and %u instructions", pairs[k], few, many);
   }
   arena_free(a);
 }
