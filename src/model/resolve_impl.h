@@ -82,12 +82,7 @@ const Value *function_argument(const Builder *b, const Instance *function, Name 
  * definition is circular: reported. */
 void suspend_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span);
 
-/* resolve_function.c: appends an instance of a function for argument shapes 0 (number), 2, 3 to b->instances, without
- * evaluating it; resolve_instance evaluates it, too. */
-Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes);
-const Instance *resolve_instance(Builder *b, uint32_t function, const uint32_t *shapes);
-
-/* Stores the value of an instance's body; an error in the body is attributed to the call. */
+/* resolve_function.c: stores the value of an instance's body; an error in the body is attributed to the call. */
 void finish_instance(Builder *b, Instance *in, Value v);
 
 /* Declares symbols for first and second rates of an instance's arguments. */

@@ -252,13 +252,5 @@ Frac normal_power(Normal *n, Frac base, Frac u) {
   PolyId id = poly_intern(n->ring, base.num);
   if (id == 0) poly_fail(n->ring, POLY_DIVIDED_BY_ZERO); /* 0^u depends on the sign of u */
   n->canonical = 0; /* x^u and y^u and (x*y)^u are related */
-  if (!n->proof) return n->keep_range && !is_constant(u) ? whole_power(n, id, base.den, u) : power_of(n, id, base.den, u);
-  PowerParts parts = normal_power_parts(n, base, u);
-  Frac product = frac_num(n->field, num_int(1));
-  for (uint32_t i = 0; i < parts.n && n->ring->status == POLY_OK; i++) {
-    PowerPart p = parts.at[i];
-    Frac one = power_of(n, p.is_e ? 0 : poly_intern(n->ring, p.base.num), p.is_e ? 0 : p.base.den, p.exponent);
-    product = frac_mul(n->field, product, one);
-  }
-  return product;
+  return n->keep_range && !is_constant(u) ? whole_power(n, id, base.den, u) : power_of(n, id, base.den, u);
 }

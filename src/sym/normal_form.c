@@ -185,13 +185,7 @@ static Frac signed_opaque(Normal *n, Expr e, Frac u, int odd) {
   return odd ? frac_neg(n->field, f) : f;
 }
 
-Frac normal_opaque_log(Normal *n, Frac u) {
-  Expr of = normal_expr(n, u), e = expr_fn(n->g, EX_LOG, of);
-  return opaque(n, EX_LOG, &u, 1, e);
-}
-
 static Frac log_frac(Normal *n, Expr e, Frac u) {
-  if (n->proof) return normal_log(n, u);
   if (u.den == 0 && u.num.n == 1 && u.num.at[0].mono == 0 && num_is_one(u.num.at[0].c)) return frac_poly(poly_zero());
   return opaque(n, EX_LOG, &u, 1, e);
 }

@@ -19,26 +19,4 @@ Frac normal_pow_num(Normal *n, Frac a, Num e);
 /* sqrt(a^2 + b^2), or |a| for b = 0; printed as e where squaring might overflow. */
 Frac normal_hypot(Normal *n, Frac a, Frac b, Expr e);
 
-/* expand_logs.c, for proofs: base^exponent as a product of powers b^u or e^u, split at numbers, factors of known sign and squares;
- * log(u) as the sum over the powers of u. */
-typedef struct {
-  Frac base, exponent;
-  int is_e;
-} PowerPart;
-typedef VEC(PowerPart) PowerParts;
-PowerParts normal_power_parts(Normal *n, Frac base, Frac exponent);
-Frac normal_log(Normal *n, Frac u);
-
-/* normal_form.c: log(u) as a generator. */
-Frac normal_opaque_log(Normal *n, Frac u);
-
-/* radicals.c: whether all terms of p are positive by coefficients, even powers and positive generators. */
-int normal_poly_positive(const Normal *n, Poly p);
-
-/* For proofs: square root q of p, q > 0 by normal_poly_positive; returns 0 if none is found. */
-int normal_positive_root(Normal *n, Poly p, Poly *q);
-
-/* Whether generator x is known to be positive wherever the expression is defined. */
-int normal_gen_positive(const Normal *n, GenId x);
-
 #endif
