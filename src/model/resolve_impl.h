@@ -105,7 +105,7 @@ const char *rotation_function_name(size_t i);
 
 /* Reports the misuse of a rotation, written `text`; returns FAILED. */
 typedef enum {
-  TURN_SUM, TURN_NEGATION, TURN_DIVISOR, TURN_SCALED, TURN_BEHIND, TURN_PLANE, TURN_PRIME, TURN_UNIT, TURN_EQUATION, TURN_VALUE, TURN_NUMBER
+  TURN_SUM, TURN_INVERSE, TURN_SCALED, TURN_BEHIND, TURN_PRIME, TURN_EQUATION, TURN_VALUE, TURN_NUMBER
 } TurnMistake;
 Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why);
 

@@ -21,8 +21,8 @@ typedef struct {
   ExprGraph *g;
   Arena *arena;
   uint32_t nsymbols;
-  VEC(SymId) symbols; /* symbols of the current source and its terms */
-  uint32_t nterms;    /* number of terms of x that may jump with the source */
+  VEC(SymId) symbols; /* symbols of the sources and of these terms */
+  uint32_t nterms;    /* number of terms of x that contain a source */
   EvalTape *tape;     /* tape of these terms */
   Real *term;         /* their values */
   Real *base, *direction;   /* current line base + s*direction */
@@ -36,24 +36,12 @@ typedef struct {
 /* Candidate: a node that may jump where `side` is 0. */
 typedef struct {
   Expr node, side;
-  int angle;     /* jumps where cos(side) is 0 instead: tan */
-  uint64_t symbols_hash; /* hash of the symbols in side: sources that jump at one place have equal hashes */
 } Source;
 
 typedef VEC(Source) Sources;
 
-/* FNV-1a hash of the symbols in side, in graph order. */
-static uint64_t hash_symbols(const Search *s, Expr side) {
-  uint64_t hash = 0xcbf29ce484222325u;
-  ExprList l = expr_topo(s->g, &side, 1);
-  for (uint32_t i = 0; i < l.n; i++)
-    if (expr_op(s->g, l.at[i]) == EX_SYM) hash = (hash ^ expr_sym_id(s->g, l.at[i])) * 0x100000001b3u;
-  return hash;
-}
-
-static void add(const Search *s, Sources *to, Expr node, Expr side, int angle) {
-  if (!(expr_kinds(s->g, side) & varying_kinds) || to->n == MAX_CANDIDATES) return;
-  vec_push(s->arena, to, ((Source){node, side, angle, hash_symbols(s, side)}));
+static void add(const Search *s, Sources *to, Expr node, Expr side) {
+  if ((expr_kinds(s->g, side) & varying_kinds) && to->n < MAX_CANDIDATES) vec_push(s->arena, to, ((Source){node, side}));
 }
 
 /* Whether op can turn a pole into a finite jump: atan(1/x), x/abs(x). */
@@ -67,7 +55,7 @@ static void add_divisors(const Search *s, Sources *to, Expr product) {
     if (num_sign(power) >= 0) continue;
     if (expr_op(g, base) == EX_ABS) base = expr_arg(g, base, 0);
     ExprSign sign = expr_sign(g, base);
-    if (sign == SIGN_UNKNOWN) add(s, to, base, base, 0);
+    if (sign == SIGN_UNKNOWN) add(s, to, base, base);
   }
 }
 
@@ -82,9 +70,11 @@ static Sources sources_of(const Search *s, Expr x) {
     ExprOp op = expr_op(g, e);
     if (op == EX_LT || op == EX_LE) {
       Expr a = expr_arg(g, e, 0), b = expr_arg(g, e, 1);
-      add(s, &all, e, expr_sub(g, b, a), 0);
-    } else if (op == EX_SIGN || op == EX_ATAN2 || op == EX_TAN) {
-      add(s, &all, e, expr_arg(g, e, 0), op == EX_TAN);
+      add(s, &all, e, expr_sub(g, b, a));
+    } else if (op == EX_SIGN || op == EX_ATAN2) {
+      add(s, &all, e, expr_arg(g, e, 0));
+    } else if (op == EX_TAN) {
+      add(s, &all, e, expr_fn(g, EX_COS, expr_arg(g, e, 0)));
     } else if (op == EX_PROD && poles) {
       add_divisors(s, &all, e);
     }
@@ -92,51 +82,25 @@ static Sources sources_of(const Search *s, Expr x) {
   return all;
 }
 
-/* A term of x, and the symbol hashes of its sources. */
-typedef struct {
-  Expr term;
-  VEC(uint64_t) symbols_hash;
-} Part;
-
-typedef VEC(Part) Parts;
-
-/* Terms of x that contain sources; other terms would only add rounding. */
-static Parts parts_of(const Search *s, const Sources *all, Expr x) {
-  ExprGraph *g = s->g;
-  ExprMap nodes = expr_map(s->arena);
-  Parts parts = {0};
-  for (uint32_t i = 0; i < all->n; i++) expr_map_set(&nodes, all->at[i].node, i + 1);
-  for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM); i++) {
-    Num c;
-    Part part = {.term = expr_pair(g, x, EX_SUM, i, &c)};
-    ExprList l = expr_topo(g, &part.term, 1);
-    for (uint32_t k = 0; k < l.n; k++) {
-      uint32_t source = expr_map_get(&nodes, l.at[k]);
-      if (source) vec_push(s->arena, &part.symbols_hash, all->at[source - 1].symbols_hash);
-    }
-    if (!part.symbols_hash.n) continue;
-    part.term = expr_scale(g, c, part.term);
-    vec_push(s->arena, &parts, part);
-  }
-  return parts;
-}
-
-/* Selects the terms that may jump with the source, and their symbols. */
-static void select_terms(Search *s, const Parts *parts, const Source *from) {
+/* Selects the terms of x that contain a source, and the symbols of both; other terms would only add rounding. */
+static void select_terms(Search *s, const Sources *all, Expr x) {
   ExprGraph *g = s->g;
   VEC(Expr) roots = {0};
-  for (uint32_t i = 0; i < parts->n; i++) {
-    const Part *part = &parts->at[i];
-    uint32_t k = 0;
-    while (k < part->symbols_hash.n && part->symbols_hash.at[k] != from->symbols_hash) k++;
-    if (k < part->symbols_hash.n) vec_push(s->arena, &roots, part->term);
+  ExprMap nodes = expr_map(s->arena);
+  for (uint32_t i = 0; i < all->n; i++) expr_map_set(&nodes, all->at[i].node, 1);
+  for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(g, x, EX_SUM, i, &c);
+    ExprList l = expr_topo(g, &term, 1);
+    int found = 0;
+    for (uint32_t k = 0; k < l.n && !found; k++) found = expr_map_get(&nodes, l.at[k]) != 0;
+    if (found) vec_push(s->arena, &roots, expr_scale(g, c, term));
   }
   s->nterms = roots.n;
   s->tape = eval_tape(g, roots.at, roots.n);
   s->term = ARENA_ARRAY(s->arena, Real, roots.n + 1);
-  vec_push(s->arena, &roots, from->side);
+  for (uint32_t i = 0; i < all->n; i++) vec_push(s->arena, &roots, all->at[i].side);
   ExprList l = expr_topo(g, roots.at, roots.n);
-  s->symbols.n = 0;
   for (uint32_t i = 0; i < l.n; i++)
     if (expr_op(g, l.at[i]) == EX_SYM) vec_push(s->arena, &s->symbols, expr_sym_id(g, l.at[i]));
 }
@@ -167,20 +131,12 @@ static int set_state(Search *s, Real where) {
   return 1;
 }
 
-/* Switching function minus its threshold, at a place of the line; NaN where a declared sign is violated. */
-static Real switching_value(Search *s, EvalTape *side, Real level, Real where) {
+/* Switching function at a place of the line; NaN where a declared sign is violated. */
+static Real switching_value(Search *s, EvalTape *side, Real where) {
   Real value;
   if (!set_state(s, where)) return NAN;
   eval_run(side, s->at, &value);
-  return value - level;
-}
-
-/* Threshold of the switching function: 0, or for an angle an odd multiple of a quarter turn near the base of the line. */
-static Real threshold_of(Search *s, EvalTape *side, int angle, uint32_t seed) {
-  const Real half_turn = acosl(-1);
-  if (!angle) return 0;
-  Real u = switching_value(s, side, 0, 0);
-  return (floorl(u / half_turn) + 0.5L - (seed % 4 == 0) + (seed % 4 == 1)) * half_turn;
+  return value;
 }
 
 /* Sampling point i of the line: 0, and on both sides powers of 10 for lines from the origin, of 2 for others. */
@@ -191,18 +147,18 @@ static Real sampling_point(const Search *s, int i) {
 }
 
 /* Sign change of the switching function nearest to the base of the line, bisected to the last bit; returns 0 if there is none. */
-static int find_sign_change(Search *s, EvalTape *side, Real level, Real *where) {
+static int find_sign_change(Search *s, EvalTape *side, Real *where) {
   enum { REACH = 24, HALVINGS = 200 };
-  Real lo = 0, hi = 0, first = switching_value(s, side, level, 0), left = first, right = first;
+  Real lo = 0, hi = 0, first = switching_value(s, side, 0), left = first, right = first;
   for (int i = 1; i <= REACH && lo >= hi; i++) {
     Real before = left, after = right;
-    left = switching_value(s, side, level, sampling_point(s, -i));
-    right = switching_value(s, side, level, sampling_point(s, i));
+    left = switching_value(s, side, sampling_point(s, -i));
+    right = switching_value(s, side, sampling_point(s, i));
     if (isfinite(before) && isfinite(left) && (left > 0) != (before > 0)) lo = sampling_point(s, -i), hi = sampling_point(s, 1 - i), first = left;
     else if (isfinite(after) && isfinite(right) && (right > 0) != (after > 0)) lo = sampling_point(s, i - 1), hi = sampling_point(s, i), first = after;
   }
   for (int i = 0; i < HALVINGS && lo < hi; i++) {
-    Real mid = (lo + hi) / 2, value = switching_value(s, side, level, mid);
+    Real mid = (lo + hi) / 2, value = switching_value(s, side, mid);
     if (!isfinite(value)) return 0;
     if ((value > 0) == (first > 0)) lo = mid;
     else hi = mid;
@@ -249,19 +205,17 @@ static Real jump_at(Search *s, Real where) {
   return is;
 }
 
-static void try_source(Search *s, const Parts *parts, const Source *from) {
+static void try_source(Search *s, const Source *from) {
   EvalTape *side = eval_tape(s->g, &from->side, 1);
   uint32_t places = 0;
-  select_terms(s, parts, from);
   for (uint32_t seed = 1; seed <= LINES && places < PLACES; seed++) {
     Real where;
     draw_line(s, seed);
-    Real level = threshold_of(s, side, from->angle, seed);
-    if (!find_sign_change(s, side, level, &where)) continue;
+    if (!find_sign_change(s, side, &where)) continue;
     places++;
     Real by = jump_at(s, where);
     if (by == 0) continue;
-    Real h = 1e-6L * length_scale(s, where), slope = (switching_value(s, side, level, where + h) - switching_value(s, side, level, where - h)) / (2 * h);
+    Real h = 1e-6L * length_scale(s, where), slope = (switching_value(s, side, where + h) - switching_value(s, side, where - h)) / (2 * h);
     Real *symbols = ARENA_ARRAY(s->arena, Real, s->nsymbols + 1);
     sample_state(s->g, seed, symbols); /* symbols without influence on the jump */
     set_state(s, where);
@@ -276,10 +230,10 @@ ExprJumps expr_jumps(ExprGraph *g, Expr x) {
   if (!(expr_kinds(g, x) & varying_kinds)) return (ExprJumps){0};
   Sources all = sources_of(&s, x);
   if (!all.n) return (ExprJumps){0};
-  Parts parts = parts_of(&s, &all, x);
+  select_terms(&s, &all, x);
   s.base = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
   s.direction = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
   s.at = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
-  for (uint32_t i = 0; i < all.n; i++) try_source(&s, &parts, &all.at[i]);
+  for (uint32_t i = 0; i < all.n; i++) try_source(&s, &all.at[i]);
   return (ExprJumps){s.found.at, s.found.n};
 }
