@@ -207,19 +207,8 @@ static const AstStmt *use_of(const Builder *b, Name effect) {
   return found;
 }
 
-/* 1 if effect `name` excludes `other`. */
-static int excludes(const Builder *b, Name name, Name other) {
-  const AstStmt *e = find_named(b->ast, STMT_EFFECT, name);
-  for (const AstStmt *x = e ? e->body : NULL; x; x = x->next)
-    if (x->kind == STMT_EXCLUDES && x->name == other) return 1;
-  return 0;
-}
-
-/* Reports an exclusion that the scene violates; a mutual one once, at the first effect. */
+/* Reports an exclusion that the scene violates. */
 static void report_excluded(Builder *b, const AstStmt *effect, const AstStmt *x) {
-  if (excludes(b, x->name, effect->name))
-    for (const AstStmt *s = b->ast->first; s != effect; s = s->next)
-      if (s->kind == STMT_EFFECT && s->name == x->name) return;
   diag_error(b->diags, x->span, "the effects `%s` and `%s` exclude each other, and the scene `%s` uses both", effect->name, x->name, b->m->scene.name);
   diag_help(b->diags, "use one of them; `use none` turns off effects inherited by `like`");
   const AstStmt *use = use_of(b, x->name);

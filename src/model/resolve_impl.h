@@ -98,10 +98,10 @@ Value rotation_product(Builder *b, const Value *p, const Value *q);
 Value rotation_turn(Builder *b, const Value *q, const Value *v);
 Value rotation_coordinate(const Builder *b, uint32_t coord);
 
-/* Value of omega(R), turn(axis, angle), transpose(R); their names, NULL past the end. */
-Value rotation_function(Eval *ev, const AstExpr *x);
-int call_is_of_rotation(Name name);
-const char *rotation_function_name(size_t i);
+/* Values of omega(R), turn(axis, angle), transpose(R). */
+Value omega_value(Eval *ev, const AstExpr *x);
+Value turn_value(Eval *ev, const AstExpr *x);
+Value transpose_value(Eval *ev, const AstExpr *x);
 
 /* Reports the misuse of a rotation, written `text`; returns FAILED. */
 typedef enum {

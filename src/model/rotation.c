@@ -110,7 +110,7 @@ static const Value *rotation_argument(Eval *ev, const AstExpr *x) {
   return NULL;
 }
 
-static Value omega_value(Eval *ev, const AstExpr *x) {
+Value omega_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const Value *q = rotation_argument(ev, x);
   if (!q) return FAILED;
@@ -122,13 +122,13 @@ static Value omega_value(Eval *ev, const AstExpr *x) {
   return w;
 }
 
-static Value transpose_value(Eval *ev, const AstExpr *x) {
+Value transpose_value(Eval *ev, const AstExpr *x) {
   const Value *q = rotation_argument(ev, x);
   return q ? conjugate(ev->b, q) : FAILED;
 }
 
 /* turn(n, a) = (cos a/2, sin a/2 n/|n|) */
-static Value turn_value(Eval *ev, const AstExpr *x) {
+Value turn_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   ExprGraph *g = b->g;
   if (!arity_is(ev, x, 2)) return FAILED;
@@ -157,27 +157,6 @@ static Value turn_value(Eval *ev, const AstExpr *x) {
     r.at[k + 1] = expr_mul_n(g, part, 3);
   }
   return r;
-}
-
-static const struct {
-  const char *name;
-  Value (*value)(Eval *ev, const AstExpr *x);
-} functions[] = {{"omega", omega_value}, {"turn", turn_value}, {"transpose", transpose_value}};
-
-enum { FUNCTIONS = sizeof functions / sizeof *functions };
-
-const char *rotation_function_name(size_t i) { return i < FUNCTIONS ? functions[i].name : NULL; }
-
-int call_is_of_rotation(Name name) {
-  for (size_t i = 0; i < FUNCTIONS; i++)
-    if (strcmp(name, functions[i].name) == 0) return 1;
-  return 0;
-}
-
-Value rotation_function(Eval *ev, const AstExpr *x) {
-  for (size_t i = 0; i < FUNCTIONS; i++)
-    if (strcmp(x->name, functions[i].name) == 0) return functions[i].value(ev, x);
-  return FAILED;
 }
 
 /* --- misuse of rotations --- */

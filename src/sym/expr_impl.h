@@ -79,6 +79,9 @@ Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
 
 ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
 
+/* Node e with its arguments mapped through m; an argument that is not in m stays. */
+Expr expr_with_mapped_args(ExprGraph *g, const ExprMap *m, Expr e);
+
 /* expr_topo that stops at the nodes of the map `leaves` (NULL: none). */
 ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves);
 
