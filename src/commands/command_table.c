@@ -191,7 +191,7 @@ static const OptionRow options[] = {
   {"--fix", NULL, "NAME,NAME", TAKES_PARAMS, "all", SIMULATE | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(fix),
    "replaces these parameters by numbers, with the scene's values: fewer operations, but no other value on the command line; "
    "a family by its name, drag.c for an effect's; all: every parameter"},
-  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns passes prog", MODELS, OWN(dump), "prints the results of results of the compiler: ast, model, eqns, passes, prog"},
+  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast eqns passes prog", MODELS, OWN(dump), "prints the results of results of the compiler: ast, eqns, passes, prog"},
   {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION) | C(CACHE), OWN(help), "this help"},
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
