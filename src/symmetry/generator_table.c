@@ -6,8 +6,6 @@
 #include <math.h>
 
 #include "base/dense.h"
-#include "symmetry/search_frame.h"
-
 #include "sym/diff.h"
 
 static void multiply(uint32_t n, const long double *a, const long double *b, long double *to) {
@@ -334,8 +332,6 @@ GeneratorTable table_listed(Arena *a, const Ansatz *s, const TimeList *times, co
   DenseRows kernel = dense_kernel(a, rows + more, width, m, 1e-12L);
   GeneratorTable to = table_new(a, kernel.n, times->n, s->shown);
   for (size_t k = 0; k < kernel.n; k++) memcpy(to.at + k * times->n * s->shown, kernel.at + k * width, times->n * s->shown * sizeof *to.at);
-  long double *scratch = ARENA_ARRAY(a, long double, (size_t)s->n * s->n + s->n + 1);
-  for (size_t k = 0; k < kernel.n * times->n && rows_frame(source); k++) frame_generator_back(rows_frame(source), to.at + k * s->shown, scratch);
   *sure = kernel.gap > 1e3L;
   reduce(&to);
   return to;

@@ -126,7 +126,7 @@ static int sign_of(const ExprGraph *g, Expr k) {
 }
 
 uint32_t try_solution_shifts(Eqns *e, FoundSymmetries *out) {
-  TrialWork w = {.e = e, .g = e->g, .n = e->n, .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e, NULL), .out = out};
+  TrialWork w = {.e = e, .g = e->g, .n = e->n, .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e), .out = out};
   uint32_t found = 0;
   if (e->n && !e->mass_known) eqns_derive_mass(e);
   for (uint32_t i = 0; i < w.n; i++) {
@@ -148,7 +148,7 @@ uint32_t try_solution_shifts(Eqns *e, FoundSymmetries *out) {
 int too_large_to_search(const Eqns *e) { return eqns_coordinates(e) > SEARCH_MOST; }
 
 void try_usual_symmetries(Eqns *e, FoundSymmetries *out) {
-  TrialWork w = {.e = e, .g = e->g, .n = eqns_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e, NULL), .out = out};
+  TrialWork w = {.e = e, .g = e->g, .n = eqns_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e), .out = out};
   out->ansatz = "for more than a hundred coordinates: the energy, momenta of cyclic coordinates, and translations, boosts and rotations of all "
                 "coordinates of a kind together";
   out->searched = w.n <= TRY_MOST;
