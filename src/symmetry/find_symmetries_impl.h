@@ -19,7 +19,6 @@ typedef struct {
   ExprGraph *g;
   Arena *scratch;
   Ansatz *ansatz;
-  uint32_t first; /* first attempt at random parameter values, see symmetry/number_recognition.h */
   Choices choices;
   SolutionSpace *spaces; /* [choice]; width 0: not computed yet */
   FoundSymmetries *out;

@@ -7,7 +7,6 @@
 #include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "mech/discontinuity.h"
-#include "symmetry/constraint_factors.h"
 #include "symmetry/term_magnitude.h"
 #include "mech/states.h"
 #include "sym/diff.h"
@@ -30,7 +29,7 @@ typedef struct {
   Expr tau;
   Expr *Dxi, Dtau;  /* total time derivatives */
   int by_value;
-  Expr unreached;   /* a factor of a constraint whose zeros no state reached: nothing is decided; 0: none */
+  const Constraint *product; /* a constraint whose states were sought, but perhaps not on each of its factors; or NULL */
 } ProofWork;
 
 static SymId velocity(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate; }
@@ -178,25 +177,28 @@ static int vanishes_by_value(const ProofWork *w, Expr x) {
   return seen >= STATES;
 }
 
-/* The same on each factor of constraints that are products; a factor on which no state is found leaves the verdict open. */
-static int vanishes_on_parts(ProofWork *w, Expr x) {
-  enum { STATES = 6, SEEDS = 64 };
-  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
-  ConstraintFactors *parts = constraint_factors_new(w->e);
-  StateSolver *solver = states_new(w->e);
-  for (uint32_t k = 0; k < constraint_factors_count(parts); k++) {
-    uint32_t seen = 0;
-    for (uint32_t seed = 1; seed <= SEEDS && seen < STATES; seed++) {
-      sample_state(w->g, seed, symbols);
-      spread(w, seed, symbols);
-      if (!constraint_factors_solve(parts, k, symbols) || !states_complete(solver, symbols) || !constraint_factors_is_zero(parts, k, symbols)) continue;
-      int small = is_small(w, x, symbols);
-      if (!small) return 0;
-      seen += small > 0;
+/* Whether base^power is a factor that contains coordinates and may be 0. */
+static int may_vanish(const ProofWork *w, Expr base, Num power) {
+  ExprSign sign = expr_sign(w->g, base);
+  return num_sign(power) > 0 && sign != SIGN_POSITIVE && sign != SIGN_NEGATIVE && (expr_kinds(w->g, base) & 1u << SYM_COORD);
+}
+
+/* The first holonomic constraint, contacts left out, that is a product of factors two of which may be 0: random states may miss one of these
+ * parts. NULL: there is none. */
+static const Constraint *constraint_with_factors(const ProofWork *w) {
+  const Constraints *k = &w->e->constraints;
+  for (uint32_t i = 0; i < k->nholonomic; i++) {
+    Num c, power;
+    Expr product = expr_pair(w->g, k->c[i], EX_SUM, 0, &c);
+    uint32_t count = 0;
+    if (contact_of_constraint(w->m, k->of[i]) || expr_pairs(w->g, k->c[i], EX_SUM) > 1) continue;
+    for (uint32_t f = 0; f < expr_pairs(w->g, product, EX_PROD); f++) {
+      Expr base = expr_pair(w->g, product, EX_PROD, f, &power);
+      count += (uint32_t)may_vanish(w, base, power);
     }
-    if (seen < STATES) w->unreached = constraint_factors_at(parts, k);
+    if (count > 1) return k->of[i];
   }
-  return 1;
+  return NULL;
 }
 
 /* Whether some constraint always holds, which those of contacts do not. */
@@ -205,7 +207,8 @@ static int is_constrained(const ProofWork *w) { return w->e->constraints.n > w->
 /* Whether x is zero where the constraints hold, those of contacts excepted. */
 static Verdict zero_on_constraints(ProofWork *w, Expr x) {
   Verdict v = is_zero(w, x);
-  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x) || !vanishes_on_parts(w, x)) return v;
+  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x)) return v;
+  w->product = constraint_with_factors(w);
   w->by_value = 1;
   return PROVED_ZERO;
 }
@@ -417,8 +420,8 @@ static void put_power(ProofWork *w, Noether *to, Expr remainder) {
   rest = states_substitute(w->e, shorten(w, rest));
   to->power = expr_add(g, rest, to->by_constraints);
   to->by_value = w->by_value;
-  to->unreached = w->unreached;
-  if (w->unreached && (to->is == INVARIANT || to->is == INVARIANT_UP_TO_F)) to->is = INVARIANCE_NOT_DECIDED;
+  to->product = w->product;
+  if (w->product && (to->is == INVARIANT || to->is == INVARIANT_UP_TO_F)) to->is = INVARIANCE_NOT_DECIDED;
 }
 
 int noether_moves_jumps(const Eqns *e, const Generator *by) {

