@@ -84,17 +84,24 @@ Expr recognise_ratio(const Choices *c, const long double *value) {
   return 0;
 }
 
-Expr recognise_with_rate(const Choices *c, const long double *value, Expr rate) {
+/* A rational (ratio 0), or a result of recognise_ratio, times a power of the rate. */
+static Expr rate_multiple(const Choices *c, const long double *value, Expr rate, int ratio) {
   static const int powers[4] = {1, -1, 2, -2};
-  Expr found = 0;
-  for (int k = 0; k < 8 && !found; k++) { /* numbers first */
-    Expr factor = expr_pow_num(c->e->g, rate, num_int(powers[k % 4]));
+  for (int k = 0; k < 4; k++) {
+    Expr factor = expr_pow_num(c->e->g, rate, num_int(powers[k])), found = 0;
     long double rest[2] = {value[CHOICE_FIRST] / choice_value(c, CHOICE_FIRST, factor), value[CHOICE_SECOND] / choice_value(c, CHOICE_SECOND, factor)};
     Num number;
-    if (k >= 4) found = recognise_ratio(c, rest);
+    if (ratio) found = recognise_ratio(c, rest);
     else if (recognise_same(rest, &number)) found = expr_num(c->e->g, number);
-    if (found) found = expr_mul(c->e->g, found, factor);
+    if (found) return expr_mul(c->e->g, found, factor);
   }
+  return 0;
+}
+
+Expr recognise_with_rates(const Choices *c, const long double *value, const Expr *rate, uint32_t n) {
+  Expr found = 0;
+  for (int ratio = 0; ratio < 2; ratio++)
+    for (uint32_t k = 0; k < n && !found; k++) found = rate_multiple(c, value, rate[k], ratio);
   return found;
 }
 

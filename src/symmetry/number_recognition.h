@@ -33,8 +33,8 @@ Expr recognise_linear(const Choices *c, const long double *value);
 /* Such a sum over a parameter, or over none: (k + 2 c)/m. */
 Expr recognise_quotient(const Choices *c, const long double *value);
 
-/* A rational, or a result of recognise_ratio, times rate^e, `rate` an expression of parameters, e = -2, -1, 1 or 2; 0: none. */
-Expr recognise_with_rate(const Choices *c, const long double *value, Expr rate);
+/* A rational, or else a result of recognise_ratio, times rate^e for one of n rates, expressions of parameters, e = -2, -1, 1 or 2; 0: none. */
+Expr recognise_with_rates(const Choices *c, const long double *value, const Expr *rate, uint32_t n);
 
 /* The monomial with these values at all 2 + n choices; 0: none. */
 Expr recognise_monomial(const Choices *c, const long double *value);

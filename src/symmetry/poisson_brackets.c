@@ -25,6 +25,7 @@ typedef struct {
   EvalTape *tape;       /* [r] charges, [r*n] dQ/dq, [r*n] dQ/dv, [n*n] M or omega, [n*n] dp/dq */
   uint32_t roots;
   Choices choices;
+  VEC(Expr) rates;      /* of the charges that have one */
   Algebra *out;
 } BracketFit;
 
@@ -212,8 +213,7 @@ static Expr recognise(const BracketFit *w, long double *const *fits, size_t plac
   if (zero) return expr_int(w->g, 0);
   if (recognise_same(x, &c)) return expr_num(w->g, c);
   Expr known = recognise_ratio(&w->choices, x);
-  for (uint32_t a = 0; a < w->r && !known; a++)
-    if (at(w, a)->rate) known = recognise_with_rate(&w->choices, x, at(w, a)->rate);
+  if (!known) known = recognise_with_rates(&w->choices, x, w->rates.at, w->rates.n);
   if (!known) known = recognise_linear(&w->choices, x);
   return known ? known : recognise_monomial(&w->choices, x);
 }
@@ -275,6 +275,8 @@ static void compute_brackets(Arena *scratch, void *data) {
   w->scratch = scratch;
   w->choices = choices_new(scratch, w->e, w->of->attempt);
   make_tape(w);
+  for (uint32_t a = 0; a < w->r; a++)
+    if (at(w, a)->rate) vec_push(scratch, &w->rates, at(w, a)->rate);
   uint32_t choices = 2 + w->choices.n;
   long double **fits = ARENA_ARRAY(scratch, long double *, choices);
   for (uint32_t k = 0; k < choices; k++) {
