@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "analysis/perturbation_noise.h"
-#include "numeric/dense.h"
 
 /* ---- Entries */
 
@@ -172,26 +171,16 @@ static void settle_value(Matrices *m, int k)
   m->zero[k] = 2 * (of_K + fabs(m->values[k]) * of_M) / bottom;
 }
 
-/* Sorts values ascending; divides vectors by the weights; counts directions of falling and of constant energy. */
-static void sort_values(Matrices *m)
+/* Counts directions of falling and of constant energy; divides vectors by the weights. */
+static void count_directions(Matrices *m)
 {
   int nq = m->nq;
 
+  m->lowering = 0;
   for (int k = 0; k < nq; k++) {
-    int least = k;
-    for (int i = k + 1; i < nq; i++) {
-      least = m->values[i] < m->values[least] ? i : least;
-    }
-    lag_swap(&m->values[k], &m->values[least]);
-    lag_swap(&m->zero[k], &m->zero[least]);
-    for (int i = 0; i < nq; i++) {
-      lag_swap(&m->vectors[i * nq + k], &m->vectors[i * nq + least]);
-    }
     m->lowering += m->values[k] < -m->zero[k];
     m->flat += fabs(m->values[k]) <= m->zero[k];
-  }
-  for (int i = 0; i < nq; i++) {
-    for (int k = 0; k < nq; k++) {
+    for (int i = 0; i < nq; i++) {
       m->vectors[i * nq + k] /= m->weight[i];
     }
   }
@@ -211,12 +200,11 @@ static int signature(Matrices *m, Pool *pool, const lag_algebra *algebra)
   memcpy(K, m->K, bytes);
   memcpy(M, m->M, bytes);
   int rc = algebra->symmetric(m->nq, K, M, m->values, m->vectors);
+  for (int k = 0; k < m->nq && rc == LAG_OK; k++) {
+    settle_value(m, k);
+  }
   if (rc == LAG_OK) {
-    m->lowering = 0;
-    for (int k = 0; k < m->nq; k++) {
-      settle_value(m, k);
-    }
-    sort_values(m);
+    count_directions(m);
   }
   m->definite &= rc != LAG_EINVAL;
   return rc == LAG_EINVAL ? LAG_OK : rc;

@@ -10,12 +10,12 @@
 
 enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
 enum { MOST_OPTIONS = 16 };
-enum { OWN_OPTIONS = 3 }; /* method options that are also options of the command line */
+enum { OWN_OPTIONS = 2 }; /* method options that are also options of the command line */
 extern const char *const lag_args_method_options[OWN_OPTIONS];
 
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
-  const char *method_options[OWN_OPTIONS]; /* values of --quadrature, --order, --stages */
+  const char *method_options[OWN_OPTIONS]; /* values of --order, --stages */
   const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
   const char *transient, *exponents; /* for --lyapunov */
   const char *target, *longest, *methods, *against; /* for --cost */

@@ -60,7 +60,7 @@ typedef struct Option {
   int is_flag;
 } Option;
 
-const char *const lag_args_method_options[OWN_OPTIONS] = {"quadrature", "order", "stages"};
+const char *const lag_args_method_options[OWN_OPTIONS] = {"order", "stages"};
 
 static const Option options[] = {
     {"method", offsetof(Args, method), 0}, {"tol", offsetof(Args, tol), 0},
@@ -81,8 +81,7 @@ static const Option options[] = {
     {"cost", offsetof(Args, cost), 1},     {"reference", offsetof(Args, reference), 1},
     {"target", offsetof(Args, target), 0}, {"longest", offsetof(Args, longest), 0},
     {"methods", offsetof(Args, methods), 0}, {"against", offsetof(Args, against), 0},
-    {"quadrature", offsetof(Args, method_options[0]), 0}, {"order", offsetof(Args, method_options[1]), 0},
-    {"stages", offsetof(Args, method_options[2]), 0},
+    {"order", offsetof(Args, method_options[0]), 0}, {"stages", offsetof(Args, method_options[1]), 0},
 };
 enum { NOPTIONS = sizeof options / sizeof *options };
 

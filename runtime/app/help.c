@@ -8,7 +8,7 @@ static const char text[] =
     "                       for all of a family\n"
     "  --until T            run to time T [s]; before the start: backwards\n"
     "  --method NAME        method of integration, NAME or \"NAME(option=value, ...)\"; --method help lists them\n"
-    "  --quadrature X, --order N, --stages N   options of some methods, as in the parentheses\n"
+    "  --order N, --stages N   options of some methods, as in the parentheses\n"
     "  --tol X              tolerance, absolute and relative\n"
     "  --step H             step [s]; the first one tried where the method chooses its own\n"
     "  -o FILE              rows of output: CSV, or NumPy when FILE ends in .npy; - is standard output\n"

@@ -70,6 +70,7 @@ typedef struct lag_problem {
   const double *kept;  /* [nholonomic] value at which c is held, NaN: free so far; NULL: all at 0 */
   int redundant;       /* 1: constraints are redundant; f is evaluated on the constraints only, see lag_rhs */
   const double *opt;   /* values of the method's options, [method->noptions] */
+  const void *variant; /* method->variant */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
   double stretch;      /* relative change of the step size of methods that stretch; mostly 0 */
@@ -282,6 +283,7 @@ typedef struct lag_method {
    * in `fresh`, which init has made with the same options. NULL: any numbers are safe. */
   int (*sound)(const void *work, const void *fresh, const lag_problem *pb);
 
+  const void *variant; /* constants by which it differs from other methods with the same functions; these read lag_problem.variant */
   double finest; /* the smallest tolerance that the digits of its coefficients support; 0: coefficients have all digits of the scalar */
 } lag_method;
 

@@ -168,8 +168,7 @@ LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape a
   int rc = pb->model->constraints ? lag_project_step(pb, tb, w->x + EMBEDDED_Y0 * as.row, y1, w->x + EMBEDDED_COMP1 * as.row) : 0;
 
   if (pb->model->constraints && rc == 0) {
-    rc = w->limits.fixed == 0.0 ? lag_embedded_reversal(w, pb, tb) : 0;
-    rc = rc ? rc : lag_crosses_constraint_pole(pb, tb - dt, w->x + EMBEDDED_Y0 * as.row, tb, y1);
+    rc = lag_crosses_constraint_pole(pb, tb - dt, w->x + EMBEDDED_Y0 * as.row, tb, y1);
   }
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
 }

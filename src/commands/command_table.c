@@ -144,7 +144,6 @@ static const OptionRow options[] = {
    "method of integration, NAME or \"NAME(option=value, ...)\"; `lagc help methods` lists them"},
   {"--method", NULL, "NAME", TAKES_METHOD, "", C(BUILD) | C(EMIT), OWN(method),
    "adds the derivatives that this method needs; those besides accelerations; those of the scenes' methods are always there"},
-  {"--quadrature", NULL, "NAME", TAKES_TEXT, "", STEPS, PASSED, "quadrature of the method variational: midpoint, trapezoid, gauss or lobatto"},
   {"--order", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "order of the method variational"},
   {"--stages", NULL, "N", TAKES_NUMBER, "", STEPS, PASSED, "stages of the method gauss"},
   {"--tol", NULL, "X", TAKES_NUMBER, "", STEPS, PASSED, "tolerance, absolute and relative"},
