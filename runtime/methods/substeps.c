@@ -15,27 +15,32 @@ size_t lag_substep_history(const lag_problem *pb, const Implicit *w)
   return lag_predictor_size(pb->nq * (int)w->rule[0].free);
 }
 
+/* Sets the pointers of a block, unless x is NULL; returns its length. */
+static size_t block_layout(ConstraintBlock *b, const lag_problem *pb, int substeps, double *x)
+{
+  const lag_constraints *of = pb->model->constraints;
+  size_t n = (size_t)pb->n, nq = (size_t)pb->nq, nc = (size_t)of->n;
+  double **const parts[] = {&b->from, &b->to, &b->dq, &b->dp, &b->impulse, &b->d, &b->force, &b->c, &b->r, &b->g, &b->sum,
+                            &b->A, &b->M, &b->change, &b->end_jacobian, &b->history};
+  const size_t sizes[] = {n, n, nq, nq, nq, nq, nq, nc, nc, nc, nc, (size_t)of->njacobian, (size_t)of->nmass, nc * nq, nc * nc,
+                          (size_t)substeps * lag_predictor_size(of->n)};
+
+  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+}
+
 /* Sets the pointers, unless x is NULL; returns the length of Implicit.x. */
 static size_t layout(ImplicitArrays *a, const lag_problem *pb, int free, int substeps, double *x)
 {
-  const lag_constraints *of = pb->model->constraints;
-  ConstraintBlock *b = &a->block;
-  size_t n = (size_t)pb->n, nq = (size_t)pb->nq, m = nq * (size_t)free, nc = of ? (size_t)of->n : 0, nk = (size_t)substeps;
+  const int constrained = pb->model->constraints != NULL;
+  size_t n = (size_t)pb->n, nq = (size_t)pb->nq, m = nq * (size_t)free;
   double **const parts[] = {&a->p, &a->qc, &a->pc, &a->dq, &a->dp, &a->ql, &a->pl, &a->v, &a->y0, &a->y1, &a->f0, &a->f1, &a->u, &a->force,
                             &a->history, &a->path, &a->discrete};
   const size_t sizes[] = {nq, nq, nq, nq, nq, nq, nq, nq, n, n, n, n, 2 * m, m,
-                          nk * lag_predictor_size((int)m) + lag_predictor_size(pb->nq), lag_interpolant_size(pb->nq), lag_discrete_size(pb, free)};
-  double **const block[] = {&b->from, &b->to, &b->dq, &b->dp, &b->impulse, &b->d, &b->force, &b->c, &b->r, &b->g, &b->sum,
-                            &b->A, &b->M, &b->change, &b->end_jacobian, &b->history};
+                          (size_t)substeps * lag_predictor_size((int)m) + lag_predictor_size(pb->nq), lag_interpolant_size(pb->nq),
+                          x && !constrained ? 0 : lag_discrete_size(pb, free)}; /* the search for its band takes time in each step */
   size_t length = lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
 
-  *b = (ConstraintBlock){0};
-  if (!of) {
-    return length;
-  }
-  const size_t in_block[] = {n, n, nq, nq, nq, nq, nq, nc, nc, nc, nc, (size_t)of->njacobian, (size_t)of->nmass, nc * nq, nc * nc,
-                             nk * lag_predictor_size(of->n)};
-  return length + lag_cut(x ? x + length : NULL, sizeof in_block / sizeof *in_block, block, in_block);
+  return length + (constrained ? block_layout(&a->block, pb, substeps, x ? x + length : NULL) : 0);
 }
 
 ImplicitArrays lag_substeps_arrays(Implicit *w, const lag_problem *pb)
