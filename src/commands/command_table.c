@@ -56,7 +56,7 @@ static const CommandRow commands[] = {
   {CMD_EFFECTS, "effects", NULL, "MODEL [SCENE] [name=value ...] [--accuracy X] [--json]", "cost of each effect, and whether the result needs it",
    "Runs the scene, then without each effect that the scene uses, and with each effect that it does not use. Prints for each effect its operations "
    "and its share of the time of a call of the right-hand side; its weight, the largest ratio of |acceleration with - without it| to "
-   "|acceleration| along the run; its difference, the largest change at 16 times of the run and at its end, relative to the largest value of "
+   "|acceleration| along the run; its difference, the largest change at 256 times of the run and at its end, relative to the largest value of "
    "its kind and unit; and whether the difference difference exceeds twice the error of integration, measured by a run with a hundredth of the tolerance, or half the step. "
    "An effect is left out together with those that require it. `shared` are operations that several effects need. Method, steps and end are chosen as for "
    "`lagc run`: --method, --tol, --step, --until. `lagc help effect` says more.\n\n"
