@@ -136,6 +136,29 @@ static const char *const foreign_functions[][2] = {
 
 int advise_unknown_function(Builder *b, Name name) { return advise_word(b, foreign_functions, sizeof foreign_functions / sizeof *foreign_functions, name); }
 
+/* 1 for an expression of the command line, where nothing can be declared. */
+static int is_asked(const Builder *b, Span span) {
+  const Source *file = source_place(b->ast->sources, span.begin).file;
+  return file && strncmp(file->path, "--", 2) == 0;
+}
+
+/* Lists names that an expression can contain, of the model and of effects in use. */
+static void advise_names(Builder *b) {
+  enum { MOST = 24 };
+  const Entity *shown[MOST];
+  StrBuf list = strbuf(b->arena);
+  uint32_t n = 0, i = 0;
+  for (; i < b->scope.all.n && n < MOST; i++) {
+    const Entity *e = &b->scope.all.at[i];
+    int skip = e->kind == ENT_NONE || e->kind == ENT_FUNCTION || e->kind == ENT_BUILTIN;
+    for (uint32_t k = 0; k < n && !skip; k++) skip = shown[k]->name == e->name && shown[k]->effect == e->effect; /* members of a family */
+    if (skip) continue;
+    sb_printf(&list, "%s%s%s%s", n ? ", " : "", e->effect ? e->effect : "", e->effect ? "." : "", e->name);
+    shown[n++] = e;
+  }
+  if (n) diag_help(b->diags, "the model has %s%s", sb_text(&list), n == MOST ? ", ..." : "");
+}
+
 static int is_among(const char *word, size_t length, const Name *names, uint32_t n) {
   for (uint32_t i = 0; i < n; i++)
     if (strlen(names[i]) == length && memcmp(names[i], word, length) == 0) return 1;
@@ -193,6 +216,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
   Name near = paper ? NULL : suggest(name, known, n);
   if (!near && advise_word(b, paper_names, sizeof paper_names / sizeof *paper_names, name)) return;
   if (near) diag_help(b->diags, "did you mean `%s`?", near);
+  else if (is_asked(b, span)) advise_names(b);
   else if (declare) diag_help(b->diags, "declare it: `%s %s`", declare, name);
   else diag_help(b->diags, "declare it: `param %s = 1`, `coord %s` or `let %s = ...`", name, name, name);
 }
