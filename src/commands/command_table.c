@@ -8,7 +8,7 @@
 static const CommandRow commands[] = {
   {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric] [--verbose]", "parse, derive, prove symmetries and `expect` lines",
    "Parses and derives the model for every scene (or the one named), and proves or refutes its `expect` lines. "
-   "A proved line holds for all states at which both sides have real values; a refuted line is comes with a state at which its sides differ. "
+   "A proved line holds for all states at which both sides have real values; a refuted line comes with a state at which its sides differ. "
    "Exit status 0 if all is well, 1 if not.\n\n"
    "Every command compares its compiled programs with the text of the model, evaluated by Taylor arithmetic at random states; --verbose lists the comparisons."},
   {CMD_DERIVE, "derive", NULL, "MODEL [SCENE] [--format text|latex|c] [--ops] [--hamiltonian] [-o FILE]", "print the equations of motion",
@@ -43,7 +43,7 @@ static const CommandRow commands[] = {
   {CMD_LYAPUNOV, "lyapunov", "exponents", "MODEL [SCENE] [name=value ...] [--until T] [--exponents K] [--json]", "Lyapunov exponents: how fast neighbouring motions part",
    "Runs the scene for a long time with the exact tangent of its flow, and prints the Lyapunov exponents: the mean rates at which small "
    "changes of the start grow, in the space of coordinates, velocities and states. The spread is the standard error from 20 blocks of the time "
-   "measured; `at half the time` is the estimate then. An exponent of zero is approached comes near 0 as log(t)/t. "
+   "measured; `at half the time` is the estimate then. An exponent of zero approaches 0 as log(t)/t. "
    "Method and steps are chosen as for `lagc run`: --method, --tol, --step.\n\n"
    "  name=value            a parameter, another start, an input: as for lagc run"},
   {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [-o FILE.svg]", "time against accuracy: all methods, side by side",
@@ -57,12 +57,12 @@ static const CommandRow commands[] = {
    "Runs the scene, then without each effect that the scene uses, and with each effect that it does not use. Prints for each effect its operations "
    "and its share of the time of a call of the right-hand side; its weight, the largest ratio of |acceleration with - without it| to "
    "|acceleration| along the run; its difference, the largest change at 256 times of the run and at its end, relative to the largest value of "
-   "its kind and unit; and whether the difference difference exceeds twice the error of integration, measured by a run with a hundredth of the tolerance, or half the step. "
+   "its kind and unit; and whether the difference exceeds twice the error of integration, measured by a run with a hundredth of the tolerance, or half the step. "
    "An effect is left out together with those that require it. `shared` are operations that several effects need. Method, steps and end are chosen as for "
    "`lagc run`: --method, --tol, --step, --until. `lagc help effect` says more.\n\n"
    "  name=value            a parameter, another start, an input, as for `lagc run`\n\n"
    "--accuracy X searches for the smallest set of the scene's effects whose result differs from the scene's by at most X: with all other effects left out together, in "
-   "scenes of up to ten effects. Prints the `use` line of whose run set."},
+   "scenes of up to ten effects. Prints the `use` line of the set that it finds."},
   {CMD_BUILD, "build", NULL, "MODEL -o SIMULATOR [--method NAME] [--with linear]", "make a simulator",
    "Compiles the model to a simulator with all its scenes; it has the options of `lagc run`, which `SIMULATOR --help` "
    "lists."},
@@ -79,7 +79,7 @@ static const CommandRow commands[] = {
    "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). They are integrated by "
    "liblag; its interface by lag.h:\n\n"
    "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)\n\n"
-   "With -DLAG_LANES=4 or 8 its functions take vectors of so or 8 doubles, and compute so many states at once."},
+   "With -DLAG_LANES=4 or 8 its functions take vectors of 4 or 8 doubles, and compute as many states at once."},
   {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
    "Lists the methods of integration: their order, the quantities that they keep, their demands on a model, and their options."},
   {CMD_CACHE, "cache", NULL, "[--clear]", "show or empty the cache of simulators",
@@ -87,7 +87,7 @@ static const CommandRow commands[] = {
    "Simulators are run only from a folder of yours that nobody else can write. LAGC_CACHE_MIB sets another limit, in MiB."},
   {CMD_HELP, "help", NULL, "[TOPIC]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics."},
   {CMD_COMPLETION, "completion", NULL, "bash|zsh|fish", "print the completion script of a shell",
-   "Prints a script that script by which a shell completes the commands and options of lagc, and the scenes, parameters, methods and names of "
+   "Prints the script by which a shell completes the commands and options of lagc, and the scenes, parameters, methods and names of "
    "the model in question. `make install` puts it where these shells look; without `make install`,\n\n"
    "  source <(lagc completion bash)    in ~/.bashrc\n"
    "  source <(lagc completion zsh)     in ~/.zshrc, after compinit\n"
@@ -108,7 +108,7 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 static const OptionRow options[] = {
   {"--allow-numeric", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(allow_numeric),
-   "an expectation that the prover does not decide, but that holds numerically to rounding, does not fail the check"},
+   "an expectation that is not proved, but holds numerically to rounding, does not fail the check"},
   {"--verbose", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(verbose), "also list the parts of the compiled programs that were compared with the text, and the number of states"},
   {"--format", NULL, "text|latex|c", TAKES_CHOICE, "text latex c", C(DERIVE), OWN(format),
    "as text, as LaTeX, or as the C function that computes the accelerations"},
@@ -121,7 +121,7 @@ static const OptionRow options[] = {
   {"--section", NULL, "'EXPR rising'", TAKES_EXPR, "", C(RUN) | C(PLOT), OWN(section),
    "a Poincare section: one row, or one point, each time EXPR crosses zero; or falling, or crossing (both ways). For an angle that turns: 'sin(th2) rising'"},
   {"--y", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(y), "draws EXPR, or all members of a family, against time,"},
-  {"--x", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(x), "or against EXPR EXPR: a path, with one scale for both axes if their units agree"},
+  {"--x", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(x), "or against this one: a path, with one scale for both axes if their units agree"},
   {"--phase", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(phase), "draws the rate of EXPR against EXPR: --phase th draws th' against th"},
   {"--points", NULL, "'X,Y X,Y'", TAKES_EXPR, "", C(ANIMATE), OWN(points),
    "the points to draw, each two expressions, joined by rods in this order; for families, all members. Default: the model's x,y; or "
@@ -143,14 +143,14 @@ static const OptionRow options[] = {
   {"--method", NULL, "NAME", TAKES_METHOD, "", STEPS, PASSED,
    "method of integration, NAME or \"NAME(option=value, ...)\"; `lagc help methods` lists them"},
   {"--method", NULL, "NAME", TAKES_METHOD, "", C(BUILD) | C(EMIT), OWN(method),
-   "adds the derivatives that this method needs; those besides accelerations; those of the scenes' methods are always there"},
+   "adds the derivatives that this method needs besides accelerations; those of the scenes' methods are always there"},
   {"--tol", NULL, "X", TAKES_NUMBER, "", STEPS, PASSED, "tolerance, absolute and relative"},
   {"--step", NULL, "H", TAKES_NUMBER, "", STEPS, PASSED, "step [s]; the first step to try if the method chooses its own steps"},
   {"--target", NULL, "X", TAKES_NUMBER, "", C(COST), PASSED, "names the cheapest setting whose error is at most X"},
   {"--methods", NULL, "NAME,NAME", TAKES_TEXT, "", C(COST), PASSED, "only these methods"},
   {"--longest", NULL, "S", TAKES_NUMBER, "", C(COST), PASSED, "no method goes on to finer settings after a run of S seconds; default: 0.5"},
   {"--until", NULL, "T", TAKES_NUMBER, "", SIMULATE | C(COST) | C(EFFECTS), PASSED, "run to time T [s]; before the start: backwards"},
-  {"--accuracy", NULL, "X", TAKES_NUMBER, "", C(EFFECTS), OWN(accuracy), "the relative difference within does not matter; finds the smallest set of effects within it"},
+  {"--accuracy", NULL, "X", TAKES_NUMBER, "", C(EFFECTS), OWN(accuracy), "the relative difference that does not matter; finds the smallest set of effects within it"},
   {"--until", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "measure to time T [s]; default: 20 spans of the scene"},
   {"--transient", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "the time left out at the beginning [s]; default: a tenth"},
   {"--exponents", NULL, "K", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "only the K largest exponents"},
@@ -191,7 +191,7 @@ static const OptionRow options[] = {
   {"--fix", NULL, "NAME,NAME", TAKES_PARAMS, "all", SIMULATE | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(fix),
    "replaces these parameters by numbers, with the scene's values: fewer operations, but no other value on the command line; "
    "a family by its name, drag.c for an effect's; all: every parameter"},
-  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast eqns passes prog", MODELS, OWN(dump), "prints the results of results of the compiler: ast, eqns, passes, prog"},
+  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast eqns passes prog", MODELS, OWN(dump), "prints the results of these stages of the compiler: ast, eqns, passes, prog"},
   {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION) | C(CACHE), OWN(help), "this help"},
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
