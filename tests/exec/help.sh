@@ -59,6 +59,8 @@ taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/"
 handed() { { words 'passed run'; words 'passed animate'; words 'passed cost'; words 'passed lyapunov'; } | grep -e -- | sort -u; }
 check "a simulator has options" [ "$(taken | wc -l)" -gt 10 ]
 is "options of a simulator" "$(taken)" "$(handed)"
+untold() { for o in $(taken | grep -v -x -e --output); do grep -qF -e "$o" runtime/app/help.c || echo "$o"; done; } # --output: there as -o
+empty "a simulator's --help has each of them" "$(untold)"
 
 # The compiler under sanitizers prints the same.
 differs() {
