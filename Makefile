@@ -1,6 +1,7 @@
 # lagc and liblag. `make help` lists what can be made; README.md says what it is for.
 
 # ---- settings: make NAME=value ----------------------------------------------------------------------
+.DEFAULT_GOAL := all
 CC      ?= cc
 CFLAGS  ?= -O2 -g
 CPPFLAGS ?=

@@ -5,13 +5,11 @@
 
 #include "analysis/work_precision.h"
 
-enum { LAG_VARIANT_ROWS = 16, LAG_VARIANT_STATES = 256 };
+enum { LAG_VARIANT_ROWS = 256 };
 
 typedef struct Variant {
   lag_sim *sim;      /* the caller's */
   Samples run;       /* q, v, z [SI] at equally spaced times; the last row is the end, earlier where an event stopped the run */
-  double *t, *y;     /* [LAG_VARIANT_STATES] times and states at ends of steps, over the whole run, nstates of them */
-  int nstates;
   int n;
   double difference; /* difference of its motion from the scene's, relative to the scene's size */
   double weight;     /* the largest |acceleration with - without| / |with| */

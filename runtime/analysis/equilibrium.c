@@ -8,7 +8,6 @@
 
 #include "analysis/perturbation_noise.h"
 #include "analysis/complete_pivoting.h"
-#include "analysis/regularity.h"
 
 enum { MOST_STEPS = 200, MOST_DESCENT = 200 };
 

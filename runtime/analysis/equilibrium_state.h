@@ -24,7 +24,7 @@ typedef struct Equilibrium {
   double *values, *noise, *scratch; /* [n + n * n] f and J, and their perturbation noise */
   double *spread; /* [n] uncertainty of the root x, by rounding */
   int rank;       /* of J there */
-  int pole, rough; /* what regularity.h says of it */
+  int pole, rough; /* lag_is_coordinate_pole, lag_is_nonsmooth */
   double delta;
   double *dr, *M, *work;   /* of lag_linearise */
 } Equilibrium;
@@ -35,5 +35,11 @@ int lag_equilibrium_equations(void *rest, const double *x, double *f, double *J)
 
 /* y := the state at rest for the unknowns x[n]. */
 void lag_equilibrium_state(Equilibrium *rest, const double *x);
+
+/* Whether the mass matrix is nearly singular at r->x and not nearby: a coordinate loses its meaning, as longitude does at a pole. This test and
+ * the next evaluate the state at rest and nearby, and leave rest's values undefined. */
+int lag_is_coordinate_pole(Equilibrium *rest);
+/* Whether derivatives of forces jump here, or have no limit. */
+int lag_is_nonsmooth(Equilibrium *rest);
 
 #endif

@@ -5,9 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "analysis/decoupled_blocks.h"
 #include "analysis/perturbation_noise.h"
-#include "numeric/dense.h"
 
 /* ---- Entries */
 
@@ -173,48 +171,16 @@ static void settle_value(Matrices *m, int k)
   m->zero[k] = 2 * (of_K + fabs(m->values[k]) * of_M) / bottom;
 }
 
-/* Eigenvalues and vectors of the block of the coordinates at[count], as columns from `done` on. */
-static int solve_block(Matrices *m, Pool *pool, const lag_algebra *algebra, int count, const int *at, int done)
-{
-  size_t c = (size_t)count;
-  double *K = lag_pool_doubles(pool, c * c), *M = lag_pool_doubles(pool, c * c), *value = lag_pool_doubles(pool, c);
-  double *x = lag_pool_doubles(pool, c * c);
-
-  if (pool->failed) {
-    return LAG_ENOMEM;
-  }
-  lag_block_copy(m->nq, m->K, count, at, K);
-  lag_block_copy(m->nq, m->M, count, at, M);
-  int rc = algebra->symmetric(count, K, M, value, x);
-  for (int k = 0; k < count && rc == LAG_OK; k++) {
-    for (int i = 0; i < count; i++) {
-      m->vectors[at[i] * m->nq + done + k] = x[i * count + k];
-    }
-    settle_value(m, done + k);
-  }
-  return rc;
-}
-
-/* Sorts values ascending; divides vectors by the weights; counts directions of falling and of constant energy. */
-static void sort_values(Matrices *m)
+/* Counts directions of falling and of constant energy; divides vectors by the weights. */
+static void count_directions(Matrices *m)
 {
   int nq = m->nq;
 
+  m->lowering = 0;
   for (int k = 0; k < nq; k++) {
-    int least = k;
-    for (int i = k + 1; i < nq; i++) {
-      least = m->values[i] < m->values[least] ? i : least;
-    }
-    lag_swap(&m->values[k], &m->values[least]);
-    lag_swap(&m->zero[k], &m->zero[least]);
-    for (int i = 0; i < nq; i++) {
-      lag_swap(&m->vectors[i * nq + k], &m->vectors[i * nq + least]);
-    }
     m->lowering += m->values[k] < -m->zero[k];
     m->flat += fabs(m->values[k]) <= m->zero[k];
-  }
-  for (int i = 0; i < nq; i++) {
-    for (int k = 0; k < nq; k++) {
+    for (int i = 0; i < nq; i++) {
       m->vectors[i * nq + k] /= m->weight[i];
     }
   }
@@ -222,8 +188,8 @@ static void sort_values(Matrices *m)
 
 static int signature(Matrices *m, Pool *pool, const lag_algebra *algebra)
 {
-  size_t nq = (size_t)m->nq;
-  int *block = (int *)(void *)lag_pool_doubles(pool, nq), *at = (int *)(void *)lag_pool_doubles(pool, nq), rc = LAG_OK, done = 0;
+  size_t nq = (size_t)m->nq, bytes = nq * nq * sizeof(double);
+  double *K = lag_pool_doubles(pool, nq * nq), *M = lag_pool_doubles(pool, nq * nq);
 
   m->values = lag_pool_doubles(pool, nq);
   m->zero = lag_pool_doubles(pool, nq);
@@ -231,15 +197,14 @@ static int signature(Matrices *m, Pool *pool, const lag_algebra *algebra)
   if (pool->failed) {
     return LAG_ENOMEM;
   }
-  lag_decoupled_blocks(m->nq, m->K, m->M, block);
-  for (int first = 0; first < m->nq && rc == LAG_OK; first++) {
-    int count = lag_block_members(m->nq, block, first, at);
-    rc = count > 0 ? solve_block(m, pool, algebra, count, at, done) : LAG_OK;
-    done += count;
+  memcpy(K, m->K, bytes);
+  memcpy(M, m->M, bytes);
+  int rc = algebra->symmetric(m->nq, K, M, m->values, m->vectors);
+  for (int k = 0; k < m->nq && rc == LAG_OK; k++) {
+    settle_value(m, k);
   }
   if (rc == LAG_OK) {
-    m->lowering = 0;
-    sort_values(m);
+    count_directions(m);
   }
   m->definite &= rc != LAG_EINVAL;
   return rc == LAG_EINVAL ? LAG_OK : rc;

@@ -13,7 +13,7 @@ typedef struct Matrices {
   int definite, symmetric, undamped; /* to rounding: M is positive definite; K is symmetric; C = 0 */
   int lowering;                /* number of directions in which the energy falls; -1: not known */
   int flat;                    /* number of directions in which it is constant, to rounding */
-  double *values, *vectors;    /* eigenpairs K x = value M x, where lowering >= 0: [nq] ascending, columns [nq * nq] in the model's SI units */
+  double *values, *vectors;    /* eigenpairs K x = value M x, where lowering >= 0: [nq] ascending up to rounding, columns [nq * nq] in the model's SI units */
   double *zero;                /* [nq] |value| up to this counts as 0 */
 } Matrices;
 

@@ -2,14 +2,12 @@
  * the rest may have zeros again where 0 is defective (the staircase of V.N. Kublanovskaya, USSR Comput. Math. Math. Phys. 6 (1966) 1, DOI
  * 10.1016/0041-5553(66)90031-1; G. Golub, J. Wilkinson, SIAM Rev. 18 (1976) 578, DOI 10.1137/1018113). Other eigenvalues that lie within each
  * other's uncertainty (J. Wilkinson, The Algebraic Eigenvalue Problem, 1965, chapter 2: error times sensitivity) are replaced by their mean,
- * which is well determined where they are not. Decoupled blocks are matrices of their own. */
+ * which is well determined where they are not. */
 #include "analysis/spectrum.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
-
-#include "analysis/decoupled_blocks.h"
 
 enum { MOST_STAGES = 8 };
 
@@ -278,18 +276,19 @@ static int extend_eigenvectors(SpectrumSearch *w)
   return rc;
 }
 
-/* Allocates room for count eigenvalues of a matrix of n rows. */
-static int allocate(Spectrum *s, Pool *pool, int n, int count)
+/* Allocates room for the eigenvalues of the deflated matrix. */
+static int allocate(SpectrumSearch *w)
 {
-  size_t c = (size_t)count, size = (size_t)n * c;
+  Spectrum *s = w->s;
+  size_t count = (size_t)w->m, size = (size_t)s->n * count;
 
-  s->count = count;
-  s->re = lag_pool_doubles(pool, c);
-  s->im = lag_pool_doubles(pool, c);
-  s->repeats = lag_pool_doubles(pool, c);
-  s->vre = lag_pool_doubles(pool, size);
-  s->vim = lag_pool_doubles(pool, size);
-  return pool->failed ? LAG_ENOMEM : LAG_OK;
+  s->count = w->m;
+  s->re = lag_pool_doubles(w->pool, count);
+  s->im = lag_pool_doubles(w->pool, count);
+  s->repeats = lag_pool_doubles(w->pool, count);
+  s->vre = lag_pool_doubles(w->pool, size);
+  s->vim = lag_pool_doubles(w->pool, size);
+  return w->pool->failed ? LAG_ENOMEM : LAG_OK;
 }
 
 /* A := D^-1 A D, and noise likewise, with the D that balances the terms of the entries. */
@@ -309,8 +308,7 @@ static int balance(SpectrumSearch *w, int n, double *A, double *noise)
   return rc;
 }
 
-/* Spectrum of one block A[n * n], which is destroyed, as is noise. */
-static int solve_block(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise)
+int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise)
 {
   SpectrumSearch w = {.s = s, .pool = pool, .algebra = algebra, .A = A, .m = n};
 
@@ -323,82 +321,7 @@ static int solve_block(Spectrum *s, Pool *pool, const lag_algebra *algebra, int 
   w.size = frobenius(n, A);
   w.noise = fmax(DBL_EPSILON * w.size, frobenius(n, noise));
   rc = take_zeros(&w);
-  if (rc || allocate(s, pool, n, w.m)) {
-    return rc ? rc : LAG_ENOMEM;
-  }
-  rc = w.m > 0 ? solve(&w) : LAG_OK;
+  rc = rc ? rc : allocate(&w);
+  rc = rc || w.m == 0 ? rc : solve(&w);
   return rc ? rc : extend_eigenvectors(&w);
-}
-
-/* Copies the columns of a block, over its n rows at[], to columns of the whole from `to` on. */
-static void put_columns(int n, const int *at, int from, const double *part, int columns, double *whole, int to)
-{
-  for (int i = 0; i < n; i++) {
-    for (int k = 0; k < from; k++) {
-      whole[at[i] * columns + to + k] = part[i * from + k];
-    }
-  }
-}
-
-/* Joins the spectra of the blocks. member[i], of n: the rows of one block after the other. */
-static int join(Spectrum *s, Pool *pool, int nparts, const Spectrum *part, const int *member)
-{
-  int count = 0, nkernel = 0;
-
-  for (int b = 0; b < nparts; b++) {
-    count += part[b].count;
-    nkernel += part[b].nkernel;
-    s->zeros += part[b].zeros;
-  }
-  s->nkernel = nkernel;
-  s->kernel = lag_pool_doubles(pool, (size_t)s->n * (size_t)nkernel);
-  if (allocate(s, pool, s->n, count) || pool->failed) {
-    return LAG_ENOMEM;
-  }
-  int at = 0, zero = 0;
-  for (int b = 0; b < nparts; b++) {
-    const Spectrum *p = &part[b];
-    size_t bytes = (size_t)p->count * sizeof(double);
-    memcpy(s->re + at, p->re, bytes);
-    memcpy(s->im + at, p->im, bytes);
-    memcpy(s->repeats + at, p->repeats, bytes);
-    put_columns(p->n, member, p->count, p->vre, count, s->vre, at);
-    put_columns(p->n, member, p->count, p->vim, count, s->vim, at);
-    put_columns(p->n, member, p->nkernel, p->kernel, nkernel, s->kernel, zero);
-    at += p->count;
-    zero += p->nkernel;
-    member += p->n;
-  }
-  return LAG_OK;
-}
-
-int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, const double *A, const double *noise)
-{
-  size_t size = (size_t)n;
-  int *block = (int *)(void *)lag_pool_doubles(pool, size), *member = (int *)(void *)lag_pool_doubles(pool, size), nparts = 0, done = 0;
-  Spectrum *part = (Spectrum *)(void *)lag_pool_doubles(pool, size * (sizeof *part / sizeof(double) + 1));
-
-  *s = (Spectrum){.n = n};
-  if (pool->failed) {
-    return LAG_ENOMEM;
-  }
-  lag_decoupled_blocks(n, A, NULL, block);
-  for (int first = 0; first < n; first++) {
-    int m = lag_block_members(n, block, first, member + done);
-    double *a = lag_pool_doubles(pool, (size_t)m * (size_t)m), *e = lag_pool_doubles(pool, (size_t)m * (size_t)m);
-    if (pool->failed) {
-      return LAG_ENOMEM;
-    }
-    if (m == 0) {
-      continue;
-    }
-    lag_block_copy(n, A, m, member + done, a);
-    lag_block_copy(n, noise, m, member + done, e);
-    int rc = solve_block(&part[nparts++], pool, algebra, m, a, e);
-    if (rc) {
-      return rc;
-    }
-    done += m;
-  }
-  return join(s, pool, nparts, part, member);
 }

@@ -17,8 +17,8 @@ typedef struct Spectrum {
   double *kernel;    /* [n * nkernel], columns */
 } Spectrum;
 
-/* Spectrum of A[n * n], whose entries have errors up to noise[n * n] >= 0, at least those of rounding. Memory is the pool's. LAG_OK, LAG_ENOMEM,
- * LAG_EMETHOD. */
-int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, const double *A, const double *noise);
+/* Spectrum of A[n * n], whose entries have errors up to noise[n * n] >= 0, at least those of rounding. Both are destroyed. Memory is the
+ * pool's. LAG_OK, LAG_ENOMEM, LAG_EMETHOD. */
+int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise);
 
 #endif

@@ -46,40 +46,45 @@ int lag_samples_take(Samples *s, lag_sim *sim)
   return LAG_OK;
 }
 
-int lag_component_kind(const lag_model *m, int i)
+/* 0: component i is a coordinate, 1: a velocity, 2: a state. */
+static int kind_of(const lag_model *m, int i)
 {
   return i < m->nq ? 0 : i < 2 * m->nq ? 1 : 2;
 }
 
-void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale)
+int lag_previous_alike(const lag_sim *sim, int i)
 {
   const lag_model *m = lag_sim_scene(sim)->model;
-  int n = reference->n, first = 0;
   char unit[64], other[64];
+  int k = i - 1;
+
+  lag_sim_state_info(sim, i, NULL, 0, unit, sizeof unit);
+  for (; k >= 0 && kind_of(m, k) == kind_of(m, i); k--) {
+    lag_sim_state_info(sim, k, NULL, 0, other, sizeof other);
+    if (strcmp(unit, other) == 0) {
+      return k;
+    }
+  }
+  return -1;
+}
+
+void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale)
+{
+  int n = reference->n;
 
   for (int i = 0; i < n; i++) {
-    scale[i] = 0;
+    int alike = lag_previous_alike(sim, i);
+    scale[i] = alike < 0 ? 0 : scale[alike];
     for (int r = 0; r < reference->rows; r++) {
       scale[i] = fmax(scale[i], fabs(reference->y[(size_t)r * (size_t)n + (size_t)i]));
     }
   }
-  /* Neighbours of one kind and unit share the largest of their scales. */
-  for (int i = 1; i <= n; i++) {
-    lag_sim_state_info(sim, first, NULL, 0, unit, sizeof unit);
-    if (i < n && lag_component_kind(m, i) == lag_component_kind(m, first)) {
-      lag_sim_state_info(sim, i, NULL, 0, other, sizeof other);
-      if (strcmp(unit, other) == 0) {
-        continue;
-      }
+  for (int i = n - 1; i >= 0; i--) { /* the last of a kind has the largest */
+    int alike = lag_previous_alike(sim, i);
+    scale[i] = scale[i] > 0 ? scale[i] : 1;
+    if (alike >= 0) {
+      scale[alike] = scale[i];
     }
-    double most = 0;
-    for (int k = first; k < i; k++) {
-      most = fmax(most, scale[k]);
-    }
-    for (int k = first; k < i; k++) {
-      scale[k] = most > 0 ? most : 1;
-    }
-    first = i;
   }
 }
 

@@ -58,8 +58,9 @@ typedef struct CostMethod {
  * processor time]. LAG_OK, also where no run has a result (m->why); LAG_ENOMEM. */
 int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, double longest);
 
-/* Kind of component i of a state: 0 coordinate, 1 velocity, 2 state. Processor time of this process [s]. */
-int lag_component_kind(const lag_model *m, int i);
+/* The last component before i of the same kind (coordinate, velocity or state) and unit; -1: there is none. */
+int lag_previous_alike(const lag_sim *sim, int i);
+/* Processor time of this process [s]. */
 double lag_processor_seconds(void);
 
 /* Marks the Pareto front of all runs. */

@@ -33,6 +33,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
     fixed += part[i].n;
   }
   sized.opt = opt;
+  sized.variant = method->variant;
   size_t before = (fixed + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, work = method->work_size(&sized), total = before + work;
   char *room = calloc(total * sizeof(double) + LINE - 1, 1);
 
@@ -60,6 +61,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   s->pb.kept = s->kept;
   s->pb.begin = s->begin;
   s->pb.opt = opt;
+  s->pb.variant = method->variant;
   s->charges = (Charge *)(void *)s->charge_block;
   s->method = method;
   lag_charges_method(s, method);

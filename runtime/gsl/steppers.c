@@ -93,8 +93,9 @@ static int has_room(size_t n)
   return room != NULL;
 }
 
-static int init(void *work, lag_problem *pb, const double *opt, const gsl_odeiv2_step_type *type)
+static int init(void *work, lag_problem *pb, const double *opt)
 {
+  const gsl_odeiv2_step_type *type = *(const gsl_odeiv2_step_type *const *)pb->variant;
   Gsl *w = work;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
 
@@ -187,10 +188,6 @@ static void fini(void *work)
   X(msbdf, "gsl-msbdf", 5, gsl_odeiv2_step_msbdf, "GSL: BDF multistep of variable order 1 to 5, for stiff models")
 
 #define DEFINE(id, text, p, type, words)                                    \
-  static int init_##id(void *work, lag_problem *pb, const double *opt)      \
-  {                                                                         \
-    return init(work, pb, opt, type);                                       \
-  }                                                                         \
   static const lag_method method_##id = {                                   \
       .name = text,                                                         \
       .order = p,                                                           \
@@ -200,11 +197,12 @@ static void fini(void *work)
       .noptions = 1,                                                        \
       .options = options,                                                   \
       .work_size = work_size,                                               \
-      .init = init_##id,                                                    \
+      .init = init,                                                         \
       .step = step,                                                         \
       .dense = dense,                                                       \
       .reset = reset,                                                       \
       .fini = fini,                                                         \
+      .variant = &type,                                                     \
   };
 METHODS(DEFINE)
 

@@ -70,6 +70,7 @@ typedef struct lag_problem {
   const double *kept;  /* [nholonomic] value at which c is held, NaN: free so far; NULL: all at 0 */
   int redundant;       /* 1: constraints are redundant; f is evaluated on the constraints only, see lag_rhs */
   const double *opt;   /* values of the method's options, [method->noptions] */
+  const void *variant; /* method->variant */
   double tol;          /* tolerance, absolute and relative */
   double dir;          /* 1 or -1: the direction of time */
   double longest;      /* largest step of embedded methods and radau [s]; 0: no limit */
@@ -264,6 +265,7 @@ typedef struct lag_method {
   size_t (*tangent_size)(const lag_problem *pb, int k);
   int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
 
+  const void *variant; /* constants by which it differs from other methods with the same functions; these read lag_problem.variant */
   double finest; /* the smallest tolerance that the digits of its coefficients support; 0: coefficients have all digits of the scalar */
 } lag_method;
 

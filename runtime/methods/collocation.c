@@ -26,6 +26,7 @@
 #include "methods/newton.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
+#include "numeric/workspace.h"
 
 enum { STAGES_WITH_CUBIC = 2 };
 
@@ -46,34 +47,32 @@ typedef struct CollocationArrays {
   lag_band_matrix J;
 } CollocationArrays;
 
+/* Sets the pointers, unless x is NULL; returns the length of Collocation.x. */
+static size_t layout(CollocationArrays *a, const lag_problem *pb, int stages, double *x)
+{
+  size_t n = (size_t)pb->n, m = n * (size_t)stages;
+  double **const parts[] = {&a->comp, &a->y0, &a->y1, &a->f0, &a->f1, &a->Y, &a->u, &a->other, &a->R, &a->scale, &a->J.pivot,
+                            &a->jacobian, &a->linear, &a->history, &a->J.a};
+  const size_t sizes[] = {n, n, n, n, n, n, m, m, m, m, m, n * n, lag_linear_work(pb->model), lag_predictor_size((int)m), m * m};
+
+  a->J.n = (int)m;
+  a->J.band = (int)m - 1;
+  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+}
+
 static CollocationArrays arrays(Collocation *w, const lag_problem *pb)
 {
   CollocationArrays a;
-  double *x = w->x;
-  int n = pb->n, m = n * (int)w->rule.free;
-  double **const of_n[] = {&a.comp, &a.y0, &a.y1, &a.f0, &a.f1, &a.Y}, **const of_m[] = {&a.u, &a.other, &a.R, &a.scale, &a.J.pivot};
 
-  for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++, x += n) {
-    *of_n[i] = x;
-  }
-  for (size_t i = 0; i < sizeof of_m / sizeof *of_m; i++, x += m) {
-    *of_m[i] = x;
-  }
-  a.jacobian = x;
-  a.linear = a.jacobian + n * n;
-  a.history = a.linear + lag_linear_work(pb->model);
-  a.J.n = m;
-  a.J.band = m - 1;
-  a.J.a = a.history + lag_predictor_size(m);
+  layout(&a, pb, (int)w->rule.free, w->x);
   return a;
 }
 
 size_t lag_collocation_size(const lag_problem *pb, int stages)
 {
-  size_t n = (size_t)pb->n, m = n * (size_t)stages;
+  CollocationArrays a;
 
-  return sizeof(Collocation) / sizeof(double) + 6 * n + 5 * m + n * n + lag_linear_work(pb->model) + lag_predictor_size((int)m) +
-         (size_t)lag_band_matrix_size((int)m, (int)m - 1);
+  return sizeof(Collocation) / sizeof(double) + layout(&a, pb, stages, NULL);
 }
 
 void lag_collocation_reset(void *work, lag_problem *pb)
@@ -219,7 +218,7 @@ static int constant_slope_guess(const Collocation *w, const CollocationArrays *a
   return rc;
 }
 
-int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y)
+int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
 {
   Collocation *w = work;
   CollocationArrays a = arrays(w, pb);
@@ -228,6 +227,7 @@ int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y)
   int rc = lag_fixed_step_begin(&w->step, pb, *t, &next);
   Step s = {.t = *t, .h = next.dt, .y0 = y, .comp = a.comp, .u = a.u, .counted = 1};
 
+  (void)t_stop;
   if (rc) {
     return rc;
   }

@@ -10,7 +10,7 @@ void lag_collocation_init(void *work, lag_problem *pb, double h, int stages);
 
 /* Members of lag_method of the same names. */
 void lag_collocation_reset(void *work, lag_problem *pb);
-int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y);
+int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y, double t_stop);
 void lag_collocation_dense(void *work, lag_problem *pb, double t, double *y);
 size_t lag_collocation_tangent_size(const lag_problem *pb, int k);
 int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);

@@ -10,6 +10,7 @@
 #include "methods/newton.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
+#include "numeric/workspace.h"
 
 /* Pointers into lag_discrete.work. */
 typedef struct NewtonArrays {
@@ -32,36 +33,35 @@ static int half_band(const lag_model *m)
   return band;
 }
 
-static int band_of(const lag_problem *pb, int free)
+/* Sets the pointers, unless x is NULL; returns the length of lag_discrete.work. */
+static size_t layout(NewtonArrays *w, const lag_problem *pb, int free, double *x)
 {
-  return free * (half_band(pb->model) + 1) - 1;
+  size_t n = (size_t)pb->nq, m = n * (size_t)free;
+
+  w->n = pb->nq;
+  w->m = w->n * free;
+  w->free = free;
+  w->J.n = w->m;
+  w->J.band = free * (half_band(pb->model) + 1) - 1;
+  double **const parts[] = {&w->Q, &w->V, &w->Lq, &w->Lv, &w->F, &w->R, &w->S, &w->du, &w->J.pivot, &w->h, &w->J.a};
+  const size_t sizes[] = {n, n, n, n, n, m, m, m, m, (size_t)pb->model->nsecond, (size_t)lag_band_matrix_size(w->m, w->J.band)};
+  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+}
+
+static NewtonArrays arrays(const lag_discrete *d)
+{
+  NewtonArrays w;
+
+  layout(&w, d->pb, (int)d->rule->free, d->work);
+  w.points = (int)d->rule->points;
+  return w;
 }
 
 size_t lag_discrete_size(const lag_problem *pb, int free)
 {
-  int n = pb->nq, m = n * free;
+  NewtonArrays w;
 
-  return (size_t)(5 * n + 4 * m + pb->model->nsecond + lag_band_matrix_size(m, band_of(pb, free)));
-}
-
-static NewtonArrays layout(const lag_discrete *d)
-{
-  NewtonArrays w = {.n = d->pb->nq, .free = (int)d->rule->free, .points = (int)d->rule->points};
-  double *x = d->work;
-  double **const of_n[] = {&w.Q, &w.V, &w.Lq, &w.Lv, &w.F}, **const of_m[] = {&w.R, &w.S, &w.du, &w.J.pivot};
-
-  w.m = w.n * w.free;
-  for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++, x += w.n) {
-    *of_n[i] = x;
-  }
-  for (size_t i = 0; i < sizeof of_m / sizeof *of_m; i++, x += w.m) {
-    *of_m[i] = x;
-  }
-  w.h = x;
-  w.J.n = w.m;
-  w.J.band = band_of(d->pb, w.free);
-  w.J.a = x + d->pb->model->nsecond;
-  return w;
+  return layout(&w, pb, free, NULL);
 }
 
 /* Q and V at point i. */
@@ -247,7 +247,7 @@ static lag_correction correct(const lag_discrete *d, const NewtonArrays *w)
 
 int lag_discrete_solve(const lag_discrete *d)
 {
-  NewtonArrays w = layout(d);
+  NewtonArrays w = arrays(d);
   lag_correction before = {1, 1};
   int settled = 0, rc;
   char what[48];
@@ -345,7 +345,7 @@ static void solve_columns(const NewtonArrays *w, int k, double *du, double *colu
 int lag_discrete_tangent(const lag_discrete *d, int k, double *dq, double *dp, double *du, double *scratch)
 {
   const lag_rule *r = d->rule;
-  NewtonArrays w = layout(d);
+  NewtonArrays w = arrays(d);
   int m = w.n * k, rc = matrix(d, &w);
   double *dP = scratch, *dF = dP + m, *dQ = dF + m, *dV = dQ + m, *column = dV + m;
 

@@ -88,20 +88,9 @@ EMBEDDED_TRIAL(lag_dop853_tableau, 1)
 
 /* HNW II.4 has beta = 0.04, exponent 0.117 of the error, and safety 0.9. These constants give smaller steps, fewer of them rejected: 3 to 20 %
  * fewer calls at equal error on the double pendulum, Henon-Heiles and Kepler's problem. */
-static const EmbeddedPair pair = {&lag_dop853_tableau, 1, 0.0375, 3, 0.82, 1.0 / 3, 6, trial};
+static const EmbeddedPair pair = {&lag_dop853_tableau, 1, 0.0375, 3, 0.82, 1.0 / 3, 6, LAG_MAX_DENSE, trial};
 
 enum { LAST = 12, EXTRA = 3, NSTAGES = 16, HIGH = EMBEDDED_K1 + NSTAGES }; /* arrays HIGH..HIGH+3: the highest terms of dense output */
-
-static size_t work_size(const lag_problem *pb)
-{
-  return lag_embedded_size(&pair, pb, LAG_MAX_DENSE);
-}
-
-static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
-{
-  (void)t_stop;
-  return lag_embedded_step(&pair, work, pb, t, y);
-}
 
 /* The three extra stages of dense output, and its four highest terms. have_extra := -1 where the model fails at a stage, though
  * the stages lie inside an accepted step. */
@@ -143,16 +132,6 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
     double high = d[i] + s * (d[row + i] + r * (d[2 * row + i] + s * d[3 * row + i]));
     y[i] = y0[i] + s * (diff + r * (b + s * (c + r * h * high)));
   }
-}
-
-static size_t tangent_size(const lag_problem *pb, int k)
-{
-  return lag_embedded_tangent_size(&pair, pb, k);
-}
-
-static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
-{
-  return lag_embedded_tangent(&pair, work, pb, t, k, Y, scratch);
 }
 
 const lag_method lag_dop853 = {

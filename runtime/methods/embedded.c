@@ -26,9 +26,10 @@ const lag_method_option lag_embedded_options[LAG_NADAPTIVE_OPTIONS] = {
     {"adapt", "off: every step has the size `step` (0: a 10000th of the scene's span), whatever the error", 0, 0, 1, lag_on_off},
 };
 
-size_t lag_embedded_size(const EmbeddedPair *pair, const lag_problem *pb, int more)
+size_t lag_embedded_work_size(const lag_problem *pb)
 {
-  int arrays = EMBEDDED_K1 + pair->tab->stages + pair->tab->extra + more;
+  const EmbeddedPair *pair = pb->variant;
+  int arrays = EMBEDDED_K1 + pair->tab->stages + pair->tab->extra + pair->more;
 
   return sizeof(Embedded) / sizeof(double) + (size_t)arrays * (size_t)lag_embedded_row(pb);
 }
@@ -225,12 +226,14 @@ static int try_other_size(SizeSearch *l, Embedded *w, lag_problem *pb, double tb
   return 1;
 }
 
-int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y)
+int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
 {
+  const EmbeddedPair *pair = pb->variant;
   Embedded *w = work;
   SizeSearch search = {.tries = 0};
   int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
 
+  (void)t_stop;
   while (rc == 0) {
     double wanted = lag_min(w->h, longest(w, pb, *t)), row, gap = w->limits.fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
     int clipped = wanted * (1 + 1e-4) >= gap; /* the rest after this step would be too short */
@@ -280,13 +283,16 @@ int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, dou
   return rc;
 }
 
-size_t lag_embedded_tangent_size(const EmbeddedPair *pair, const lag_problem *pb, int k)
+size_t lag_embedded_tangent_size(const lag_problem *pb, int k)
 {
+  const EmbeddedPair *pair = pb->variant;
+
   return lag_tangent_size(pb, pair->tab->stages, k);
 }
 
-int lag_embedded_tangent(const EmbeddedPair *pair, void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+int lag_embedded_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
 {
+  const EmbeddedPair *pair = pb->variant;
   Embedded *w = work;
 
   return lag_tangent_explicit(pair->tab, pb, w->t0, lag_tangent_span(w->t0, t, w->dt), lag_embedded_array(w, pb, EMBEDDED_Y0), k, Y, scratch);

@@ -16,6 +16,7 @@ struct EmbeddedPair {
   double beta;         /* PI controller: h grows by the factor safety err_old^beta / err^(ratio beta) */
   int ratio;
   double safety, shrink_most, grow_most;
+  int more;            /* rows of Embedded.x behind the stages, for dense output */
 
   /* One trial step from (t, Y0) to tb = t + dt: fills Y1 and COMP1, returns the squared norm of the error, NaN where a value is not
    * finite. *rc: status of the model; > 0: a smaller step may help. Defined by EMBEDDED_TRIAL of embedded_trial.h. */
@@ -54,13 +55,13 @@ static inline double *lag_embedded_array(Embedded *w, const lag_problem *pb, int
   return w->x + which * lag_embedded_row(pb);
 }
 
-/* Doubles of the method's state, with `more` rows behind the stages. */
-size_t lag_embedded_size(const EmbeddedPair *pair, const lag_problem *pb, int more);
-
-/* Members of lag_method of the same names. */
+/* Members of lag_method of the same names; lag_method.variant is the EmbeddedPair. */
+size_t lag_embedded_work_size(const lag_problem *pb);
 int lag_embedded_init(void *work, lag_problem *pb, const double *opt);
 void lag_embedded_reset(void *work, lag_problem *pb);
-int lag_embedded_step(const EmbeddedPair *pair, void *work, lag_problem *pb, double *t, double *y);
+int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double t_stop);
+size_t lag_embedded_tangent_size(const lag_problem *pb, int k);
+int lag_embedded_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
 
 /* > 0: a coordinate moved against its velocities at both ends of the step to tb, in a model whose constraints contain time. The step led over
  * a pole, as of x = tan(t), or is too long; the error estimate does not see it, because constraints determine the coordinate. */
@@ -69,15 +70,12 @@ int lag_embedded_reversal(Embedded *w, lag_problem *pb, double tb);
  * and says nothing of the result. whole: squared error including that part, kept in w->across. */
 double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt, double whole);
 
-/* Derivative of the last step, or of a shorter step from the same start. */
-size_t lag_embedded_tangent_size(const EmbeddedPair *pair, const lag_problem *pb, int k);
-int lag_embedded_tangent(const EmbeddedPair *pair, void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
-
-/* The common members of both descriptors; work_size, step, dense and tangent are functions of the file that uses it. */
-#define EMBEDDED_DESCRIPTOR                                                                          \
-  .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_CONSTRAINTS,                                                               \
-  .noptions = LAG_NADAPTIVE_OPTIONS, .options = lag_embedded_options,                                                    \
-  .work_size = work_size, .init = lag_embedded_init, .step = step, .dense = dense, .reset = lag_embedded_reset,      \
-  .tangent_size = tangent_size, .tangent = tangent
+/* The members of both descriptors but dense, a function of the file that uses it, as is `pair`. */
+#define EMBEDDED_DESCRIPTOR                                                                                          \
+  .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_CONSTRAINTS,                                                     \
+  .noptions = LAG_NADAPTIVE_OPTIONS, .options = lag_embedded_options, .variant = &pair,                              \
+  .work_size = lag_embedded_work_size, .init = lag_embedded_init, .step = lag_embedded_step, .dense = dense,         \
+  .reset = lag_embedded_reset,                                                                                    \
+  .tangent_size = lag_embedded_tangent_size, .tangent = lag_embedded_tangent
 
 #endif

@@ -5,12 +5,12 @@
  *
  * the velocity is a polynomial with values u_k, the free velocities, at nodes. J.E. Marsden, M. West, Acta Numerica 10 (2001) 357, DOI
  * 10.1017/S096249290100006X, section 2.6; S. Ober-Blobaum, N. Saake, Adv. Comput. Math. 41 (2015) 955, DOI
- * 10.1007/s10444-014-9394-8: degree u with u Gauss points or u + 1 Lobatto points has order 2 u. With Gauss points this is
+ * 10.1007/s10444-014-9394-8: degree u with u Gauss points has order 2 u, and is
  * Gauss collocation of Hamilton's equations (Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VI.6.2). */
 #ifndef LAG_METHODS_GALERKIN_RULE_H
 #define LAG_METHODS_GALERKIN_RULE_H
 
-enum { LAG_RULE_POINTS = 5, LAG_RULE_FREE = 4 };
+enum { LAG_RULE_POINTS = 4, LAG_RULE_FREE = 4 };
 
 /* Doubles only, because a rule is saved with the run. */
 typedef struct lag_rule {
@@ -22,9 +22,8 @@ typedef struct lag_rule {
   double whole[LAG_RULE_FREE];
 } lag_rule;
 
-/* Gauss or Lobatto rule of order 2 u, u = 1 .. LAG_RULE_FREE, computed to the last digits of a double. */
+/* Gauss rule of order 2 u, u = 1 .. LAG_RULE_FREE, computed to the last digits of a double. */
 void lag_rule_gauss(lag_rule *r, int u);
-void lag_rule_lobatto(lag_rule *r, int u);
 
 /* One point at the start (c = 0) or the end (c = 1) of the step: symplectic Euler or its adjoint. */
 void lag_rule_euler(lag_rule *r, double c);

@@ -12,6 +12,7 @@
 #include "methods/step_interpolant.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
+#include "numeric/workspace.h"
 
 size_t lag_implicit_size(const lag_problem *pb, int free)
 {
@@ -109,13 +110,14 @@ static void accept(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double
   w->have_path = 0;
 }
 
-int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y)
+int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
 {
   Implicit *w = work;
   ImplicitArrays a = lag_substeps_arrays(w, pb);
   lag_next_step next;
   int rc = lag_fixed_step_begin(&w->step, pb, *t, &next);
 
+  (void)t_stop;
   if (rc) {
     return rc;
   }
@@ -171,31 +173,22 @@ typedef struct Changes {
   double *dv, *du, *rest;     /* [nq k], [free nq k] */
 } Changes;
 
-size_t lag_implicit_tangent_size(const lag_problem *pb, int k)
+/* Sets the pointers, unless x is NULL; returns the length of the scratch. */
+static size_t layout(Changes *c, const lag_problem *pb, int k, double *x)
 {
   size_t nq = (size_t)pb->nq, m = nq * (size_t)k;
+  double **const parts[] = {&c->p, &c->ql, &c->pl, &c->v, &c->u, &c->force, &c->second, &c->dv, &c->du, &c->rest};
+  const size_t sizes[] = {nq, nq, nq, nq, LAG_RULE_FREE * nq, LAG_RULE_POINTS * nq, (size_t)pb->model->nsecond, m, LAG_RULE_FREE * m,
+                          lag_discrete_tangent_size(pb, LAG_RULE_FREE, k)};
 
-  return 4 * nq + (LAG_RULE_FREE + LAG_RULE_POINTS) * nq + (size_t)pb->model->nsecond + (1 + LAG_RULE_FREE) * m +
-         lag_discrete_tangent_size(pb, LAG_RULE_FREE, k);
+  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
-static Changes changes(const lag_problem *pb, int k, double *x)
+size_t lag_implicit_tangent_size(const lag_problem *pb, int k)
 {
   Changes c;
-  int nq = pb->nq;
 
-  c.p = x;
-  c.ql = c.p + nq;
-  c.pl = c.ql + nq;
-  c.v = c.pl + nq;
-  c.u = c.v + nq;
-  c.force = c.u + LAG_RULE_FREE * nq;
-  c.second = c.force + LAG_RULE_POINTS * nq;
-  c.dv = c.second + pb->model->nsecond;
-  c.du = c.dv + nq * k;
-  c.rest = c.du + LAG_RULE_FREE * nq * k;
-  memset(c.ql, 0, (size_t)(2 * nq) * sizeof *x);
-  return c;
+  return layout(&c, pb, k, NULL);
 }
 
 /* Start of the last step: Y = (dq, dv) becomes (dq, dp), and c->p := p. */
@@ -253,9 +246,13 @@ int lag_implicit_tangent(void *work, lag_problem *pb, double t, int k, double *Y
 {
   Implicit *w = work;
   ImplicitArrays a = lag_substeps_arrays(w, pb);
-  Changes c = changes(pb, k, scratch);
+  Changes c;
   double step = w->step.h * pb->dir, dt = lag_tangent_span(w->step.t0, t, step), at = 0;
-  int whole = dt == step, rc = to_momenta(w, &a, pb, &c, k, Y);
+  int whole = dt == step;
+
+  layout(&c, pb, k, scratch);
+  memset(c.ql, 0, (size_t)(2 * pb->nq) * sizeof *scratch);
+  int rc = to_momenta(w, &a, pb, &c, k, Y);
 
   for (int j = 0; j < (int)w->substeps && rc == 0; j++) {
     rc = over_substep(w, &a, pb, &c, j, at, dt, whole, k, Y);

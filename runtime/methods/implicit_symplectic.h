@@ -17,7 +17,7 @@ void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_compo
 
 /* Members of lag_method of the same names. Forces enter by the discrete Lagrange-d'Alembert principle at the points of the rules. */
 void lag_implicit_reset(void *work, lag_problem *pb);
-int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y);
+int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y, double t_stop);
 void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y);
 
 /* Derivative of the last step, or of a shorter step from the same start, in q and v. */

@@ -19,6 +19,7 @@
 #include "methods/embedded.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
+#include "numeric/workspace.h"
 
 enum { MOST_CORRECTIONS = 7, MOST_WHEN_FIXED = 30, STAGES = 3 };
 
@@ -74,39 +75,35 @@ typedef struct RadauArrays {
   lag_band_matrix real, complex;        /* gamma/h - J, and the real form [alpha/h - J, -beta/h; beta/h, alpha/h - J] of the complex one */
 } RadauArrays;
 
+/* Sets the pointers, unless x is NULL; returns the length of Radau.x. */
+static size_t layout(RadauArrays *a, const lag_problem *pb, double *x)
+{
+  size_t n = (size_t)pb->n, m = STAGES * n;
+  double **const parts[] = {&a->f0, &a->y0, &a->y1, &a->comp, &a->comp1, &a->scale, &a->ys, &a->fs, &a->err, &a->real.pivot, &a->z, &a->w,
+                            &a->dw, &a->path, &a->jacobian, &a->row, &a->complex.pivot, &a->real.a, &a->complex.a, &a->linear};
+  const size_t sizes[] = {n, n, n, n, n, n, n, n, n, n, m, m, m, m, (size_t)(pb->nq + pb->nz) * n, 2 * n, 2 * n, n * n, 4 * n * n,
+                          lag_linear_work(pb->model)};
+
+  a->real.n = pb->n;
+  a->complex.n = 2 * pb->n;
+  a->real.band = pb->n - 1;
+  a->complex.band = 2 * pb->n - 1;
+  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+}
+
 static RadauArrays arrays(Radau *w, const lag_problem *pb)
 {
   RadauArrays a;
-  size_t n = (size_t)pb->n;
-  double *x = w->x;
-  double **const of_n[] = {&a.f0, &a.y0, &a.y1, &a.comp, &a.comp1, &a.scale, &a.ys, &a.fs, &a.err, &a.real.pivot};
-  double **const of_3n[] = {&a.z, &a.w, &a.dw, &a.path};
 
-  for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++, x += n) {
-    *of_n[i] = x;
-  }
-  for (size_t i = 0; i < sizeof of_3n / sizeof *of_3n; i++, x += STAGES * n) {
-    *of_3n[i] = x;
-  }
-  a.jacobian = x;
-  a.row = a.jacobian + (size_t)(pb->nq + pb->nz) * n;
-  a.complex.pivot = a.row + 2 * n;
-  a.real.a = a.complex.pivot + 2 * n;
-  a.complex.a = a.real.a + n * n;
-  a.linear = a.complex.a + 4 * n * n;
-  a.real.n = pb->n;
-  a.complex.n = 2 * pb->n;
-  a.real.band = pb->n - 1;
-  a.complex.band = 2 * pb->n - 1;
+  layout(&a, pb, w->x);
   return a;
 }
 
 static size_t work_size(const lag_problem *pb)
 {
-  size_t n = (size_t)pb->n;
+  RadauArrays a;
 
-  return sizeof(Radau) / sizeof(double) + (10 + 4 * STAGES + 4) * n + (size_t)(pb->nq + pb->nz) * n + 5 * n * n +
-         lag_linear_work(pb->model);
+  return sizeof(Radau) / sizeof(double) + layout(&a, pb, NULL);
 }
 
 static void reset(void *work, lag_problem *pb)

@@ -19,8 +19,12 @@ typedef struct Rk4 {
 
 enum { K1, K2, K3, K4, F0, Y0, Y1, YS, COMP, NARRAYS };
 
-static const double node[4] = {0, 0.5, 0.5, 1};
-static const double weight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+static const lag_tableau tableau = {
+    .stages = 5,
+    .order = 4,
+    .c = {0, 0.5, 0.5, 1, 1},
+    .a = {{0}, {0.5}, {0, 0.5}, {0, 0, 1}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}},
+};
 
 static const lag_method_option options[] = {LAG_STEP_OPTION};
 
@@ -55,7 +59,7 @@ static int stages(Rk4 *w, lag_problem *pb, double t, const double *y, double dt)
 
   for (int s = w->ready != 0.0; s < 4; s++) {
     const double *restrict k = w->x + (s ? s - 1 : 0) * n;
-    double c = node[s] * dt, ts = t + c;
+    double c = tableau.c[s] * dt, ts = t + c; /* each stage takes the slope of the one before */
     for (int i = 0; i < n; i++) {
       ys[i] = s ? y[i] + c * k[i] : y[i];
     }
@@ -65,7 +69,7 @@ static int stages(Rk4 *w, lag_problem *pb, double t, const double *y, double dt)
     }
   }
   const double *restrict k1 = w->x + K1 * n, *restrict k2 = w->x + K2 * n;
-  const double *restrict k3 = w->x + K3 * n, *restrict k4 = w->x + K4 * n;
+  const double *restrict k3 = w->x + K3 * n, *restrict k4 = w->x + K4 * n, *weight = tableau.a[4];
   for (int i = 0; i < n; i++) {
     ys[i] = weight[0] * k1[i] + weight[1] * k2[i] + weight[2] * k3[i] + weight[3] * k4[i];
   }
@@ -115,13 +119,6 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
   lag_hermite(pb->nq, pb->nz, w->step.dt, (t - w->step.t0) / w->step.dt, w->x + Y0 * n, w->x + F0 * n, w->x + Y1 * n,
               w->x + K1 * n, y);
 }
-
-static const lag_tableau tableau = {
-    .stages = 5,
-    .order = 4,
-    .c = {0, 0.5, 0.5, 1, 1},
-    .a = {{0}, {0.5}, {0, 0.5}, {0, 0, 1}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}},
-};
 
 static size_t tangent_size(const lag_problem *pb, int k)
 {

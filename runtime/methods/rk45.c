@@ -26,18 +26,7 @@ const lag_tableau lag_dopri5_tableau = {
 EMBEDDED_TRIAL(lag_dopri5_tableau, 0)
 
 /* HNW II.4: beta = 0.04 damps the steps of a mildly stiff problem at little cost elsewhere. */
-static const EmbeddedPair pair = {&lag_dopri5_tableau, 0, 0.04, 4, 0.9, 0.2, 10, trial};
-
-static size_t work_size(const lag_problem *pb)
-{
-  return lag_embedded_size(&pair, pb, 0);
-}
-
-static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
-{
-  (void)t_stop;
-  return lag_embedded_step(&pair, work, pb, t, y);
-}
+static const EmbeddedPair pair = {&lag_dopri5_tableau, 0, 0.04, 4, 0.9, 0.2, 10, 0, trial};
 
 /* HNW II.6, code dopri5, function contd5. At the ends it returns the states themselves. */
 static void dense(void *work, lag_problem *pb, double t, double *y)
@@ -52,16 +41,6 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
     double diff = y1[i] - y0[i], b = w->dt * k[i] - diff;
     y[i] = y0[i] + s * (diff + r * (b + s * (diff - w->dt * k[last * row + i] - b + r * w->dt * high[i])));
   }
-}
-
-static size_t tangent_size(const lag_problem *pb, int k)
-{
-  return lag_embedded_tangent_size(&pair, pb, k);
-}
-
-static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
-{
-  return lag_embedded_tangent(&pair, work, pb, t, k, Y, scratch);
 }
 
 const lag_method lag_rk45 = {

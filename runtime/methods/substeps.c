@@ -8,65 +8,54 @@
 #include "methods/predictor.h"
 #include "methods/step_interpolant.h"
 #include "methods/steps.h"
+#include "numeric/workspace.h"
 
 size_t lag_substep_history(const lag_problem *pb, const Implicit *w)
 {
   return lag_predictor_size(pb->nq * (int)w->rule[0].free);
 }
 
-static ConstraintBlock block(double *x, const lag_problem *pb)
+/* Sets the pointers of a block, unless x is NULL; returns its length. */
+static size_t block_layout(ConstraintBlock *b, const lag_problem *pb, int substeps, double *x)
 {
-  ConstraintBlock b;
   const lag_constraints *of = pb->model->constraints;
-  int n = pb->n, nq = pb->nq, nc = of->n;
-  double **const parts[] = {&b.from, &b.to, &b.dq, &b.dp, &b.impulse, &b.d, &b.force, &b.c, &b.r, &b.g, &b.sum,
-                            &b.A, &b.M, &b.change, &b.end_jacobian, &b.history};
-  const int sizes[] = {n, n, nq, nq, nq, nq, nq, nc, nc, nc, nc, of->njacobian, of->nmass, nc * nq, nc * nc, 0};
+  size_t n = (size_t)pb->n, nq = (size_t)pb->nq, nc = (size_t)of->n;
+  double **const parts[] = {&b->from, &b->to, &b->dq, &b->dp, &b->impulse, &b->d, &b->force, &b->c, &b->r, &b->g, &b->sum,
+                            &b->A, &b->M, &b->change, &b->end_jacobian, &b->history};
+  const size_t sizes[] = {n, n, nq, nq, nq, nq, nq, nc, nc, nc, nc, (size_t)of->njacobian, (size_t)of->nmass, nc * nq, nc * nc,
+                          (size_t)substeps * lag_predictor_size(of->n)};
 
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    *parts[i] = x;
-    x += sizes[i];
-  }
-  return b;
+  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
-static size_t block_size(const lag_problem *pb, int substeps)
+/* Sets the pointers, unless x is NULL; returns the length of Implicit.x. */
+static size_t layout(ImplicitArrays *a, const lag_problem *pb, int free, int substeps, double *x)
 {
-  const lag_constraints *of = pb->model->constraints;
+  const int constrained = pb->model->constraints != NULL;
+  size_t n = (size_t)pb->n, nq = (size_t)pb->nq, m = nq * (size_t)free;
+  double **const parts[] = {&a->p, &a->qc, &a->pc, &a->dq, &a->dp, &a->ql, &a->pl, &a->v, &a->y0, &a->y1, &a->f0, &a->f1, &a->u, &a->force,
+                            &a->history, &a->path, &a->discrete};
+  const size_t sizes[] = {nq, nq, nq, nq, nq, nq, nq, nq, n, n, n, n, 2 * m, m,
+                          (size_t)substeps * lag_predictor_size((int)m) + lag_predictor_size(pb->nq), lag_interpolant_size(pb->nq),
+                          x && !constrained ? 0 : lag_discrete_size(pb, free)}; /* the search for its band takes time in each step */
+  size_t length = lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
 
-  return of ? (size_t)(2 * pb->n + 5 * pb->nq + 4 * of->n + of->njacobian + of->nmass + of->n * (pb->nq + of->n)) + (size_t)substeps * lag_predictor_size(of->n) : 0;
+  return length + (constrained ? block_layout(&a->block, pb, substeps, x ? x + length : NULL) : 0);
 }
 
 ImplicitArrays lag_substeps_arrays(Implicit *w, const lag_problem *pb)
 {
   ImplicitArrays a;
-  double *x = w->x;
-  int nq = pb->nq, free = (int)w->rule[0].free;
-  double **const of_nq[] = {&a.p, &a.qc, &a.pc, &a.dq, &a.dp, &a.ql, &a.pl, &a.v};
-  double **const of_n[] = {&a.y0, &a.y1, &a.f0, &a.f1};
 
-  for (size_t i = 0; i < sizeof of_nq / sizeof *of_nq; i++, x += nq) {
-    *of_nq[i] = x;
-  }
-  for (size_t i = 0; i < sizeof of_n / sizeof *of_n; i++, x += pb->n) {
-    *of_n[i] = x;
-  }
-  a.u = x;
-  a.force = a.u + 2 * free * nq;
-  a.history = a.force + (free + 1) * nq;
-  a.path = a.history + (size_t)w->substeps * lag_substep_history(pb, w) + lag_predictor_size(nq);
-  a.discrete = a.path + lag_interpolant_size(nq);
-  a.block = pb->model->constraints ? block(a.discrete + lag_discrete_size(pb, free), pb) : (ConstraintBlock){0};
+  layout(&a, pb, (int)w->rule[0].free, (int)w->substeps, w->x);
   return a;
 }
 
 size_t lag_substeps_size(const lag_problem *pb, int free, int substeps)
 {
-  size_t nq = (size_t)pb->nq, m = nq * (size_t)free;
+  ImplicitArrays a;
 
-  return sizeof(Implicit) / sizeof(double) + 8 * nq + 4 * (size_t)pb->n + 3 * m + nq + block_size(pb, substeps) +
-         (size_t)substeps * lag_predictor_size((int)m) + lag_predictor_size((int)nq) + lag_interpolant_size((int)nq) +
-         lag_discrete_size(pb, free);
+  return sizeof(Implicit) / sizeof(double) + layout(&a, pb, free, substeps, NULL);
 }
 
 /* Initial guess: u := velocities at the nodes of substep k, extrapolated linearly from y at t. */

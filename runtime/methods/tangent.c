@@ -57,6 +57,19 @@ void lag_tangent_times(const lag_tangent *w, const double *Y, double *out)
   }
 }
 
+/* v[m] := from + dt sum_j coef_j k_j over j < count; from NULL: 0. */
+static void combine(int m, int count, const double *coef, double dt, const double *from, const double *k, double *v)
+{
+  for (int i = 0; i < m; i++) {
+    v[i] = from ? from[i] : 0;
+  }
+  for (int j = 0; j < count; j++) {
+    if (coef[j] != 0.0) {
+      lag_tangent_add(m, dt * coef[j], k + j * m, v);
+    }
+  }
+}
+
 int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, int k, double *Y,
                          double *scratch)
 {
@@ -66,15 +79,8 @@ int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, dou
   double *ys = rest, *Ys = ys + n, *f = Ys + m, *F = f + last * n; /* f[n], F[n k] of each stage */
 
   for (int s = 0; s <= last; s++) {
-    memcpy(ys, y0, (size_t)n * sizeof *ys);
-    memcpy(Ys, Y, (size_t)m * sizeof *Ys);
-    for (int j = 0; j < s; j++) {
-      double c = dt * tab->a[s][j];
-      if (c != 0.0) {
-        lag_tangent_add(n, c, f + j * n, ys);
-        lag_tangent_add(m, c, F + j * m, Ys);
-      }
-    }
+    combine(n, s, tab->a[s], dt, y0, f, ys);
+    combine(m, s, tab->a[s], dt, Y, F, Ys);
     if (s == last) {
       break;
     }
@@ -151,17 +157,6 @@ size_t lag_tangent_along_size(const lag_problem *pb, int k)
   return lag_tangent_size(pb, lag_dop853_tableau.stages, k);
 }
 
-/* out[m] := sum coef_j F_j over j < count */
-static void combine(int m, int count, const double *coef, const double *F, double *out)
-{
-  memset(out, 0, (size_t)m * sizeof *out);
-  for (int j = 0; j < count; j++) {
-    if (coef[j] != 0.0) {
-      lag_tangent_add(m, coef[j], F + j * m, out);
-    }
-  }
-}
-
 /* sum (e_i / s_i)^2 of an error estimate, s_i = |Y_i| + |dt| mean |F_i| over the stages. */
 static double square(int m, int stages, const double *e, const double *Y, const double *F, double dt)
 {
@@ -191,25 +186,23 @@ int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, doubl
     part = fmin(part, 1 - done);
     double h = part * dt, t = t0 + done * dt;
     for (int s = 0; s < stages; s++) {
-      combine(m, s, tab->a[s], F, error);
-      memcpy(Ys, Y, (size_t)m * sizeof *Ys);
-      lag_tangent_add(m, h, error, Ys);
+      combine(m, s, tab->a[s], h, Y, F, Ys);
       path(work, pb, t + tab->c[s] * h, y);
       if ((rc = lag_tangent_at(&w, t + tab->c[s] * h, y, NULL)) != 0) {
         return rc;
       }
       lag_tangent_times(&w, Ys, F + s * m);
     }
-    combine(m, stages, tab->e, F, error);
+    combine(m, stages, tab->e, 1, NULL, F, error);
     double fine = square(m, stages, error, Y, F, dt);
-    combine(m, stages, tab->e3, F, error);
+    combine(m, stages, tab->e3, 1, NULL, F, error);
     double both = fine + 0.01 * square(m, stages, error, Y, F, dt), err = both > 0 ? fabs(h) * fine / sqrt(m * both) / tol : 0;
     if (!isfinite(err)) {
       return lag_step_failed(pb, LAG_ENAN, t);
     }
     if (err <= 1 || part < least) {
-      combine(m, stages, tab->a[stages], F, error);
-      lag_tangent_add(m, h, error, Y);
+      combine(m, stages, tab->a[stages], h, Y, F, Ys);
+      memcpy(Y, Ys, (size_t)m * sizeof *Y);
       done = part >= 1 - done ? 1 : done + part;
     }
     part *= fmin(grow_most, fmax(shrink_most, err > 0 ? safety * pow(err, -1.0 / 8) : grow_most));

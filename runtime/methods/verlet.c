@@ -40,8 +40,10 @@ static int is_explicit(const lag_problem *pb)
   return (pb->model->flags & LAG_SEPARABLE) && !pb->model->constraints;
 }
 
-static size_t work_size(const Member *m, const lag_problem *pb)
+static size_t work_size(const lag_problem *pb)
 {
+  const Member *m = pb->variant;
+
   if (!is_explicit(pb)) {
     return lag_implicit_composed_size(pb, m->any);
   }
@@ -61,8 +63,9 @@ static void reset(void *work, lag_problem *pb)
   memset(w->x + COMP * pb->n, 0, (size_t)pb->n * sizeof(double));
 }
 
-static int init(const Member *m, void *work, lag_problem *pb, const double *opt)
+static int init(void *work, lag_problem *pb, const double *opt)
 {
+  const Member *m = pb->variant;
   Verlet *w = work;
   double h = lag_step_size(pb, opt[0]);
 
@@ -143,13 +146,17 @@ static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double 
   return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, tb) : LAG_OK;
 }
 
-static int step(const lag_composition *c, void *work, lag_problem *pb, double *t, double *y)
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
 {
+  const Member *m = pb->variant;
   Verlet *w = work;
   int n = pb->n, rc;
   size_t bytes = (size_t)n * sizeof(double);
   lag_next_step next;
 
+  if (!is_explicit(pb)) {
+    return lag_implicit_step(work, pb, t, y, t_stop);
+  }
   if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0) {
     return rc;
   }
@@ -158,7 +165,7 @@ static int step(const lag_composition *c, void *work, lag_problem *pb, double *t
   }
   memcpy(w->x + F0 * n, w->x + F1 * n, bytes);
   w->ready = w->have_path = 0; /* until this step succeeds */
-  if ((rc = compose(c, w, pb, *t, next.tb, y, next.dt)) != 0) {
+  if ((rc = compose(m->separable, w, pb, *t, next.tb, y, next.dt)) != 0) {
     return rc;
   }
   memcpy(w->x + Y0 * n, y, bytes);
@@ -169,13 +176,18 @@ static int step(const lag_composition *c, void *work, lag_problem *pb, double *t
   return LAG_OK;
 }
 
-static void dense(const lag_composition *c, void *work, lag_problem *pb, double t, double *y)
+static void dense(void *work, lag_problem *pb, double t, double *y)
 {
+  const lag_composition *c = ((const Member *)pb->variant)->separable;
   Verlet *w = work;
   int n = pb->n;
   StepEnds ends = {w->step.t0, w->step.dt, w->x + Y0 * n, w->x + F0 * n, w->x + Y1 * n, w->x + F1 * n};
   double *path = w->x + NARRAYS * n;
 
+  if (!is_explicit(pb)) {
+    lag_implicit_dense(work, pb, t, y);
+    return;
+  }
   if (c->order == 1) {
     lag_interpolant_cubic(pb->nq, &ends, (t - w->step.t0) / w->step.dt, y);
     return;
@@ -200,8 +212,12 @@ static void kick_both(int nq, int k, double h, const double *f, const double *F,
 
 /* Repeats the kicks and drifts of compose with their derivatives: a kick adds the derivative of the force to dv, a drift adds
  * dv to dq. */
-static int tangent(const lag_composition *c, void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
+static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
 {
+  if (!is_explicit(pb)) {
+    return lag_implicit_tangent(work, pb, t, k, Y, scratch);
+  }
+  const lag_composition *c = ((const Member *)pb->variant)->separable;
   Verlet *w = work;
   int n = pb->n, nq = pb->nq, rc = 0;
   double dt = lag_tangent_span(w->step.t0, t, w->step.h * pb->dir), at = 0, *rest;
@@ -236,49 +252,24 @@ static int tangent(const lag_composition *c, void *work, lag_problem *pb, double
   X(verlet8, verlet8, any8, 8, LAG_METHOD_SYMMETRIC,                                                                     \
     "Blanes-Casas-Escorihuela B19, or Kahan-Li; 19 forces a step. DOI 10.1016/j.apnum.2022.07.010")
 
-#define DEFINE(id, table, general, p, properties, words)                                 \
-  static const Member member_##id = {&lag_compose_##table, &lag_compose_##general};      \
-  static size_t size_##id(const lag_problem *pb)                                         \
-  {                                                                                      \
-    return work_size(&member_##id, pb);                                                  \
-  }                                                                                      \
-  static int init_##id(void *work, lag_problem *pb, const double *opt)                   \
-  {                                                                                      \
-    return init(&member_##id, work, pb, opt);                                            \
-  }                                                                                      \
-  static int step_##id(void *work, lag_problem *pb, double *t, double *y, double t_stop) \
-  {                                                                                      \
-    (void)t_stop;                                                                        \
-    return is_explicit(pb) ? step(&lag_compose_##table, work, pb, t, y) : lag_implicit_step(work, pb, t, y); \
-  }                                                                                      \
-  static void dense_##id(void *work, lag_problem *pb, double t, double *y)               \
-  {                                                                                      \
-    if (is_explicit(pb)) {                                                               \
-      dense(&lag_compose_##table, work, pb, t, y);                                       \
-    } else {                                                                             \
-      lag_implicit_dense(work, pb, t, y);                                                \
-    }                                                                                    \
-  }                                                                                      \
-  static int tangent_##id(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) \
-  {                                                                                      \
-    return is_explicit(pb) ? tangent(&lag_compose_##table, work, pb, t, k, Y, scratch)   \
-                           : lag_implicit_tangent(work, pb, t, k, Y, scratch);           \
-  }                                                                                      \
-  const lag_method lag_##id = {                                                          \
-      .name = #id,                                                                       \
-      .order = p,                                                                        \
-      .dense_order = p,                                                                  \
-      .doc = words,                                                                      \
-      .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_NEWTON | \
-               LAG_METHOD_CONSTRAINTS | (properties),                                    \
-      .noptions = 1,                                                                     \
-      .options = options,                                                                \
-      .work_size = size_##id,                                                            \
-      .init = init_##id,                                                                 \
-      .step = step_##id,                                                                 \
-      .dense = dense_##id,                                                               \
-      .reset = reset,                                                                    \
-      .tangent_size = tangent_size,                                                      \
-      .tangent = tangent_##id,                                                           \
+#define DEFINE(id, table, general, p, properties, words)                                                                  \
+  static const Member member_##id = {&lag_compose_##table, &lag_compose_##general};                                       \
+  const lag_method lag_##id = {                                                                                           \
+      .name = #id,                                                                                                        \
+      .order = p,                                                                                                         \
+      .dense_order = p,                                                                                                   \
+      .doc = words,                                                                                                       \
+      .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_NEWTON |\
+               LAG_METHOD_CONSTRAINTS | (properties),                                              \
+      .noptions = 1,                                                                                                      \
+      .options = options,                                                                                                 \
+      .work_size = work_size,                                                                                             \
+      .init = init,                                                                                                       \
+      .step = step,                                                                                                       \
+      .dense = dense,                                                                                                     \
+      .reset = reset,                                                                                                     \
+      .tangent_size = tangent_size,                                                                                       \
+      .tangent = tangent,                                                                                                 \
+      .variant = &member_##id,                                                                                            \
   };
 METHODS(DEFINE)

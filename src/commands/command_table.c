@@ -56,7 +56,7 @@ static const CommandRow commands[] = {
   {CMD_EFFECTS, "effects", NULL, "MODEL [SCENE] [name=value ...] [--accuracy X] [--json]", "cost of each effect, and whether the result needs it",
    "Runs the scene, then without each effect that the scene uses, and with each effect that it does not use. Prints for each effect its operations "
    "and its share of the time of a call of the right-hand side; its weight, the largest ratio of |acceleration with - without it| to "
-   "|acceleration| along the run; its difference, the largest change at 16 times of the run and at its end, relative to the largest value of "
+   "|acceleration| along the run; its difference, the largest change at 256 times of the run and at its end, relative to the largest value of "
    "its kind and unit; and whether the difference difference exceeds twice the error of integration, measured by a run with a hundredth of the tolerance, or half the step. "
    "An effect is left out together with those that require it. `shared` are operations that several effects need. Method, steps and end are chosen as for "
    "`lagc run`: --method, --tol, --step, --until. `lagc help effect` says more.\n\n"
@@ -191,7 +191,7 @@ static const OptionRow options[] = {
   {"--fix", NULL, "NAME,NAME", TAKES_PARAMS, "all", SIMULATE | C(DERIVE) | C(BUILD) | C(HEADER) | C(EMIT), OWN(fix),
    "replaces these parameters by numbers, with the scene's values: fewer operations, but no other value on the command line; "
    "a family by its name, drag.c for an effect's; all: every parameter"},
-  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast model eqns passes prog", MODELS, OWN(dump), "prints the results of results of the compiler: ast, model, eqns, passes, prog"},
+  {"--dump", NULL, "STAGE,STAGE", TAKES_CHOICES, "ast eqns passes prog", MODELS, OWN(dump), "prints the results of results of the compiler: ast, eqns, passes, prog"},
   {"--help", "-h", NULL, TAKES_NOTHING, "", MODELS | C(COMPLETION) | C(CACHE), OWN(help), "this help"},
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };

@@ -24,7 +24,7 @@ typedef struct {
   const char *resume;      /* of run */
   const char *tol;         /* run, plot, animate --tol */
   const char *format;      /* derive, noether --format */
-  const char *dump;        /* --dump=ast,model,eqns,passes,prog */
+  const char *dump;        /* --dump=ast,eqns,passes,prog */
   const char *topic;       /* help TOPIC; completion SHELL */
   int clear;               /* of cache */
   int help;                /* --help: then command is CMD_HELP */

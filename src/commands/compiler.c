@@ -80,7 +80,6 @@ Eqns *compiler_derive(Compiler *c, const ModelChoice *choice) {
   Model *m = model_build(c->ast, &with_defines);
   if (!m) return NULL;
   StrBuf listing = strbuf(c->arena);
-  if (wants_dump(c, "model")) model_dump(m, &listing);
   Eqns *e = equations_of(m);
   if (e && !choice->bare) mass_warn_nonpositive(e); /* claims hold for all values of parameters */
   if (e && wants_dump(c, "eqns")) dump_equations(e, &listing);

@@ -244,7 +244,6 @@ const char *cfunction_status(const Prog *p, const CStyle *style) {
 
 void cfunction(const Prog *p, const CStyle *style, const CFunction *f, StrBuf *out) {
   sb_putc(out, '\n');
-  if (style->indices) index_tables_declare(style->indices, p, "", p->arena, out);
   if (f->comment) sb_printf(out, "/* %s */\n", comment_text(p->arena, f->comment));
   sb_printf(out, "%s {\n", f->head);
   write_unused(p, style, out);

@@ -24,16 +24,11 @@ static void put_term(StrBuf *b, int64_t factor, const char *counter) {
   else sb_printf(b, "%s%lld*%s", sign, (long long)size, counter);
 }
 
-/* The counter, or the table's element at the counter. */
-static const char *counted(const Nesting *x, const uint32_t *table, uint32_t n, const char *counter) {
-  return table ? arena_printf(x->body.a, "%s[%s]", index_table_name(x->body.indices, table, n), counter) : counter;
-}
-
 static const char *index_text(const Nesting *x, IrSubscript at) {
   StrBuf b = strbuf(x->body.a);
   int64_t first = at.first;
-  put_term(&b, has_rows(x->n) ? at.by_row : 0, counted(x, at.row_at, x->n->rows, x->i));
-  put_term(&b, nest_has_turns(x->n) ? at.by_turn : 0, counted(x, at.turn_at, x->n->count, x->j));
+  put_term(&b, has_rows(x->n) ? at.by_row : 0, x->i);
+  put_term(&b, nest_has_turns(x->n) ? at.by_turn : 0, x->j);
   if (!b.n) sb_printf(&b, "%lld", (long long)first);
   else if (first) sb_printf(&b, " %c %lld", first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first));
   return sb_text(&b);
@@ -44,8 +39,7 @@ static const char *place(const Nesting *x, uint32_t k) { return index_text(x, x-
 /* First turn of row i + behind. */
 static const char *turn_of_row(const Nesting *x, int behind) {
   const Nest *n = x->n;
-  if (!n->begin) return index_text(x, (IrSubscript){.first = behind ? n->turns : 0, .by_row = n->skew + (behind ? n->more : 0)});
-  return arena_printf(x->body.a, "%s[%s%s]", index_table_name(x->body.indices, n->begin, n->rows + 1), x->i, behind ? " + 1" : "");
+  return index_text(x, (IrSubscript){.first = behind ? n->turns : 0, .by_row = n->skew + (behind ? n->more : 0)});
 }
 
 static void line(Writer *w, const char *text) {
@@ -201,13 +195,6 @@ static void copy_parameters(Writer *w) {
 
 void cnest_prepare(Writer *w) {
   if (!w->p->nests.n) return;
-  w->indices = w->style->indices;
-  if (!w->indices) {
-    IndexTables *own = ARENA_NEW(w->a, IndexTables);
-    own->stem = cnames_take(&w->names, "index");
-    index_tables_declare(own, w->p, "  ", w->a, w->out);
-    w->indices = own;
-  }
   if (w->style->params) copy_parameters(w);
   w->cells = cnames_take(&w->names, "sum");
   w->row = cnames_take(&w->names, "i");

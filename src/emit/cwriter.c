@@ -558,7 +558,6 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   cwriter_init_pieces(&w);
   for (const char *const *own = style->own; *own; own++) cnames_reserve(&w.names, *own);
   for (const char *const *g = style->globals; g && *g; g++) cnames_reserve(&w.names, *g);
-  for (uint32_t k = 0; style->indices && k < style->indices->all.n; k++) cnames_reserve(&w.names, style->indices->all.at[k].name);
   if (p->solves.n) cnames_reserve(&w.names, "w"), cnames_reserve(&w.names, "i"); /* i: counter in csolve_write */
   count_uses(&w);
   cloop_prepare(&w);

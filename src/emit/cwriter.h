@@ -5,7 +5,6 @@
 #ifndef LAGC_CWRITER_H
 #define LAGC_CWRITER_H
 
-#include "emit/index_tables.h"
 #include "emit/cnames.h"
 #include "ir/prog.h"
 
@@ -25,7 +24,6 @@ typedef struct {
   const char *factor, *substitute;  /* functions used instead of `solve` where factors are kept; or NULL */
   const char *spline;               /* function that evaluates tables */
   const char *const *rows;          /* names of the arrays of table rows; NULL: the body declares them */
-  IndexTables *indices;                /* index tables of the file, including the program's; NULL: the body declares them */
   int prefer_short_code;                /* 1: prefer short code to fast code */
   const char *math;                 /* prefix of the embedded sincos, sin and cos; NULL: LAG_FN(sin) */
   int loads_inline;                 /* 1: array elements are spelled at each use, not named at the top */

@@ -32,7 +32,6 @@ typedef struct {
   unsigned char named[ARR_COUNT]; /* arrays whose loads have been declared */
   unsigned char *load_needs_name; /* by slot: a load used outside of loops, or by all turns of one */
   const char *cells, *row, *turn; /* array of sums to which nests add, and the nests' counters */
-  const IndexTables *indices; /* index tables of the nests */
   const char *parameters; /* array copy of the parameters that nests read, if parameters are struct members; or NULL */
 } Writer;
 
@@ -91,7 +90,7 @@ void csolve_write_inverse(Writer *w, const Ins *i);
 /* Writes a whole loop. */
 void cloop_write(Writer *w, uint32_t loop);
 
-/* Declares index tables, counters and the array of sums; writes one nest. */
+/* Declares counters and the array of sums; writes one nest. */
 void cnest_prepare(Writer *w);
 void cnest_write(Writer *w, const Ins *i);
 

@@ -58,12 +58,11 @@ static const char *const *globals_of(Header *h) {
 }
 
 static Header header_new(const IrUnit *u, const char *name, StrBuf *out) {
-  Header h = {.u = u, .scene = &u->scenes.at[0], .a = u->arena, .out = out, .file = name, .indices = ARENA_NEW(u->arena, IndexTables)};
+  Header h = {.u = u, .scene = &u->scenes.at[0], .a = u->arena, .out = out, .file = name};
   const char *id = cname_letters(h.a, name);
   if (id[0] == '_' || (id[0] >= '0' && id[0] <= '9')) id = arena_printf(h.a, "x%s", id);
   h.upper = cased(h.a, id, 1);
   h.lower = cased(h.a, id, 0);
-  h.indices->stem = arena_printf(h.a, "%s_index", h.lower);
   h.taken = cnames_new(h.a);
   for (size_t i = 0; i < sizeof header_names / sizeof *header_names; i++)
     cnames_reserve(&h.taken, arena_printf(h.a, "%s_%s", h.upper, header_names[i]));

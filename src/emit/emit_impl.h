@@ -11,7 +11,6 @@ typedef struct {
   const char *name;           /* identifier of the lag_model */
   const char *const *globals; /* names that functions must not hide, NULL at the end */
   StrBuf *out;
-  IndexTables *indices;          /* index tables written to the file so far */
 } File;
 
 /* Input parameters common to all functions of a state, as C text. */

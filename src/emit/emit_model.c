@@ -81,8 +81,7 @@ const char *const emit_state_args =
   "    const LAG_REAL *p, const LAG_REAL *u";
 
 CStyle emit_style(const File *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .invert = "lag_invert", .multiply = "lag_multiply", .kkt = "lag_kkt", .spline = "lag_spline", .math = math_prefix(f->u, "lag"),
-                  .indices = f->indices};
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .invert = "lag_invert", .multiply = "lag_multiply", .kkt = "lag_kkt", .spline = "lag_spline", .math = math_prefix(f->u, "lag")};
 }
 
 /* Whether the function is called once a step, or once a row of output. */
@@ -276,7 +275,6 @@ static void emit_start(const File *f, const IrScene *s, const char *id) {
   if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
   if (f->u->z.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) z[i] = LAG_C(0.0);\n", f->u->z.n);
   st.prefer_short_code = 1;
-  st.indices = NULL;
   cwrite_body(s->start, &st, f->a, f->out);
   sb_puts(f->out, "}\n");
 }
@@ -507,8 +505,7 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
 }
 
 void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
-  File f = {.u = u, .a = u->arena, .name = name, .globals = globals_of(u, name), .out = out, .indices = ARENA_NEW(u->arena, IndexTables)};
-  f.indices->stem = "lag_index";
+  File f = {.u = u, .a = u->arena, .name = name, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
   math_lanes("LAG", "lag", out);
   sb_puts(out, prelude);

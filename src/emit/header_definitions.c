@@ -96,7 +96,7 @@ static const char *const *own_names(const Header *h, const char *const *extra) {
 static CStyle style_for(const Header *h, const char *const *own, const char *const *out) {
   return (CStyle){.prefix = h->upper, .in = arrays, .params = h->fields, .out = out, .own = own, .globals = h->globals,
                   .solve = arena_printf(h->a, "%s_solve", h->lower), .kkt = arena_printf(h->a, "%s_kkt", h->lower), .spline = arena_printf(h->a, "%s_spline", h->lower),
-                  .math = math_prefix(h->u, h->lower), .indices = h->indices};
+                  .math = math_prefix(h->u, h->lower)};
 }
 
 static const char *api(const Header *h, HeaderFn f) { return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f))); }
@@ -146,7 +146,6 @@ static void param(const Header *h) {
 static void start(const Header *h) {
   static const char *const own[] = {"p", "s", NULL}, *const out[] = {"s->q", "s->v", "s->z"};
   CStyle st = style_for(h, own, out);
-  st.indices = NULL;
   sb_printf(h->out, "\n%s {\n", api(h, FN_START));
   if (!prog_reads(h->scene->start, ARR_P) && !header_has(h, FN_HOLD)) sb_puts(h->out, "  (void)p;\n");
   sb_printf(h->out, "  s->t = %s_C(%s);\n", h->upper, shortest_double(h->a, h->scene->t0));

@@ -16,7 +16,6 @@ typedef struct {
   const char **q, **z, **p, **in, **ev, **outputs; /* enumerators by index */
   const char *const *fields;   /* members of the struct of parameters */
   const char *const *globals;
-  IndexTables *indices;           /* index tables written to the file so far */
 } Header;
 
 /* Append the declarations (macros, enums, structs, prototypes) and the definitions. */

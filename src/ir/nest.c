@@ -1,14 +1,14 @@
-/* The search for nests, and the program with the nests found (nest.h).
+/* Nests of loops for sums over pairs, sites or bodies: the search, and the program with the nests found.
+ *
+ * The search is one for connected components of a program's graph, so that bodies written out by hand are found as a family is. Hubs are
+ * sums of many terms, and values with many users; without hubs the graph falls into pieces, one for each pair of bodies. Pieces that
+ * differ only in the array elements that they read and the sums that they add to are a group. Where these indices are affine in two
+ * counters, a group becomes a Nest (ir/prog.h) of the size of one piece.
  *
  * Pieces are searched in waves: first those that need no hub, then those whose hubs are complete. Each wave sorts its pieces into groups by their
- * canonical form; groups become nests. Several ways to partition the program are tried; the one that covers most of it, or is shortest, wins. */
-#include "ir/nest.h"
-
-#include <stdlib.h>
-
+ * canonical form; groups become nests. Several ways to partition the program are tried; the one that covers most of it wins. */
 #include "base/hash.h"
 #include "ir/nest_impl.h"
-#include "ir/roll.h"
 
 enum { FEWEST_PIECES = 8, MOST_VALUES = 2000 };
 
@@ -79,7 +79,7 @@ static PieceGroup *group_of(Search *s, const CanonicalForm *t) {
 
 static void add_nest(Search *s, const PieceGroup *x, const Fit *f) {
   Arena *a = s->c.a;
-  Nest n = {.rows = f->rows, .skew = f->skew, .turns = f->turns, .more = f->more, .begin = f->begin, .at = f->at, .n = x->tape.columns.n, .count = f->count};
+  Nest n = {.rows = f->rows, .skew = f->skew, .turns = f->turns, .more = f->more, .at = f->at, .n = x->tape.columns.n, .count = f->count};
   n.body = nest_body(&s->c, &x->tape, f, &n.outer, &n.nouter);
   vec_push(a, &s->found, ((FoundNest){n, x->tape.class_of.at}));
   for (uint32_t k = 0; k < f->count; k++) {
@@ -98,7 +98,7 @@ static void find_nests(Search *s, const PieceGroup *x) {
   uint32_t n = x->pieces.n, *order = ARENA_ARRAY(a, uint32_t, n);
   Fits fits = {0};
   for (uint32_t k = 0; k < n; k++) order[k] = k;
-  Indices all = {a, x->columns.at, x->tape.array.at, x->tape.columns.n, x->tape.nodes.n};
+  Indices all = {a, x->columns.at, x->tape.array.at, x->tape.columns.n};
   nest_affine(&all, order, n, &fits);
   for (uint32_t k = 0; k < fits.n; k++) add_nest(s, x, &fits.at[k]);
 }
@@ -197,12 +197,9 @@ static void other_terms(const Rebuild *r, Slot hub, HubTerms *terms) {
   const Partition *c = &r->s->c;
   terms->n = 0;
   if (c->hub[hub] == HUB_SUM) nest_terms(c, hub, terms);
-  uint32_t n = 0, leaves = 0;
-  for (uint32_t k = 0; k < terms->n; k++) {
-    Slot x = terms->at[k].value;
-    int is_leaf = c->leaves[hub] && nest_is_leaf(c, x);
-    if (is_leaf ? !r->s->nested[c->leaves[hub] + leaves++] : !is_nested(r, x)) terms->at[n++] = terms->at[k];
-  }
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < terms->n; k++)
+    if (!is_nested(r, terms->at[k].value)) terms->at[n++] = terms->at[k];
   terms->n = n;
 }
 
@@ -273,26 +270,6 @@ static void rebuild(Rebuild *r, uint32_t item) {
   }
 }
 
-/* By store: cell, from 1, for a zero between stored sums. No nest adds to it, and one loop stores all; 0: no cell. */
-static const uint32_t *empty_cells(const Rebuild *r) {
-  enum { FEW = 16 };
-  const Prog *p = r->from;
-  const Partition *c = &r->s->c;
-  uint32_t *cell = ARENA_ARRAY(c->a, uint32_t, p->stores.n + 1), zeros = 0, known = 0;
-  for (uint32_t k = 0; k < p->stores.n; k++) {
-    Slot x = p->stores.at[k].slot;
-    if (!x) {
-      zeros++;
-      continue;
-    }
-    uint32_t is_cell = c->hub[x] == HUB_STORED && r->s->terms[x] && c->number[x] == k;
-    for (uint32_t j = k - zeros; j < k && known && is_cell && zeros < FEW; j++) cell[j] = r->base[c->class_of[x]] + j + 1;
-    zeros = 0;
-    known = is_cell;
-  }
-  return cell;
-}
-
 static Prog *with_nests(const Search *s) {
   const Prog *p = s->c.p;
   uint32_t items = p->ins.n + s->found.n;
@@ -305,65 +282,28 @@ static Prog *with_nests(const Search *s) {
     int gone = (piece && s->nested[piece]) || (sum && sum != x && has_cell(&r, sum)) || ir_is_leaf(p->ins.at[x].op);
     if (!gone) rebuild(&r, x);
   }
-  const uint32_t *empty = empty_cells(&r);
   for (uint32_t k = 0; k < p->stores.n; k++) {
     Store st = p->stores.at[k];
     rebuild(&r, st.slot);
-    Slot x = empty[k] ? load_cell(&r, empty[k] - 1, s->found.n, "sum") : r.map[st.slot];
-    prog_store(r.to, st.array, st.index, x, st.comment);
+    prog_store(r.to, st.array, st.index, r.map[st.slot], st.comment);
   }
   return prog_tidy(r.to);
 }
 
-/* Number of entries in the tables of a nest; indices share tables. */
-static uint32_t table_entries(const Nest *n) {
-  uint32_t entries = n->begin ? n->rows + 1 : 0;
-  for (uint32_t k = 0; k < n->n; k++) {
-    int turns = n->at[k].turn_at != NULL, rows = n->at[k].row_at != NULL;
-    for (uint32_t j = 0; j < k; j++) turns &= n->at[j].turn_at != n->at[k].turn_at, rows &= n->at[j].row_at != n->at[k].row_at;
-    entries += (turns ? n->count : 0) + (rows ? n->rows : 0);
-  }
-  return entries;
-}
-
-/* Number of instructions that nests replace; 0 where all nests are single loops without tables, which are left to ir/roll.h: there they
- * share values with the code around. */
-static uint32_t instructions_replaced(const Search *s, int *tables) {
+/* Number of instructions that nests replace; 0 where all nests are single loops, which are left to ir/roll.h: there they share values with
+ * the code around. */
+static uint32_t instructions_replaced(const Search *s) {
   const Partition *c = &s->c;
   uint32_t inside = 0;
-  int deep = *tables = 0;
+  int deep = 0;
   for (uint32_t k = 0; k < s->found.n; k++) {
     const Nest *n = &s->found.at[k].nest;
-    *tables |= table_entries(n) > 0;
     deep |= n->rows > 1 && n->count > n->rows;
   }
   for (uint32_t k = 0; k < c->pieces.n; k++)
     if (s->nested[k + 1]) inside += c->pieces.at[k].n;
-  for (Slot x = 1; x < c->p->ins.n; x++) {
-    inside += c->sum[x] && c->celled[c->sum[x]] == 2;
-    if (*tables && c->hub[x] == HUB_SUM && c->celled[x] == 1) inside += s->terms[x] - 1;
-  }
-  return deep || *tables ? inside : 0;
-}
-
-/* Whether store k continues a run: of zeros, or of consecutive elements of an array. */
-static int continues_run(const Prog *p, uint32_t k) {
-  const Store *st = &p->stores.at[k];
-  const Ins *i = &p->ins.at[st->slot], *last = k ? &p->ins.at[st[-1].slot] : NULL;
-  if (!k || st->array != st[-1].array || !st->slot != !st[-1].slot) return 0;
-  return !st->slot || (i->op == IR_LOAD && last->op == IR_LOAD && i->array == last->array && i->index == last->index + 1);
-}
-
-/* Length of the emitted text, in lines of C: one an instruction or store outside of loops, one for eight entries of a table. */
-static uint32_t length(const Prog *p) {
-  unsigned by_index = 0;
-  for (int k = 0; k < ARR_COUNT; k++) by_index |= ir_is_scalar((IrArray)k) ? 0 : 1u << k;
-  Rolls r = roll_find(p, by_index, 0, 1);
-  uint32_t n = r.n;
-  for (uint32_t k = 0; k < r.loops.n; k++) n -= r.loops.at[k].period * (r.loops.at[k].count - 1);
-  for (uint32_t k = 0; k < p->stores.n; k++) n += !r.stored[k] && !continues_run(p, k);
-  for (uint32_t k = 0; k < p->nests.n; k++) n += p->nests.at[k].body->ins.n + table_entries(&p->nests.at[k]) / 8;
-  return n;
+  for (Slot x = 1; x < c->p->ins.n; x++) inside += c->sum[x] && c->celled[c->sum[x]] == 2;
+  return deep ? inside : 0;
 }
 
 static Search search(const Prog *p, unsigned ends) {
@@ -377,55 +317,21 @@ static Search search(const Prog *p, unsigned ends) {
   return s;
 }
 
-/* With tables: the program of the shortest text, of partitions that replace about as many instructions. */
-static Prog *shortest_with_tables(Prog *p) {
-  static const unsigned tried[] = {0, CUT_COMMON_TERMS, CUT_STORES, CUT_COMMON_TERMS | CUT_STORES, CUT_LEAVES, CUT_LEAVES | CUT_STORES};
-  Prog *best = p;
-  uint32_t least = UINT32_MAX, most = p->ins.n / 2;
-  for (size_t k = 0; k < sizeof tried / sizeof *tried; k++) {
-    int tables;
-    if (tried[k] & CUT_LEAVES && most > p->ins.n - p->ins.n / 8) break;
-    ArenaMark before = arena_mark(p->arena);
-    Search s = search(p, tried[k]);
-    uint32_t inside = instructions_replaced(&s, &tables);
-    int enough = inside + p->ins.n / 16 > most;
-    if (enough && inside > most) most = inside;
-    Prog *now = enough ? with_nests(&s) : NULL;
-    uint32_t n = now ? length(now) : least;
-    if (n < least) best = now, least = n;
-    else arena_forget(p->arena, before);
-  }
-  return best;
-}
-
 Prog *prog_find_nests(Prog *p, uint32_t from) {
-  static const unsigned tried[] = {0, CUT_COMMON_TERMS, CUT_STORES, CUT_COMMON_TERMS | CUT_STORES, CUT_LEAVES};
+  static const unsigned tried[] = {0, CUT_COMMON_TERMS, CUT_COMMON_TERMS | CUT_STORES};
   if (p->ins.n < from || p->solves.n || p->nests.n) return p;
   Search best = {0};
   uint32_t most = p->ins.n / 2; /* nests of less than half of the program are not worth it */
   for (size_t k = 0; k < sizeof tried / sizeof *tried && most < p->ins.n - p->ins.n / 8; k++) {
-    int tables;
     ArenaMark before = arena_mark(p->arena);
     Search s = search(p, tried[k]);
-    uint32_t inside = instructions_replaced(&s, &tables);
-    if (inside <= most || tables) arena_forget(p->arena, before);
-    if (inside <= most) continue;
-    if (tables) return shortest_with_tables(p);
-    most = inside;
-    best = s;
+    uint32_t inside = instructions_replaced(&s);
+    if (inside > most) {
+      most = inside;
+      best = s;
+    } else {
+      arena_forget(p->arena, before);
+    }
   }
   return best.found.n ? with_nests(&best) : p;
-}
-
-static int has_tables(const Prog *p) {
-  for (uint32_t k = 0; k < p->nests.n; k++)
-    if (table_entries(&p->nests.at[k])) return 1;
-  return 0;
-}
-
-Prog *prog_find_shorter_nests(Prog *factored, Prog *tidy, uint32_t from) {
-  Prog *first = prog_find_nests(factored, from), *second = has_tables(first) ? prog_find_nests(tidy, from) : tidy;
-  if (second == tidy) return first;
-  second = prog_factor(second);
-  return length(second) < length(first) ? second : first;
 }

@@ -4,13 +4,12 @@
 
 #include "ir/nest_impl.h"
 
-/* A nest with tables is as long as a few pieces; from FEWEST_SCATTERED pieces on it is shorter to read. */
-enum { FEWEST_TURNS = 8, FEWEST_SCATTERED = 16, MOST_SHAPES = 24, MANY = 0 };
+enum { FEWEST_TURNS = 8, MOST_SHAPES = 24, MANY = 0 };
 
 typedef struct {
   Arena *a;
   const int64_t *columns;
-  uint32_t width, n, size;
+  uint32_t width, n;
   uint32_t *order;
   const unsigned char *varies; /* [width] by column: differs between pieces */
 } Group;
@@ -21,7 +20,6 @@ typedef struct {
 } Row;
 
 typedef VEC(Row) Rows;
-typedef VEC(uint32_t) Pieces;
 
 static const int64_t *indices(const Group *g, uint32_t k) { return g->columns + (size_t)g->order[k] * g->width; }
 
@@ -41,7 +39,8 @@ static void find_varying(Group *g) {
   g->varies = varies;
 }
 
-int64_t nest_gcd(int64_t a, int64_t b) {
+/* Greatest common divisor; of 0 and b, |b|. */
+static int64_t gcd(int64_t a, int64_t b) {
   while (b) {
     int64_t r = a % b;
     a = b;
@@ -55,7 +54,7 @@ static int64_t spacing(const Group *g, const uint32_t *array, uint32_t first) {
   int64_t all = 0;
   for (uint32_t k = 0; k < g->n && all != 1; k++)
     for (uint32_t j = 0; j < g->width; j++)
-      if (array[j] == array[first] && g->varies[j]) all = nest_gcd(all, indices(g, k)[j] - indices(g, k)[first]);
+      if (array[j] == array[first] && g->varies[j]) all = gcd(all, indices(g, k)[j] - indices(g, k)[first]);
   return all;
 }
 
@@ -91,26 +90,26 @@ static uint32_t split(Group *g, const uint32_t *array, uint32_t first, int64_t m
 
 /* --- sorting --- */
 
-static int before(const void *group, uint32_t x, uint32_t y) {
-  const Group *g = group;
+static int before(const Group *g, uint32_t x, uint32_t y) {
   const int64_t *a = g->columns + (size_t)x * g->width, *b = g->columns + (size_t)y * g->width;
   for (uint32_t k = 0; k < g->width; k++)
     if (a[k] != b[k]) return a[k] < b[k];
   return x < y;
 }
 
-void nest_sort(Arena *a, uint32_t *order, uint32_t n, int (*comes_first)(const void *data, uint32_t x, uint32_t y), const void *data) {
-  uint32_t *from = order, *to = ARENA_ARRAY(a, uint32_t, n);
+/* Sorts the group by a merge: the order depends on the group, which qsort does not pass on. */
+static void sort(Group *g) {
+  uint32_t n = g->n, *from = g->order, *to = ARENA_ARRAY(g->a, uint32_t, n);
   for (uint32_t size = 1; size < n; size *= 2) {
     for (uint32_t left = 0; left < n; left += 2 * size) {
       uint32_t i = left, middle = left + size < n ? left + size : n, j = middle, end = middle + size < n ? middle + size : n;
-      for (uint32_t k = left; k < end; k++) to[k] = j == end || (i < middle && comes_first(data, from[i], from[j])) ? from[i++] : from[j++];
+      for (uint32_t k = left; k < end; k++) to[k] = j == end || (i < middle && before(g, from[i], from[j])) ? from[i++] : from[j++];
     }
     uint32_t *t = from;
     from = to;
     to = t;
   }
-  if (from != order) memcpy(order, from, n * sizeof *from);
+  if (from != g->order) memcpy(g->order, from, n * sizeof *from);
 }
 
 /* --- rows --- */
@@ -191,8 +190,8 @@ static Fit fit_of(const Group *g, const Growing *w, uint32_t count) {
   return f;
 }
 
-static void fit_shape(Group *g, Fits *fits, Pieces *left) {
-  nest_sort(g->a, g->order, g->n, before, g);
+static void fit_shape(Group *g, Fits *fits) {
+  sort(g);
   find_varying(g);
   Rows rows = find_rows(g);
   for (uint32_t i = 0; i < rows.n;) {
@@ -205,29 +204,13 @@ static void fit_shape(Group *g, Fits *fits, Pieces *left) {
     uint32_t count = 0;
     for (uint32_t k = 0; k < w.n; k++) count += w.rows[k].count;
     if (count >= FEWEST_TURNS) vec_push(g->a, fits, fit_of(g, &w, count));
-    for (uint32_t k = 0; k < count && count < FEWEST_TURNS; k++) vec_push(g->a, left, g->order[w.rows->begin + k]);
     i += w.n;
   }
 }
 
-/* --- remaining pieces --- */
-
-/* Moves the pieces of short affine nests to `left`: in a table that others need anyway a piece takes about a quarter of a line, a nest
- * as many lines as a piece has nodes. */
-static void move_short_loops(const Group *g, Fits *fits, Pieces *left) {
-  uint32_t kept = 0;
-  for (uint32_t k = 0; k < fits->n; k++) {
-    Fit f = fits->at[k];
-    if (f.count >= 4*g->size) fits->at[kept++] = f;
-    for (uint32_t j = 0; j < f.count && f.count < 4*g->size; j++) vec_push(g->a, left, f.pieces[j]);
-  }
-  fits->n = kept;
-}
-
 void nest_affine(const Indices *x, uint32_t *order, uint32_t n, Fits *fits) {
-  Group all = {.a = x->a, .columns = x->columns, .width = x->width, .size = x->size, .n = n, .order = order};
+  Group all = {.a = x->a, .columns = x->columns, .width = x->width, .n = n, .order = order};
   uint32_t end[MOST_SHAPES], begin = 0;
-  Pieces left = {0};
   find_varying(&all);
   uint32_t first = first_varying(&all), shapes = split(&all, x->array, first, 0, end);
   if (shapes == MANY) shapes = split(&all, x->array, first, spacing(&all, x->array, first), end);
@@ -236,10 +219,7 @@ void nest_affine(const Indices *x, uint32_t *order, uint32_t n, Fits *fits) {
     Group g = all;
     g.order = order + begin;
     g.n = end[k] - begin;
-    fit_shape(&g, fits, &left);
+    fit_shape(&g, fits);
     begin = end[k];
   }
-  if (left.n < FEWEST_SCATTERED) return;
-  move_short_loops(&all, fits, &left);
-  vec_push(x->a, fits, nest_tables(x, left.at, left.n));
 }

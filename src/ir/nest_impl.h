@@ -1,9 +1,9 @@
 /* Shared by nest.c (search, and the program with nests), nest_partition.c (hubs and pieces), nest_canonical_form.c (canonical form of a piece),
- * nest_affine.c (indices affine in two counters), nest_tables.c (indices from tables) and nest_body.c (the body of a nest). */
+ * nest_affine.c (indices affine in two counters) and nest_body.c (the body of a nest). */
 #ifndef LAGC_NEST_IMPL_H
 #define LAGC_NEST_IMPL_H
 
-#include "ir/nest.h"
+#include "ir/prog.h"
 
 /* A value that a piece adds to a hub or (minus) subtracts from it. */
 typedef struct {
@@ -46,8 +46,6 @@ typedef struct {
   VEC(Slot) hubs;        /* in the order in which stores need them */
   uint32_t *class_of;    /* by slot of hubs: sums of one class are neighbours in ARR_CELL, */
   uint32_t *number;      /* with numbers from 0 */
-  uint32_t *store;       /* by slot of hubs: the first store that needs it */
-  uint32_t *leaves;      /* by slot of hubs: piece, from 1, of its first term that is an array element, others follow; 0: none */
   uint32_t classes;
   uint32_t *terms_of;    /* by slot of hubs: number of terms, */
   uint32_t *waits;       /* and number of terms not known yet */
@@ -59,14 +57,11 @@ typedef struct {
 
 int nest_is_sum(IrOp op);
 
-/* Additional hubs: sums that share terms, stored values, sums of array elements. */
-enum { CUT_COMMON_TERMS = 1, CUT_STORES = 2, CUT_LEAVES = 4 };
+/* Additional hubs: sums that share terms, stored values. */
+enum { CUT_COMMON_TERMS = 1, CUT_STORES = 2 };
 
 /* Partitions the program into hubs and pieces; `celled` is left 0. ends: CUT_... bits. */
 Partition nest_partition(const Prog *p, unsigned ends);
-
-/* Whether a term of a sum is an array element, which may be a piece by itself. */
-int nest_is_leaf(const Partition *c, Slot term);
 
 /* Appends the terms of a sum, through joined partial sums; hub is the sum. */
 void nest_terms(const Partition *c, Slot sum, HubTerms *terms);
@@ -121,7 +116,6 @@ void nest_canonical_form(const Partition *c, Piece *piece, Local *local, uint32_
 typedef struct {
   uint32_t rows;
   int64_t skew, turns, more; /* as in Nest */
-  const uint32_t *begin;
   const IrSubscript *at;         /* by column */
   const uint32_t *pieces;    /* [count] their numbers */
   uint32_t count;
@@ -129,28 +123,18 @@ typedef struct {
 
 typedef VEC(Fit) Fits;
 
-/* Indices of the pieces of a group: columns[piece*width + k] is an index into array[k]. size: number of nodes of a piece. */
+/* Indices of the pieces of a group: columns[piece*width + k] is an index into array[k]. */
 typedef struct {
   Arena *a;
   const int64_t *columns;
   const uint32_t *array;
-  uint32_t width, size;
+  uint32_t width;
 } Indices;
 
-/* Sorts `order`, the numbers of n pieces, and appends nests with affine indices; remaining pieces become a nest with tables where
- * that is shorter than their text. */
+/* Sorts `order`, the numbers of n pieces, and appends nests with affine indices; pieces outside of these stay as they are. */
 void nest_affine(const Indices *x, uint32_t *order, uint32_t n, Fits *fits);
-
-/* Greatest common divisor; gcd(0, b) = |b|. */
-int64_t nest_gcd(int64_t a, int64_t b);
-
-/* One loop over n pieces, or two over rows of them, with indices from tables. */
-Fit nest_tables(const Indices *x, const uint32_t *pieces, uint32_t n);
 
 /* The body of a nest; outer[nouter]: slots of the program around it that the body reads. */
 const Prog *nest_body(const Partition *c, const CanonicalForm *t, const Fit *f, const Slot **outer, uint32_t *nouter);
-
-/* Sorts order[n] by a merge, since the order depends on data, which qsort does not pass on. */
-void nest_sort(Arena *a, uint32_t *order, uint32_t n, int (*before)(const void *data, uint32_t x, uint32_t y), const void *data);
 
 #endif

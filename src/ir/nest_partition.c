@@ -45,26 +45,15 @@ static void join_common_beginnings(Partition *c) {
     if (nest_is_sum(op_of(c, s)) && c->uses[s] == 2 && users[s] == 2 && terms[s] <= SHORT) c->joined[s] = 1;
 }
 
-int nest_is_leaf(const Partition *c, Slot term) {
-  const Ins *i = &c->p->ins.at[term];
-  return i->op == IR_LOAD && !ir_is_scalar(i->array);
-}
-
-/* leaves: sums with several array elements count as long, too: rows of a sparse matrix. */
-static void find_long_sums(Partition *c, int leaves) {
-  enum { FEWEST_LEAVES = 2, SHORTEST = 3 };
+static void find_long_sums(Partition *c) {
   const Prog *p = c->p;
-  uint32_t *terms = ARENA_ARRAY(c->a, uint32_t, p->ins.n), *elements = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
+  uint32_t *terms = ARENA_ARRAY(c->a, uint32_t, p->ins.n);
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     if (!nest_is_sum(i->op)) continue;
-    for (int k = 0; k < 2; k++) {
-      Slot x = operand(i, k);
-      if (x) terms[s] += c->joined[x] ? terms[x] : 1;
-      if (x) elements[s] += c->joined[x] ? elements[x] : nest_is_leaf(c, x) ? 1 : 0;
-    }
-    int is_row = leaves && elements[s] >= FEWEST_LEAVES && terms[s] >= SHORTEST;
-    if (!c->joined[s] && (terms[s] >= FEWEST_TERMS || is_row)) c->hub[s] = HUB_SUM;
+    for (int k = 0; k < 2; k++)
+      if (operand(i, k)) terms[s] += c->joined[operand(i, k)] ? terms[operand(i, k)] : 1;
+    if (!c->joined[s] && terms[s] >= FEWEST_TERMS) c->hub[s] = HUB_SUM;
   }
 }
 
@@ -311,15 +300,7 @@ static void wait_for(Partition *c, Slot hub, uint32_t piece, Slot sum) {
   else c->pieces.at[piece - 1].waits++;
 }
 
-/* Makes a piece of a term that is an array element. */
-static void take_leaf(Partition *c, Slot hub, HubTerm term) {
-  vec_push(c->a, &c->pieces, ((Piece){.apart = 1}));
-  vec_push(c->a, &c->pieces.at[c->pieces.n - 1].gives, term);
-  if (!c->leaves[hub]) c->leaves[hub] = c->pieces.n;
-  c->waits[hub]++;
-}
-
-static void find_shares(Partition *c, int leaves) {
+static void find_shares(Partition *c) {
   const Prog *p = c->p;
   HubTerms terms = {0};
   for (Slot s = 1; s < p->ins.n; s++) {
@@ -334,7 +315,6 @@ static void find_shares(Partition *c, int leaves) {
       Slot x = terms.at[k].value;
       c->terms_of[s]++;
       if (!c->piece[x] && c->hub[x]) wait_for(c, x, 0, s);
-      if (leaves && nest_is_leaf(c, x)) take_leaf(c, s, terms.at[k]);
       if (!c->piece[x]) continue; /* a leaf, or a hub */
       c->waits[s]++;
       vec_push(c->a, &c->pieces.at[c->piece[x] - 1].gives, terms.at[k]);
@@ -354,7 +334,7 @@ static void list_hubs(Partition *c) {
       Slot s = open.at[--open.n];
       if (seen[s]) continue;
       seen[s] = 1;
-      if (c->hub[s]) vec_push(c->a, &c->hubs, s), c->store[s] = k;
+      if (c->hub[s]) vec_push(c->a, &c->hubs, s);
       for (int j = 3; j-- > 0;)
         if (operand(&p->ins.at[s], j)) vec_push(c->a, &open, operand(&p->ins.at[s], j));
     }
@@ -380,22 +360,6 @@ static int by_key(const void *x, const void *y) {
   return (a->rank > b->rank) - (a->rank < b->rank);
 }
 
-/* Where each sum has a store of its own, numbers sums like their stores, with gaps: tables of indices then serve sums and array elements
- * alike. */
-static void number_sums_by_stores(Partition *c) {
-  uint32_t n = 0, first = 0, last = 0;
-  for (uint32_t k = 0; k < c->hubs.n; k++) {
-    Slot s = c->hubs.at[k];
-    if (c->hub[s] != HUB_SUM) continue;
-    if (n && c->store[s] == last) return;
-    if (!n++) first = c->store[s];
-    last = c->store[s];
-  }
-  if (last - first >= 2*n) return;
-  for (uint32_t k = 0; k < c->hubs.n; k++)
-    if (c->hub[c->hubs.at[k]] == HUB_SUM) c->number[c->hubs.at[k]] = c->store[c->hubs.at[k]] - first;
-}
-
 /* Classes and numbers of hubs. Sums are one class, stored values another, shared values one for each signature. Stored values have the
  * number of their first store, with gaps, so that a loop stores them. */
 static void number_hubs(Partition *c) {
@@ -411,7 +375,6 @@ static void number_hubs(Partition *c) {
     c->class_of[s] = c->classes - 1;
     c->number[s] = k - first;
   }
-  number_sums_by_stores(c);
   for (uint32_t k = c->p->stores.n; k-- > 0;)
     if (c->hub[c->p->stores.at[k].slot] == HUB_STORED) c->number[c->p->stores.at[k].slot] = k;
 }
@@ -436,9 +399,7 @@ Partition nest_partition(const Prog *p, unsigned ends) {
   c.last_waiting = ARENA_ARRAY(a, uint32_t, n);
   find_joined(&c);
   join_common_beginnings(&c);
-  c.store = ARENA_ARRAY(a, uint32_t, n);
-  c.leaves = ARENA_ARRAY(a, uint32_t, n);
-  find_long_sums(&c, (ends & CUT_LEAVES) != 0);
+  find_long_sums(&c);
   if (ends & CUT_COMMON_TERMS) find_sums_in_common(&c);
   mark_parts(&c);
   for (Slot s = 1; s < n; s++) sign(&c, s);
@@ -446,7 +407,7 @@ Partition nest_partition(const Prog *p, unsigned ends) {
   if (ends & CUT_STORES) find_stored(&c);
   for (Slot s = 1; s < n; s++) order(&c, s);
   find_pieces(&c);
-  find_shares(&c, (ends & CUT_LEAVES) != 0);
+  find_shares(&c);
   list_hubs(&c);
   number_hubs(&c);
   return c;

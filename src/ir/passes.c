@@ -1,18 +1,17 @@
 /* The table of passes, and the loop over it. */
 #include "ir/passes.h"
 
-#include "ir/nest.h"
 #include "ir/roll.h"
 
 enum { PAGE = 200 }; /* instructions; shorter programs fit a processor's window in any order, and keep the readable one */
 
 typedef struct {
   const PassPlan *plan;
-  Prog *p, *tidy;   /* the program; as it was before factors were taken out */
+  Prog *p;
   int is_short;     /* with every_step: too short for loops, so that products may be taken apart */
 } Passes;
 
-static Prog *tidy(Passes *s) { return s->tidy = prog_tidy(s->p); }
+static Prog *tidy(Passes *s) { return prog_tidy(s->p); }
 
 static Prog *factor(Passes *s) {
   Prog *p = prog_factor(s->p);
@@ -25,10 +24,7 @@ static Prog *reassociate(Passes *s) { return prog_reassociate_fma(s->p); }
 static Prog *schedule_by_path(Passes *s) { return prog_schedule_by_path(s->p, s->plan->libm); }
 static Prog *schedule_by_store(Passes *s) { return prog_schedule_by_store(s->p); }
 
-static Prog *nests(Passes *s) {
-  uint32_t from = s->plan->nests_from;
-  return s->plan->every_step ? prog_find_shorter_nests(s->p, s->tidy, from) : prog_find_nests(s->p, from);
-}
+static Prog *nests(Passes *s) { return prog_find_nests(s->p, s->plan->nests_from); }
 
 static int always(const Passes *s) { return s != NULL; }
 static int every_step(const Passes *s) { return s->plan->every_step; }

@@ -364,21 +364,10 @@ static const char *const op_names[] = {
 
 static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g", "free", "x", "s", "c", "order", "per_order", "up", "sum", "outer"};
 
-static void dump_table(const char *what, const uint32_t *at, uint32_t n, StrBuf *out) {
-  if (!at) return;
-  sb_printf(out, "  %s:", what);
-  for (uint32_t k = 0; k < n; k++) sb_printf(out, " %u", at[k]);
-  sb_putc(out, '\n');
-}
-
 static void dump_nest(const Nest *n, StrBuf *out) {
   sb_printf(out, "  %u rows, %lld + %lld*i turns from %lld*i\n", n->rows, (long long)n->turns, (long long)n->more, (long long)n->skew);
-  dump_table("begin", n->begin, n->rows + 1, out);
-  for (uint32_t k = 0; k < n->n; k++) {
+  for (uint32_t k = 0; k < n->n; k++)
     sb_printf(out, "  #%u: %lld + %lld*i + %lld*j\n", k, (long long)n->at[k].first, (long long)n->at[k].by_row, (long long)n->at[k].by_turn);
-    dump_table("i", n->at[k].row_at, n->rows, out);
-    dump_table("j", n->at[k].turn_at, n->count, out);
-  }
   for (uint32_t k = 0; k < n->nouter; k++) sb_printf(out, "  outer[%u]: %%%u\n", k, n->outer[k]);
   prog_dump(n->body, out);
   sb_puts(out, "  end of nest\n");

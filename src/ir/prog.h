@@ -106,13 +106,12 @@ static inline SolveKind solve_kind(const Solve *k) {
   return k->inverse ? SOLVE_INVERSE : k->m ? SOLVE_CONSTRAINED : k->definite ? SOLVE_DEFINITE : SOLVE_PIVOTING;
 }
 
-/* Array index in row i, turn j of a nest: first + by_row*row_at[i] + by_turn*turn_at[j]; a NULL table stands for i or j itself. */
+/* Array index in row i, turn j of a nest: first + by_row*i + by_turn*j. */
 typedef struct {
   int64_t first, by_row, by_turn;
-  const uint32_t *row_at, *turn_at;
 } IrSubscript;
 
-/* Two loops that accumulate sums: for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1, or in begin[i] .. begin[i + 1] - 1.
+/* Two loops that accumulate sums: for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1.
  * Sums (ARR_CELL) are 0 before the first nest. A sum that stays the same in all turns of the inner (or only) loop gets their total at once,
  * added up from 0.
  *
@@ -121,7 +120,6 @@ typedef struct {
 typedef struct {
   uint32_t rows, count; /* count: turns of all rows together */
   int64_t skew, turns, more;
-  const uint32_t *begin; /* [rows + 1] first turn of each row where lengths follow no rule; or NULL */
   const struct Prog *body;
   const IrSubscript *at;    /* [n] */
   const Slot *outer;    /* [nouter] values of the program that the nest is in */
@@ -129,19 +127,19 @@ typedef struct {
 } Nest;
 
 /* Whether there is a loop over j: where each row has one turn, the loop over i is the only one. */
-static inline int nest_has_turns(const Nest *n) { return n->rows == 1 || n->begin || n->turns != 1 || n->more != 0; }
+static inline int nest_has_turns(const Nest *n) { return n->rows == 1 || n->turns != 1 || n->more != 0; }
 
 /* Whether the index at[k] changes from turn to turn of the inner loop, or of the only one. */
 static inline int nest_moves(const Nest *n, uint32_t k) { return (nest_has_turns(n) ? n->at[k].by_turn : n->at[k].by_row) != 0; }
 
 /* First turn of row i, and one past its last. */
-static inline int64_t nest_from(const Nest *n, int64_t i) { return n->begin ? n->begin[i] : n->skew*i; }
-static inline int64_t nest_to(const Nest *n, int64_t i) { return n->begin ? n->begin[i + 1] : (n->skew + n->more)*i + n->turns; }
+static inline int64_t nest_from(const Nest *n, int64_t i) { return n->skew*i; }
+static inline int64_t nest_to(const Nest *n, int64_t i) { return (n->skew + n->more)*i + n->turns; }
 
 /* Value of the index at[k] in turn j of row i. */
 static inline int64_t nest_index(const Nest *n, uint32_t k, int64_t i, int64_t j) {
   const IrSubscript *x = &n->at[k];
-  return x->first + x->by_row*(x->row_at ? x->row_at[i] : i) + x->by_turn*(x->turn_at ? x->turn_at[j] : j);
+  return x->first + x->by_row*i + x->by_turn*j;
 }
 
 /* The spline of the table that the user gave for input `name`. */
@@ -221,6 +219,10 @@ Prog *prog_factor(Prog *p);
  * Time grows as products times pairs, so only for short programs. Needs a tidy program and leaves one with at most as many operations;
  * changes rounding. */
 Prog *prog_product_cse(Prog *p);
+
+/* Sums over pairs, sites or bodies as nests (nest.c); p itself where there are none, p has fewer than `from` instructions, or it has
+ * solves. Needs a tidy program and leaves one; adds sums in another order. */
+Prog *prog_find_nests(Prog *p, uint32_t from);
 
 /* Schedule store by store, pivots first, without titles: the instructions that one store needs stand together, and form a loop with
  * those of its neighbours. Not for programs with solves. */

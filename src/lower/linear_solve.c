@@ -1,10 +1,9 @@
 /* M q'' = f, and its solution, as instructions.
  *
  * A positive definite mass matrix is eliminated in straight-line code (eliminate.c, gram_schmidt.c) unless that would be long. Otherwise M falls into
- * blocks of coupled coordinates: one by division, two by Cramer's rule, more by a loop, in an order of narrow band, with partial
- * pivoting where M may be indefinite. Coordinates that a constraint couples are one block, solved with their multipliers. */
+ * blocks of coupled coordinates: one by division, two by Cramer's rule, more by a loop within the band, with partial pivoting
+ * where M may be indefinite. Coordinates that a constraint couples are one block, solved with their multipliers. */
 #include "base/union_find.h"
-#include "ir/band.h"
 #include "lower/lower_impl.h"
 
 /* Straight-line elimination of a dense matrix takes n^3/3 lines. Measured: it is faster than a loop
@@ -127,23 +126,6 @@ static uint32_t make_blocks(Lower *l, const RightHandSides *s, Block **blocks) {
   return y.n;
 }
 
-/* Reorders the coordinates of the block for a narrower band, where there is one. */
-static void narrow(Lower *l, Block *b) {
-  Arena *a = l->p->arena;
-  uint32_t n = b->n;
-  const uint32_t *order = band_order(a, n, b->M);
-  Block r = *b;
-  r.at = ARENA_ARRAY(a, uint32_t, n);
-  r.f = ARENA_ARRAY(a, Slot, n);
-  r.M = ARENA_ARRAY(a, Slot, (size_t)n * n);
-  for (uint32_t i = 0; i < n; i++) {
-    r.at[i] = b->at[order[i]];
-    r.f[i] = b->f[order[i]];
-    for (uint32_t j = 0; j <= i; j++) r.M[(size_t)i * n + j] = order[i] > order[j] ? b->M[(size_t)order[i] * n + order[j]] : b->M[(size_t)order[j] * n + order[i]];
-  }
-  if (band_width(n, r.M) < band_width(n, b->M)) *b = r;
-}
-
 /* --- one coordinate, two, and loops --- */
 
 static Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
@@ -176,6 +158,15 @@ static void list_filled(Arena *a, Solve *k) {
   for (uint32_t j = 0; j < solve_elements(k); j++)
     if (k->matrix[j]) filled[k->nfilled++] = j;
   k->filled = filled;
+}
+
+/* Half-bandwidth of a lower triangle M[n*n]: the largest i - j of a nonzero element. */
+static uint32_t band_width(uint32_t n, const Slot *M) {
+  uint32_t widest = 0;
+  for (uint32_t i = 0; i < n; i++)
+    for (uint32_t j = 0; j < i; j++)
+      if (M[(size_t)i*n + j] && i - j > widest) widest = i - j;
+  return widest;
 }
 
 /* Solves the block by a loop of the runtime: x[n], then the m multipliers. */
@@ -245,7 +236,6 @@ static void solve_blocks(Lower *l, const RightHandSides *s, Slot *acc, Slot *mul
   for (uint32_t k = 0; k < n; k++) {
     Block *b = &blocks[k];
     if (!b->m && is_empty(b)) continue;
-    if (b->n > 2 && !b->m) narrow(l, b);
     if (b->n > 2 || b->m) solve_loop(l, b, s->coarse, x);
     else if (b->n == 1) solve_one(l, b, x);
     else solve_two(l, b, x);

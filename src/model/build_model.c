@@ -269,7 +269,7 @@ static void apply_statement(Builder *b, const AstStmt *st, Name effect, void *da
   }
 }
 
-/* Evaluates unused lets and functions, to report their errors: one per family. */
+/* Evaluates unused lets, to report their errors: one per family. */
 static void apply_unused_lets(Builder *b) {
   const AstStmt *wrong = NULL;
   for (uint32_t i = 0; i < b->lets.n; i++) {
@@ -277,7 +277,6 @@ static void apply_unused_lets(Builder *b) {
     resolve_let(b, i);
     if (!b->lets.at[i].value.e) wrong = b->lets.at[i].stmt;
   }
-  for (uint32_t i = 0; i < b->functions.n; i++) check_uncalled(b, i);
 }
 
 /* Statement callbacks for the passes after L is known. */

@@ -50,7 +50,6 @@ typedef struct {
   Name name, effect;
   Progress progress;
   Value value; /* e is 0 after an error */
-  struct Instance *instances; /* functions only: list of instances */
   IndexVar index[2]; /* indices of a family member; name NULL: a number in the text */
   const IndexVar *around; /* observables only: indices of the enclosing `for` */
   uint32_t naround;
@@ -58,8 +57,7 @@ typedef struct {
 
 /* Instance of a user function for given argument shapes. Its body is evaluated once, with symbols as arguments and unknown
  * dimensions; each call substitutes its own. */
-typedef struct Instance Instance;
-struct Instance {
+typedef struct {
   uint32_t function;
   Value *args;            /* made of LOCAL symbols */
   uint32_t nargs;
@@ -70,8 +68,7 @@ struct Instance {
   Value value;
   Span call;              /* the first call */
   uint32_t errors;        /* error count before the evaluation */
-  Instance *next;         /* next instance of the same function */
-};
+} Instance;
 
 typedef struct {
   Name name, effect;
@@ -335,9 +332,6 @@ void resolve_observe(Builder *b, uint32_t index);
 
 /* model.c: stores the value of an observable in the model, and checks its unit. */
 void finish_observe(Builder *b, uint32_t index, Value v);
-
-/* Checks a function that is never called: some choice of argument shapes must make its body valid. */
-void check_uncalled(Builder *b, uint32_t function);
 
 /* Entity of a name; unknown and ambiguous names are reported. `declare` is the kind of declaration to suggest ("state"),
  * or NULL for any. */

@@ -38,8 +38,7 @@ struct Dims {
   VEC(Unknown) unknowns;
   VEC(DimPower) scratch;
   VEC(Spelling) spellings;
-  VEC(uint32_t) solved; /* solved unknowns, in order of solution */
-  uint32_t time;        /* incremented when an unknown is solved or a solution undone */
+  uint32_t time;        /* incremented when an unknown is solved */
   IdTable table;        /* of `forms` */
   struct {
     Dim a, b, product;
@@ -185,16 +184,8 @@ int dim_equate(Dims *d, Dim a, Dim b, Span why) {
   Dim is = dim_pow(d, rest, num_div(num_int(-1), e));
   d->unknowns.at[key - DIM_BASES].is = is;
   d->unknowns.at[key - DIM_BASES].why = why;
-  vec_push(d->arena, &d->solved, key - DIM_BASES);
   d->time++;
   return 1;
-}
-
-uint32_t dims_mark(const Dims *d) { return d->solved.n; }
-
-void dims_undo(Dims *d, uint32_t mark) {
-  while (d->solved.n > mark) d->unknowns.at[d->solved.at[--d->solved.n]].is = 0;
-  d->time++;
 }
 
 /* A power of unknown first .. first + n - 1, or NULL. */

@@ -39,10 +39,6 @@ uint32_t dim_unknowns(const Dims *d);
  * 0: contradiction, nothing changes. */
 int dim_equate(Dims *d, Dim a, Dim b, Span why);
 
-/* Backtracking: number of unknowns solved so far; undoes those solved since a mark. */
-uint32_t dims_mark(const Dims *d);
-void dims_undo(Dims *d, uint32_t mark);
-
 /* Dimension with all solved unknowns substituted: base units and unsolved unknowns only. */
 Dim dim_resolved(Dims *d, Dim a);
 

@@ -108,97 +108,30 @@ static const AstStmt *statement_of(const EffectGraph *g, uint32_t i, AstStmtKind
   return x;
 }
 
-/* Shortest cycle of requirements through i over effects not before i, by breadth-first search: way[0..length), i first. 0: none. */
-static uint32_t find_cycle(const Ast *ast, const EffectGraph *g, uint32_t i, uint32_t **way) {
-  uint32_t *from = ARENA_ARRAY(ast->arena, uint32_t, g->n), *queue = ARENA_ARRAY(ast->arena, uint32_t, g->n + 1), n = 0, last = NONE;
-  for (uint32_t k = 0; k < g->n; k++) from[k] = NONE;
-  queue[n++] = i;
-  for (uint32_t at = 0; at < n && last == NONE; at++) {
-    const EffectNode *node = &g->at[queue[at]];
-    for (uint32_t k = 0; k < node->requires.n; k++) {
-      uint32_t next = node->requires.at[k];
-      if (next == i) {
-        last = queue[at];
-        break;
-      }
-      if (next < i || from[next] != NONE) continue;
-      from[next] = queue[at];
-      queue[n++] = next;
-    }
-  }
-  if (last == NONE) return 0;
-  uint32_t length = 1;
-  for (uint32_t k = last; k != i; k = from[k]) length++;
-  *way = ARENA_ARRAY(ast->arena, uint32_t, length);
-  for (uint32_t at = length, k = last; at-- > 0; k = from[k]) (*way)[at] = k;
-  return length;
-}
-
-/* Reports each cycle once, at its first effect. 0 if there is one. */
-static int check_cycles(const Ast *ast, const EffectGraph *g) {
-  int fine = 1;
-  for (uint32_t i = 0; i < g->n; i++) {
-    uint32_t *way = NULL, length = g->at[i].requires.n ? find_cycle(ast, g, i, &way) : 0;
-    if (!length) continue;
-    fine = 0;
-    Name first = g->at[i].stmt->name;
-    const AstStmt *st = statement_of(g, i, STMT_REQUIRES, way[length > 1]);
-    if (length == 1) {
-      diag_error(ast->diags, st->span, "the effect `%s` requires itself", first);
-      diag_help(ast->diags, "leave out this `requires`");
-      continue;
-    }
-    StrBuf names = strbuf(ast->arena);
-    for (uint32_t k = 1; k < length; k++) sb_printf(&names, "`%s`, which requires ", g->at[way[k]].stmt->name);
-    diag_error(ast->diags, st->span, "effects require each other in a circle: `%s` requires %s`%s`", first, sb_text(&names), first);
-    diag_help(ast->diags, "make one effect of them, or leave out one of these `requires`");
-    diag_also(ast->diags, statement_of(g, way[length - 1], STMT_REQUIRES, i)->span, "the circle closes here");
-  }
-  return fine;
-}
-
-/* Reports that effect i excludes `other`, while `user` requires both (or is one of them). */
-static void report_clash(const Ast *ast, const EffectGraph *g, uint32_t user, uint32_t i, uint32_t other) {
-  const AstStmt *st = statement_of(g, i, STMT_EXCLUDES, other);
+/* Reports that effect i requires or excludes `other`, where `user` brings both. */
+static int report_relation(const Ast *ast, const EffectGraph *g, uint32_t user, uint32_t i, uint32_t other, AstStmtKind kind) {
   Name one = g->at[i].stmt->name, two = g->at[other].stmt->name, by = g->at[user].stmt->name;
-  if (i == other) {
-    diag_error(ast->diags, st->span, "the effect `%s` excludes itself", one);
-    diag_help(ast->diags, "leave out this `excludes`");
-    return;
-  }
-  if (user == i) diag_error(ast->diags, st->span, "the effect `%s` excludes `%s`, which it requires", one, two);
-  else if (user == other) diag_error(ast->diags, st->span, "the effect `%s` excludes `%s`, by which it is required", one, two);
-  else diag_error(ast->diags, st->span, "the effects `%s` and `%s` exclude each other, and `%s` requires both", one, two, by);
-  diag_help(ast->diags, "no scene could use `%s`: leave out this `excludes`, or a `requires`", by);
-  for (uint32_t k = 0; k < g->at[user].requires.n; k++) {
-    uint32_t needed = g->at[user].requires.at[k];
-    uint8_t *in = ARENA_ARRAY(ast->arena, uint8_t, g->n);
-    effect_reach(ast, g, needed, 0, in);
-    if (!in[user == other ? i : other]) continue;
-    diag_also(ast->diags, statement_of(g, user, STMT_REQUIRES, needed)->span, "required here");
-    return;
-  }
+  const AstStmt *x = statement_of(g, i, kind, other);
+  const char *word = kind == STMT_REQUIRES ? "requires" : "excludes";
+  if (i == other) diag_error(ast->diags, x->span, "the effect `%s` %s itself", one, word);
+  else if (kind == STMT_REQUIRES) diag_error(ast->diags, x->span, "the effects `%s` and `%s` require each other, directly or through others", one, two);
+  else diag_error(ast->diags, x->span, "the effect `%s` excludes `%s`, and no scene can use `%s`, which brings both", one, two, by);
+  diag_help(ast->diags, "leave out this `%s`, or make one effect of them", word);
+  return 0;
 }
 
-/* Reports each excluded pair once, with the first effect that requires both. 0 if there is one. */
-static int check_clashes(const Ast *ast, const EffectGraph *g) {
-  int fine = 1;
-  uint8_t *in = ARENA_ARRAY(ast->arena, uint8_t, g->n + 1), **told = ARENA_ARRAY(ast->arena, uint8_t *, g->n + 1);
-  for (uint32_t i = 0; i < g->n; i++) told[i] = ARENA_ARRAY(ast->arena, uint8_t, g->at[i].excludes.n + 1);
-  for (uint32_t user = 0; user < g->n; user++) {
-    memset(in, 0, g->n);
-    effect_reach(ast, g, user, 0, in);
-    for (uint32_t i = 0; i < g->n; i++)
-      for (uint32_t k = 0; in[i] && k < g->at[i].excludes.n; k++) {
-        uint32_t other = g->at[i].excludes.at[k];
-        if (!in[other] || told[i][k]) continue;
-        told[i][k] = 1;
-        for (uint32_t j = 0; j < g->at[other].excludes.n; j++) told[other][j] |= g->at[other].excludes.at[j] == i;
-        report_clash(ast, g, user, i, other);
-        fine = 0;
-      }
+/* 0, reported, if an effect requires itself, or brings two effects that exclude each other. in: scratch, one entry an effect. */
+static int check_effect(const Ast *ast, const EffectGraph *g, uint32_t user, uint8_t *in) {
+  memset(in, 0, g->n);
+  effect_reach(ast, g, user, 0, in);
+  for (uint32_t i = 0; i < g->n; i++) {
+    const EffectNode *node = &g->at[i];
+    for (uint32_t k = 0; in[i] && k < node->requires.n; k++)
+      if (node->requires.at[k] == user) return report_relation(ast, g, user, i, user, STMT_REQUIRES);
+    for (uint32_t k = 0; in[i] && k < node->excludes.n; k++)
+      if (in[node->excludes.at[k]]) return report_relation(ast, g, user, i, node->excludes.at[k], STMT_EXCLUDES);
   }
-  return fine;
+  return 1;
 }
 
 /* Reports unknown names in `requires` and `excludes`, also of effects that no scene uses. */
@@ -210,10 +143,12 @@ static void check_names(const Ast *ast, const EffectGraph *g) {
 
 int effects_check(const Ast *ast) {
   EffectGraph g = effect_graph(ast);
-  int exclusive = 0;
+  uint8_t *in = ARENA_ARRAY(ast->arena, uint8_t, g.n + 1);
+  int fine = 1;
   check_names(ast, &g);
-  for (uint32_t i = 0; i < g.n; i++) exclusive |= g.at[i].excludes.n > 0;
-  return check_cycles(ast, &g) && (!exclusive || check_clashes(ast, &g));
+  for (uint32_t i = 0; i < g.n; i++)
+    if (g.at[i].requires.n || g.at[i].excludes.n) fine &= check_effect(ast, &g, i, in);
+  return fine;
 }
 
 /* --- effects in use --- */
@@ -272,19 +207,8 @@ static const AstStmt *use_of(const Builder *b, Name effect) {
   return found;
 }
 
-/* 1 if effect `name` excludes `other`. */
-static int excludes(const Builder *b, Name name, Name other) {
-  const AstStmt *e = find_named(b->ast, STMT_EFFECT, name);
-  for (const AstStmt *x = e ? e->body : NULL; x; x = x->next)
-    if (x->kind == STMT_EXCLUDES && x->name == other) return 1;
-  return 0;
-}
-
-/* Reports an exclusion that the scene violates; a mutual one once, at the first effect. */
+/* Reports an exclusion that the scene violates. */
 static void report_excluded(Builder *b, const AstStmt *effect, const AstStmt *x) {
-  if (excludes(b, x->name, effect->name))
-    for (const AstStmt *s = b->ast->first; s != effect; s = s->next)
-      if (s->kind == STMT_EFFECT && s->name == x->name) return;
   diag_error(b->diags, x->span, "the effects `%s` and `%s` exclude each other, and the scene `%s` uses both", effect->name, x->name, b->m->scene.name);
   diag_help(b->diags, "use one of them; `use none` turns off effects inherited by `like`");
   const AstStmt *use = use_of(b, x->name);

@@ -281,30 +281,21 @@ static int find_table_file(Table *t, const char *path) {
   return 0;
 }
 
-/* Widens *lo, *hi to the extrema of the cubic between rows a and b (time, value, second derivative), at the zeros of its
- * slope. With x in [0, 1] the slope is chord + (h^2/6)((1 - 3(1-x)^2) m0 + (3x^2 - 1) m1), a parabola. */
-static void widen_to_extrema(const double *a, const double *b, double *lo, double *hi) {
-  double h = b[0] - a[0], m0 = a[2] * h * h / 6, m1 = b[2] * h * h / 6, chord = b[1] - a[1];
-  double p = 3 * (m1 - m0), q = 6 * m0, r = chord - 2 * m0 - m1, root = sqrt(fmax(q * q - 4 * p * r, 0));
-  double at[3] = {0, (-q - root) / (2 * p), (-q + root) / (2 * p)};
-  if (p == 0) at[1] = at[2] = q != 0 ? -r / q : 0;
-  for (int i = 0; i < 3; i++) {
-    if (!(at[i] >= 0 && at[i] <= 1)) continue;
-    double x = at[i], y = (1 - x) * a[1] + x * b[1] - x * (1 - x) * ((2 - x) * m0 + (1 + x) * m1);
-    *lo = fmin(*lo, y);
-    *hi = fmax(*hi, y);
-  }
-}
-
 /* Warns of overshoot by more than half the range of values: a cubic overshoots where rows are sparse near a steep rise.
  * (A step between equidistant rows overshoots by an eighth.) */
 static void warn_of_overshoot(const Table *t, const Spline *s) {
+  enum { PARTS = 16 }; /* of each interval */
   double lo = s->row[0][1], hi = lo, low = lo, high = lo;
   for (uint32_t i = 0; i < s->n; i++) {
     lo = fmin(lo, s->row[i][1]);
     hi = fmax(hi, s->row[i][1]);
   }
-  for (uint32_t i = 0; i + 1 < s->n; i++) widen_to_extrema(s->row[i], s->row[i + 1], &low, &high);
+  for (uint32_t i = 0; i + 1 < s->n; i++)
+    for (int k = 0; k <= PARTS; k++) {
+      double y = (double)spline_at(s, s->row[i][0] + (s->row[i + 1][0] - s->row[i][0]) * k / PARTS);
+      low = fmin(low, y);
+      high = fmax(high, y);
+    }
   if (lo - low <= (hi - lo) / 2 && high - hi <= (hi - lo) / 2) return;
   double unit = unit_factor(&t->in->unit), zero = num_value(t->in->unit.offset);
   diag_warning(t->b->diags, ast_expr(t->b->ast, t->id)->span, "between its rows the curve goes from %.3g to %.3g, and the rows from %.3g to %.3g",

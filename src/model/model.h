@@ -238,9 +238,6 @@ typedef struct {
 /* Name of built-in function i; NULL past the end. */
 const char *function_name(size_t i);
 
-/* Appends a listing, for --dump=model. */
-void model_dump(const Model *m, StrBuf *out);
-
 /* Names of the file's scenes, in order; "default" alone when there is none. */
 typedef struct {
   const Name *at;

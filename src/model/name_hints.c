@@ -89,30 +89,26 @@ static int advise_momentum(Builder *b, const char *name) {
   return 1;
 }
 
-/* Names with a meaning on paper, and what to write instead. */
-static const char *const paper_names[][2] = {
-  {"dt", "a time derivative is written `x'`"},
-  {"π", "did you mean `pi`?"},
-  {"E", "the energy is `energy`, in outputs, observables and expectations"},
-  {"H", "the energy is `energy`, in outputs, observables and expectations"},
-  {"L", "the Lagrangian is `lagrangian`, in outputs, observables and expectations"},
-  {"g", "gravity is a parameter, too: `param g = 9.81 [m/s^2]`"},
-  {"energy", "the energy may stand in outputs, monitors, observables and expectations; here write it with coordinates and velocities"},
-  {"lagrangian", "the Lagrangian may stand in outputs, observables and expectations; here write it with coordinates and velocities"},
-  {"T", "where L is `kinetic` less `potential` (no effect in use adds a `lagrangian`), the kinetic energy is `T`, in outputs, observables and expectations"},
-  {"V", "where L is `kinetic` less `potential` (no effect in use adds a `lagrangian`), the potential energy is `V`, in outputs, observables and expectations"},
-  {"t", "`t` is the time, which a run gives its value: `span 20 [s]` says how long it is"},
-  {"e", "the number is `exp(1)`; a parameter is declared: `param e = 0.9`"},
-};
-
-static int advise_paper_name(Builder *b, const char *name) {
-  for (size_t i = 0; i < sizeof paper_names / sizeof *paper_names; i++)
-    if (strcmp(name, paper_names[i][0]) == 0) {
-      diag_help(b->diags, "%s", paper_names[i][1]);
+/* Gives the advice of the first row that has the name among its words; 0: no row has it. */
+static int advise_word(Builder *b, const char *const (*rows)[2], size_t n, Name name) {
+  for (size_t i = 0; i < n; i++)
+    if (has_word(rows[i][0], name)) {
+      diag_help(b->diags, "%s", rows[i][1]);
       return 1;
     }
   return 0;
 }
+
+/* Names with a meaning on paper, and what to write instead. */
+static const char *const paper_names[][2] = {
+  {"dt", "a time derivative is written `x'`"}, {"π", "did you mean `pi`?"},
+  {"E H energy", "the energy is `energy`, in outputs, monitors, observables and expectations; elsewhere write it with coordinates and velocities"},
+  {"L lagrangian", "the Lagrangian is `lagrangian`, in outputs, observables and expectations; elsewhere write it with coordinates and velocities"},
+  {"g", "gravity is a parameter, too: `param g = 9.81 [m/s^2]`"},
+  {"T V", "where L is `kinetic` less `potential` (no effect in use adds a `lagrangian`), the energies are `T` and `V`, in outputs, observables and expectations"},
+  {"t", "`t` is the time, which a run gives its value: `span 20 [s]` says how long it is"},
+  {"e", "the number is `exp(1)`; a parameter is declared: `param e = 0.9`"},
+};
 
 /* Recognises the index of `let a[i] = ...`, which lacks a range. */
 static int advise_index(Builder *b, Name name, Span span) {
@@ -130,34 +126,15 @@ static int advise_index(Builder *b, Name name, Span span) {
 
 /* Functions of other languages and books, and what to write instead. */
 static const char *const foreign_functions[][2] = {
-  {"ln", "did you mean `log`?"},
-  {"log10", "write `log(x)/log(10)`"},
-  {"log2", "write `log(x)/log(2)`"},
-  {"arcsin", "did you mean `asin`?"}, {"arccos", "did you mean `acos`?"}, {"arctan", "did you mean `atan`?"}, {"arctan2", "did you mean `atan2`?"},
-  {"sec", "write `1/cos(x)`"}, {"csc", "write `1/sin(x)`"}, {"cot", "write `1/tan(x)`"},
-  {"sqr", "write `x^2`"}, {"square", "write `x^2`"},
-  {"fabs", "did you mean `abs`?"}, {"sgn", "did you mean `sign`?"}, {"signum", "did you mean `sign`?"},
-  {"heaviside", "write `if(x > 0, 1, 0)`"}, {"step", "write `if(x > 0, 1, 0)`"},
-  {"diff", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
-  {"Diff", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
-  {"dt", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
-  {"D", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
-  {"grad", "a partial derivative is `d(expr, name)`"},
-  {"length", "the length of a vector is `norm(r)`"}, {"mag", "the length of a vector is `norm(r)`"}, {"magnitude", "the length of a vector is `norm(r)`"},
+  {FOREIGN_CHOICES, "a choice is written `if(x > 0, a, b)`: a where the condition holds, b where not; of several, `if(x > 1, a, if(x > 0, b, c))`"},
+  {"ln", "did you mean `log`?"}, {"log10 log2", "write `log(x)/log(10)`, `log(x)/log(2)`"},
+  {"arcsin arccos arctan arctan2", "the inverse functions are `asin`, `acos`, `atan`, `atan2`"},
+  {"sec csc cot", "write `1/cos(x)`, `1/sin(x)`, `1/tan(x)`"}, {"sqr square", "write `x^2`"}, {"fabs", "did you mean `abs`?"}, {"sgn signum", "did you mean `sign`?"},
+  {"heaviside step", "write `if(x > 0, 1, 0)`"}, {"diff Diff dt D grad", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
+  {"length mag magnitude", "the length of a vector is `norm(r)`"},
 };
 
-int advise_unknown_function(Builder *b, Name name) {
-  if (has_word(FOREIGN_CHOICES, name)) {
-    diag_help(b->diags, "a choice is written `if(x > 0, a, b)`: a where the condition holds, b where not; of several, `if(x > 1, a, if(x > 0, b, c))`");
-    return 1;
-  }
-  for (size_t i = 0; i < sizeof foreign_functions / sizeof *foreign_functions; i++)
-    if (strcmp(name, foreign_functions[i][0]) == 0) {
-      diag_help(b->diags, "%s", foreign_functions[i][1]);
-      return 1;
-    }
-  return 0;
-}
+int advise_unknown_function(Builder *b, Name name) { return advise_word(b, foreign_functions, sizeof foreign_functions / sizeof *foreign_functions, name); }
 
 /* 1 for an expression of the command line, where nothing can be declared. */
 static int is_asked(const Builder *b, Span span) {
@@ -237,7 +214,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
   if (advise_product(b, name, known, n)) return;
   int paper = strcmp(name, "dt") == 0 || strcmp(name, "T") == 0 || strcmp(name, "t") == 0; /* no nearest name, which could be t */
   Name near = paper ? NULL : suggest(name, known, n);
-  if (!near && advise_paper_name(b, name)) return;
+  if (!near && advise_word(b, paper_names, sizeof paper_names / sizeof *paper_names, name)) return;
   if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else if (is_asked(b, span)) advise_names(b);
   else if (declare) diag_help(b->diags, "declare it: `%s %s`", declare, name);

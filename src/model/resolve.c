@@ -338,12 +338,6 @@ void resolve_observe(Builder *b, uint32_t index) {
   if (b->observes.at[index].progress == TODO) resolve_definition(b, ENT_OBSERVE, index);
 }
 
-const Instance *resolve_instance(Builder *b, uint32_t function, const uint32_t *shapes) {
-  const Instance *in = new_instance(b, function, shapes);
-  resolve_definition(b, ENT_FUNCTION, b->instances.n - 1);
-  return in;
-}
-
 Value resolve_nodes(Builder *b, AstId id, Context where, Name effect, Expr *nodes) {
   if (!id) return FAILED;
   EvalStack stack = {0};

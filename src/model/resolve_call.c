@@ -13,26 +13,10 @@ static const struct {
   {"abs", EX_ABS}, {"sign", EX_SIGN},
 }, binary_functions[] = {{"atan2", EX_ATAN2}, {"hypot", EX_HYPOT}, {"min", EX_MIN}, {"max", EX_MAX}};
 
-static const char *const other_functions[] = {"sqrt", "pow", "if", "d", "dot", "cross", "norm", "lambda"};
-
-const char *function_name(size_t i) {
-  enum { NU = sizeof unary_functions / sizeof *unary_functions, NB = sizeof binary_functions / sizeof *binary_functions, NO = sizeof other_functions / sizeof *other_functions };
-  if (i < NU) return unary_functions[i].name;
-  if (i < NU + NB) return binary_functions[i - NU].name;
-  return i < NU + NB + NO ? other_functions[i - NU - NB] : rotation_function_name(i - NU - NB - NO);
-}
-
 const Entity *own_function(const Eval *ev, const AstExpr *x) {
   int ambiguous;
   const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, &ambiguous);
   return e && e->kind == ENT_FUNCTION ? e : NULL;
-}
-
-int call_takes_vectors(const Eval *ev, const AstExpr *x) {
-  static const char *const names[] = {"if", "d", "dot", "cross", "norm", "exact", "error", "lambda"};
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    if (strcmp(x->name, names[i]) == 0) return 1;
-  return call_is_of_rotation(x->name) || own_function(ev, x) != NULL;
 }
 
 int arity_is(Eval *ev, const AstExpr *x, uint32_t want) {
@@ -200,6 +184,37 @@ static Value call_sqrt(Eval *ev, const AstExpr *x) {
   return a_value(expr_sqrt(ev->b->g, v->e), dim_pow(ev->b->dims, v->dim, num_ratio(1, 2)), v->bare);
 }
 
+static Value call_pow(Eval *ev, const AstExpr *x) {
+  return arity_is(ev, x, 2) ? power_value(ev, x, x->args, ast_expr(ev->b->ast, x->args)->next) : FAILED;
+}
+
+static const struct {
+  const char *name;
+  Value (*value)(Eval *ev, const AstExpr *x);
+  int takes_vectors; /* vectors or rotations */
+} other_functions[] = {
+  {"sqrt", call_sqrt, 0}, {"pow", call_pow, 0}, {"if", call_if, 1}, {"d", call_d, 1}, {"dot", call_dot, 1}, {"cross", call_cross, 1}, {"norm", call_norm, 1},
+  {"lambda", multiplier_value, 1}, {"omega", omega_value, 1}, {"turn", turn_value, 1}, {"transpose", transpose_value, 1},
+};
+
+enum {
+  UNARY = sizeof unary_functions / sizeof *unary_functions,
+  BINARY = sizeof binary_functions / sizeof *binary_functions,
+  OTHERS = sizeof other_functions / sizeof *other_functions
+};
+
+const char *function_name(size_t i) {
+  if (i < UNARY) return unary_functions[i].name;
+  if (i < UNARY + BINARY) return binary_functions[i - UNARY].name;
+  return i < UNARY + BINARY + OTHERS ? other_functions[i - UNARY - BINARY].name : NULL;
+}
+
+int call_takes_vectors(const Eval *ev, const AstExpr *x) {
+  for (size_t i = 0; i < OTHERS; i++)
+    if (strcmp(x->name, other_functions[i].name) == 0) return other_functions[i].takes_vectors || own_function(ev, x);
+  return strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0 || own_function(ev, x);
+}
+
 /* The coordinate, state or let in `th(0)`, which the parser takes for a call; or NULL. */
 static const Entity *called_motion(const Eval *ev, const AstExpr *x) {
   int ambiguous;
@@ -240,7 +255,6 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
 }
 
 Value call_value(Eval *ev, const AstExpr *x) {
-  const Ast *ast = ev->b->ast;
   const Entity *own = own_function(ev, x);
   if (own) return call_function(ev, x, own);
   const Entity *moves = ev->where == IN_EXACT ? called_motion(ev, x) : NULL;
@@ -249,19 +263,11 @@ Value call_value(Eval *ev, const AstExpr *x) {
     return ev->waiting ? FAILED : start_value(ev, v, x->span, value_of(ev, x->args));
   }
   if (call_is_exact(ev, x->name)) return exact_value(ev, x);
-  for (size_t i = 0; i < sizeof unary_functions / sizeof *unary_functions; i++)
+  for (size_t i = 0; i < UNARY; i++)
     if (strcmp(x->name, unary_functions[i].name) == 0) return call_unary(ev, x, unary_functions[i].op);
-  for (size_t i = 0; i < sizeof binary_functions / sizeof *binary_functions; i++)
+  for (size_t i = 0; i < BINARY; i++)
     if (strcmp(x->name, binary_functions[i].name) == 0) return call_binary(ev, x, binary_functions[i].op);
-  if (strcmp(x->name, "sqrt") == 0) return call_sqrt(ev, x);
-  if (strcmp(x->name, "if") == 0) return call_if(ev, x);
-  if (strcmp(x->name, "d") == 0) return call_d(ev, x);
-  if (strcmp(x->name, "dot") == 0) return call_dot(ev, x);
-  if (strcmp(x->name, "cross") == 0) return call_cross(ev, x);
-  if (strcmp(x->name, "norm") == 0) return call_norm(ev, x);
-  if (strcmp(x->name, "lambda") == 0) return multiplier_value(ev, x);
-  if (call_is_of_rotation(x->name)) return rotation_function(ev, x);
-  if (strcmp(x->name, "pow") == 0)
-    return arity_is(ev, x, 2) ? power_value(ev, x, x->args, ast_expr(ast, x->args)->next) : FAILED;
+  for (size_t i = 0; i < OTHERS; i++)
+    if (strcmp(x->name, other_functions[i].name) == 0) return other_functions[i].value(ev, x);
   return unknown_function(ev, x);
 }

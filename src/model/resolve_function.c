@@ -32,16 +32,16 @@ void need_rates(Builder *b, Instance *in) {
   }
 }
 
-Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes) {
-  Definition *f = &b->functions.at[function];
+/* Appends an instance of a function for argument shapes 0 (number), 2, 3 or ROTATION, without evaluating it. */
+static Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes) {
+  const Definition *f = &b->functions.at[function];
   Instance *in = ARENA_NEW(b->arena, Instance);
-  *in = (Instance){.function = function, .nargs = ast_list_length(b->ast, f->stmt->args), .first_unknown = dim_unknowns(b->dims), .next = f->instances};
+  *in = (Instance){.function = function, .nargs = ast_list_length(b->ast, f->stmt->args), .first_unknown = dim_unknowns(b->dims)};
   in->args = ARENA_ARRAY(b->arena, Value, in->nargs + 1);
   AstId id = f->stmt->args;
   for (uint32_t i = 0; i < in->nargs; i++, id = ast_expr(b->ast, id)->next)
     in->args[i] = new_argument(b, in, ast_expr(b->ast, id)->name, shapes[i]);
   in->nplain = in->symbols.n;
-  f->instances = in;
   vec_push(b->arena, &b->instances, in);
   return in;
 }
@@ -151,46 +151,4 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
   if (b->instances.at[place]->done) return call_instance(ev, x, b->instances.at[place]);
   suspend_for(ev, ENT_FUNCTION, place, f->progress, x->name, x->span);
   return FAILED;
-}
-
-/* --- functions that nothing calls --- */
-
-/* Choice k of n argument shapes, counted in base 3: 0 0, 2 0, 3 0, 0 2, ... */
-static void choose_shapes(uint32_t k, uint32_t n, uint32_t *shapes) {
-  static const uint32_t kinds[] = {0, 2, 3};
-  for (uint32_t i = 0; i < n; i++, k /= 3) shapes[i] = kinds[k % 3];
-}
-
-/* Removes the instances of a failed trial. */
-static void forget_instances(Builder *b, uint32_t n) {
-  while (b->instances.n > n) {
-    const Instance *in = b->instances.at[--b->instances.n];
-    Definition *f = &b->functions.at[in->function];
-    f->instances = in->next;
-    f->progress = TODO;
-  }
-}
-
-void check_uncalled(Builder *b, uint32_t function) {
-  enum { MOST_ARGS = 4 };
-  const Definition *f = &b->functions.at[function];
-  uint32_t n = ast_list_length(b->ast, f->stmt->args), tries = 1, mark = dims_mark(b->dims);
-  uint32_t *shapes = ARENA_ARRAY(b->arena, uint32_t, n + 1);
-  if (f->instances) return;
-  for (uint32_t i = 0; i < n; i++) tries = n > MOST_ARGS ? 1 : tries * 3;
-  Diags *heard = b->diags;
-  int good = 0;
-  for (uint32_t k = 0; k < tries && !good; k++) {
-    choose_shapes(k, n, shapes);
-    b->diags = diags_new(b->arena, b->ast->sources);
-    uint32_t instances = b->instances.n;
-    resolve_instance(b, function, shapes);
-    good = !b->diags->errors;
-    if (good) break;
-    dims_undo(b->dims, mark);
-    forget_instances(b, instances);
-  }
-  b->diags = heard;
-  choose_shapes(0, n, shapes);
-  if (!good) resolve_instance(b, function, shapes);
 }

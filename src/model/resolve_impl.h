@@ -82,12 +82,7 @@ const Value *function_argument(const Builder *b, const Instance *function, Name 
  * definition is circular: reported. */
 void suspend_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span);
 
-/* resolve_function.c: appends an instance of a function for argument shapes 0 (number), 2, 3 to b->instances, without
- * evaluating it; resolve_instance evaluates it, too. */
-Instance *new_instance(Builder *b, uint32_t function, const uint32_t *shapes);
-const Instance *resolve_instance(Builder *b, uint32_t function, const uint32_t *shapes);
-
-/* Stores the value of an instance's body; an error in the body is attributed to the call. */
+/* resolve_function.c: stores the value of an instance's body; an error in the body is attributed to the call. */
 void finish_instance(Builder *b, Instance *in, Value v);
 
 /* Declares symbols for first and second rates of an instance's arguments. */
@@ -103,14 +98,14 @@ Value rotation_product(Builder *b, const Value *p, const Value *q);
 Value rotation_turn(Builder *b, const Value *q, const Value *v);
 Value rotation_coordinate(const Builder *b, uint32_t coord);
 
-/* Value of omega(R), turn(axis, angle), transpose(R); their names, NULL past the end. */
-Value rotation_function(Eval *ev, const AstExpr *x);
-int call_is_of_rotation(Name name);
-const char *rotation_function_name(size_t i);
+/* Values of omega(R), turn(axis, angle), transpose(R). */
+Value omega_value(Eval *ev, const AstExpr *x);
+Value turn_value(Eval *ev, const AstExpr *x);
+Value transpose_value(Eval *ev, const AstExpr *x);
 
 /* Reports the misuse of a rotation, written `text`; returns FAILED. */
 typedef enum {
-  TURN_SUM, TURN_NEGATION, TURN_DIVISOR, TURN_SCALED, TURN_BEHIND, TURN_PLANE, TURN_PRIME, TURN_UNIT, TURN_EQUATION, TURN_VALUE, TURN_NUMBER
+  TURN_SUM, TURN_INVERSE, TURN_SCALED, TURN_BEHIND, TURN_PRIME, TURN_EQUATION, TURN_VALUE, TURN_NUMBER
 } TurnMistake;
 Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why);
 

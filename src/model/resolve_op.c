@@ -110,7 +110,7 @@ static int rotation_fits(Eval *ev, uint32_t i, const Factors *f) {
   Builder *b = ev->b;
   Operand o = ev->operands.at[i];
   if (!o.inverted && f->vector == UINT32_MAX) return 1;
-  refuse_rotation(b, ast_expr(b->ast, o.at)->span, ast_short(b, o.at), o.inverted ? TURN_DIVISOR : TURN_BEHIND);
+  refuse_rotation(b, ast_expr(b->ast, o.at)->span, ast_short(b, o.at), o.inverted ? TURN_INVERSE : TURN_BEHIND);
   return 0;
 }
 
@@ -169,8 +169,7 @@ static int type_of_product(Eval *ev, const AstExpr *x, Value *r, Factors *f) {
     r->bare &= v->bare;
   }
   if (!ok || !turn || r->n == 3 || (!r->n && !f->numbers)) return ok;
-  AstId wrong = r->n ? ev->operands.at[f->vector].at : turn;
-  refuse_rotation(b, ast_expr(b->ast, wrong)->span, ast_short(b, wrong), r->n ? TURN_PLANE : TURN_SCALED);
+  refuse_rotation(b, ast_expr(b->ast, turn)->span, ast_short(b, turn), r->n ? TURN_NUMBER : TURN_SCALED);
   return 0;
 }
 
@@ -292,7 +291,7 @@ Value operator_value(Eval *ev, AstId id) {
     case AST_NUM: return a_value(expr_num(b->g, x->number), num_is_zero(x->number) ? DIM_ANY : DIM_NONE, 1);
     case AST_NEG: {
       Value v = *value_of(ev, x->a);
-      if (v.n == ROTATION) return refuse_rotation(b, x->span, ast_short(b, x->a), TURN_NEGATION);
+      if (v.n == ROTATION) return refuse_rotation(b, x->span, ast_short(b, x->a), TURN_INVERSE);
       for (uint32_t k = 0; v.e && k < component_count(&v); k++) v.at[k] = expr_neg(b->g, v.at[k]);
       return v;
     }

@@ -105,7 +105,7 @@ Value unit_value(Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->a);
   if (ast_expr(b->ast, x->a)->kind != AST_NUM) warn_unit_is_constant(b, &x->unit);
   Unit u = unit_resolve(&x->unit, b->dims, b->diags, b->arena);
-  if (v->e && v->n == ROTATION) return refuse_rotation(b, x->span, ast_short(b, x->a), TURN_UNIT);
+  if (v->e && v->n == ROTATION) return refuse_rotation(b, x->span, ast_short(b, x->a), TURN_NUMBER);
   if (!v->e || (x->unit.n && u.dim == DIM_ANY)) return FAILED;
   if (!dim_equate(b->dims, v->dim, DIM_NONE, x->span)) {
     diag_error(b->diags, x->unit.span, "`%s` has a unit already: [%s]", ast_short(b, x->a), shown_unit(b, v));

@@ -110,7 +110,7 @@ static const Value *rotation_argument(Eval *ev, const AstExpr *x) {
   return NULL;
 }
 
-static Value omega_value(Eval *ev, const AstExpr *x) {
+Value omega_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const Value *q = rotation_argument(ev, x);
   if (!q) return FAILED;
@@ -122,13 +122,13 @@ static Value omega_value(Eval *ev, const AstExpr *x) {
   return w;
 }
 
-static Value transpose_value(Eval *ev, const AstExpr *x) {
+Value transpose_value(Eval *ev, const AstExpr *x) {
   const Value *q = rotation_argument(ev, x);
   return q ? conjugate(ev->b, q) : FAILED;
 }
 
 /* turn(n, a) = (cos a/2, sin a/2 n/|n|) */
-static Value turn_value(Eval *ev, const AstExpr *x) {
+Value turn_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   ExprGraph *g = b->g;
   if (!arity_is(ev, x, 2)) return FAILED;
@@ -159,60 +159,24 @@ static Value turn_value(Eval *ev, const AstExpr *x) {
   return r;
 }
 
-static const struct {
-  const char *name;
-  Value (*value)(Eval *ev, const AstExpr *x);
-} functions[] = {{"omega", omega_value}, {"turn", turn_value}, {"transpose", transpose_value}};
-
-enum { FUNCTIONS = sizeof functions / sizeof *functions };
-
-const char *rotation_function_name(size_t i) { return i < FUNCTIONS ? functions[i].name : NULL; }
-
-int call_is_of_rotation(Name name) {
-  for (size_t i = 0; i < FUNCTIONS; i++)
-    if (strcmp(name, functions[i].name) == 0) return 1;
-  return 0;
-}
-
-Value rotation_function(Eval *ev, const AstExpr *x) {
-  for (size_t i = 0; i < FUNCTIONS; i++)
-    if (strcmp(x->name, functions[i].name) == 0) return functions[i].value(ev, x);
-  return FAILED;
-}
-
 /* --- misuse of rotations --- */
 
-static const char *const out_of[] = {
-  [TURN_SUM] = "products of rotations are rotations, sums are none: `R*S` turns by S, then by R",
-  [TURN_NEGATION] = "the inverse rotation is `transpose(R)`",
-  [TURN_DIVISOR] = "the inverse rotation is `transpose(R)`: `transpose(R)*v` is v in the body's frame",
-  [TURN_SCALED] = "vectors that it turns are scaled: `2*(R*v)`; a turn by another angle is `turn(axis, angle)`",
-  [TURN_BEHIND] = "`R*v` takes v from the body's frame to space, `transpose(R)*v` from space to the body's frame",
-  [TURN_PLANE] = "rotations turn vectors of 3 components: `R*(x, y, 0)`",
-  [TURN_PRIME] = "`omega(R)` is its angular velocity, in its own frame; `R.w'` the rate of one of its four numbers",
-  [TURN_UNIT] = "angles have units: `turn((0, 0, 1), 90 [deg])`",
-  [TURN_EQUATION] = "constrain directions: `constraint hinge: R*(0, 0, 1) = S*(0, 0, 1)`",
-  [TURN_VALUE] = "make it of parameters: `let R0 = turn((0, 0, 1), a)`",
-  [TURN_NUMBER] = "its four numbers are `.w`, `.x`, `.y`, `.z`; `R*v` turns a vector, `omega(R)` is its angular velocity",
-};
-
-static const char *const refusals[] = {
-  [TURN_SUM] = "`%s` is a rotation, and rotations are not added",
-  [TURN_NEGATION] = "`%s` is a rotation, and has no sign",
-  [TURN_DIVISOR] = "`%s` is a rotation, and division by a rotation is not defined",
-  [TURN_SCALED] = "`%s` is a rotation, and is not multiplied by a number",
-  [TURN_BEHIND] = "`%s` is a rotation, and stands behind the vector",
-  [TURN_PLANE] = "`%s` is a vector of 2 components, and a rotation stands before it",
-  [TURN_PRIME] = "`%s` is a rotation, and its rate is an angular velocity",
-  [TURN_UNIT] = "`%s` is a rotation, and has no unit",
-  [TURN_EQUATION] = "`%s` is a rotation: two that are equal may differ in the sign of all four numbers",
-  [TURN_VALUE] = "`%s` is a rotation, and cannot be the value of a parameter",
-  [TURN_NUMBER] = "`%s` is a rotation, neither a number nor a vector",
+static const struct {
+  const char *refusal, *way;
+} mistakes[] = {
+  [TURN_SUM] = {"rotations are not added", "products of rotations are rotations, sums are none: `R*S` turns by S, then by R"},
+  [TURN_INVERSE] = {"it has no sign, and nothing is divided by it", "the inverse rotation is `transpose(R)`: `transpose(R)*v` is v in the body's frame"},
+  [TURN_SCALED] = {"it is not multiplied by a number", "vectors that it turns are scaled: `2*(R*v)`; a turn by another angle is `turn(axis, angle)`"},
+  [TURN_BEHIND] = {"it stands before the vector that it turns", "`R*v` takes v from the body's frame to space, `transpose(R)*v` from space to the body's frame"},
+  [TURN_PRIME] = {"its rate is an angular velocity", "`omega(R)` is its angular velocity, in its own frame; `R.w'` the rate of one of its four numbers"},
+  [TURN_EQUATION] = {"two that are equal may differ in the sign of all four numbers", "constrain directions: `constraint hinge: R*(0, 0, 1) = S*(0, 0, 1)`"},
+  [TURN_VALUE] = {"it cannot be the value of a parameter", "make it of parameters: `let R0 = turn((0, 0, 1), a)`"},
+  [TURN_NUMBER] = {"it is neither a number nor a vector", "its four numbers are `.w`, `.x`, `.y`, `.z`; `R*v` turns a vector of 3 components, `omega(R)` is its angular velocity"},
 };
 
 Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why) {
-  diag_error(b->diags, span, refusals[why], text);
-  diag_help(b->diags, "%s", out_of[why]);
+  diag_error(b->diags, span, "`%s` is a rotation: %s", text, mistakes[why].refusal);
+  diag_help(b->diags, "%s", mistakes[why].way);
   return FAILED;
 }
 

@@ -1,11 +1,11 @@
 /* Symmetries: `symmetry spin(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)`, a transformation of coordinates and time that is
  * the identity at s = 0. The model keeps its generator only, the first-order part in s, which is all that Noether's theorem needs.
  * In outputs, the symmetry's name means its charge. */
-#include <float.h>
 #include <math.h>
 
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
+#include "sym/eval.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
@@ -114,41 +114,23 @@ static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span
   return 0;
 }
 
-/* Difference quotient (to(h) - to(0))/h at a state; NaN where `to` has no value. */
-static long double quotient(const Mapping *p, Expr to, long double h, long double at_zero, long double *symbols) {
-  SymId s = p->of->parameter;
-  long double bound;
-  symbols[s] = h;
-  long double value = value_with_bound(p->b->g, to, symbols, NULL, &bound);
-  symbols[s] = 0;
-  return (value - at_zero) / h;
-}
-
-/* 1 if difference quotients at random states converge to the rate from both sides, so that the map is differentiable at s = 0.
- * Fails for |s| (no convergence), s^(3/2) (no value below 0) and sqrt(s) (infinite rate). */
+/* 1 if no corner, as |s| has, depends on s, and the rate has a value at one of some random states: sqrt(s) has none at s = 0. */
 static int has_rate(const Mapping *p, Expr to, Expr rate) {
-  enum { STATES = 6, TRIES = 64 }; /* some maps, like x + s*sqrt(k), have no value at many random states */
-  volatile long double one = 1; /* valgrind computes long doubles as doubles */
-  const long double epsilon = one + LDBL_EPSILON > one ? LDBL_EPSILON : DBL_EPSILON;
-  const long double coarse = 1e-3L, fine = sqrtl(epsilon), rounding = 100 * epsilon / fine;
+  enum { TRIES = 64 }; /* some maps, like x + s*sqrt(k), have no value at many random states */
   ExprGraph *g = p->b->g;
-  long double *symbols = ARENA_ARRAY(p->b->arena, long double, expr_symbol_count(g) + 1), bound;
-  int seen = 0;
-  for (uint32_t seed = 1; seed <= TRIES && seen < STATES; seed++) {
-    sample_state(g, seed, symbols);
-    symbols[p->of->parameter] = 0;
-    long double at_zero = value_with_bound(g, to, symbols, NULL, &bound), slope = value_with_bound(g, rate, symbols, NULL, &bound);
-    if (!isfinite(at_zero)) continue; /* the map has no value at this state */
-    if (!isfinite(slope)) return 0;
-    seen++;
-    for (int side = -1; side <= 1; side += 2) {
-      long double far = fabsl(quotient(p, to, side * coarse, at_zero, symbols) - slope);
-      long double near = fabsl(quotient(p, to, side * fine, at_zero, symbols) - slope);
-      int closer = near < far / 2 || (isnan(far) && !isnan(near)), equal = near <= rounding * fmaxl(fmaxl(fabsl(slope), fabsl(at_zero)), 1);
-      if (!closer && !equal) return 0;
-    }
+  ExprList l = expr_topo(g, &to, 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    ExprOp op = expr_op(g, l.at[i]);
+    int corner = op == EX_ABS || op == EX_SIGN || op == EX_MIN || op == EX_MAX || op == EX_SELECT;
+    if (corner && expr_contains_sym(g, l.at[i], p->of->parameter)) return 0;
   }
-  return seen > 0;
+  long double *symbols = ARENA_ARRAY(p->b->arena, long double, expr_symbol_count(g) + 1), value;
+  for (uint32_t seed = 1; seed <= TRIES; seed++) {
+    sample_state(g, seed, symbols);
+    expr_eval(g, &rate, 1, symbols, &value);
+    if (isfinite(value)) return 1;
+  }
+  return 0;
 }
 
 static void report_no_rate(const Mapping *p, SymId target, Span span) {

@@ -69,31 +69,10 @@ static void put_conditions(Page *p, uint32_t k) {
   if (all.n) say(p, sb_text(&b));
 }
 
-/* Whether x contains a number that 64 bits do not hold. */
-static int is_rounded(ExprGraph *g, Expr x) {
-  ExprList all = expr_topo(g, &x, 1);
-  for (uint32_t i = 0; i < all.n; i++) {
-    if (expr_is_num(g, all.at[i]) && !num_is_exact(expr_number(g, all.at[i]))) return 1;
-    for (uint32_t k = 0; k < expr_pairs(g, all.at[i], EX_SUM); k++) {
-      Num c;
-      expr_pair(g, all.at[i], EX_SUM, k, &c);
-      if (!num_is_exact(c)) return 1;
-    }
-  }
-  return 0;
-}
-
-/* Changes of the coordinates, or of the sums of them that L is written with; a formula for them where numbers have too many digits. */
+/* Changes of the coordinates and of time. */
 static void deltas(Page *p, const FoundSymmetry *s) {
-  Text *t = &p->text;
-  uint32_t n = eqns_coordinates(t->e);
-  int rounded = 0;
-  for (uint32_t i = 0; i < n && s->by.lowered && expr_is_zero(t->g, s->by.tau); i++) rounded = rounded || is_rounded(t->g, s->by.xi[i]);
-  if (rounded) say(p, arena_printf(t->e->m->arena, "  delta q = M^-1 d%s/dq' with the mass matrix M: its numbers have too many digits", named(p, "", (uint32_t)(s - p->r->found.all.at), "")));
-  for (uint32_t i = 0; i < n && !rounded; i++) {
-    if (s->forms) put_delta(p, s->forms->name[i], forms_back(s->forms, t->g, s->by.eta[i]));
-    else put_delta(p, expr_symbol(t->g, eqns_coordinate(t->e, i))->name, s->by.xi[i]);
-  }
+  const Text *t = &p->text;
+  for (uint32_t i = 0; i < eqns_coordinates(t->e); i++) put_delta(p, expr_symbol(t->g, eqns_coordinate(t->e, i))->name, s->by.xi[i]);
   put_delta(p, "t", s->by.tau);
 }
 

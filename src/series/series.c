@@ -430,7 +430,6 @@ Series *series_new(const IrSystem *sys, const char **why) {
   Prog *first = prog_tidy(w.m.first), *next = prog_tidy(w.m.next);
   next = prog_reassociate(next, when_ready(&w, next));
   out->columns = (3 * sys->nq + 2 * sys->nz + (out->uses_time ? 1 : 0) + 3) / 4 * 4;
-  series_arrange(out, first, next);
   out->first = first;
   out->next = next;
   return out;

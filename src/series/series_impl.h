@@ -1,5 +1,5 @@
-/* Shared by series.c (the two programs, the linear system), series_recurrences.c (a recurrence for each operation), series_columns.c (columns of sums
- * and constants) and series_arrange.c (their order for loops). */
+/* Shared by series.c (the two programs, the linear system), series_recurrences.c (a recurrence for each operation) and series_columns.c (columns of sums
+ * and constants). */
 #ifndef LAGC_SERIES_SERIES_IMPL_H
 #define LAGC_SERIES_SERIES_IMPL_H
 
@@ -66,8 +66,5 @@ Val series_instruction(SeriesBuilder *m, const Ins *i, Slot zero, Val v, Val w, 
 
 /* Assigns columns to the sums, and places to the constants, that the stores of `next` need; stores the factors a[k], b[k] and the constants. */
 void series_columns(SeriesBuilder *m, Series *s);
-
-/* Reorders sums and constants of long programs so that loops read and write neighbours. */
-void series_arrange(const Series *s, Prog *first, Prog *next);
 
 #endif

@@ -104,11 +104,8 @@ static void split(Splitter *s, Frac u) {
     if (normal_poly_positive(n, factor)) add_power(s, factor, -(int32_t)d.at[i].exp);
     else add_unknown_sign(s, factor, -(int32_t)d.at[i].exp);
   }
-  Poly root;
-  if (poly_is_one(rest)) root = rest;
-  else if (normal_positive_root(n, rest, &root)) queue_power(s, frac_poly(root), num_int(2));
-  else if (normal_poly_positive(n, rest)) add_power(s, rest, 1);
-  else add_unknown_sign(s, rest, 1);
+  if (!poly_is_one(rest) && normal_poly_positive(n, rest)) add_power(s, rest, 1);
+  else if (!poly_is_one(rest)) add_unknown_sign(s, rest, 1);
   add_odd_powers(s, num_sign(content));
 }
 

@@ -70,9 +70,6 @@ void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e);
  * the factors of r. Returns 1 when r changed. */
 int expr_rewrite_quotient(ExprGraph *g, Product *r);
 
-/* cosh(u) of the sum 1 - tanh(u)^2 = 1/cosh(u)^2, which rounds to 0 where u > 19; otherwise 0. */
-Expr expr_cosh_of_tanh(ExprGraph *g, Expr sum);
-
 /* Index of the sum T in exp(u)*T or T/S that must be distributed, so that each exp(u) meets the sums with exp(u) below it;
  * r->p.n if there is none. */
 uint32_t expr_sum_to_distribute(const ExprGraph *g, const Product *r);
@@ -81,6 +78,9 @@ uint32_t expr_sum_to_distribute(const ExprGraph *g, const Product *r);
 Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
 
 ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs);
+
+/* Node e with its arguments mapped through m; an argument that is not in m stays. */
+Expr expr_with_mapped_args(ExprGraph *g, const ExprMap *m, Expr e);
 
 /* expr_topo that stops at the nodes of the map `leaves` (NULL: none). */
 ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves);

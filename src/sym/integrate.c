@@ -2,8 +2,7 @@
 #include "sym/integrate.h"
 
 #include "sym/diff.h"
-#include "sym/prove.h"
-#include "sym/simplify.h"
+#include "sym/normal_form.h"
 
 enum { MAX_TERMS = 4000, MAX_WORK = 400000, MAX_HARMONICS = 256, MAX_POWER = 64 };
 
@@ -198,112 +197,13 @@ Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without) {
   return t.result;
 }
 
-/* --- the chain rule read backwards --- */
-
-/* Antiderivative by u of the power u^power, u = f, or of a function f = f(u); 0 if f is not in the list. */
-static Expr outer_integral(ExprGraph *g, Expr f, Num power) {
-  Expr u = f, next;
-  if (!num_is_one(power)) {
-    if (num_equal(power, num_int(-1))) return expr_fn(g, EX_LOG, expr_fn(g, EX_ABS, u));
-    Num more = num_add(power, num_int(1));
-    next = expr_pow_num(g, u, more);
-    return expr_scale(g, num_div(num_int(1), more), next);
-  }
-  u = expr_nargs(g, f) == 1 ? expr_arg(g, f, 0) : 0;
-  switch (expr_op(g, f)) {
-    case EX_EXP: return f;
-    case EX_SIN: return expr_neg(g, expr_fn(g, EX_COS, u));
-    case EX_COS: return expr_fn(g, EX_SIN, u);
-    case EX_SINH: return expr_fn(g, EX_COSH, u);
-    case EX_COSH: return expr_fn(g, EX_SINH, u);
-    default: return 0;
-  }
-}
-
-/* Integral of a term f(u) u' c, with c free of x and f a power or a listed function; 0 for other terms. */
-static Expr substituted(ExprGraph *g, Expr term, SymId x) {
-  for (uint32_t i = 0; i < expr_pairs(g, term, EX_PROD); i++) {
-    Num power;
-    Expr f = expr_pair(g, term, EX_PROD, i, &power), whole = expr_pow_num(g, f, power);
-    int function = num_is_one(power) && expr_op(g, f) != EX_SUM && expr_nargs(g, f) == 1;
-    Expr u = function ? expr_arg(g, f, 0) : f, slope = expr_diff(g, u, x);
-    Expr outer = expr_is_zero(g, slope) ? 0 : outer_integral(g, f, power);
-    if (!outer) continue;
-    Expr rest = expr_div(g, term, whole), c = simplify(g, expr_div(g, rest, slope));
-    if (!expr_contains_sym(g, c, x)) return expr_mul(g, c, outer);
-  }
-  return 0;
-}
-
-/* Integral of the terms of e that have the form f(u) u' c. */
-static Expr by_substitution(ExprGraph *g, Expr e, SymId x) {
-  Expr sum = expr_int(g, 0);
-  for (uint32_t i = 0; i < expr_pairs(g, e, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(g, e, EX_SUM, i, &c), part = substituted(g, term, x);
-    if (part) sum = expr_add(g, sum, expr_scale(g, c, part));
-  }
-  return sum;
-}
-
 /* --- potentials --- */
 
-/* Potential coordinate by coordinate: adds to F the integral of a_i - dF/dq_i by q_i. */
-static Expr by_coordinates(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
+Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
   Expr F = expr_int(g, 0);
   for (uint32_t i = 0; i < n; i++) {
     Expr done = expr_diff(g, F, q[i]), left = expr_sub(g, a[i], done);
-    if (expr_is_zero(g, left)) continue;
-    Expr part = expr_integrate(g, left, q[i], 0), more = expr_diff(g, part, q[i]), rest = simplify(g, expr_sub(g, left, more));
-    if (!expr_is_zero(g, rest)) part = expr_add(g, part, by_substitution(g, rest, q[i]));
-    F = expr_add(g, F, part);
+    if (!expr_is_zero(g, left)) F = expr_add(g, F, expr_integrate(g, left, q[i], 0));
   }
   return F;
-}
-
-static void homotopy_work(Arena *scratch, void *data) {
-  Task *t = data;
-  Normal *n = normal_new(t->g, scratch, (NormalLimits){.max_terms = MAX_TERMS, .max_work = MAX_WORK});
-  Frac f;
-  if (normal_run(n, &t->e, 1, &f) != POLY_OK) return;
-  f = frac_cancel(n->field, f);
-  Expr divisor = divisor_expr(n, f.den), sum = expr_int(t->g, 0);
-  if (n->ring->status != POLY_OK || has_x(t, divisor)) return;
-  for (uint32_t i = 0; i < f.num.n; i++) {
-    IntegrandTerm p;
-    if (!product_of(n, t, f.num.at[i], divisor, &p) || p.power == -1 || has_x(t, p.growth) || p.harmonics.n != 1) return;
-    Expr part = expr_scale(t->g, num_ratio(1, p.power + 1), p.factor);
-    sum = expr_add(t->g, sum, part);
-  }
-  t->result = sum;
-}
-
-/* int_0^1 q.a(s q) ds, where q.a(s q) is a sum of powers of s; 0 if it is not. */
-static Expr by_homotopy(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
-  Arena *arena = expr_arena(g);
-  SymId s = expr_declare(g, SYM_LOCAL, 0, "s", SIGN_POSITIVE);
-  Expr scale = expr_symbol(g, s)->node, *with = ARENA_ARRAY(arena, Expr, n + 1), *terms = ARENA_ARRAY(arena, Expr, n + 1);
-  for (uint32_t i = 0; i < n; i++) with[i] = expr_mul(g, scale, expr_symbol(g, q[i])->node);
-  for (uint32_t i = 0; i < n; i++) {
-    Expr along = expr_replace(g, a[i], q, with, n);
-    terms[i] = expr_mul(g, along, expr_symbol(g, q[i])->node);
-  }
-  Task t = {.g = g, .e = expr_add_n(g, terms, n), .x = s};
-  normal_with_scratch(g, homotopy_work, &t);
-  return t.result;
-}
-
-static int is_potential(ExprGraph *g, Expr F, const Expr *a, const SymId *q, uint32_t n) {
-  for (uint32_t i = 0; i < n; i++) {
-    Expr d = expr_diff(g, F, q[i]), left = expr_sub(g, a[i], d);
-    if (prove_zero(g, left, NULL) != PROVED_ZERO) return 0;
-  }
-  return 1;
-}
-
-Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
-  Expr F = by_coordinates(g, a, q, n);
-  if (is_potential(g, F, a, q, n)) return F;
-  Expr other = by_homotopy(g, a, q, n);
-  return other && is_potential(g, other, a, q, n) ? other : F;
 }

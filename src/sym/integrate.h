@@ -12,9 +12,8 @@
  * is assumed nonzero. Callers verify the result by differentiating it. Definitions are expanded. */
 Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without);
 
-/* Potential F with dF/dq_i = a_i for all i: integrated coordinate by coordinate with expr_integrate, terms f(u) du/dq_i by
- * substitution; or by the homotopy formula F = int_0^1 q.a(s q) ds where q.a is a sum of terms homogeneous in q, none of degree 0.
- * If neither succeeds, F covers some of the terms: the caller judges the remainder a_i - dF/dq_i. */
+/* Potential F with dF/dq_i = a_i for all i, integrated coordinate by coordinate with expr_integrate. F may cover some of the terms only:
+ * the caller judges the remainder a_i - dF/dq_i. */
 Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n);
 
 #endif

@@ -36,7 +36,6 @@ typedef struct {
 /* Candidate: a node that may jump where `side` is 0. */
 typedef struct {
   Expr node, side;
-  int angle;     /* jumps where cos(side) is 0 instead: tan */
   uint64_t symbols_hash; /* hash of the symbols in side: sources that jump at one place have equal hashes */
 } Source;
 
@@ -51,9 +50,9 @@ static uint64_t hash_symbols(const Search *s, Expr side) {
   return hash;
 }
 
-static void add(const Search *s, Sources *to, Expr node, Expr side, int angle) {
+static void add(const Search *s, Sources *to, Expr node, Expr side) {
   if (!(expr_kinds(s->g, side) & varying_kinds) || to->n == MAX_CANDIDATES) return;
-  vec_push(s->arena, to, ((Source){node, side, angle, hash_symbols(s, side)}));
+  vec_push(s->arena, to, ((Source){node, side, hash_symbols(s, side)}));
 }
 
 /* Whether op can turn a pole into a finite jump: atan(1/x), x/abs(x). */
@@ -67,7 +66,7 @@ static void add_divisors(const Search *s, Sources *to, Expr product) {
     if (num_sign(power) >= 0) continue;
     if (expr_op(g, base) == EX_ABS) base = expr_arg(g, base, 0);
     ExprSign sign = expr_sign(g, base);
-    if (sign == SIGN_UNKNOWN) add(s, to, base, base, 0);
+    if (sign == SIGN_UNKNOWN) add(s, to, base, base);
   }
 }
 
@@ -82,9 +81,11 @@ static Sources sources_of(const Search *s, Expr x) {
     ExprOp op = expr_op(g, e);
     if (op == EX_LT || op == EX_LE) {
       Expr a = expr_arg(g, e, 0), b = expr_arg(g, e, 1);
-      add(s, &all, e, expr_sub(g, b, a), 0);
-    } else if (op == EX_SIGN || op == EX_ATAN2 || op == EX_TAN) {
-      add(s, &all, e, expr_arg(g, e, 0), op == EX_TAN);
+      add(s, &all, e, expr_sub(g, b, a));
+    } else if (op == EX_SIGN || op == EX_ATAN2) {
+      add(s, &all, e, expr_arg(g, e, 0));
+    } else if (op == EX_TAN) {
+      add(s, &all, e, expr_fn(g, EX_COS, expr_arg(g, e, 0)));
     } else if (op == EX_PROD && poles) {
       add_divisors(s, &all, e);
     }
@@ -167,20 +168,12 @@ static int set_state(Search *s, Real where) {
   return 1;
 }
 
-/* Switching function minus its threshold, at a place of the line; NaN where a declared sign is violated. */
-static Real switching_value(Search *s, EvalTape *side, Real level, Real where) {
+/* Switching function at a place of the line; NaN where a declared sign is violated. */
+static Real switching_value(Search *s, EvalTape *side, Real where) {
   Real value;
   if (!set_state(s, where)) return NAN;
   eval_run(side, s->at, &value);
-  return value - level;
-}
-
-/* Threshold of the switching function: 0, or for an angle an odd multiple of a quarter turn near the base of the line. */
-static Real threshold_of(Search *s, EvalTape *side, int angle, uint32_t seed) {
-  const Real half_turn = acosl(-1);
-  if (!angle) return 0;
-  Real u = switching_value(s, side, 0, 0);
-  return (floorl(u / half_turn) + 0.5L - (seed % 4 == 0) + (seed % 4 == 1)) * half_turn;
+  return value;
 }
 
 /* Sampling point i of the line: 0, and on both sides powers of 10 for lines from the origin, of 2 for others. */
@@ -191,18 +184,18 @@ static Real sampling_point(const Search *s, int i) {
 }
 
 /* Sign change of the switching function nearest to the base of the line, bisected to the last bit; returns 0 if there is none. */
-static int find_sign_change(Search *s, EvalTape *side, Real level, Real *where) {
+static int find_sign_change(Search *s, EvalTape *side, Real *where) {
   enum { REACH = 24, HALVINGS = 200 };
-  Real lo = 0, hi = 0, first = switching_value(s, side, level, 0), left = first, right = first;
+  Real lo = 0, hi = 0, first = switching_value(s, side, 0), left = first, right = first;
   for (int i = 1; i <= REACH && lo >= hi; i++) {
     Real before = left, after = right;
-    left = switching_value(s, side, level, sampling_point(s, -i));
-    right = switching_value(s, side, level, sampling_point(s, i));
+    left = switching_value(s, side, sampling_point(s, -i));
+    right = switching_value(s, side, sampling_point(s, i));
     if (isfinite(before) && isfinite(left) && (left > 0) != (before > 0)) lo = sampling_point(s, -i), hi = sampling_point(s, 1 - i), first = left;
     else if (isfinite(after) && isfinite(right) && (right > 0) != (after > 0)) lo = sampling_point(s, i - 1), hi = sampling_point(s, i), first = after;
   }
   for (int i = 0; i < HALVINGS && lo < hi; i++) {
-    Real mid = (lo + hi) / 2, value = switching_value(s, side, level, mid);
+    Real mid = (lo + hi) / 2, value = switching_value(s, side, mid);
     if (!isfinite(value)) return 0;
     if ((value > 0) == (first > 0)) lo = mid;
     else hi = mid;
@@ -256,12 +249,11 @@ static void try_source(Search *s, const Parts *parts, const Source *from) {
   for (uint32_t seed = 1; seed <= LINES && places < PLACES; seed++) {
     Real where;
     draw_line(s, seed);
-    Real level = threshold_of(s, side, from->angle, seed);
-    if (!find_sign_change(s, side, level, &where)) continue;
+    if (!find_sign_change(s, side, &where)) continue;
     places++;
     Real by = jump_at(s, where);
     if (by == 0) continue;
-    Real h = 1e-6L * length_scale(s, where), slope = (switching_value(s, side, level, where + h) - switching_value(s, side, level, where - h)) / (2 * h);
+    Real h = 1e-6L * length_scale(s, where), slope = (switching_value(s, side, where + h) - switching_value(s, side, where - h)) / (2 * h);
     Real *symbols = ARENA_ARRAY(s->arena, Real, s->nsymbols + 1);
     sample_state(s->g, seed, symbols); /* symbols without influence on the jump */
     set_state(s, where);

@@ -10,7 +10,7 @@
 
 typedef struct {
   Expr node;                  /* cause of the jump: a comparison, a sign, ..., or a divisor */
-  Expr side;                  /* switching function: crosses its threshold at the jump */
+  Expr side;                  /* switching function: crosses 0 at the jump */
   const long double *symbols; /* values of all symbols at one such place */
   long double by;             /* height of the jump there */
   long double slope;          /* derivative of `side` along the line on which the place was found */

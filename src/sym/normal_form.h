@@ -27,7 +27,7 @@ typedef struct {
   uint32_t max_terms; /* limit for one polynomial */
   uint64_t max_work;  /* limit on products of terms */
   int shallow;        /* definitions stay opaque: each is a generator */
-  int proof;          /* logarithms, powers and roots of squares are expanded as far as signs allow; results are not for readers */
+  int proof;          /* logarithms, powers, min and max are expanded as far as signs allow; results are not for readers */
   int keep_range;     /* hyperbolic functions and exp of sums are not expanded: for forms that are evaluated */
   int residues;       /* numbers beyond 64 bits are coefficients with residues (base/num.h): for proofs that an expression is 0 */
 } NormalLimits;

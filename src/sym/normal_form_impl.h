@@ -35,9 +35,6 @@ Frac normal_opaque_log(Normal *n, Frac u);
 /* radicals.c: whether all terms of p are positive by coefficients, even powers and positive generators. */
 int normal_poly_positive(const Normal *n, Poly p);
 
-/* For proofs: square root q of p, q > 0 by normal_poly_positive; returns 0 if none is found. */
-int normal_positive_root(Normal *n, Poly p, Poly *q);
-
 /* Whether generator x is known to be positive wherever the expression is defined. */
 int normal_gen_positive(const Normal *n, GenId x);
 

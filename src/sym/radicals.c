@@ -29,12 +29,14 @@ static Frac gen_power(Normal *n, GenId x, int32_t e) {
   return frac_pow(n->field, f, e);
 }
 
+/* Whether generator x is known to be positive wherever the expression is defined. */
 int normal_gen_positive(const Normal *n, GenId x) {
   const GenInfo *info = &n->gens.at[x];
   if (info->kind == GEN_ROOT && n->ring->gens.at[x].degree % 2 == 0) return 1;
   return expr_sign(n->g, info->expr) == SIGN_POSITIVE;
 }
 
+/* Whether all terms of p are positive by coefficients, even powers and positive generators. */
 int normal_poly_positive(const Normal *n, Poly p) {
   for (uint32_t i = 0; i < p.n; i++) {
     if (num_sign(p.at[i].c) < 0) return 0;
@@ -54,59 +56,6 @@ static Frac abs_of(Normal *n, Poly p) {
   if (n->ring->status != POLY_OK) return frac_poly(p);
   GenId x = root_gen(n, square, 2, size);
   return gen_power(n, x, 1);
-}
-
-/* --- squares --- */
-
-/* Leading term in the lexicographic order of exponents, newest generator first. */
-static Term leading(const PolyRing *r, Poly p) {
-  Term best = p.at[0];
-  for (uint32_t i = 1; i < p.n; i++) {
-    const Mono *a = mono_at(r, p.at[i].mono), *b = mono_at(r, best.mono);
-    uint32_t x = a->n, y = b->n;
-    while (x && y && a->at[x - 1].gen == b->at[y - 1].gen && a->at[x - 1].exp == b->at[y - 1].exp) x--, y--;
-    GenId from_a = x ? a->at[x - 1].gen : 0, from_b = y ? b->at[y - 1].gen : 0;
-    int32_t ea = x ? a->at[x - 1].exp : 0, eb = y ? b->at[y - 1].exp : 0;
-    int above = !y ? ea > 0 : !x ? eb < 0 : from_a == from_b ? ea > eb : from_a > from_b ? ea > 0 : eb < 0;
-    if (above) best = p.at[i];
-  }
-  return best;
-}
-
-/* Square root of a polynomial, term by term: q with q^2 = p; returns 0 if there is none. */
-static int square_root(PolyRing *r, Poly p, Poly *q) {
-  enum { MAX_TERMS = 32 };
-  Term first = leading(r, p);
-  int exact;
-  Num c = num_pow(first.c, num_ratio(1, 2), &exact);
-  if (num_sign(first.c) < 0 || !exact) return 0;
-  Mono mono = *mono_at(r, first.mono);
-  MonoPow *half = ARENA_ARRAY(r->arena, MonoPow, mono.n + 1);
-  for (uint32_t i = 0; i < mono.n; i++) {
-    if (mono.at[i].exp % 2) return 0;
-    half[i] = (MonoPow){mono.at[i].gen, mono.at[i].exp / 2};
-  }
-  MonoId root = mono_of(r, half, mono.n);
-  for (uint32_t i = 0; i < mono.n; i++) half[i].exp = -half[i].exp;
-  MonoId inverse = mono_of(r, half, mono.n);
-  Num twice = num_div(num_ratio(1, 2), c);
-  *q = poly_mono(r, c, root);
-  for (int i = 0; i < MAX_TERMS && r->status == POLY_OK; i++) {
-    Poly rest = poly_sub(r, p, poly_mul(r, *q, *q));
-    if (!rest.n) return 1;
-    Term t = leading(r, rest);
-    *q = poly_add(r, *q, poly_mono(r, num_mul(t.c, twice), mono_mul(r, t.mono, inverse)));
-  }
-  return 0;
-}
-
-/* Relations between generators may hide a square, but a root that is found is valid: its square is compared with p. */
-int normal_positive_root(Normal *n, Poly p, Poly *q) {
-  enum { FEW = 40 };
-  if (!n->proof || p.n > FEW || !p.n) return 0;
-  for (uint32_t i = 0; i < p.n; i++)
-    if (mono_at(n->ring, p.at[i].mono)->reducible != GEN_NONE) return 0;
-  return square_root(n->ring, p, q) && normal_poly_positive(n, *q);
 }
 
 /* Floor division of e by k: e = k*q + rest with 0 <= rest < k. */
@@ -207,8 +156,6 @@ static Frac poly_root(Normal *n, Poly p, int32_t k) {
   if (negative && k % 2 == 1) f = frac_neg(n->field, f);
   rest = poly_mul_mono(r, rest, num_int(negative && k % 2 == 0 ? -1 : 1), left);
   if (poly_is_one(rest) || r->status != POLY_OK) return f;
-  Poly q;
-  if (k == 2 && normal_positive_root(n, rest, &q)) return frac_mul(n->field, f, frac_poly(q));
   GenId x = root_gen(n, rest, k, 0);
   Frac root = gen_power(n, x, 1);
   return frac_mul(n->field, f, root);

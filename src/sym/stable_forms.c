@@ -1,6 +1,8 @@
 /* simplify_stable: half-angle forms and differences of squares against cancellation, bottom-up, one sum at a time. */
 #include "sym/simplify.h"
 
+#include "sym/expr_impl.h"
+
 typedef struct {
   Expr e;
   Num c;
@@ -133,17 +135,9 @@ Expr simplify_stable(ExprGraph *g, Expr e) {
   ExprList nodes = expr_topo(g, &e, 1);
   ExprMap map = expr_map(expr_arena(g));
   for (uint32_t i = 0; i < nodes.n; i++) {
-    Expr x = nodes.at[i], y = x;
-    uint32_t n = expr_nargs(g, x);
-    Expr *args = ARENA_ARRAY(expr_arena(g), Expr, n + 1);
-    int changed = 0;
-    for (uint32_t k = 0; k < n; k++) {
-      args[k] = expr_map_get(&map, expr_arg(g, x, k));
-      changed |= args[k] != expr_arg(g, x, k);
-    }
-    if (changed) y = expr_rebuild(g, x, args);
-    y = stable_sum(g, y);
-    expr_map_set(&map, x, y);
+    Expr x = expr_with_mapped_args(g, &map, nodes.at[i]), y = stable_sum(g, x);
+    if (y != nodes.at[i]) expr_map_set(&map, nodes.at[i], y);
   }
-  return expr_map_get(&map, e);
+  Expr r = expr_map_get(&map, e);
+  return r ? r : e;
 }

@@ -143,6 +143,11 @@ static int mapped_args(const ExprGraph *g, const ExprMap *m, Expr e, Expr *args)
   return changed;
 }
 
+Expr expr_with_mapped_args(ExprGraph *g, const ExprMap *m, Expr e) {
+  Expr *args = ARENA_ARRAY(g->arena, Expr, expr_nargs(g, e) + 1);
+  return mapped_args(g, m, e, args) ? expr_rebuild(g, e, args) : e;
+}
+
 /* out[i] = roots[i] with the nodes in the map replaced; rewritten nodes are added to the map. */
 static void rewrite(ExprGraph *g, const Expr *roots, uint32_t n, ExprMap *m, const char *suffix, Expr *out) {
   ExprList l = expr_topo(g, roots, n);
@@ -204,15 +209,9 @@ Expr expr_expand_defs(ExprGraph *g, Expr e) {
   ExprList l = expr_topo(g, &e, 1);
   ExprMap m = expr_map(g->arena);
   for (uint32_t i = 0; i < l.n; i++) {
-    Expr x = l.at[i];
-    Expr *args = ARENA_ARRAY(g->arena, Expr, expr_nargs(g, x) + 1);
-    int changed = mapped_args(g, &m, x, args);
-    if (expr_op(g, x) == EX_DEF) {
-      expr_map_set(&m, x, args[0]);
-    } else if (changed) {
-      Expr y = expr_rebuild(g, x, args);
-      expr_map_set(&m, x, y);
-    }
+    Expr x = l.at[i], body = expr_op(g, x) == EX_DEF ? expr_arg(g, x, 0) : 0, known = body ? expr_map_get(&m, body) : 0;
+    Expr y = known ? known : body ? body : expr_with_mapped_args(g, &m, x);
+    if (y != x) expr_map_set(&m, x, y);
   }
   Expr r = expr_map_get(&m, e);
   return r ? r : e;

@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "base/tolerance.h"
-#include "symmetry/search_frame.h"
+#include "symmetry/determining_equations.h"
 #include "mech/constrain.h"
 #include "mech/states.h"
 #include "sym/diff.h"
@@ -68,7 +68,6 @@ Ansatz *ansatz_new(Arena *a, const Eqns *e) {
   add_held(s, a);
   s->shown = 1 + s->xi.n;
   s->columns = s->shown + s->gauge.n;
-  s->forms = ansatz_is_restricted(s) ? NULL : forms_new(e->m->arena, e); /* found symmetries keep them */
   return s;
 }
 
@@ -79,11 +78,9 @@ struct RowSource {
   Arena *scratch;
   EvalTape *tape;        /* L, dL/dt, dL/dq, p; then A and r of the constraints */
   StateSolver *solver;   /* or NULL */
-  const NoetherFrame *frame; /* or NULL */
   long double *symbols, *kept, *out;
   long double *phi, *rate; /* [n + 1] 1, q and their derivatives */
   long double *part;     /* [2*columns] scratch */
-  long double *point;    /* [2*n] scratch */
   uint64_t random;
   uint32_t turn;         /* number of rows at times so far; constraints take turns in them */
   uint32_t filled;       /* rows so far; constraints take turns in them */
@@ -120,20 +117,8 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
   r->phi = ARENA_ARRAY(scratch, long double, s->n + 1);
   r->rate = ARENA_ARRAY(scratch, long double, s->n + 1);
   r->part = ARENA_ARRAY(scratch, long double, 2 * (size_t)s->columns);
-  r->point = ARENA_ARRAY(scratch, long double, 2 * (size_t)s->n + 1);
   memcpy(r->symbols, parameters, s->symbols * sizeof *parameters);
-  r->frame = frame_new(s, scratch, parameters);
   return r;
-}
-
-const NoetherFrame *rows_frame(const RowSource *r) { return r->frame; }
-
-/* Converts drawn values, which are y (or y', without shift), to the model's coordinates. */
-static void from_frame(RowSource *r, const SymId *symbol, const long double *shift) {
-  uint32_t n = r->of->n;
-  for (uint32_t i = 0; i < n; i++) r->point[i] = r->symbols[symbol[i]] - (shift ? shift[i] : 0);
-  frame_vector_back(r->frame, r->point, r->point + n);
-  for (uint32_t i = 0; i < n; i++) r->symbols[symbol[i]] = r->point[i];
 }
 
 /* Draws new values of all symbols but parameters, coordinates `spread` times as large. Times are further apart, so that functions of time are told
@@ -146,8 +131,6 @@ static void draw(RowSource *r, long double spread) {
     long double value = next_value(r) * (x->kind == SYM_TIME ? 4 : x->kind == SYM_COORD ? spread : 1);
     r->symbols[s] = x->sign == SIGN_POSITIVE || x->sign == SIGN_NONNEGATIVE ? fabsl(value) : value;
   }
-  if (r->frame) from_frame(r, r->of->q, r->frame->shift);
-  if (r->frame) from_frame(r, r->of->v, NULL);
 }
 
 /* Sum of |dL/dq_i| at the state. */
@@ -178,7 +161,7 @@ static void set_velocities(RowSource *r, const long double *v, long double facto
   for (uint32_t i = 0; i < r->of->n; i++) r->symbols[r->of->v[i]] = factor * v[i];
 }
 
-/* Evaluates the tape at the state in symbols; phi, rates, dL/dq and p refer to the frame. */
+/* Evaluates the tape at the state in symbols, and phi and rates. */
 static void evaluate(RowSource *r) {
   const Ansatz *s = r->of;
   eval_run(r->tape, r->symbols, r->out);
@@ -188,12 +171,6 @@ static void evaluate(RowSource *r) {
     r->phi[i + 1] = r->symbols[s->q[i]];
     r->rate[i + 1] = r->symbols[s->v[i]];
   }
-  if (!r->frame) return;
-  frame_vector(r->frame, r->phi + 1, r->point);
-  for (uint32_t i = 0; i < s->n; i++) r->phi[i + 1] += r->frame->shift[i];
-  frame_vector(r->frame, r->rate + 1, r->point);
-  frame_covector(r->frame, r->out + 2, r->point);
-  frame_covector(r->frame, r->out + 2 + s->n, r->point);
 }
 
 /* --- rows --- */
@@ -257,7 +234,6 @@ static int constraint_row(RowSource *r, uint32_t which, long double *b0) {
   memset(row, 0, s->n * sizeof *row);
   for (uint32_t x = 0; x < k->A.n; x++)
     if (k->A.at[x].row == which) row[k->A.at[x].col] += A[x];
-  if (r->frame) frame_covector(r->frame, row, r->point);
   for (uint32_t i = 0; i < s->n; i++) {
     b -= row[i] * r->rate[i + 1];
     size += fabsl(row[i] * r->rate[i + 1]);

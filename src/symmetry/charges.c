@@ -157,8 +157,8 @@ static void report_false(const Eqns *e, const Charge *c) {
 static void report_undecided(const Eqns *e, const Charge *c) {
   Diags *d = e->m->diags;
   diag_error(d, c->of->span, "the symmetry `%s` is not decided", c->name);
-  if (c->proof.unreached) {
-    diag_help(d, "it holds at all states found, but none was found on the factor %s = 0 of the constraints; leave that factor out, if it is not meant", text_of(e, c->proof.unreached));
+  if (c->proof.product) {
+    diag_also(d, c->proof.product->span, "it holds at all states found, which may leave out one factor of this constraint; write the factor that is meant as the constraint");
     return;
   }
   diag_help(d, "no F(q, t) with dF/dt = %s was found, and no proof that there is none", text_of(e, c->proof.remainder));

@@ -12,7 +12,6 @@
 
 #include "base/dense.h"
 #include "symmetry/noether.h"
-#include "symmetry/linear_forms.h"
 #include "sym/eval.h"
 
 /* Coefficient of phi_k in xi_i; k is 0 for phi = 1, j + 1 for q_j. */
@@ -34,7 +33,6 @@ typedef struct {
   uint32_t degree;         /* of the gauge function */
   int has_tau;             /* 0: L contains inputs or states besides q, and tau is not looked for: column 0 stays zero */
   int has_time;            /* L contains t */
-  const LinearForms *forms; /* or NULL: phi are 1 and these sums, not the coordinates, and xi are their changes */
   int far_times;           /* every second time is four times as far out, to separate oscillations of nearly equal rates */
   VEC(XiColumn) xi;
   VEC(GaugeColumn) gauge;  /* psi; the first is 1 */
@@ -56,10 +54,6 @@ int ansatz_is_restricted(const Ansatz *a);
 typedef enum { ROWS_EVEN, ROWS_AT_REST, ROWS_ALL, ROWS_DIFFERENCE, ROWS_CONSTRAINTS } RowKind;
 
 typedef struct RowSource RowSource;
-typedef struct NoetherFrame NoetherFrame;
-
-/* The frame in whose coordinates rows are written; NULL: the model's own. */
-const NoetherFrame *rows_frame(const RowSource *r);
 
 /* A source of random rows. parameters: values by symbol, at least [a->symbols]; only those of SYM_PARAM and SYM_CONST are used. */
 RowSource *rows_new(const Ansatz *a, Arena *scratch, const long double *parameters);
@@ -73,13 +67,13 @@ int rows_at_time(RowSource *r, RowKind kind, long double *b0, long double *b1, l
 
 /* Solutions u(t) = sum of x_a(t) space[a], x' = A x. */
 typedef struct {
-  DenseRows space;   /* orthonormal in the frame; then xi is the model's, F the frame's; one direction is F = 1 */
+  DenseRows space;   /* orthonormal; one direction is F = 1 */
   long double *A;    /* [n*n] */
   int sure;          /* 0: ranks are doubtful, or L has symmetries with arbitrary functions of time */
 } SolutionSpace;
 
-/* Solution space at given values of the parameters. like: the space at other generic values, or NULL; without a frame (which depends on
- * parameters) only the coefficients that occur in it are searched. */
+/* Solution space at given values of the parameters. like: the space at other generic values, in which only the coefficients that occur there are
+ * searched; or NULL. */
 SolutionSpace solution_space(const Ansatz *a, Arena *scratch, const long double *parameters, const SolutionSpace *like);
 
 #endif

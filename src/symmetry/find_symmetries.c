@@ -272,11 +272,7 @@ static void search_autonomous(SymmetrySearch *s) {
   search_rates(s);
   uint32_t dimension = space->space.n ? space->space.n - 1 : 0, known = s->out->all.n + s->out->unproved; /* less F = 1 */
   if (dimension > known) s->out->unproved += dimension - known;
-  int weak = space->space.gap < GAP_WEAK;
-  if (!weak && !s->out->unproved) return;
-  uint32_t more = try_solution_shifts(s->e, s->out);
-  s->out->unproved -= more < s->out->unproved ? more : s->out->unproved;
-  if (weak) s->out->note = "rates or couplings lie so close to one another that some symmetries may be missing";
+  if (space->space.gap < GAP_WEAK) s->out->note = "rates or couplings lie so close to one another that some symmetries may be missing";
 }
 
 /* Number of solutions at a choice whose rate is complex: they oscillate and grow at once. */
@@ -291,17 +287,16 @@ static void use_attempt(SymmetrySearch *s, uint32_t attempt) {
   s->spaces = ARENA_ARRAY(s->scratch, SolutionSpace, noether_choices(s));
 }
 
-enum { ATTEMPTS = 12 };
-
 /* Chooses values of the parameters, and others where some rate is complex and has no closed form: a trap that does not confine. */
 static void draw_parameters(SymmetrySearch *s) {
-  use_attempt(s, s->first);
+  enum { ATTEMPTS = 12 };
+  use_attempt(s, 0);
   if (s->ansatz->has_time || !s->e->n || !s->choices.n || !(complex_rates(s, CHOICE_FIRST) + complex_rates(s, CHOICE_SECOND))) return;
   for (uint32_t attempt = 1; attempt < ATTEMPTS; attempt++) {
-    use_attempt(s, s->first + attempt);
+    use_attempt(s, attempt);
     if (complex_rates(s, CHOICE_FIRST) + complex_rates(s, CHOICE_SECOND) == 0) return;
   }
-  use_attempt(s, s->first);
+  use_attempt(s, 0);
 }
 
 static void search_work(Arena *scratch, void *data) {
@@ -313,8 +308,7 @@ static void search_work(Arena *scratch, void *data) {
   else search_autonomous(s);
   if (s->out->searched) return;
   try_usual_symmetries(s->e, s->out);
-  try_solution_shifts(s->e, s->out);
-  s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and rotations of all coordinates of a kind together, shifts of single coordinates along solutions";
+  s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and rotations of all coordinates of a kind together";
   s->out->note = "the linear equations of the full search could not be solved reliably";
 }
 
@@ -325,26 +319,17 @@ const char *noether_note_on_impacts(const Model *m) {
   return setting ? "events change charges: the balances hold between them" : NULL;
 }
 
-static FoundSymmetries search_from(Eqns *e, uint32_t first) {
+static FoundSymmetries search(Eqns *e) {
   FoundSymmetries out = {0};
-  SymmetrySearch s = {.e = e, .g = e->g, .first = first, .out = &out};
+  SymmetrySearch s = {.e = e, .g = e->g, .out = &out};
   normal_with_scratch(e->g, search_work, &s);
   return out;
-}
-
-/* Searches again with other values of the parameters if more than a fifth of the generators are unproved: the equations at random states were
- * badly conditioned. Fewer have other reasons. */
-static FoundSymmetries search_twice(Eqns *e) {
-  FoundSymmetries out = search_from(e, 0);
-  if (4 * out.unproved <= out.all.n) return out;
-  FoundSymmetries again = search_from(e, ATTEMPTS);
-  return again.all.n > out.all.n ? again : out;
 }
 
 FoundSymmetries noether_find(Eqns *e) {
   FoundSymmetries out = {0};
   if (too_large_to_search(e)) try_usual_symmetries(e, &out);
-  else out = search_twice(e);
+  else out = search(e);
   out.galilean = has_galilean_charges(&out);
   if (!out.note) out.note = noether_note_on_impacts(e->m);
   return out;

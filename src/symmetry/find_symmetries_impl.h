@@ -19,7 +19,6 @@ typedef struct {
   ExprGraph *g;
   Arena *scratch;
   Ansatz *ansatz;
-  uint32_t first; /* first attempt at random parameter values, see symmetry/number_recognition.h */
   Choices choices;
   SolutionSpace *spaces; /* [choice]; width 0: not computed yet */
   FoundSymmetries *out;
@@ -42,9 +41,6 @@ uint32_t noether_choices(const SymmetrySearch *s);
 
 /* Coefficients of a row of the table at the first choice as expressions, c[blocks*shown]; the row may be shortened. 0: one is not recognised. */
 int noether_recognise(SymmetrySearch *s, FamilyTables *t, uint32_t row, Expr *c);
-
-/* Whether the tables at all choices, made here where missing, have one shape. */
-int noether_shapes_agree(SymmetrySearch *s, FamilyTables *t);
 
 /* The table of a family at a choice of parameter values; no rows where the equations could not be solved reliably. */
 GeneratorTable generator_table_at(SymmetrySearch *s, const Family *f, uint32_t choice);

@@ -3,7 +3,6 @@
 #define LAGC_SYMMETRY_FOUND_SYMMETRY_H
 
 #include "symmetry/noether.h"
-#include "symmetry/linear_forms.h"
 
 typedef enum {
   SYMMETRY_OTHER,
@@ -20,7 +19,6 @@ typedef struct {
   int of_all;           /* moves all coordinates along its directions alike */
   uint32_t axis;        /* momentum, boost: the direction; rotation: the axis; or AXIS_NONE */
   Generator by;
-  const LinearForms *forms; /* the coordinates of by.eta; or NULL */
   Expr rate;            /* w of sin(w t), cos(w t), s of exp(s t); 0: powers of t, or functions of a list */
   Noether is;
 } FoundSymmetry;

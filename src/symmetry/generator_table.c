@@ -6,8 +6,6 @@
 #include <math.h>
 
 #include "base/dense.h"
-#include "symmetry/search_frame.h"
-
 #include "sym/diff.h"
 
 static void multiply(uint32_t n, const long double *a, const long double *b, long double *to) {
@@ -240,51 +238,6 @@ static complex long double multiple_root(uint32_t n, const long double *c, uint3
   return x;
 }
 
-/* Multiplicity of each rate. 0: they do not add up to n. */
-static int multiplicities(Arena *a, const SolutionSpace *s, const long double *square, const Rates *r, long double *times) {
-  uint32_t n = s->space.n, all = 0, depth;
-  long double *m = ARENA_ARRAY(a, long double, (size_t)n * n + 1);
-  for (uint32_t k = 0; k < r->n; k++) {
-    memcpy(m, square, (size_t)n * n * sizeof *m);
-    for (size_t i = 0; i < n; i++) m[i * n + i] -= r->at[k];
-    clear_rounding(m, (size_t)n * n, size_of(s) * size_of(s));
-    uint32_t found = generalised_kernel(a, n, m, TIME_BLOCKS_MOST / 2, &depth).n;
-    times[k] = found;
-    all += found;
-  }
-  return all == n;
-}
-
-/* Refines rates, as multiple roots are inaccurate: the traces of A^2, A^4 .. are sums of their powers, solved by Newton's method. */
-static void polish(Arena *a, const SolutionSpace *s, Rates *r) {
-  enum { TURNS = 3 };
-  uint32_t n = s->space.n, K = r->n;
-  size_t size = (size_t)n * n;
-  long double *square = ARENA_ARRAY(a, long double, size + 1), *power = ARENA_ARRAY(a, long double, size + 1), *next = ARENA_ARRAY(a, long double, size + 1);
-  long double *times = ARENA_ARRAY(a, long double, K + 1), *trace = ARENA_ARRAY(a, long double, K + 1), *slope = ARENA_ARRAY(a, long double, (size_t)K * K + 1);
-  multiply(n, s->A, s->A, square);
-  if (r->others || !multiplicities(a, s, square, r, times)) return;
-  memcpy(power, square, size * sizeof *power);
-  for (uint32_t j = 0; j < K; j++) {
-    for (size_t i = 0; i < n; i++) trace[j] += power[i * n + i];
-    multiply(n, power, square, next);
-    memcpy(power, next, size * sizeof *power);
-  }
-  for (int turn = 0; turn < TURNS; turn++) {
-    long double *left = ARENA_ARRAY(a, long double, K + 1);
-    for (uint32_t j = 0; j < K; j++) {
-      left[j] = trace[j];
-      for (uint32_t k = 0; k < K; k++) {
-        long double before = times[k] * powl(r->at[k], j);
-        left[j] -= before * r->at[k];
-        slope[j * K + k] = (j + 1) * before;
-      }
-    }
-    if (dense_solve(a, K, slope, left, 0, NULL) < K) return;
-    for (uint32_t k = 0; k < K; k++) r->at[k] += left[k];
-  }
-}
-
 Rates space_rates(Arena *a, const SolutionSpace *s) {
   enum { MOST = 10 };
   long double c[MOST + 1];
@@ -300,7 +253,6 @@ Rates space_rates(Arena *a, const SolutionSpace *s) {
     else r.others += count;
     k += count;
   }
-  if (r.n) polish(a, &rest, &r);
   return r;
 }
 
@@ -334,8 +286,6 @@ GeneratorTable table_listed(Arena *a, const Ansatz *s, const TimeList *times, co
   DenseRows kernel = dense_kernel(a, rows + more, width, m, 1e-12L);
   GeneratorTable to = table_new(a, kernel.n, times->n, s->shown);
   for (size_t k = 0; k < kernel.n; k++) memcpy(to.at + k * times->n * s->shown, kernel.at + k * width, times->n * s->shown * sizeof *to.at);
-  long double *scratch = ARENA_ARRAY(a, long double, (size_t)s->n * s->n + s->n + 1);
-  for (size_t k = 0; k < kernel.n * times->n && rows_frame(source); k++) frame_generator_back(rows_frame(source), to.at + k * s->shown, scratch);
   *sure = kernel.gap > 1e3L;
   reduce(&to);
   return to;

@@ -1,9 +1,6 @@
 /* Turns rows of tables into generators, proves and names them, and lists those that are proved. */
 #include "symmetry/find_symmetries_impl.h"
 #include "symmetry/symmetry_names.h"
-#include "symmetry/polynomial_rows.h"
-#include "symmetry/integer_generators.h"
-#include "sym/diff.h"
 
 /* The function of time that a block of a family stands for. */
 static Expr time_function(SymmetrySearch *s, const Family *f, uint32_t block) {
@@ -75,62 +72,16 @@ static Expr *components(SymmetrySearch *s, const FamilyTables *t, const Expr *c,
   return xi;
 }
 
-/* Generator from coefficients to->c, cleared of fractions; in y where the forms have names. */
+/* Generator from coefficients to->c, cleared of fractions. */
 static void make_generator(SymmetrySearch *s, const FamilyTables *t, const CoordinateNames *names, GeneratorRow *to) {
-  const LinearForms *forms = s->ansatz->forms;
-  size_t shown = s->ansatz->shown, n = t->at[0].blocks * shown;
-  int named = forms && forms->named;
-  Expr *own = ARENA_ARRAY(s->scratch, Expr, n + 1);
-  for (size_t k = 0; k < n && forms && !named; k += shown) forms_to_coordinates(forms, s->g, to->c + k + 1);
+  size_t n = (size_t)t->at[0].blocks * s->ansatz->shown;
   clear_parameters(s, to->c, n);
   clear_fractions(s, to->c, n);
   to->ansatz = s->ansatz;
   to->kind = t->family->kind;
   to->blocks = t->at[0].blocks;
   orient_generator(names, to);
-  memcpy(own, to->c, n * sizeof *own);
-  for (size_t k = 0; k < n && named; k += shown) forms_to_coordinates(forms, s->g, own + k + 1);
-  to->by.xi = components(s, t, own, &to->by.tau);
-  if (named) to->by.eta = components(s, t, to->c, &to->by.tau);
-}
-
-/* Generator from coefficients to->c of M xi, which are whole numbers. 0: those of xi are too long. */
-static int make_lowered(SymmetrySearch *s, const FamilyTables *t, const Num *M, const CoordinateNames *names, GeneratorRow *to) {
-  size_t n = t->at[0].blocks * s->ansatz->shown;
-  Expr *own = ARENA_ARRAY(s->scratch, Expr, n + 1);
-  to->ansatz = s->ansatz;
-  to->kind = t->family->kind;
-  to->blocks = t->at[0].blocks;
-  orient_generator(names, to);
-  memcpy(own, to->c, n * sizeof *own);
-  if (!raise_generator(s->scratch, s->ansatz, M, to->blocks, own)) return 0;
-  to->by.lowered = components(s, t, to->c, &to->by.tau);
-  to->by.xi = components(s, t, own, &to->by.tau);
-  to->c = own;
-  return 1;
-}
-
-/* Whether xi preserves lengths in the metric of the kinetic energy: M times its linear part is antisymmetric. */
-static int turns(SymmetrySearch *s, const Generator *by) {
-  enum { COORDINATES_MOST = 20 };
-  const Eqns *e = s->e;
-  ExprGraph *g = s->g;
-  size_t n = e->n;
-  Expr *W = ARENA_ARRAY(s->scratch, Expr, n * n + 1); /* M times the linear part */
-  if (!n || n > COORDINATES_MOST || !e->mass_known || !e->constant_mass || !expr_is_zero(g, by->tau)) return 0;
-  for (size_t k = 0; k < n * n; k++) W[k] = expr_int(g, 0);
-  for (uint32_t k = 0; k < e->mass.n; k++) {
-    const MassEntry *m = &e->mass.at[k];
-    for (size_t j = 0; j < n; j++) {
-      Expr one = expr_mul(g, m->e, expr_diff(g, by->xi[m->col], s->ansatz->q[j])), other = expr_mul(g, m->e, expr_diff(g, by->xi[m->row], s->ansatz->q[j]));
-      W[m->row * n + j] = expr_add(g, W[m->row * n + j], one);
-      if (m->row != m->col) W[m->col * n + j] = expr_add(g, W[m->col * n + j], other);
-    }
-  }
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j <= i; j++)
-      if (prove_zero(g, expr_add(g, W[i * n + j], W[j * n + i]), NULL) != PROVED_ZERO) return 0;
-  return 1;
+  to->by.xi = components(s, t, to->c, &to->by.tau);
 }
 
 /* Whether the verdict counts as proved. Contacts are open at random states, so that their constraints do not matter. */
@@ -138,15 +89,13 @@ static int is_proved(const SymmetrySearch *s, const Noether *is) {
   return (is->is == INVARIANT || is->is == INVARIANT_UP_TO_F) && !is->broken && (!is->by_value || s->ansatz->held.n == 0);
 }
 
-/* Lists a row with recognised coefficients (of M xi where M is given), if it is proved. */
-static int add_row(SymmetrySearch *s, const FamilyTables *t, const Num *M, Expr *c) {
+/* Lists a row with recognised coefficients, if it is proved. */
+static int add_row(SymmetrySearch *s, const FamilyTables *t, Expr *c) {
   GeneratorRow r = {.c = c};
-  CoordinateNames names = coordinate_names(s->e, s->ansatz->forms);
-  if (!M) make_generator(s, t, &names, &r);
-  else if (!make_lowered(s, t, M, &names, &r)) return 0;
-  FoundSymmetry found = {.is = noether_prove(s->e, &r.by), .by = r.by, .forms = r.by.eta ? s->ansatz->forms : NULL, .rate = t->family->rate};
+  CoordinateNames names = coordinate_names(s->e);
+  make_generator(s, t, &names, &r);
+  FoundSymmetry found = {.is = noether_prove(s->e, &r.by), .by = r.by, .rate = t->family->rate};
   if (!is_proved(s, &found.is)) return 0;
-  r.turns = turns(s, &r.by);
   name_symmetry(&names, &r, &found);
   vec_push(s->e->m->arena, &s->out->all, found);
   return 1;
@@ -161,27 +110,6 @@ static int add_independent(DenseRows *listed, const long double *row) {
   return 1;
 }
 
-/* Lists rows whose M xi are short whole numbers. */
-static void add_whole(SymmetrySearch *s, FamilyTables *t, DenseRows *listed) {
-  Arena *a = s->scratch;
-  const Num *M = exact_mass(a, s->ansatz);
-  if (!M || t->family->kind == TIME_LISTED || !noether_shapes_agree(s, t)) return;
-  DenseRows space = polynomial_common_rows(a, &s->choices, t->at, noether_choices(s));
-  Expr **c = ARENA_ARRAY(a, Expr *, space.n + 1);
-  long double **value = ARENA_ARRAY(a, long double *, space.n + 1);
-  uint32_t count = integer_generators(a, s->ansatz, M, &space, c, value);
-  for (uint32_t k = 0; k < count && listed->n < t->at[0].rows; k++)
-    if (add_independent(listed, value[k]) && !add_row(s, t, M, c[k])) listed->n--;
-}
-
-/* Lists rows that are polynomials of parameters and independent of the listed ones. */
-static void add_parametric(SymmetrySearch *s, FamilyTables *t, DenseRows *listed) {
-  if (t->family->kind == TIME_LISTED || !noether_shapes_agree(s, t)) return;
-  PolynomialRows rows = polynomial_rows(s->scratch, &s->choices, t->at, noether_choices(s));
-  for (uint32_t k = 0; k < rows.n && listed->n < t->at[0].rows; k++)
-    if (add_independent(listed, rows.at[k].value) && !add_row(s, t, NULL, rows.at[k].c)) listed->n--;
-}
-
 void noether_add_family(SymmetrySearch *s, const Family *f) {
   FamilyTables t = {.family = f, .at = ARENA_ARRAY(s->scratch, GeneratorTable, noether_choices(s))};
   for (uint32_t i = 0; i < CHOICE_MOVED; i++) t.at[i] = generator_table_at(s, f, i);
@@ -191,13 +119,11 @@ void noether_add_family(SymmetrySearch *s, const Family *f) {
     s->out->unproved += rows;
     return;
   }
-  add_whole(s, &t, &listed);
   for (uint32_t row = 0; row < rows && listed.n < rows; row++) {
     Expr *c = ARENA_ARRAY(s->scratch, Expr, width + 1);
     const long double *values = t.at[0].at + (size_t)row * width;
     if (!noether_recognise(s, &t, row, c) || !add_independent(&listed, values)) continue;
-    if (!add_row(s, &t, NULL, c)) listed.n--;
+    if (!add_row(s, &t, c)) listed.n--;
   }
-  if (listed.n < rows) add_parametric(s, &t, &listed);
   s->out->unproved += rows - listed.n;
 }

@@ -7,8 +7,6 @@
 #include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "mech/discontinuity.h"
-#include "symmetry/linear_forms.h"
-#include "symmetry/constraint_factors.h"
 #include "symmetry/term_magnitude.h"
 #include "mech/states.h"
 #include "sym/diff.h"
@@ -28,12 +26,10 @@ typedef struct {
   Expr L;
   const Expr *p;    /* [n] */
   const Expr *xi;   /* [n] */
-  const Expr *lowered; /* [n] M xi; or NULL */
   Expr tau;
   Expr *Dxi, Dtau;  /* total time derivatives */
   int by_value;
-  const LinearForms *forms; /* or NULL: proofs use the model's own coordinates */
-  Expr unreached;   /* a factor of a constraint whose zeros no state reached: nothing is decided; 0: none */
+  const Constraint *product; /* a constraint whose states were sought, but perhaps not on each of its factors; or NULL */
 } ProofWork;
 
 static SymId velocity(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate; }
@@ -81,8 +77,6 @@ static ProofWork begin(const Eqns *e, const Generator *by) {
   }
   for (uint32_t i = 0; i < w.n; i++) w.Dxi[i] = total(&w, xi[i]);
   w.Dtau = total(&w, w.tau);
-  w.lowered = by->lowered;
-  w.forms = forms_new(a, e);
   return w;
 }
 
@@ -97,7 +91,7 @@ static Expr readable(const ProofWork *w, Expr x) {
 
 /* --- delta L --- */
 
-static Verdict is_zero(const ProofWork *w, Expr x) { return forms_prove_zero(w->forms, w->g, x); }
+static Verdict is_zero(const ProofWork *w, Expr x) { return prove_zero(w->g, x, NULL); }
 
 /* Change of x under the generator, to first order. */
 static Expr moved_by(const ProofWork *w, Expr x) {
@@ -123,24 +117,14 @@ static Expr at_rest(const ProofWork *w, Expr x) {
   return expr_replace(w->g, x, w->v, zero, w->n);
 }
 
-/* delta T = sum_i q_i' D(M xi)_i - T D tau of T = q' M q'/2. */
-static Expr delta_kinetic(const ProofWork *w, Expr T) {
-  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
-  for (uint32_t i = 0; i < w->n; i++) terms[i] = expr_mul(w->g, node(w, w->v[i]), total(w, w->lowered[i]));
-  terms[w->n] = expr_neg(w->g, expr_mul(w->g, T, w->Dtau));
-  return shorten(w, expr_add_n(w->g, terms, w->n + 1));
-}
-
 /* delta L without the terms of L that are invariant by themselves: the pairs of N bodies are judged one by one. Each remainder is in its short
  * form. */
 static Expr delta_lagrangian(const ProofWork *w) {
   ExprGraph *g = w->g;
-  Expr L = w->lowered ? at_rest(w, w->L) : w->L;
   VEC(Expr) left = {0};
-  if (w->lowered) vec_push(w->m->arena, &left, delta_kinetic(w, expr_sub(g, w->L, L)));
-  for (uint32_t i = 0; i < expr_pairs(g, L, EX_SUM); i++) {
+  for (uint32_t i = 0; i < expr_pairs(g, w->L, EX_SUM); i++) {
     Num c;
-    Expr term = expr_pair(g, L, EX_SUM, i, &c), change = delta(w, term);
+    Expr term = expr_pair(g, w->L, EX_SUM, i, &c), change = delta(w, term);
     if (is_zero(w, change) == PROVED_ZERO) continue;
     change = expr_scale(g, c, shorten(w, change));
     vec_push(w->m->arena, &left, change);
@@ -193,25 +177,28 @@ static int vanishes_by_value(const ProofWork *w, Expr x) {
   return seen >= STATES;
 }
 
-/* The same on each factor of constraints that are products; a factor on which no state is found leaves the verdict open. */
-static int vanishes_on_parts(ProofWork *w, Expr x) {
-  enum { STATES = 6, SEEDS = 64 };
-  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
-  ConstraintFactors *parts = constraint_factors_new(w->e);
-  StateSolver *solver = states_new(w->e);
-  for (uint32_t k = 0; k < constraint_factors_count(parts); k++) {
-    uint32_t seen = 0;
-    for (uint32_t seed = 1; seed <= SEEDS && seen < STATES; seed++) {
-      sample_state(w->g, seed, symbols);
-      spread(w, seed, symbols);
-      if (!constraint_factors_solve(parts, k, symbols) || !states_complete(solver, symbols) || !constraint_factors_is_zero(parts, k, symbols)) continue;
-      int small = is_small(w, x, symbols);
-      if (!small) return 0;
-      seen += small > 0;
+/* Whether base^power is a factor that contains coordinates and may be 0. */
+static int may_vanish(const ProofWork *w, Expr base, Num power) {
+  ExprSign sign = expr_sign(w->g, base);
+  return num_sign(power) > 0 && sign != SIGN_POSITIVE && sign != SIGN_NEGATIVE && (expr_kinds(w->g, base) & 1u << SYM_COORD);
+}
+
+/* The first holonomic constraint, contacts left out, that is a product of factors two of which may be 0: random states may miss one of these
+ * parts. NULL: there is none. */
+static const Constraint *constraint_with_factors(const ProofWork *w) {
+  const Constraints *k = &w->e->constraints;
+  for (uint32_t i = 0; i < k->nholonomic; i++) {
+    Num c, power;
+    Expr product = expr_pair(w->g, k->c[i], EX_SUM, 0, &c);
+    uint32_t count = 0;
+    if (contact_of_constraint(w->m, k->of[i]) || expr_pairs(w->g, k->c[i], EX_SUM) > 1) continue;
+    for (uint32_t f = 0; f < expr_pairs(w->g, product, EX_PROD); f++) {
+      Expr base = expr_pair(w->g, product, EX_PROD, f, &power);
+      count += (uint32_t)may_vanish(w, base, power);
     }
-    if (seen < STATES) w->unreached = constraint_factors_at(parts, k);
+    if (count > 1) return k->of[i];
   }
-  return 1;
+  return NULL;
 }
 
 /* Whether some constraint always holds, which those of contacts do not. */
@@ -220,7 +207,8 @@ static int is_constrained(const ProofWork *w) { return w->e->constraints.n > w->
 /* Whether x is zero where the constraints hold, those of contacts excepted. */
 static Verdict zero_on_constraints(ProofWork *w, Expr x) {
   Verdict v = is_zero(w, x);
-  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x) || !vanishes_on_parts(w, x)) return v;
+  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x)) return v;
+  w->product = constraint_with_factors(w);
   w->by_value = 1;
   return PROVED_ZERO;
 }
@@ -317,57 +305,13 @@ static void judge(ProofWork *w, Noether *to) {
 
 /* --- the charge and its balance --- */
 
-static Expr p_along_xi(const ProofWork *w) {
-  Expr *v = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
-  if (!w->lowered) return dot(w, w->p, w->xi, w->n);
-  for (uint32_t i = 0; i < w->n; i++) v[i] = node(w, w->v[i]);
-  return dot(w, v, w->lowered, w->n);
-}
-
 /* p.xi - E tau - F. */
-static Expr charge_of(const ProofWork *w, Expr F, Expr energy) {
+static Expr charge_of(const ProofWork *w, Expr F) {
   ExprGraph *g = w->g;
-  Expr px = p_along_xi(w), minus_F = expr_neg(g, F), et = expr_mul(g, energy, w->tau), minus_et = expr_neg(g, et);
+  Expr px = dot(w, w->p, w->xi, w->n), minus_F = expr_neg(g, F), et = expr_mul(g, w->e->energy, w->tau), minus_et = expr_neg(g, et);
   Expr front = expr_add(g, px, minus_F);
   front = shorten(w, front);
   return expr_add(g, front, minus_et);
-}
-
-/* --- in the coordinates y of symmetry/linear_forms.h --- */
-
-/* The work in coordinates y, written with the symbols of q. */
-static ProofWork begin_in_forms(const ProofWork *w, const Expr *eta) {
-  ProofWork y = *w;
-  y.L = w->forms->L;
-  y.p = w->forms->p;
-  y.xi = eta;
-  y.Dxi = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
-  for (uint32_t i = 0; i < w->n; i++) y.Dxi[i] = total(&y, eta[i]);
-  y.lowered = NULL;
-  y.forms = NULL;
-  return y;
-}
-
-/* The energy: kinetic part from y', potential as it was written (see mech/eqns.c). */
-static Expr energy_in_forms(const ProofWork *w, const ProofWork *y) {
-  ExprGraph *g = w->g;
-  Expr *v = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
-  for (uint32_t i = 0; i < w->n; i++) v[i] = node(w, w->v[i]);
-  Expr potential = at_rest(y, y->L), moving = expr_sub(g, y->L, potential), pv = dot(w, y->p, v, w->n);
-  Expr kinetic = forms_back(w->forms, g, shorten(w, expr_sub(g, pv, moving)));
-  return expr_sub(g, kinetic, at_rest(w, w->L));
-}
-
-/* Verdict and charge from eta, in y. 0: not proved in this way. */
-static int judge_in_forms(ProofWork *w, const Expr *eta, Noether *to) {
-  if (!eta || !w->forms || w->e->constraints.n) return 0;
-  ProofWork y = begin_in_forms(w, eta);
-  judge(&y, to);
-  if (to->is != INVARIANT && to->is != INVARIANT_UP_TO_F) return 0;
-  Expr zero = expr_int(w->g, 0), front = charge_of(&y, to->F, zero), et = expr_mul(w->g, energy_in_forms(w, &y), w->tau);
-  to->charge = expr_sub(w->g, forms_back(w->forms, w->g, front), et);
-  to->F = forms_back(w->forms, w->g, to->F);
-  return 1;
 }
 
 /* x with contact c closed; unchanged where c is NULL. */
@@ -476,8 +420,8 @@ static void put_power(ProofWork *w, Noether *to, Expr remainder) {
   rest = states_substitute(w->e, shorten(w, rest));
   to->power = expr_add(g, rest, to->by_constraints);
   to->by_value = w->by_value;
-  to->unreached = w->unreached;
-  if (w->unreached && (to->is == INVARIANT || to->is == INVARIANT_UP_TO_F)) to->is = INVARIANCE_NOT_DECIDED;
+  to->product = w->product;
+  if (w->product && (to->is == INVARIANT || to->is == INVARIANT_UP_TO_F)) to->is = INVARIANCE_NOT_DECIDED;
 }
 
 int noether_moves_jumps(const Eqns *e, const Generator *by) {
@@ -489,10 +433,9 @@ int noether_moves_jumps(const Eqns *e, const Generator *by) {
 Noether noether_prove(const Eqns *e, const Generator *by) {
   ProofWork w = begin(e, by);
   Noether out;
-  int in_forms = judge_in_forms(&w, by->eta, &out);
-  if (!in_forms) judge(&w, &out);
+  judge(&w, &out);
   put_power(&w, &out, out.remainder);
-  if (!in_forms) out.charge = charge_of(&w, out.F, e->energy);
+  out.charge = charge_of(&w, out.F);
   out.scale = scale_of(&w, out.F);
   out.jumps = discontinuities_of(e, out.charge).n > 0 || moves_jumps(&w);
   return out;

@@ -16,9 +16,6 @@
 typedef struct {
   const Expr *xi; /* [eqns_coordinates] in q, t and parameters; 0: nothing */
   Expr tau;       /* 0: t stays */
-  const Expr *eta; /* [eqns_coordinates] the same of the sums of symmetry/linear_forms.h, for which the symbols of q stand, where these have names: proofs
-                    * and charges are short then. NULL: not given */
-  const Expr *lowered; /* [eqns_coordinates] M xi, where M is made of numbers and p = M q', which keeps charges short; or NULL */
 } Generator;
 
 typedef enum {
@@ -31,7 +28,7 @@ typedef enum {
 typedef struct {
   Invariance is;
   int by_value;      /* zero on the constraints is seen at random states that obey them, and not proved */
-  Expr unreached;    /* or 0: a factor of a constraint on whose zeros no state was found; then nothing is decided */
+  const Constraint *product; /* or NULL: a constraint that is a product; random states may miss the zeros of a factor, and nothing is decided */
   Expr F;            /* gauge function; the number 0 where none is needed; where L is not invariant, an F that shortens the remainder */
   Expr over_time;    /* or 0: delta L - DF where it depends on t alone; F then needs its integral, which is not formed: the charge omits it, the
                       * power contains this term */
@@ -46,9 +43,6 @@ typedef struct {
   int by_formulas; /* the power holds only while inputs follow their formulas */
   int power_unknown; /* the generator moves t, and L contains an input of unknown rate: power is not dQ/dt */
 } Noether;
-
-
-
 
 /* Verdict, charge and balance of a generator. Needs a Lagrangian. */
 Noether noether_prove(const Eqns *e, const Generator *by);

@@ -58,18 +58,11 @@ NoetherReport *noether_report(Eqns *e) {
   return r;
 }
 
-/* Whether two charges are equal; in sums of coordinates they may be written differently. */
-static int same_charge(const NoetherReport *r, uint32_t k, Expr one, Expr other) {
-  ExprGraph *g = r->e->g;
-  const LinearForms *forms = r->found.all.at[k].forms;
-  return one == other || (forms && forms_prove_zero(forms, g, expr_sub(g, one, other)) == PROVED_ZERO);
-}
-
 Name noether_declared(const NoetherReport *r, uint32_t k) {
   Expr charge = r->found.all.at[k].is.charge, minus = expr_neg(r->e->g, charge);
   for (uint32_t i = 1; i < r->e->ncharges; i++) {
     Expr declared = r->e->charges[i].proof.charge;
-    if (same_charge(r, k, declared, charge) || same_charge(r, k, declared, minus)) return r->e->charges[i].name;
+    if (declared == charge || declared == minus) return r->e->charges[i].name;
   }
   return NULL;
 }

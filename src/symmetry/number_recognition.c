@@ -58,6 +58,10 @@ int recognise_rational(long double x, Num *out) {
   return fraction_of(x, 1e-12L * fmaxl(fabsl(x), 1), 1e10L, out) || fraction_of(x, LONG_TOLERANCE(1e-17L) * fabsl(x), 1e14L, out);
 }
 
+int recognise_same(const long double *value, Num *out) {
+  return fabsl(value[CHOICE_FIRST] - value[CHOICE_SECOND]) < 1e-9L * fabsl(value[CHOICE_FIRST]) && recognise_rational(value[CHOICE_FIRST], out);
+}
+
 static long double value_at(const Choices *c, uint32_t choice, uint32_t k) { return c->at[choice][c->param[k]]; }
 
 static Expr parameter(const Choices *c, uint32_t k, Num power) {
@@ -80,26 +84,25 @@ Expr recognise_ratio(const Choices *c, const long double *value) {
   return 0;
 }
 
-Expr recognise_power(const Choices *c, const long double *value, Expr rate) {
+/* A rational (ratio 0), or a result of recognise_ratio, times a power of the rate. */
+static Expr rate_multiple(const Choices *c, const long double *value, Expr rate, int ratio) {
   static const int powers[4] = {1, -1, 2, -2};
   for (int k = 0; k < 4; k++) {
-    Expr factor = expr_pow_num(c->e->g, rate, num_int(powers[k]));
-    long double one = value[CHOICE_FIRST] / choice_value(c, CHOICE_FIRST, factor), other = value[CHOICE_SECOND] / choice_value(c, CHOICE_SECOND, factor);
+    Expr factor = expr_pow_num(c->e->g, rate, num_int(powers[k])), found = 0;
+    long double rest[2] = {value[CHOICE_FIRST] / choice_value(c, CHOICE_FIRST, factor), value[CHOICE_SECOND] / choice_value(c, CHOICE_SECOND, factor)};
     Num number;
-    if (fabsl(one - other) < 1e-9L * fabsl(one) && recognise_rational(one, &number)) return expr_scale(c->e->g, number, factor);
+    if (ratio) found = recognise_ratio(c, rest);
+    else if (recognise_same(rest, &number)) found = expr_num(c->e->g, number);
+    if (found) return expr_mul(c->e->g, found, factor);
   }
   return 0;
 }
 
-Expr recognise_ratio_power(const Choices *c, const long double *value, Expr rate) {
-  static const int powers[4] = {1, -1, 2, -2};
-  for (int k = 0; k < 4; k++) {
-    Expr factor = expr_pow_num(c->e->g, rate, num_int(powers[k]));
-    long double rest[2] = {value[CHOICE_FIRST] / choice_value(c, CHOICE_FIRST, factor), value[CHOICE_SECOND] / choice_value(c, CHOICE_SECOND, factor)};
-    Expr ratio = recognise_ratio(c, rest);
-    if (ratio) return expr_mul(c->e->g, ratio, factor);
-  }
-  return 0;
+Expr recognise_with_rates(const Choices *c, const long double *value, const Expr *rate, uint32_t n) {
+  Expr found = 0;
+  for (int ratio = 0; ratio < 2; ratio++)
+    for (uint32_t k = 0; k < n && !found; k++) found = rate_multiple(c, value, rate[k], ratio);
+  return found;
 }
 
 static int half_of(long double exponent, Num *out) {

@@ -21,6 +21,9 @@ Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt);
 /* x as a rational p/q that is short against the digits of x; 0: it is none. */
 int recognise_rational(long double x, Num *out);
 
+/* Whether the value is the same rational at the first two choices. */
+int recognise_same(const long double *value, Num *out);
+
 /* A rational times p or 1/p of one parameter, or times a ratio or product of two, from the first two choices alone; 0: none. */
 Expr recognise_ratio(const Choices *c, const long double *value);
 
@@ -30,11 +33,8 @@ Expr recognise_linear(const Choices *c, const long double *value);
 /* Such a sum over a parameter, or over none: (k + 2 c)/m. */
 Expr recognise_quotient(const Choices *c, const long double *value);
 
-/* A rational times rate^e, `rate` an expression of parameters, e = -2, -1, 1 or 2; 0: none. */
-Expr recognise_power(const Choices *c, const long double *value, Expr rate);
-
-/* A result of recognise_ratio times such a power of `rate`. */
-Expr recognise_ratio_power(const Choices *c, const long double *value, Expr rate);
+/* A rational, or else a result of recognise_ratio, times rate^e for one of n rates, expressions of parameters, e = -2, -1, 1 or 2; 0: none. */
+Expr recognise_with_rates(const Choices *c, const long double *value, const Expr *rate, uint32_t n);
 
 /* The monomial with these values at all 2 + n choices; 0: none. */
 Expr recognise_monomial(const Choices *c, const long double *value);

@@ -6,11 +6,11 @@
 
 #include "base/dense.h"
 #include "mech/lagrange.h"
-#include "symmetry/linear_forms.h"
 #include "symmetry/number_recognition.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
 #include "sym/normal_form.h"
+#include "sym/prove.h"
 #include "sym/simplify.h"
 
 enum { CHARGES_MOST = 48, SPARE_STATES = 6 };
@@ -25,11 +25,7 @@ typedef struct {
   EvalTape *tape;       /* [r] charges, [r*n] dQ/dq, [r*n] dQ/dv, [n*n] M or omega, [n*n] dp/dq */
   uint32_t roots;
   Choices choices;
-  const LinearForms *forms; /* or NULL */
-  int in_forms;         /* charge, F, dLdq and p are written in y, in which numbers are small */
-  Expr *charge, *F;     /* [r] */
-  Expr *dLdq;           /* [n] */
-  const Expr *p;        /* [n] */
+  VEC(Expr) rates;      /* of the charges that have one */
   Algebra *out;
 } BracketFit;
 
@@ -161,43 +157,26 @@ static int fit(const BracketFit *w, uint32_t choice, long double *c) {
 
 /* --- symbolically --- */
 
-/* Charges, F, dL/dq and p for symbolic brackets; in y where all generators are known in y. */
-static void choose_symbols(BracketFit *w) {
-  ExprGraph *g = w->g;
-  Expr *all = ARENA_ARRAY(w->scratch, Expr, 2 * (size_t)w->r + w->n + 1);
-  w->charge = all, w->F = all + w->r, w->dLdq = w->F + w->r;
-  w->in_forms = w->forms != NULL;
-  for (uint32_t a = 0; a < w->r; a++) {
-    w->in_forms = w->in_forms && at(w, a)->by.eta;
-    w->charge[a] = at(w, a)->is.charge;
-    w->F[a] = at(w, a)->is.F;
-  }
-  for (uint32_t i = 0; i < w->n && w->e->n; i++) w->dLdq[i] = w->in_forms ? expr_diff(g, w->forms->L, w->q[i]) : w->e->dLdq[i];
-  w->p = w->in_forms ? w->forms->p : w->e->p;
-  if (w->in_forms) expr_replace_nodes(g, w->charge, 2 * w->r, w->forms->node.at, w->forms->is.at, w->forms->node.n, w->charge);
-}
-
 /* dA/dp_i and dA/dq_i at fixed p, A the charge number a. */
 static void slopes(const BracketFit *w, uint32_t a, Expr *by_p, Expr *by_q) {
   ExprGraph *g = w->g;
   const Generator *by = &at(w, a)->by;
-  const Expr *xi = w->in_forms ? by->eta : by->xi;
   Expr *of_xi = ARENA_ARRAY(w->scratch, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) {
-    Expr rate = w->e->n ? node(w, w->v[i]) : w->e->first.rates[i], moved = expr_mul(g, by->tau, rate), fall = expr_diff(g, w->F[a], w->q[i]);
-    by_p[i] = expr_sub(g, xi[i], moved);
-    by_q[i] = w->e->n ? expr_sub(g, expr_mul(g, by->tau, w->dLdq[i]), fall) : expr_int(g, 0);
+    Expr rate = w->e->n ? node(w, w->v[i]) : w->e->first.rates[i], moved = expr_mul(g, by->tau, rate), fall = expr_diff(g, at(w, a)->is.F, w->q[i]);
+    by_p[i] = expr_sub(g, by->xi[i], moved);
+    by_q[i] = w->e->n ? expr_sub(g, expr_mul(g, by->tau, w->e->dLdq[i]), fall) : expr_int(g, 0);
   }
   for (uint32_t k = 0; k < w->n && w->e->n; k++) {
-    expr_gradient(g, xi[k], w->q, w->n, of_xi);
-    for (uint32_t i = 0; i < w->n; i++) by_q[i] = expr_add(g, by_q[i], expr_mul(g, w->p[k], of_xi[i]));
+    expr_gradient(g, by->xi[k], w->q, w->n, of_xi);
+    for (uint32_t i = 0; i < w->n; i++) by_q[i] = expr_add(g, by_q[i], expr_mul(g, w->e->p[k], of_xi[i]));
   }
 }
 
 static int is_energy(const BracketFit *w, uint32_t a) { return at(w, a)->kind == SYMMETRY_ENERGY && expr_is_zero(w->g, at(w, a)->is.power); }
 
 /* {Q, E} of a conserved E is minus the explicit time derivative of Q, as Q is already proved conserved. */
-static Expr with_energy(const BracketFit *w, uint32_t a) { return expr_neg(w->g, expr_diff(w->g, w->charge[a], w->e->m->time)); }
+static Expr with_energy(const BracketFit *w, uint32_t a) { return expr_neg(w->g, expr_diff(w->g, at(w, a)->is.charge, w->e->m->time)); }
 
 static Expr symbolic(const BracketFit *w, uint32_t a, uint32_t b) {
   ExprGraph *g = w->g;
@@ -207,7 +186,7 @@ static Expr symbolic(const BracketFit *w, uint32_t a, uint32_t b) {
   slopes(w, a, ap, aq);
   slopes(w, b, bp, bq);
   if (!w->e->n) { /* minus the change of B under A */
-    expr_gradient(g, w->charge[b], w->q, w->n, bq);
+    expr_gradient(g, at(w, b)->is.charge, w->q, w->n, bq);
     for (uint32_t i = 0; i < w->n; i++) sum = expr_sub(g, sum, expr_mul(g, bq[i], ap[i]));
     return sum;
   }
@@ -220,16 +199,9 @@ static Expr symbolic(const BracketFit *w, uint32_t a, uint32_t b) {
 
 /* --- the brackets --- */
 
-/* The nearest whole number, where there are no parameters: a guess that needs a proof. */
-static Expr nearest(const BracketFit *w, const long double *x) {
-  long double whole = roundl(x[CHOICE_FIRST]);
-  if (w->choices.n || !(fabsl(x[CHOICE_FIRST] - whole) < 0.1L) || !(fabsl(whole) < 9e18L)) return 0;
-  return expr_num(w->g, num_int((int64_t)whole));
-}
-
-/* A coefficient from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges; if `bold`, a guess.
- * 0: not recognised. */
-static Expr recognise(const BracketFit *w, long double *const *fits, size_t place, int bold) {
+/* A coefficient from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges; 0: not
+ * recognised. */
+static Expr recognise(const BracketFit *w, long double *const *fits, size_t place) {
   long double *x = ARENA_ARRAY(w->scratch, long double, 2 + w->choices.n);
   int zero = 1;
   Num c;
@@ -239,28 +211,24 @@ static Expr recognise(const BracketFit *w, long double *const *fits, size_t plac
     if (isnan(x[k])) return 0;
   }
   if (zero) return expr_int(w->g, 0);
-  if (bold) return nearest(w, x);
-  if (fabsl(x[CHOICE_FIRST] - x[CHOICE_SECOND]) < 1e-9L * fabsl(x[CHOICE_FIRST]) && recognise_rational(x[CHOICE_FIRST], &c)) return expr_num(w->g, c);
+  if (recognise_same(x, &c)) return expr_num(w->g, c);
   Expr known = recognise_ratio(&w->choices, x);
-  for (uint32_t a = 0; a < w->r && !known; a++)
-    if (at(w, a)->rate) known = recognise_power(&w->choices, x, at(w, a)->rate);
-  for (uint32_t a = 0; a < w->r && !known; a++)
-    if (at(w, a)->rate) known = recognise_ratio_power(&w->choices, x, at(w, a)->rate);
+  if (!known) known = recognise_with_rates(&w->choices, x, w->rates.at, w->rates.n);
   if (!known) known = recognise_linear(&w->choices, x);
   return known ? known : recognise_monomial(&w->choices, x);
 }
 
 /* The constant of a bracket, its difference from the combination of charges: by simplification, or recognised and then proved. */
-static void find_bracket_constant(const BracketFit *w, Bracket *k, long double *const *fits, size_t place, int bold) {
+static void find_bracket_constant(const BracketFit *w, Bracket *k, long double *const *fits, size_t place) {
   ExprGraph *g = w->g;
   Expr sum = expr_int(g, 0), left;
-  for (uint32_t i = 0; i < w->r; i++) sum = expr_add(g, sum, expr_mul(g, k->c[i], w->charge[i]));
+  for (uint32_t i = 0; i < w->r; i++) sum = expr_add(g, sum, expr_mul(g, k->c[i], at(w, i)->is.charge));
   left = simplify(g, expr_sub(g, k->value, sum));
   k->constant = left;
   k->proved = expr_is_constant(w->g, left);
   if (k->proved) return;
-  k->constant = recognise(w, fits, place + w->r, bold);
-  if (k->constant) k->proved = forms_prove_zero(w->in_forms ? NULL : w->forms, g, expr_sub(g, left, k->constant)) == PROVED_ZERO;
+  k->constant = recognise(w, fits, place + w->r);
+  if (k->constant) k->proved = prove_zero(g, expr_sub(g, left, k->constant), NULL) == PROVED_ZERO;
   else k->c = NULL;
 }
 
@@ -272,21 +240,18 @@ static int is_outside(const BracketFit *w, long double *const *fits, size_t plac
 }
 
 /* The bracket with its coefficients; c NULL: one is not recognised. */
-static Bracket combined(const BracketFit *w, Bracket k, long double *const *fits, size_t place, int bold) {
+static Bracket combined(const BracketFit *w, Bracket k, long double *const *fits, size_t place) {
   Expr *c = ARENA_ARRAY(w->e->m->arena, Expr, w->r + 1);
   k.c = c;
   for (uint32_t i = 0; i < w->r && k.c; i++)
-    if (!(c[i] = recognise(w, fits, place + i, bold))) k.c = NULL;
-  if (k.c) find_bracket_constant(w, &k, fits, place, bold);
+    if (!(c[i] = recognise(w, fits, place + i))) k.c = NULL;
+  if (k.c) find_bracket_constant(w, &k, fits, place);
   return k;
 }
 
 static Bracket bracket_of(const BracketFit *w, uint32_t a, uint32_t b, long double *const *fits, size_t place) {
   Bracket k = {.a = a, .b = b, .constant = expr_int(w->g, 0), .value = symbolic(w, a, b), .is_outside = is_outside(w, fits, place)};
-  Bracket known = combined(w, k, fits, place, 0);
-  if (known.c && known.proved) return known;
-  Bracket guess = combined(w, k, fits, place, 1);
-  if (guess.c && guess.proved) return guess;
+  Bracket known = combined(w, k, fits, place);
   if (known.c) return known;
   k.value = simplify(w->g, k.value);
   if (!expr_is_zero(w->g, k.value)) return k;
@@ -295,12 +260,6 @@ static Bracket bracket_of(const BracketFit *w, uint32_t a, uint32_t b, long doub
   k.c = c;
   k.constant = k.value;
   k.proved = 1;
-  return k;
-}
-
-static Bracket bracket(const BracketFit *w, uint32_t a, uint32_t b, long double *const *fits, size_t place) {
-  Bracket k = bracket_of(w, a, b, fits, place);
-  if (w->in_forms) k.value = forms_back(w->forms, w->g, k.value);
   return k;
 }
 
@@ -316,7 +275,8 @@ static void compute_brackets(Arena *scratch, void *data) {
   w->scratch = scratch;
   w->choices = choices_new(scratch, w->e, w->of->attempt);
   make_tape(w);
-  choose_symbols(w);
+  for (uint32_t a = 0; a < w->r; a++)
+    if (at(w, a)->rate) vec_push(scratch, &w->rates, at(w, a)->rate);
   uint32_t choices = 2 + w->choices.n;
   long double **fits = ARENA_ARRAY(scratch, long double *, choices);
   for (uint32_t k = 0; k < choices; k++) {
@@ -329,7 +289,7 @@ static void compute_brackets(Arena *scratch, void *data) {
   size_t place = 0;
   for (uint32_t a = 0; a < w->r; a++)
     for (uint32_t b = a + 1; b < w->r; b++, place += w->r + 1) {
-      Bracket k = bracket(w, a, b, fits, place);
+      Bracket k = bracket_of(w, a, b, fits, place);
       w->out->by_value += !k.proved;
       if (!is_null(w, &k)) vec_push(w->e->m->arena, &w->out->all, k);
     }
@@ -355,7 +315,6 @@ Algebra brackets_find(Eqns *e, const FoundSymmetries *of) {
   }
   w.q = q;
   w.v = v;
-  w.forms = forms_new(e->m->arena, e);
   normal_with_scratch(e->g, compute_brackets, &w);
   return out;
 }

@@ -15,12 +15,8 @@ GeneratorTable generator_table_at(SymmetrySearch *s, const Family *f, uint32_t c
   return f->kind == TIME_POWERS ? table_powers(s->scratch, space, shown) : table_periodic(s->scratch, space, shown, f->rate2[choice]);
 }
 
-/* Whether x is the same rational *c at both choices. */
-static int is_same(const long double *x, Num *c) {
-  return fabsl(x[CHOICE_FIRST] - x[CHOICE_SECOND]) < 1e-9L * fabsl(x[CHOICE_FIRST]) && recognise_rational(x[CHOICE_FIRST], c);
-}
-
-int noether_shapes_agree(SymmetrySearch *s, FamilyTables *t) {
+/* Whether the tables at all choices, made here where missing, have one shape. */
+static int shapes_agree(SymmetrySearch *s, FamilyTables *t) {
   int agree = 1;
   for (uint32_t i = CHOICE_MOVED; i < noether_choices(s) && !t->moved; i++) {
     t->at[i] = generator_table_at(s, t->family, i);
@@ -39,10 +35,9 @@ static Expr coefficient(SymmetrySearch *s, FamilyTables *t, uint32_t row, size_t
   Num c;
   for (uint32_t i = 0; i < CHOICE_MOVED; i++) x[i] = t->at[i].at[at];
   if (x[CHOICE_FIRST] == 0 && x[CHOICE_SECOND] == 0) return expr_int(s->g, 0);
-  if (is_same(x, &c)) return expr_num(s->g, c);
-  Expr ratio = rate ? recognise_power(&s->choices, x, rate) : 0;
-  if (!ratio) ratio = recognise_ratio(&s->choices, x);
-  if (!ratio && rate) ratio = recognise_ratio_power(&s->choices, x, rate);
+  if (recognise_same(x, &c)) return expr_num(s->g, c);
+  Expr ratio = recognise_ratio(&s->choices, x);
+  if (!ratio) ratio = recognise_with_rates(&s->choices, x, &rate, rate != 0);
   if (ratio || !moved) return ratio;
   for (uint32_t i = CHOICE_MOVED; i < noether_choices(s); i++) x[i] = t->at[i].at[at];
   return recognise_monomial(&s->choices, x);
@@ -57,7 +52,7 @@ static int row_coefficients(SymmetrySearch *s, FamilyTables *t, uint32_t row, in
 
 /* Expressions of the row after shortening, which replaces it if they are recognised. */
 static int shorter_coefficients(SymmetrySearch *s, FamilyTables *t, uint32_t row, int moved, Expr *c) {
-  uint32_t n = t->moved && noether_shapes_agree(s, t) ? noether_choices(s) : CHOICE_MOVED, width = t->at[0].blocks * t->at[0].shown;
+  uint32_t n = t->moved && shapes_agree(s, t) ? noether_choices(s) : CHOICE_MOVED, width = t->at[0].blocks * t->at[0].shown;
   long double *kept = ARENA_ARRAY(s->scratch, long double, (size_t)n * width);
   RowChange changes[CHANGES_MOST];
   for (uint32_t i = 0; i < n; i++) memcpy(kept + (size_t)i * width, t->at[i].at + (size_t)row * width, width * sizeof *kept);
@@ -99,7 +94,7 @@ static int scaled_coefficients(SymmetrySearch *s, const FamilyTables *t, uint32_
 /* Cheap ways first: tables at all choices are made last. */
 int noether_recognise(SymmetrySearch *s, FamilyTables *t, uint32_t row, Expr *c) {
   if (row_coefficients(s, t, row, 0, c) || shorter_coefficients(s, t, row, 0, c)) return 1;
-  if (!noether_shapes_agree(s, t)) return 0;
+  if (!shapes_agree(s, t)) return 0;
   return row_coefficients(s, t, row, 1, c) || shorter_coefficients(s, t, row, 1, c) || scaled_coefficients(s, t, row, c);
 }
 

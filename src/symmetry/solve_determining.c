@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "base/tolerance.h"
-#include "symmetry/search_frame.h"
+#include "symmetry/determining_equations.h"
 
 enum { SPARE_ROWS = 12 };
 static const long double REST = 1e-11L; /* least pivot of a column of length 1: rounding is 1e-18, random pivots were never seen below 1e-6 */
@@ -131,7 +131,7 @@ static long double *rates(RowSource *r, Arena *a, const DenseRows *space, int *s
 
 SolutionSpace solution_space(const Ansatz *s, Arena *a, const long double *parameters, const SolutionSpace *like) {
   RowSource *r = rows_new(s, a, parameters);
-  SolutionSpace found = {.space = initial_space(s, a, like && !rows_frame(r) ? &like->space : NULL), .sure = 1};
+  SolutionSpace found = {.space = initial_space(s, a, like ? &like->space : NULL), .sure = 1};
   DenseRows *space = &found.space;
   if (!intersect(r, a, ROWS_EVEN, space, &found.sure) || !intersect(r, a, ROWS_AT_REST, space, &found.sure)) return (SolutionSpace){0};
   for (uint32_t before = UINT32_MAX; before != space->n;) {
@@ -140,7 +140,5 @@ SolutionSpace solution_space(const Ansatz *s, Arena *a, const long double *param
     if (s->held.n && !intersect(r, a, ROWS_CONSTRAINTS, space, &found.sure)) return (SolutionSpace){0};
   }
   found.A = rates(r, a, space, &found.sure);
-  long double *scratch = ARENA_ARRAY(a, long double, (size_t)s->n * s->n + s->n + 1);
-  for (uint32_t k = 0; k < space->n && rows_frame(r); k++) frame_generator_back(rows_frame(r), space->at + (size_t)k * space->width, scratch);
   return found;
 }

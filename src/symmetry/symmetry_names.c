@@ -5,10 +5,10 @@
 
 /* --- coordinates of bodies --- */
 
-CoordinateNames coordinate_names(const Eqns *e, const LinearForms *forms) {
+CoordinateNames coordinate_names(const Eqns *e) {
   CoordinateNames c = {e->g, e->m->arena, eqns_coordinates(e), NULL};
   Name *name = ARENA_ARRAY(c.arena, Name, c.n + 1);
-  for (uint32_t i = 0; i < c.n; i++) name[i] = forms && forms->named ? forms->name[i] : expr_symbol(c.g, eqns_coordinate(e, i))->name;
+  for (uint32_t i = 0; i < c.n; i++) name[i] = expr_symbol(c.g, eqns_coordinate(e, i))->name;
   c.name = name;
   return c;
 }
@@ -274,7 +274,7 @@ static int shifts_beside(const CoordinateNames *e, const GeneratorRow *r) {
 
 /* Name of a linear part in block 0 with shifts in one block or several. */
 static const char *affine_name(const CoordinateNames *e, const GeneratorRow *r, Parts p) {
-  if (!block_turns(e, r, 0)) return r->turns ? "rotation about another point, in the metric of the kinetic energy" : "affine map of the coordinates";
+  if (!block_turns(e, r, 0)) return "affine map of the coordinates";
   if (shifts_beside(e, r)) return "screw: a rotation and a translation at once";
   return p.shift > 1 ? "rotation about a point that moves" : "rotation about another point";
 }
@@ -303,7 +303,7 @@ static void name_linear(const CoordinateNames *e, const GeneratorRow *r, FoundSy
     const char *whole = all && bodies > 1 ? "total angular momentum" : "angular momentum";
     to->name = space || axis != 2 ? arena_printf(e->arena, "%s about %s", whole, axis_text(axis)) : whole;
   } else if (mixes_bodies(e, r)) to->name = "angular momentum of a part of the motion";
-  else to->name = block_turns(e, r, 0) ? "rotation among coordinates" : r->turns ? "rotation in the metric of the kinetic energy" : "linear map of the coordinates";
+  else to->name = block_turns(e, r, 0) ? "rotation among coordinates" : "linear map of the coordinates";
 }
 
 static int stretches(const CoordinateNames *e, const GeneratorRow *r) {

@@ -11,11 +11,10 @@ typedef struct {
   TimeKind kind;
   uint32_t blocks;
   Expr *c;      /* [blocks*shown], as in Table */
-  int turns;    /* xi changes no length that the kinetic energy measures: M times its linear part is antisymmetric */
   Generator by;
 } GeneratorRow;
 
-/* The coordinates that generators move: the model's, or the sums of them that L is written with, where these have names. */
+/* The coordinates that generators move. */
 typedef struct {
   ExprGraph *g;
   Arena *arena;      /* for texts */
@@ -23,8 +22,7 @@ typedef struct {
   const Name *name;  /* [n] */
 } CoordinateNames;
 
-/* forms NULL, or without names: the model's own coordinates. */
-CoordinateNames coordinate_names(const Eqns *e, const LinearForms *forms);
+CoordinateNames coordinate_names(const Eqns *e);
 
 enum { AXIS_NONE = 3 };
 

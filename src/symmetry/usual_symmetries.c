@@ -93,62 +93,12 @@ static void try_cyclic(TrialWork *w) {
   }
 }
 
-/* --- shifts along solutions --- */
-
-/* kappa of q'' = kappa q + ..., coordinate i's own equation; 0: mass or stiffness is zero or not constant. */
-static Expr own_rate(const TrialWork *w, uint32_t i) {
-  Expr m = simplify(w->g, eqns_mass(w->e, i, i)), k = simplify(w->g, expr_diff(w->g, w->e->dLdq[i], eqns_coordinate(w->e, i)));
-  if (expr_is_zero(w->g, m) || expr_is_zero(w->g, k) || !expr_is_constant(w->g, m) || !expr_is_constant(w->g, k)) return 0;
-  return simplify(w->g, expr_div(w->g, k, m));
-}
-
-static int is_listed(const TrialWork *w, uint32_t i, Expr xi) {
-  for (uint32_t k = 0; k < w->out->all.n; k++)
-    if (w->out->all.at[k].by.xi && w->out->all.at[k].by.xi[i] == xi) return 1;
-  return 0;
-}
-
-static uint32_t try_shift(TrialWork *w, uint32_t i, Expr of_time, Expr rate, const char *name) {
-  Expr *xi = zero_components(w);
-  xi[i] = of_time;
-  if (is_listed(w, i, of_time)) return 0;
-  return (uint32_t)try_one(w, xi, expr_int(w->g, 0), (FoundSymmetry){.kind = SYMMETRY_OTHER, .name = name, .axis = AXIS_NONE, .rate = rate});
-}
-
-/* Sign of k, a number or a monomial of parameters with signs: 1 or -1; 0: not known. */
-static int sign_of(const ExprGraph *g, Expr k) {
-  switch (expr_sign(g, k)) {
-    case SIGN_POSITIVE: return 1;
-    case SIGN_NEGATIVE: return -1;
-    case SIGN_UNKNOWN: case SIGN_NONNEGATIVE: case SIGN_NONPOSITIVE: break;
-  }
-  return 0;
-}
-
-uint32_t try_solution_shifts(Eqns *e, FoundSymmetries *out) {
-  TrialWork w = {.e = e, .g = e->g, .n = e->n, .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e, NULL), .out = out};
-  uint32_t found = 0;
-  if (e->n && !e->mass_known) eqns_derive_mass(e);
-  for (uint32_t i = 0; i < w.n; i++) {
-    Expr kappa = own_rate(&w, i);
-    int sign = kappa ? sign_of(w.g, kappa) : 0;
-    if (!sign) continue;
-    Expr rate = expr_sqrt(w.g, sign < 0 ? simplify(w.g, expr_neg(w.g, kappa)) : kappa), phase = expr_mul(w.g, rate, w.t);
-    const char *name = sign < 0 ? "shift along a solution, periodic in t" : "shift along a solution, exponential in t";
-    Expr first = expr_fn(w.g, sign < 0 ? EX_COS : EX_EXP, phase), other = sign < 0 ? phase : expr_neg(w.g, phase);
-    Expr second = expr_fn(w.g, sign < 0 ? EX_SIN : EX_EXP, other);
-    found += try_shift(&w, i, first, rate, name);
-    found += try_shift(&w, i, second, rate, name);
-  }
-  return found;
-}
-
 /* --- dispatch --- */
 
 int too_large_to_search(const Eqns *e) { return eqns_coordinates(e) > SEARCH_MOST; }
 
 void try_usual_symmetries(Eqns *e, FoundSymmetries *out) {
-  TrialWork w = {.e = e, .g = e->g, .n = eqns_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e, NULL), .out = out};
+  TrialWork w = {.e = e, .g = e->g, .n = eqns_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e), .out = out};
   out->ansatz = "for more than a hundred coordinates: the energy, momenta of cyclic coordinates, and translations, boosts and rotations of all "
                 "coordinates of a kind together";
   out->searched = w.n <= TRY_MOST;

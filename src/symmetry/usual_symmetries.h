@@ -11,8 +11,4 @@ int too_large_to_search(const Eqns *e);
  * members of a family. Past a thousand coordinates nothing is tried, and out->searched is 0. */
 void try_usual_symmetries(Eqns *e, FoundSymmetries *out);
 
-/* Lists shifts of single coordinates along solutions of their own equation q'' = kappa q, kappa of known sign, if proved and not listed yet.
- * Returns their number. */
-uint32_t try_solution_shifts(Eqns *e, FoundSymmetries *out);
-
 #endif

@@ -1,5 +1,5 @@
 /* Advice for known mistakes: a table of words from other languages, and one function for each kind of unexpected token. */
-#include "syntax/mistake_advice.h"
+#include "syntax/parse_state.h"
 
 #include <string.h>
 
@@ -71,9 +71,6 @@ static int sets_next(const Parse *cx) {
   return s[0] == '=' && s[1] != '=';
 }
 
-/* Whether a block is expected, and not a list or another expression. */
-static int wants_block(const TokKind *set, int n) { return token_is_in(set, n, TOK_LBRACE) && !token_is_in(set, n, TOK_NUMBER); }
-
 /* Two statements on one line. */
 static const char *missing_end(const Parse *cx) {
   const Token *t = &cx->current;
@@ -110,27 +107,6 @@ static const char *missing_operator(const Parse *cx) {
   return "a product is written with `*`";
 }
 
-/* `name(` where a value is expected. */
-static const char *unexpected_call(const Parse *cx) {
-  const char *name = cx->before.name ? cx->before.name : "f";
-  switch (cx->filter->word) {
-    case TOK_LET: return arena_printf(cx->ast->arena, "declare a function of your own by `function %s(x) = …`", name);
-    case TOK_FORCE: return "a force acts along a coordinate, `force x = …`, or at a point, `force (px, py) = (…, …)`";
-    case TOK_PARAM: case TOK_CONST: case TOK_INPUT: case TOK_OBSERVE: case TOK_COORD: case TOK_STATE:
-      return arena_printf(cx->ast->arena, "a name has no arguments here; declare a function of your own by `function %s(x) = …`", name);
-    default: return "a start is written `start x = 1, x' = 0`";
-  }
-}
-
-static const char *unexpected_comma(const TokKind *set, int n) {
-  if (token_is_in(set, n, TOK_IN) || token_is_in(set, n, TOK_RANGE)) return "a range is written `i in 1..N`";
-  return token_is_in(set, n, TOK_RPAREN) ? "a function with several arguments has no `.` in its name: `pow(x, 2)`" : NULL;
-}
-
-static const char *after_method(const Parse *cx) {
-  return cx->before.name ? arena_printf(cx->ast->arena, "options stand in parentheses: `method %s(step = 0.01)`", cx->before.name) : NULL;
-}
-
 /* model, scene, effect: a name, a description, a block. */
 static const char *misshapen_title(const Parse *cx, const TokKind *set, int n) {
   TokKind word = cx->filter->word;
@@ -141,42 +117,6 @@ static const char *misshapen_title(const Parse *cx, const TokKind *set, int n) {
   return NULL;
 }
 
-static const char *unexpected_assign(const Parse *cx, const TokKind *set, int n) {
-  TokKind word = cx->filter->word;
-  if (word == TOK_EVENT && token_is_in(set, n, TOK_RISING)) return "an event is where an expression passes zero: `event e: x - 1 rising { … }`";
-  if (token_is_in(set, n, TOK_EQ)) return "write `==` to compare";
-  if (token_is_in(set, n, TOK_IN)) return "a range is written `i in 1..N`";
-  if (word == TOK_COORD || word == TOK_STATE) return "its start stands in a scene: `start x = …`";
-  return NULL;
-}
-
-static const char *unexpected_comparison(const Parse *cx, const TokKind *set, int n) {
-  if (cx->filter->word == TOK_CONTACT) return "a contact is written `contact NAME: g >= 0, restitution = e`";
-  if (cx->filter->word == TOK_EVENT && token_is_in(set, n, TOK_RISING)) return "an event is where an expression passes zero: `x - 1 rising { … }`";
-  return token_is_in(set, n, TOK_AND) ? "comparisons do not chain: write `a < b and b < c`" : NULL;
-}
-
-/* `constraint x^2 + y^2 = l^2`: the name is missing. */
-static const char *missing_name(const Parse *cx, const TokKind *set, int n) {
-  TokKind word = cx->filter->word;
-  if (cx->before.kind != word && (!token_is_in(set, n, TOK_COLON) || token_is_in(set, n, TOK_TIMES))) return NULL;
-  switch (word) {
-    case TOK_CONSTRAINT: return "a constraint has a name: `constraint NAME: x^2 + y^2 = l^2`";
-    case TOK_CONTACT: return "a contact has a name: `contact NAME: y >= 0, restitution = 0.5`";
-    case TOK_EVENT: return "an event has a name: `event NAME: x - 1 rising { … }`";
-    default: return NULL;
-  }
-}
-
-/* Advice after the gap of a contact. */
-static const char *after_gap(const Parse *cx, const TokKind *set, int n) {
-  TokKind t = cx->current.kind;
-  if (cx->filter->word != TOK_CONTACT) return NULL;
-  if (token_is_in(set, n, TOK_RESTITUTION) || (t == TOK_COMMA && token_is_in(set, n, TOK_END)))
-    return "a contact has a restitution and nothing else, `contact NAME: y >= 0, restitution = 0.5`; it slides without friction: a `force` or `dissipation` can brake it";
-  return t == TOK_END && token_is_in(set, n, TOK_COMMA) ? "a contact has a restitution: `contact NAME: y >= 0, restitution = 0.5`" : NULL;
-}
-
 /* `start x = 1, span 5`: a word that begins a statement stands in a list. */
 static const char *word_in_list(const Parse *cx, const TokKind *set, int n) {
   const Token *b = &cx->before;
@@ -185,44 +125,81 @@ static const char *word_in_list(const Parse *cx, const TokKind *set, int n) {
   return arena_printf(cx->ast->arena, "`%s` begins a statement of its own: a new line, or a `;`, stands before it", b->name);
 }
 
+#define ANY TOK_COUNT
+#define COMPARISON TOK_LT
+
+/* Mistakes by their tokens: the statement's word, the unexpected token, one that is expected, one that is not. The first row that fits counts;
+ * %s in its advice is the name before the token. */
+static const struct {
+  TokKind word, found, wants, lacks;
+  const char *advice;
+} slips[] = {
+  {TOK_CONSTRAINT, ANY, TOK_COLON, TOK_TIMES, "a constraint has a name: `constraint NAME: x^2 + y^2 = l^2`"},
+  {TOK_CONSTRAINT, ANY, TOK_IDENT, TOK_NUMBER, "a constraint has a name: `constraint NAME: x^2 + y^2 = l^2`"},
+  {TOK_CONTACT, ANY, TOK_COLON, TOK_TIMES, "a contact has a name: `contact NAME: y >= 0, restitution = 0.5`"},
+  {TOK_CONTACT, ANY, TOK_IDENT, TOK_NUMBER, "a contact has a name: `contact NAME: y >= 0, restitution = 0.5`"},
+  {TOK_EVENT, ANY, TOK_COLON, TOK_TIMES, "an event has a name: `event NAME: x - 1 rising { … }`"},
+  {TOK_EVENT, ANY, TOK_IDENT, TOK_NUMBER, "an event has a name: `event NAME: x - 1 rising { … }`"},
+  {TOK_CONTACT, ANY, TOK_RESTITUTION, ANY, "a contact has a restitution and nothing else, `contact NAME: y >= 0, restitution = 0.5`; it slides without friction: a `force` or `dissipation` can brake it"},
+  {TOK_CONTACT, TOK_COMMA, TOK_END, ANY, "a contact has a restitution and nothing else, `contact NAME: y >= 0, restitution = 0.5`; it slides without friction: a `force` or `dissipation` can brake it"},
+  {TOK_CONTACT, TOK_END, TOK_COMMA, ANY, "a contact has a restitution: `contact NAME: y >= 0, restitution = 0.5`"},
+  {TOK_CONTACT, COMPARISON, ANY, ANY, "a contact is written `contact NAME: g >= 0, restitution = e`"},
+  {TOK_METHOD, ANY, TOK_LPAREN, ANY, "options stand in parentheses: `method %s(step = 0.01)`"},
+  {ANY, TOK_COMMA, TOK_IN, ANY, "a range is written `i in 1..N`"},
+  {ANY, TOK_COMMA, TOK_RANGE, ANY, "a range is written `i in 1..N`"},
+  {ANY, TOK_COMMA, TOK_RPAREN, ANY, "a function with several arguments has no `.` in its name: `pow(x, 2)`"},
+  {ANY, TOK_RANGE, TOK_RBRACKET, ANY, "a family has a size: `x[N]` has the members 1 to N"},
+  {ANY, TOK_EQ, TOK_ASSIGN, ANY, "write `=`: it states an equation; `==` compares two numbers"},
+  {TOK_EVENT, TOK_ASSIGN, TOK_RISING, ANY, "an event is where an expression passes zero: `event e: x - 1 rising { … }`"},
+  {ANY, TOK_ASSIGN, TOK_EQ, ANY, "write `==` to compare"},
+  {ANY, TOK_ASSIGN, TOK_IN, ANY, "a range is written `i in 1..N`"},
+  {TOK_COORD, TOK_ASSIGN, ANY, ANY, "its start stands in a scene: `start x = …`"},
+  {TOK_STATE, TOK_ASSIGN, ANY, ANY, "its start stands in a scene: `start x = …`"},
+  {ANY, TOK_COLON, TOK_LBRACE, TOK_NUMBER, "a block begins with `{`"},
+  {ANY, TOK_COLON, TOK_ASSIGN, ANY, "write `%s = …`"},
+  {TOK_MONITOR, TOK_END, TOK_NUMBER, ANY, "a monitor has a limit: `monitor energy 1e-8`"},
+  {TOK_PARAM, TOK_END, TOK_ASSIGN, ANY, "a parameter has a value, which scenes can change: `param m = 1 [kg]`"},
+  {ANY, TOK_END, TOK_LBRACE, TOK_NUMBER, "a block begins with `{`"},
+  {ANY, TOK_INDEX, TOK_UNIT, ANY, "a unit stands apart from the name: `u [N]`"},
+  {TOK_EVENT, COMPARISON, TOK_RISING, ANY, "an event is where an expression passes zero: `x - 1 rising { … }`"},
+  {ANY, COMPARISON, TOK_AND, ANY, "comparisons do not chain: write `a < b and b < c`"},
+  {ANY, TOK_IN, TOK_IDENT, ANY, "`in` is a reserved word"},
+  {ANY, TOK_AND, TOK_IDENT, ANY, "`and` is a reserved word"},
+  {ANY, TOK_OR, TOK_IDENT, ANY, "`or` is a reserved word"},
+  {ANY, TOK_NOT, TOK_IDENT, ANY, "`not` is a reserved word"},
+  {TOK_FORCE, TOK_LPAREN, TOK_ASSIGN, ANY, "a force acts along a coordinate, `force x = …`, or at a point, `force (px, py) = (…, …)`"},
+  {TOK_START, TOK_LPAREN, TOK_ASSIGN, ANY, "a start is written `start x = 1, x' = 0`"},
+  {TOK_START, TOK_NUMBER, TOK_IDENT, ANY, "a start is written `start x = 1, x' = 0`"},
+  {TOK_IDENT, TOK_LPAREN, TOK_ASSIGN, ANY, "a start is written `start x = 1, x' = 0`"},
+  {ANY, TOK_LPAREN, TOK_ASSIGN, ANY, "a name has no arguments here; declare a function of your own by `function %s(x) = …`"},
+};
+
+static const char *slip_advice(const Parse *cx, const TokKind *set, int n) {
+  TokKind found = cx->current.kind;
+  if ((found >= TOK_LT && found <= TOK_GE) || found == TOK_NE) found = COMPARISON;
+  for (size_t i = 0; i < sizeof slips / sizeof *slips; i++) {
+    if ((slips[i].word != ANY && slips[i].word != cx->filter->word) || (slips[i].found != ANY && slips[i].found != found)) continue;
+    if ((slips[i].wants != ANY && !token_is_in(set, n, slips[i].wants)) || (slips[i].lacks != ANY && token_is_in(set, n, slips[i].lacks))) continue;
+    return arena_printf(cx->ast->arena, slips[i].advice, cx->before.name ? cx->before.name : "NAME");
+  }
+  return NULL;
+}
+
 const char *advice_for_token(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current, *b = &cx->before;
-  Arena *a = cx->ast->arena;
-  const char *end = missing_end(cx), *comma = end ? end : missing_comma(cx, set, n), *title = comma ? NULL : misshapen_title(cx, set, n);
-  if (comma || title) return comma ? comma : title;
-  const char *name = missing_name(cx, set, n), *gap = name ? NULL : after_gap(cx, set, n);
-  if (name || gap) return name ? name : gap;
-  const char *word = word_in_list(cx, set, n);
-  if (word) return word;
-  if (cx->filter->word == TOK_METHOD && token_is_in(set, n, TOK_LPAREN)) return after_method(cx);
+  const char *end = missing_end(cx), *comma = end ? end : missing_comma(cx, set, n), *title = comma ? comma : misshapen_title(cx, set, n);
+  const char *word = title ? title : word_in_list(cx, set, n), *slip = word ? word : slip_advice(cx, set, n);
+  if (slip) return slip;
   if (cx->filter->word == TOK_MONITOR && !token_is_in(set, n, TOK_TIMES) && token_ends_operand(b->kind) && (token_flags(t->kind) & T_BINARY))
     return "a monitor watches a name, or an expression in parentheses: `monitor (x + y) 1e-6`";
   switch (t->kind) {
-    case TOK_COMMA: return unexpected_comma(set, n);
-    case TOK_RANGE: return token_is_in(set, n, TOK_RBRACKET) ? "a family has a size: `x[N]` has the members 1 to N" : NULL;
     case TOK_UNIT: return b->kind == TOK_UNIT ? "an index touches its name, a unit does not: `x[N] [m]`" : NULL;
-    case TOK_EQ: return token_is_in(set, n, TOK_ASSIGN) ? "write `=`: it states an equation; `==` compares two numbers" : NULL;
-    case TOK_ASSIGN: return unexpected_assign(cx, set, n);
-    case TOK_COLON:
-      if (wants_block(set, n)) return "a block begins with `{`";
-      return token_is_in(set, n, TOK_ASSIGN) ? arena_printf(a, "write `%s = …`", b->name ? b->name : "NAME") : NULL;
-    case TOK_END: case TOK_RBRACE:
-      if (cx->filter->word == TOK_MONITOR && token_is_in(set, n, TOK_NUMBER)) return "a monitor has a limit: `monitor energy 1e-8`";
-      if (t->kind == TOK_RBRACE) return NULL;
-      if (cx->filter->word == TOK_PARAM && token_is_in(set, n, TOK_ASSIGN)) return "a parameter has a value, which scenes can change: `param m = 1 [kg]`";
-      return wants_block(set, n) ? "a block begins with `{`" : NULL;
-    case TOK_INDEX: return token_is_in(set, n, TOK_UNIT) ? "a unit stands apart from the name: `u [N]`" : NULL;
-    case TOK_PRIME: 
+    case TOK_PRIME:
       if (b->kind == TOK_IDENT && b->span.begin == t->span.begin) return "a dot above a letter is a time derivative, as a `'` is: declare the name without it";
       return b->kind == TOK_END ? "a `'` never continues a line: put it on the line of its name" : NULL;
     case TOK_RPAREN: case TOK_RBRACKET:
-      return token_is_in(set, n, TOK_TIMES) && !cx->open.span.end ? arena_printf(a, "this `%s` closes nothing", token_word(t->kind)) : NULL;
-    case TOK_LT: case TOK_LE: case TOK_GT: case TOK_GE: case TOK_NE: return unexpected_comparison(cx, set, n);
-    case TOK_IN: case TOK_AND: case TOK_OR: case TOK_NOT:
-      return token_is_in(set, n, TOK_IDENT) ? arena_printf(a, "`%s` is a reserved word", token_word(t->kind)) : NULL;
+      return token_is_in(set, n, TOK_TIMES) && !cx->open.span.end ? arena_printf(cx->ast->arena, "this `%s` closes nothing", token_word(t->kind)) : NULL;
     case TOK_IDENT: case TOK_NUMBER: case TOK_LPAREN: case TOK_SUM: case TOK_PRODUCT:
-      if (t->kind == TOK_LPAREN && token_is_in(set, n, TOK_ASSIGN)) return unexpected_call(cx);
-      if (t->kind == TOK_NUMBER && b->kind == TOK_LPAREN && cx->filter->word == TOK_START) return "a start is written `start x = 1, x' = 0`";
       return token_is_in(set, n, TOK_TIMES) && token_ends_operand(b->kind) ? missing_operator(cx) : NULL;
     default: return NULL;
   }

@@ -31,4 +31,10 @@ void parse_done_value(Parse *cx, AstId value);
 void parse_report(Parse *cx, const TokKind *expected, int n);
 void parse_too_deep(Parse *cx, Span span);
 
+/* mistake_advice.c: advice for a word that begins no statement in a place (W_...), or NULL. */
+const char *advice_for_word(const char *word, unsigned where);
+
+/* Advice where the current token cannot follow the previous one; set[n]: expected tokens. NULL: none. */
+const char *advice_for_token(const Parse *cx, const TokKind *set, int n);
+
 #endif

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/suggest.h"
-#include "syntax/mistake_advice.h"
+#include "syntax/parse_state.h"
 
 /* ---- found and expected tokens ---- */
 

@@ -118,7 +118,7 @@ check "an option that is none of this command" says '`--format` is an option of 
 check "a value is missing" says '--until needs a value: --until T' run $m --until
 check "a value too many" says '--json takes no value' run $m --json=1
 check "a wrong choice" says '--format takes text, latex, c, not `html`' derive $m --format html
-check "a wrong stage" says '--dump takes ast, model, eqns, passes, prog, with commas between several, not `ast,asm`' derive $m --dump ast,asm
+check "a wrong stage" says '--dump takes ast, eqns, passes, prog, with commas between several, not `ast,asm`' derive $m --dump ast,asm
 check "a definition that is none" says '-D takes CONST=VALUE, for example -D N=50' derive $m -D N
 check "completion for no shell" says 'which shell? write `lagc completion bash`' completion
 check "-DN=3, -D N=3, --define N=3" sh -c '

@@ -39,7 +39,7 @@ every_command() {
   clean derive "$m" --ops
   clean noether "$m"
   for format in latex json; do clean noether "$m" --format "$format"; done
-  clean check "$m" --dump=ast,model,eqns,passes,prog
+  clean check "$m" --dump=ast,eqns,passes,prog
   clean emit "$m" --with linear --math libm --fix all -o "$said.c"
   for method in taylor radau variational rk45; do clean emit "$m" --method "$method" -o "$said.c"; done
   clean header "$m" -o "$said.h"

@@ -23,7 +23,7 @@ close() { # NAME EXPRESSION GOT TOLERANCE: relative, absolute below 1
 }
 
 # x = x0 cos wt + v0/w sin wt with w = 2
-for method in rk45 dop853 taylor radau 'verlet8(step=0.01)' 'gauss(stages=4, step=0.05)' 'variational(order=8, quadrature=lobatto, step=0.05)' 'rk4(step=1e-3)'; do
+for method in rk45 dop853 taylor radau 'verlet8(step=0.01)' 'gauss(stages=4, step=0.05)' 'variational(order=8, step=0.05)' 'rk4(step=1e-3)'; do
   last models/spring.lag free --until 3.3 --method "$method"
   close "dx/dx" "cos(6.6)" "$(entry 'dx/dx(0)')" 1e-9 # the scene's tolerance is 1e-11
   close "dx/dx'" "sin(6.6)/2" "$(entry "dx/dx'(0)" 'm/(m/s)')" 1e-9

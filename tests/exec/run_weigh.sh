@@ -81,8 +81,8 @@ scene s { start x = 1; use friction; span 20 [s]; tolerance 1e-12 ; method dop85
 END
 weigh "$dir/swing.lag" s
 near "beside the root mean square: c sqrt(2), as far as steps and the mean over them are dense" 1e-7 1.414e-6 "$(of friction weight)"
-# dx = -c/2 (t cos t - sin t), dv = c/2 t sin t, at 16 times, as parts of the largest cos and sin there
-most=$(awk 'BEGIN { for (k = 1; k <= 16; k++) { t = 1.25*k; x = cos(t); v = sin(t); a = t*x - v; b = t*v
+# dx = -c/2 (t cos t - sin t), dv = c/2 t sin t, at 256 times, as parts of the largest cos and sin there
+most=$(awk 'BEGIN { for (k = 1; k <= 256; k++) { t = 20*k/256; x = cos(t); v = sin(t); a = t*x - v; b = t*v
   if (x*x > X*X) X = x; if (v*v > V*V) V = v; if (a*a > A*A) A = a; if (b*b > B*B) B = b }
   a = A/X; b = B/V; a = a < 0 ? -a : a; b = b < 0 ? -b : b; printf "%.15g", 5e-7*(a > b ? a : b) }')
 near "difference: c t/2" 1e-10 "$most" "$(of friction difference)"

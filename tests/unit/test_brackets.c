@@ -161,21 +161,6 @@ static void oscillator(void **state) {
   arena_free(c.arena);
 }
 
-/* An affine change of coordinates with fractions makes whole numbers large. Two that breathe, b1 and b2 = cos and sin of 2 t with delta t =
- * N sin(2 t) ..., have {b1, b2} = +-2 N^2 of the energy; N clears the fractions of the shifts 95/648 and 343/864: 2592. */
-static void large_numbers(void **state) {
-  (void)state;
-  Charges c = charges("model o\ncoord u, v\nlagrangian = ((3*u'/2 - 2*v'/7)^2 + (u'/5 + 4*v'/3)^2)/2 - ((3*u/2 - 2*v/7 + 1/3)^2 + (u/5 + 4*v/3 - 1/2)^2)/2\n");
-  uint32_t n = c.found.all.n;
-  assert_int_equal(n, 8);
-  for (uint32_t k = 0; k < c.algebra.all.n; k++) assert_non_null(c.algebra.all.at[k].c);
-  for (uint32_t k = 0; k <= n; k++) {
-    long double got = fabsl(constant(&c, n - 2, n - 1, k));
-    assert_true(got == (k == charge(&c, "energy") ? 2 * 2592.0L * 2592 : 0));
-  }
-  arena_free(c.arena);
-}
-
 static long double value_of(const Charges *c, const char *name) {
   test_rng = 5;
   for (SymId k = 1; k <= expr_symbol_count(c->e->g); k++)
@@ -223,7 +208,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(rotations), cmocka_unit_test(galilei),    cmocka_unit_test(two_bodies), cmocka_unit_test(inverse_square),
     cmocka_unit_test(magnetic),  cmocka_unit_test(oscillator), cmocka_unit_test(vortices),   cmocka_unit_test(refused),
-    cmocka_unit_test(two_rates), cmocka_unit_test(large_numbers), cmocka_unit_test(roots_of_numbers),
+    cmocka_unit_test(two_rates), cmocka_unit_test(roots_of_numbers),
   };
   return cmocka_run_group_tests_name("brackets", tests, NULL, NULL);
 }

@@ -105,22 +105,6 @@ static void test_same_unknown(void **state) {
   arena_free(f.a);
 }
 
-static void test_undo(void **state) {
-  (void)state;
-  Fixture f = setup();
-  Dim x = dim_unknown(f.d, "x"), y = dim_unknown(f.d, "y");
-  assert_true(dim_equate(f.d, y, dim_mul(f.d, x, f.s), at(1)));
-  uint32_t mark = dims_mark(f.d);
-  assert_true(dim_equate(f.d, x, f.m, at(2)));
-  assert_int_equal(dim_resolved(f.d, y), dim_mul(f.d, f.m, f.s));
-  dims_undo(f.d, mark);
-  assert_true(dim_is_open(f.d, y));
-  assert_int_equal(dim_resolved(f.d, y), dim_mul(f.d, x, f.s));
-  assert_true(dim_equate(f.d, x, f.kg, at(3)));
-  assert_int_equal(dim_resolved(f.d, y), dim_mul(f.d, f.kg, f.s));
-  arena_free(f.a);
-}
-
 /* function f(a, b) = a + b^2*c, called with lengths: the arguments' unknowns are replaced. That of b, the newest, is
  * found in terms of that of a. */
 static void test_replace(void **state) {
@@ -144,7 +128,7 @@ static void test_replace(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_algebra), cmocka_unit_test(test_one_unknown), cmocka_unit_test(test_system),
-    cmocka_unit_test(test_same_unknown), cmocka_unit_test(test_undo), cmocka_unit_test(test_replace),
+    cmocka_unit_test(test_same_unknown), cmocka_unit_test(test_replace),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -73,7 +73,7 @@ static void test_jumps(void **state) {
   arena_free(l.arena);
 }
 
-/* What is told of the place: the side is at its level, and by its slope along the line. */
+/* What is told of the place: the side is 0, and by its slope along the line. */
 static void test_place(void **state) {
   (void)state;
   Lab l = lab_new();

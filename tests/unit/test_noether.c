@@ -117,15 +117,6 @@ static void gauges(void **state) {
          INVARIANT_UP_TO_F);
 }
 
-/* Derivatives d/dt of sqrt(1 + x^2), 1/(1 + y^2), exp(x y) and the like in L: what a shift makes of them is the derivative of their slope. */
-static void substitutions(void **state) {
-  (void)state;
-  proves("model g\ncoord x, y\nparam a = 2\nlagrangian = (x'^2 + y'^2)/2 + a*x'*sqrt(1 + x^2)\nobserve xi_x = 1\nobserve F = a*sqrt(1 + x^2)\nobserve Q = x'\n", INVARIANT_UP_TO_F);
-  proves("model g\ncoord x, y\nparam a = 2\nlagrangian = (x'^2 + y'^2)/2 + a*y'/(1 + y^2)\nobserve xi_y = 1\nobserve F = a/(1 + y^2)\nobserve Q = y'\n", INVARIANT_UP_TO_F);
-  proves("model g\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 + y'*exp(y^2)\nobserve xi_y = 1\nobserve F = exp(y^2)\n", INVARIANT_UP_TO_F);
-  proves("model g\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 + y'*sqrt(1 + y^2) + y*exp(x^2)\nobserve xi_y = 1\nobserve left = exp(x^2)\n", NOT_INVARIANT);
-}
-
 /* Functions of time without an integral in closed form, and inputs: any function of time is a derivative, and their part of the balance. */
 static void integrals(void **state) {
   (void)state;
@@ -232,7 +223,7 @@ static void any_gauge(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(kepler),  cmocka_unit_test(boosts),   cmocka_unit_test(oscillator),
-                                     cmocka_unit_test(gauges), cmocka_unit_test(substitutions), cmocka_unit_test(integrals),  cmocka_unit_test(scaling),  cmocka_unit_test(balances),
+                                     cmocka_unit_test(gauges), cmocka_unit_test(integrals),  cmocka_unit_test(scaling),  cmocka_unit_test(balances),
                                      cmocka_unit_test(constrained), cmocka_unit_test(first_order),
                                      cmocka_unit_test(first_order_forced), cmocka_unit_test(contacts), cmocka_unit_test(any_gauge)};
   return cmocka_run_group_tests(tests, NULL, NULL);
