@@ -7,10 +7,11 @@
 
 enum { MOST_TURNS = 32 };
 
-/* Relative perturbation: differences are then exact to half of their digits. */
+/* Relative perturbation: differences of values then keep half of their digits. */
 static const double MOVE = 1.0 / (1 << 26);
 
-/* Perturbs every MOST_TURNS-th element, of those whose turn it is, of z[n], the part from `first` on of one list. */
+/* Perturbs the elements of z[n] that belong to pass `turn`: those whose number, counted from `first`, is `turn`
+ * modulo MOST_TURNS. */
 static void perturb(double *z, int n, int first, int turn)
 {
   for (int i = 0; i < n; i++) {

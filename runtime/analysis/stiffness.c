@@ -11,8 +11,8 @@ enum { LEAST_STEPS = 30, ITERATIONS = 6, STAGES = 12, MARGIN = 4 };
 /* Fraction of the stability bound above which a step counts as limited. Steps limited by stability vary about the bound, since steps past it let
  * errors grow until one is refused (h*rho of rk45, whose bound is 3.3, lies between 2.2 and 4.2), so half of them may be below it. */
 static const double near_bound = 0.75;
-/* A mode whose real part is more than this fraction of its eigenvalue grows: accuracy, not stability, limits steps. Less may be rounding in the
- * eigenvalue of an oscillation. */
+/* A mode counts as growing if its real part is more than this fraction of |eigenvalue|: accuracy, not stability, limits steps. Less may be
+ * rounding in the eigenvalue of an oscillation. */
 static const double growing = 0.1;
 
 typedef struct Look {
@@ -86,7 +86,7 @@ static int examine_step(void *context, const lag_sim *sim)
 
   l->last = s->until = t;
   s->calls = pb.rhs_calls;
-  if (s->steps == l->most / 2) { /* the first half of the trial is forgotten: a transient says little of the rest */
+  if (s->steps == l->most / 2) { /* drops the statistics of the first half of the trial: they may be those of a transient */
     s->looked = s->limited = 0;
   }
   if (s->steps++ % l->every == 0 && lag_jacobian(&pb, t, sim->y, l->J, l->work) == LAG_OK) {

@@ -45,7 +45,7 @@ static int no_column(const App *app, const char *name)
   return -1;
 }
 
-/* strcmp that orders numbers by value: x[2] before x[10]. */
+/* Like strcmp, but compares numbers by value: x[2] before x[10]. */
 static int compare(const char *a, const char *b)
 {
   for (;;) {
@@ -135,7 +135,7 @@ static int columns_at(const App *app, const char **s, int *cols)
   return columns_of(app, word, cols);
 }
 
-/* If the points are a family that begins with index 0, its first point is the suspension of the rods. */
+/* If the points are a family from index 0 on, member 0 is the fixed point that the rods hang from. */
 static void suspend_at_zero(App *app, int x)
 {
   const char *name = app->table.cols[x].name, *at = strstr(name, "[0]");

@@ -73,7 +73,7 @@ static void sample(App *app, int k, double t)
   lag_thin_extend_range(&f->rows, row);
 }
 
-/* Whether the odd ones of n + 1 samples lie on lines between their neighbours. */
+/* Whether each odd sample of 0 .. n lies on the line between its neighbours. */
 static int lines_suffice(const App *app, int n)
 {
   const PictureSampling *f = &app->sampling;
@@ -113,7 +113,7 @@ static int sample_step(App *app, double a, double b)
   return rc ? LAG_ENOMEM : LAG_OK;
 }
 
-/* End of the next step: for STEPS_TO methods near enough that few samples resolve it; else `until`. */
+/* Time to step to: for STEPS_TO methods so near that few samples resolve the step; for others `until`. */
 static double sampling_stop(const App *app, double t, double until)
 {
   const PictureSampling *f = &app->sampling;

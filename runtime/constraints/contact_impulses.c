@@ -154,8 +154,8 @@ static double change_of_rate(const ContactSet *w, int i, const double *d)
   return s;
 }
 
-/* w->d := the least change of velocities that changes the rate of contact i by 1, the others open. Returns the rate's change by a unit impulse;
- * 0 where no impulse moves it; NaN: no finite values. */
+/* w->d := the least change of velocities that changes the rate of contact i by 1, the others open. Returns the change of the rate per unit
+ * impulse; 0 if no impulse changes it; NaN: no finite values. */
 static double response(ContactSet *w, int i)
 {
   lag_problem *pb = &w->sim->pb;
@@ -303,7 +303,7 @@ int lag_contacts_impact(ContactSet *w, const double *e, const unsigned char *str
 
 /* ---- forces */
 
-/* pull[n] := acceleration of each gap while open: minus the force that it needs when closed alone, times its response. */
+/* pull[n] := acceleration of each open gap: -(force if this contact alone is closed) * (its response). */
 static int find_pulls(ContactSet *w)
 {
   for (int a = 0; a < w->n; a++) {

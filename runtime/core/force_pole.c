@@ -1,12 +1,12 @@
-/* Detects steps of equal size across a pole of a force or a flow, as 1/x^2 has at x = 0: the motion behind it is not one of the model. Enters: a
- * step that a method has made, from s->now to s->y; leaves: whether a derivative goes through infinity within it. Adaptive methods stop in front
- * of a pole by themselves, as their steps become too small.
+/* Detects steps of equal size across a pole of a force or a flow, as 1/x^2 has at x = 0: what a method computes beyond the pole is no motion of
+ * the model. Enters: a step that a method has made, from s->now to s->y; leaves: whether a derivative goes through infinity within it. Adaptive
+ * methods stop in front of a pole by themselves, as their steps become too small.
  *
  * A step is examined where the rate of change of a velocity or a state is unlike that of the two steps before: the second difference is a tenth
  * of the largest change (in a resolved motion it is (w step)^2 of it), or the change is a peak, four times that of two steps before. Then the
- * straight line between the step's ends is bisected towards the end with the larger derivative. Over a pole of order p the interval's length
- * times the smaller derivative at its ends grows by 2^(p-1) a turn; over anything finite, however steep, it falls by 2 from some turn on, and
- * over the integrable end of a square root by sqrt 2. */
+ * straight line between the step's ends is bisected towards the end with the larger derivative. Across a pole of order p, the interval's length
+ * times the smaller derivative at its ends grows by 2^(p-1) per bisection; for anything finite, however steep, it is halved from some bisection
+ * on, and at the integrable end of a square root divided by sqrt 2. */
 #include <float.h>
 #include <math.h>
 

@@ -7,7 +7,8 @@
 #include "core/core.h"
 #include "core/rhs.h"
 
-/* Begins the run at the first advance: start, method, monitors, events. At t0 itself only the state is made, as the direction is not known. */
+/* Begins the run at the first advance: start, method, monitors, events. For t = t0 only the start is computed, as the direction of time is not
+ * known yet. */
 static int begin(lag_sim *s, double t)
 {
   s->run->dir = s->pb.dir = t < s->scene->t0 ? -1 : 1;

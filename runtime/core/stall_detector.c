@@ -6,12 +6,11 @@
  * steps may stay on one side with stages on both: by rk4 a body that sticks would creep for ever.
  * 2. Shrinking steps: near a position where constraints become dependent, with independence s, accelerations have an error of eps/s^2; a
  * tolerance below that makes steps shrink in front of it, accepted one by one, for ever. So do places where a constraint or a force jumps with
- * the position. Criterion: in MOST steps the time advanced by less than a hundred-thousandth of the run so far, and at less than a hundredth of
- * its mean pace (a fast event, as a stiff spring that is struck, takes some hundred steps); and there is a cause, nearly dependent constraints
- * or a model that jumps.
+ * the position. Criterion: MOST steps advanced the time by less than 1e-5 of the run so far, at less than 1e-2 of its mean pace (a fast event,
+ * as a stiff spring that is struck, takes some hundred steps); and there is a cause, nearly dependent constraints or a model that jumps.
  * 3. Equal steps longer than half a period: an implicit method keeps the energy of such an oscillation, and nothing else of it. The square of
- * the frequency is estimated along a step as -(change of acceleration).(change of position)/|change of position|^2. It ends no run; the report
- * tells. */
+ * the frequency is estimated along a step as -(change of acceleration).(change of position)/|change of position|^2. It does not end the run;
+ * the report mentions it. */
 #include <math.h>
 #include <stdio.h>
 
@@ -134,7 +133,7 @@ static int check_sliding(lag_sim *s, double t)
   return LAG_OK;
 }
 
-/* The switching function near whose surface the motion has been: its value is less than its growth in the time `led`. -1: none. */
+/* The switching function near whose surface the motion has stayed: |value| < |rate| led. -1: none. */
 static int hangs_at(lag_sim *s, double t, double led)
 {
   int k = s->scene->model->nswitch - 1;

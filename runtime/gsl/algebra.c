@@ -1,6 +1,6 @@
-/* lag_algebra by the GNU Scientific Library. Enters and leaves: row-major arrays. Holds: GSL's abort handler is off while it runs, and its
- * allocations are freed on every way out. Sources: GSL Reference Manual, "Eigensystems", "Linear Algebra" and "Nonlinear Least-Squares Fitting",
- * and the papers named there. */
+/* lag_algebra by the GNU Scientific Library. All matrices are row-major. Holds: GSL's abort handler is off while it runs, and its allocations
+ * are freed on every way out. Sources: GSL Reference Manual, "Eigensystems", "Linear Algebra" and "Nonlinear Least-Squares Fitting", and the
+ * papers named there. */
 #include <float.h>
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
@@ -45,7 +45,7 @@ static int equations_df(const gsl_vector *x, void *context, gsl_matrix *J)
   return gsl_matrix_memcpy(J, &view.matrix);
 }
 
-/* Dogleg steps (Powell, 1970) with QR and column pivoting, which a singular Jacobian does not stop. */
+/* Dogleg steps (Powell, 1970), solved by QR with column pivoting, so that a singular Jacobian is no obstacle. */
 static int iterate(gsl_multifit_nlinear_workspace *w, gsl_multifit_nlinear_fdf *fdf, double *x, int most, int *steps)
 {
   gsl_vector_view start = gsl_vector_view_array(x, fdf->p);

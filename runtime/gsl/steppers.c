@@ -159,7 +159,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return failure(w, rc, *t);
 }
 
-/* Hermite interpolation. f at the ends is computed on the first call: mostly only events call it. */
+/* Hermite interpolation. f at the ends is computed on the first call only, since most steps never need it. */
 static void dense(void *work, lag_problem *pb, double t, double *y)
 {
   Gsl *w = work;

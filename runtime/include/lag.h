@@ -1,7 +1,7 @@
 /* lag.h: the public interface of liblag, the runtime of compiled Lagrangians.
  *
- * Enters: a scene (lag_model.h), emitted by lagc. Leaves: its trajectory. A simulation is one opaque
- * object; a method of integration is a const descriptor, and a new method is a new file.
+ * It takes a scene (lag_model.h), emitted by lagc, and computes its trajectory. A simulation is one opaque object; a method of integration is a const
+ * descriptor, and a new method is a new file.
  *
  * Conventions, everywhere below: values are in SI units unless "declared unit" is said; arrays are
  * dense; y = [q[nq] | v[nq] | z[nz]] has n = 2 nq + nz elements; the library never keeps a pointer
@@ -92,13 +92,13 @@ unsigned lag_facts(const lag_problem *pb);
 int lag_inputs(lag_problem *pb, double t);
 
 /* dy[n] = f(t, y[n]). Returns the model's status; does not look for NaN. Where constraints are redundant, f is evaluated at the projection of y
- * (lag_project): off the constraints, where the stages of a step lie, all rows are independent, and what the redundant ones demand is rounding
- * divided by rounding. On the constraints this f is the same, and beside them as smooth. */
+ * (lag_project): stages of a step lie off the constraints; there redundant rows become independent, and their accelerations would be rounding divided
+ * by rounding. On the constraints this f is the same, and near them as smooth. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 
-/* Distance from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The third derivative of the right-hand
- * side jumps there, and a step over several rows may miss what lies between: an adaptive method ends its step at *row when that is nearer.
- * STEPS_TO methods get it as t_stop. */
+/* Distance from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The third derivative of the right-hand side
+ * jumps at a row, and a long step may skip rows: so an adaptive method ends its step at *row if its own end would lie beyond. STEPS_TO methods get it
+ * as t_stop. */
 double lag_next_row(const lag_problem *pb, double t, double *row);
 
 /* Lq = dL/dq, Lv = dL/dv and Q, the forces outside L, all [nq]; and h[model->nsecond], their derivatives. For models that have these functions;
@@ -135,7 +135,7 @@ int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double 
 int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d, double *force);
 
 /* Projects y[n] onto the constraints at t: positions by Newton's iteration, each correction the least in the mass metric, until the residual is
- * rounding; then velocities. lost[n], or NULL: rounding errors of y as a sum of steps (methods/steps.h), kept up to date. > 0: no solution near
+ * rounding; then velocities. lost[n], or NULL: the compensation of the sum of steps in y (methods/steps.h), which is updated. > 0: no solution near
  * y, a smaller step may help; pb->detail names the worst constraint, y and lost are undefined. Does nothing without constraints.
  *
  * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8: projection keeps the order
@@ -144,9 +144,9 @@ int lag_project(lag_problem *pb, double t, double *y, double *lost);
 /* lag_project after a step from y0; > 0 also where the projection would move y farther than the step did: a constraint jumps there, or the step
  * is too long. */
 int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost);
-/* The test of lag_project_step, for a step from y0 to y that led by led[nq] and was corrected by moved[nq]: the first coordinate whose
- * correction is more than twice the larger of its own led and of that of coordinates of its unit that share a constraint with it; -1: none.
- * Corrections below a millionth of the coordinate's largest distance from 0 are rounding near a singular position, and pass. */
+/* The test of lag_project_step. A step from y0 to y displaced the coordinates by led[nq], and the projection then by moved[nq]. Returns the first
+ * coordinate whose correction is more than twice the larger of its own led and of that of coordinates of its unit that share a constraint with it;
+ * -1: none. Corrections below a millionth of the coordinate's largest distance from 0 are rounding near a singular position, and pass. */
 int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led);
 /* pb->detail := the constraint on positions that y breaks most at t, and that meeting it moves coordinate i by `moved`. Returns LAG_ERETRY. */
 int lag_report_leap(lag_problem *pb, double t, const double *y, int i, double moved);
@@ -157,14 +157,14 @@ double lag_independence(lag_problem *pb, double t, const double *y, int *weakest
 
 /* The largest |x[j]| over the coordinates (or velocities) j with the unit of coordinate i: the scale of its rounding where x[i] itself is small. */
 double lag_unit_magnitude(const lag_problem *pb, const double *x, int i);
-/* Typical magnitude of component i of q (holonomic) or of v: the largest of that unit; of an angle at least 1. In a run that began at 0, where
- * there is no length, at least 1e-6; 1 where all are 0. Of a velocity at least that of a motion through such a distance in the time of the run,
- * as at rest the velocity itself is rounding. */
+/* Typical magnitude of component i of q (holonomic) or of v: the largest of that unit; of an angle at least 1. In a run that began at 0 it is at
+ * least 1e-6, and 1 if all values are 0, since nothing else sets a scale. Of a velocity at least that of a motion through such a distance in the time
+ * of the run, as at rest the velocity itself is rounding. */
 double lag_typical_magnitude(const lag_problem *pb, const double *y, int holonomic, int i);
 /* Projects a small change e[n] of the state y onto the tangent space of the constraints: lag_project to first order. */
 int lag_project_tangent(lag_problem *pb, double t, const double *y, double *e);
 
-/* size[nholonomic] (holonomic), or size[n] of the rates: sum of the sizes of the terms that make c, or r, at y, t. */
+/* size[nholonomic] (holonomic), or size[n] of the rates: the sum of |terms| of c, or r, at y, t. */
 int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonomic, double *size);
 
 /* The worst constraint: index of the c (holonomic) or r that is largest relative to its terms at y, t; *size, if not NULL: that ratio in units
@@ -259,9 +259,9 @@ typedef struct lag_method {
   /* Frees what init allocated; NULL when it allocates nothing. */
   void (*fini)(void *work);
 
-  /* Y[n * k] := D Y, with D the derivative by y0 of the step from the beginning of the last step to t: at the step's end the derivative of the
-   * step itself, at fixed step size (for taylor, of the flow, to the tolerance); before it, of a shorter step. scratch has tangent_size(pb, k)
-   * doubles. 0, or < 0 as step. Later steps do not depend on whether it was called. NULL: the method has no tangent. */
+  /* Y[n * k] := D Y, with D = dy(t)/dy0 for a step that begins where the last step began and ends at t, at fixed step size (for taylor: the
+   * derivative of the flow, to the tolerance). scratch has tangent_size(pb, k) doubles. 0, or < 0 as step. Later steps do not depend on whether it
+   * was called. NULL: the method has no tangent. */
   size_t (*tangent_size)(const lag_problem *pb, int k);
   int (*tangent)(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
 
@@ -319,11 +319,11 @@ typedef struct lag_charge_stats {
   double begin, now;    /* Q */
   double work;          /* int P dt, where P = dQ/dt is known and not 0 */
   double drift;         /* largest |Q - int P dt - Q0| over the run, without jumps at events, relative to the larger of |Q0| and the median over
-                         * the run of the sum of the sizes of the terms of Q (a median, as a blow-up at the end would raise the maximum) */
+                         * the run of the sum of |terms| of Q (a median, as a blow-up at the end would raise the maximum) */
   double absolute;      /* drift in `unit` */
   double slope, slope_error; /* slope of a line fitted to Q - int P dt, relative as drift [1/s], and its standard error; NaN: too few steps */
   int trend;
-  double energy_jump, energy_jump_t;  /* of the energy: largest change in one step, relative as drift, and its time; 0: rounding, or not computed (constant
+  double energy_jump, energy_jump_t;  /* of the energy: largest change within one step, relative like drift, and its time; 0: rounding, or not computed (constant
                          * mass matrix, more than 64 coordinates) */
   double mass_condition;        /* estimated condition of the mass matrix there; NaN: not known */
   const char *mass_condition_of; /* the coordinate of least inertia there */
@@ -347,16 +347,15 @@ void lag_sim_free(lag_sim *sim);
 
 /* Chooses a method. opt[nopt] are options by name; the others keep their defaults. */
 int lag_sim_set_method(lag_sim *sim, const lag_method *method, const lag_option *opt, int nopt);
-/* tol > 0; at least 4.5 DBL_EPSILON, 1e-15. */
+/* tol is at least 4.5 DBL_EPSILON, about 1e-15. */
 int lag_sim_set_tolerance(lag_sim *sim, double tol);
 /* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when nothing else ends in ".c"), the start of
  * a coordinate ("th"), of its velocity ("th'") or of a state, or a constant that replaces an input; of a family one
  * member ("m[2]", "r[1].x'") or all ("m", "r.x'"). A parameter of the wrong sign is an error. */
 int lag_sim_set(lag_sim *sim, const char *name, double value);
 /* Component i of [q|v|z] in its declared unit: asked, as it was set; begin, where the run began. With constraints they differ: the first advance
- * moves the start to the nearest position in the mass metric, then to the nearest velocity, changing first what was not set, and everything only
- * where that does not suffice. LAG_EINVAL then: no start is near, or the scene says `exactly` and its start is another; the message names the
- * worst constraint. */
+ * moves the start to the nearest consistent position, then velocity, in the mass metric: first only components that were not set, then all if needed.
+ * LAG_EINVAL then: no start is near, or the scene says `exactly` and its start is another; the message names the worst constraint. */
 double lag_sim_requested_start(const lag_sim *sim, int i);
 double lag_sim_actual_start(const lag_sim *sim, int i);
 /* Rank of the constraints at the start; whether constraint k follows from others there (not before the first advance). */

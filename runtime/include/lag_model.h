@@ -173,7 +173,7 @@ typedef struct lag_charges {
   int n;
   const lag_charge *of; /* [n] */
 
-  /* out[2 (n - 1)]: for each charge but the energy, its value and the sum of the sizes of its terms, the scale of its drift. NULL where n is 1. */
+  /* out[2 (n - 1)]: for each charge but the energy, its value and the sum of its |terms|, the scale of its drift. NULL where n is 1. */
   int (*values)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                 const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
@@ -190,8 +190,8 @@ typedef struct lag_switch {
 } lag_switch;
 
 /* A unilateral contact: a gap that stays at least 0. While it is closed the gap is a constraint; the model multiplies that constraint by an
- * input, 1 when closed and 0 when open. The runtime closes a contact where impacts follow each other ever faster, or one leaves no speed; it
- * opens the contact where its multiplier becomes negative. */
+ * input, 1 when closed and 0 when open. The runtime closes a contact if impacts accumulate or an impact leaves no relative speed; it opens the
+ * contact when its multiplier becomes negative. */
 typedef struct lag_contact {
   int input, constraint; /* index in u, index in the constraints */
   int impact, release;   /* events: the gap closes; its multiplier falls below 0. act(impact) is Newton's impact law for this gap alone, with the

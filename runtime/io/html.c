@@ -10,7 +10,7 @@
 
 enum { RESOLUTION = 100000, TICKS = 1000000000 };
 
-/* Offset and unit of the integers that coordinates are written as: the middle of all, and extent/RESOLUTION. */
+/* Coordinates are written as integers: (x - *zero)/(*scale). *zero: the middle of all; *scale: extent/RESOLUTION. */
 static void choose_resolution(const Table *t, const Animation *a, double *zero, double *scale)
 {
   double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
@@ -38,8 +38,7 @@ static double choose_speed(double span)
   return unit > 0 ? unit * lag_tick_step(0, span / unit, 20) : lag_tick_step(0, span, 20);
 }
 
-/* choose_speed, limited to 280 frames a second: frames are as dense as the motion needs, some seventy a swing, and the eye follows
- * about four swings a second. */
+/* choose_speed, limited to 280 frames per second: a swing has about seventy frames, and the eye follows about four swings per second. */
 static double followable_speed(const Table *t, double span)
 {
   enum { FRAMES_A_SECOND = 280 };

@@ -85,7 +85,7 @@ static void remove_remains(const char *path)
   }
 }
 
-/* Whether path names standard output or another open stream; writing appends there, even if the stream is a file. */
+/* Whether path names an open stream, such as /dev/stdout; such a file is appended to, never replaced. */
 static int is_stream(const char *path)
 {
   return strncmp(path, "/dev/std", 8) == 0 || strncmp(path, "/dev/fd/", 8) == 0 || strncmp(path, "/proc/", 6) == 0;

@@ -1,6 +1,6 @@
-/* Thinning of rows for pictures by the "swinging door" (E. H. Bristol, Swinging door trending, ISA Transactions 1990). Enters:
- * rows in order of time; leaves: a subset whose straight lines miss no row by more than a part of the drawn range. Holds:
- * both sides of a jump are kept, and the first and the last row. */
+/* Thinning of rows for pictures by the "swinging door" (E. H. Bristol, Swinging door trending, ISA Transactions 1990). Enters: rows in order
+ * of time; leaves: a subset of rows such that the lines between them miss no row by more than a given part of the drawn range. Holds: both
+ * sides of a jump are kept, and the first and the last row. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,7 +74,7 @@ int lag_thin_is_straight(const RowThinning *w, const double *a, const double *b,
 
   for (int i = 0; i < w->ndrawn; i++) {
     int c = w->drawn[i];
-    if (fabs(between[c] - (a[c] + f * (b[c] - a[c]))) > w->width[c]) { /* false for NaN: such a row needs no line */
+    if (fabs(between[c] - (a[c] + f * (b[c] - a[c]))) > w->width[c]) { /* a NaN compares false: a row without values is never off the line */
       return 0;
     }
   }
@@ -92,7 +92,8 @@ static int keep(RowThinning *w, const double *row)
   return w->store ? lag_table_add(w->table, row) : 0;
 }
 
-/* 1: no line from the row kept last passes near this row and all between. 0: one does; narrows the door (slopes low to high) to such lines. */
+/* Returns 1 if no line from the last kept row passes near all rows since, this one included. Else returns 0 and narrows the door, the slopes
+ * low to high of such lines. */
 static int door_closes(RowThinning *w, const double *row)
 {
   double dt = fabs(row[0] - w->from[0]);

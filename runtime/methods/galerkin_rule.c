@@ -1,4 +1,4 @@
-/* Tables of discrete Lagrangians. */
+/* Computes the tables (points, weights, nodes) that define discrete Lagrangians. */
 #include "methods/galerkin_rule.h"
 
 #include <string.h>
@@ -18,7 +18,8 @@ static double polynomial(const double *a, int n, double x, double *integral)
   return p;
 }
 
-/* Fills value, integral and whole: the Lagrange basis of the nodes and its integrals, at the points. */
+/* Fills value and integral (the Lagrange basis and its integral from 0, at the points) and whole (its
+ * integral over the step). */
 static void fill(lag_rule *r)
 {
   int n = (int)r->free, points = (int)r->points;

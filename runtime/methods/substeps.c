@@ -1,5 +1,5 @@
-/* The substeps of a step in q and p. Enters: the present q and p; leaves: the increments of a substep. Holds: within a step q and p are kept as
- * values at its start plus increments, so that sums lose nothing to rounding. */
+/* Makes the substeps of a step of the implicit symplectic methods, in q and p. Enters: the present q and p; leaves: the increments of a
+ * substep. Holds: within a step q and p are kept as values at its start plus increments, so that sums lose nothing to rounding. */
 #include "methods/substeps.h"
 
 #include <string.h>

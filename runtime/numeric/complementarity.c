@@ -1,12 +1,12 @@
-/* Linear complementarity by the criss-cross method (complementarity.h). Holds: basic = q + T nonbasic, where basic variable i is z_i where in[i],
- * else w_i; pivots are principal or in pairs, so that each pair (w_i, z_i) keeps its row. */
+/* Linear complementarity by the criss-cross method (complementarity.h). Invariant: basic = q + T nonbasic; basic variable i is z_i if in[i], else
+ * w_i; pivots are principal or in pairs, so that each pair (w_i, z_i) keeps its row. */
 #include "numeric/complementarity.h"
 
 #include <math.h>
 
 #include "numeric/dense.h"
 
-/* Relative sizes that count as rounding: of a pivot, whose row then depends on others, and of a right-hand side. */
+/* Relative sizes that count as rounding: of a pivot (its row then depends on others), and of a right-hand side. */
 const double lag_lcp_zero_pivot = 1e-10;
 static const double no_value = 1e-13;
 
@@ -28,7 +28,7 @@ static void pivot(int n, double *T, double *q, int r, int s)
   }
 }
 
-/* Swaps rows and columns r and s, after two pivots that have moved each pair to the other's place. */
+/* Swaps rows and columns r and s: two pivots have exchanged the pairs r and s, this puts them back. */
 static void exchange(int n, double *T, double *q, int r, int s)
 {
   lag_swap(&q[r], &q[s]);

@@ -1,4 +1,4 @@
-/* Magnitudes by which states and residuals of constraints are judged. */
+/* Scales against which states and residuals of constraints are compared. */
 #include "numeric/magnitudes.h"
 
 #include <float.h>

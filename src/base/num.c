@@ -48,7 +48,7 @@ static uint64_t scramble(uint64_t x) {
   return x ^ x >> 31;
 }
 
-/* A residue for a value that has none, such as an irrational power: a hash. */
+/* A hash in place of the residue, for values that have none, such as irrational powers. */
 static uint64_t mod_drawn(uint64_t a, uint64_t b) { return scramble(scramble(a + 0x9e3779b97f4a7c15u) ^ b) % PRIME; }
 
 static uint64_t mod_div(uint64_t a, uint64_t b) { return b == 1 ? a : b ? mod_mul(a, mod_pow(b, PRIME - 2)) : mod_drawn(a, b); }
@@ -68,8 +68,8 @@ static uint64_t bits_of(double x) {
   return bits;
 }
 
-/* An inexact number: the last rounding, and those of the bound itself, are added to the error. Where value and residue agree on an integer, that
- * integer is the result. */
+/* Makes an inexact number; adds the rounding of x and of the bound itself to the error. If value and residue agree on an integer, the result is
+ * that integer. */
 static Num inexact(double x, double error, uint64_t residue) {
   error = error * (1 + 1e-9) + fabs(x) * DBL_EPSILON + DBL_MIN * DBL_EPSILON;
   int64_t whole = residue > PRIME / 2 ? -(int64_t)(PRIME - residue) : (int64_t)residue;

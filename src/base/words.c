@@ -1,4 +1,4 @@
-/* Lists of words: a scan of the string. */
+/* Looks words up in a list that is one string, separated by spaces. */
 #include "base/words.h"
 
 #include <string.h>

@@ -106,8 +106,8 @@ static void show_integrability(const Eqns *e, StateSolver *s, StrBuf *out) {
 
 /* --- starts from which no motion is possible --- */
 
-/* The first constraint that depends on earlier ones but demands an acceleration that they exclude; UINT32_MAX: none. symbols: a state on the
- * constraints. Accelerations that move less than a billionth of the model's size during the scene count as rounding. */
+/* The first constraint whose row depends on earlier rows but whose right-hand side contradicts theirs; UINT32_MAX: none. symbols: a state on
+ * the constraints. Accelerations that move less than a billionth of the model's size during the scene count as rounding. */
 static uint32_t contradicting(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts) {
   const Constraints *k = &e->constraints;
   const Scene *scene = &e->m->scene;
@@ -169,7 +169,7 @@ static uint32_t largest_part(const long double *x, uint32_t n) {
 /* Whether M is regular on the kernel of the constraints at the start. */
 static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbols) {
   const Model *m = e->m;
-  if (!e->mass_known || (e->definite_mass && !e->singular_mass)) return 1; /* definite_mass does not exclude a singular M */
+  if (!e->mass_known || (e->definite_mass && !e->singular_mass)) return 1; /* definite_mass says that M has no negative direction; M may still be singular */
   long double *null = ARENA_ARRAY(m->arena, long double, e->n + 1);
   states_at(s, symbols);
   if (sparse_is_regular_on_kernel(m->arena, e->n, e->constraints.n, states_system(s), null)) return 1;

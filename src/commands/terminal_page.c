@@ -18,7 +18,7 @@ static void put_spaces(StrBuf *out, size_t n) {
 
 static int is_space(char c) { return c == ' ' || c == '\n' || c == '\t'; }
 
-/* State between backticks: inside code; code short enough to stay on one line. */
+/* inside: between backticks; whole: this code is short enough not to be broken over lines. */
 typedef struct {
   int inside, whole;
 } Code;

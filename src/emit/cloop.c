@@ -1,7 +1,7 @@
 /* Rolled loops of a program as loops in C.
  *
- * Inside, a value is a `const` of its turn. A value that other turns, other loops or later code need is kept
- * in a local array, one element a turn, preceded by the values that the first turns take from the code before. */
+ * Inside, a value is a `const` of its iteration. A value that other iterations, other loops or later code need is kept in a
+ * local array, one element per iteration, preceded by the values that the first iterations take from the code before. */
 #include <string.h>
 
 #include "emit/cwriter_impl.h"
@@ -45,7 +45,8 @@ static const char *index_text(const Writer *w, int64_t first, int64_t step) {
   return first ? arena_printf(w->a, "%s %c %lld", k, first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first)) : k;
 }
 
-/* Element of the kept array for the value at `place` of a loop, step turns further with each k; step 0: that element alone. */
+/* The element of the kept array that holds the value at `place` of a loop; if step is not 0, its index advances by `step`
+ * iterations per k. */
 static CExpr kept_value(const Writer *w, uint32_t place, int64_t step) {
   uint32_t in = w->rolls.loop[place] - 1, offset, turn;
   const Loop *l = loop_at(w, in);
@@ -335,7 +336,7 @@ static const char *stored_value(const Writer *w, const Store *first) {
 uint32_t cloop_stores(const Writer *w, uint32_t k) {
   const Prog *p = w->p;
   const Store *first = &p->stores.at[k];
-  uint32_t fewest = p->nests.n ? 8 : 16; /* networks, which have nests, leave shorter runs of stores */
+  uint32_t fewest = p->nests.n ? 8 : 16; /* programs with nests, as of networks, have shorter runs of stores */
   if (k + fewest > p->stores.n || (w->style->params && strcmp(w->style->out[first->array], w->style->in[ARR_P]) == 0)) return 0;
   if (w->style->params && p->ins.at[first->slot].op == IR_LOAD && p->ins.at[first->slot].array == ARR_P) return 0;
   uint32_t n = 1;

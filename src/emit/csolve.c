@@ -1,7 +1,7 @@
 /* Linear systems that are solved in a loop: their entries are written to the workspace w, and a support function solves them. */
 #include "emit/cwriter_impl.h"
 
-/* to[at], ... = the values; eight or more equal neighbours, such as zeros of a sparse matrix, by a loop. */
+/* Writes to[at], to[at + 1], ... = values; eight or more equal neighbours, such as zeros of a sparse matrix, as a loop. */
 static void write_entries_from(Writer *w, const char *to, uint32_t at, const Slot *values, uint32_t n) {
   enum { MANY = 8 };
   for (uint32_t j = 0, end; j < n; j = end) {

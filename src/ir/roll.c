@@ -1,5 +1,5 @@
-/* The search for loops in straight-line code, from the first instruction on: at each place the period and number of turns that take in most
- * of the code; then the stores that loops take over, and the values that later turns or later code need. */
+/* Searches straight-line code for loops, from the first instruction on: at each position the period and number of iterations that cover
+ * most of the code; then the stores that loops take over, and the values that later iterations or later code need. */
 #include "ir/roll.h"
 
 #include <string.h>
@@ -15,7 +15,7 @@ static uint32_t class_of(const Prog *p, Slot s) {
   if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_INVERT || i->op == IR_NEST || i->op == IR_TITLE || i->op == IR_TABLE) return UINT32_MAX - s;
   uint32_t h = (uint32_t)i->op * 31 + i->index;
   for (const char *c = i->text; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
-  for (int k = 0; k < 3; k++) { /* a zero, an array, a number, a value: each counts as itself */
+  for (int k = 0; k < 3; k++) { /* kinds of operands that must agree: none, array, number, value */
     Slot x = roll_operand(i, k);
     h = h * 5 + (!x ? 0 : !ir_is_leaf(p->ins.at[x].op) ? 1 : p->ins.at[x].op == IR_LOAD ? 2 + 8 * (uint32_t)p->ins.at[x].array : 3);
   }
@@ -77,7 +77,7 @@ static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint3
   uint32_t last = most;
   Num unit = {0};
   int64_t multiple = 0;
-  if (s.kind == STEP_SAME && r->place[x] && place_of(r, x) >= begin) return 1; /* a value of the loop's first turn, which later turns cannot share */
+  if (s.kind == STEP_SAME && r->place[x] && place_of(r, x) >= begin) return 1; /* a value of the first iteration, which later iterations cannot use */
   if (s.kind == STEP_NUMBER && !roll_number(first, &r->p->ins.at[y], &unit, &multiple)) return 1;
   if (s.kind == STEP_LOAD && (first->op != IR_LOAD || !(f->by_index >> first->array & 1))) return 1;
   if (s.kind == STEP_OWN && s.step != period) return 1;
@@ -162,7 +162,7 @@ static uint32_t carried(const Rolls *r, const Loop *l) {
   return n;
 }
 
-/* The loop rotated so that the fewest values pass between turns, which may cost one turn. */
+/* Moves the loop's start so that the fewest values pass between iterations; this may cost one iteration. */
 static Loop best_rotation(const Search *f, Loop l) {
   Loop best = l;
   uint32_t least = carried(f->r, &l);

@@ -43,8 +43,8 @@ static Real short_time(const Check *c) {
   return 1e-4L / rate;
 }
 
-/* Derivative by Richardson extrapolation of central differences, at = f(-h), f(h), f(-2h), f(2h). Error: a quarter of their
- * difference, plus rounding of values of magnitude `size` and the known error `rounding`, over h. */
+/* Derivative by Richardson extrapolation of central differences, at = f(-h), f(h), f(-2h), f(2h). Error: a quarter of their difference,
+ * plus 1/h times the known error `rounding` and the rounding of values of magnitude `size`. */
 static BoundedSum derivative(const Real at[4], Real h, Real size, Real rounding) {
   Real near = (at[1] - at[0]) / (2 * h), far = (at[3] - at[2]) / (4 * h), spread = fabsl(near - far);
   Real error = spread / 4 + (1024 * jet_unit * size + rounding) / h;
@@ -72,7 +72,7 @@ static CheckVerdict check_charges(Check *c) {
   for (uint32_t i = 1; i < n; i++) {
     if (!(u->charges.at[i].flags & 2) || u->charges.at[i].flags & 8) continue;
     BoundedSum t = derivative(at[i], h, size[i], 0);
-    t.sum.e /= 64; /* an estimate, not a rounding bound: offsets SLACK */
+    t.sum.e /= 64; /* an estimate, not a rounding bound: takes part of the factor SLACK of check_compare back */
     v = worse(v, check_compare(c, &t, power[i], c->m->span, "the rate of the charge", u->charges.at[i].name));
   }
   return v;
@@ -188,8 +188,8 @@ static Real taylor_step(const Series *s, const Real *x) {
   return h;
 }
 
-/* |rate i of the program at h - derivative of polynomial i|. *t: that derivative with its truncation error, from a run with two terms
- * fewer; off: rounding error of the rate; *said: the program's rate. */
+/* Returns |rate - slope|: rate i of the program at h, and the slope of polynomial i there. *t: the slope with its truncation error,
+ * estimated by leaving out two terms; off: rounding error of the rate; *said: the rate. */
 static Real taylor_difference(const Series *s, const Real *x, Real h, uint32_t i, Real off, const Real *a, const Real *zd, BoundedSum *t, Real *said) {
   const Real *at = i < s->nq ? a + i : zd + (i - s->nq), less = at[i < s->nq ? s->nq : s->nz];
   Real slope = polynomial(x, s->columns, s->nq + i, h, 1), last = fabsl(x[(size_t)ORDERS * s->columns + s->nq + i]) * ORDERS * powl(h, ORDERS - 1);

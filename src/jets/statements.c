@@ -103,7 +103,7 @@ static void read_flow(Walk *w, const AstStmt *st, Name effect) {
   }
 }
 
-/* Stores c as the model's next written constraint, skipping those that the compiler made for rotations. */
+/* Stores c as the model's next written constraint, skipping the unit-length constraints that the compiler adds for rotations. */
 static void push_constraint(Walk *w, Ref c) {
   const Model *m = w->text->m;
   while (w->constraint < m->constraints.n && m->constraints.at[w->constraint].inside) w->constraint++;

@@ -59,7 +59,7 @@ static Elimination system_new(Lower *l) {
 
 /* --- elimination --- */
 
-/* H and b without coordinate v: H -= h h^T/d, b -= h b_v/d, with h its column. */
+/* Eliminates coordinate v from H and b: H -= h h^T/d, b -= h b_v/d, with h its column. */
 static void eliminate_coordinate(Elimination *y, uint32_t v) {
   const SparseRow *row = &y->H.rows[v];
   Slot d = sparse_get(&y->H, v, v);
@@ -106,13 +106,13 @@ static void add_product(Elimination *y, const StepEntry *s, const StepEntry *t, 
 }
 
 /* Substitutes w_v' = C_v u' into the quadratic form: H += c r^T + r c^T + h c c^T = c y^T + r c^T with
- * y = r + h c, computed once a variable; b += c b_v. */
+ * y = r + h c, computed once per variable; b += c b_v. */
 static void eliminate_definition(Elimination *y, uint32_t v) {
   const SparseRow *row = &y->H.rows[v], *c = &y->C[v];
   uint32_t n;
   StepEntry *at = ARENA_ARRAY(y->l->p->arena, StepEntry, row->n + c->n + 1);
   step_entries(y, row, c, sparse_get(&y->H, v, v), v, &n, at);
-  for (uint32_t i = 0; i < c->n; i++) { /* variables behind c->n have c = 0 */
+  for (uint32_t i = 0; i < c->n; i++) { /* at[c->n] and later have c = 0 */
     const StepEntry *s = &at[i];
     Slot twice = op(y, IR_ADD, s->y, s->r);
     add_product(y, s, s, s->c, twice);

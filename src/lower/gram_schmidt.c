@@ -7,7 +7,7 @@ typedef struct {
   Lower *l;
   const SquareForms *s;
   uint32_t n;
-  Slot *w;           /* [s->n * n] the columns of W, orthogonal once they are reached */
+  Slot *w;           /* [s->n * n] the columns of W; a column is orthogonal to the earlier ones when its step begins */
   Slot *b, *pivot;   /* [n] */
   SparseRow *below;  /* [n] the columns of L below the diagonal */
 } Gram;

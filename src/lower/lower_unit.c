@@ -92,7 +92,7 @@ static void add_constraints(IrUnit *u, const Eqns *e) {
   to->velocity = k->nkept == k->n ? to->position : lower_projection(e, k->n);
 }
 
-/* Adds nothing where the energy is the only charge, conserved, and without a unit. */
+/* Adds nothing if the energy is the only charge, is conserved and has no unit. */
 static void add_charges(IrUnit *u, const Eqns *e) {
   const Prog *powers = e->ncharges ? lower_charge_rates(e) : NULL;
   if (e->ncharges < 2 && !powers && !e->energy_jumps && !(e->ncharges && e->charges[0].unit.text[0])) return;
@@ -127,7 +127,7 @@ static void add_variation(IrUnit *u, const Eqns *e) {
   }
 }
 
-/* No series with tables, which are not analytic, nor, so far, with constraints. */
+/* Models with tables have no series, as tables are not analytic; models with constraints have none yet. */
 static void add_taylor(IrUnit *u, const Eqns *e) {
   const char *why;
   if (e->constraints.n) return;

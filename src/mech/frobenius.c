@@ -21,7 +21,7 @@ typedef struct {
   Expr *form, *d;
 } Forms;
 
-/* Adds x = d_j omega_k, the share of coefficient k in d omega_jk = d_j omega_k - d_k omega_j. */
+/* Adds x = d_j omega_k, the contribution of coefficient k to d omega_jk = d_j omega_k - d_k omega_j. */
 static void add_derivative(Forms *f, uint32_t i, uint32_t j, uint32_t k, Expr x) {
   Expr *d = f->d + (size_t)i * f->w * f->w, *jk = &d[j * f->w + k], *kj = &d[k * f->w + j];
   if (j == k) return;

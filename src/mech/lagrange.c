@@ -24,7 +24,7 @@ static SymId *coordinate_symbols(const Model *m, int velocities) {
   return s;
 }
 
-/* Direction (q', z', 1) of the part of d/dt without q'': M q'' stands on the left-hand side. */
+/* The direction (q', z', 1) in (q, z, t) of d/dt without its part in q'', which is M q'' on the left-hand side. */
 static Expr *explicit_direction(const Eqns *e) {
   const Model *m = e->m;
   Expr *seed = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(e->g) + 1);
@@ -155,8 +155,8 @@ static int changes_forces(const Eqns *e, const LinearSystem *s, Expr (*rule)(Exp
   return 0;
 }
 
-/* Replaces *best if s with all entries rewritten takes no more operations. All together, since entries that are shorter one by one may
- * share less. */
+/* Replaces *best if s with all entries rewritten takes no more operations. Operations are counted for all entries together: entries that
+ * are shorter alone may share less. */
 static void try_form(Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr), LinearSystem *best, uint64_t *ops) {
   LinearSystem t = {.n = s->n, .ndefs = s->ndefs, .defs = s->defs, .H = rewritten(e, &s->H, rule), .C = rewritten(e, &s->C, rule)};
   Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n);
@@ -186,7 +186,7 @@ static LinearSystem best_form(Eqns *e, const LinearSystem *s, int how, uint64_t 
   return best;
 }
 
-/* Whether solving with the dense mass matrix takes more than MANY_TIMES the operations of the lifted system; M is then not derived. */
+/* Whether solving with the dense mass matrix takes more than MANY_TIMES the operations of the augmented system; M is then not derived. */
 static int dense_is_too_costly(Eqns *e, LinearSystem *lifted) {
   enum { FEW_COORDINATES = 12, MANY_TIMES = 3 };
   if (e->n <= FEW_COORDINATES || !lifted->ndefs || e->m->expects.n) return 0;
@@ -204,7 +204,7 @@ static int is_definite(Eqns *e, const LinearSystem *s) {
   return e->definite_by_values;
 }
 
-/* The lifted system is used only where its pivots are known to be positive. */
+/* The augmented system is used only where its pivots are known to be positive. */
 void lagrange_momenta_and_forces(Eqns *e) {
   uint64_t dense_ops, lifted_ops;
   e->differentiated_lagrangian = define_velocity_sums(e->g, e->m->lagrangian, e->n);

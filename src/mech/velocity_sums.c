@@ -7,7 +7,7 @@
 #include "mech/degree.h"
 #include "sym/diff.h"
 
-/* Least number of moving terms of a sum: up to 12 coordinates a dense system takes no more operations. */
+/* Least number of terms with velocities of a sum: up to 12 coordinates a dense system takes no more operations. */
 enum { FEWEST = 13 };
 
 typedef struct {

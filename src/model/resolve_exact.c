@@ -1,9 +1,9 @@
 /* Closed forms, `exact th = th(0)*cos(w*t)`, and their outputs `exact(th)`, `error(th)`.
  *
- * A closed form contains t, parameters, inputs and start values. While it is resolved, each start value th(0) is a local
- * symbol, so that th itself can be refused; then the locals are replaced by coordinates, which in a finished closed form
- * mean start values. In outputs, exact(th) is a symbol of kind SYM_INPUT numbered after the model's inputs: the runtime
- * evaluates closed forms like inputs. */
+ * A closed form contains t, parameters, inputs and start values. While it is resolved, th(0) is a local symbol, and th
+ * itself is refused. Then each local is replaced by its coordinate: in a finished closed form th means th(0). In
+ * outputs, exact(th) is a symbol of kind SYM_INPUT numbered after the model's inputs: the runtime evaluates closed forms
+ * like inputs. */
 #include "model/resolve_impl.h"
 
 /* --- values at the start --- */

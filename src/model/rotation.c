@@ -211,7 +211,7 @@ void constrain_rotation(Builder *b, Name name, uint32_t coord, Span span) {
   b->m->constraints.at[b->m->constraints.n - 1].inside = 1;
 }
 
-/* Trace of the 4x4 mass matrix of a rotation's rates at the identity, all else 0: four times the trace of the inertia
+/* Trace of the 4x4 mass matrix of the quaternion's rates at the identity, all other coordinates and rates 0: four times the trace of the inertia
  * tensor. 0 unless it is a constant known to be positive. */
 static Expr traced_inertia(Builder *b, uint32_t coord) {
   const Model *m = b->m;

@@ -39,8 +39,8 @@ static const Expr *mass_rows(Text *t) {
   return rows;
 }
 
-/* Unknowns of the augmented system: accelerations; per definition w, the part of w' that contains them, and the force that w passes on to its
- * arguments. */
+/* Unknowns of the augmented system: accelerations; for each definition w the part of dw/dt that contains them, and the force that w transmits
+ * to its arguments. */
 typedef struct {
   const Expr *rate, *force;
 } Unknowns;
@@ -90,7 +90,7 @@ static void lifted_motion(Text *t) {
   for (uint32_t i = 0; i < s->n; i++) text_equation(t, row[i], s->f[i], i + 1 == s->n && !e->m->states.n);
 }
 
-/* Whether the coordinate is coupled to at most one other: then its rate says more than its row of the two-form. */
+/* Whether the coordinate is coupled to at most one other. If so, its rate is printed instead of its row of the two-form. */
 static int is_in_pair(const FirstOrder *x, uint32_t i) {
   uint32_t n = 0;
   for (uint32_t k = 0; k < x->n; k++) n += x->block[k] == x->block[i];
@@ -157,7 +157,7 @@ static void energy(Text *t, const Charge *c) {
   text_end(t);
 }
 
-/* Degrees of freedom of n first-order coordinates, two of which make one; drag may couple an odd number. */
+/* Degrees of freedom of n first-order coordinates: n/2, with a half left over if drag couples an odd number. */
 static const char *half(const Eqns *e, uint32_t n) { return arena_printf(e->m->arena, "%u%s", n / 2, n % 2 ? " 1/2" : ""); }
 
 /* ", singular at theta = 0", or nothing. */

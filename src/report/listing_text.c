@@ -68,7 +68,7 @@ void text_title(Text *t) {
 
 void text_momenta(Text *t) {
   const Eqns *e = t->e;
-  uint32_t n = e->n + e->first.n; /* one of them is 0 */
+  uint32_t n = e->n + e->first.n; /* of second order, or of first order; never both */
   text_heading(t, "momenta");
   for (uint32_t i = 0; i < n; i++) {
     Name name = e->n ? e->m->coords.at[i].name : e->m->states.at[e->first.at[i]].name;

@@ -1,4 +1,5 @@
-/* series_columns: columns of sums and places of constants. Unused ones get none: the linear system makes more than it uses. */
+/* series_columns: assigns a column to each sum and an index to each constant that `next` uses; the linear system makes more
+ * than it uses. */
 #include "series/series_impl.h"
 
 /* Sums are accumulated in groups that stay in registers: up to 16 numbers, in vectors of 2 or 4. */
@@ -17,7 +18,7 @@ static void need(Need *n, Slot s) {
   vec_push(n->m->arena, &n->open, s);
 }
 
-/* Marks slots and pairs that stores and solves need, backwards; a sum needs coefficient k of both of its values. */
+/* Marks slots and pairs that stores and solves need, backwards; a convolution sum needs coefficient k of both its factors. */
 static Need find_needed(SeriesBuilder *m) {
   const Prog *p = m->next;
   Need n = {.m = m, .slot = ARENA_ARRAY(m->arena, unsigned char, p->ins.n), .pair = ARENA_ARRAY(m->arena, unsigned char, m->pairs.n + 1)};

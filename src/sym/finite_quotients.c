@@ -1,5 +1,5 @@
-/* Rewrites products that are infinity/infinity or 0*infinity far from the origin into forms that stay finite there:
- * sinh/cosh, exp/exp, exp/(sum with exp). */
+/* Rewrites products that overflow to inf/inf or 0*inf for large arguments into forms that stay finite: sinh/cosh,
+ * exp/exp, exp/(sum with exp). */
 #include "sym/expr_impl.h"
 
 /* sinh(u)/cosh(u) as tanh(u), exp(u)/exp(v) as exp(u - v); 0 for other quotients. */
@@ -97,7 +97,8 @@ static int use_exp_quotient(ExprGraph *g, Product *r) {
   return 0;
 }
 
-/* Whether T has a term with E = exp(u) as a factor, or (below set) one that is divided by a sum with E. */
+/* Whether a term of T has the factor E = exp(u); if `below`, whether a term of T is divided by a sum that contains
+ * E. */
 static int meets_exp(const ExprGraph *g, Expr T, Expr E, int below) {
   Num c, k;
   for (uint32_t i = 0; i < expr_pairs(g, T, EX_SUM); i++) {

@@ -227,7 +227,7 @@ static Real length_scale(const Search *s, Real where) { return s->from_origin ? 
 static Real jump_at(Search *s, Real where) {
   static const Real distance[] = {1e-5L, 1e-7L, 1e-9L, 1e-11L};
   enum { DISTANCES = sizeof distance / sizeof *distance };
-  const Real tolerance = 0.02L, least = 1e-9L; /* relative to the jump; to its terms. Places are known to 1e-11 even where long double is double */
+  const Real tolerance = 0.02L, least = 1e-9L; /* tolerance is relative to the jump, least to its terms; positions are known to 1e-11 even if long double is double */
   Real far = length_scale(s, where), jump[DISTANCES], size, other, most = 0;
   for (int i = 0; i < DISTANCES; i++) {
     Real h = distance[i] * far, above = value_at(s, where + h, &size), below = value_at(s, where - h, &other);

@@ -110,7 +110,7 @@ static Frac number_root(Normal *n, Num c, int32_t k) {
 
 /* --- monomials --- */
 
-/* Factor of the k-th root of x^e that leaves the radical; *left is the exponent of x that stays below it. */
+/* The part of the k-th root of x^e that comes out of the radical; *left: the exponent of x that stays under it. */
 static Frac gen_root(Normal *n, GenId x, int32_t e, int32_t k, int32_t *left) {
   int32_t whole = floor_div(e, k, left);
   Frac base = frac_poly(poly_gen(n->ring, x));

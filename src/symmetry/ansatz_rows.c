@@ -1,4 +1,4 @@
-/* The ansatz of the search for symmetries, and its linear equations at random states: one row of B0 and B1 a state, scaled to size 1. */
+/* The ansatz of the search for symmetries, and its linear equations at random states: each state gives one row of B0 and B1, scaled to size 1. */
 #include <math.h>
 
 #include "base/tolerance.h"

@@ -14,7 +14,7 @@
 #include "sym/prove.h"
 #include "sym/simplify.h"
 
-/* Past this number of coordinates charges are not simplified, like the energy (mech/eqns.c). */
+/* Past this number of coordinates charges are not simplified, like the energy (mech/derive.c). */
 enum { SHORTEN_MAX = 64 };
 
 typedef struct {
@@ -252,8 +252,8 @@ static int is_of_time(const ProofWork *w, Expr x) {
   return !expr_is_zero(w->g, x) && !(expr_kinds(w->g, x) & ~(1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_PARAM | 1u << SYM_CONST));
 }
 
-/* A first F by Cartan's formula: theta.xi + phi tau, where theta dq + phi dt is the part of L of degree 1 and 0 in velocities. Where these terms
- * are a gauge, the rest of delta L is small or 0, and their primitive need not be found. */
+/* A first guess of F by Cartan's formula: theta.xi + phi tau, where theta q' + phi are the terms of L of degree 1 and 0 in velocities. If these
+ * terms are a gauge, the rest of delta L is small or 0, and their primitive need not be found. */
 static Expr contraction(const ProofWork *w, int with_phi) {
   Expr *theta = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) theta[i] = at_rest(w, w->p[i]);
@@ -333,8 +333,7 @@ static Expr scale_of(const ProofWork *w, Expr F) {
   return expr_add_n(g, terms, w->n + 2);
 }
 
-/* lambda^T (A xi + b tau), contacts closed. For a holonomic constraint: the change of c under the generator; for r = A q' + b: r with
- * displacements in place of velocities. */
+/* lambda^T (A xi + b tau), contacts closed. For a holonomic constraint: the change of c under the generator; for r = A q' + b: A xi + b tau. */
 static Expr power_of_constraints(ProofWork *w, Noether *to) {
   ExprGraph *g = w->g;
   const Constraints *k = &w->e->constraints;

@@ -10,7 +10,7 @@
 
 enum { W_MODEL = W_FILE | W_EFFECT | W_FOR };
 
-/* Words outside the language, separated by spaces; the places where people write them; the advice. */
+/* words: no keywords, separated by spaces; where: the blocks in which people write them; way: the advice. */
 static const struct {
   const char *words;
   unsigned where;

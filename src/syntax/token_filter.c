@@ -11,14 +11,13 @@
  *     could make sense of that, so the bracket was forgotten and the statement ends.
  * A leading `'` never continues a line.
  *
- * Which names are words of the language: the place of a statement is the file, an effect, a `for`,
- * a scene or an event (the block that it stands in).
- *   - In a file, effect or for, every statement begins with a word.
+ * Keywords depend on the block that a statement stands in: the file, an effect, a `for`, a scene or an event.
+ *   - In a file, effect or for, every statement begins with a keyword.
  *   - In a scene or event, a first name followed by = . ' or a touching [ is a name being set;
- *     otherwise it is a word.
- *   - A first name that should be a word, but is no word of its place, is a BADWORD.
- *   - `periodic`, `rising`, `falling`, `crossing` and `every` are words where an operand has just
- *     ended, in the statement that has the slot; `restitution` after the `,` of a contact, `exactly`
+ *     otherwise it is a keyword.
+ *   - A first name where a keyword must stand, but that is none of this block, becomes BADWORD.
+ *   - `periodic`, `rising`, `falling`, `crossing` and `every` are keywords directly after an
+ *     operand, in the statements that take them; `restitution` after the `,` of a contact, `exactly`
  *     after `start` when a name follows; `for` after the `:` or `,` of a symmetry when a name
  *     follows; `sum` and `product` before `(`.
  * Everywhere else a name is a name: a coordinate may be called `force`, `every` or `sum`.
@@ -126,7 +125,7 @@ static Token first_name(Filter *f, Token t) {
   f->word = t.kind;
   f->has_block = (token_flags(t.kind) & T_BLOCK) != 0;
   if (t.kind != TOK_IDENT || ((where & W_EVENT) && next == TOK_LPAREN)) return t; /* omega(R) = ... */
-  /* The block of a mistyped or misplaced word is passed over as one. */
+  /* A mistyped or misplaced keyword may own a block: it is skipped as a whole. */
   t.kind = TOK_BADWORD;
   f->has_block = 1;
   return t;

@@ -122,7 +122,7 @@ static int bad_factor(Unit *u) {
   return unit_bad(u, u->at, len, message, help);
 }
 
-/* Spells the degree sign `deg`: [deg], [degC]. */
+/* Replaces the degree sign by `deg`: [deg], [degC]. */
 static const char *without_degree_sign(const Unit *u, const char *text, uint32_t n) {
   StrBuf b = strbuf(u->scan->arena);
   for (uint32_t k = 0; k < n; k++) {

@@ -16,7 +16,8 @@ enum { LIMIT_MIB = 1024, NAME = 32 }; /* NAME: digits of an entry's name */
 
 /* --- folders --- */
 
-/* The folder at path, made if need be, with write permission of others removed; NULL if others can write there. */
+/* Creates the folder at path if needed and removes write permission of others. Returns path; NULL if others can
+ * still write there. */
 static const char *own_folder(Arena *a, const char *path) {
   struct stat st;
   if (!dir_make(a, path)) return NULL;
