@@ -50,11 +50,11 @@ is "members of a family, as many as -D says" 'th[1]= th[2]= th[3]= th[4]= th[5]=
 is "and with -DN=2" 'th[1]= th[2]=' "$(offers run chain.lag -DN=2 'th[' | sed "s/ th.[1-5].'=//g")"
 is "constants" 'N=' "$(offers run chain.lag -D '')"
 is "methods" 'verlet verlet4 verlet6 verlet8' "$(offers run kepler.lag --method verlet)"
-is "in the same word" '--method=rk45 --method=rk4' "$(offers run kepler.lag --method=rk)"
+is "in the same word" '--method=dop853' "$(offers run kepler.lag --method=dop)"
 listed() { "$LAGC" methods | awk '/^  method / { table = 1; next } !NF { table = 0 } table { print $1 }' | sort; }
 is "all methods" "$(listed)" "$("$LAGC" complete run kepler.lag --method '' | cut -f 1 | grep -v -x help | sort)"
 is "names in an expression" 'm1*x1 m1*x2' "$(offers plot double_pendulum.lag --y 'm1*x')"
-is "functions in an expression" '2*sin( 2*sinh(' "$(offers plot double_pendulum.lag --y '2*sin')"
+is "functions in an expression" '2*atan( 2*atan2(' "$(offers plot double_pendulum.lag --y '2*ata')"
 is "no names after a number" '' "$(offers plot double_pendulum.lag --y 2)"
 is "choices" 'text latex c' "$(offers derive kepler.lag --format '')"
 is "choices with commas" '--dump=ast,eqns' "$(offers check kepler.lag --dump=ast,e)"
