@@ -36,8 +36,8 @@ for m in models/*.lag; do
 done >"$TMP/emitted"
 if [ -n "${BLESS:-}" ]; then cp "$TMP/emitted" tests/golden/emitted.txt; fi
 for m in models/*.lag; do
-  grep -F " $m " "$TMP/emitted" >"$TMP/got"
-  grep -F " $m " tests/golden/emitted.txt | awk 'NR == FNR { made[substr($0, index($0, "models/"))] = 1; next } made[substr($0, index($0, "models/"))]' "$TMP/got" - >"$TMP/want"
+  grep -F " $m " "$TMP/emitted" | LC_ALL=C sort -k 3 >"$TMP/got"
+  grep -F " $m " tests/golden/emitted.txt | awk 'NR == FNR { made[substr($0, index($0, "models/"))] = 1; next } made[substr($0, index($0, "models/"))]' "$TMP/got" - | LC_ALL=C sort -k 3 >"$TMP/want"
   empty "$m" "$(diff "$TMP/want" "$TMP/got" | grep '^[<>]')"
 done
 tap_end
