@@ -40,7 +40,7 @@ static void list(const lag_method *const *methods, int n)
 
 int main(void)
 {
-  printf("/* The runtime's methods, as liblag describes them: `BLESS=1 make test T=golden/run_method_rows` writes this file.\n"
+  printf("/* The runtime's methods, as liblag describes them: `make bless T=golden/run_method_rows` writes this file.\n"
          " * {name, description, flags, options} */\n");
   list(lag_methods, lag_nmethods);
 #ifdef WITH_GSL
