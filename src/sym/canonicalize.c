@@ -218,6 +218,11 @@ void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e) {
       return;
     }
     case EX_SUM: {
+      Expr cosh = whole && num_sign(e) > 0 ? 0 : expr_cosh_of_tanh(g, base);
+      if (cosh) {
+        push_factor(g, r, cosh, num_mul(num_int(-2), e));
+        return;
+      }
       Num c = content(g, base);
       if (num_is_one(c) || (!whole && expr_pairs(g, base, EX_SUM) > 1) || (!whole && num_sign(c) < 0)) {
         push_factor(g, r, base, e);

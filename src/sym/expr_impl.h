@@ -70,6 +70,9 @@ void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e);
  * the factors of r. Returns 1 when r changed. */
 int expr_rewrite_quotient(ExprGraph *g, Product *r);
 
+/* cosh(u) of the sum 1 - tanh(u)^2 = 1/cosh(u)^2, which rounds to 0 where u > 19; otherwise 0. */
+Expr expr_cosh_of_tanh(ExprGraph *g, Expr sum);
+
 /* Index of the sum T in exp(u)*T or T/S that must be distributed, so that each exp(u) meets the sums with exp(u) below it;
  * r->p.n if there is none. */
 uint32_t expr_sum_to_distribute(const ExprGraph *g, const Product *r);

@@ -1,6 +1,27 @@
 /* Rewrites products that overflow to inf/inf or 0*inf for large arguments into forms that stay finite: sinh/cosh,
- * exp/exp, exp/(sum with exp). */
+ * exp/exp, exp/(sum with exp), (1 - tanh^2)*cosh^2. */
 #include "sym/expr_impl.h"
+
+Expr expr_cosh_of_tanh(ExprGraph *g, Expr sum) {
+  Num one, minus, two;
+  if (expr_pairs(g, sum, EX_SUM) != 2 || expr_pair(g, sum, EX_SUM, 0, &one) != g->one || !num_is_one(one)) return 0;
+  Expr square = expr_pair(g, sum, EX_SUM, 1, &minus), tanh = expr_pair(g, square, EX_PROD, 0, &two);
+  int fits = num_equal(minus, num_int(-1)) && expr_pairs(g, square, EX_PROD) == 1 && num_equal(two, num_int(2)) && expr_op(g, tanh) == EX_TANH;
+  return fits ? expr_fn(g, EX_COSH, expr_arg(g, tanh, 0)) : 0;
+}
+
+/* (1 - tanh(u)^2)^k cosh(u)^m -> cosh(u)^(m - 2k), which is not 0 times infinity. Returns 1 when r changed. */
+static int use_tanh_square(ExprGraph *g, Product *r) {
+  for (uint32_t i = 0; i < r->p.n; i++) {
+    if (expr_op(g, r->p.at[i].node) != EX_COSH || num_sign(r->p.at[i].number) < 0) continue;
+    for (uint32_t k = 0; k < r->p.n; k++) {
+      if (expr_op(g, r->p.at[k].node) != EX_SUM || expr_cosh_of_tanh(g, r->p.at[k].node) != r->p.at[i].node) continue;
+      r->p.at[k] = (Pair){r->p.at[i].node, num_mul(num_int(-2), r->p.at[k].number)};
+      return 1;
+    }
+  }
+  return 0;
+}
 
 /* sinh(u)/cosh(u) as tanh(u), exp(u)/exp(v) as exp(u - v); 0 for other quotients. */
 static Expr quotient_of(ExprGraph *g, Expr above, Expr below) {
@@ -137,4 +158,4 @@ uint32_t expr_sum_to_distribute(const ExprGraph *g, const Product *r) {
   return r->p.n;
 }
 
-int expr_rewrite_quotient(ExprGraph *g, Product *r) { return use_pair_quotient(g, r) || use_exp_quotient(g, r); }
+int expr_rewrite_quotient(ExprGraph *g, Product *r) { return use_pair_quotient(g, r) || use_exp_quotient(g, r) || use_tanh_square(g, r); }

@@ -89,6 +89,9 @@ static void quotients_are_finite_far_away(void **state) {
       {"sinh(x)^3/cosh(x)^2", "sinh(x)*tanh(x)^2"},
       {"cosh(x)/sinh(x)", "1/tanh(x)"},
       {"sinh(x)/sqrt(cosh(x))", "tanh(x)*sqrt(cosh(x))"}, /* sinh(x) may be negative */
+      {"k/(1 - tanh(x)^2)", "k*cosh(x)^2"},
+      {"(1 - tanh(x)^2)/sqrt(1 - tanh(x)^2)", "1/cosh(x)"},
+      {"(1 - tanh(x)^2)^2*cosh(x)*k", "k/cosh(x)^3"},
       {"k*y + k*y*sinh(x)^2", "k*y*cosh(x)^2"},
       {"k*cosh(x)^2 - k", "k*sinh(x)^2"},
       {"k*cosh(x)^2 - k*sinh(x)^2", "k"},
