@@ -76,8 +76,8 @@ static const CommandRow commands[] = {
    "Other files include it without the #define. Its first lines show its use. With PEND_LANES defined as 4 or 8 it computes 4 or 8 "
    "states at once."},
   {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [--method NAME] [--with linear] [-o FILE.c]", "write C for the runtime",
-   "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). They are integrated by "
-   "liblag; its interface by lag.h:\n\n"
+   "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). liblag "
+   "integrates them; its interface is lag.h:\n\n"
    "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)\n\n"
    "With -DLAG_LANES=4 or 8 its functions take vectors of 4 or 8 doubles, and compute as many states at once."},
   {CMD_METHODS, "methods", NULL, "", "list the methods of integration",

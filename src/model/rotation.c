@@ -146,7 +146,7 @@ Value turn_value(Eval *ev, const AstExpr *x) {
     diag_help(b->diags, "the identity is `turn((0, 0, 1), 0)`, the start of a rotation without a `start`");
     return FAILED;
   }
-  if (!need_pure(ev, angle, "an angle")) return FAILED;
+  if (!need_pure(ev, angle, "`turn`")) return FAILED;
   Expr half = expr_scale(g, num_ratio(1, 2), a->e), s = expr_fn(g, EX_SIN, half), square[3];
   for (int k = 0; k < 3; k++) square[k] = expr_pow_num(g, n->at[k], num_int(2));
   Expr length2 = expr_add_n(g, square, 3), scale = expr_pow_num(g, length2, num_ratio(-1, 2));
