@@ -16,49 +16,35 @@ static const double NEAR = 1e-9;
 /* A force up to this many times its perturbation noise counts as 0: it takes a few more operations. */
 static const double CERTAIN = 8;
 
-static const lag_var *unknown(const Equilibrium *r, int i)
-{
+static const lag_var *unknown(const Equilibrium *r, int i) {
   const lag_model *m = r->sim->scene->model;
-
   return i < m->nq ? &m->q[i] : &m->z[i - m->nq];
 }
 
-static int is_angle(const lag_var *v)
-{
+static int is_angle(const lag_var *v) {
   return v->periodic || strcmp(v->unit, "rad") == 0 || strcmp(v->unit, "deg") == 0 || strcmp(v->unit, "rev") == 0;
 }
 
-static void choose_scales(Equilibrium *r)
-{
+static void choose_scales(Equilibrium *r) {
   for (int i = 0; i < r->n; i++) {
     const lag_var *v = unknown(r, i);
     double largest = 0;
-    for (int j = 0; j < r->n; j++) {
-      largest = strcmp(unknown(r, j)->unit, v->unit) == 0 ? fmax(largest, fabs(r->start[j])) : largest;
-    }
+    for (int j = 0; j < r->n; j++) largest = strcmp(unknown(r, j)->unit, v->unit) == 0 ? fmax(largest, fabs(r->start[j])) : largest;
     r->scale[i] = is_angle(v) ? 1 : largest > 0 ? largest : v->factor;
   }
 }
 
 /* Row scales that give forces as a whole, and rates as a whole, the size 1: units and magnitudes of models differ by any factor. */
-static int choose_rows(Equilibrium *r)
-{
+static int choose_rows(Equilibrium *r) {
   int nq = r->sim->pb.nq, n = r->n;
   double largest[2] = {0, 0};
-
-  for (int i = 0; i < n; i++) {
-    r->row[i] = 1;
-  }
+  for (int i = 0; i < n; i++) r->row[i] = 1;
   int rc = lag_equilibrium_equations(r, r->x, r->f, r->J);
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   for (int i = 0; i < n; i++) {
     double *size = &largest[i >= nq];
     *size = fmax(*size, fabs(r->f[i]));
-    for (int j = 0; j < n; j++) {
-      *size = fmax(*size, fabs(r->J[i * n + j]));
-    }
+    for (int j = 0; j < n; j++) *size = fmax(*size, fabs(r->J[i * n + j]));
   }
   for (int i = 0; i < n; i++) {
     double size = largest[i >= nq];
@@ -69,28 +55,19 @@ static int choose_rows(Equilibrium *r)
 
 /* ---- Test for a root */
 
-static int forces(Equilibrium *r, const double *x, double *out)
-{
-  return lag_equilibrium_equations(r, x, out, out + r->n);
-}
+static int forces(Equilibrium *r, const double *x, double *out) { return lag_equilibrium_equations(r, x, out, out + r->n); }
 
 /* r->f, r->J and their noise, r->noise[n | n * n], at x[n]. */
-static int forces_and_noise(Equilibrium *r, const double *x)
-{
+static int forces_and_noise(Equilibrium *r, const double *x) {
   size_t n = (size_t)r->n;
   int rc = lag_perturbation_noise(r, forces, x, n + n * n, r->values, r->noise, r->scratch);
-
-  if (rc || lag_not_finite((int)(n + n * n), r->values) >= 0) {
-    return rc ? rc : LAG_ENAN;
-  }
+  if (rc || lag_not_finite((int)(n + n * n), r->values) >= 0) return rc ? rc : LAG_ENAN;
   memcpy(r->f, r->values, n * sizeof(double));
   memcpy(r->J, r->values + n, n * n * sizeof(double));
   for (size_t i = 0; i < n; i++) { /* rounding of the sum M a, which no perturbation of parameters shows */
     double sum = 0;
     size_t nq = (size_t)r->sim->pb.nq;
-    for (size_t j = 0; j < nq && i < nq; j++) {
-      sum += fabs(r->M[i * nq + j] * r->rate[nq + j]);
-    }
+    for (size_t j = 0; j < nq && i < nq; j++) sum += fabs(r->M[i * nq + j] * r->rate[nq + j]);
     r->noise[i] += i < nq ? DBL_EPSILON * sum * r->scale[i] * r->row[i] : 0;
   }
   return lag_equilibrium_equations(r, x, r->f, NULL); /* r->rate at x */
@@ -98,84 +75,58 @@ static int forces_and_noise(Equilibrium *r, const double *x)
 
 /* Solves J dx = -b, where b[n] has the given noise; destroys all but dx. noise NULL: J is taken as exact. Returns the rank; b[i] for i >= rank
  * is the unbalanced force, 0 if it is noise. */
-static int solve(Equilibrium *r, double *b, const double *noise)
-{
+static int solve(Equilibrium *r, double *b, const double *noise) {
   int n = r->n;
   double *size = r->scratch, *error = size + n * n, *work = error + n;
-
-  for (int i = 0; i < n * n; i++) {
-    size[i] = fabs(r->J[i]) + (noise ? noise[n + i] / DBL_EPSILON : 0);
-  }
+  for (int i = 0; i < n * n; i++) size[i] = fabs(r->J[i]) + (noise ? noise[n + i] / DBL_EPSILON : 0);
   for (int i = 0; i < n; i++) {
     b[i] = -b[i];
     error[i] = noise ? noise[i] : 0;
   }
   int rank = lag_complete_pivot_solve(n, r->J, size, b, error, r->dx, work);
-  for (int i = rank; i < n && noise; i++) {
-    b[i] = fabs(b[i]) <= CERTAIN * error[i] ? 0 : b[i];
-  }
+  for (int i = rank; i < n && noise; i++) b[i] = fabs(b[i]) <= CERTAIN * error[i] ? 0 : b[i];
   return rank;
 }
 
 /* Length of dx, relative to the state and its scale. */
-static double reach(const Equilibrium *r, const double *x, const double *dx)
-{
+static double reach(const Equilibrium *r, const double *x, const double *dx) {
   double most = 0;
-
-  for (int i = 0; i < r->n; i++) {
-    most = fmax(most, fabs(dx[i]) / (fabs(x[i]) + 1));
-  }
+  for (int i = 0; i < r->n; i++) most = fmax(most, fabs(dx[i]) / (fabs(x[i]) + 1));
   return most;
 }
 
 /* Whether Newton's method would stay at x, and no force pulls along directions that it cannot move. */
-static int newton_stays(Equilibrium *r, const double *x)
-{
+static int newton_stays(Equilibrium *r, const double *x) {
   int n = r->n;
   double *b = r->step;
-
   memcpy(b, r->f, (size_t)n * sizeof *b);
-  for (int k = solve(r, b, r->noise); k < n; k++) {
-    if (b[k] != 0.0) {
-      return 0;
-    }
-  }
+  for (int k = solve(r, b, r->noise); k < n; k++)
+    if (b[k] != 0.0) return 0;
   return reach(r, x, r->dx) <= NEAR;
 }
 
 /* Whether the forces computed last are noise. Sets the worst. */
-static int none_pulls(Equilibrium *r)
-{
+static int none_pulls(Equilibrium *r) {
   double most = 0;
-
   r->worst = 0;
-  for (int i = 0; i < r->n; i++) {
+  for (int i = 0; i < r->n; i++)
     if (fabs(r->f[i]) > CERTAIN * r->noise[i] && fabs(r->f[i]) > most) {
       most = fabs(r->f[i]);
       r->worst = i;
     }
-  }
   return most == 0.0;
 }
 
 /* Whether all forces vanish at x[n]. */
-static int vanish(Equilibrium *r, const double *x)
-{
-  return forces_and_noise(r, x) == 0 && none_pulls(r);
-}
+static int vanish(Equilibrium *r, const double *x) { return forces_and_noise(r, x) == 0 && none_pulls(r); }
 
 /* Whether x[n] is a root: all forces vanish there, or within a Newton step of rounding size. The size of a force alone says little, as stiff
  * ones stand beside soft ones. */
-static int is_root(Equilibrium *r, const double *x)
-{
-  return forces_and_noise(r, x) == 0 && (none_pulls(r) || newton_stays(r, x));
-}
+static int is_root(Equilibrium *r, const double *x) { return forces_and_noise(r, x) == 0 && (none_pulls(r) || newton_stays(r, x)); }
 
 /* Rounds small components of x to 0 where forces vanish there, too. */
-static void round_to_zero(Equilibrium *r)
-{
+static void round_to_zero(Equilibrium *r) {
   static const double small[] = {1e-4, 1e-8, 1e-12};
-
   for (size_t k = 0; k < sizeof small / sizeof *small; k++) {
     int changes = 0;
     for (int i = 0; i < r->n; i++) {
@@ -191,19 +142,13 @@ static void round_to_zero(Equilibrium *r)
 }
 
 /* Moves undetermined unknowns back to the start where forces vanish there, too. */
-static void restore_undetermined(Equilibrium *r)
-{
+static void restore_undetermined(Equilibrium *r) {
   size_t bytes = (size_t)r->n * sizeof(double);
-
-  if (forces_and_noise(r, r->x) || solve(r, r->f, r->noise) == r->n) {
-    return;
-  }
+  if (forces_and_noise(r, r->x) || solve(r, r->f, r->noise) == r->n) return;
   for (int i = 0; i < r->n; i++) {
     memcpy(r->trial, r->x, bytes);
     r->trial[i] = r->begin[i];
-    if (r->x[i] != r->begin[i] && vanish(r, r->trial)) {
-      memcpy(r->x, r->trial, bytes);
-    }
+    if (r->x[i] != r->begin[i] && vanish(r, r->trial)) memcpy(r->x, r->trial, bytes);
   }
 }
 
@@ -211,23 +156,15 @@ static void restore_undetermined(Equilibrium *r)
 
 /* Newton's method without step control: along the floor of a steep valley its steps are large where a method that must reduce forces at each
  * step is slow. 1: x[n] has converged. */
-static int newton(Equilibrium *r, lag_equations *zero, double *x, int most)
-{
+static int newton(Equilibrium *r, lag_equations *zero, double *x, int most) {
   double last = HUGE_VAL;
-
   for (int k = 0; k < most; k++) {
-    if (zero(r, x, r->f, r->J) || lag_not_finite(r->n, r->f) >= 0 || lag_not_finite(r->n * r->n, r->J) >= 0) {
-      return 0;
-    }
+    if (zero(r, x, r->f, r->J) || lag_not_finite(r->n, r->f) >= 0 || lag_not_finite(r->n * r->n, r->J) >= 0) return 0;
     solve(r, r->f, NULL);
     double far = reach(r, x, r->dx);
-    for (int i = 0; i < r->n; i++) {
-      x[i] += r->dx[i];
-    }
+    for (int i = 0; i < r->n; i++) x[i] += r->dx[i];
     r->steps++;
-    if (!isfinite(far) || far < DBL_EPSILON || (far < 1e-6 && far > 0.95 * last)) {
-      return isfinite(far);
-    }
+    if (!isfinite(far) || far < DBL_EPSILON || (far < 1e-6 && far > 0.95 * last)) return isfinite(far);
     last = far;
   }
   return 0;
@@ -236,39 +173,28 @@ static int newton(Equilibrium *r, lag_equations *zero, double *x, int most)
 /* ---- Downhill */
 
 /* Largest component of x - y, in scales. */
-static double distance(const Equilibrium *r, const double *x, const double *y)
-{
+static double distance(const Equilibrium *r, const double *x, const double *y) {
   double most = 0;
-
-  for (int i = 0; i < r->n; i++) {
-    most = fmax(most, fabs(x[i] - y[i]));
-  }
+  for (int i = 0; i < r->n; i++) most = fmax(most, fabs(x[i] - y[i]));
   return most;
 }
 
 /* Equations of an implicit Euler step of length delta of the overdamped motion M q' = f: f(x) - W (x - from)/delta. */
-static int overdamped_step(void *context, const double *x, double *f, double *J)
-{
+static int overdamped_step(void *context, const double *x, double *f, double *J) {
   Equilibrium *r = context;
   int n = r->n, rc = lag_equilibrium_equations(r, x, f, J);
-
-  for (int i = 0; i < n && rc == 0; i++) {
+  for (int i = 0; i < n && rc == 0; i++)
     for (int j = 0; j < n; j++) {
       f[i] -= r->W[i * n + j] * (x[j] - r->from[j]) / r->delta;
-      if (J) {
-        J[i * n + j] -= r->W[i * n + j] / r->delta;
-      }
+      if (J) J[i * n + j] -= r->W[i * n + j] / r->delta;
     }
-  }
   return rc;
 }
 
 /* W := the mass matrix in the units of the equations, and the identity for rates; delta: a first step of 0.3 of a scale. */
-static void prepare_overdamped(Equilibrium *r)
-{
+static void prepare_overdamped(Equilibrium *r) {
   int n = r->n, nq = r->sim->pb.nq;
   double fastest = 0;
-
   lag_equilibrium_equations(r, r->x, r->f, r->J);
   for (int i = 0; i < n; i++) {
     fastest = fmax(fastest, fabs(r->rate[nq + i]) / r->scale[i]);
@@ -281,10 +207,8 @@ static void prepare_overdamped(Equilibrium *r)
 }
 
 /* Follows the overdamped motion from x[n] until hardly anything moves. */
-static void follow_overdamped(Equilibrium *r)
-{
+static void follow_overdamped(Equilibrium *r) {
   size_t bytes = (size_t)r->n * sizeof(double);
-
   prepare_overdamped(r);
   for (int k = 0; k < MOST_DESCENT; k++) {
     memcpy(r->from, r->x, bytes);
@@ -303,89 +227,64 @@ static void follow_overdamped(Equilibrium *r)
 
 /* ---- The search */
 
-static double largest_force(Equilibrium *r, const double *x)
-{
+static double largest_force(Equilibrium *r, const double *x) {
   double most = 0;
-
-  for (int i = 0; i < r->n && (i > 0 || lag_equilibrium_equations(r, x, r->f, NULL) == 0); i++) {
-    most = fmax(most, fabs(r->f[i]));
-  }
+  for (int i = 0; i < r->n && (i > 0 || lag_equilibrium_equations(r, x, r->f, NULL) == 0); i++) most = fmax(most, fabs(r->f[i]));
   return most;
 }
 
 /* Whether x has run away, or left nearly all of the force at the start: forces that fade have no root there. */
-static int ran_away(Equilibrium *r)
-{
+static int ran_away(Equilibrium *r) {
   double start = 1;
-
-  for (int i = 0; i < r->n; i++) {
-    start = fmax(start, fabs(r->begin[i]));
-  }
+  for (int i = 0; i < r->n; i++) start = fmax(start, fabs(r->begin[i]));
   return distance(r, r->x, r->begin) > 1e4 * start || largest_force(r, r->x) < 1e-6 * largest_force(r, r->begin);
 }
 
 /* x := the root to which Newton's method leads from there[n], if it is a root and within `farthest`; else x is unchanged. */
-static int newton_polish(Equilibrium *r, const double *there, double farthest)
-{
+static int newton_polish(Equilibrium *r, const double *there, double farthest) {
   size_t bytes = (size_t)r->n * sizeof(double);
-
   memcpy(r->kept, r->x, bytes);
   memcpy(r->x, there, bytes);
   if (newton(r, lag_equilibrium_equations, r->x, MOST_STEPS) && distance(r, r->x, there) <= farthest) {
     round_to_zero(r);
-    if (is_root(r, r->x)) {
-      return 1;
-    }
+    if (is_root(r, r->x)) return 1;
   }
   memcpy(r->x, r->kept, bytes);
   return 0;
 }
 
 /* Finds a root from x: by a trust region; if that gets stuck, by Newton's method. */
-static int find_root(Equilibrium *r, const lag_algebra *algebra)
-{
+static int find_root(Equilibrium *r, const lag_algebra *algebra) {
   size_t bytes = (size_t)r->n * sizeof(double);
   int steps = 0;
-
   memcpy(r->from, r->x, bytes);
   int rc = algebra->root(r->n, r->x, lag_equilibrium_equations, r, MOST_STEPS, &steps);
   r->steps += steps;
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   round_to_zero(r);
-  if (vanish(r, r->x)) {
-    return 1;
-  }
+  if (vanish(r, r->x)) return 1;
   memcpy(r->near, r->x, bytes);
   return newton_polish(r, r->near, 0.1) || is_root(r, r->x) || newton_polish(r, r->from, 10) || is_root(r, r->x);
 }
 
 /* Searches a root near the start, stable or not; else one downhill; else any. */
-static int search(Equilibrium *r, const lag_algebra *algebra)
-{
+static int search(Equilibrium *r, const lag_algebra *algebra) {
   size_t bytes = (size_t)r->n * sizeof(double);
   int rc = find_root(r, algebra);
-
-  if (rc < 0 || (rc == 1 && distance(r, r->x, r->begin) <= 1)) {
-    return rc;
-  }
+  if (rc < 0 || (rc == 1 && distance(r, r->x, r->begin) <= 1)) return rc;
   memcpy(r->first, r->x, bytes);
   r->away = rc == 0 && ran_away(r);
   int first = rc;
   memcpy(r->x, r->begin, bytes);
   follow_overdamped(r);
   rc = find_root(r, algebra);
-  if (rc != 0) {
-    return rc;
-  }
+  if (rc != 0) return rc;
   memcpy(r->x, r->first, bytes);
   is_root(r, r->x);
   return first;
 }
 
-static int allocate(Equilibrium *r)
-{
+static int allocate(Equilibrium *r) {
   const lag_model *m = r->sim->scene->model;
   size_t n = (size_t)r->n, nq = (size_t)m->nq, ny = (size_t)r->sim->pb.n;
   double **const parts[] = {&r->start, &r->y, &r->rate, &r->scale, &r->x, &r->begin, &r->from, &r->first, &r->trial, &r->near, &r->kept,
@@ -393,30 +292,19 @@ static int allocate(Equilibrium *r)
                             &r->work};
   const size_t sizes[] = {n, ny, ny, n, n, n, n, n, n, n, n, n, n, n, n, n, n * n, n * n, n + n * n, n + n * n, n * n + 3 * n + (size_t)(m->np + m->nderived),
                           n * ny, nq * nq, lag_linear_work(m)};
-
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    *parts[i] = lag_pool_doubles(&r->pool, sizes[i]);
-  }
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&r->pool, sizes[i]);
   return r->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 
 /* spread := uncertainty of the root: Newton steps for noise of the forces with two patterns of signs, and for the rest of the forces. Leaves all
  * values at x. */
-static int estimate_uncertainty(Equilibrium *r)
-{
+static int estimate_uncertainty(Equilibrium *r) {
   int n = r->n, rc = 0;
-
   for (int pattern = 0; pattern < 3 && rc == 0; pattern++) {
     rc = forces_and_noise(r, r->x);
-    for (int i = 0; i < n; i++) {
-      r->step[i] = pattern == 0 ? r->f[i] : CERTAIN * r->noise[i] * (pattern == 2 && i % 2 ? -1 : 1);
-    }
-    if (rc == 0) {
-      r->rank = solve(r, r->step, r->noise);
-    }
-    for (int i = 0; i < n && rc == 0; i++) {
-      r->spread[i] = fmax(r->spread[i], fmin(fabs(r->dx[i]), 0.1));
-    }
+    for (int i = 0; i < n; i++) r->step[i] = pattern == 0 ? r->f[i] : CERTAIN * r->noise[i] * (pattern == 2 && i % 2 ? -1 : 1);
+    if (rc == 0) r->rank = solve(r, r->step, r->noise);
+    for (int i = 0; i < n && rc == 0; i++) r->spread[i] = fmax(r->spread[i], fmin(fabs(r->dx[i]), 0.1));
   }
   r->pole = lag_is_coordinate_pole(r);
   r->rough = rc == 0 && lag_is_nonsmooth(r);
@@ -424,25 +312,15 @@ static int estimate_uncertainty(Equilibrium *r)
   return rc ? (rc < 0 ? rc : LAG_EDOMAIN) : 1;
 }
 
-int lag_equilibrium_find(Equilibrium *r, lag_sim *sim, const lag_algebra *algebra)
-{
+int lag_equilibrium_find(Equilibrium *r, lag_sim *sim, const lag_algebra *algebra) {
   int nq = sim->pb.nq, n = nq + sim->pb.nz;
-
   *r = (Equilibrium){.sim = sim, .n = n};
   int rc = allocate(r);
-  if (rc) {
-    return rc;
-  }
-  for (int i = 0; i < n; i++) {
-    r->start[i] = sim->now[i < nq ? i : nq + i];
-  }
+  if (rc) return rc;
+  for (int i = 0; i < n; i++) r->start[i] = sim->now[i < nq ? i : nq + i];
   choose_scales(r);
-  for (int i = 0; i < n; i++) {
-    r->x[i] = r->begin[i] = r->start[i] / r->scale[i];
-  }
-  if ((rc = choose_rows(r)) != 0) {
-    return rc < 0 ? rc : LAG_EDOMAIN;
-  }
+  for (int i = 0; i < n; i++) r->x[i] = r->begin[i] = r->start[i] / r->scale[i];
+  if ((rc = choose_rows(r)) != 0) return rc < 0 ? rc : LAG_EDOMAIN;
   rc = is_root(r, r->x) ? 1 : search(r, algebra);
   if (rc == 1) {
     round_to_zero(r);
@@ -457,24 +335,17 @@ int lag_equilibrium_find(Equilibrium *r, lag_sim *sim, const lag_algebra *algebr
   return rc;
 }
 
-int lag_equilibrium_holds(Equilibrium *r, const double *dx, double c)
-{
-  for (int i = 0; i < r->n; i++) {
-    r->trial[i] = r->x[i] + c * dx[i] / r->scale[i];
-  }
+int lag_equilibrium_holds(Equilibrium *r, const double *dx, double c) {
+  for (int i = 0; i < r->n; i++) r->trial[i] = r->x[i] + c * dx[i] / r->scale[i];
   int good = is_root(r, r->trial);
   lag_equilibrium_state(r, r->x);
   return good;
 }
 
-int lag_equilibrium_continues(Equilibrium *r, const lag_algebra *algebra, const double *dx, double c)
-{
+int lag_equilibrium_continues(Equilibrium *r, const lag_algebra *algebra, const double *dx, double c) {
   double off = 0, far = 0;
   int steps;
-
-  for (int i = 0; i < r->n; i++) {
-    r->from[i] = r->x[i] + c * dx[i] / r->scale[i];
-  }
+  for (int i = 0; i < r->n; i++) r->from[i] = r->x[i] + c * dx[i] / r->scale[i];
   int found = algebra->root(r->n, r->from, lag_equilibrium_equations, r, MOST_STEPS, &steps) == LAG_OK;
   if (found) {
     memcpy(r->trial, r->from, (size_t)r->n * sizeof(double));
@@ -490,7 +361,4 @@ int lag_equilibrium_continues(Equilibrium *r, const lag_algebra *algebra, const 
   return found && off < 0.4 * far;
 }
 
-void lag_equilibrium_free(Equilibrium *r)
-{
-  lag_pool_free(&r->pool);
-}
+void lag_equilibrium_free(Equilibrium *r) { lag_pool_free(&r->pool); }

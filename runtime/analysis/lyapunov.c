@@ -12,39 +12,25 @@
 /* Largest step times spectral radius: a step of order 5 is then wrong by some 1e-9 of each vector. */
 static const double resolution = 0.1;
 
-void lag_lyapunov_free(Lyapunov *l)
-{
-  lag_pool_free(&l->pool);
-}
+void lag_lyapunov_free(Lyapunov *l) { lag_pool_free(&l->pool); }
 
-static double dot(const Lyapunov *l, int a, int b)
-{
+static double dot(const Lyapunov *l, int a, int b) {
   double s = 0;
-
-  for (int i = 0; i < l->n; i++) {
-    s += l->Y[i * l->k + a] * l->Y[i * l->k + b];
-  }
+  for (int i = 0; i < l->n; i++) s += l->Y[i * l->k + a] * l->Y[i * l->k + b];
   return s;
 }
 
 /* Y := Q of Y = Q R by modified Gram-Schmidt, enough as vectors are still nearly orthogonal after one step. Adds the logarithms of the diagonal
  * of R to `sum` where `counts`. */
-static int orthonormalise(Lyapunov *l, int counts)
-{
+static int orthonormalise(Lyapunov *l, int counts) {
   for (int a = 0; a < l->k; a++) {
     for (int b = 0; b < a; b++) {
       double c = dot(l, a, b);
-      for (int i = 0; i < l->n; i++) {
-        l->Y[i * l->k + a] -= c * l->Y[i * l->k + b];
-      }
+      for (int i = 0; i < l->n; i++) l->Y[i * l->k + a] -= c * l->Y[i * l->k + b];
     }
     double length = sqrt(dot(l, a, a));
-    if (!(length > 0) || !isfinite(length)) {
-      return LAG_EDOMAIN;
-    }
-    for (int i = 0; i < l->n; i++) {
-      l->Y[i * l->k + a] /= length;
-    }
+    if (!(length > 0) || !isfinite(length)) return LAG_EDOMAIN;
+    for (int i = 0; i < l->n; i++) l->Y[i * l->k + a] /= length;
     l->sum[a] += counts ? log(length) : 0;
   }
   return LAG_OK;
@@ -52,21 +38,17 @@ static int orthonormalise(Lyapunov *l, int counts)
 
 /* Pseudo-random vectors, the same in every run: axes of a model may be directions that its flow never leaves. Generator: D.E. Knuth, MMIX; the
  * upper bits of its states. */
-static void random_vectors(Lyapunov *l)
-{
+static void random_vectors(Lyapunov *l) {
   uint64_t x = 1;
-
   for (int i = 0; i < l->n * l->k; i++) {
     x = x * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
     l->Y[i] = ldexp((double)(x >> 32), -31) - 1;
   }
 }
 
-int lag_lyapunov_begin(Lyapunov *l, lag_sim *sim, int k, double from, double until)
-{
+int lag_lyapunov_begin(Lyapunov *l, lag_sim *sim, int k, double from, double until) {
   const lag_model *m = lag_sim_scene(sim)->model;
   size_t kk = (size_t)k, nn = (size_t)(2 * m->nq + m->nz) * (size_t)(2 * m->nq + m->nz);
-
   *l = (Lyapunov){.n = 2 * m->nq + m->nz, .k = k, .from = from, .until = until, .begun = NAN, .t = NAN, .half = NAN};
   l->sum = lag_pool_doubles(&l->pool, kk);
   l->at_half = lag_pool_doubles(&l->pool, kk);
@@ -77,19 +59,15 @@ int lag_lyapunov_begin(Lyapunov *l, lag_sim *sim, int k, double from, double unt
   l->A = lag_pool_doubles(&l->pool, nn);
   l->B = lag_pool_doubles(&l->pool, nn);
   l->work = lag_pool_doubles(&l->pool, lag_linear_work(m) + 1);
-  if (l->pool.failed) {
-    return LAG_ENOMEM;
-  }
+  if (l->pool.failed) return LAG_ENOMEM;
   random_vectors(l);
   orthonormalise(l, 0);
   return lag_sim_set_tangent(sim, k, l->Y);
 }
 
 /* Closes the present block: its mean rates. */
-static void close_block(Lyapunov *l)
-{
+static void close_block(Lyapunov *l) {
   double *rate = l->block + l->nblocks * (l->k + 1), length = l->t - l->block_from;
-
   rate[l->k] = 0;
   for (int a = 0; a < l->k; a++) {
     rate[a] = (l->sum[a] - l->block_sum[a]) / length;
@@ -101,59 +79,40 @@ static void close_block(Lyapunov *l)
 }
 
 /* Upper bound of the spectral radius of A = Df: |A^16|^(1/16), in which units hardly count. A is destroyed. */
-static double fastest(Lyapunov *l)
-{
+static double fastest(Lyapunov *l) {
   double rate = 1, root = 1;
   int n = l->n;
-
   for (int turn = 0; turn < 5; turn++, root /= 2) {
     double size = 0;
-    for (int i = 0; i < n * n; i++) {
-      size += l->A[i] * l->A[i];
-    }
+    for (int i = 0; i < n * n; i++) size += l->A[i] * l->A[i];
     size = sqrt(size);
     rate *= pow(size, root);
-    if (!(size > 0)) {
-      return 0;
-    }
+    if (!(size > 0)) return 0;
     memset(l->B, 0, (size_t)(n * n) * sizeof(double));
-    for (int i = 0; i < n * n; i++) {
-      l->A[i] /= size;
-    }
-    for (int i = 0; i < n && turn < 4; i++) {
+    for (int i = 0; i < n * n; i++) l->A[i] /= size;
+    for (int i = 0; i < n && turn < 4; i++)
       for (int k = 0; k < n; k++) {
         double a = l->A[i * n + k];
-        for (int j = 0; j < n && a != 0.0; j++) {
-          l->B[i * n + j] += a * l->A[k * n + j];
-        }
+        for (int j = 0; j < n && a != 0.0; j++) l->B[i * n + j] += a * l->A[k * n + j];
       }
-    }
     memcpy(l->A, l->B, (size_t)(n * n) * sizeof(double));
   }
   return rate;
 }
 
 /* Df at y, t: adds its trace to the divergence since the last call, once that counts, and sets the longest next step. */
-static int examine_jacobian(Lyapunov *l, lag_sim *sim, double t, const double *y)
-{
+static int examine_jacobian(Lyapunov *l, lag_sim *sim, double t, const double *y) {
   lag_problem *pb = &sim->pb;
   int n = l->n, nq = pb->nq;
   double before = l->trace, dt = isnan(l->begun) ? 0 : t - l->traced;
-
-  if (!pb->model->linear) {
-    return LAG_OK;
-  }
-  if (lag_jacobian(pb, t, y, l->J, l->work) || lag_not_finite((n - nq) * n, l->J) >= 0) {
-    return LAG_EDOMAIN;
-  }
+  if (!pb->model->linear) return LAG_OK;
+  if (lag_jacobian(pb, t, y, l->J, l->work) || lag_not_finite((n - nq) * n, l->J) >= 0) return LAG_EDOMAIN;
   memset(l->A, 0, (size_t)(n * n) * sizeof(double));
   memcpy(l->A + nq * n, l->J, (size_t)((n - nq) * n) * sizeof(double));
   l->trace = 0;
   for (int i = 0; i < n; i++) {
     l->trace += l->A[i * n + i];
-    if (i < nq) {
-      l->A[i * n + nq + i] = 1;
-    }
+    if (i < nq) l->A[i * n + nq + i] = 1;
   }
   l->traced = t;
   l->divergence += dt * (before + l->trace) / 2;
@@ -162,72 +121,49 @@ static int examine_jacobian(Lyapunov *l, lag_sim *sim, double t, const double *y
   return LAG_OK;
 }
 
-void lag_lyapunov_event(Lyapunov *l, lag_sim *sim, double t, const double *before)
-{
+void lag_lyapunov_event(Lyapunov *l, lag_sim *sim, double t, const double *before) {
   examine_jacobian(l, sim, t, before); /* a failure shows at the end of this step, too */
 }
 
-int lag_lyapunov_step(Lyapunov *l, lag_sim *sim)
-{
+int lag_lyapunov_step(Lyapunov *l, lag_sim *sim) {
   int rc = lag_sim_tangent(sim, l->Y), counts = !isnan(l->begun);
-
   rc = rc ? rc : orthonormalise(l, counts);
   rc = rc ? rc : lag_sim_set_tangent(sim, l->k, l->Y);
   l->t = lag_sim_time(sim);
   l->divergence += counts ? sim->tangent_log : 0;
   sim->tangent_log = 0;
   rc = rc ? rc : examine_jacobian(l, sim, l->t, sim->now);
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   if (!counts && l->t >= l->from) {
     l->begun = l->block_from = l->t;
     return LAG_OK;
   }
-  if (!counts) {
-    return LAG_OK;
-  }
+  if (!counts) return LAG_OK;
   l->steps++;
   double part = (l->t - l->begun) / (l->until - l->begun);
   if (isnan(l->half) && part >= 0.5) {
     l->half = l->t;
-    for (int a = 0; a < l->k; a++) {
-      l->at_half[a] = lag_lyapunov_exponent(l, a);
-    }
+    for (int a = 0; a < l->k; a++) l->at_half[a] = lag_lyapunov_exponent(l, a);
   }
-  if (l->nblocks < LAG_LYAPUNOV_BLOCKS - 1 && part * LAG_LYAPUNOV_BLOCKS >= l->nblocks + 1) {
-    close_block(l);
-  }
+  if (l->nblocks < LAG_LYAPUNOV_BLOCKS - 1 && part * LAG_LYAPUNOV_BLOCKS >= l->nblocks + 1) close_block(l);
   return LAG_OK;
 }
 
-void lag_lyapunov_end(Lyapunov *l)
-{
+void lag_lyapunov_end(Lyapunov *l) {
   double whole = (l->until - l->begun) / LAG_LYAPUNOV_BLOCKS;
-
-  if (!isnan(l->begun) && l->nblocks < LAG_LYAPUNOV_BLOCKS && l->t - l->block_from >= whole / 2) {
-    close_block(l);
-  }
+  if (!isnan(l->begun) && l->nblocks < LAG_LYAPUNOV_BLOCKS && l->t - l->block_from >= whole / 2) close_block(l);
 }
 
-double lag_lyapunov_exponent(const Lyapunov *l, int i)
-{
+double lag_lyapunov_exponent(const Lyapunov *l, int i) {
   double s = 0;
-
-  for (int a = 0; a < l->k; a++) {
-    s += a == i || i == l->k ? l->sum[a] : 0;
-  }
+  for (int a = 0; a < l->k; a++) s += a == i || i == l->k ? l->sum[a] : 0;
   return l->t > l->begun ? s / (l->t - l->begun) : NAN;
 }
 
-double lag_lyapunov_spread(const Lyapunov *l, int i)
-{
+double lag_lyapunov_spread(const Lyapunov *l, int i) {
   double mean = 0, square = 0;
   int n = l->nblocks;
-
-  for (int b = 0; b < n; b++) {
-    mean += l->block[b * (l->k + 1) + i] / n;
-  }
+  for (int b = 0; b < n; b++) mean += l->block[b * (l->k + 1) + i] / n;
   for (int b = 0; b < n; b++) {
     double d = l->block[b * (l->k + 1) + i] - mean;
     square += d * d;
@@ -235,34 +171,23 @@ double lag_lyapunov_spread(const Lyapunov *l, int i)
   return n > 1 ? sqrt(square / (n - 1) / n) : NAN;
 }
 
-double lag_lyapunov_divergence(const Lyapunov *l)
-{
-  return l->t > l->begun ? l->divergence / (l->t - l->begun) : NAN;
-}
+double lag_lyapunov_divergence(const Lyapunov *l) { return l->t > l->begun ? l->divergence / (l->t - l->begun) : NAN; }
 
-double lag_lyapunov_error(const Lyapunov *l, int i)
-{
+double lag_lyapunov_error(const Lyapunov *l, int i) {
   double time = l->t - l->begun, half = 0, moved;
-
-  for (int a = 0; a < l->k; a++) {
-    half += a == i || i == l->k ? l->at_half[a] : 0;
-  }
+  for (int a = 0; a < l->k; a++) half += a == i || i == l->k ? l->at_half[a] : 0;
   moved = fabs(lag_lyapunov_exponent(l, i) - half);
   return time > 0 ? fmax(fmax(moved, lag_lyapunov_spread(l, i)), fmax(1, DBL_EPSILON * (double)l->steps) / time) : NAN;
 }
 
-int lag_lyapunov_sign(const Lyapunov *l, int i)
-{
+int lag_lyapunov_sign(const Lyapunov *l, int i) {
   const double errors = 3;
   double x = lag_lyapunov_exponent(l, i), least = errors * lag_lyapunov_error(l, i);
-
   return (x > least) - (x < -least);
 }
 
-double lag_lyapunov_entropy(const Lyapunov *l, double *error)
-{
+double lag_lyapunov_entropy(const Lyapunov *l, double *error) {
   double sum = 0;
-
   *error = 0;
   for (int i = 0; i < l->k && lag_lyapunov_sign(l, i) >= 0; i++) {
     sum += lag_lyapunov_sign(l, i) > 0 ? lag_lyapunov_exponent(l, i) : 0;
@@ -271,14 +196,10 @@ double lag_lyapunov_entropy(const Lyapunov *l, double *error)
   return sum;
 }
 
-double lag_lyapunov_dimension(const Lyapunov *l, double *error)
-{
+double lag_lyapunov_dimension(const Lyapunov *l, double *error) {
   double sum = 0, lost = 0;
-
   *error = NAN;
-  if (l->k < l->n || lag_lyapunov_sign(l, l->k) >= 0) {
-    return NAN;
-  }
+  if (l->k < l->n || lag_lyapunov_sign(l, l->k) >= 0) return NAN;
   for (int i = 0; i < l->k; i++) {
     double x = lag_lyapunov_sign(l, i) ? lag_lyapunov_exponent(l, i) : 0, off = lag_lyapunov_error(l, i);
     if (sum + x < 0) {

@@ -10,10 +10,8 @@ typedef struct Pool {
 } Pool;
 
 /* n zeros; NULL without memory, and failed is set. */
-static inline double *lag_pool_doubles(Pool *p, size_t n)
-{
+static inline double *lag_pool_doubles(Pool *p, size_t n) {
   void **block = calloc(1, sizeof(double) * (n + 2));
-
   if (!block) {
     p->failed = 1;
     return NULL;
@@ -23,8 +21,7 @@ static inline double *lag_pool_doubles(Pool *p, size_t n)
   return (double *)(void *)block + 2;
 }
 
-static inline void lag_pool_free(Pool *p)
-{
+static inline void lag_pool_free(Pool *p) {
   while (p->last) {
     void *before = *(void **)p->last;
     free(p->last);

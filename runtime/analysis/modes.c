@@ -27,18 +27,13 @@ typedef struct ModeSearch {
 /* ---- Shapes */
 
 /* Amplitude of component i of a shape (coordinates, then states), in scales. */
-static double amplitude(const ModeSearch *w, int i, double re, double im)
-{
-  return hypot(re, im) / w->rest->scale[i];
-}
+static double amplitude(const ModeSearch *w, int i, double re, double im) { return hypot(re, im) / w->rest->scale[i]; }
 
 /* The component to be normalised to 1: the coordinate with the largest kinetic energy; if only states move, the state with the largest
  * amplitude. */
-static int reference(const ModeSearch *w, const double *re, const double *im)
-{
+static int reference(const ModeSearch *w, const double *re, const double *im) {
   int best = 0, state = w->nq;
   double most = -1, far = 0, state_far = 0;
-
   for (int i = 0; i < w->n; i++) {
     double e = amplitude(w, i, re[i], im[i]);
     if (i < w->nq) {
@@ -57,13 +52,9 @@ static int reference(const ModeSearch *w, const double *re, const double *im)
 }
 
 /* Adds a mode with the shape re + i im, [n] with a stride. */
-static int add_mode(ModeSearch *w, Mode mode, const double *re, const double *im, int stride)
-{
+static int add_mode(ModeSearch *w, Mode mode, const double *re, const double *im, int stride) {
   double *shape_re = lag_pool_doubles(&w->out->pool, (size_t)w->n), *shape_im = lag_pool_doubles(&w->out->pool, (size_t)w->n);
-
-  if (w->out->pool.failed) {
-    return LAG_ENOMEM;
-  }
+  if (w->out->pool.failed) return LAG_ENOMEM;
   for (int i = 0; i < w->n; i++) {
     shape_re[i] = re[i * stride];
     shape_im[i] = im ? im[i * stride] : 0;
@@ -86,15 +77,13 @@ static int add_mode(ModeSearch *w, Mode mode, const double *re, const double *im
 /* ---- Zero modes */
 
 /* A basis of the kernel with as many zeros as possible: Gauss-Jordan elimination of its vectors, measured in scales. */
-static void reduce_kernel(ModeSearch *w)
-{
+static void reduce_kernel(ModeSearch *w) {
   int k = w->nkernel, n = w->n;
   double *v = w->kernel;
-
   for (int done = 0; done < k; done++) {
     int row = 0, col = done;
     double most = 0;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
       for (int j = done; j < k; j++) {
         double e = amplitude(w, i, v[i * k + j], 0);
         if (e > most * (1 + 1e-9)) {
@@ -103,48 +92,35 @@ static void reduce_kernel(ModeSearch *w)
           col = j;
         }
       }
-    }
     double pivot = v[row * k + col];
-    if (pivot == 0.0) {
-      return;
-    }
+    if (pivot == 0.0) return;
     for (int i = 0; i < n; i++) {
       lag_swap(&v[i * k + done], &v[i * k + col]);
       v[i * k + done] /= pivot;
     }
     for (int j = 0; j < k; j++) {
       double factor = v[row * k + j];
-      for (int i = 0; i < n && j != done; i++) {
-        v[i * k + j] -= factor * v[i * k + done];
-      }
+      for (int i = 0; i < n && j != done; i++) v[i * k + j] -= factor * v[i * k + done];
     }
   }
 }
 
 /* Whether all forces stay 0 along x[n], or along a curve that begins so (a rotation): tested near and as far as `most` scales, on both sides. */
-static int is_free(ModeSearch *w, const double *x, double most)
-{
+static int is_free(ModeSearch *w, const double *x, double most) {
   const double steps[] = {-most / 3, most / 3, -most, most};
   double far = 0;
-
-  for (int i = 0; i < w->n; i++) {
-    far = fmax(far, amplitude(w, i, x[i], 0));
-  }
+  for (int i = 0; i < w->n; i++) far = fmax(far, amplitude(w, i, x[i], 0));
   for (size_t k = 0; k < sizeof steps / sizeof *steps && far > 0; k++) {
     double c = steps[k] / far;
-    if (!lag_equilibrium_holds(w->rest, x, c) && !lag_equilibrium_continues(w->rest, w->algebra, x, c)) {
-      return 0;
-    }
+    if (!lag_equilibrium_holds(w->rest, x, c) && !lag_equilibrium_continues(w->rest, w->algebra, x, c)) return 0;
   }
   return far > 0;
 }
 
 /* Whether zero modes that are free one by one are free together, which x^2 y^2 is not along x and y: a few sums are tried, with coefficients in
  * no simple ratio. */
-static int free_together(ModeSearch *w, double *x)
-{
+static int free_together(ModeSearch *w, double *x) {
   int k = w->nkernel;
-
   for (int pattern = 0; pattern < 4 && k > 1; pattern++) {
     for (int i = 0; i < w->n; i++) {
       x[i] = 0;
@@ -153,21 +129,15 @@ static int free_together(ModeSearch *w, double *x)
         x[i] += w->kernel[i * k + j] * (minus ? -1 : 1) * (0.7 + 0.11 * (j * 3 % 4));
       }
     }
-    if (!is_free(w, x, 0.1)) {
-      return 0;
-    }
+    if (!is_free(w, x, 0.1)) return 0;
   }
   return 1;
 }
 
-static int add_zero_modes(ModeSearch *w)
-{
+static int add_zero_modes(ModeSearch *w) {
   double *x = lag_pool_doubles(&w->out->pool, (size_t)w->n);
   int rc = x ? LAG_OK : LAG_ENOMEM, all = 1;
-
-  if (rc == LAG_OK) {
-    reduce_kernel(w);
-  }
+  if (rc == LAG_OK) reduce_kernel(w);
   for (int k = 0; k < w->nkernel && rc == LAG_OK; k++) {
     for (int i = 0; i < w->n; i++) {
       x[i] = w->kernel[i * w->nkernel + k];
@@ -185,16 +155,12 @@ static int add_zero_modes(ModeSearch *w)
 /* ---- Two ways to the modes */
 
 /* Modes from the eigenvalues w^2 of the symmetric problem: a negative one is a pair +-s. */
-static int modes_of_values(ModeSearch *w)
-{
+static int modes_of_values(ModeSearch *w) {
   const Matrices *m = &w->m;
   int nq = w->nq, rc = LAG_OK;
-
   w->nkernel = m->flat;
   w->kernel = lag_pool_doubles(&w->out->pool, (size_t)w->n * (size_t)w->nkernel);
-  if (!w->kernel) {
-    return LAG_ENOMEM;
-  }
+  if (!w->kernel) return LAG_ENOMEM;
   for (int k = 0, zeros = 0; k < nq && rc == LAG_OK; k++) {
     double value = m->values[k];
     if (fabs(value) > m->zero[k]) {
@@ -202,9 +168,7 @@ static int modes_of_values(ModeSearch *w)
       rc = add_mode(w, mode, m->vectors + k, NULL, nq);
       continue;
     }
-    for (int i = 0; i < nq; i++) {
-      w->kernel[i * w->nkernel + zeros] = m->vectors[i * nq + k];
-    }
+    for (int i = 0; i < nq; i++) w->kernel[i * w->nkernel + zeros] = m->vectors[i * nq + k];
     zeros++;
   }
   w->out->drifts = w->nkernel > 0;
@@ -213,43 +177,30 @@ static int modes_of_values(ModeSearch *w)
 }
 
 /* Whether the eigenvalue is the conjugate, or the negative, of one that is listed. */
-static int is_second_half(const ModeSearch *w, const Spectrum *s, int k)
-{
-  return s->im[k] < 0 || (w->out->pairs && s->re[k] < 0);
-}
+static int is_second_half(const ModeSearch *w, const Spectrum *s, int k) { return s->im[k] < 0 || (w->out->pairs && s->re[k] < 0); }
 
 /* Whether k is the first of equal defective eigenvalues, which are listed as one mode. */
-static int is_first(const Spectrum *s, int k)
-{
-  for (int i = 0; i < k && s->repeats[k] > 1; i++) {
-    if (s->re[i] == s->re[k] && s->im[i] == s->im[k]) {
-      return 0;
-    }
-  }
+static int is_first(const Spectrum *s, int k) {
+  for (int i = 0; i < k && s->repeats[k] > 1; i++)
+    if (s->re[i] == s->re[k] && s->im[i] == s->im[k]) return 0;
   return 1;
 }
 
-static int modes_of_matrix(ModeSearch *w)
-{
+static int modes_of_matrix(ModeSearch *w) {
   Pool *pool = &w->out->pool;
   Spectrum s;
   size_t n = (size_t)w->n;
   double *A, *noise, *re = lag_pool_doubles(pool, n), *im = lag_pool_doubles(pool, n);
   int rc = lag_state_matrix(pool, w->rest, &A, &noise);
-
   rc = rc ? rc : pool->failed ? LAG_ENOMEM : lag_spectrum(&s, pool, w->algebra, w->ny, A, noise);
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   int minimum = w->conserves && w->m.lowering == 0 && w->m.flat == 0; /* then real parts are rounding */
   w->nkernel = s.nkernel;
   w->out->drifts = s.zeros > s.nkernel;
   w->kernel = lag_pool_doubles(pool, n * (size_t)s.nkernel);
   for (int i = 0; i < w->n && w->kernel; i++) {
     int row = i < w->nq ? i : w->nq + i;
-    for (int k = 0; k < s.nkernel; k++) {
-      w->kernel[i * s.nkernel + k] = s.kernel[row * s.nkernel + k];
-    }
+    for (int k = 0; k < s.nkernel; k++) w->kernel[i * s.nkernel + k] = s.kernel[row * s.nkernel + k];
   }
   for (int k = 0; k < s.count && rc == LAG_OK && !pool->failed; k++) {
     Mode mode = {.re = minimum ? 0 : s.re[k], .im = s.im[k], .repeats = (int)s.repeats[k]};
@@ -266,11 +217,9 @@ static int modes_of_matrix(ModeSearch *w)
 
 /* ---- Stability */
 
-static Verdict decide_stability(const ModeSearch *w)
-{
+static Verdict decide_stability(const ModeSearch *w) {
   const Modes *out = w->out;
   int grows = 0, stays = 0, zeros = 0, bound = 0, defective = 0;
-
   for (int i = 0; i < out->n; i++) {
     const Mode *m = &out->mode[i];
     int zero = m->re == 0.0 && m->im == 0.0;
@@ -280,41 +229,20 @@ static Verdict decide_stability(const ModeSearch *w)
     bound += zero && !m->free;
     defective |= m->re == 0.0 && m->repeats > 1;
   }
-  if (grows) {
-    return LAG_UNSTABLE;
-  }
-  if (w->rest->pole) {
-    return LAG_COORDINATE_POLE;
-  }
-  if (w->rest->rough) {
-    return LAG_NONSMOOTH;
-  }
-  if (stays == 0 && zeros == 0) {
-    return LAG_DECAYS;
-  }
-  if (defective) {
-    return LAG_DEFECTIVE;
-  }
-  if (bound) {
-    return LAG_DEGENERATE;
-  }
-  if (zeros && !out->together) {
-    return LAG_FREE_SEPARATELY;
-  }
-  if (w->conserves && out->lowering == 0) {
-    return zeros != w->m.flat ? LAG_DEGENERATE : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
-  }
-  if (w->loses && out->lowering == 0 && zeros == 0 && w->m.flat == 0) {
-    return LAG_DISSIPATIVE_MINIMUM;
-  }
-  if (w->conserves && out->lowering > 0) {
-    return LAG_GYROSCOPIC;
-  }
+  if (grows) return LAG_UNSTABLE;
+  if (w->rest->pole) return LAG_COORDINATE_POLE;
+  if (w->rest->rough) return LAG_NONSMOOTH;
+  if (stays == 0 && zeros == 0) return LAG_DECAYS;
+  if (defective) return LAG_DEFECTIVE;
+  if (bound) return LAG_DEGENERATE;
+  if (zeros && !out->together) return LAG_FREE_SEPARATELY;
+  if (w->conserves && out->lowering == 0) return zeros != w->m.flat ? LAG_DEGENERATE : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
+  if (w->loses && out->lowering == 0 && zeros == 0 && w->m.flat == 0) return LAG_DISSIPATIVE_MINIMUM;
+  if (w->conserves && out->lowering > 0) return LAG_GYROSCOPIC;
   return stays == 0 ? LAG_NEUTRAL : LAG_CENTRE;
 }
 
-const char *lag_verdict_name(Verdict verdict)
-{
+const char *lag_verdict_name(Verdict verdict) {
   switch (verdict) {
   case LAG_UNSTABLE: return "unstable";
   case LAG_DECAYS: return "asymptotically stable";
@@ -325,38 +253,25 @@ const char *lag_verdict_name(Verdict verdict)
   return "undecided";
 }
 
-static int class_of(const Mode *m)
-{
-  return m->re == 0.0 && m->im == 0.0 ? 0 : m->re > 0 ? 1 : 2;
-}
+static int class_of(const Mode *m) { return m->re == 0.0 && m->im == 0.0 ? 0 : m->re > 0 ? 1 : 2; }
 
-static int by_class(const void *a, const void *b)
-{
+static int by_class(const void *a, const void *b) {
   const Mode *x = a, *y = b;
   int c = class_of(x) - class_of(y);
-
-  if (c) {
-    return c;
-  }
-  if (x->im != y->im) {
-    return x->im < y->im ? -1 : 1;
-  }
+  if (c) return c;
+  if (x->im != y->im) return x->im < y->im ? -1 : 1;
   return (x->re < y->re) - (x->re > y->re);
 }
 
-int lag_modes_find(Modes *out, Equilibrium *rest, const lag_algebra *algebra)
-{
+int lag_modes_find(Modes *out, Equilibrium *rest, const lag_algebra *algebra) {
   lag_problem *pb = &rest->sim->pb;
   ModeSearch w = {.out = out, .rest = rest, .algebra = algebra, .pb = pb, .nq = pb->nq, .n = rest->n, .ny = pb->n};
-
   w.conserves = (pb->model->flags & LAG_CONSERVES_ENERGY) != 0 && pb->nz == 0;
   w.loses = (pb->model->flags & LAG_LOSES_ENERGY) != 0 && pb->nz == 0;
   *out = (Modes){.lowering = -1, .pairs = w.conserves};
   out->mode = calloc((size_t)w.ny + 1, sizeof *out->mode);
   int rc = out->mode ? lag_matrices_find(&w.m, &out->pool, rest, algebra) : LAG_ENOMEM;
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   out->lowering = w.m.lowering;
   rc = pb->nz == 0 && w.m.undamped && out->lowering >= 0 ? modes_of_values(&w) : modes_of_matrix(&w);
   qsort(out->mode, (size_t)out->n, sizeof *out->mode, by_class);
@@ -364,8 +279,7 @@ int lag_modes_find(Modes *out, Equilibrium *rest, const lag_algebra *algebra)
   return rc;
 }
 
-void lag_modes_free(Modes *modes)
-{
+void lag_modes_free(Modes *modes) {
   free(modes->mode);
   lag_pool_free(&modes->pool);
 }

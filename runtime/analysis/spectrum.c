@@ -30,63 +30,39 @@ typedef struct SpectrumSearch {
   int nstages;
 } SpectrumSearch;
 
-static double frobenius(int n, const double *A)
-{
+static double frobenius(int n, const double *A) {
   double sum = 0;
-
-  for (int i = 0; i < n * n; i++) {
-    sum += A[i] * A[i];
-  }
+  for (int i = 0; i < n * n; i++) sum += A[i] * A[i];
   return sqrt(sum);
 }
 
 /* ---- Zeros */
 
 /* B := Q'A Q of m rows. */
-static int rotate(SpectrumSearch *w, const double *Q, double *B)
-{
+static int rotate(SpectrumSearch *w, const double *Q, double *B) {
   int m = w->m;
   double *AQ = lag_pool_doubles(w->pool, (size_t)m * (size_t)m);
-
-  if (!AQ) {
-    return LAG_ENOMEM;
-  }
-  for (int i = 0; i < m; i++) {
-    for (int k = 0; k < m; k++) {
-      for (int j = 0; j < m && w->A[i * m + k] != 0.0; j++) {
-        AQ[i * m + j] += w->A[i * m + k] * Q[k * m + j];
-      }
-    }
-  }
-  for (int k = 0; k < m; k++) {
-    for (int i = 0; i < m; i++) {
-      for (int j = 0; j < m && Q[k * m + i] != 0.0; j++) {
-        B[i * m + j] += Q[k * m + i] * AQ[k * m + j];
-      }
-    }
-  }
+  if (!AQ) return LAG_ENOMEM;
+  for (int i = 0; i < m; i++)
+    for (int k = 0; k < m; k++)
+      for (int j = 0; j < m && w->A[i * m + k] != 0.0; j++) AQ[i * m + j] += w->A[i * m + k] * Q[k * m + j];
+  for (int k = 0; k < m; k++)
+    for (int i = 0; i < m; i++)
+      for (int j = 0; j < m && Q[k * m + i] != 0.0; j++) B[i * m + j] += Q[k * m + i] * AQ[k * m + j];
   return LAG_OK;
 }
 
 /* Deflates the kernel; *more = 0 when there is none. */
-static int deflate(SpectrumSearch *w, int *more)
-{
+static int deflate(SpectrumSearch *w, int *more) {
   int m = w->m, rank = m;
   size_t mm = (size_t)m * (size_t)m;
   double *Q = lag_pool_doubles(w->pool, mm);
   int rc = Q ? w->algebra->kernel(m, w->A, 8 * sqrt(m) * w->noise, Q, &rank) : LAG_ENOMEM;
-
   *more = rc == LAG_OK && rank < m;
-  if (!*more) {
-    return rc;
-  }
+  if (!*more) return rc;
   double *B = lag_pool_doubles(w->pool, mm), *rest = lag_pool_doubles(w->pool, mm), *C = lag_pool_doubles(w->pool, mm);
-  if (w->pool->failed || (rc = rotate(w, Q, B)) != 0) {
-    return LAG_ENOMEM;
-  }
-  for (int i = 0; i < m; i++) {
-    memcpy(i < rank ? rest + i * rank : C + (i - rank) * rank, B + i * m, (size_t)rank * sizeof(double));
-  }
+  if (w->pool->failed || (rc = rotate(w, Q, B)) != 0) return LAG_ENOMEM;
+  for (int i = 0; i < m; i++) memcpy(i < rank ? rest + i * rank : C + (i - rank) * rank, B + i * m, (size_t)rank * sizeof(double));
   w->stage[w->nstages++] = (Stage){m, rank, Q, C};
   w->s->zeros += m - rank;
   w->A = rest;
@@ -94,41 +70,28 @@ static int deflate(SpectrumSearch *w, int *more)
   return LAG_OK;
 }
 
-static int take_zeros(SpectrumSearch *w)
-{
+static int take_zeros(SpectrumSearch *w) {
   Spectrum *s = w->s;
   int more = 1, rc = LAG_OK;
-
-  while (rc == LAG_OK && more && w->m > 0 && w->nstages < MOST_STAGES) {
-    rc = deflate(w, &more);
-  }
-  if (rc || w->nstages == 0) {
-    return rc;
-  }
+  while (rc == LAG_OK && more && w->m > 0 && w->nstages < MOST_STAGES) rc = deflate(w, &more);
+  if (rc || w->nstages == 0) return rc;
   const Stage *first = &w->stage[0];
   s->nkernel = s->n - first->rank;
   s->kernel = lag_pool_doubles(w->pool, (size_t)s->n * (size_t)s->nkernel);
-  for (int i = 0; i < s->n && s->kernel; i++) {
-    for (int k = 0; k < s->nkernel; k++) {
-      s->kernel[i * s->nkernel + k] = w->scale[i] * first->Q[i * s->n + first->rank + k];
-    }
-  }
+  for (int i = 0; i < s->n && s->kernel; i++)
+    for (int k = 0; k < s->nkernel; k++) s->kernel[i * s->nkernel + k] = w->scale[i] * first->Q[i * s->n + first->rank + k];
   return s->kernel ? LAG_OK : LAG_ENOMEM;
 }
 
 /* ---- Multiple eigenvalues */
 
 /* cluster[i] := the first eigenvalue of the cluster of eigenvalue i. Close ones are joined until nothing changes. */
-static void find_clusters(int m, const double *re, const double *im, const double *uncertain, double *cluster)
-{
+static void find_clusters(int m, const double *re, const double *im, const double *uncertain, double *cluster) {
   int changed = 1;
-
-  for (int i = 0; i < m; i++) {
-    cluster[i] = i;
-  }
+  for (int i = 0; i < m; i++) cluster[i] = i;
   while (changed) {
     changed = 0;
-    for (int i = 0; i < m; i++) {
+    for (int i = 0; i < m; i++)
       for (int j = 0; j < i; j++) {
         double distance = hypot(re[i] - re[j], im[i] - im[j]);
         if (cluster[i] != cluster[j] && distance <= fmin(uncertain[i], uncertain[j])) {
@@ -136,19 +99,14 @@ static void find_clusters(int m, const double *re, const double *im, const doubl
           changed = 1;
         }
       }
-    }
   }
 }
 
 /* *count := number of eigenvectors of the eigenvalue re + i im: the kernel of A - re - i im as a real matrix of 2m rows. */
-static int eigenvectors(SpectrumSearch *w, double re, double im, int *count)
-{
+static int eigenvectors(SpectrumSearch *w, double re, double im, int *count) {
   int m = w->m, m2 = 2 * m, rank = m2;
   double *E = lag_pool_doubles(w->pool, 4 * (size_t)m * (size_t)m), *Q = lag_pool_doubles(w->pool, 4 * (size_t)m * (size_t)m);
-
-  if (w->pool->failed) {
-    return LAG_ENOMEM;
-  }
+  if (w->pool->failed) return LAG_ENOMEM;
   for (int i = 0; i < m; i++) {
     for (int j = 0; j < m; j++) {
       double x = w->A[i * m + j] - (i == j ? re : 0);
@@ -163,59 +121,45 @@ static int eigenvectors(SpectrumSearch *w, double re, double im, int *count)
 }
 
 /* Replaces the members of a cluster by their mean; repeats := their number where eigenvectors are missing. */
-static int settle_cluster(SpectrumSearch *w, int first, const double *cluster, double *uncertain)
-{
+static int settle_cluster(SpectrumSearch *w, int first, const double *cluster, double *uncertain) {
   Spectrum *s = w->s;
   double re = 0, im = 0;
   int members = 0, found = 0;
-
-  for (int i = 0; i < w->m; i++) {
+  for (int i = 0; i < w->m; i++)
     if ((int)cluster[i] == first) {
       members++;
       re += s->re[i];
       im += s->im[i];
     }
-  }
-  if (members < 2) {
-    return LAG_OK;
-  }
+  if (members < 2) return LAG_OK;
   re /= members;
   im /= members;
   int rc = eigenvectors(w, re, im, &found);
-  for (int i = 0; i < w->m; i++) {
+  for (int i = 0; i < w->m; i++)
     if ((int)cluster[i] == first) {
       s->re[i] = re;
       s->im[i] = im;
       s->repeats[i] = found < members ? members : 1;
       uncertain[i] = fmax(1e-11 * w->size, w->noise); /* error of a mean: far above rounding, far below the distances of the members */
     }
-  }
   return rc;
 }
 
 /* ---- All of them */
 
-static int solve(SpectrumSearch *w)
-{
+static int solve(SpectrumSearch *w) {
   Spectrum *s = w->s;
   size_t m = (size_t)w->m;
   double *A = lag_pool_doubles(w->pool, m * m), *uncertain = lag_pool_doubles(w->pool, m), *cluster = lag_pool_doubles(w->pool, m);
-
-  if (w->pool->failed) {
-    return LAG_ENOMEM;
-  }
+  if (w->pool->failed) return LAG_ENOMEM;
   memcpy(A, w->A, m * m * sizeof *A);
   int rc = w->algebra->general(w->m, A, s->re, s->im, s->vre, s->vim, uncertain);
   for (size_t i = 0; i < m; i++) {
     uncertain[i] = fmin(8 * uncertain[i] * w->noise, 1e-3 * w->size);
     s->repeats[i] = 1;
   }
-  if (rc == LAG_OK) {
-    find_clusters(w->m, s->re, s->im, uncertain, cluster);
-  }
-  for (int i = 0; i < w->m && rc == LAG_OK; i++) {
-    rc = (int)cluster[i] == i ? settle_cluster(w, i, cluster, uncertain) : LAG_OK;
-  }
+  if (rc == LAG_OK) find_clusters(w->m, s->re, s->im, uncertain, cluster);
+  for (int i = 0; i < w->m && rc == LAG_OK; i++) rc = (int)cluster[i] == i ? settle_cluster(w, i, cluster, uncertain) : LAG_OK;
   for (size_t i = 0; i < m; i++) {
     s->re[i] = fabs(s->re[i]) <= uncertain[i] ? 0 : s->re[i];
     s->im[i] = fabs(s->im[i]) <= uncertain[i] ? 0 : s->im[i];
@@ -224,15 +168,11 @@ static int solve(SpectrumSearch *w)
 }
 
 /* Eigenvector k of the stage's matrix from that of its block: x[m] := Q [x; C x/lambda], in place. */
-static int extend_eigenvector(SpectrumSearch *w, const Stage *st, int k)
-{
+static int extend_eigenvector(SpectrumSearch *w, const Stage *st, int k) {
   Spectrum *s = w->s;
   double l2 = s->re[k] * s->re[k] + s->im[k] * s->im[k], *x = lag_pool_doubles(w->pool, 4 * (size_t)st->m);
   double *y = x + 2 * st->m;
-
-  if (!x) {
-    return LAG_ENOMEM;
-  }
+  if (!x) return LAG_ENOMEM;
   for (int i = 0; i < st->m; i++) {
     double re = 0, im = 0;
     if (i < st->rank) {
@@ -259,15 +199,11 @@ static int extend_eigenvector(SpectrumSearch *w, const Stage *st, int k)
 }
 
 /* Extends eigenvectors of the deflated matrix to those of the whole, and undoes balancing. */
-static int extend_eigenvectors(SpectrumSearch *w)
-{
+static int extend_eigenvectors(SpectrumSearch *w) {
   Spectrum *s = w->s;
   int rc = LAG_OK;
-
   for (int k = 0; k < s->count; k++) {
-    for (int i = w->nstages; i-- > 0 && rc == LAG_OK;) {
-      rc = extend_eigenvector(w, &w->stage[i], k);
-    }
+    for (int i = w->nstages; i-- > 0 && rc == LAG_OK;) rc = extend_eigenvector(w, &w->stage[i], k);
     for (int i = 0; i < s->n; i++) {
       s->vre[i * s->count + k] *= w->scale[i];
       s->vim[i * s->count + k] *= w->scale[i];
@@ -277,11 +213,9 @@ static int extend_eigenvectors(SpectrumSearch *w)
 }
 
 /* Allocates room for the eigenvalues of the deflated matrix. */
-static int allocate(SpectrumSearch *w)
-{
+static int allocate(SpectrumSearch *w) {
   Spectrum *s = w->s;
   size_t count = (size_t)w->m, size = (size_t)s->n * count;
-
   s->count = w->m;
   s->re = lag_pool_doubles(w->pool, count);
   s->im = lag_pool_doubles(w->pool, count);
@@ -292,13 +226,9 @@ static int allocate(SpectrumSearch *w)
 }
 
 /* A := D^-1 A D, and noise likewise, with the D that balances the terms of the entries. */
-static int balance(SpectrumSearch *w, int n, double *A, double *noise)
-{
+static int balance(SpectrumSearch *w, int n, double *A, double *noise) {
   double *terms = lag_pool_doubles(w->pool, (size_t)n * (size_t)n);
-
-  for (int i = 0; i < n * n && terms; i++) {
-    terms[i] = fmax(fabs(A[i]), noise[i] / DBL_EPSILON);
-  }
+  for (int i = 0; i < n * n && terms; i++) terms[i] = fmax(fabs(A[i]), noise[i] / DBL_EPSILON);
   int rc = terms ? w->algebra->balance(n, terms, w->scale) : LAG_ENOMEM;
   for (int i = 0; i < n * n && rc == LAG_OK; i++) {
     double d = w->scale[i % n] / w->scale[i / n];
@@ -308,16 +238,12 @@ static int balance(SpectrumSearch *w, int n, double *A, double *noise)
   return rc;
 }
 
-int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise)
-{
+int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise) {
   SpectrumSearch w = {.s = s, .pool = pool, .algebra = algebra, .A = A, .m = n};
-
   *s = (Spectrum){.n = n};
   w.scale = lag_pool_doubles(pool, (size_t)n);
   int rc = w.scale ? balance(&w, n, A, noise) : LAG_ENOMEM;
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   w.size = frobenius(n, A);
   w.noise = fmax(DBL_EPSILON * w.size, frobenius(n, noise));
   rc = take_zeros(&w);

@@ -22,26 +22,18 @@ typedef struct Look {
   double *J, *x, *y, *z, *work;
 } Look;
 
-static double dot(int n, const double *a, const double *b)
-{
+static double dot(int n, const double *a, const double *b) {
   double sum = 0;
-
-  for (int i = 0; i < n; i++) {
-    sum += a[i] * b[i];
-  }
+  for (int i = 0; i < n; i++) sum += a[i] * b[i];
   return sum;
 }
 
 /* y := (df/dy) x; returns |y|. */
-static double apply_jacobian(const lag_problem *pb, const double *J, const double *x, double *y)
-{
+static double apply_jacobian(const lag_problem *pb, const double *J, const double *x, double *y) {
   size_t n = (size_t)pb->n, nq = (size_t)pb->nq;
-
   for (size_t i = 0; i < n; i++) {
     double value = i < nq ? x[nq + i] : 0;
-    for (size_t k = 0; i >= nq && k < n; k++) {
-      value += J[(i - nq) * n + k] * x[k];
-    }
+    for (size_t k = 0; i >= nq && k < n; k++) value += J[(i - nq) * n + k] * x[k];
     y[i] = value;
   }
   return sqrt(dot(pb->n, y, y));
@@ -50,20 +42,14 @@ static double apply_jacobian(const lag_problem *pb, const double *J, const doubl
 /* The dominant eigenvalue, or pair: returns its modulus, 0 where there is none, and its real part. Power method, continued from the vector of
  * the last step. Then x, y = J x and z = J y lie in the span of the pair's vectors, z = a y + b x, and the pair are the roots of s^2 = a s + b.
  * For a single eigenvalue y is along x, and s = y.x/x.x. */
-static double dominant(Look *l, const lag_problem *pb, double *real)
-{
+static double dominant(Look *l, const lag_problem *pb, double *real) {
   const double alike = 1e-10; /* squared sine of an angle that counts as 0 */
   int n = l->n;
-
   *real = 0;
   for (int i = 0; i < ITERATIONS; i++) {
     double growth = apply_jacobian(pb, l->J, l->x, l->y);
-    if (!(growth > 0 && isfinite(growth))) {
-      return 0;
-    }
-    for (int k = 0; k < n; k++) {
-      l->x[k] = l->y[k] / growth;
-    }
+    if (!(growth > 0 && isfinite(growth))) return 0;
+    for (int k = 0; k < n; k++) l->x[k] = l->y[k] / growth;
   }
   double yy = apply_jacobian(pb, l->J, l->x, l->y), xy = dot(n, l->x, l->y); /* |x| = 1 */
   apply_jacobian(pb, l->J, l->y, l->z);
@@ -77,13 +63,11 @@ static double dominant(Look *l, const lag_problem *pb, double *real)
   return inside < 0 ? sqrt(-b) : fabs(*real);
 }
 
-static int examine_step(void *context, const lag_sim *sim)
-{
+static int examine_step(void *context, const lag_sim *sim) {
   Look *l = context;
   Stiffness *s = l->s;
   lag_problem pb = sim->pb;
   double t = sim->run->step_t1, h = fabs(t - l->last), real;
-
   l->last = s->until = t;
   s->calls = pb.rhs_calls;
   if (s->steps == l->most / 2) { /* drops the statistics of the first half of the trial: they may be those of a transient */
@@ -98,13 +82,11 @@ static int examine_step(void *context, const lag_sim *sim)
   return s->steps >= l->most;
 }
 
-int lag_stiffness(lag_sim *trial, double until, double bound, int most, Stiffness *s)
-{
+int lag_stiffness(lag_sim *trial, double until, double bound, int most, Stiffness *s) {
   const lag_model *m = lag_sim_scene(trial)->model;
   int n = 2 * m->nq + m->nz;
   Pool pool = {0};
   Look l = {.s = s, .bound = bound, .last = lag_sim_time(trial), .n = n, .every = n <= 40 ? 1 : 5, .most = most};
-
   *s = (Stiffness){0};
   l.J = lag_pool_doubles(&pool, (size_t)(m->nq + m->nz) * (size_t)n);
   l.x = lag_pool_doubles(&pool, (size_t)n);
@@ -122,12 +104,6 @@ int lag_stiffness(lag_sim *trial, double until, double bound, int most, Stiffnes
   return pool.failed ? LAG_ENOMEM : LAG_OK;
 }
 
-int lag_is_stiff(const Stiffness *s)
-{
-  return s->looked >= LEAST_STEPS && s->limited * 2 > s->looked;
-}
+int lag_is_stiff(const Stiffness *s) { return s->looked >= LEAST_STEPS && s->limited * 2 > s->looked; }
 
-int lag_exceeds_stability(const Stiffness *s, int n)
-{
-  return STAGES * s->needed > MARGIN * (s->calls + (double)n * s->steps);
-}
+int lag_exceeds_stability(const Stiffness *s, int n) { return STAGES * s->needed > MARGIN * (s->calls + (double)n * s->steps); }

@@ -9,26 +9,22 @@
 #include <string.h>
 #include <time.h>
 
-int lag_samples_init(Samples *s, int rows, int n)
-{
+int lag_samples_init(Samples *s, int rows, int n) {
   *s = (Samples){.rows = rows, .n = n};
   s->t = calloc((size_t)rows + 1, sizeof *s->t);
   s->y = calloc((size_t)rows * (size_t)n + 1, sizeof *s->y);
   return s->t && s->y ? LAG_OK : LAG_ENOMEM;
 }
 
-void lag_samples_free(Samples *s)
-{
+void lag_samples_free(Samples *s) {
   free(s->t);
   free(s->y);
   s->t = s->y = NULL;
 }
 
-int lag_samples_take(Samples *s, lag_sim *sim)
-{
+int lag_samples_take(Samples *s, lag_sim *sim) {
   const lag_model *m = lag_sim_scene(sim)->model;
   size_t nq = (size_t)m->nq, nz = (size_t)m->nz;
-
   for (int i = 0; i < s->rows; i++) {
     double *y = s->y + (size_t)i * (size_t)s->n;
     int rc = lag_sim_advance(sim, s->t[i]);
@@ -36,9 +32,7 @@ int lag_samples_take(Samples *s, lag_sim *sim)
       s->rows = i;
       return LAG_OK;
     }
-    if (rc) {
-      return rc;
-    }
+    if (rc) return rc;
     memcpy(y, lag_sim_q(sim), nq * sizeof *y);
     memcpy(y + nq, lag_sim_v(sim), nq * sizeof *y);
     memcpy(y + 2 * nq, lag_sim_z(sim), nz * sizeof *y);
@@ -47,52 +41,37 @@ int lag_samples_take(Samples *s, lag_sim *sim)
 }
 
 /* 0: component i is a coordinate, 1: a velocity, 2: a state. */
-static int kind_of(const lag_model *m, int i)
-{
-  return i < m->nq ? 0 : i < 2 * m->nq ? 1 : 2;
-}
+static int kind_of(const lag_model *m, int i) { return i < m->nq ? 0 : i < 2 * m->nq ? 1 : 2; }
 
-int lag_previous_alike(const lag_sim *sim, int i)
-{
+int lag_previous_alike(const lag_sim *sim, int i) {
   const lag_model *m = lag_sim_scene(sim)->model;
   char unit[64], other[64];
   int k = i - 1;
-
   lag_sim_state_info(sim, i, NULL, 0, unit, sizeof unit);
   for (; k >= 0 && kind_of(m, k) == kind_of(m, i); k--) {
     lag_sim_state_info(sim, k, NULL, 0, other, sizeof other);
-    if (strcmp(unit, other) == 0) {
-      return k;
-    }
+    if (strcmp(unit, other) == 0) return k;
   }
   return -1;
 }
 
-void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale)
-{
+void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale) {
   int n = reference->n;
-
   for (int i = 0; i < n; i++) {
     int alike = lag_previous_alike(sim, i);
     scale[i] = alike < 0 ? 0 : scale[alike];
-    for (int r = 0; r < reference->rows; r++) {
-      scale[i] = fmax(scale[i], fabs(reference->y[(size_t)r * (size_t)n + (size_t)i]));
-    }
+    for (int r = 0; r < reference->rows; r++) scale[i] = fmax(scale[i], fabs(reference->y[(size_t)r * (size_t)n + (size_t)i]));
   }
   for (int i = n - 1; i >= 0; i--) { /* the last of a kind has the largest */
     int alike = lag_previous_alike(sim, i);
     scale[i] = scale[i] > 0 ? scale[i] : 1;
-    if (alike >= 0) {
-      scale[alike] = scale[i];
-    }
+    if (alike >= 0) scale[alike] = scale[i];
   }
 }
 
-double lag_cost_error(const Samples *a, const Samples *b, const double *scale)
-{
+double lag_cost_error(const Samples *a, const Samples *b, const double *scale) {
   size_t rows = (size_t)(a->rows < b->rows ? a->rows : b->rows), n = (size_t)a->n;
   double most = 0;
-
   for (size_t k = 0; k < rows * n; k++) {
     double d = fabs(a->y[k] - b->y[k]) / scale[k % n];
     most = d <= HUGE_VAL ? fmax(most, d) : HUGE_VAL;
@@ -102,38 +81,26 @@ double lag_cost_error(const Samples *a, const Samples *b, const double *scale)
 
 /* ---- One setting */
 
-double lag_processor_seconds(void)
-{
+double lag_processor_seconds(void) {
   struct timespec now;
-
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static int ascending(const void *a, const void *b)
-{
+static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
-
   return (x > y) - (x < y);
 }
 
 /* A simulation with the method at this setting; NULL without memory, or with *rc and m->why set. */
-static lag_sim *prepare(CostMethod *m, const CostScene *scene, double knob, int *rc)
-{
+static lag_sim *prepare(CostMethod *m, const CostScene *scene, double knob, int *rc) {
   lag_sim *sim = scene->fresh(scene->context);
   int adaptive = (m->method->flags & LAG_METHOD_ADAPTIVE) != 0, n = 0;
   lag_option opt[2];
-
   *rc = LAG_ENOMEM;
-  if (!sim) {
-    return NULL;
-  }
-  if (m->option.name) {
-    opt[n++] = m->option;
-  }
-  if (!adaptive) {
-    opt[n++] = (lag_option){.name = "step", .value = knob};
-  }
+  if (!sim) return NULL;
+  if (m->option.name) opt[n++] = m->option;
+  if (!adaptive) opt[n++] = (lag_option){.name = "step", .value = knob};
   if (lag_sim_set_method(sim, m->method, opt, n) || (adaptive && lag_sim_set_tolerance(sim, knob))) {
     snprintf(m->why, sizeof m->why, "%s", lag_sim_message(sim));
     lag_sim_free(sim);
@@ -148,8 +115,7 @@ enum { LEAST_REPEATS = 5, MOST_REPEATS = 41 };
 /* Runs one setting, and repeats it for its time while that is short. LAG_OK: *run has its result; LAG_STOPPED: it ended before the reference
  * did; < 0: it failed. */
 static int run_setting(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, double longest,
-                       Samples *own, CostRun *run)
-{
+                       Samples *own, CostRun *run) {
   double times[MOST_REPEATS], total = 0;
   const double enough = fmin(0.05, longest); /* s */
   int n = 0;
@@ -158,9 +124,7 @@ static int run_setting(CostMethod *m, const CostScene *scene, const Samples *ref
     int rc;
     lag_sim *sim = prepare(m, scene, run->knob, &rc);
     lag_stats st;
-    if (!sim) {
-      return rc;
-    }
+    if (!sim) return rc;
     own->rows = reference->rows;
     double begin = lag_processor_seconds();
     rc = lag_samples_take(own, sim);
@@ -174,9 +138,7 @@ static int run_setting(CostMethod *m, const CostScene *scene, const Samples *ref
     }
     lag_sim_free(sim);
     run->time = times[n];
-    if (rc || own->rows < reference->rows) {
-      return rc ? rc : LAG_STOPPED;
-    }
+    if (rc || own->rows < reference->rows) return rc ? rc : LAG_STOPPED;
     total += times[n++];
   }
   run->error = lag_cost_error(own, reference, scale);
@@ -189,31 +151,24 @@ static int run_setting(CostMethod *m, const CostScene *scene, const Samples *ref
 /* ---- One method */
 
 /* Observed order: the median of the last three slopes between runs that neither rounding nor the reference's error affects. */
-static double order_of(const CostMethod *m, double uncertainty)
-{
+static double order_of(const CostMethod *m, double uncertainty) {
   enum { SLOPES = 3 };
   double slope[LAG_COST_MOST_RUNS], *last, floor = HUGE_VAL;
   int n = 0, varies = m->method->order_most > 0 && !m->option.name;
 
-  for (int i = 0; i < m->nruns; i++) {
-    floor = fmin(floor, m->run[i].error);
-  }
+  for (int i = 0; i < m->nruns; i++) floor = fmin(floor, m->run[i].error);
   for (int i = 1; i < m->nruns && !varies; i++) {
     const CostRun *a = &m->run[i - 1], *b = &m->run[i];
-    if (a->error < 1e-2 && b->error > 30 * floor && b->error > 10 * uncertainty && b->error < a->error && b->steps > a->steps) {
+    if (a->error < 1e-2 && b->error > 30 * floor && b->error > 10 * uncertainty && b->error < a->error && b->steps > a->steps)
       slope[n++] = log(a->error / b->error) / log((double)b->steps / (double)a->steps);
-    }
   }
-  if (n < SLOPES) {
-    return NAN;
-  }
+  if (n < SLOPES) return NAN;
   last = slope + n - SLOPES;
   qsort(last, SLOPES, sizeof *last, ascending);
   return last[SLOPES / 2];
 }
 
-int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, double longest)
-{
+int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, double longest) {
   const double least_tol = 4.5 * DBL_EPSILON, rough = 0.3;
   int adaptive = (m->method->flags & LAG_METHOD_ADAPTIVE) != 0, idle = 0;
   double span = fabs(reference->t[reference->rows - 1] - scene->t0), least = HUGE_VAL;
@@ -223,19 +178,13 @@ int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *refer
   m->nruns = 0;
   m->why[0] = '\0';
   int rc = lag_samples_init(&own, reference->rows, reference->n);
-  if (rc == LAG_OK) {
-    memcpy(own.t, reference->t, (size_t)reference->rows * sizeof *own.t);
-  }
+  if (rc == LAG_OK) memcpy(own.t, reference->t, (size_t)reference->rows * sizeof *own.t);
   for (int k = 0; rc == LAG_OK && m->nruns < LAG_COST_MOST_RUNS && idle < 2; k++) {
     CostRun run = {.knob = adaptive ? pow(10, -2 - k) : span / ldexp(reference->rows, k)};
-    if (run.knob < (adaptive ? least_tol : 1e-12 * span)) {
-      break;
-    }
+    if (run.knob < (adaptive ? least_tol : 1e-12 * span)) break;
     int done = run_setting(m, scene, reference, scale, longest, &own, &run);
     rc = done == LAG_ENOMEM ? done : LAG_OK;
-    if (done == LAG_EINVAL || run.time > longest) {
-      break;
-    }
+    if (done == LAG_EINVAL || run.time > longest) break;
     if (done == LAG_OK && run.error < rough) {
       idle = run.steps == steps ? idle : run.error >= 0.7 * least ? idle + 1 : 0;
       least = fmin(least, run.error);
@@ -250,28 +199,23 @@ int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *refer
 
 /* ---- All methods */
 
-void lag_pareto_front(CostMethod *m, int n)
-{
-  for (int i = 0; i < n; i++) {
+void lag_pareto_front(CostMethod *m, int n) {
+  for (int i = 0; i < n; i++)
     for (int k = 0; k < m[i].nruns; k++) {
       CostRun *run = &m[i].run[k];
       const CostRun *better = NULL;
-      for (int j = 0; j < n && !better; j++) {
+      for (int j = 0; j < n && !better; j++)
         for (int l = 0; l < m[j].nruns && !better; l++) {
           const CostRun *other = &m[j].run[l];
           better = other->time <= run->time && other->error <= run->error && (other->time < run->time || other->error < run->error) ? other : NULL;
         }
-      }
       run->best = !better;
     }
-  }
 }
 
-const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run)
-{
+const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run) {
   const CostMethod *which = NULL;
-
-  for (int i = 0; i < n; i++) {
+  for (int i = 0; i < n; i++)
     for (int k = 0; k < m[i].nruns; k++) {
       const CostRun *r = &m[i].run[k];
       if (r->error <= target && (!which || r->time < (*run)->time)) {
@@ -279,6 +223,5 @@ const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, c
         *run = r;
       }
     }
-  }
   return which;
 }

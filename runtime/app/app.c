@@ -14,24 +14,17 @@
 /* Signal received, 0: none. The only mutable global, since a signal handler can reach nothing else. */
 static volatile sig_atomic_t interrupted;
 
-static void on_interrupt(int signal_number)
-{
-  interrupted = signal_number;
-}
+static void on_interrupt(int signal_number) { interrupted = signal_number; }
 
-static double seconds_since(const struct timespec *t)
-{
+static double seconds_since(const struct timespec *t) {
   struct timespec now;
-
   clock_gettime(CLOCK_MONOTONIC, &now);
   return (double)(now.tv_sec - t->tv_sec) + 1e-9 * (double)(now.tv_nsec - t->tv_nsec);
 }
 
 /* After each step: tests for signals, updates the progress line (on a terminal, after 1 s, at most 5 times a second). */
-int lag_app_after_step(void *context, const lag_sim *sim)
-{
+int lag_app_after_step(void *context, const lag_sim *sim) {
   App *app = context;
-
   if (app->progress >= 0 && seconds_since(&app->shown) >= (app->progress ? 0.2 : 1.0)) {
     double t = lag_sim_time(sim), t0 = app->scene->t0, part = (t - t0) / (app->until - t0);
     fprintf(stderr, "\rt = %.6g s, %.0f %% ", t, 100 * part);
@@ -43,27 +36,22 @@ int lag_app_after_step(void *context, const lag_sim *sim)
 
 /* ---- Settings of the run */
 
-static int choose_end(App *app)
-{
+static int choose_end(App *app) {
   const Args *a = &app->args;
   double t = lag_sim_time(app->sim);
-
   if (app->until == t) {
     return lag_app_error(a, "nothing to compute: the run is at t = %g s and ends at %g s; write --until with a later time", t,
                      app->until);
   }
-  if (app->resumed && (app->until - t) * (t - app->scene->t0) < 0) {
+  if (app->resumed && (app->until - t) * (t - app->scene->t0) < 0)
     return lag_app_error(a, "%s is at t = %g s; --until %g would go back", a->resume, t, app->until);
-  }
   return 0;
 }
 
 /* Notes input tables that do not cover the run: outside, their first and last values hold. */
-static void note_tables(const App *app)
-{
+static void note_tables(const App *app) {
   const lag_model *m = app->scene->model;
   double from = fmin(lag_sim_time(app->sim), app->until), to = fmax(lag_sim_time(app->sim), app->until);
-
   for (int i = 0; i < m->ntables && !app->args.quiet; i++) {
     const lag_table *c = &m->tables[i];
     double first = c->row[0][0], last = c->row[c->n - 1][0];
@@ -75,49 +63,37 @@ static void note_tables(const App *app)
 }
 
 /* Whether two paths lead to the same existing regular file. */
-static int same_file(const char *a, const char *b)
-{
+static int same_file(const char *a, const char *b) {
   struct stat x, y;
-
   return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino && S_ISREG(x.st_mode);
 }
 
-int lag_app_check_outputs(const App *app)
-{
+int lag_app_check_outputs(const App *app) {
   const Args *a = &app->args;
   const char *const to[] = {a->out, a->svg, a->html, a->save, a->events}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume};
   enum { N = sizeof to / sizeof *to, KEPT = sizeof keep / sizeof *keep };
 
   for (int i = 0; i < N; i++) {
-    for (int k = 0; to[i] && k < KEPT; k++) {
+    for (int k = 0; to[i] && k < KEPT; k++)
       if (keep[k] && same_file(to[i], keep[k]) && !(to[i] == a->save && keep[k] == a->resume)) {
         return lag_app_error(a, "%s would be overwritten: it is %s; write to another file", to[i],
                          k == 0 ? "the model" : k == 1 ? "this program" : "the state to go on from");
       }
-    }
-    for (int k = 0; to[i] && k < i; k++) {
-      if (to[k] && (strcmp(to[i], to[k]) == 0 ? strcmp(to[i], "/dev/null") != 0 : same_file(to[i], to[k]))) {
+    for (int k = 0; to[i] && k < i; k++)
+      if (to[k] && (strcmp(to[i], to[k]) == 0 ? strcmp(to[i], "/dev/null") != 0 : same_file(to[i], to[k])))
         return lag_app_error(a, "%s would be written twice; give each result a file of its own", to[i]);
-      }
-    }
   }
   return 0;
 }
 
 /* Sets the grid of rows, saved with the run: grid[0] origin, [1] spacing, [2] index of the next row. */
-static int choose_grid(App *app)
-{
+static int choose_grid(App *app) {
   const Args *a = &app->args;
   double *grid = lag_sim_output_grid(app->sim), every = app->resumed ? grid[1] : app->scene->every;
   double t = lag_sim_time(app->sim), origin = app->resumed && every > 0 ? grid[0] : t;
-
   if (a->every) {
-    if (!lag_args_number(a, "--every", a->every, "--every 0.01", &every)) {
-      return EXIT_USAGE;
-    }
-    if (every <= 0) {
-      return lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
-    }
+    if (!lag_args_number(a, "--every", a->every, "--every 0.01", &every)) return EXIT_USAGE;
+    if (every <= 0) return lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
     origin = app->scene->t0;
   }
   if (!(every > 0)) {
@@ -135,26 +111,18 @@ static int choose_grid(App *app)
 }
 
 /* Time of the next row k: k/(1/every) where 1/every is whole, so that times are 0.3, not 0.1*3. */
-static double row_time(const App *app, const double *grid)
-{
+static double row_time(const App *app, const double *grid) {
   double dir = app->until < app->scene->t0 ? -1 : 1, whole = 1 / grid[1], n = nearbyint(whole);
-
-  if (n >= 1 && fabs(whole - n) <= 4e-16 * n) {
-    return grid[0] + dir * (grid[2] / n);
-  }
+  if (n >= 1 && fabs(whole - n) <= 4e-16 * n) return grid[0] + dir * (grid[2] / n);
   return grid[0] + dir * (grid[2] * grid[1]);
 }
 
 /* ---- The run */
 
 /* Counts a row, and records its first output that is not finite. */
-static void note_empty(App *app, double t)
-{
+static void note_empty(App *app, double t) {
   int i = 1, n = lag_sim_noutputs(app->sim);
-
-  while (i <= n && isfinite(app->row[i])) {
-    i++;
-  }
+  while (i <= n && isfinite(app->row[i])) i++;
   app->rows_put++;
   if (i <= n && app->empty_rows++ == 0) {
     app->empty_column = i;
@@ -162,16 +130,12 @@ static void note_empty(App *app, double t)
   }
 }
 
-int lag_app_put_row(App *app)
-{
+int lag_app_put_row(App *app) {
   double t = lag_sim_time(app->sim);
-
   app->row[0] = app->last_row = t;
   int rc = lag_sim_outputs(app->sim, app->row + 1);
   rc = rc ? rc : lag_tangent_columns_row(app);
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   note_empty(app, t);
   if (app->rows.open && lag_rows_write(&app->rows, app->row)) {
     app->bad_file = app->args.out;
@@ -182,16 +146,12 @@ int lag_app_put_row(App *app)
 }
 
 /* Advances along the grid and writes a row at each time up to app->until. */
-static int run_rows(App *app)
-{
+static int run_rows(App *app) {
   double *grid = lag_sim_output_grid(app->sim), dir = app->until < app->scene->t0 ? -1 : 1;
   int rc = 0;
-
   while (rc == 0) {
     double t = row_time(app, grid), rest = (app->until - t) * dir;
-    if (rest < -1e-9 * grid[1]) {
-      return LAG_OK;
-    }
+    if (rest < -1e-9 * grid[1]) return LAG_OK;
     if (fabs(rest) <= 1e-9 * grid[1]) {
       app->until = t; /* same time up to rounding */
     }
@@ -202,10 +162,8 @@ static int run_rows(App *app)
   return rc;
 }
 
-static void run(App *app)
-{
+static void run(App *app) {
   int rows = app->section < 0 && (app->args.out || (app->table.keep && (app->args.every || !app->sampling.on))), rc = rows ? run_rows(app) : 0;
-
   if (rc == 0) {
     rc = lag_sampling_advance(app, app->until);
     rc = rc ? rc : lag_sim_judge(app->sim);
@@ -214,64 +172,46 @@ static void run(App *app)
     int bad = lag_app_put_row(app);
     rc = bad ? bad : rc;
   }
-  if (lag_sampling_close(app)) {
-    rc = LAG_ENOMEM;
-  }
+  if (lag_sampling_close(app)) rc = LAG_ENOMEM;
   app->status = app->bad_file ? LAG_EIO : app->section_rc && rc >= 0 ? app->section_rc : rc;
   lag_app_stop_clock(app);
 }
 
-static void on_event(void *context, int k, double t, const double *before, const double *after)
-{
+static void on_event(void *context, int k, double t, const double *before, const double *after) {
   lag_event_log_note(context, k, t, before, after);
   lag_section_note(context, k);
 }
 
 /* ---- Files */
 
-int lag_app_io_error(const App *app, const char *path)
-{
-  return lag_app_error(&app->args, "cannot write %s: %s", path, strerror(errno));
-}
+int lag_app_io_error(const App *app, const char *path) { return lag_app_error(&app->args, "cannot write %s: %s", path, strerror(errno)); }
 
 /* Tests before a long run whether a file can be written. */
-static int try_file(const App *app, const char *path)
-{
+static int try_file(const App *app, const char *path) {
   Outfile o;
-
   return path && (lag_outfile_open(&o, path) || lag_outfile_close(&o, OUTFILE_DROP)) ? lag_app_io_error(app, path) : 0;
 }
 
-static int open_output(App *app)
-{
+static int open_output(App *app) {
   const Args *a = &app->args;
-
   if (lag_table_init(&app->table, app->sim, a->svg || a->sketch || a->html) ||
       !(app->row = calloc((size_t)app->table.ncols, sizeof *app->row))) {
     return lag_app_error(a, "out of memory");
   }
   app->table.points = app->section >= 0;
-  if (lag_tangent_columns_open(app) || lag_app_choose_curves(app)) {
-    return EXIT_USAGE;
-  }
-  if (a->html && lag_app_choose_points(app)) {
-    return EXIT_USAGE;
-  }
-  if (try_file(app, a->svg) || try_file(app, a->html) || try_file(app, a->save)) {
-    return EXIT_USAGE;
-  }
+  if (lag_tangent_columns_open(app) || lag_app_choose_curves(app)) return EXIT_USAGE;
+  if (a->html && lag_app_choose_points(app)) return EXIT_USAGE;
+  if (try_file(app, a->svg) || try_file(app, a->html) || try_file(app, a->save)) return EXIT_USAGE;
   int rc = lag_sampling_open(app);
   rc = rc ? rc : lag_event_log_open(app);
   return rc ? rc : a->out && lag_rows_open(&app->rows, a->out, &app->table) ? lag_app_io_error(app, a->out) : 0;
 }
 
-static int save_state(const App *app)
-{
+static int save_state(const App *app) {
   State st = {.tol = lag_sim_tolerance(app->sim), .signature = lag_sim_signature(app->sim), .t = lag_sim_time(app->sim)};
   const lag_method *m = lag_sim_method(app->sim);
   const char *path = app->args.save;
   int rc = 0;
-
   snprintf(st.program, sizeof st.program, "%s", app->program->name);
   snprintf(st.scene, sizeof st.scene, "%s", app->scene->name);
   snprintf(st.method, sizeof st.method, "%s", m->name);
@@ -279,148 +219,100 @@ static int save_state(const App *app)
   memcpy(st.options, lag_sim_options(app->sim), (size_t)m->noptions * sizeof(double));
   st.n = lag_sim_save_size(app->sim);
   st.data = malloc(st.n * sizeof(double));
-  if (!st.data || lag_sim_save(app->sim, st.data)) {
-    rc = lag_app_error(&app->args, "%s", st.data ? lag_sim_message(app->sim) : "out of memory");
-  } else if (lag_state_write(path, &st)) {
-    rc = lag_app_io_error(app, path);
-  }
+  if (!st.data || lag_sim_save(app->sim, st.data)) rc = lag_app_error(&app->args, "%s", st.data ? lag_sim_message(app->sim) : "out of memory");
+  else if (lag_state_write(path, &st)) rc = lag_app_io_error(app, path);
   free(st.data);
   return rc;
 }
 
 /* After a NaN: sends t, q, v, z and p through the pipe $LAG_LAST_STATE (a descriptor) to the waiting lagc process, if there is one, which
  * names the expression that has no value. Waits for its end. */
-static void tell_last_state(const App *app)
-{
+static void tell_last_state(const App *app) {
   const char *name = getenv("LAG_LAST_STATE");
   const lag_model *m = app->scene->model;
   const int n[] = {m->nq, m->nq, m->nz, m->np};
   const double *of[] = {lag_sim_q(app->sim), lag_sim_v(app->sim), lag_sim_z(app->sim), lag_sim_p(app->sim)};
   FILE *f = name && (app->status == LAG_ENAN || app->status == LAG_EDOMAIN) ? fdopen(atoi(name), "w") : NULL;
-
-  if (!f) {
-    return;
-  }
+  if (!f) return;
   signal(SIGPIPE, SIG_IGN); /* lagc may have been killed; the status of this run does not depend on it */
   fprintf(f, "%.17g\n", (double)lag_sim_time(app->sim));
-  for (int k = 0; k < 4; k++) {
-    for (int i = 0; i < n[k]; i++) {
-      fprintf(f, "%.17g\n", (double)of[k][i]);
-    }
-  }
+  for (int k = 0; k < 4; k++)
+    for (int i = 0; i < n[k]; i++) fprintf(f, "%.17g\n", (double)of[k][i]);
   fclose(f);
-  while (wait(NULL) < 0 && errno == EINTR) {
-    continue;
-  }
+  while (wait(NULL) < 0 && errno == EINTR) continue;
 }
 
 /* Completes the files and prints the report. Returns the exit status. */
-static int finish(App *app)
-{
+static int finish(App *app) {
   const Args *a = &app->args;
   int rc = app->status < 0 ? EXIT_RUN : app->status == LAG_INTERRUPTED ? lag_app_interrupted() : EXIT_FINE, bad = 0;
   int on_stdout = (a->out && strcmp(a->out, "-") == 0) || (a->events && strcmp(a->events, "-") == 0);
   FILE *f = on_stdout ? stderr : stdout;
   char title[300], note[300];
-
   if (app->status == LAG_EINVAL || app->status == LAG_ENOMEM || app->status == LAG_EIO) {
     lag_rows_close(&app->rows, 0);
     lag_rows_close(&app->log_rows, 0);
     return app->status == LAG_EIO ? lag_app_io_error(app, app->bad_file) : lag_app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
   }
-  if (app->rows.open && lag_rows_close(&app->rows, 1)) {
-    bad = lag_app_io_error(app, a->out);
-  } else {
-    app->written = 1;
-  }
-  if (lag_rows_close(&app->log_rows, 1)) {
-    bad = lag_app_io_error(app, a->events);
-  }
+  if (app->rows.open && lag_rows_close(&app->rows, 1)) bad = lag_app_io_error(app, a->out);
+  else app->written = 1;
+  if (lag_rows_close(&app->log_rows, 1)) bad = lag_app_io_error(app, a->events);
   lag_sampling_warn(app, note, sizeof note);
   app->show.note = note;
   snprintf(title, sizeof title, "%s: %s%s%s", app->scene->model->name, app->scene->name, app->section < 0 ? "" : ", ",
            app->section < 0 ? "" : app->scene->model->ev[app->section].name);
-  if (a->html && lag_html_write(a->html, &app->table, title, &app->show)) {
-    bad = lag_app_io_error(app, a->html);
-  }
+  if (a->html && lag_html_write(a->html, &app->table, title, &app->show)) bad = lag_app_io_error(app, a->html);
   lag_table_scale_time(&app->table);
-  if (a->svg && lag_svg_write(a->svg, &app->table, title, &app->drawn)) {
-    bad = lag_app_io_error(app, a->svg);
-  }
-  if (a->save && app->status >= 0 && save_state(app)) {
-    bad = EXIT_USAGE;
-  }
+  if (a->svg && lag_svg_write(a->svg, &app->table, title, &app->drawn)) bad = lag_app_io_error(app, a->svg);
+  if (a->save && app->status >= 0 && save_state(app)) bad = EXIT_USAGE;
   if (a->sketch) {
     FILE *to = a->json ? stderr : f;
     lag_sketch_write(to, &app->table, &app->drawn);
   }
-  if (a->json) {
-    lag_report_json(app, stdout);
-  } else if (!a->quiet) {
-    lag_report_text(app, f);
-  }
-  if (app->status < 0 && (a->json || a->quiet)) {
-    lag_app_error(a, "%s", lag_sim_message(app->sim));
-  }
-  if (fflush(stdout) != 0) {
-    bad = lag_app_io_error(app, "standard output");
-  }
+  if (a->json) lag_report_json(app, stdout);
+  else if (!a->quiet) lag_report_text(app, f);
+  if (app->status < 0 && (a->json || a->quiet)) lag_app_error(a, "%s", lag_sim_message(app->sim));
+  if (fflush(stdout) != 0) bad = lag_app_io_error(app, "standard output");
   tell_last_state(app);
   return bad ? bad : rc;
 }
 
-void lag_app_catch_interrupt(void)
-{
+void lag_app_catch_interrupt(void) {
   static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
   struct sigaction action = {0}, before;
-
   action.sa_handler = on_interrupt;
   action.sa_flags = (int)SA_RESETHAND; /* a second Ctrl-C ends at once */
   sigemptyset(&action.sa_mask);
   for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
     int nohup = signals[i] == SIGHUP && sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler == SIG_IGN;
-    if (!nohup) {
-      sigaction(signals[i], &action, NULL);
-    }
+    if (!nohup) sigaction(signals[i], &action, NULL);
   }
 }
 
-void lag_app_start_clock(App *app)
-{
+void lag_app_start_clock(App *app) {
   lag_app_catch_interrupt();
   app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
   clock_gettime(CLOCK_MONOTONIC, &app->begun);
   app->shown = app->begun;
 }
 
-void lag_app_stop_clock(App *app)
-{
+void lag_app_stop_clock(App *app) {
   app->wall = seconds_since(&app->begun);
-  if (app->progress > 0) {
-    fputs("\r\33[K", stderr);
-  }
+  if (app->progress > 0) fputs("\r\33[K", stderr);
 }
 
-int lag_app_interrupted(void)
-{
-  return EXIT_SIGNAL + interrupted;
-}
+int lag_app_interrupted(void) { return EXIT_SIGNAL + interrupted; }
 
-static int simulate(App *app)
-{
+static int simulate(App *app) {
   int rc = lag_app_set_up(app);
-
-  if (rc || (rc = lag_section_choose(app)) != 0 || (rc = lag_app_check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0) {
+  if (rc || (rc = lag_section_choose(app)) != 0 || (rc = lag_app_check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0)
     return rc;
-  }
   if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {
     return lag_app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",
                      lag_sim_method(app->sim)->name);
   }
   lag_app_catch_interrupt();
-  if ((rc = open_output(app)) != 0) {
-    return rc;
-  }
+  if ((rc = open_output(app)) != 0) return rc;
   if (!app->args.quiet || app->args.json || app->args.save) {
     lag_sim_balance(app->sim); /* no effect on a resumed run, which keeps its setting */
   }
@@ -432,11 +324,9 @@ static int simulate(App *app)
   return finish(app);
 }
 
-int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras)
-{
+int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras) {
   App app = {.program = program, .extras = extras ? *extras : (lag_extras){0}, .last_row = NAN};
   int rc = lag_args_parse(&app.args, argc, argv);
-
   if (rc == 0 && app.args.help) {
     lag_app_help(&app, stdout);
   } else if (rc == 0 && app.args.method && strcmp(app.args.method, "help") == 0) {

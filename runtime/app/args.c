@@ -12,11 +12,9 @@
 #include "io/visible.h"
 #include "core/core.h"
 
-int lag_app_error(const Args *a, const char *format, ...)
-{
+int lag_app_error(const Args *a, const char *format, ...) {
   char text[4096];
   va_list args;
-
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
@@ -27,18 +25,14 @@ int lag_app_error(const Args *a, const char *format, ...)
   return EXIT_USAGE;
 }
 
-int lag_args_decimal(const char *text, double *x)
-{
+int lag_args_decimal(const char *text, double *x) {
   char *end;
-
   *x = strtod(text, &end);
   return end != text && *end == '\0' && strspn(text, "+-.0123456789eE") == strlen(text);
 }
 
-int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x)
-{
+int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x) {
   int decimal = lag_args_decimal(text, x);
-
   if (strchr(text, '[')) {
     lag_app_error(a, "%s: \"%s\" has a unit, and a simulator takes numbers in the units that --help shows, times in s; lagc run converts", what, text);
     return 0;
@@ -86,65 +80,45 @@ static const Option options[] = {
 };
 enum { NOPTIONS = sizeof options / sizeof *options };
 
-static const Option *find_option(const char *name, size_t n)
-{
-  for (int i = 0; i < NOPTIONS; i++) {
-    if (strlen(options[i].name) == n && memcmp(options[i].name, name, n) == 0) {
-      return &options[i];
-    }
-  }
+static const Option *find_option(const char *name, size_t n) {
+  for (int i = 0; i < NOPTIONS; i++)
+    if (strlen(options[i].name) == n && memcmp(options[i].name, name, n) == 0) return &options[i];
   return NULL;
 }
 
-static int unknown_option(const Args *a, const char *text, size_t n)
-{
+static int unknown_option(const Args *a, const char *text, size_t n) {
   char name[64];
   lag_nearest near = {.name = name};
-
   snprintf(name, sizeof name, "%.*s", (int)(n < 60 ? n : 60), text);
-  for (int i = 0; i < NOPTIONS; i++) {
-    lag_try_nearest(&near, options[i].name);
-  }
+  for (int i = 0; i < NOPTIONS; i++) lag_try_nearest(&near, options[i].name);
   return near.best ? lag_app_error(a, "unknown option --%s; did you mean --%s?", name, near.best)
                    : lag_app_error(a, "unknown option --%s; see --help", name);
 }
 
 /* Parses the long option at argv[*i]; its value follows "=" or is the next argument. */
-static int long_option(Args *a, int argc, char **argv, int *i)
-{
+static int long_option(Args *a, int argc, char **argv, int *i) {
   const char *name = argv[*i] + 2, *eq = strchr(name, '=');
   size_t n = eq ? (size_t)(eq - name) : strlen(name);
   const Option *o = find_option(name, n);
-
-  if (!o) {
-    return unknown_option(a, name, n);
-  }
+  if (!o) return unknown_option(a, name, n);
   void *field = (char *)a + o->offset;
   if (o->is_flag) {
-    if (eq) {
-      return lag_app_error(a, "--%s takes no value", o->name);
-    }
+    if (eq) return lag_app_error(a, "--%s takes no value", o->name);
     *(int *)field = 1;
     return 0;
   }
   const char *value = eq ? eq + 1 : *i + 1 < argc ? argv[++*i] : NULL;
-  if (!value || !*value) {
-    return lag_app_error(a, "--%s needs a value; see --help", o->name);
-  }
+  if (!value || !*value) return lag_app_error(a, "--%s needs a value; see --help", o->name);
   *(const char **)field = value;
   return 0;
 }
 
-static int one_argument(Args *a, int argc, char **argv, int *i)
-{
+static int one_argument(Args *a, int argc, char **argv, int *i) {
   char *s = argv[*i];
-
   if (strcmp(s, "-h") == 0) {
     a->help = 1;
   } else if (strcmp(s, "-o") == 0) {
-    if (*i + 1 >= argc) {
-      return lag_app_error(a, "-o needs a file name, or - for standard output");
-    }
+    if (*i + 1 >= argc) return lag_app_error(a, "-o needs a file name, or - for standard output");
     a->out = argv[++*i];
   } else if (strncmp(s, "--", 2) == 0) {
     return long_option(a, argc, argv, i);
@@ -161,17 +135,13 @@ static int one_argument(Args *a, int argc, char **argv, int *i)
 }
 
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
-static int check_analysis(const Args *a)
-{
+static int check_analysis(const Args *a) {
   const int what = a->modes ? MODES : a->cost ? COST : a->reference ? REFERENCE : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
-
   for (int i = 0; i < NOPTIONS; i++) {
     const Option *o = &options[i];
     const void *field = (const char *)a + o->offset;
     int given = o->is_flag ? *(const int *)field : *(const char *const *)field != NULL;
-    if (!given || o->takes & what) {
-      continue;
-    }
+    if (!given || o->takes & what) continue;
     if (what == RUN || what == REFERENCE) {
       return o->takes & RUN ? lag_app_error(a, "--%s has no meaning for --reference, which takes name=value and --until", o->name)
                             : lag_app_error(a, "--%s is for %s", o->name, o->takes & COST ? "--cost" : "--lyapunov");
@@ -186,17 +156,14 @@ static int check_analysis(const Args *a)
 }
 
 /* Refuses .npy files in other precisions: NumPy has no type of 34 digits, and those of 19 depend on the machine. */
-static int check_npy(const Args *a)
-{
-  if (strcmp(LAG_PRECISION, "double") != 0 && a->out && lag_outfile_has_suffix(a->out, "npy")) {
+static int check_npy(const Args *a) {
+  if (strcmp(LAG_PRECISION, "double") != 0 && a->out && lag_outfile_has_suffix(a->out, "npy"))
     return lag_app_error(a, "%s: .npy files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", a->out);
-  }
   return 0;
 }
 
 /* Refuses an output whose suffix is of another file type than is written. */
-static int check_kinds(const Args *a)
-{
+static int check_kinds(const Args *a) {
   const struct {
     const char *option, *path, *suffixes, *writes;
   } files[] = {{"-o", a->out, "csv npy", "CSV, or NumPy where the name ends in .npy"}, {"--events", a->events, "csv", "CSV"},
@@ -212,49 +179,29 @@ static int check_kinds(const Args *a)
   return 0;
 }
 
-static int check(const Args *a)
-{
+static int check(const Args *a) {
   int on_stdout = a->out && strcmp(a->out, "-") == 0;
-
-  if (on_stdout && a->json) {
-    return lag_app_error(a, "-o - and --json both write to standard output; give -o a file name");
-  }
-  if (a->events && strcmp(a->events, "-") == 0 && a->json) {
+  if (on_stdout && a->json) return lag_app_error(a, "-o - and --json both write to standard output; give -o a file name");
+  if (a->events && strcmp(a->events, "-") == 0 && a->json)
     return lag_app_error(a, "--events - and --json both write to standard output; give --events a file name");
-  }
-  if ((a->plot_x || a->plot_y) && !a->svg && !a->sketch) {
-    return lag_app_error(a, "--plot-x and --plot-y need a picture: add --svg FILE or --sketch");
-  }
-  if (a->plot_x && !a->plot_y) {
-    return lag_app_error(a, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x);
-  }
-  if ((a->points || a->from || a->trace || a->no_rods) && !a->html) {
+  if ((a->plot_x || a->plot_y) && !a->svg && !a->sketch) return lag_app_error(a, "--plot-x and --plot-y need a picture: add --svg FILE or --sketch");
+  if (a->plot_x && !a->plot_y) return lag_app_error(a, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x);
+  if ((a->points || a->from || a->trace || a->no_rods) && !a->html)
     return lag_app_error(a, "--points, --from, --trace and --no-rods need an animation: add --html FILE");
-  }
-  if (a->html && !a->points) {
-    return lag_app_error(a, "--html %s: points are missing; add --points 'X,Y X,Y ...' with the names of outputs", a->html);
-  }
-  if (a->section && a->html) {
-    return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
-  }
-  if (a->tangent && (a->save || a->resume)) {
+  if (a->html && !a->points) return lag_app_error(a, "--html %s: points are missing; add --points 'X,Y X,Y ...' with the names of outputs", a->html);
+  if (a->section && a->html) return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
+  if (a->tangent && (a->save || a->resume))
     return lag_app_error(a, "--tangent and --%s: a saved state holds no tangent; run it in one piece", a->save ? "save-state" : "resume");
-  }
-  if (a->section && a->every) {
+  if (a->section && a->every)
     return lag_app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
-  }
   return check_kinds(a) || check_npy(a) || check_analysis(a) ? EXIT_USAGE : 0;
 }
 
-int lag_args_parse(Args *a, int argc, char **argv)
-{
+int lag_args_parse(Args *a, int argc, char **argv) {
   const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
-
   *a = (Args){.self = slash ? slash + 1 : argc > 0 ? argv[0] : "simulator"};
   a->sets = calloc((size_t)argc + 1, sizeof *a->sets);
-  if (!a->sets) {
-    return lag_app_error(a, "out of memory");
-  }
+  if (!a->sets) return lag_app_error(a, "out of memory");
   for (int i = 1; i < argc; i++) {
     if (strpbrk(argv[i], "\n\t")) { /* messages show each argument on one line */
       return lag_app_error(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i);
@@ -262,9 +209,7 @@ int lag_args_parse(Args *a, int argc, char **argv)
   }
   for (int i = 1; i < argc; i++) {
     int rc = one_argument(a, argc, argv, &i);
-    if (rc) {
-      return rc;
-    }
+    if (rc) return rc;
   }
   return check(a);
 }

@@ -12,58 +12,43 @@ enum { MOST_OF_TRIAL = 200, MOST_OF_RADAU = 40 }; /* limits on the size of the s
 enum { STEPS_OF_TRIAL = 600 };
 
 /* Trial run with the values of app->sim for the statistics *s. 0: no trial is possible. */
-static int run_trial(App *app, const lag_method *method, double bound, int most, Stiffness *s)
-{
+static int run_trial(App *app, const lag_method *method, double bound, int most, Stiffness *s) {
   lag_sim *run = app->sim, *trial = app->sim = lag_sim_new(app->scene);
   int done = trial && lag_app_set_values(app) == 0 && lag_sim_set_tolerance(trial, lag_sim_tolerance(run)) == 0 &&
              lag_sim_set_method(trial, method, NULL, 0) == 0 && lag_stiffness(trial, app->until, bound, most, s) == LAG_OK;
-
   app->sim = run;
   lag_sim_free(trial);
   return done;
 }
 
 /* Whether the model is stiff, by a trial of `method`, and if needed of radau; why[size] := the reason. */
-static int is_stiff(App *app, const lag_method *method, char *why, size_t size)
-{
+static int is_stiff(App *app, const lag_method *method, char *why, size_t size) {
   const lag_model *m = app->scene->model;
   int n = 2 * m->nq + m->nz;
   double bound = method == &lag_rk45 ? 3.3 : 6.1;
   Stiffness s, radau;
-
-  if (!m->linear || m->constraints || n > MOST_OF_TRIAL || !run_trial(app, method, bound, STEPS_OF_TRIAL, &s)) {
-    return 0;
-  }
+  if (!m->linear || m->constraints || n > MOST_OF_TRIAL || !run_trial(app, method, bound, STEPS_OF_TRIAL, &s)) return 0;
   if (lag_is_stiff(&s)) {
     snprintf(why, size, "radau, since the model is stiff: stability, not the tolerance, would limit %.0f %% of the first steps of %s",
              100.0 * s.limited / s.looked, method->name);
     return 1;
   }
-  if (!s.unfinished || n > MOST_OF_RADAU || !run_trial(app, &lag_radau, bound, STEPS_OF_TRIAL, &radau) || !lag_exceeds_stability(&radau, n)) {
-    return 0;
-  }
+  if (!s.unfinished || n > MOST_OF_RADAU || !run_trial(app, &lag_radau, bound, STEPS_OF_TRIAL, &radau) || !lag_exceeds_stability(&radau, n)) return 0;
   snprintf(why, size, "radau, since the model is stiff: stability alone would demand %.2g steps of %s to t = %.3g s, and radau takes %d",
            radau.needed, method->name, radau.until, radau.steps);
   return 1;
 }
 
 /* Sets the method; 0 if it refuses this model or these options. */
-static int set(App *app, const lag_method *method, const lag_option *opt, int n)
-{
-  return lag_sim_set_method(app->sim, method, opt, n) == 0;
-}
+static int set(App *app, const lag_method *method, const lag_option *opt, int n) { return lag_sim_set_method(app->sim, method, opt, n) == 0; }
 
-int lag_app_choose_automatically(App *app, const lag_option *opt, int n)
-{
+int lag_app_choose_automatically(App *app, const lag_option *opt, int n) {
   double tol = lag_sim_tolerance(app->sim);
   const lag_method *plain = tol > above_rk45 ? &lag_rk45 : &lag_dop853;
   char *why = app->why;
   size_t size = sizeof app->why;
   int exponents = app->args.lyapunov; /* taylor integrates tangent vectors by dop853, so dop853 alone is cheaper */
-
-  if (is_stiff(app, plain, why, size) && set(app, &lag_radau, opt, n)) {
-    return 0;
-  }
+  if (is_stiff(app, plain, why, size) && set(app, &lag_radau, opt, n)) return 0;
   if (tol < below_taylor && !exponents && set(app, &lag_taylor_method, opt, n)) {
     snprintf(why, size, "taylor, since the tolerance is below %g", below_taylor);
   } else if (set(app, plain, opt, n)) {

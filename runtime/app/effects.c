@@ -23,112 +23,82 @@ typedef struct Trial {
 /* ---- Simulations */
 
 /* Whether the model of a scene has the name in `name=value`. */
-static int knows(const lag_scene *scene, const char *text)
-{
+static int knows(const lag_scene *scene, const char *text) {
   char name[128], part[160];
   const lag_var *var;
   int index;
-
   snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
   return lag_find_name(scene->model, name, &index, &var) != LAG_IS_NOTHING || lag_family_member(scene->model, name, 0, part, sizeof part);
 }
 
 /* Sets the values of the command line; those of effects that are off in this variant and on in another are left out. */
-static int set_values(Trial *k)
-{
+static int set_values(Trial *k) {
   App *app = k->app;
-
   for (int i = 0; i < app->args.nsets; i++) {
     int here = knows(app->scene, app->args.sets[i]), anywhere = here;
-    for (int s = 0; s < k->program->nscenes && !anywhere; s++) {
-      anywhere = knows(k->program->scenes[s], app->args.sets[i]);
-    }
+    for (int s = 0; s < k->program->nscenes && !anywhere; s++) anywhere = knows(k->program->scenes[s], app->args.sets[i]);
     int rc = here || !anywhere ? lag_app_set_value(app, app->args.sets[i]) : 0;
-    if (rc) {
-      return rc;
-    }
+    if (rc) return rc;
   }
   return 0;
 }
 
 /* Gives a variant the parameter values and the start of the first scene, for all names that it has, since its own text may compute them
  * without the effects that are off. */
-static void copy_start(const lag_sim *first, lag_sim *sim)
-{
+static void copy_start(const lag_sim *first, lag_sim *sim) {
   const lag_model *m = first->scene->model, *own = sim->scene->model;
   const lag_var *var;
   int at;
-
-  for (int i = 0; i < m->np; i++) {
+  for (int i = 0; i < m->np; i++)
     if (lag_find_name(own, m->p[i].name, &at, &var) == LAG_IS_P && strcmp(var->name, m->p[i].name) == 0) {
       sim->p[at] = first->p[i];
       sim->fixed[at] = 1;
     }
-  }
-  if (own->derive) {
-    own->derive(sim->p);
-  }
+  if (own->derive) own->derive(sim->p);
   for (int i = 0; i < first->pb.n; i++) {
     char name[128];
     lag_sim_state_info(first, i, name, sizeof name, NULL, 0);
     int kind = lag_find_name(own, name, &at, &var), place = kind == LAG_IS_V ? own->nq + at : kind == LAG_IS_Z ? 2 * own->nq + at : at;
-    if ((kind == LAG_IS_Q || kind == LAG_IS_V || kind == LAG_IS_Z) && sim->now[place] != first->now[i]) {
-      sim->start[place] = first->now[i];
-    }
+    if ((kind == LAG_IS_Q || kind == LAG_IS_V || kind == LAG_IS_Z) && sim->now[place] != first->now[i]) sim->start[place] = first->now[i];
   }
 }
 
 /* k->options := the method options of the first scene, with the step multiplied by `shorter`. */
-static void copy_options(Trial *k, double shorter)
-{
+static void copy_options(Trial *k, double shorter) {
   const double *value = lag_sim_options(k->v[0].sim);
-
   for (int i = 0; i < k->method->noptions; i++) {
     k->options[i] = (lag_option){.name = k->method->options[i].name, .value = value[i]};
-    if (strcmp(k->options[i].name, "step") == 0) {
-      k->options[i].value = value[i] * shorter;
-    }
+    if (strcmp(k->options[i].name, "step") == 0) k->options[i].value = value[i] * shorter;
   }
 }
 
 /* Sets the method of the first scene, or an automatic one where the variant refuses that. */
-static int set_method(Trial *k, lag_sim *sim, double tol)
-{
-  if (lag_sim_set_method(sim, k->method, k->options, k->method->noptions) == LAG_OK && lag_sim_set_tolerance(sim, tol) == LAG_OK) {
-    return 0;
-  }
+static int set_method(Trial *k, lag_sim *sim, double tol) {
+  if (lag_sim_set_method(sim, k->method, k->options, k->method->noptions) == LAG_OK && lag_sim_set_tolerance(sim, tol) == LAG_OK) return 0;
   return lag_app_choose_method(k->app);
 }
 
 /* app->sim := a simulation of scene number `scene` with the values of the command line. */
-static int make(Trial *k, int scene)
-{
+static int make(Trial *k, int scene) {
   App *app = k->app;
-
   app->scene = k->program->scenes[scene];
   app->sim = lag_sim_new(app->scene);
   return !app->sim ? lag_app_error(&app->args, "out of memory") : lag_app_read_until(app) ? EXIT_USAGE : set_values(k);
 }
 
 /* Moves app->sim into a variant. */
-static int adopt_simulation(Trial *k, Variant *v)
-{
+static int adopt_simulation(Trial *k, Variant *v) {
   int rc = lag_variant_init(v, k->app->sim);
-
   k->app->sim = NULL;
   return rc ? lag_app_error(&k->app->args, "out of memory") : 0;
 }
 
-static int prepare_first(Trial *k)
-{
+static int prepare_first(Trial *k) {
   App *app = k->app;
   char method[256];
   int rc = make(k, 0);
-
   rc = rc ? rc : lag_app_choose_method(app);
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   lag_report_method(app, method, sizeof method);
   printf("method %s\n", method);
   k->method = lag_sim_method(app->sim);
@@ -136,27 +106,21 @@ static int prepare_first(Trial *k)
   return adopt_simulation(k, &k->v[0]);
 }
 
-static int choose_times(Trial *k)
-{
+static int choose_times(Trial *k) {
   k->t0 = k->app->scene->t0;
   k->t1 = k->app->until;
-  if (k->t1 == k->t0) {
+  if (k->t1 == k->t0)
     return lag_app_error(&k->app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", k->t0);
-  }
   printf("span %.17g\n", k->t1 - k->t0);
   return 0;
 }
 
-static int prepare_others(Trial *k)
-{
+static int prepare_others(Trial *k) {
   int rc = 0;
-
   copy_options(k, 1);
   for (int i = 1; i < k->program->nscenes && rc == 0; i++) {
     rc = make(k, i);
-    if (rc == 0) {
-      copy_start(k->v[0].sim, k->app->sim);
-    }
+    if (rc == 0) copy_start(k->v[0].sim, k->app->sim);
     rc = rc ? rc : set_method(k, k->app->sim, k->tol);
     rc = rc ? rc : adopt_simulation(k, &k->v[i]);
   }
@@ -167,13 +131,11 @@ static int prepare_others(Trial *k)
 
 /* Numerical error of the first scene: its difference from a run with tolerance/100 or half the step; at the smallest tolerance from a run
  * with 10 times the tolerance. */
-static int measure_error(Trial *k)
-{
+static int measure_error(Trial *k) {
   App *app = k->app;
   const double least = 1e-15;
   double error = 0, tol = k->tol > 10 * least ? fmax(k->tol / 100, least) : 10 * k->tol;
   int rc = make(k, 0);
-
   copy_options(k, 0.5);
   rc = rc ? rc : set_method(k, app->sim, tol);
   rc = rc ? rc : adopt_simulation(k, &k->finer);
@@ -187,91 +149,64 @@ static int measure_error(Trial *k)
 }
 
 /* Whether each of `words` is among `those`, two lists with spaces. */
-static int all_among(const char *words, const char *those)
-{
+static int all_among(const char *words, const char *those) {
   for (const char *s = words; *s; s += strspn(s, " ")) {
     size_t n = strcspn(s, " ");
-    if (!lag_app_has_word(those, s, n)) {
-      return 0;
-    }
+    if (!lag_app_has_word(those, s, n)) return 0;
     s += n;
   }
   return 1;
 }
 
-static int has_all_coordinates(const lag_model *m, const lag_model *other)
-{
+static int has_all_coordinates(const lag_model *m, const lag_model *other) {
   const lag_var *var;
   int index, all = 1;
-
-  for (int i = 0; i < other->nq; i++) {
-    all &= lag_find_name(m, other->q[i].name, &index, &var) == LAG_IS_Q;
-  }
-  for (int i = 0; i < other->nz; i++) {
-    all &= lag_find_name(m, other->z[i].name, &index, &var) == LAG_IS_Z;
-  }
+  for (int i = 0; i < other->nq; i++) all &= lag_find_name(m, other->q[i].name, &index, &var) == LAG_IS_Q;
+  for (int i = 0; i < other->nz; i++) all &= lag_find_name(m, other->z[i].name, &index, &var) == LAG_IS_Z;
   return all;
 }
 
 /* v->weight := the change of the accelerations by the effects in which the variant differs. */
-static int weigh(Variant *scene, Variant *v)
-{
+static int weigh(Variant *scene, Variant *v) {
   const lag_model *m = scene->sim->scene->model, *other = v->sim->scene->model;
   const Variant *with = all_among(other->effects, m->effects) ? scene : v;
   const Variant *along = has_all_coordinates(m, other) ? scene : v;
-
   v->weight = NAN;
   return along->why[0] ? 0 : lag_variant_weight(along, with, with == scene ? v : scene, &v->weight);
 }
 
-static int measure(Trial *k)
-{
+static int measure(Trial *k) {
   const Args *a = &k->app->args;
   int all = strcmp(a->effects, "runs") != 0, n = k->program->nscenes, rc;
-
   if (lag_variant_run(&k->v[0], k->t0, k->t1) < 0) {
     lag_app_error(a, "%s", k->v[0].why);
     return EXIT_RUN;
   }
-  if (all && (rc = measure_error(k)) != 0) {
-    return rc;
-  }
+  if (all && (rc = measure_error(k)) != 0) return rc;
   for (int i = 1, bad = 0; i < n; i++) {
-    if (lag_variant_run(&k->v[i], k->t0, k->t1) < 0) {
-      k->v[i].difference = HUGE_VAL;
-    } else {
-      bad = lag_variant_difference(&k->v[0], &k->v[i], &k->v[i].difference);
-    }
-    if (bad || (all && weigh(&k->v[0], &k->v[i]))) {
-      return lag_app_error(a, "out of memory");
-    }
+    if (lag_variant_run(&k->v[i], k->t0, k->t1) < 0) k->v[i].difference = HUGE_VAL;
+    else bad = lag_variant_difference(&k->v[0], &k->v[i], &k->v[i].difference);
+    if (bad || (all && weigh(&k->v[0], &k->v[i]))) return lag_app_error(a, "out of memory");
   }
   return all && lag_variants_time(k->v, n) ? lag_app_error(a, "out of memory") : 0;
 }
 
-static void print(const Trial *k)
-{
+static void print(const Trial *k) {
   for (int i = 0; i < k->program->nscenes; i++) {
     const Variant *v = &k->v[i];
     printf("variant %d %d %.9g %.17g %.9g\n", i, k->program->scenes[i]->model->ops, v->time, v->difference, v->weight);
-    if (v->why[0]) {
-      printf("failed %d %s\n", i, v->why);
-    }
+    if (v->why[0]) printf("failed %d %s\n", i, v->why);
   }
 }
 
-int lag_app_effects(App *app)
-{
+int lag_app_effects(App *app) {
   int n = app->program->nscenes;
   Trial k = {.app = app, .program = app->program, .v = calloc((size_t)n + 1, sizeof *k.v)};
   int rc = k.v ? prepare_first(&k) : lag_app_error(&app->args, "out of memory");
-
   rc = rc ? rc : choose_times(&k);
   rc = rc ? rc : prepare_others(&k);
   rc = rc ? rc : measure(&k);
-  if (rc == 0) {
-    print(&k);
-  }
+  if (rc == 0) print(&k);
   for (int i = 0; k.v && i < n; i++) {
     lag_sim_free(k.v[i].sim);
     lag_variant_free(&k.v[i]);

@@ -42,31 +42,20 @@ static const char text[] =
     "(by SIGTERM 143).\n";
 
 /* A line of variables with units and, unless NULL, values in declared units. */
-static void list(FILE *f, const char *head, int n, const lag_var *vars, const double *values)
-{
+static void list(FILE *f, const char *head, int n, const lag_var *vars, const double *values) {
   for (int i = 0; i < n; i++) {
     fprintf(f, "%s%s", i == 0 ? head : ", ", vars[i].name);
-    if (values) {
-      fprintf(f, " = %g", (values[i] - vars[i].offset) / vars[i].factor);
-    }
-    if (vars[i].unit[0]) {
-      fprintf(f, " [%s]", vars[i].unit);
-    }
+    if (values) fprintf(f, " = %g", (values[i] - vars[i].offset) / vars[i].factor);
+    if (vars[i].unit[0]) fprintf(f, " [%s]", vars[i].unit);
   }
-  if (n) {
-    putc('\n', f);
-  }
+  if (n) putc('\n', f);
 }
 
-void lag_app_help(const App *app, FILE *f)
-{
+void lag_app_help(const App *app, FILE *f) {
   const lag_program *p = app->program;
-
   fprintf(f, "%s: %s\n\nusage: %s [SCENE] [name=value ...] [options]\n\nscenes (the first is the default):\n", p->name,
           p->doc ? p->doc : "", app->args.self);
-  for (int i = 0; i < p->nscenes; i++) {
-    fprintf(f, "  %-20s %s\n", p->scenes[i]->name, p->scenes[i]->doc ? p->scenes[i]->doc : "");
-  }
+  for (int i = 0; i < p->nscenes; i++) fprintf(f, "  %-20s %s\n", p->scenes[i]->name, p->scenes[i]->doc ? p->scenes[i]->doc : "");
   lag_sim *sim = lag_sim_new(p->scenes[0]);
   if (sim) {
     const lag_model *m = p->scenes[0]->model;
@@ -77,8 +66,6 @@ void lag_app_help(const App *app, FILE *f)
     lag_sim_free(sim);
   }
   fprintf(f, "%s%s\n", p->build ? "\nbuilt by: " : "", p->build ? p->build : "");
-  if (p->nscenes > 0 && p->scenes[0]->model->math) {
-    fprintf(f, "%s\n", p->scenes[0]->model->math);
-  }
+  if (p->nscenes > 0 && p->scenes[0]->model->math) fprintf(f, "%s\n", p->scenes[0]->model->math);
   fputs(text, f);
 }

@@ -22,52 +22,37 @@ typedef struct Job {
 /* ---- Settings */
 
 /* app->until and *from: the end of the run, and of the transient. */
-static int choose_times(App *app, double *from)
-{
+static int choose_times(App *app, double *from) {
   const Args *a = &app->args;
   double t0 = app->scene->t0;
-
-  if (!(app->until > t0)) {
+  if (!(app->until > t0))
     return lag_app_error(a, "--until %s: exponents are means over a long time from t = %g s on; write a later one", a->until ? a->until : "", t0);
-  }
   double turning = (app->until - t0) / TURNING;
-  if (a->transient && !lag_args_number(a, "--transient", a->transient, "--transient 100", &turning)) {
-    return EXIT_USAGE;
-  }
-  if (turning < 0 || turning >= app->until - t0) {
+  if (a->transient && !lag_args_number(a, "--transient", a->transient, "--transient 100", &turning)) return EXIT_USAGE;
+  if (turning < 0 || turning >= app->until - t0)
     return lag_app_error(a, "--transient %g: the time left out at the beginning must be between 0 and %g s", turning, app->until - t0);
-  }
   *from = t0 + turning;
   return 0;
 }
 
-static int choose_number(const App *app, int *k)
-{
+static int choose_number(const App *app, int *k) {
   const lag_model *m = app->scene->model;
   const Args *a = &app->args;
   int n = 2 * m->nq + m->nz;
   double x = n;
-
-  if (a->exponents && !lag_args_number(a, "--exponents", a->exponents, "--exponents 1", &x)) {
-    return EXIT_USAGE;
-  }
-  if (x < 1 || x > n || x != floor(x)) {
+  if (a->exponents && !lag_args_number(a, "--exponents", a->exponents, "--exponents 1", &x)) return EXIT_USAGE;
+  if (x < 1 || x > n || x != floor(x))
     return lag_app_error(a, "--exponents %s: write a whole number from 1 to %d, the coordinates, velocities and states of the model", a->exponents, n);
-  }
   *k = (int)x;
   return 0;
 }
 
 /* Table of t and the running estimates, in place of the scene's outputs. */
-static int make_table(App *app, int k)
-{
+static int make_table(App *app, int k) {
   Table *t = &app->table;
-
   *t = (Table){.ncols = k + 1, .keep = 1, .cols = calloc((size_t)k + 1, sizeof *t->cols)};
   app->row = calloc((size_t)k + 1, sizeof *app->row);
-  if (!t->cols || !app->row) {
-    return lag_app_error(&app->args, "out of memory");
-  }
+  if (!t->cols || !app->row) return lag_app_error(&app->args, "out of memory");
   for (int i = 0; i <= k; i++) {
     snprintf(t->cols[i].name, sizeof t->cols[i].name, i ? "exponent %d" : "t", i);
     strcpy(t->cols[i].unit, i ? "1/s" : "s");
@@ -77,14 +62,10 @@ static int make_table(App *app, int k)
 
 /* ---- The run */
 
-static int put_estimates(Job *job)
-{
+static int put_estimates(Job *job) {
   App *app = job->app;
-
   app->row[0] = job->l.t;
-  for (int i = 0; i < job->l.k; i++) {
-    app->row[i + 1] = lag_lyapunov_exponent(&job->l, i);
-  }
+  for (int i = 0; i < job->l.k; i++) app->row[i + 1] = lag_lyapunov_exponent(&job->l, i);
   if (app->rows.open && lag_rows_write(&app->rows, app->row)) {
     app->bad_file = app->args.out;
     return LAG_EIO;
@@ -92,24 +73,16 @@ static int put_estimates(Job *job)
   return lag_table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
 
-static void at_event(void *context, int k, double t, const double *before, const double *after)
-{
+static void at_event(void *context, int k, double t, const double *before, const double *after) {
   Job *job = context;
-
   (void)k;
-  if (memcmp(before, after, (size_t)job->l.n * sizeof *before) != 0) {
-    lag_lyapunov_event(&job->l, job->app->sim, t, before);
-  }
+  if (memcmp(before, after, (size_t)job->l.n * sizeof *before) != 0) lag_lyapunov_event(&job->l, job->app->sim, t, before);
 }
 
-static int after_step(void *context, const lag_sim *sim)
-{
+static int after_step(void *context, const lag_sim *sim) {
   Job *job = context;
   Lyapunov *l = &job->l;
-
-  if (job->rc) {
-    return 1;
-  }
+  if (job->rc) return 1;
   job->rc = lag_lyapunov_step(l, job->app->sim);
   if (job->rc == 0 && l->t > l->begun && l->t >= job->next_row) {
     job->rc = put_estimates(job);
@@ -121,10 +94,8 @@ static int after_step(void *context, const lag_sim *sim)
 /* ---- The report */
 
 /* Note where the sum of the exponents is not the mean divergence (Liouville): steps are too long for the fastest decay. */
-static void caution(FILE *f, const Lyapunov *l)
-{
+static void caution(FILE *f, const Lyapunov *l) {
   double sum = lag_lyapunov_exponent(l, l->k), divergence = lag_lyapunov_divergence(l), size = fabs(lag_lyapunov_exponent(l, l->k - 1));
-
   if (fabs(sum - divergence) > 1e-3 * fmax(size, fabs(divergence)) + 3 * lag_lyapunov_error(l, l->k)) {
     fprintf(f, "note: the sum should be the mean divergence of the flow, %.6g: the steps are too long for the fastest decay; take smaller steps, "
                "or trust only the first exponents\n", divergence);
@@ -132,10 +103,8 @@ static void caution(FILE *f, const Lyapunov *l)
 }
 
 /* Conclusions from the exponents that their errors allow: chaos, entropy, dimension. */
-static void conclude(FILE *f, const Lyapunov *l)
-{
+static void conclude(FILE *f, const Lyapunov *l) {
   double first = lag_lyapunov_exponent(l, 0), off = lag_lyapunov_error(l, 0), error, x;
-
   switch (lag_lyapunov_sign(l, 0)) {
   case 1:
     fprintf(f, "chaotic, if the motion is bounded: small errors grow by a factor of e in %.3g s (%.3g to %.3g), in the mean\n", 1 / first, 1 / (first + off),
@@ -149,36 +118,27 @@ static void conclude(FILE *f, const Lyapunov *l)
   default: fputs("not chaotic: small errors decay\n", f);
   }
   x = lag_lyapunov_dimension(l, &error);
-  if (isfinite(x)) {
-    fprintf(f, "dimension by Kaplan and Yorke: %.4g, error %.1g\n", x, error);
-  }
+  if (isfinite(x)) fprintf(f, "dimension by Kaplan and Yorke: %.4g, error %.1g\n", x, error);
   fprintf(f, "error: the largest of the standard error from %d blocks, of the change since half the time, and of one factor of e in the whole time; zero is "
              "reached as log(t)/t only\n", l->nblocks);
 }
 
-static void put_text(FILE *f, App *app, const Lyapunov *l)
-{
+static void put_text(FILE *f, App *app, const Lyapunov *l) {
   char method[256];
-
   lag_report_method(app, method, sizeof method);
   fprintf(f, "model %s, scene %s, method %s\n", app->scene->model->name, app->scene->name, method);
-  if (app->why[0]) {
-    fprintf(f, "chosen: %s\n", app->why);
-  }
+  if (app->why[0]) fprintf(f, "chosen: %s\n", app->why);
   if (!(l->t > l->begun)) {
     fprintf(f, "no step of the run ends after t = %g s, where the measurement begins; run longer: --until\n", l->from);
     return;
   }
   fprintf(f, "measured from t = %.6g to %.6g s, over %lld step%s\n", l->begun, l->t, l->steps, l->steps == 1 ? "" : "s");
   fprintf(f, "  %-4s%18s%14s%22s\n", "", "exponent [1/s]", "error", "at half the time");
-  for (int i = 0; i < l->k; i++) {
+  for (int i = 0; i < l->k; i++)
     fprintf(f, "  %-4d%18.8g%14.2g%22.8g\n", i + 1, lag_lyapunov_exponent(l, i), lag_lyapunov_error(l, i), l->at_half[i]);
-  }
   if (l->k == l->n) {
     double sum = 0;
-    for (int i = 0; i < l->k; i++) {
-      sum += l->at_half[i];
-    }
+    for (int i = 0; i < l->k; i++) sum += l->at_half[i];
     fprintf(f, "  %-4s%18.8g%14.2g%22.8g\n", "sum", lag_lyapunov_exponent(l, l->k), lag_lyapunov_error(l, l->k), sum);
     caution(f, l);
   }
@@ -189,26 +149,18 @@ static void put_text(FILE *f, App *app, const Lyapunov *l)
   conclude(f, l);
 }
 
-static void json_list(Json *j, const char *name, const Lyapunov *l, double (*value)(const Lyapunov *, int))
-{
+static void json_list(Json *j, const char *name, const Lyapunov *l, double (*value)(const Lyapunov *, int)) {
   lag_json_begin(j, name, '[');
-  for (int i = 0; i < l->k; i++) {
-    lag_json_number(j, NULL, value(l, i));
-  }
+  for (int i = 0; i < l->k; i++) lag_json_number(j, NULL, value(l, i));
   lag_json_end(j, ']');
 }
 
-static double at_half(const Lyapunov *l, int i)
-{
-  return l->at_half[i];
-}
+static double at_half(const Lyapunov *l, int i) { return l->at_half[i]; }
 
-static void put_json(FILE *f, const App *app, const Lyapunov *l)
-{
+static void put_json(FILE *f, const App *app, const Lyapunov *l) {
   int all = l->k == l->n, sign = lag_lyapunov_sign(l, 0);
   double error, dimension = lag_lyapunov_dimension(l, &error), entropy_error, entropy = lag_lyapunov_entropy(l, &entropy_error);
   Json j = {.f = f};
-
   lag_json_begin(&j, NULL, '{');
   lag_report_json_head(app, &j);
   lag_json_number(&j, "from", l->begun);
@@ -235,13 +187,9 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l)
 /* ---- The command */
 
 /* Exit status and message where there is no result; else 0. */
-static int failed(App *app, const Job *job)
-{
+static int failed(App *app, const Job *job) {
   const Args *a = &app->args;
-
-  if (app->bad_file) {
-    return lag_app_io_error(app, app->bad_file);
-  }
+  if (app->bad_file) return lag_app_io_error(app, app->bad_file);
   if (job->rc == LAG_EDOMAIN) {
     lag_app_error(a, "at t = %g s neighbouring motions become one within a step, an exponent of minus infinity; take fewer: --exponents %d, or "
                  "smaller steps", lag_sim_time(app->sim), job->l.k > 1 ? job->l.k - 1 : 1);
@@ -259,43 +207,28 @@ static int failed(App *app, const Job *job)
   return 0;
 }
 
-static int finish(App *app, Job *job)
-{
+static int finish(App *app, Job *job) {
   const Args *a = &app->args;
   int on_stdout = a->out && strcmp(a->out, "-") == 0, rc = failed(app, job);
   char title[300];
-
   lag_lyapunov_end(&job->l);
   if (rc) {
     lag_rows_close(&app->rows, 0);
     return rc;
   }
   snprintf(title, sizeof title, "%s: %s, Lyapunov exponents so far", app->scene->model->name, app->scene->name);
-  if (lag_rows_close(&app->rows, 1)) {
-    rc = lag_app_io_error(app, a->out);
-  }
-  if (a->svg && (lag_app_choose_curves(app) || lag_svg_write(a->svg, &app->table, title, &app->drawn))) {
-    rc = lag_app_io_error(app, a->svg);
-  }
-  if (a->json) {
-    put_json(stdout, app, &job->l);
-  } else if (!a->quiet) {
-    put_text(on_stdout ? stderr : stdout, app, &job->l);
-  }
-  if (fflush(stdout) != 0) {
-    rc = lag_app_io_error(app, "standard output");
-  }
+  if (lag_rows_close(&app->rows, 1)) rc = lag_app_io_error(app, a->out);
+  if (a->svg && (lag_app_choose_curves(app) || lag_svg_write(a->svg, &app->table, title, &app->drawn))) rc = lag_app_io_error(app, a->svg);
+  if (a->json) put_json(stdout, app, &job->l);
+  else if (!a->quiet) put_text(on_stdout ? stderr : stdout, app, &job->l);
+  if (fflush(stdout) != 0) rc = lag_app_io_error(app, "standard output");
   return rc ? rc : app->status == LAG_INTERRUPTED ? lag_app_interrupted() : EXIT_FINE;
 }
 
-static int run(App *app, Job *job)
-{
+static int run(App *app, Job *job) {
   const Args *a = &app->args;
-
   lag_app_catch_interrupt();
-  if (a->out && lag_rows_open(&app->rows, a->out, &app->table)) {
-    return lag_app_io_error(app, a->out);
-  }
+  if (a->out && lag_rows_open(&app->rows, a->out, &app->table)) return lag_app_io_error(app, a->out);
   lag_sim_on_step(app->sim, after_step, job);
   lag_sim_on_event(app->sim, at_event, job);
   lag_app_start_clock(app);
@@ -305,38 +238,29 @@ static int run(App *app, Job *job)
 }
 
 /* app->sim := the scene without monitors and closed forms, with values and method of the command line. */
-static int choose(App *app, Job *job)
-{
+static int choose(App *app, Job *job) {
   int rc = lag_app_set_up_start(app);
-
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   job->bare = *app->scene;
   job->bare.nmonitors = job->bare.nexact = 0;
   app->scene = &job->bare;
   lag_sim_free(app->sim);
   app->sim = lag_sim_new(app->scene);
-  if (!app->sim) {
-    return lag_app_error(&app->args, "out of memory");
-  }
+  if (!app->sim) return lag_app_error(&app->args, "out of memory");
   rc = lag_app_set_values(app);
   return rc ? rc : lag_app_choose_method(app);
 }
 
-int lag_app_lyapunov(App *app)
-{
+int lag_app_lyapunov(App *app) {
   Job job = {.app = app};
   double from = 0;
   int k = 0, rc = choose(app, &job);
-
   rc = rc ? rc : lag_app_check_outputs(app);
   rc = rc ? rc : choose_times(app, &from);
   rc = rc ? rc : choose_number(app, &k);
   rc = rc ? rc : make_table(app, k);
-  if (rc == 0 && lag_lyapunov_begin(&job.l, app->sim, k, from, app->until)) {
+  if (rc == 0 && lag_lyapunov_begin(&job.l, app->sim, k, from, app->until))
     rc = lag_app_error(&app->args, "%s", job.l.pool.failed ? "out of memory" : lag_sim_message(app->sim));
-  }
   job.next_row = from + (app->until - from) / ROWS;
   rc = rc ? rc : run(app, &job);
   lag_lyapunov_free(&job.l);

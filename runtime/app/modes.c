@@ -8,39 +8,26 @@
 #include "app/app.h"
 
 /* Description of coordinate or state i of x[nq + nz]. */
-static const lag_var *variable(const lag_model *m, int i)
-{
-  return i < m->nq ? &m->q[i] : &m->z[i - m->nq];
-}
+static const lag_var *variable(const lag_model *m, int i) { return i < m->nq ? &m->q[i] : &m->z[i - m->nq]; }
 
 /* x := the coordinates and states at the equilibrium, in SI. */
-static void get_unknowns(const Equilibrium *r, double *x)
-{
+static void get_unknowns(const Equilibrium *r, double *x) {
   int nq = r->sim->pb.nq;
-
-  for (int i = 0; i < r->n; i++) {
-    x[i] = r->y[i < nq ? i : nq + i];
-  }
+  for (int i = 0; i < r->n; i++) x[i] = r->y[i < nq ? i : nq + i];
 }
 
 /* ---- Refusals */
 
 /* Name of the first input that changes in time; NULL: none. */
-static const char *changing_input(const App *app)
-{
+static const char *changing_input(const App *app) {
   lag_problem *pb = &app->sim->pb;
   const lag_model *m = pb->model;
   static const double times[] = {0, 0.1234567, 0.5772157, 2.7182818};
   double first[64];
-
   for (size_t k = 0; k < sizeof times / sizeof *times; k++) {
-    if (lag_inputs(pb, app->scene->t0 + times[k])) {
-      return NULL;
-    }
+    if (lag_inputs(pb, app->scene->t0 + times[k])) return NULL;
     for (int i = 0; i < m->nu && i < 64; i++) {
-      if (k > 0 && pb->u[i] != first[i]) {
-        return m->u[i].name;
-      }
+      if (k > 0 && pb->u[i] != first[i]) return m->u[i].name;
       first[i] = k > 0 ? first[i] : pb->u[i];
     }
   }
@@ -48,12 +35,10 @@ static const char *changing_input(const App *app)
 }
 
 /* EXIT_USAGE after a message where this simulator or model has no modes; else 0. */
-static int refuse(const App *app)
-{
+static int refuse(const App *app) {
   const lag_model *m = app->scene->model;
   const Args *a = &app->args;
   const char *source = app->program->source;
-
   if (!app->extras.algebra) {
     return lag_app_error(a, "this simulator was built without GSL, which finds roots and eigenvalues; install GSL (libgsl-dev), make "
                         "lagc anew, and leave out --no-gsl");
@@ -66,12 +51,8 @@ static int refuse(const App *app)
     return lag_app_error(a, "this simulator was built without the model's linearisation; write lagc modes %s, or build it with: lagc "
                         "build %s --with linear", source, source);
   }
-  if (m->nq + m->nz == 0) {
-    return lag_app_error(a, "model %s has neither coordinates nor states", m->name);
-  }
-  if (m->flags & LAG_AUTONOMOUS) {
-    return 0;
-  }
+  if (m->nq + m->nz == 0) return lag_app_error(a, "model %s has neither coordinates nor states", m->name);
+  if (m->flags & LAG_AUTONOMOUS) return 0;
   if (!(m->flags & LAG_TIMELESS)) {
     return lag_app_error(a, "scene %s depends on time: t stands in its equations, so nothing stays at rest; take a scene without "
                         "what drives it, or put a parameter in place of t", app->scene->name);
@@ -85,41 +66,32 @@ static int refuse(const App *app)
 /* ---- Caution and reason of a result */
 
 /* A caution about the result; NULL: none. */
-static const char *caution_of(const App *app, const Equilibrium *r)
-{
-  if (r->pole) {
-    return "the mass matrix is nearly singular here: a coordinate has lost its meaning";
-  }
-  if (!(app->scene->model->flags & LAG_SMOOTH)) {
+static const char *caution_of(const App *app, const Equilibrium *r) {
+  if (r->pole) return "the mass matrix is nearly singular here: a coordinate has lost its meaning";
+  if (!(app->scene->model->flags & LAG_SMOOTH))
     return "the model has if, abs, sign, min, max or roots: where they switch at the equilibrium, the modes are those of one side";
-  }
   return NULL;
 }
 
 /* text[n] := the reason of the verdict on stability. */
-static void put_reason(const Modes *s, char *text, size_t n)
-{
+static void put_reason(const Modes *s, char *text, size_t n) {
   const Mode *m = s->mode;
   int last = s->n - 1;
-
   switch (s->verdict) {
   case LAG_UNSTABLE: {
     double rate = 0;
     int at = 0;
-    for (int i = 0; i < s->n; i++) {
+    for (int i = 0; i < s->n; i++)
       if (m[i].re > rate) {
         rate = m[i].re;
         at = i;
       }
-    }
     snprintf(text, n, "mode %d grows by a factor of e in %.6g s", at + 1, 1 / rate);
     return;
   }
   case LAG_DECAYS: {
     double slowest = m[last].re;
-    for (int i = 0; i < s->n; i++) {
-      slowest = fmax(slowest, m[i].re);
-    }
+    for (int i = 0; i < s->n; i++) slowest = fmax(slowest, m[i].re);
     snprintf(text, n, "every mode decays, the slowest by a factor of e in %.6g s", -1 / slowest);
     return;
   }
@@ -176,22 +148,16 @@ typedef struct Group {
 } Group;
 
 /* Whether a and b are members of one family: equal but for the index in brackets. */
-static int same_family(const char *a, const char *b)
-{
+static int same_family(const char *a, const char *b) {
   const char *x = strchr(a, '['), *y = strchr(b, '['), *ax = x ? strchr(x, ']') : NULL, *by = y ? strchr(y, ']') : NULL;
-
   return ax && by && x - a == y - b && memcmp(a, b, (size_t)(x - a)) == 0 && strcmp(ax, by) == 0;
 }
 
 /* The group that begins at variable `first` of n. */
-static Group group_at(const lag_model *m, int first, int n)
-{
+static Group group_at(const lag_model *m, int first, int n) {
   Group g = {.first = first, .count = 1};
   const char *name = variable(m, first)->name, *last = name;
-
-  while (first + g.count < n && same_family(name, variable(m, first + g.count)->name)) {
-    last = variable(m, first + g.count++)->name;
-  }
+  while (first + g.count < n && same_family(name, variable(m, first + g.count)->name)) last = variable(m, first + g.count++)->name;
   const char *from = strchr(name, '['), *to = strchr(last, '[');
   if (g.count == 1 || !from || !to) {
     snprintf(g.label, sizeof g.label, "%s", name);
@@ -210,10 +176,8 @@ typedef struct Line {
   int column, indent;
 } Line;
 
-static void put_word(Line *l, const char *word)
-{
+static void put_word(Line *l, const char *word) {
   int n = (int)strlen(word);
-
   if (l->column + 1 + n > WIDE) {
     fprintf(l->f, "\n%*s", l->indent, "");
     l->column = l->indent;
@@ -222,17 +186,11 @@ static void put_word(Line *l, const char *word)
 }
 
 /* text := a component, "1.5", or "1.5@-90": 90 degrees behind. Values below 1e-9 of `most` are shown as 0. */
-static void value_text(double re, double im, double most, char *text, size_t n)
-{
+static void value_text(double re, double im, double most, char *text, size_t n) {
   double size = hypot(re, im), phase = atan2(im, re) * 180 / acos(-1);
-
-  if (!(size > 1e-9 * most)) {
-    snprintf(text, n, "0");
-  } else if (fabs(im) <= 1e-9 * size) {
-    snprintf(text, n, "%.6g", re);
-  } else {
-    snprintf(text, n, "%.6g@%.4g", size, phase);
-  }
+  if (!(size > 1e-9 * most)) snprintf(text, n, "0");
+  else if (fabs(im) <= 1e-9 * size) snprintf(text, n, "%.6g", re);
+  else snprintf(text, n, "%.6g@%.4g", size, phase);
 }
 
 /* A vector to show: values in SI; im may be NULL. */
@@ -244,37 +202,26 @@ typedef struct Vector {
   double most; /* largest component */
 } Vector;
 
-static int units_differ(const lag_model *m)
-{
-  for (int i = 1; i < m->nq + m->nz; i++) {
-    if (strcmp(variable(m, i)->unit, variable(m, 0)->unit) != 0) {
-      return 1;
-    }
-  }
+static int units_differ(const lag_model *m) {
+  for (int i = 1; i < m->nq + m->nz; i++)
+    if (strcmp(variable(m, i)->unit, variable(m, 0)->unit) != 0) return 1;
   return 0;
 }
 
 /* Component i in its declared unit. */
-static double part(const double *x, const Vector *v, int i)
-{
+static double part(const double *x, const Vector *v, int i) {
   const lag_var *var = variable(v->m, i);
-
   return x ? (x[i] - (v->state ? var->offset : 0)) / var->factor : 0;
 }
 
-static int is_zero(const Vector *v, const Group *g)
-{
-  for (int i = g->first; i < g->first + g->count; i++) {
-    if (hypot(part(v->re, v, i), part(v->im, v, i)) > 1e-9 * v->most) {
-      return 0;
-    }
-  }
+static int is_zero(const Vector *v, const Group *g) {
+  for (int i = g->first; i < g->first + g->count; i++)
+    if (hypot(part(v->re, v, i), part(v->im, v, i)) > 1e-9 * v->most) return 0;
   return 1;
 }
 
 /* Prints a group, "u[1..8]: 0.34 0.64 ..."; of a large family every k-th member. */
-static void put_group(Line *l, const Vector *v, const Group *g)
-{
+static void put_group(Line *l, const Vector *v, const Group *g) {
   int every = g->count > LISTED ? (g->count + LISTED - 2) / (LISTED - 1) : 1;
   const char *unit = v->state || units_differ(v->m) ? variable(v->m, g->first)->unit : "";
   unit = strcmp(unit, "1") == 0 ? "" : unit;
@@ -283,38 +230,28 @@ static void put_group(Line *l, const Vector *v, const Group *g)
     char label[160] = "", value[64], word[300];
     int k = g->first + i, ends = i + every >= g->count;
     value_text(part(v->re, v, k), part(v->im, v, k), v->most, value, sizeof value);
-    if (i == 0) {
-      snprintf(label, sizeof label, every > 1 ? "%s (every %d): " : g->count > 1 ? "%s: " : "%s ", g->label, every);
-    }
+    if (i == 0) snprintf(label, sizeof label, every > 1 ? "%s (every %d): " : g->count > 1 ? "%s: " : "%s ", g->label, every);
     snprintf(word, sizeof word, "%s%s%s%s", label, value, ends && unit[0] ? " " : "", ends ? unit : "");
     put_word(l, word);
   }
 }
 
-static void put_vector(Line *l, Vector v)
-{
+static void put_vector(Line *l, Vector v) {
   int n = v.m->nq + v.m->nz, some = 0;
-
-  for (int i = 0; i < n; i++) {
-    v.most = fmax(v.most, hypot(part(v.re, &v, i), part(v.im, &v, i)));
-  }
+  for (int i = 0; i < n; i++) v.most = fmax(v.most, hypot(part(v.re, &v, i), part(v.im, &v, i)));
   for (int first = 0; first < n;) {
     Group g = group_at(v.m, first, n);
     first += g.count;
-    if (!v.all && is_zero(&v, &g)) {
-      continue;
-    }
+    if (!v.all && is_zero(&v, &g)) continue;
     l->column += fprintf(l->f, "%s", some++ ? "," : "");
     put_group(l, &v, &g);
   }
 }
 
 /* Index of the variable farthest from its start, relative to its scale; -1: none moved. */
-static int farthest(const Equilibrium *r, const double *x)
-{
+static int farthest(const Equilibrium *r, const double *x) {
   int best = -1;
   double most = 0;
-
   for (int i = 0; i < r->n; i++) {
     double d = fabs(x[i] - r->start[i]) / r->scale[i];
     if (d > most) {
@@ -325,17 +262,13 @@ static int farthest(const Equilibrium *r, const double *x)
   return most > 1e-12 ? best : -1;
 }
 
-static void put_equilibrium(FILE *f, const App *app, const Equilibrium *r, double *x)
-{
+static void put_equilibrium(FILE *f, const App *app, const Equilibrium *r, double *x) {
   const lag_model *m = app->scene->model;
   Line line = {f, 0, 4};
   int far = 0, moving = 0;
-
   get_unknowns(r, x);
   far = farthest(r, x);
-  for (int i = 0; i < m->nq; i++) {
-    moving |= r->sim->now[m->nq + i] != 0;
-  }
+  for (int i = 0; i < m->nq; i++) moving |= r->sim->now[m->nq + i] != 0;
   fprintf(f, "%s: scene %s\nequilibrium: ", m->name, app->scene->name);
   if (far < 0) {
     fputs("the start itself", f);
@@ -348,21 +281,15 @@ static void put_equilibrium(FILE *f, const App *app, const Equilibrium *r, doubl
   putc('\n', f);
 }
 
-static void put_number(FILE *f, int width, double x)
-{
-  if (isfinite(x)) {
-    fprintf(f, "  %-*.7g", width, x);
-  } else {
-    fprintf(f, "  %-*s", width, "-");
-  }
+static void put_number(FILE *f, int width, double x) {
+  if (isfinite(x)) fprintf(f, "  %-*.7g", width, x);
+  else fprintf(f, "  %-*s", width, "-");
 }
 
-static void put_mode(FILE *f, const lag_model *model, const Mode *m, int k, int damped)
-{
+static void put_mode(FILE *f, const lag_model *model, const Mode *m, int k, int damped) {
   int oscillates = m->im > 0, zero = m->re == 0.0 && m->im == 0.0;
   double two_pi = 2 * acos(-1), w = oscillates || zero ? m->im : NAN;
   Line line = {f, 0, 0};
-
   line.column = fprintf(f, "%4d", k + 1) + 3 * (NUMBER + 2) + (damped ? NUMBER + 2 + 20 : 0);
   put_number(f, NUMBER, w);
   put_number(f, NUMBER, w / two_pi);
@@ -384,79 +311,50 @@ static void put_mode(FILE *f, const lag_model *model, const Mode *m, int k, int 
 }
 
 /* Whether a listed mode stands for a pair, one that grows and one that decays as fast. */
-static int has_twins(const Modes *s)
-{
+static int has_twins(const Modes *s) {
   int twins = 0;
-
-  for (int i = 0; i < s->n && i < MOST_MODES; i++) {
-    twins |= s->pairs && s->mode[i].re > 0;
-  }
+  for (int i = 0; i < s->n && i < MOST_MODES; i++) twins |= s->pairs && s->mode[i].re > 0;
   return twins;
 }
 
 /* Whether a component of a listed shape is out of phase with the component that is 1. */
-static int has_phases(const lag_model *m, const Modes *s)
-{
-  for (int k = 0; k < s->n && k < MOST_MODES; k++) {
+static int has_phases(const lag_model *m, const Modes *s) {
+  for (int k = 0; k < s->n && k < MOST_MODES; k++)
     for (int i = 0; i < m->nq + m->nz; i++) {
       double re = s->mode[k].shape_re[i], im = s->mode[k].shape_im[i];
-      if (fabs(im) > 1e-9 * variable(m, i)->factor && fabs(im) > 1e-9 * hypot(re, im)) {
-        return 1;
-      }
+      if (fabs(im) > 1e-9 * variable(m, i)->factor && fabs(im) > 1e-9 * hypot(re, im)) return 1;
     }
-  }
   return 0;
 }
 
-static void put_modes(FILE *f, const App *app, const Modes *s)
-{
+static void put_modes(FILE *f, const App *app, const Modes *s) {
   char text[300];
   int damped = 0;
-
-  for (int i = 0; i < s->n; i++) {
-    damped |= s->mode[i].re != 0;
-  }
+  for (int i = 0; i < s->n; i++) damped |= s->mode[i].re != 0;
   put_reason(s, text, sizeof text);
   Line line = {f, fprintf(f, "%s%s:", lag_verdict_name(s->verdict), s->verdict >= LAG_GYROSCOPIC ? " by the linearisation" : ""), 2};
-  for (char *word = strtok(text, " "); word; word = strtok(NULL, " ")) {
-    put_word(&line, word);
-  }
+  for (char *word = strtok(text, " "); word; word = strtok(NULL, " ")) put_word(&line, word);
   fprintf(f, "\n\nmode  %-*s  %-*s  %-*s", NUMBER, "rad/s", NUMBER, "Hz", NUMBER, "period [s]");
-  if (damped) {
-    fprintf(f, "  %-*s  %-18s", NUMBER, "damping", "time to e [s]");
-  }
+  if (damped) fprintf(f, "  %-*s  %-18s", NUMBER, "damping", "time to e [s]");
   fputs(" shape\n", f);
-  for (int i = 0; i < s->n && i < MOST_MODES; i++) {
-    put_mode(f, app->scene->model, &s->mode[i], i, damped);
-  }
-  if (s->n > MOST_MODES) {
-    fprintf(f, "(and %d more; --json has all)\n", s->n - MOST_MODES);
-  }
-  if (has_twins(s)) {
-    fputs("a mode that grows stands for two: another decays as fast\n", f);
-  }
-  if (has_phases(app->scene->model, s)) {
-    fputs("a@p: amplitude a, p degrees ahead\n", f);
-  }
+  for (int i = 0; i < s->n && i < MOST_MODES; i++) put_mode(f, app->scene->model, &s->mode[i], i, damped);
+  if (s->n > MOST_MODES) fprintf(f, "(and %d more; --json has all)\n", s->n - MOST_MODES);
+  if (has_twins(s)) fputs("a mode that grows stands for two: another decays as fast\n", f);
+  if (has_phases(app->scene->model, s)) fputs("a@p: amplitude a, p degrees ahead\n", f);
 }
 
 /* Prints the table of modes, text of 118 columns. x[nq + nz] is scratch. */
-static void put_text(FILE *f, const App *app, const Equilibrium *r, const Modes *s, double *x)
-{
+static void put_text(FILE *f, const App *app, const Equilibrium *r, const Modes *s, double *x) {
   const char *note = caution_of(app, r);
-
   put_equilibrium(f, app, r, x);
-  if (note) {
-    fprintf(f, "note: %s\n", note);
-  }
+  if (note) fprintf(f, "note: %s\n", note);
   put_modes(f, app, s);
 }
 
 /* ---- JSON */
 
 /* A JSON object of a state in declared units; with im a mode shape, entries [re, im]. */
-static void json_vector(Json *j, const char *name, const lag_model *m, const double *re, const double *im)
-{
+static void json_vector(Json *j, const char *name, const lag_model *m, const double *re, const double *im) {
   lag_json_begin(j, name, '{');
   for (int i = 0; i < m->nq + m->nz; i++) {
     const lag_var *v = variable(m, i);
@@ -472,20 +370,17 @@ static void json_vector(Json *j, const char *name, const lag_model *m, const dou
   lag_json_end(j, '}');
 }
 
-static void json_head(Json *j, const App *app, const char *status)
-{
+static void json_head(Json *j, const App *app, const char *status) {
   lag_json_begin(j, NULL, '{');
   lag_json_string(j, "model", app->scene->model->name);
   lag_json_string(j, "scene", app->scene->name);
   lag_json_string(j, "status", status);
 }
 
-static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Modes *s, double *x)
-{
+static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Modes *s, double *x) {
   const lag_model *m = app->scene->model;
   char text[300];
   Json j = {.f = f};
-
   put_reason(s, text, sizeof text);
   json_head(&j, app, "ok");
   lag_json_string(&j, "verdict", lag_verdict_name(s->verdict));
@@ -514,16 +409,12 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
 
 /* ---- The command */
 
-static int not_found(const App *app, const Equilibrium *r)
-{
+static int not_found(const App *app, const Equilibrium *r) {
   const lag_model *m = app->scene->model;
   int i = r->worst, nq = m->nq, at = nq + i;
   const lag_var *v = variable(m, i);
   char unit[80] = "";
-
-  if (v->unit[0]) {
-    snprintf(unit, sizeof unit, " %s/s%s", v->unit, i < nq ? "^2" : "");
-  }
+  if (v->unit[0]) snprintf(unit, sizeof unit, " %s/s%s", v->unit, i < nq ? "^2" : "");
   if (app->args.json) {
     Json j = {.f = stdout};
     json_head(&j, app, "no equilibrium");
@@ -543,13 +434,9 @@ static int not_found(const App *app, const Equilibrium *r)
 }
 
 /* Message for a failure of the analysis; returns the exit status. */
-static int analysis_failed(const App *app, int rc, const char *where)
-{
+static int analysis_failed(const App *app, int rc, const char *where) {
   const Args *a = &app->args;
-
-  if (rc == LAG_ENOMEM) {
-    return lag_app_error(a, "out of memory");
-  }
+  if (rc == LAG_ENOMEM) return lag_app_error(a, "out of memory");
   if (rc == LAG_ESINGULAR) {
     lag_app_error(a, "the %s is singular %s: choose other coordinates there, or another start: name=VALUE",
               app->scene->model->flags & LAG_FIRST_ORDER ? "two-form of L" : "mass matrix", where);
@@ -559,38 +446,23 @@ static int analysis_failed(const App *app, int rc, const char *where)
   return EXIT_RUN;
 }
 
-static int analyse(const App *app, Equilibrium *r, Modes *s)
-{
+static int analyse(const App *app, Equilibrium *r, Modes *s) {
   int rc = lag_equilibrium_find(r, app->sim, app->extras.algebra);
-
-  if (rc == 0) {
-    return not_found(app, r);
-  }
-  if (rc < 0) {
-    return analysis_failed(app, rc, "at the start");
-  }
+  if (rc == 0) return not_found(app, r);
+  if (rc < 0) return analysis_failed(app, rc, "at the start");
   rc = lag_modes_find(s, r, app->extras.algebra);
   double *x = rc ? NULL : lag_pool_doubles(&s->pool, (size_t)r->n);
-  if (rc || !x) {
-    return analysis_failed(app, rc ? rc : LAG_ENOMEM, "at the equilibrium");
-  }
-  if (app->args.json) {
-    json_modes(stdout, app, r, s, x);
-  } else {
-    put_text(stdout, app, r, s, x);
-  }
+  if (rc || !x) return analysis_failed(app, rc ? rc : LAG_ENOMEM, "at the equilibrium");
+  if (app->args.json) json_modes(stdout, app, r, s, x);
+  else put_text(stdout, app, r, s, x);
   return fflush(stdout) ? lag_app_error(&app->args, "cannot write standard output") : EXIT_FINE;
 }
 
-int lag_app_modes(App *app)
-{
+int lag_app_modes(App *app) {
   Equilibrium rest = {0};
   Modes modes = {0};
   int rc = lag_app_set_up_start(app);
-
-  if (rc == 0 && lag_sim_advance(app->sim, app->scene->t0)) {
-    rc = lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
-  }
+  if (rc == 0 && lag_sim_advance(app->sim, app->scene->t0)) rc = lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
   rc = rc ? rc : refuse(app);
   rc = rc ? rc : analyse(app, &rest, &modes);
   lag_modes_free(&modes);

@@ -7,84 +7,60 @@
 enum { MOST_LINES = 24 };
 
 /* Variable i of [q, v, z]: *c := its name and unit; returns its value in that unit. */
-static double state_var(const App *app, int i, Column *c)
-{
+static double state_var(const App *app, int i, Column *c) {
   lag_sim_state_info(app->sim, i, c->name, sizeof c->name, c->unit, sizeof c->unit);
   return lag_sim_state_value(app->sim, i);
 }
 
-void lag_report_method(const App *app, char *s, size_t n)
-{
+void lag_report_method(const App *app, char *s, size_t n) {
   const lag_method *m = lag_sim_method(app->sim);
   const double *opt = lag_sim_options(app->sim);
   size_t used = (size_t)snprintf(s, n, "%s(", m->name);
-
-  if (m->flags & LAG_METHOD_ADAPTIVE) {
-    used += (size_t)snprintf(s + used, n - used, "tol=%g", lag_sim_tolerance(app->sim));
-  }
+  if (m->flags & LAG_METHOD_ADAPTIVE) used += (size_t)snprintf(s + used, n - used, "tol=%g", lag_sim_tolerance(app->sim));
   for (int i = 0; i < m->noptions && used < n; i++) {
-    if (opt[i] == m->options[i].value) {
-      continue;
-    }
+    if (opt[i] == m->options[i].value) continue;
     const char *comma = s[used - 1] == '(' ? "" : ", ";
     used += m->options[i].choices ? (size_t)snprintf(s + used, n - used, "%s%s=%s", comma, m->options[i].name,
                                                      m->options[i].choices[(int)opt[i]])
                                   : (size_t)snprintf(s + used, n - used, "%s%s=%g", comma, m->options[i].name, opt[i]);
   }
-  if (used < n) {
-    snprintf(s[used - 1] == '(' ? s + used - 1 : s + used, n - used, "%s", s[used - 1] == '(' ? "" : ")");
-  }
+  if (used < n) snprintf(s[used - 1] == '(' ? s + used - 1 : s + used, n - used, "%s", s[used - 1] == '(' ? "" : ")");
 }
 
-static void final_state(const App *app, FILE *f)
-{
+static void final_state(const App *app, FILE *f) {
   const lag_model *m = app->scene->model;
   int n = 2 * m->nq + m->nz;
-
   for (int i = 0; i < n && i < MOST_LINES; i++) {
     Column c;
     double x = state_var(app, i, &c);
     fprintf(f, "  %-14s %.15g%s%s\n", c.name, x, c.unit[0] ? " " : "", c.unit);
   }
-  if (n > MOST_LINES) {
-    fprintf(f, "  (and %d more)\n", n - MOST_LINES);
-  }
+  if (n > MOST_LINES) fprintf(f, "  (and %d more)\n", n - MOST_LINES);
 }
 
 /* Whether constraint k is redundant at the start; contacts do not count. */
-static int is_redundant(const App *app, int k)
-{
+static int is_redundant(const App *app, int k) {
   const lag_model *m = app->scene->model;
-
-  for (int i = 0; i < m->ncontacts; i++) {
-    if (m->contacts[i].constraint == k) {
-      return 0;
-    }
-  }
+  for (int i = 0; i < m->ncontacts; i++)
+    if (m->contacts[i].constraint == k) return 0;
   return lag_sim_is_redundant(app->sim, k);
 }
 
 /* Describes a singular start, where constraints are dependent that are independent nearby. */
-static void singular(const App *app, FILE *f)
-{
+static void singular(const App *app, FILE *f) {
   int n = 0;
-
   fprintf(f, "; singular: %d nearby", lag_sim_nearby_rank(app->sim));
-  for (int i = 0; i < app->scene->model->nq; i++) {
-    if (lag_sim_is_undetermined(app->sim, i) && n++ < MOST_LINES) {
+  for (int i = 0; i < app->scene->model->nq; i++)
+    if (lag_sim_is_undetermined(app->sim, i) && n++ < MOST_LINES)
       fprintf(f, "%s%s'", n == 1 ? ", and the starting value of " : ", ", app->scene->model->q[i].name);
-    }
-  }
   fprintf(f, "%s%s", n > MOST_LINES ? ", ..." : "", n ? " decides the branch of the motion" : "");
 }
 
 /* Constraints: changes of the start, rank, redundant ones, largest residuals. */
-static void constraints(const App *app, const lag_stats *st, FILE *f)
-{
+static void constraints(const App *app, const lag_stats *st, FILE *f) {
   const lag_model *m = app->scene->model;
   const lag_constraints *of = m->constraints;
   int n = 2 * m->nq, moved = 0, redundant = 0;
-
   for (int i = 0; of && i < n; i++) {
     Column c;
     double asked = lag_sim_requested_start(app->sim, i), begin = lag_sim_actual_start(app->sim, i);
@@ -94,40 +70,25 @@ static void constraints(const App *app, const lag_stats *st, FILE *f)
               c.unit[0] ? " " : "", c.unit, begin - asked);
     }
   }
-  if (moved > MOST_LINES) {
-    fprintf(f, "  (and %d more)\n", moved - MOST_LINES);
-  }
-  if (!of) {
-    return;
-  }
-  if (of->n > m->ncontacts) {
-    fprintf(f, "constraints: %d, %d independent at the start", of->n - m->ncontacts, lag_sim_rank(app->sim));
-  }
-  for (int k = 0; k < of->n; k++) {
-    if (is_redundant(app, k) && redundant++ < MOST_LINES) {
-      fprintf(f, "%s%s", redundant == 1 ? "; redundant: " : ", ", of->of[k].name);
-    }
-  }
-  if (lag_sim_nearby_rank(app->sim) > lag_sim_rank(app->sim)) {
-    singular(app, f);
-  }
+  if (moved > MOST_LINES) fprintf(f, "  (and %d more)\n", moved - MOST_LINES);
+  if (!of) return;
+  if (of->n > m->ncontacts) fprintf(f, "constraints: %d, %d independent at the start", of->n - m->ncontacts, lag_sim_rank(app->sim));
+  for (int k = 0; k < of->n; k++)
+    if (is_redundant(app, k) && redundant++ < MOST_LINES) fprintf(f, "%s%s", redundant == 1 ? "; redundant: " : ", ", of->of[k].name);
+  if (lag_sim_nearby_rank(app->sim) > lag_sim_rank(app->sim)) singular(app, f);
   fprintf(f, "%s%sconstraint residual: %.3g, of rates %.3g (the largest, in SI)\n", redundant > MOST_LINES ? ", ..." : "", of->n > m->ncontacts ? "\n" : "",
           st->constraint, st->constraint_rate);
 }
 
 /* Notes: steps too long for the fastest oscillation; a symplectic method on a model for which it is not symplectic. */
-static void caveat(const App *app, const lag_stats *st, FILE *f)
-{
+static void caveat(const App *app, const lag_stats *st, FILE *f) {
   const lag_method *m = lag_sim_method(app->sim);
   unsigned has = app->scene->model->flags;
-
   if (isfinite(st->unresolved)) {
     fprintf(f, "note: steps are longer than half a period, about %.2g s, of the fastest oscillation: its motion is wrong, even if the energy is kept; take "
                "--step %.0e or less, or radau, which damps the oscillation, or dop853, which resolves it\n", st->unresolved, st->unresolved / 20);
   }
-  if (!(m->flags & LAG_METHOD_SYMPLECTIC)) {
-    return;
-  }
+  if (!(m->flags & LAG_METHOD_SYMPLECTIC)) return;
   if (app->scene->model->nq == 0 && !(has & LAG_FIRST_ORDER)) {
     fprintf(f, "note: %s is symplectic for Lagrangians; here it is symmetric, and keeps quadratic invariants\n", m->name);
   } else if ((has & LAG_FIRST_ORDER) && (has & LAG_CONSERVES_ENERGY) && !(has & LAG_CONSTANT_FORM)) {
@@ -138,13 +99,9 @@ static void caveat(const App *app, const lag_stats *st, FILE *f)
 }
 
 /* "explicit" or "implicit", and *why, for a method that has both forms; NULL for others. */
-static const char *form(const App *app, const char **why)
-{
+static const char *form(const App *app, const char **why) {
   unsigned has = app->scene->model->flags;
-
-  if (!(lag_sim_method(app->sim)->flags & LAG_METHOD_SPLITS)) {
-    return NULL;
-  }
+  if (!(lag_sim_method(app->sim)->flags & LAG_METHOD_SPLITS)) return NULL;
   has = app->scene->model->constraints ? has & ~(unsigned)LAG_SEPARABLE : has;
   *why = app->scene->model->constraints ? "in q and p by Newton's method: the model has constraints"
          : has & LAG_SEPARABLE ? "the model is separable"
@@ -153,23 +110,17 @@ static const char *form(const App *app, const char **why)
   return has & LAG_SEPARABLE ? "explicit" : "implicit";
 }
 
-static void newton(const App *app, const lag_stats *st, FILE *f)
-{
+static void newton(const App *app, const lag_stats *st, FILE *f) {
   const char *why, *word = form(app, &why);
-
-  if (word) {
-    fprintf(f, "%s steps, %s\n", word, why);
-  }
+  if (word) fprintf(f, "%s steps, %s\n", word, why);
   if (st->systems > 0) {
     fprintf(f, "Newton's method: %.3g corrections a system, %.3g systems a step\n", (double)st->iterations / (double)st->systems,
             (double)st->systems / (double)(st->steps ? st->steps : 1));
   }
 }
 
-static void verdict(const App *app, FILE *f)
-{
+static void verdict(const App *app, FILE *f) {
   double t = lag_sim_time(app->sim);
-
   switch (app->status) {
   case LAG_OK: fprintf(f, "reached t = %.15g s\n", t); break;
   case LAG_STOPPED: fprintf(f, "stopped by an event at t = %s s\n", lag_number_text(t, (char[64]){0})); break;
@@ -178,10 +129,8 @@ static void verdict(const App *app, FILE *f)
   }
 }
 
-static void exact(const App *app, FILE *f)
-{
+static void exact(const App *app, FILE *f) {
   const lag_scene *c = app->scene;
-
   for (int k = 0; k < c->nexact && k < MOST_LINES; k++) {
     Column v;
     double largest, now;
@@ -194,18 +143,12 @@ static void exact(const App *app, FILE *f)
       fprintf(f, "exact %s: largest deviation %.3g%s%s, final %.3g\n", v.name, largest, unit[0] ? " " : "", unit, now);
     }
   }
-  if (c->nexact > MOST_LINES) {
-    fprintf(f, "  (and %d more)\n", c->nexact - MOST_LINES);
-  }
+  if (c->nexact > MOST_LINES) fprintf(f, "  (and %d more)\n", c->nexact - MOST_LINES);
 }
 
-static void exact_json(const App *app, Json *j)
-{
+static void exact_json(const App *app, Json *j) {
   const lag_scene *c = app->scene;
-
-  if (c->nexact == 0) {
-    return;
-  }
+  if (c->nexact == 0) return;
   lag_json_begin(j, "exact", '{');
   for (int k = 0; k < c->nexact; k++) {
     Column v;
@@ -220,18 +163,14 @@ static void exact_json(const App *app, Json *j)
   lag_json_end(j, '}');
 }
 
-void lag_report_text(App *app, FILE *f)
-{
+void lag_report_text(App *app, FILE *f) {
   const lag_scene *c = app->scene;
   lag_stats st;
   char method[256];
-
   lag_sim_stats(app->sim, &st);
   lag_report_method(app, method, sizeof method);
   fprintf(f, "model %s, scene %s, method %s\n", c->model->name, c->name, method);
-  if (app->why[0]) {
-    fprintf(f, "chosen: %s\n", app->why);
-  }
+  if (app->why[0]) fprintf(f, "chosen: %s\n", app->why);
   verdict(app, f);
   final_state(app, f);
   fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
@@ -239,9 +178,8 @@ void lag_report_text(App *app, FILE *f)
   lag_report_charges(app, f);
   constraints(app, &st, f);
   caveat(app, &st, f);
-  for (int i = 0; i < c->nmonitors; i++) {
+  for (int i = 0; i < c->nmonitors; i++)
     fprintf(f, "monitor %s: drift %.3g, limit %.3g\n", c->monitors[i].name, lag_sim_monitor_drift(app->sim, i), c->monitors[i].limit);
-  }
   exact(app, f);
   if (app->empty_rows) {
     fprintf(f, "note: the output %s has no finite value at t = %.9g s; the same in %lld of %lld rows\n", app->table.cols[app->empty_column].name, app->empty_t,
@@ -249,25 +187,15 @@ void lag_report_text(App *app, FILE *f)
   }
   lag_report_events(app, f);
   lag_report_tangent(app, f);
-  if (app->written && app->args.out) {
-    fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
-  }
-  if (app->args.svg) {
-    fprintf(f, "picture in %s\n", app->args.svg);
-  }
-  if (app->args.html) {
-    fprintf(f, "animation in %s\n", app->args.html);
-  }
+  if (app->written && app->args.out) fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
+  if (app->args.svg) fprintf(f, "picture in %s\n", app->args.svg);
+  if (app->args.html) fprintf(f, "animation in %s\n", app->args.html);
 }
 
 /* JSON members: outputs at the end, except coordinates, velocities and states, so that no name appears twice. */
-static void final_outputs(App *app, Json *j)
-{
+static void final_outputs(App *app, Json *j) {
   int n = app->scene->model->nq * 2 + app->scene->model->nz, nout = lag_sim_noutputs(app->sim);
-
-  if (app->scene->nout == 0 || lag_sim_outputs(app->sim, app->row + 1)) {
-    return;
-  }
+  if (app->scene->nout == 0 || lag_sim_outputs(app->sim, app->row + 1)) return;
   for (int i = 0; i < nout; i++) {
     const Column *o = &app->table.cols[i + 1];
     int seen = 0;
@@ -276,28 +204,19 @@ static void final_outputs(App *app, Json *j)
       state_var(app, k, &c);
       seen = strcmp(c.name, o->name) == 0;
     }
-    if (!seen) {
-      lag_json_number(j, o->name, app->row[i + 1]);
-    }
+    if (!seen) lag_json_number(j, o->name, app->row[i + 1]);
   }
 }
 
-static void constraints_json(const App *app, Json *j)
-{
+static void constraints_json(const App *app, Json *j) {
   const lag_model *m = app->scene->model;
   const lag_constraints *of = m->constraints;
-
-  if (!of) {
-    return;
-  }
+  if (!of) return;
   lag_json_count(j, "constraints", of->n - m->ncontacts);
   lag_json_count(j, "rank", lag_sim_rank(app->sim));
   lag_json_begin(j, "redundant", '[');
-  for (int k = 0; k < of->n; k++) {
-    if (is_redundant(app, k)) {
-      lag_json_string(j, NULL, of->of[k].name);
-    }
-  }
+  for (int k = 0; k < of->n; k++)
+    if (is_redundant(app, k)) lag_json_string(j, NULL, of->of[k].name);
   lag_json_end(j, ']');
   lag_json_count(j, "rank_beside", lag_sim_nearby_rank(app->sim));
   lag_json_begin(j, "start_moved", '{');
@@ -315,8 +234,7 @@ static void constraints_json(const App *app, Json *j)
   lag_json_end(j, '}');
 }
 
-void lag_report_json_head(const App *app, Json *j)
-{
+void lag_report_json_head(const App *app, Json *j) {
   lag_json_string(j, "model", app->scene->model->name);
   lag_json_string(j, "scene", app->scene->name);
   lag_json_string(j, "method", lag_sim_method(app->sim)->name);
@@ -324,14 +242,12 @@ void lag_report_json_head(const App *app, Json *j)
   lag_json_string(j, "status", app->status < 0 ? "failed" : lag_status_name(app->status));
 }
 
-void lag_report_json(App *app, FILE *f)
-{
+void lag_report_json(App *app, FILE *f) {
   const lag_model *m = app->scene->model;
   int n = 2 * m->nq + m->nz;
   const char *why;
   lag_stats st;
   Json j = {.f = f};
-
   lag_sim_stats(app->sim, &st);
   lag_json_begin(&j, NULL, '{');
   lag_report_json_head(app, &j);
@@ -347,9 +263,7 @@ void lag_report_json(App *app, FILE *f)
   fprintf(f, "%.6g", app->wall); /* 6 digits in any precision */
   lag_json_number(&j, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null where energy is not conserved */
   lag_charge_stats energy = {.absolute = NAN};
-  if (lag_sim_ncharges(app->sim)) {
-    lag_sim_charge(app->sim, 0, &energy);
-  }
+  if (lag_sim_ncharges(app->sim)) lag_sim_charge(app->sim, 0, &energy);
   lag_json_number(&j, "energy_drift_absolute", m->flags & LAG_CONSERVES_ENERGY ? energy.absolute : NAN);
   lag_json_number(&j, "unresolved_period", st.unresolved);
   lag_json_count(&j, "rows_without_value", app->empty_rows);

@@ -11,39 +11,30 @@
 #include "io/visible.h"
 #include "core/core.h"
 
-static int no_scene(const App *app, const char *name)
-{
+static int no_scene(const App *app, const char *name) {
   const lag_program *p = app->program;
-
   lag_app_error(&app->args, "scene %s is not in this build. It holds:", name);
-  for (int i = 0; i < p->nscenes; i++) {
-    fprintf(stderr, "  %s\n", p->scenes[i]->name);
-  }
+  for (int i = 0; i < p->nscenes; i++) fprintf(stderr, "  %s\n", p->scenes[i]->name);
   fprintf(stderr, "If %s has it, this builds and runs it: lagc run %s ", p->source, p->source);
   fput_visible(stderr, name, "");
   putc('\n', stderr);
   return EXIT_USAGE;
 }
 
-static int choose_scene(App *app)
-{
+static int choose_scene(App *app) {
   const lag_program *p = app->program;
   const char *name = app->resumed ? app->state.scene : app->args.scene;
-
-  if (app->resumed && app->args.scene && strcmp(app->args.scene, name) != 0) {
+  if (app->resumed && app->args.scene && strcmp(app->args.scene, name) != 0)
     return lag_app_error(&app->args, "%s was saved from scene %s, not %s", app->args.resume, name, app->args.scene);
-  }
-  for (int i = 0; i < p->nscenes; i++) {
+  for (int i = 0; i < p->nscenes; i++)
     if (!name || strcmp(p->scenes[i]->name, name) == 0) {
       app->scene = p->scenes[i];
       return 0;
     }
-  }
   return name ? no_scene(app, name) : lag_app_error(&app->args, "this program has no scenes");
 }
 
-int lag_app_read_until(App *app)
-{
+int lag_app_read_until(App *app) {
   enum { SPANS = 20 }; /* Lyapunov exponents are means over a long time, forwards */
   const Args *a = &app->args;
   const lag_scene *c = app->scene;
@@ -53,18 +44,13 @@ int lag_app_read_until(App *app)
   return !a->until || lag_args_number(a, "--until", a->until, a->lyapunov ? "--until 1000" : "--until 20", &app->until) ? 0 : EXIT_USAGE;
 }
 
-const lag_method *lag_app_method_at(const App *app, int i)
-{
+const lag_method *lag_app_method_at(const App *app, int i) {
   return i < lag_nmethods ? lag_methods[i] : i - lag_nmethods < app->extras.nmethods ? app->extras.methods[i - lag_nmethods] : NULL;
 }
 
-const lag_method *lag_app_find_method(const App *app, const char *name)
-{
+const lag_method *lag_app_find_method(const App *app, const char *name) {
   const lag_method *m = NULL;
-
-  for (int i = 0; (m = lag_app_method_at(app, i)) != NULL && strcmp(m->name, name) != 0;) {
-    i++;
-  }
+  for (int i = 0; (m = lag_app_method_at(app, i)) != NULL && strcmp(m->name, name) != 0;) i++;
   return m;
 }
 
@@ -76,30 +62,22 @@ typedef struct Choice {
   int n;
 } Choice;
 
-static char *trim(char *s)
-{
+static char *trim(char *s) {
   s += strspn(s, " ");
   size_t n = strlen(s);
-  while (n && s[n - 1] == ' ') {
-    s[--n] = '\0';
-  }
+  while (n && s[n - 1] == ' ') s[--n] = '\0';
   return s;
 }
 
 /* Adds an option: its value is a decimal number, as in lag_args_number, or else a word. */
-static void add_option(Choice *c, const char *name, const char *value)
-{
+static void add_option(Choice *c, const char *name, const char *value) {
   lag_option *o = &c->opt[c->n++];
-
   *o = (lag_option){.name = name};
-  if (!lag_args_decimal(value, &o->value)) {
-    o->text = value;
-  }
+  if (!lag_args_decimal(value, &o->value)) o->text = value;
 }
 
 /* Refuses wrong step sizes; 0, a method's value for "not given", is wrong where it is given. */
-static int check_steps(const App *app, const Choice *c)
-{
+static int check_steps(const App *app, const Choice *c) {
   for (int i = 0; i < c->n; i++) {
     const lag_option *o = &c->opt[i];
     const char *wrong = lag_is_step_option(o->name) && !o->text ? lag_step_error(app->sim, o->value) : NULL;
@@ -112,26 +90,18 @@ static int check_steps(const App *app, const Choice *c)
 }
 
 /* Parses --method: "NAME" or "NAME(option = value, ...)". */
-static int parse_method(const Args *a, Choice *c)
-{
+static int parse_method(const Args *a, Choice *c) {
   char *open, *close, *save = NULL;
-
   snprintf(c->text, sizeof c->text, "%s", a->method);
   c->name = c->text;
-  if ((open = strchr(c->text, '(')) == NULL) {
-    return 0;
-  }
+  if ((open = strchr(c->text, '(')) == NULL) return 0;
   close = strrchr(open, ')');
-  if (!close || *trim(close + 1)) {
-    return lag_app_error(a, "--method %s: write NAME(option=value, ...)", a->method);
-  }
+  if (!close || *trim(close + 1)) return lag_app_error(a, "--method %s: write NAME(option=value, ...)", a->method);
   *open = *close = '\0';
   c->name = trim(c->text);
   for (char *s = strtok_r(open + 1, ",", &save); s; s = strtok_r(NULL, ",", &save)) {
     char *eq = strchr(s, '=');
-    if (!eq || c->n == MOST_OPTIONS - 1) {
-      return lag_app_error(a, "--method %s: write NAME(option=value, ...)", a->method);
-    }
+    if (!eq || c->n == MOST_OPTIONS - 1) return lag_app_error(a, "--method %s: write NAME(option=value, ...)", a->method);
     *eq = '\0';
     add_option(c, trim(s), trim(eq + 1));
   }
@@ -139,106 +109,69 @@ static int parse_method(const Args *a, Choice *c)
 }
 
 /* Suggests the nearest name, or lists all methods. */
-int lag_app_unknown_method(const App *app, const char *name)
-{
+int lag_app_unknown_method(const App *app, const char *name) {
   const lag_method *m;
   lag_nearest near = {.name = name};
-
-  for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) {
-    lag_try_nearest(&near, m->name);
-  }
-  if (strncmp(name, "gsl-", 4) == 0 && strcmp(LAG_PRECISION, "double") != 0) {
+  for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) lag_try_nearest(&near, m->name);
+  if (strncmp(name, "gsl-", 4) == 0 && strcmp(LAG_PRECISION, "double") != 0)
     return lag_app_error(&app->args, "method %s computes with doubles, this run in " LAG_PRECISION " precision; dop853 and taylor do, too", name);
-  }
-  if (near.best) {
-    return lag_app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near.best);
-  }
+  if (near.best) return lag_app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near.best);
   lag_app_error(&app->args, "unknown method %s", name);
   lag_app_list_methods(app, NULL, stderr);
   return EXIT_USAGE;
 }
 
-static int choose_method(App *app)
-{
+static int choose_method(App *app) {
   const Args *a = &app->args;
   Choice c = {.name = app->scene->method};
   int rc = a->method ? parse_method(a, &c) : 0;
-
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   const lag_method *m = c.name ? lag_app_find_method(app, c.name) : NULL;
-  if (c.name && !m) {
-    return lag_app_unknown_method(app, c.name);
-  }
-  if (app->scene->method && strcmp(app->scene->method, c.name) == 0 && c.n == 0) {
-    for (int i = 0; i < app->scene->noptions && c.n < MOST_OPTIONS - 1; i++) {
-      c.opt[c.n++] = app->scene->options[i];
-    }
-  }
+  if (c.name && !m) return lag_app_unknown_method(app, c.name);
+  if (app->scene->method && strcmp(app->scene->method, c.name) == 0 && c.n == 0)
+    for (int i = 0; i < app->scene->noptions && c.n < MOST_OPTIONS - 1; i++) c.opt[c.n++] = app->scene->options[i];
   if (a->step) {
     lag_option *o = &c.opt[c.n++];
     *o = (lag_option){.name = "step"};
-    if (!lag_args_number(a, "--step", a->step, "--step 1e-3", &o->value)) {
-      return EXIT_USAGE;
-    }
+    if (!lag_args_number(a, "--step", a->step, "--step 1e-3", &o->value)) return EXIT_USAGE;
   }
-  if ((rc = check_steps(app, &c)) != 0) {
-    return rc;
-  }
-  if (!m) {
-    return lag_app_choose_automatically(app, c.opt, c.n);
-  }
+  if ((rc = check_steps(app, &c)) != 0) return rc;
+  if (!m) return lag_app_choose_automatically(app, c.opt, c.n);
   rc = lag_sim_set_method(app->sim, m, c.opt, c.n);
-  if (rc == 0 && a->tol && !(m->flags & LAG_METHOD_ADAPTIVE) && !a->quiet) {
+  if (rc == 0 && a->tol && !(m->flags & LAG_METHOD_ADAPTIVE) && !a->quiet)
     fprintf(stderr, "%s: note: %s has a fixed step; --tol does not change it\n", a->self, m->name);
-  }
   return rc ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : 0;
 }
 
-static int set_tolerance(App *app)
-{
+static int set_tolerance(App *app) {
   const Args *a = &app->args;
   double x;
-
-  if (!a->tol) {
-    return 0;
-  }
-  if (!lag_args_number(a, "--tol", a->tol, "--tol 1e-9", &x)) {
-    return EXIT_USAGE;
-  }
+  if (!a->tol) return 0;
+  if (!lag_args_number(a, "--tol", a->tol, "--tol 1e-9", &x)) return EXIT_USAGE;
   return lag_sim_set_tolerance(app->sim, x) ? lag_app_error(a, "--tol: %s", lag_sim_message(app->sim)) : 0;
 }
 
-int lag_app_has_word(const char *words, const char *word, size_t n)
-{
+int lag_app_has_word(const char *words, const char *word, size_t n) {
   for (const char *s = words; s && *s; s += strspn(s, " ")) {
     size_t length = strcspn(s, " ");
-    if (length == n && memcmp(s, word, n) == 0) {
-      return 1;
-    }
+    if (length == n && memcmp(s, word, n) == 0) return 1;
     s += length;
   }
   return 0;
 }
 
 /* Whether `name` is the parameter word[n], a member or component of it, or its last part (c of drag.c). */
-static int names_parameter(const char *name, const char *word, size_t n)
-{
+static int names_parameter(const char *name, const char *word, size_t n) {
   for (size_t k = 1; name[k - 1]; k++) {
     int whole = name[k] == '\0' || name[k] == '[' || name[k] == '.';
-    if (whole && k <= n && strncmp(name, word + n - k, k) == 0 && (k == n || word[n - k - 1] == '.')) {
-      return 1;
-    }
+    if (whole && k <= n && strncmp(name, word + n - k, k) == 0 && (k == n || word[n - k - 1] == '.')) return 1;
   }
   return 0;
 }
 
 /* EXIT_USAGE after a message if `name` is a parameter fixed by --fix; else 0. */
-static int refuse_fixed(const App *app, const char *name)
-{
+static int refuse_fixed(const App *app, const char *name) {
   const char *fixed = app->scene->model->fixed;
-
   for (const char *s = fixed ? fixed : ""; *s; s += strspn(s, " ")) {
     size_t n = strcspn(s, " ");
     if (names_parameter(name, s, n)) {
@@ -250,13 +183,11 @@ static int refuse_fixed(const App *app, const char *name)
   return 0;
 }
 
-int lag_app_set_value(App *app, const char *text)
-{
+int lag_app_set_value(App *app, const char *text) {
   const Args *a = &app->args;
   const char *eq = strchr(text, '='), *dot = memchr(text, '.', (size_t)(eq - text));
   char name[128], example[160];
   double x;
-
   snprintf(name, sizeof name, "%.*s", (int)(eq - text), text);
   if (dot && lag_app_has_word(app->program->effects, text, (size_t)(dot - text)) &&
       !lag_app_has_word(app->scene->model->effects, text, (size_t)(dot - text))) {
@@ -265,56 +196,37 @@ int lag_app_set_value(App *app, const char *text)
                      "it: lagc run %s %s",
                      name, (int)(dot - text), text, app->scene->name, app->program->source, app->scene->name);
   }
-  if (refuse_fixed(app, name)) {
-    return EXIT_USAGE;
-  }
+  if (refuse_fixed(app, name)) return EXIT_USAGE;
   snprintf(example, sizeof example, "%s=1.5", name);
-  if (!lag_args_number(a, name, eq + 1, example, &x)) {
-    return EXIT_USAGE;
-  }
+  if (!lag_args_number(a, name, eq + 1, example, &x)) return EXIT_USAGE;
   return lag_sim_set(app->sim, name, x) ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : 0;
 }
 
 /* Sets the method, options and tolerance that the state was saved with. */
-static int restore_method(App *app)
-{
+static int restore_method(App *app) {
   const Args *a = &app->args;
   const State *st = &app->state;
   const lag_method *m = lag_app_find_method(app, st->method);
   lag_option opt[MOST_OPTIONS];
-
-  if (!m || m->noptions != st->noptions) {
-    return lag_app_error(a, "%s was saved with method %s, which is not in this build", a->resume, st->method);
-  }
-  for (int i = 0; i < m->noptions; i++) {
-    opt[i] = (lag_option){.name = m->options[i].name, .value = st->options[i]};
-  }
-  if (lag_sim_set_method(app->sim, m, opt, m->noptions) || lag_sim_set_tolerance(app->sim, st->tol)) {
+  if (!m || m->noptions != st->noptions) return lag_app_error(a, "%s was saved with method %s, which is not in this build", a->resume, st->method);
+  for (int i = 0; i < m->noptions; i++) opt[i] = (lag_option){.name = m->options[i].name, .value = st->options[i]};
+  if (lag_sim_set_method(app->sim, m, opt, m->noptions) || lag_sim_set_tolerance(app->sim, st->tol))
     return lag_app_error(a, "%s: %s", a->resume, lag_sim_message(app->sim));
-  }
-  if (st->signature != lag_sim_signature(app->sim) || st->n != lag_sim_save_size(app->sim)) {
+  if (st->signature != lag_sim_signature(app->sim) || st->n != lag_sim_save_size(app->sim))
     return lag_app_error(a, "%s was saved by another model or build: names, sizes, effects or equations differ, or --precision", a->resume);
-  }
   return 0;
 }
 
 /* Refuses --method, --step and --tol of a resumed run that differ from those it was saved with. */
-static int same_method(App *app)
-{
+static int same_method(App *app) {
   const Args *a = &app->args;
   const State *st = &app->state;
   int rc = set_tolerance(app);
-
   rc = rc ? rc : a->method || a->step ? choose_method(app) : 0;
-  if (rc) {
-    return rc;
-  }
-  if (a->tol && lag_sim_tolerance(app->sim) != st->tol) {
+  if (rc) return rc;
+  if (a->tol && lag_sim_tolerance(app->sim) != st->tol)
     return lag_app_error(a, "%s was saved with --tol %g, and goes on with it; leave out --tol", a->resume, st->tol);
-  }
-  if (!a->method && !a->step) {
-    return 0;
-  }
+  if (!a->method && !a->step) return 0;
   int same = strcmp(lag_sim_method(app->sim)->name, st->method) == 0 && lag_sim_method(app->sim)->noptions == st->noptions &&
              memcmp(lag_sim_options(app->sim), st->options, (size_t)st->noptions * sizeof(double)) == 0;
   return same ? 0 : lag_app_error(a, "%s was saved with method %s, and goes on with it and its options; leave out %s", a->resume, st->method,
@@ -322,13 +234,11 @@ static int same_method(App *app)
 }
 
 /* Refuses name=value of a resumed run that differs: each is set in a new simulation and compared with the run. */
-static int same_values(App *app)
-{
+static int same_values(App *app) {
   const Args *a = &app->args;
   lag_sim *run = app->sim;
   size_t np = (size_t)app->scene->model->np, nu = (size_t)app->scene->model->nu, n = (size_t)run->pb.n;
   int rc = 0;
-
   for (int i = 0; i < a->nsets && rc == 0; i++) {
     lag_sim *fresh = app->sim = lag_sim_new(app->scene);
     if (!fresh) {
@@ -352,43 +262,27 @@ static int same_values(App *app)
 }
 
 /* Continues a saved run with its own settings; the command line may repeat them. */
-static int resume(App *app)
-{
+static int resume(App *app) {
   int rc = same_method(app);
-
   rc = rc ? rc : restore_method(app);
-  if (rc) {
-    return rc;
-  }
-  if (lag_sim_load(app->sim, app->state.data)) {
-    return lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
-  }
+  if (rc) return rc;
+  if (lag_sim_load(app->sim, app->state.data)) return lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
   return same_values(app);
 }
 
-static int read_state(App *app)
-{
+static int read_state(App *app) {
   const Args *a = &app->args;
   const char *why = NULL;
   int rc = a->resume ? lag_state_read(a->resume, &app->state, &why) : 0;
-
-  if (rc < 0) {
-    return lag_app_error(a, "cannot read %s: %s", a->resume, strerror(errno));
-  }
-  if (rc > 0) {
-    return lag_app_error(a, "%s %s", a->resume, why);
-  }
+  if (rc < 0) return lag_app_error(a, "cannot read %s: %s", a->resume, strerror(errno));
+  if (rc > 0) return lag_app_error(a, "%s %s", a->resume, why);
   app->resumed = a->resume != NULL;
   return 0;
 }
 
-static int new_simulation(App *app)
-{
+static int new_simulation(App *app) {
   int rc = choose_scene(app);
-
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   app->sim = lag_sim_new(app->scene);
   if (!app->sim) {
     return lag_app_error(&app->args, "cannot simulate scene %s: out of memory, or built for another version or number type",
@@ -397,41 +291,27 @@ static int new_simulation(App *app)
   return lag_app_read_until(app);
 }
 
-int lag_app_set_values(App *app)
-{
+int lag_app_set_values(App *app) {
   const Args *a = &app->args;
   int rc = 0;
-
-  for (int i = 0; i < a->nsets && rc == 0; i++) {
-    rc = lag_app_set_value(app, a->sets[i]);
-  }
+  for (int i = 0; i < a->nsets && rc == 0; i++) rc = lag_app_set_value(app, a->sets[i]);
   return rc;
 }
 
-int lag_app_choose_method(App *app)
-{
+int lag_app_choose_method(App *app) {
   int rc = set_tolerance(app);
-
   return rc ? rc : choose_method(app);
 }
 
-int lag_app_set_up_start(App *app)
-{
+int lag_app_set_up_start(App *app) {
   int rc = new_simulation(app);
-
   return rc ? rc : lag_app_set_values(app);
 }
 
-int lag_app_set_up(App *app)
-{
+int lag_app_set_up(App *app) {
   int rc = read_state(app);
-
-  if (rc || (rc = new_simulation(app)) != 0) {
-    return rc;
-  }
-  if (app->resumed) {
-    return resume(app);
-  }
+  if (rc || (rc = new_simulation(app)) != 0) return rc;
+  if (app->resumed) return resume(app);
   rc = lag_app_set_values(app);
   return rc ? rc : lag_app_choose_method(app);
 }

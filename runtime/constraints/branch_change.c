@@ -11,12 +11,10 @@
 
 /* |displacement/dt - mean of the velocities at the ends|, relative to these velocities; of order step^2 where the motion is smooth. 0 at rest, where
  * all of it is rounding. */
-static double detour(const lag_problem *pb, double dt, const double *y0, const double *y)
-{
+static double detour(const lag_problem *pb, double dt, const double *y0, const double *y) {
   const double rounding = 1e-12;
   const int nq = pb->nq;
   double most = 0;
-
   for (int i = 0; i < nq; i++) {
     double off = fabs((y[i] - y0[i]) / dt - (y[nq + i] + y0[nq + i]) / 2);
     if (off > most * fmax(fabs(y[nq + i]), fabs(y0[nq + i]))) { /* else velocities of the same unit cannot make it larger */
@@ -28,24 +26,20 @@ static double detour(const lag_problem *pb, double dt, const double *y0, const d
 }
 
 /* Whether constraint *k is a tenth as independent at y, t as the weakest one was at the start; of a start in a singular position, as any could be. */
-static int is_near_singular(lag_sim *s, double t, const double *y, int *k, double *apart)
-{
+static int is_near_singular(lag_sim *s, double t, const double *y, int *k, double *apart) {
   const double near_by = 0.1;
   int weakest;
   double at_start = s->run->beside > s->run->rank ? 1 : lag_independence(&s->pb, s->scene->t0, s->begin, &weakest);
-
   *apart = lag_independence(&s->pb, t, y, k);
   return *apart < near_by * at_start;
 }
 
-int lag_changes_branch(lag_sim *s, double t)
-{
+int lag_changes_branch(lag_sim *s, double t) {
   const double wrong = 0.05;
   lag_problem *pb = &s->pb;
   int k;
   double apart;
   char line[32];
-
   if (!pb->model->constraints || !(s->steps_equal || s->method->flags & LAG_METHOD_JACOBIAN) || detour(pb, t - s->run->t, s->now, s->y) <= wrong ||
       !(is_near_singular(s, t, s->y, &k, &apart) || is_near_singular(s, s->run->t, s->now, &k, &apart))) {
     return LAG_OK;

@@ -28,56 +28,44 @@ typedef struct Start {
 /* ---- the model at the state of a level */
 
 /* Writes the level's components into y; returns y. */
-static const double *put(const lag_level *w)
-{
+static const double *put(const lag_level *w) {
   Start *s = w->context;
   double *level = s->y + (w->positions ? 0 : s->nq);
-
   memcpy(level, w->x, (size_t)w->n * sizeof *level);
   return s->y;
 }
 
-static int residuals(const lag_level *w, double *residual)
-{
+static int residuals(const lag_level *w, double *residual) {
   Start *s = w->context;
-
   return lag_residuals(s->pb, s->sim->scene->t0, put(w), w->positions ? residual : s->other, w->positions ? s->other : residual);
 }
 
-static int jacobian(const lag_level *w, double *A)
-{
+static int jacobian(const lag_level *w, double *A) {
   Start *s = w->context;
   lag_problem *pb = s->pb;
   const double *y = put(w);
   int rc = lag_inputs(pb, s->sim->scene->t0);
-
   return rc ? rc : s->of->matrices(s->sim->scene->t0, y, y + s->nq, y + 2 * s->nq, pb->p, pb->u, A, s->M, pb->work);
 }
 
-static int terms(const lag_level *w, double *size)
-{
+static int terms(const lag_level *w, double *size) {
   Start *s = w->context;
-
   return lag_constraint_terms(s->pb, s->sim->scene->t0, put(w), w->positions, size);
 }
 
-static void scales(const lag_level *w, const double *x, double *reach)
-{
+static void scales(const lag_level *w, const double *x, double *reach) {
   const Start *s = w->context;
-
   for (int i = 0; i < w->n; i++) { /* of positions: lag_consistent_state asks at no other level */
     reach[i] = lag_typical_magnitude(s->pb, x, 1, i);
   }
 }
 
 /* Steps by lag_kkt, with the identity in place of a singular M. */
-static int direction(const lag_level *w, double pull, double *d)
-{
+static int direction(const lag_level *w, double pull, double *d) {
   Start *s = w->context;
   const lag_constraints *of = s->of;
   int nq = s->nq, nf = w->nfree, rc = jacobian(w, w->A);
   double *A = s->kkt + nf * nf, *x = A + w->rows * nf, *l = x + nf;
-
   for (int regular = 0, pass = 0; pass < 2 && rc == 0 && !regular; pass++) {
     memset(s->full, 0, (size_t)(nq * nq) * sizeof(double));
     for (int e = 0; e < of->nmass; e++) {
@@ -96,15 +84,10 @@ static int direction(const lag_level *w, double pull, double *d)
         s->kkt[a * nf + b] = m;
         x[a] += pull * m * (w->asked[w->free[b]] - w->x[w->free[b]]);
       }
-      for (int e = 0; e < of->njacobian; e++) {
-        if (of->jacobian[e].row < w->rows && of->jacobian[e].col == w->free[a]) {
-          A[of->jacobian[e].row * nf + a] = w->A[e];
-        }
-      }
+      for (int e = 0; e < of->njacobian; e++)
+        if (of->jacobian[e].row < w->rows && of->jacobian[e].col == w->free[a]) A[of->jacobian[e].row * nf + a] = w->A[e];
     }
-    for (int k = 0; k < w->rows; k++) {
-      l[k] = -w->residual[k];
-    }
+    for (int k = 0; k < w->rows; k++) l[k] = -w->residual[k];
     regular = lag_kkt(nf, w->rows, 0, s->kkt);
     rc = regular || pass == 0 ? 0 : LAG_ESINGULAR;
   }
@@ -113,56 +96,38 @@ static int direction(const lag_level *w, double pull, double *d)
 }
 
 /* In the metric of the last step's M, in s->full. */
-static double distance(const lag_level *w)
-{
+static double distance(const lag_level *w) {
   const Start *s = w->context;
   double sum = 0;
-
-  for (int i = 0; i < w->n; i++) {
-    for (int j = 0; j < w->n; j++) {
-      sum += (w->x[i] - w->asked[i]) * s->full[i * w->n + j] * (w->x[j] - w->asked[j]);
-    }
-  }
+  for (int i = 0; i < w->n; i++)
+    for (int j = 0; j < w->n; j++) sum += (w->x[i] - w->asked[i]) * s->full[i * w->n + j] * (w->x[j] - w->asked[j]);
   return sum;
 }
 
-static int stage(const lag_level *w, int i)
-{
+static int stage(const lag_level *w, int i) {
   const Start *s = w->context;
   const lag_scene *c = s->sim->scene;
   int at = w->positions ? i : s->nq + i;
-
-  if (!isnan(s->sim->start[at]) || (c->given && c->given[at] == 1)) {
-    return LAG_MOVES_LAST;
-  }
+  if (!isnan(s->sim->start[at]) || (c->given && c->given[at] == 1)) return LAG_MOVES_LAST;
   return c->given && c->given[at] ? LAG_MOVES_SECOND : LAG_MOVES_FIRST;
 }
 
-static int is_contact(const lag_level *w, int k)
-{
+static int is_contact(const lag_level *w, int k) {
   const Start *s = w->context;
   const lag_model *m = s->pb->model;
   int i = 0;
-
-  while (i < m->ncontacts && m->contacts[i].constraint != k) {
-    i++;
-  }
+  while (i < m->ncontacts && m->contacts[i].constraint != k) i++;
   return i < m->ncontacts;
 }
 
 /* ---- starts that are refused */
 
-static int refuse_start(Start *s, lag_start_kind kind, int k)
-{
-  if (k < 0) {
-    return lag_fail(s->sim, LAG_EINVAL, "the constraints have no value at the start");
-  }
+static int refuse_start(Start *s, lag_start_kind kind, int k) {
+  if (k < 0) return lag_fail(s->sim, LAG_EINVAL, "the constraints have no value at the start");
   const lag_constraint *c = &s->of->of[k];
   int positions = s->level.positions;
   char line[32];
-  if (kind == LAG_START_BROKEN || kind == LAG_START_NONE) {
-    lag_report_residual(s->pb, k, positions, fabs(s->level.residual[k]), "");
-  }
+  if (kind == LAG_START_BROKEN || kind == LAG_START_NONE) lag_report_residual(s->pb, k, positions, fabs(s->level.residual[k]), "");
   switch (kind) {
   case LAG_START_NO_VALUE:
     return lag_fail(s->sim, LAG_EINVAL, "the constraint %s%s has no value at the start: start where it has one", c->name, lag_line_text(c, line));
@@ -182,31 +147,23 @@ static int refuse_start(Start *s, lag_start_kind kind, int k)
 }
 
 /* Number of constraints stated on positions: without rates held at their start value. */
-static int count_stated(const lag_constraints *of)
-{
+static int count_stated(const lag_constraints *of) {
   int n = 0;
-
-  while (n < of->nholonomic && of->of[n].holonomic) {
-    n++;
-  }
+  while (n < of->nholonomic && of->of[n].holonomic) n++;
   return n;
 }
 
 /* Takes up positions, or velocities, of y. */
-static void begin_level(Start *s, int positions)
-{
+static void begin_level(Start *s, int positions) {
   lag_level *w = &s->level;
-
   w->positions = positions;
   w->rows = positions ? count_stated(s->of) : s->of->n;
   memcpy(w->x, s->y + (positions ? 0 : s->nq), (size_t)s->nq * sizeof *w->x);
 }
 
 /* Brings positions or velocities to the constraints. */
-static int project_level(Start *s, int positions)
-{
+static int project_level(Start *s, int positions) {
   int k;
-
   begin_level(s, positions);
   lag_start_kind kind = lag_consistent_state(&s->level, &k);
   put(&s->level);
@@ -215,33 +172,25 @@ static int project_level(Start *s, int positions)
 
 /* Rank of the constraints at y; marks[k] := 1 where constraint k depends on those before it; held[i] := squared projection of coordinate i on
  * their row space. The threshold is the coarse one of lag_kkt.h: at a singular place a start is found to sqrt(eps) only. */
-static int rank(Start *w, double *marks, double *held)
-{
+static int rank(Start *w, double *marks, double *held) {
   const double least = cbrt(DBL_EPSILON);
   int nq = w->nq, m = w->of->n, r = 0;
   double *Q = w->kkt, *unit = Q + m * nq;
-
-  if (lag_constraint_jacobian(w->pb, w->sim->scene->t0, w->y, Q, unit, NULL)) {
-    memset(Q, 0, (size_t)(m * nq + nq) * sizeof *Q);
-  }
+  if (lag_constraint_jacobian(w->pb, w->sim->scene->t0, w->y, Q, unit, NULL)) memset(Q, 0, (size_t)(m * nq + nq) * sizeof *Q);
   for (int k = 0; k < m; k++) {
     double left = lag_independent_part(nq, r, least, unit, Q, Q + k * nq);
     marks[k] = left >= 0 && !(left > least); /* an open contact is a row of zeros, and not marked */
     r += left > least;
   }
   memset(held, 0, (size_t)nq * sizeof *held);
-  for (int i = 0; i < r * nq; i++) {
-    held[i % nq] += Q[i] * Q[i];
-  }
+  for (int i = 0; i < r * nq; i++) held[i % nq] += Q[i] * Q[i];
   return r;
 }
 
 /* Rank at the start and, where constraints are redundant, at a displaced solution: a larger rank there is a singular start; sets loose. */
-static void look_beside(Start *w)
-{
+static void look_beside(Start *w) {
   lag_sim *s = w->sim;
   double *here = w->best, *held = s->loose, *held_beside = w->full, *marks = w->other; /* full is scratch of direction */
-
   s->run->rank = s->run->beside = rank(w, s->redundant, held);
   if (s->run->rank >= w->of->n - w->pb->model->ncontacts || w->nq < 2) {
     memset(s->loose, 0, (size_t)w->nq * sizeof(double));
@@ -254,48 +203,35 @@ static void look_beside(Start *w)
   int r = found ? rank(w, marks, held_beside) : 0, singular = r > s->run->rank;
   s->run->beside = singular ? r : s->run->rank;
   memset(s->loose, 0, (size_t)(singular ? 0 : w->nq) * sizeof *s->loose);
-  if (singular) {
-    lag_loose_directions(w->nq, held, held_beside, s->loose);
-  }
+  if (singular) lag_loose_directions(w->nq, held, held_beside, s->loose);
   memcpy(w->y, here, (size_t)w->pb->n * sizeof *here);
 }
 
-void lag_note_redundant(lag_sim *s)
-{
+void lag_note_redundant(lag_sim *s) {
   const lag_constraints *of = s->scene->model->constraints;
-
   s->pb.redundant = 0;
-  for (int k = 0; of && k < of->n; k++) {
-    s->pb.redundant |= s->redundant[k] > 0;
-  }
+  for (int k = 0; of && k < of->n; k++) s->pb.redundant |= s->redundant[k] > 0;
 }
 
 /* Refuses a start where accelerations do not exist because a coordinate has neither inertia nor a constraint that moves it. */
-static int check_inertia(Start *w)
-{
+static int check_inertia(Start *w) {
   lag_problem *pb = w->pb;
   int which;
-
-  if (lag_rhs(pb, w->sim->scene->t0, w->y, w->best) != LAG_ESINGULAR || !(lag_mass_condition(pb, w->sim->scene->t0, w->y, &which) > 1e12)) {
+  if (lag_rhs(pb, w->sim->scene->t0, w->y, w->best) != LAG_ESINGULAR || !(lag_mass_condition(pb, w->sim->scene->t0, w->y, &which) > 1e12))
     return LAG_OK;
-  }
   return lag_fail(w->sim, LAG_EINVAL, "the mass matrix is singular: %s has no inertia at the start, and no "
                   "constraint determines its motion; give it a mass, or a constraint that depends on it", pb->model->q[which].name);
 }
 
 /* Refuses constraints that are dependent at the start `now` and contradict each other soon after: x = 0 and x' = a t agree at t = 0 and nowhere
  * else. Without this check such a run would write its first row and end after 1e-13 s. lagc check (claims/mobility.c) tests at the same time. */
-static int check_compatibility(lag_sim *s)
-{
+static int check_compatibility(lag_sim *s) {
   lag_problem *pb = &s->pb;
   const lag_constraints *of = pb->model->constraints;
   const lag_scene *scene = s->scene;
   double after = (scene->has_span ? scene->t1 - scene->t0 : 1) / 1024;
   int dependent = s->run->rank < of->n - pb->model->ncontacts, singular = s->run->beside > s->run->rank;
-
-  if (!dependent || singular) {
-    return LAG_OK;
-  }
+  if (!dependent || singular) return LAG_OK;
   lag_copy(pb->n, s->now, s->yc);
   int rc = lag_project(pb, scene->t0 + after, s->yc, NULL);
   const char *why = pb->detail;
@@ -305,31 +241,24 @@ static int check_compatibility(lag_sim *s)
 }
 
 /* Undoes moves below the last digit of the largest component of the same unit. */
-static void keep_rounding_out(const Start *w)
-{
+static void keep_rounding_out(const Start *w) {
   for (int i = 0; i < 2 * w->nq; i++) {
     const double *level = i < w->nq ? w->y : w->y + w->nq;
-    if (fabs(w->y[i] - w->asked[i]) <= DBL_EPSILON / 4 * lag_unit_magnitude(w->pb, level, i % w->nq)) {
-      w->y[i] = w->asked[i];
-    }
+    if (fabs(w->y[i] - w->asked[i]) <= DBL_EPSILON / 4 * lag_unit_magnitude(w->pb, level, i % w->nq)) w->y[i] = w->asked[i];
   }
 }
 
 /* Allocates the work space, one block of doubles and one of integers. 0: no memory. */
-static int make_room(Start *s, double **block)
-{
+static int make_room(Start *s, double **block) {
   lag_level *w = &s->level;
   size_t n = (size_t)s->pb->n, nq = (size_t)s->nq, m = (size_t)s->of->n, entries = (size_t)s->of->njacobian;
   const size_t sizes[] = {n, n, n, m, (size_t)s->of->nmass, nq * nq, 2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m,
                           nq, nq, nq, nq, nq, m, m, m, m, m, entries};
   double **const parts[] = {&s->y, &s->asked, &s->best, &s->other, &s->M, &s->full, &s->kkt,
                             &w->x, &w->asked, &w->best, &w->from, &w->d, &w->residual, &w->size, &w->terms_here, &w->slope, &w->has_terms, &w->A};
-
   *block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->index = malloc((nq + 2 * entries + 1) * sizeof *s->index);
-  if (!*block || !s->index) {
-    return 0;
-  }
+  if (!*block || !s->index) return 0;
   int *row = s->index + nq, *col = row + entries;
   for (size_t e = 0; e < entries; e++) {
     row[e] = s->of->jacobian[e].row;
@@ -341,17 +270,13 @@ static int make_room(Start *s, double **block)
   return 1;
 }
 
-int lag_consistent_start(lag_sim *s)
-{
+int lag_consistent_start(lag_sim *s) {
   Start w = {.sim = s, .pb = &s->pb, .of = s->scene->model->constraints, .nq = s->pb.nq};
   size_t bytes = (size_t)s->pb.n * sizeof(double);
   double *block;
   int rc = LAG_ENOMEM;
-
   memcpy(s->asked, s->now, bytes);
-  if (!w.of) {
-    return LAG_OK;
-  }
+  if (!w.of) return LAG_OK;
   w.level = (lag_level){.context = &w, .n = w.nq, .entries = w.of->njacobian, .exactly = s->scene->exactly != 0, .rounding = DBL_EPSILON,
                         .residuals = residuals, .jacobian = jacobian, .terms = terms, .scales = scales, .direction = direction,
                         .distance = distance, .stage = stage, .is_contact = is_contact};

@@ -6,36 +6,26 @@
 #include "core/core.h"
 #include "lag_kkt.h"
 
-size_t lag_rank_scratch_size(const lag_model *m)
-{
+size_t lag_rank_scratch_size(const lag_model *m) {
   const lag_constraints *of = m->constraints;
   size_t nq = (size_t)m->nq, n = of ? (size_t)of->n : 0;
-
   return of ? nq * nq + (size_t)(of->njacobian + of->nmass) + (nq + n) * (nq + 2) + (n * nq + nq + n) : 0;
 }
 
-double *lag_independence_scratch(const lag_problem *pb)
-{
+double *lag_independence_scratch(const lag_problem *pb) {
   size_t nq = (size_t)pb->nq, n = (size_t)pb->model->constraints->n;
-
   return pb->ranks + lag_rank_scratch_size(pb->model) - (n * nq + nq + n);
 }
 
-int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass)
-{
+int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *A, double *unit, double *mass) {
   const lag_constraints *of = pb->model->constraints;
   size_t n = (size_t)of->n, nq = (size_t)pb->nq;
   double *M = pb->ranks, *entries = M + nq * nq, *masses = entries + of->njacobian, *scale = masses + of->nmass, *top = scale + n + nq;
   int rc = lag_inputs(pb, t);
-
   memset(M, 0, nq * nq * sizeof *M);
   rc = rc ? rc : of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, entries, masses, pb->work);
-  for (size_t i = 0; i < n * nq; i++) {
-    A[i] = 0;
-  }
-  for (int e = 0; e < of->njacobian && rc == 0; e++) {
-    A[(size_t)of->jacobian[e].row * nq + (size_t)of->jacobian[e].col] = entries[e];
-  }
+  for (size_t i = 0; i < n * nq; i++) A[i] = 0;
+  for (int e = 0; e < of->njacobian && rc == 0; e++) A[(size_t)of->jacobian[e].row * nq + (size_t)of->jacobian[e].col] = entries[e];
   for (int e = 0; e < of->nmass && rc == 0; e++) {
     size_t i = (size_t)of->mass[e].row, j = (size_t)of->mass[e].col;
     M[i * nq + j] = M[j * nq + i] = masses[e];
@@ -43,38 +33,26 @@ int lag_constraint_jacobian(lag_problem *pb, double t, const double *y, double *
   if (rc == 0) {
     lag_scales(pb->nq, of->n, M, A, scale, top, top + n + nq);
     memcpy(unit, scale + n, nq * sizeof *unit);
-    if (mass) {
-      memcpy(mass, M, nq * nq * sizeof *M);
-    }
+    if (mass) memcpy(mass, M, nq * nq * sizeof *M);
   }
   return rc;
 }
 
 /* Removes from x its projection on the rows of Q, twice, for the rounding of the first pass; returns |x|. */
-static double remainder_of(int n, int r, const double *Q, double *x)
-{
+static double remainder_of(int n, int r, const double *Q, double *x) {
   double s = 0;
-
   for (int k = 0; k < 2 * r; k++) {
     const double *q = Q + k % r * n;
     double along = 0;
-    for (int i = 0; i < n; i++) {
-      along += q[i] * x[i];
-    }
-    for (int i = 0; i < n; i++) {
-      x[i] -= along * q[i];
-    }
+    for (int i = 0; i < n; i++) along += q[i] * x[i];
+    for (int i = 0; i < n; i++) x[i] -= along * q[i];
   }
-  for (int i = 0; i < n; i++) {
-    s += x[i] * x[i];
-  }
+  for (int i = 0; i < n; i++) s += x[i] * x[i];
   return sqrt(s);
 }
 
-double lag_independent_part(int n, int r, double least, const double *unit, double *Q, double *row)
-{
+double lag_independent_part(int n, int r, double least, const double *unit, double *Q, double *row) {
   double most = 0;
-
   for (int i = 0; i < n; i++) {
     row[i] *= unit[i];
     most = fmax(most, fabs(row[i]));
@@ -83,35 +61,25 @@ double lag_independent_part(int n, int r, double least, const double *unit, doub
     row[i] /= most;
   }
   double length = remainder_of(n, 0, Q, row);
-  for (int i = 0; i < n && length > 0; i++) {
-    row[i] /= length;
-  }
+  for (int i = 0; i < n && length > 0; i++) row[i] /= length;
   double left = length > 0 ? remainder_of(n, r, Q, row) : 0;
-  for (int i = 0; i < n && left > least; i++) {
-    Q[r * n + i] = row[i] / left;
-  }
+  for (int i = 0; i < n && left > least; i++) Q[r * n + i] = row[i] / left;
   return length > 0 ? left : -1;
 }
 
 /* Ratio of the first-order change of constraint k, when each coordinate moves by its typical magnitude, to the size of its terms; at most 1. */
-static double slope(const lag_problem *pb, const double *y, const double *row, double size)
-{
+static double slope(const lag_problem *pb, const double *y, const double *row, double size) {
   double s = 0;
-
-  for (int i = 0; i < pb->nq; i++) {
-    s += row[i] != 0.0 ? fabs(row[i]) * lag_typical_magnitude(pb, y, 1, i) : 0;
-  }
+  for (int i = 0; i < pb->nq; i++) s += row[i] != 0.0 ? fabs(row[i]) * lag_typical_magnitude(pb, y, 1, i) : 0;
   return size > 0 ? fmin(s / size, 1) : 1;
 }
 
-double lag_independence(lag_problem *pb, double t, const double *y, int *weakest)
-{
+double lag_independence(lag_problem *pb, double t, const double *y, int *weakest) {
   const lag_constraints *of = pb->model->constraints;
   const double follows = pb->redundant ? 1e-9 : 0; /* below: always redundant */
   int nq = pb->nq, n = of->n, r = 0;
   double least = 1, *A = lag_independence_scratch(pb), *unit = A + n * nq, *size = unit + nq;
   int rc = lag_constraint_jacobian(pb, t, y, A, unit, NULL);
-
   *weakest = -1;
   rc = rc || (of->nholonomic > 0 && lag_constraint_terms(pb, t, y, 1, size));
   for (int k = 0; k < n && rc == 0; k++) {

@@ -17,53 +17,36 @@
 #include "numeric/complementarity.h"
 #include "numeric/workspace.h"
 
-static const lag_contact *contact(const ContactSet *w, int a)
-{
-  return &w->sim->scene->model->contacts[w->of[a]];
-}
+static const lag_contact *contact(const ContactSet *w, int a) { return &w->sim->scene->model->contacts[w->of[a]]; }
 
-static const char *name(const ContactSet *w, int a)
-{
-  return w->sim->scene->model->constraints->of[contact(w, a)->constraint].name;
-}
+static const char *name(const ContactSet *w, int a) { return w->sim->scene->model->constraints->of[contact(w, a)->constraint].name; }
 
 /* Closes all contacts, or contact `which` alone, or none (which = -1). */
-static void close_only(const ContactSet *w, int all, int which)
-{
+static void close_only(const ContactSet *w, int all, int which) {
   const lag_model *m = w->sim->scene->model;
-
-  for (int i = 0; i < m->ncontacts; i++) {
-    w->sim->hold[m->contacts[i].input] = all || i == which ? 1 : NAN;
-  }
+  for (int i = 0; i < m->ncontacts; i++) w->sim->hold[m->contacts[i].input] = all || i == which ? 1 : NAN;
 }
 
-void lag_contacts_close(const ContactSet *w, const unsigned char *closed)
-{
+void lag_contacts_close(const ContactSet *w, const unsigned char *closed) {
   close_only(w, 0, -1);
-  for (int a = 0; a < w->n; a++) {
-    w->sim->hold[contact(w, a)->input] = closed[a] ? 1 : NAN;
-  }
+  for (int a = 0; a < w->n; a++) w->sim->hold[contact(w, a)->input] = closed[a] ? 1 : NAN;
 }
 
-static int no_values(ContactSet *w, int i)
-{
+static int no_values(ContactSet *w, int i) {
   const lag_model *m = w->sim->scene->model;
-
   return lag_fail(w->sim, LAG_EMODEL, "the contact %s has no finite values at t = %s s", m->constraints->of[m->contacts[i].constraint].name,
                   LAG_TEXT(w->sim->run->t));
 }
 
 /* ---- gaps and rates */
 
-static int make_room(ContactSet *w)
-{
+static int make_room(ContactSet *w) {
   const lag_model *m = w->sim->scene->model;
   const lag_constraints *of = m->constraints;
   size_t p = (size_t)m->ncontacts, n = (size_t)of->n, nq = (size_t)m->nq;
   double **const parts[] = {&w->gap, &w->rate, &w->gap_size, &w->rate_size, &w->g, &w->c, &w->r, &w->d, &w->force, &w->test, &w->events,
                             &w->A, &w->mass};
   const size_t sizes[] = {p, p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)m->nev, (size_t)of->njacobian, (size_t)of->nmass};
-
   w->block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
@@ -74,8 +57,7 @@ static int make_room(ContactSet *w)
   return w->block && w->of && w->at && w->part ? LAG_OK : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
 }
 
-void lag_contacts_free(ContactSet *w)
-{
+void lag_contacts_free(ContactSet *w) {
   free(w->block);
   free(w->of);
   free(w->at);
@@ -84,107 +66,74 @@ void lag_contacts_free(ContactSet *w)
 }
 
 /* rate[i] := rate of each gap at the state y; leaves all contacts closed. */
-static int find_rates(ContactSet *w, const double *y, double *rate)
-{
+static int find_rates(ContactSet *w, const double *y, double *rate) {
   const lag_model *m = w->sim->scene->model;
-
   close_only(w, 1, -1);
   int rc = lag_residuals(&w->sim->pb, w->sim->run->t, y, w->c, w->r);
-  for (int i = 0; i < m->ncontacts; i++) {
-    rate[i] = rc ? NAN : w->r[m->contacts[i].constraint];
-  }
+  for (int i = 0; i < m->ncontacts; i++) rate[i] = rc ? NAN : w->r[m->contacts[i].constraint];
   return rc;
 }
 
-int lag_contacts_term_sizes(lag_sim *s, const double *y, int holonomic, double *size, double *scratch)
-{
+int lag_contacts_term_sizes(lag_sim *s, const double *y, int holonomic, double *size, double *scratch) {
   const lag_constraints *of = s->scene->model->constraints;
   int rc = lag_constraint_terms(&s->pb, s->run->t, y, holonomic, size);
-
   rc = rc ? rc : lag_constraint_terms(&s->pb, s->run->t, s->begin, holonomic, scratch);
-  for (int k = 0; k < (holonomic ? of->nholonomic : of->n) && rc == 0; k++) {
-    size[k] = fmax(size[k], isfinite(scratch[k]) ? scratch[k] : 0);
-  }
+  for (int k = 0; k < (holonomic ? of->nholonomic : of->n) && rc == 0; k++) size[k] = fmax(size[k], isfinite(scratch[k]) ? scratch[k] : 0);
   return rc;
 }
 
-int lag_contacts_evaluate(lag_sim *s, double *y, ContactSet *w)
-{
+int lag_contacts_evaluate(lag_sim *s, double *y, ContactSet *w) {
   const lag_model *m = s->scene->model;
   lag_problem *pb = &s->pb;
   double t = s->run->t;
-
   *w = (ContactSet){.sim = s, .y = y};
   int rc = make_room(w), nq = pb->nq;
-  if (rc) {
-    return rc;
-  }
-  for (int i = 0; i < m->ncontacts; i++) {
-    w->was[i] = s->hold[m->contacts[i].input] > 0.5;
-  }
+  if (rc) return rc;
+  for (int i = 0; i < m->ncontacts; i++) w->was[i] = s->hold[m->contacts[i].input] > 0.5;
   rc = find_rates(w, y, w->rate);
   for (int i = 0; i < m->ncontacts; i++) {
     w->gap[i] = w->c[m->contacts[i].constraint];
-    if (rc || !isfinite(w->gap[i]) || !isfinite(w->rate[i])) {
-      return no_values(w, i);
-    }
+    if (rc || !isfinite(w->gap[i]) || !isfinite(w->rate[i])) return no_values(w, i);
   }
   rc = lag_contacts_term_sizes(s, y, 1, w->g, w->c);
-  for (int i = 0; i < m->ncontacts; i++) {
-    w->gap_size[i] = w->g[m->contacts[i].constraint];
-  }
+  for (int i = 0; i < m->ncontacts; i++) w->gap_size[i] = w->g[m->contacts[i].constraint];
   rc = rc ? rc : lag_contacts_term_sizes(s, y, 0, w->g, w->c);
-  for (int i = 0; i < m->ncontacts; i++) {
-    w->rate_size[i] = w->g[m->contacts[i].constraint];
-  }
+  for (int i = 0; i < m->ncontacts; i++) w->rate_size[i] = w->g[m->contacts[i].constraint];
   rc = rc ? rc : lag_inputs(pb, t);
   rc = rc ? rc : m->constraints->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->mass, pb->work);
   return rc ? no_values(w, 0) : LAG_OK;
 }
 
 /* Change of the rate of contact i by a change d of velocities. */
-static double change_of_rate(const ContactSet *w, int i, const double *d)
-{
+static double change_of_rate(const ContactSet *w, int i, const double *d) {
   const lag_constraints *of = w->sim->scene->model->constraints;
   double s = 0;
-
-  for (int e = 0; e < of->njacobian; e++) {
+  for (int e = 0; e < of->njacobian; e++)
     s += of->jacobian[e].row == w->sim->scene->model->contacts[i].constraint ? w->A[e] * d[of->jacobian[e].col] : 0;
-  }
   return s;
 }
 
 /* w->d := the least change of velocities that changes the rate of contact i by 1, the others open. Returns the change of the rate per unit
  * impulse; 0 if no impulse changes it; NaN: no finite values. */
-static double response(ContactSet *w, int i)
-{
+static double response(ContactSet *w, int i) {
   lag_problem *pb = &w->sim->pb;
   int nq = pb->nq, k = w->sim->scene->model->contacts[i].constraint;
   double s = 0;
-
   close_only(w, 0, i);
   memset(w->g, 0, (size_t)pb->model->constraints->n * sizeof *w->g);
   w->g[k] = 1;
-  if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) {
-    return NAN;
-  }
-  for (int j = 0; j < nq; j++) {
-    s += w->d[j] * w->force[j];
-  }
+  if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) return NAN;
+  for (int j = 0; j < nq; j++) s += w->d[j] * w->force[j];
   return fabs(change_of_rate(w, i, w->d) - 1) > 0.5 ? 0 : 1 / s;
 }
 
-double lag_contacts_restitution(ContactSet *w, int i)
-{
+double lag_contacts_restitution(ContactSet *w, int i) {
   const lag_sim *s = w->sim;
   const lag_model *m = s->scene->model;
   size_t bytes = (size_t)s->pb.n * sizeof(double);
   int nq = m->nq, stop = 0;
   double to = response(w, i), speed = w->rate_size[i] > 0 ? w->rate_size[i] : 1;
-
-  if (!(to > 0)) {
-    return NAN;
-  }
+  if (!(to > 0)) return NAN;
   memcpy(s->yc, w->y, bytes);
   for (int j = 0; j < nq; j++) { /* test velocity: the gap closes with a typical speed */
     s->yc[nq + j] -= (speed + w->rate[i]) * w->d[j];
@@ -194,32 +143,22 @@ double lag_contacts_restitution(ContactSet *w, int i)
              s->work)) {
     return NAN;
   }
-  for (int j = 0; j < nq; j++) {
-    w->d[j] = w->test[nq + j] - s->yc[nq + j];
-  }
+  for (int j = 0; j < nq; j++) w->d[j] = w->test[nq + j] - s->yc[nq + j];
   return change_of_rate(w, i, w->d) / speed - 1;
 }
 
-int lag_contacts_responses(ContactSet *w)
-{
+int lag_contacts_responses(ContactSet *w) {
   size_t n = (size_t)w->n;
   double *x = w->W = calloc(2 * n * n + 3 * n + 1, sizeof *x);
-
-  if (!x) {
-    return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
-  }
+  if (!x) return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
   w->M = x + n * n;
   w->pull = w->M + n * n;
   w->push = w->pull + n;
   w->scale = w->push + n;
   for (int a = 0; a < w->n; a++) {
     double to = response(w, w->of[a]);
-    if (!isfinite(to)) {
-      return no_values(w, w->of[a]);
-    }
-    for (int b = 0; b < w->n; b++) {
-      w->W[b * w->n + a] = to * change_of_rate(w, w->of[b], w->d);
-    }
+    if (!isfinite(to)) return no_values(w, w->of[a]);
+    for (int b = 0; b < w->n; b++) w->W[b * w->n + a] = to * change_of_rate(w, w->of[b], w->d);
     w->W[a * w->n + a] = to;
   }
   return LAG_OK;
@@ -228,17 +167,14 @@ int lag_contacts_responses(ContactSet *w)
 /* ---- complementarity */
 
 /* Reports that no impulse, or force, keeps contact a from closing. */
-static int fail_incompatible(ContactSet *w, int a)
-{
+static int fail_incompatible(ContactSet *w, int a) {
   int against = -1;
   double most = 0;
-
-  for (int b = 0; b < w->n && a >= 0; b++) {
+  for (int b = 0; b < w->n && a >= 0; b++)
     if (w->part[b] && w->W[a * w->n + b] < most) {
       most = w->W[a * w->n + b];
       against = b;
     }
-  }
   if (against >= 0) {
     return lag_fail(w->sim, LAG_EMODEL, "at t = %.9g s the contacts %s and %s contradict each other: no force keeps both gaps from closing",
                     w->sim->run->t, name(w, a), name(w, against));
@@ -247,23 +183,16 @@ static int fail_incompatible(ContactSet *w, int a)
 }
 
 /* Solves the complementarity problem of the contacts that take part: in[n]; push[n] := impulses where in[n]. */
-static int complement(ContactSet *w, const double *q)
-{
+static int complement(ContactSet *w, const double *q) {
   int m = 0, n = w->n, row = -1;
-
-  for (int a = 0; a < n; a++) {
+  for (int a = 0; a < n; a++)
     if (w->part[a]) {
       w->at[m] = a;
       w->push[m++] = q[a];
     }
-  }
-  for (int k = 0; k < m * m; k++) {
-    w->M[k] = w->W[w->at[k / m] * n + w->at[k % m]];
-  }
+  for (int k = 0; k < m * m; k++) w->M[k] = w->W[w->at[k / m] * n + w->at[k % m]];
   int found = lag_solve_lcp(m, w->M, w->push, w->scale, w->in, &row);
-  for (int k = n - 1; k >= m; k--) {
-    w->in[k] = w->follows[k] = 0;
-  }
+  for (int k = n - 1; k >= m; k--) w->in[k] = w->follows[k] = 0;
   for (int k = m - 1; k >= 0; k--) { /* back to their places, which are not lower */
     double push = w->push[k];
     unsigned char in = w->in[k], follows = !in && w->M[k * m + k] <= lag_lcp_zero_pivot;
@@ -275,57 +204,42 @@ static int complement(ContactSet *w, const double *q)
   return found ? LAG_OK : fail_incompatible(w, row < 0 ? -1 : w->at[row]);
 }
 
-int lag_contacts_impact(ContactSet *w, const double *e, const unsigned char *struck)
-{
+int lag_contacts_impact(ContactSet *w, const double *e, const unsigned char *struck) {
   lag_sim *s = w->sim;
   int nq = s->pb.nq;
   double dir = s->run->dir;
-
   for (int a = 0; a < w->n; a++) {
     w->part[a] = 1;
     w->pull[a] = dir * w->rate[w->of[a]] * (struck[a] ? 1 + e[a] : 1);
   }
   int rc = complement(w, w->pull);
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   lag_contacts_close(w, w->in);
   memset(w->g, 0, (size_t)s->pb.model->constraints->n * sizeof *w->g);
-  for (int a = 0; a < w->n; a++) {
-    w->g[contact(w, a)->constraint] = w->in[a] ? -dir * w->pull[a] : 0;
-  }
+  for (int a = 0; a < w->n; a++) w->g[contact(w, a)->constraint] = w->in[a] ? -dir * w->pull[a] : 0;
   rc = lag_least_change(&s->pb, s->run->t, w->y, 0, w->g, w->d, w->force);
-  for (int i = 0; i < nq; i++) {
-    w->y[nq + i] += w->d[i];
-  }
+  for (int i = 0; i < nq; i++) w->y[nq + i] += w->d[i];
   return rc || lag_not_finite(nq, w->d) >= 0 || find_rates(w, w->y, w->rate) ? no_values(w, w->of[0]) : LAG_OK;
 }
 
 /* ---- forces */
 
 /* pull[n] := acceleration of each open gap: -(force if this contact alone is closed) * (its response). */
-static int find_pulls(ContactSet *w)
-{
+static int find_pulls(ContactSet *w) {
   for (int a = 0; a < w->n; a++) {
     close_only(w, 0, w->of[a]);
     int rc = lag_events_eval(w->sim, w->sim->run->t, w->y, w->events);
-    if (rc) {
-      return rc;
-    }
+    if (rc) return rc;
     w->pull[a] = -w->W[a * w->n + a] * w->events[contact(w, a)->release];
   }
   return LAG_OK;
 }
 
 /* Whether these closed contacts all press. */
-static int none_pulls(ContactSet *w, const unsigned char *closed)
-{
+static int none_pulls(ContactSet *w, const unsigned char *closed) {
   double least = 0, most = 0;
-
   lag_contacts_close(w, closed);
-  if (lag_events_eval(w->sim, w->sim->run->t, w->y, w->events)) {
-    return 0;
-  }
+  if (lag_events_eval(w->sim, w->sim->run->t, w->y, w->events)) return 0;
   for (int a = 0; a < w->n; a++) {
     double force = closed[a] ? w->events[contact(w, a)->release] : 0;
     least = fmin(least, force);
@@ -334,22 +248,16 @@ static int none_pulls(ContactSet *w, const unsigned char *closed)
   return most > 0 && least >= 0;
 }
 
-int lag_contacts_at_rest(ContactSet *w, double *acceleration)
-{
+int lag_contacts_at_rest(ContactSet *w, double *acceleration) {
   int n = w->n, rc = find_pulls(w), more = 0;
-
   rc = rc ? rc : complement(w, w->pull);
   for (int a = 0; a < n && rc == 0; a++) {
     acceleration[a] = w->pull[a];
-    for (int b = 0; b < n; b++) {
-      acceleration[a] += w->in[b] ? w->W[a * n + b] * w->push[b] : 0;
-    }
+    for (int b = 0; b < n; b++) acceleration[a] += w->in[b] ? w->W[a * n + b] * w->push[b] : 0;
     more |= w->follows[a];
     w->follows[a] |= w->in[a];
   }
-  if (more && none_pulls(w, w->follows)) {
-    memcpy(w->in, w->follows, (size_t)n);
-  }
+  if (more && none_pulls(w, w->follows)) memcpy(w->in, w->follows, (size_t)n);
   close_only(w, 0, -1);
   return rc;
 }

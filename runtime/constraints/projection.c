@@ -20,19 +20,15 @@ typedef struct ConstraintScratch {
   double *M;                      /* [nmass] */
 } ConstraintScratch;
 
-size_t lag_constraint_scratch_size(const lag_model *m)
-{
+size_t lag_constraint_scratch_size(const lag_model *m) {
   const lag_constraints *of = m->constraints;
-
   return of ? (size_t)(6 * of->n + of->njacobian + of->nmass + 3 * m->nq + 2 * (2 * m->nq + m->nz)) : 0;
 }
 
-static ConstraintScratch layout(const lag_problem *pb)
-{
+static ConstraintScratch layout(const lag_problem *pb) {
   ConstraintScratch w = {.of = pb->model->constraints};
   double *x = pb->held, **const parts[] = {&w.c, &w.r, &w.before, &w.g, &w.terms[0], &w.terms[1], &w.A, &w.M, &w.d, &w.force, &w.step, &w.other};
   const int n = w.of->n, sizes[] = {n, n, n, n, n, n, w.of->njacobian, w.of->nmass, pb->nq, pb->nq, pb->nq, 0};
-
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     *parts[i] = x;
     x += sizes[i];
@@ -40,104 +36,72 @@ static ConstraintScratch layout(const lag_problem *pb)
   return w;
 }
 
-int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r)
-{
+int lag_residuals(lag_problem *pb, double t, const double *y, double *c, double *r) {
   int rc = lag_inputs(pb, t), nq = pb->nq;
-
   rc = rc ? rc : pb->model->constraints->residuals(t, y, y + nq, y + 2 * nq, pb->p, pb->u, c, r, pb->work);
-  for (int k = 0; pb->kept && k < pb->model->constraints->nholonomic; k++) {
-    c[k] = isnan(pb->kept[k]) ? 0 : c[k] - pb->kept[k];
-  }
+  for (int k = 0; pb->kept && k < pb->model->constraints->nholonomic; k++) c[k] = isnan(pb->kept[k]) ? 0 : c[k] - pb->kept[k];
   return rc;
 }
 
-void lag_release_integrals(lag_sim *s)
-{
+void lag_release_integrals(lag_sim *s) {
   const lag_constraints *of = s->scene->model->constraints;
-
-  for (int k = 0; of && k < of->n; k++) {
-    s->kept[k] = of->of[k].holonomic ? 0 : NAN;
-  }
+  for (int k = 0; of && k < of->n; k++) s->kept[k] = of->of[k].holonomic ? 0 : NAN;
 }
 
-int lag_hold_integrals(lag_sim *s, double t, const double *y)
-{
+int lag_hold_integrals(lag_sim *s, double t, const double *y) {
   const lag_constraints *of = s->scene->model->constraints;
-
-  if (!of) {
-    return LAG_OK;
-  }
+  if (!of) return LAG_OK;
   ConstraintScratch w = layout(&s->pb);
   memset(s->kept, 0, (size_t)of->n * sizeof *s->kept);
   int rc = lag_residuals(&s->pb, t, y, w.c, w.r);
-  for (int k = 0; k < of->nholonomic && rc == 0; k++) {
-    s->kept[k] = of->of[k].holonomic ? 0 : w.c[k];
-  }
+  for (int k = 0; k < of->nholonomic && rc == 0; k++) s->kept[k] = of->of[k].holonomic ? 0 : w.c[k];
   return rc;
 }
 
-int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d, double *force)
-{
+int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, const double *g, double *d, double *force) {
   const lag_constraints *of = pb->model->constraints;
   int rc = lag_inputs(pb, t), nq = pb->nq;
-
   return rc ? rc : (holonomic ? of->position : of->velocity)(t, y, y + nq, y + 2 * nq, pb->p, pb->u, g, d, force, pb->work);
 }
 
 /* ---- sizes of residuals */
 
 /* size[n] := first-order change of each constraint when every coordinate (velocity) moves from 0 to its value. */
-static int sizes(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, double *size)
-{
+static int sizes(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, double *size) {
   const lag_constraints *of = w->of;
   int nq = pb->nq, n = holonomic ? of->nholonomic : of->n, at = holonomic ? 0 : nq, rc = lag_inputs(pb, t);
-
   rc = rc ? rc : of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work);
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   memset(size, 0, (size_t)n * sizeof *size);
   for (int e = 0; e < of->njacobian; e++) {
     int row = of->jacobian[e].row;
-    if (row < n) {
-      size[row] += fabs(w->A[e] * y[at + of->jacobian[e].col]);
-    }
+    if (row < n) size[row] += fabs(w->A[e] * y[at + of->jacobian[e].col]);
   }
   return 0;
 }
 
-double lag_unit_magnitude(const lag_problem *pb, const double *x, int i)
-{
+double lag_unit_magnitude(const lag_problem *pb, const double *x, int i) {
   const lag_var *q = pb->model->q;
   double most = 0;
-
-  for (int j = 0; j < pb->nq; j++) {
-    most = fabs(x[j]) > most && (q[i].unit == q[j].unit || strcmp(q[i].unit, q[j].unit) == 0) ? fabs(x[j]) : most;
-  }
+  for (int j = 0; j < pb->nq; j++) most = fabs(x[j]) > most && (q[i].unit == q[j].unit || strcmp(q[i].unit, q[j].unit) == 0) ? fabs(x[j]) : most;
   return most;
 }
 
-double lag_typical_magnitude(const lag_problem *pb, const double *y, int holonomic, int i)
-{
+double lag_typical_magnitude(const lag_problem *pb, const double *y, int holonomic, int i) {
   const lag_var *q = &pb->model->q[i];
   const double unknown = 1e-6; /* of the unit: a run from 0 has no length, and what rounding moved off 0 is none */
   int from_zero = pb->begin && !(lag_unit_magnitude(pb, pb->begin, i) > 0);
   double time = holonomic ? 1 : pb->span > 0 ? pb->span : 1, most = lag_unit_magnitude(pb, holonomic ? y : y + pb->nq, i);
-
-  if (most > 0 && from_zero) {
-    most = fmax(most, unknown / time);
-  }
+  if (most > 0 && from_zero) most = fmax(most, unknown / time);
   most = fmax(most, lag_unit_magnitude(pb, y, i) / time);
   return lag_component_scale(most, q->periodic, q->unit);
 }
 
 /* Raises size[n] to the residuals of a state displaced by typical magnitudes: there may be no terms of first order, as of a folded linkage or a
  * body at rest. */
-static int displaced_sizes(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, double *size)
-{
+static int displaced_sizes(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, double *size) {
   int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq;
   double *c = w->c, *r = w->r;
-
   double reach = 0;
   const lag_var *q = pb->model->q;
   memcpy(w->other, y, (size_t)pb->n * sizeof *y);
@@ -146,84 +110,59 @@ static int displaced_sizes(lag_problem *pb, const ConstraintScratch *w, double t
     w->other[at + i] += reach * lag_uneven(i);
   }
   int rc = lag_residuals(pb, t, w->other, c, r);
-  for (int k = 0; k < n && rc == 0; k++) {
-    size[k] = fmax(size[k], fabs(holonomic ? c[k] : r[k]));
-  }
+  for (int k = 0; k < n && rc == 0; k++) size[k] = fmax(size[k], fabs(holonomic ? c[k] : r[k]));
   return rc;
 }
 
-int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonomic, double *size)
-{
+int lag_constraint_terms(lag_problem *pb, double t, const double *y, int holonomic, double *size) {
   ConstraintScratch w = layout(pb);
   int rc = sizes(pb, &w, t, y, holonomic, size);
-
   return rc ? rc : displaced_sizes(pb, &w, t, y, holonomic, size);
 }
 
-int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonomic, double *worst)
-{
+int lag_worst_constraint(lag_problem *pb, double t, const double *y, int holonomic, double *worst) {
   const lag_constraints *of = pb->model->constraints;
   ConstraintScratch w = layout(pb);
   double most;
-
-  if (lag_constraint_terms(pb, t, y, holonomic, w.g) || lag_residuals(pb, t, y, w.c, w.r)) {
-    return -1;
-  }
+  if (lag_constraint_terms(pb, t, y, holonomic, w.g) || lag_residuals(pb, t, y, w.c, w.r)) return -1;
   return lag_worst_residual(holonomic ? of->nholonomic : of->n, holonomic ? w.c : w.r, w.g, DBL_EPSILON, worst ? worst : &most);
 }
 
-const char *lag_line_text(const lag_constraint *c, char text[32])
-{
+const char *lag_line_text(const lag_constraint *c, char text[32]) {
   text[0] = '\0';
-  if (c->line > 0) {
-    snprintf(text, 32, " (line %d)", c->line);
-  }
+  if (c->line > 0) snprintf(text, 32, " (line %d)", c->line);
   return text;
 }
 
-void lag_report_residual(lag_problem *pb, int k, int holonomic, double residual, const char *words)
-{
+void lag_report_residual(lag_problem *pb, int k, int holonomic, double residual, const char *words) {
   const lag_constraint *c = &pb->model->constraints->of[k];
   const char *level = c->holonomic == holonomic ? "" : holonomic ? "*s" : c->unit[0] ? "/s" : "1/s";
   size_t length = strlen(c->unit);
   char line[32], unit[64];
-
   if (level[0] == '*' && length > 2 && strcmp(c->unit + length - 2, "/s") == 0) { /* m/s*s is m */
     length -= 2;
     level = "";
   }
   snprintf(unit, sizeof unit, "%s%.*s%s", c->unit[0] || level[0] ? " " : "", (int)(length ? length : 1), c->unit[0] || level[0] != '*' ? c->unit : "1", level);
-  if (isnan(residual)) {
-    snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, lag_line_text(c, line), words);
-  } else {
-    snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s", c->name, lag_line_text(c, line), residual, unit, words);
-  }
+  if (isnan(residual)) snprintf(pb->words, sizeof pb->words, "constraint %s%s is not met%s", c->name, lag_line_text(c, line), words);
+  else snprintf(pb->words, sizeof pb->words, "constraint %s%s is off by %.3g%s%s", c->name, lag_line_text(c, line), residual, unit, words);
   pb->detail = pb->words;
 }
 
 /* ---- Newton's iteration */
 
-static double ratio(double x, double y)
-{
-  return x == 0.0 ? 0 : fabs(x / y);
-}
+static double ratio(double x, double y) { return x == 0.0 ? 0 : fabs(x / y); }
 
 /* Whether the rest of a correction d, its part `left`, is rounding of x. */
-static int is_rounding(int n, const double *x, const double *d, double left)
-{
-  for (int i = 0; i < n; i++) {
-    if (!(left * fabs(d[i]) <= 2 * DBL_EPSILON * fabs(x[i]))) {
-      return 0;
-    }
-  }
+static int is_rounding(int n, const double *x, const double *d, double left) {
+  for (int i = 0; i < n; i++)
+    if (!(left * fabs(d[i]) <= 2 * DBL_EPSILON * fabs(x[i]))) return 0;
   return 1;
 }
 
 /* The largest, and *least the smallest, ratio of a residual to the one before the correction. */
-static double parts_left(int n, const double *now, const double *before, double *least)
-{
+static double parts_left(int n, const double *now, const double *before, double *least) {
   double most = 0;
-
   *least = HUGE_VAL;
   for (int k = 0; k < n; k++) {
     double part = ratio(now[k], before[k]);
@@ -234,8 +173,7 @@ static double parts_left(int n, const double *now, const double *before, double 
 }
 
 /* x += d, with the rounding error of that sum in lost, or without (NULL). */
-static void add(int n, double *x, double *lost, const double *d)
-{
+static void add(int n, double *x, double *lost, const double *d) {
   for (int i = 0; i < n; i++) {
     double before = x[i], add = d[i] + (lost ? lost[i] : 0), b;
     x[i] = before + add;
@@ -247,10 +185,8 @@ static void add(int n, double *x, double *lost, const double *d)
 }
 
 /* Reports the worst of constraints that cannot be met. */
-static int report_unmet(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic)
-{
+static int report_unmet(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic) {
   int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
-
   if (k >= 0) {
     lag_report_residual(pb, k, holonomic, fabs(holonomic ? w->c[k] : w->r[k]),
                        holonomic ? ", and no small change of the coordinates satisfies it"
@@ -261,47 +197,34 @@ static int report_unmet(lag_problem *pb, const ConstraintScratch *w, double t, c
 }
 
 /* g := -A x */
-static void negative_product(const ConstraintScratch *w, int n, const double *x, double *g)
-{
+static void negative_product(const ConstraintScratch *w, int n, const double *x, double *g) {
   memset(g, 0, (size_t)n * sizeof *g);
   for (int e = 0; e < w->of->njacobian; e++) {
     const lag_entry *at = &w->of->jacobian[e];
-    if (at->row < n) {
-      g[at->row] -= w->A[e] * x[at->col];
-    }
+    if (at->row < n) g[at->row] -= w->A[e] * x[at->col];
   }
 }
 
 /* w->before[k] := deviation of constraint k from a straight line along w->d, the change that would remove the residual -w->g: its rounding. */
-static int nonlinearity(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic)
-{
+static int nonlinearity(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic) {
   static const double parts[] = {0.25, 0.5, 0.75, 1, 1.5, 2};
   int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq, rc = 0;
-
   memset(w->before, 0, (size_t)n * sizeof *w->before);
   for (size_t j = 0; j < sizeof parts / sizeof *parts && rc == 0; j++) {
     memcpy(w->other, y, (size_t)pb->n * sizeof *y);
-    for (int i = 0; i < nq; i++) {
-      w->other[at + i] += parts[j] * w->d[i];
-    }
+    for (int i = 0; i < nq; i++) w->other[at + i] += parts[j] * w->d[i];
     rc = lag_residuals(pb, t, w->other, w->c, w->r);
-    for (int k = 0; k < n && rc == 0; k++) {
-      w->before[k] = fmax(w->before[k], fabs((holonomic ? w->c : w->r)[k] + (1 - parts[j]) * w->g[k]));
-    }
+    for (int k = 0; k < n && rc == 0; k++) w->before[k] = fmax(w->before[k], fabs((holonomic ? w->c : w->r)[k] + (1 - parts[j]) * w->g[k]));
   }
   return rc;
 }
 
 /* Whether the residual is rounding of some constraints, and removing the rest takes a smaller change than that. Needed where a state at 0 shows
  * no size: 0.6^2 + 0.8^2 - 1 is rounding of terms that no coordinate shows. */
-static int is_noise(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, const double *residual)
-{
+static int is_noise(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, const double *residual) {
   int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, noise = 0;
   double *rest = w->other;
-
-  for (int k = 0; k < n; k++) {
-    w->g[k] = -residual[k];
-  }
+  for (int k = 0; k < n; k++) w->g[k] = -residual[k];
   if (lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force) || lag_not_finite(nq, w->d) >= 0 ||
       w->of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work)) {
     return 0;
@@ -312,22 +235,17 @@ static int is_noise(lag_problem *pb, const ConstraintScratch *w, double t, const
     const lag_entry *at_e = &w->of->jacobian[e];
     w->c[at_e->row] += at_e->row < n ? fabs(w->A[e] * w->d[at_e->col]) : 0;
   }
-  for (int k = 0; k < n; k++) {
+  for (int k = 0; k < n; k++)
     if (!(fabs(w->before[k] + w->g[k]) <= 1e-3 * fabs(w->g[k]) + 1e-9 * w->c[k])) {
       return 0; /* no change removes it: it contradicts others */
     }
-  }
-  if (nonlinearity(pb, w, t, y, holonomic)) {
-    return 0;
-  }
+  if (nonlinearity(pb, w, t, y, holonomic)) return 0;
   for (int k = 0; k < n; k++) {
     int is = fabs(w->g[k]) <= 4 * w->before[k];
     w->g[k] = is ? 0 : w->g[k];
     noise |= is;
   }
-  if (!noise || lag_least_change(pb, t, y, holonomic, w->g, rest, w->force)) {
-    return 0;
-  }
+  if (!noise || lag_least_change(pb, t, y, holonomic, w->g, rest, w->force)) return 0;
   for (int i = 0; i < nq; i++) {
     noise &= fabs(rest[i]) <= 2 * lag_unit_magnitude(pb, w->d, i); /* they may be equal up to rounding */
   }
@@ -335,29 +253,21 @@ static int is_noise(lag_problem *pb, const ConstraintScratch *w, double t, const
 }
 
 /* Whether the coordinates of some unit were all 0 at the start, so that nothing tells their scale. */
-static int began_at_0(const lag_problem *pb)
-{
+static int began_at_0(const lag_problem *pb) {
   int zero = 0;
-
-  for (int i = 0; i < pb->nq && pb->begin; i++) {
-    zero |= !(lag_unit_magnitude(pb, pb->begin, i) > 0);
-  }
+  for (int i = 0; i < pb->nq && pb->begin; i++) zero |= !(lag_unit_magnitude(pb, pb->begin, i) > 0);
   return zero;
 }
 
-int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual)
-{
+int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual) {
   const double rounding = 0x1p10 * DBL_EPSILON;
   ConstraintScratch w = layout(pb);
   double *terms = w.terms[holonomic], worst = HUGE_VAL;
   int n = holonomic ? w.of->nholonomic : w.of->n, met = 1;
-
   for (int k = 0; k < n; k++) {
     met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* terms from the last time suffice where the answer is clear */
   }
-  if (met) {
-    return 1;
-  }
+  if (met) return 1;
   lag_worst_constraint(pb, t, y, holonomic, &worst);
   met = worst <= 0x1p10;
   if (!met && began_at_0(pb)) {
@@ -370,32 +280,22 @@ int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holono
 }
 
 /* Whether the residuals of y, w->c and w->r, are rounding in the last digits of their terms. */
-static int is_clean(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic)
-{
+static int is_clean(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic) {
   const double *residual = holonomic ? w->c : w->r;
   int n = holonomic ? w->of->nholonomic : w->of->n, clean = 1;
-
-  if (lag_constraint_terms(pb, t, y, holonomic, w->g) || lag_residuals(pb, t, y, w->c, w->r)) {
-    return 0;
-  }
-  for (int k = 0; k < n; k++) {
-    clean &= fabs(residual[k]) <= 4 * DBL_EPSILON * w->g[k];
-  }
+  if (lag_constraint_terms(pb, t, y, holonomic, w->g) || lag_residuals(pb, t, y, w->c, w->r)) return 0;
+  for (int k = 0; k < n; k++) clean &= fabs(residual[k]) <= 4 * DBL_EPSILON * w->g[k];
   return clean;
 }
 
 /* Newton's iteration of positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of y, before and after. */
-static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double *y, double *lost, int holonomic)
-{
+static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double *y, double *lost, int holonomic) {
   int n = holonomic ? w->of->nholonomic : w->of->n, nq = pb->nq, strikes = 0;
   double *x = holonomic ? y : y + nq, *residual = holonomic ? w->c : w->r, least;
   double *lost_x = lost ? lost + (x - y) : NULL;
-
   for (int turn = 0; turn < MOST_TURNS; turn++) {
     int busy = 0;
-    for (int k = 0; k < n; k++) {
-      busy |= !(residual[k] == 0.0);
-    }
+    for (int k = 0; k < n; k++) busy |= !(residual[k] == 0.0);
     if (!busy || (turn > holonomic && is_clean(pb, w, t, y, holonomic))) {
       return LAG_OK; /* is_clean: coordinates that are 0 up to rounding never stop moving by more than their last digits */
     }
@@ -404,32 +304,21 @@ static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double 
       w->g[k] = -residual[k];
     }
     int rc = lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force);
-    if (rc || lag_not_finite(nq, w->d) >= 0) {
-      return rc < 0 ? rc : report_unmet(pb, w, t, y, holonomic);
-    }
+    if (rc || lag_not_finite(nq, w->d) >= 0) return rc < 0 ? rc : report_unmet(pb, w, t, y, holonomic);
     add(nq, x, lost_x, w->d);
-    if ((rc = lag_residuals(pb, t, y, w->c, w->r)) != 0) {
-      return rc;
-    }
+    if ((rc = lag_residuals(pb, t, y, w->c, w->r)) != 0) return rc;
     double most = parts_left(n, residual, w->before, &least);
     int lost_in_rounding = is_rounding(nq, x, w->d, most);
-    if (lost_in_rounding && most < 0.5) {
-      return LAG_OK;
-    }
+    if (lost_in_rounding && most < 0.5) return LAG_OK;
     if (lost_in_rounding || !(least < 0.5)) { /* no residual shrinks any more, or one that the correction cannot reach does not */
-      if (lag_constraint_is_met(pb, t, y, holonomic, residual)) {
-        return LAG_OK;
-      }
-      if (++strikes == MOST_STRIKES) {
-        return report_unmet(pb, w, t, y, holonomic);
-      }
+      if (lag_constraint_is_met(pb, t, y, holonomic, residual)) return LAG_OK;
+      if (++strikes == MOST_STRIKES) return report_unmet(pb, w, t, y, holonomic);
     }
   }
   return lag_constraint_is_met(pb, t, y, holonomic, residual) ? LAG_OK : report_unmet(pb, w, t, y, holonomic);
 }
 
-int lag_project(lag_problem *pb, double t, double *y, double *lost)
-{
+int lag_project(lag_problem *pb, double t, double *y, double *lost) {
   if (!pb->model->constraints || lag_not_finite(pb->n, y) >= 0) { /* the method reports states that are not finite */
     return LAG_OK;
   }
@@ -443,8 +332,7 @@ int lag_project(lag_problem *pb, double t, double *y, double *lost)
   return rc < LAG_ESINGULAR ? LAG_EMODEL : rc;
 }
 
-int lag_dense_state(lag_sim *s, double t, double *y)
-{
+int lag_dense_state(lag_sim *s, double t, double *y) {
   s->method->dense(s->method_work, &s->pb, t, y);
   s->pb.detail = NULL;
   int rc = lag_project(&s->pb, t, y, NULL);
@@ -452,51 +340,36 @@ int lag_dense_state(lag_sim *s, double t, double *y)
 }
 
 /* Largest distance of coordinate i from 0, now or at the start; at least 1e-10 of its unit. */
-static double extent(const lag_problem *pb, const double *y0, const double *y, int i)
-{
+static double extent(const lag_problem *pb, const double *y0, const double *y, int i) {
   double begin = pb->begin ? lag_unit_magnitude(pb, pb->begin, i) : 0;
-
   return fmax(fmax(lag_typical_magnitude(pb, y0, 1, i), lag_typical_magnitude(pb, y, 1, i)), fmax(begin, 1e-10));
 }
 
 /* Whether one constraint on positions contains coordinates i and j. */
-static int are_tied(const lag_constraints *of, int i, int j)
-{
-  for (int a = 0; a < of->njacobian; a++) {
-    for (int b = 0; of->jacobian[a].col == i && of->jacobian[a].row < of->nholonomic && b < of->njacobian; b++) {
-      if (of->jacobian[b].row == of->jacobian[a].row && of->jacobian[b].col == j) {
-        return 1;
-      }
-    }
-  }
+static int are_tied(const lag_constraints *of, int i, int j) {
+  for (int a = 0; a < of->njacobian; a++)
+    for (int b = 0; of->jacobian[a].col == i && of->jacobian[a].row < of->nholonomic && b < of->njacobian; b++)
+      if (of->jacobian[b].row == of->jacobian[a].row && of->jacobian[b].col == j) return 1;
   return 0;
 }
 
-int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led)
-{
+int lag_projection_leap(const lag_problem *pb, const double *y0, const double *y, const double *moved, const double *led) {
   const lag_constraints *of = pb->model->constraints;
   const double small = 1e-6;
-
   for (int i = 0; i < pb->nq; i++) {
     double most = fabs(led[i]);
-    if (!(fabs(moved[i]) > 2 * most + small * fabs(y[i]))) {
-      continue;
-    }
+    if (!(fabs(moved[i]) > 2 * most + small * fabs(y[i]))) continue;
     for (int j = 0; j < pb->nq; j++) {
       int alike = strcmp(pb->model->q[i].unit, pb->model->q[j].unit) == 0 && are_tied(of, i, j);
       most = alike ? fmax(most, fabs(led[j])) : most;
     }
-    if (fabs(moved[i]) > 2 * most + small * extent(pb, y0, y, i)) {
-      return i;
-    }
+    if (fabs(moved[i]) > 2 * most + small * extent(pb, y0, y, i)) return i;
   }
   return -1;
 }
 
-int lag_report_leap(lag_problem *pb, double t, const double *y, int i, double moved)
-{
+int lag_report_leap(lag_problem *pb, double t, const double *y, int i, double moved) {
   int k = lag_worst_constraint(pb, t, y, 1, NULL);
-
   if (k >= 0) {
     char words[128];
     const lag_var *q = &pb->model->q[i];
@@ -508,11 +381,8 @@ int lag_report_leap(lag_problem *pb, double t, const double *y, int i, double mo
   return LAG_ERETRY;
 }
 
-int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost)
-{
-  if (!pb->model->constraints) {
-    return LAG_OK;
-  }
+int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost) {
+  if (!pb->model->constraints) return LAG_OK;
   ConstraintScratch w = layout(pb);
   size_t bytes = (size_t)pb->nq * sizeof(double);
 
@@ -523,33 +393,24 @@ int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, dou
     w.force[i] = w.step[i] - y0[i];
   }
   int i = rc ? -1 : lag_projection_leap(pb, y0, y, w.d, w.force);
-  if (i < 0) {
-    return rc;
-  }
+  if (i < 0) return rc;
   double moved = w.d[i];
   memcpy(y, w.step, bytes);
   return lag_report_leap(pb, t, y, i, moved);
 }
 
-int lag_project_tangent(lag_problem *pb, double t, const double *y, double *e)
-{
-  if (!pb->model->constraints) {
-    return LAG_OK;
-  }
+int lag_project_tangent(lag_problem *pb, double t, const double *y, double *e) {
+  if (!pb->model->constraints) return LAG_OK;
   ConstraintScratch w = layout(pb);
   int nq = pb->nq, rc = lag_inputs(pb, t);
 
   rc = rc ? rc : w.of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w.A, w.M, pb->work);
   for (int level = 0; level < 2 && rc == 0; level++) {
     double *x = e + level * nq;
-    if (!level && !w.of->nholonomic) {
-      continue;
-    }
+    if (!level && !w.of->nholonomic) continue;
     negative_product(&w, level ? w.of->n : w.of->nholonomic, x, w.g);
     rc = lag_least_change(pb, t, y, !level, w.g, w.d, w.force);
-    for (int i = 0; i < nq && rc == 0; i++) {
-      x[i] += w.d[i];
-    }
+    for (int i = 0; i < nq && rc == 0; i++) x[i] += w.d[i];
   }
   return rc;
 }

@@ -20,103 +20,64 @@
 #include "core/rhs.h"
 #include "numeric/quadrature.h"
 
-int lag_sim_ncharges(const lag_sim *s)
-{
-  if (!s) {
-    return 0;
-  }
+int lag_sim_ncharges(const lag_sim *s) {
+  if (!s) return 0;
   const lag_model *m = s->scene->model;
 
   return !m->energy ? 0 : m->charges ? m->charges->n : 1;
 }
 
-unsigned lag_charge_flags(const lag_sim *s, int k)
-{
+unsigned lag_charge_flags(const lag_sim *s, int k) {
   const lag_model *m = s->scene->model;
   unsigned flags = m->charges ? m->charges->of[k].flags : m->flags & LAG_CONSERVES_ENERGY ? LAG_CONSERVED | LAG_BALANCED : 0;
-
-  if (!(flags & LAG_CONSERVED) && s->run->balanced == 0.0) {
-    return flags & LAG_JUMPS;
-  }
-  for (int i = 0; i < m->nu && (flags & LAG_BY_FORMULAS); i++) {
-    if (!isnan(s->hold[i]) || s->signal[i].fn) {
-      flags = 0;
-    }
-  }
+  if (!(flags & LAG_CONSERVED) && s->run->balanced == 0.0) return flags & LAG_JUMPS;
+  for (int i = 0; i < m->nu && (flags & LAG_BY_FORMULAS); i++)
+    if (!isnan(s->hold[i]) || s->signal[i].fn) flags = 0;
   return flags;
 }
 
-static void no_values(lag_sim *s, int from)
-{
-  for (int i = 2 * from; i < 2 * lag_sim_ncharges(s); i++) {
-    s->charge_now[i] = NAN;
-  }
-}
+static void no_values(lag_sim *s, int from) { for (int i = 2 * from; i < 2 * lag_sim_ncharges(s); i++) s->charge_now[i] = NAN; }
 
 /* charge_now[2 k], charge_now[2 k + 1] := value and scale of charge k; NaN where there is none. */
-static void values_at(lag_sim *s, double t, const double *y)
-{
+static void values_at(lag_sim *s, double t, const double *y) {
   const lag_model *m = s->scene->model;
   int n = lag_sim_ncharges(s), nq = m->nq;
-
-  if (n == 0) {
-    return;
-  }
+  if (n == 0) return;
   if (lag_inputs_inline(&s->pb, t)) {
     no_values(s, 0);
     return;
   }
-  if (m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now, s->work)) {
-    s->charge_now[0] = s->charge_now[1] = NAN;
-  }
-  if (n > 1 && m->charges->values(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now + 2, s->work)) {
-    no_values(s, 1);
-  }
+  if (m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now, s->work)) s->charge_now[0] = s->charge_now[1] = NAN;
+  if (n > 1 && m->charges->values(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_now + 2, s->work)) no_values(s, 1);
 }
 
-int lag_sim_balance(lag_sim *s)
-{
-  if (!s) {
-    return LAG_EINVAL;
-  }
-  if (s->run->begun != 0.0) {
-    return lag_fail(s, LAG_EINVAL, "the run has begun: ask for balances before the first step");
-  }
+int lag_sim_balance(lag_sim *s) {
+  if (!s) return LAG_EINVAL;
+  if (s->run->begun != 0.0) return lag_fail(s, LAG_EINVAL, "the run has begun: ask for balances before the first step");
   s->balances = 1;
   return LAG_OK;
 }
 
-int lag_method_balances(const lag_method *m)
-{
-  if (!m) {
-    return 0;
-  }
+int lag_method_balances(const lag_method *m) {
+  if (!m) return 0;
   return m->order_most > 0 || m->order <= m->dense_order + 2;
 }
 
 /* Whether the work of forces on charges can be integrated with this model and method. */
-static int can_balance(const lag_sim *s)
-{
+static int can_balance(const lag_sim *s) {
   const lag_charges *c = s->scene->model->charges;
-
   return c && c->powers && lag_method_balances(s->method);
 }
 
 /* Whether a monitor of the scene is on a charge: its balance is then integrated. */
-static int watches_charges(const lag_scene *c)
-{
-  for (int i = 0; i < c->nmonitors; i++) {
-    if (c->monitors[i].output < 0) {
-      return 1;
-    }
-  }
+static int watches_charges(const lag_scene *c) {
+  for (int i = 0; i < c->nmonitors; i++)
+    if (c->monitors[i].output < 0) return 1;
   return 0;
 }
 
-void lag_charges_method(lag_sim *s, const lag_method *method)
-{
+void lag_charges_method(lag_sim *s, const lag_method *method) {
   int order = method->order_most > method->order ? method->order_most : method->order, between = method->dense_order + 1;
-
   int ends = method->order_most == 0 && order > between;
   order = ends || order < between ? order : between;
   s->nodes = (order + 1) / 2 > LAG_NODES ? LAG_NODES : order < 2 ? 1 : (order + 1) / 2;
@@ -124,29 +85,23 @@ void lag_charges_method(lag_sim *s, const lag_method *method)
 }
 
 /* gain[n] := int P dt over [a, b], within the last step; NaN where P has no value. */
-static void work_over(lag_sim *s, double a, double b, double *gain)
-{
+static void work_over(lag_sim *s, double a, double b, double *gain) {
   const lag_model *m = s->scene->model;
   int n = m->charges->n, nq = m->nq;
   double *y = s->yc;
-
   memset(gain, 0, (size_t)n * sizeof *gain);
   for (int i = 0; i < s->nodes && a != b; i++) {
     double t = a + s->node[i] * (b - a);
     s->method->dense(s->method_work, &s->pb, t, y);
     int rc = lag_inputs(&s->pb, t);
     rc = rc ? rc : m->charges->powers(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_power, s->work);
-    for (int k = 0; k < n; k++) {
-      gain[k] += rc ? NAN : (b - a) * s->weight[i] * s->charge_power[k];
-    }
+    for (int k = 0; k < n; k++) gain[k] += rc ? NAN : (b - a) * s->weight[i] * s->charge_power[k];
   }
 }
 
 /* Adds the work from the last look to t, within the step that the method still knows. */
-static void add_work(lag_sim *s, double t)
-{
+static void add_work(lag_sim *s, double t) {
   double *gain = s->charge_gain;
-
   if (s->run->balanced != 0.0) {
     work_over(s, s->run->watched, t, gain);
     for (int k = 0; k < lag_sim_ncharges(s); k++) { /* compensated sum: W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723 */
@@ -161,8 +116,7 @@ static void add_work(lag_sim *s, double t)
 }
 
 /* Merges neighbouring bins in pairs. */
-static void merge_bins(Charge *c)
-{
+static void merge_bins(Charge *c) {
   for (int i = 0; i < LAG_BINS / 2; i++) {
     c->t[i] = (c->t[2 * i] + c->t[2 * i + 1]) / 2;
     c->d[i] = (c->d[2 * i] + c->d[2 * i + 1]) / 2;
@@ -173,8 +127,7 @@ static void merge_bins(Charge *c)
 }
 
 /* Median of the bins' sizes, weighted by time, as there are many steps in front of a pole; without zeros, as at rest; of few bins the largest. */
-static double median_size(const Charge *c)
-{
+static double median_size(const Charge *c) {
   enum { FEW = 8 };
   double size[LAG_BINS], time[LAG_BINS], whole = 0, half = 0;
   int n = 0, bins = (int)c->bins, i = 0;
@@ -192,34 +145,25 @@ static double median_size(const Charge *c)
       time[k] = lasts;
     }
   }
-  for (i = 0; i < n && half + time[i] < whole / 2; i++) {
-    half += time[i];
-  }
+  for (i = 0; i < n && half + time[i] < whole / 2; i++) half += time[i];
   return n == 0 ? 0 : size[n < FEW || i == n ? n - 1 : i];
 }
 
-static void add_to_trend(Charge *c, double t, double d, double size)
-{
+static void add_to_trend(Charge *c, double t, double d, double size) {
   const int open = LAG_BINS;
-
   c->t[open] += t;
   c->d[open] += d;
   c->m[open] += size;
-  if (++c->in_bin < c->width) {
-    return;
-  }
+  if (++c->in_bin < c->width) return;
   c->t[(int)c->bins] = c->t[open] / c->width;
   c->d[(int)c->bins] = c->d[open] / c->width;
   c->m[(int)c->bins] = c->m[open] / c->width;
   c->t[open] = c->d[open] = c->m[open] = c->in_bin = 0;
-  if (++c->bins >= LAG_BINS) {
-    merge_bins(c);
-  }
+  if (++c->bins >= LAG_BINS) merge_bins(c);
   c->scale = median_size(c);
 }
 
-void lag_charges_begin(lag_sim *s, double t, const double *y)
-{
+void lag_charges_begin(lag_sim *s, double t, const double *y) {
   values_at(s, t, y);
   s->run->watched = t;
   s->run->balanced = can_balance(s) && (s->balances || watches_charges(s->scene));
@@ -229,10 +173,8 @@ void lag_charges_begin(lag_sim *s, double t, const double *y)
   }
 }
 
-int lag_energy_undefined(lag_sim *s, double t, const double *y)
-{
+int lag_energy_undefined(lag_sim *s, double t, const double *y) {
   int n = lag_sim_ncharges(s);
-
   values_at(s, t, y);
   return n > 0 && isfinite(s->charges[0].begin) && !isfinite(s->charge_now[0]);
 }
@@ -241,40 +183,30 @@ int lag_energy_undefined(lag_sim *s, double t, const double *y)
  * done so far and of `size`, its present one (in free motion |p.v| + |L| is three times the energy). The second condition spares rough
  * tolerances, which lose as much as there is without a pole. Not judged: few bins, since a motion from rest has no size yet; errors below 1e-12
  * of the unit, rounding of unknown terms; constraints that move with time, whose peaks may lie between steps. */
-static int is_lost(const lag_model *m, const Charge *c, double d, double size)
-{
+static int is_lost(const lag_model *m, const Charge *c, double d, double size) {
   const double part = 0.25, times = 4, least = 1e-12, few = 8, of = fmax(fabs(c->begin), c->scale);
-
   int driven = m->constraints && !(m->flags & LAG_AUTONOMOUS);
 
   return c->balanced != 0.0 && !driven && c->bins >= few && fabs(d) > fmax(times * of, least) && fabs(d) > part * fmax(size, c->through);
 }
 
-int lag_energy_retained(lag_sim *s)
-{
+int lag_energy_retained(lag_sim *s) {
   const double half = 0.5, least = 1e-12;
   const lag_model *m = s->scene->model;
   lag_charge_stats c;
-
-  if (lag_sim_ncharges(s) == 0 || s->run->begun == 0.0 || (m->constraints && !(m->flags & LAG_AUTONOMOUS))) {
-    return LAG_OK;
-  }
+  if (lag_sim_ncharges(s) == 0 || s->run->begun == 0.0 || (m->constraints && !(m->flags & LAG_AUTONOMOUS))) return LAG_OK;
   lag_sim_charge(s, 0, &c);
   double large = fmax(fabs(c.now), s->charges[0].through); /* where forces do more work than the energy that there was */
-  if (!(c.flags & (LAG_CONSERVED | LAG_BALANCED)) || !(c.drift >= half) || !(c.absolute > fmax(least, half * large))) {
-    return LAG_OK;
-  }
+  if (!(c.flags & (LAG_CONSERVED | LAG_BALANCED)) || !(c.drift >= half) || !(c.absolute > fmax(least, half * large))) return LAG_OK;
   return lag_fail(s, LAG_EDRIFT, "at t = %.9g s the energy is off by %.2g times its size in this run, or was: the numbers mean nothing; take %s", s->run->t, c.drift,
                   s->steps_equal ? "smaller steps" : "a smaller tolerance");
 }
 
-static int say_lost(lag_sim *s, double t, double before, double d)
-{
+static int say_lost(lag_sim *s, double t, double before, double d) {
   const lag_model *m = s->scene->model;
   const Charge *c = &s->charges[0];
   const char *unit = m->charges ? m->charges->of[0].unit : "", *space = unit[0] ? " " : "";
   double h = lag_equal_step(s);
-
   return lag_fail(s, LAG_EDRIFT, "at t = %.9g s the energy is off by %.3g%s%s, %.2g times its size in this run: the numbers mean nothing from here on. The step from "
                   "t = %.9g s, of %.3g s, caused %.3g%s%s of that error: it crosses a pole of a force, or is too long; %s", t, d, space, unit,
                   fabs(d) / fmax(fabs(c->begin), c->scale), s->run->step_t0, s->run->step_t1 - s->run->step_t0, d - before, space, unit,
@@ -283,30 +215,24 @@ static int say_lost(lag_sim *s, double t, double before, double d)
 
 /* At the largest energy change in a step, notes the condition of the mass matrix. The answer costs n^2 energies and n^3 products, so it is
  * computed only where the change has doubled. */
-static void note_jolt(lag_sim *s, double t, const double *y, double change)
-{
+static void note_jolt(lag_sim *s, double t, const double *y, double change) {
   enum { MANY = 64 };
   const lag_model *m = s->scene->model;
   const Charge *c = &s->charges[0];
   Run *r = s->run;
   int which;
 
-  if (m->nq == 0 || m->nq > MANY || m->flags & (LAG_FIRST_ORDER | LAG_CONSTANT_MASS) || !(change > fmax(2 * r->energy_jump, 64 * DBL_EPSILON * fmax(fabs(c->begin), c->scale)))) {
+  if (m->nq == 0 || m->nq > MANY || m->flags & (LAG_FIRST_ORDER | LAG_CONSTANT_MASS) || !(change > fmax(2 * r->energy_jump, 64 * DBL_EPSILON * fmax(fabs(c->begin), c->scale))))
     return;
-  }
   r->energy_jump = change;
   r->energy_jump_t = t;
   r->mass_condition = lag_mass_condition(&s->pb, t, y, &which);
   r->mass_condition_of = which;
 }
 
-int lag_charges_record(lag_sim *s, double t, const double *y)
-{
+int lag_charges_record(lag_sim *s, double t, const double *y) {
   int lost = 0;
-
-  if (lag_energy_undefined(s, t, y)) {
-    return LAG_ENAN;
-  }
+  if (lag_energy_undefined(s, t, y)) return LAG_ENAN;
   add_work(s, t);
   for (int k = 0, n = lag_sim_ncharges(s); k < n; k++) {
     Charge *c = &s->charges[k];
@@ -314,55 +240,38 @@ int lag_charges_record(lag_sim *s, double t, const double *y)
     c->peak = fabs(d) > c->peak || isnan(d) ? fabs(d) : c->peak; /* a NaN must not be forgotten */
     lost = lost || (k == 0 && is_lost(s->scene->model, c, d, size) && say_lost(s, t, c->before, d));
     add_to_trend(c, t, d, size);
-    if (k == 0 && c->balanced != 0.0 && isfinite(d)) {
-      note_jolt(s, t, y, fabs(d - c->before));
-    }
+    if (k == 0 && c->balanced != 0.0 && isfinite(d)) note_jolt(s, t, y, fabs(d - c->before));
     c->before = d;
   }
   return lost ? LAG_EDRIFT : LAG_OK;
 }
 
-void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb)
-{
+void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb) {
   for (int pass = 0; pass < 2; pass++) {
     values_at(s, t, pass ? yb : ya);
-    for (int k = 0; k < lag_sim_ncharges(s); k++) {
-      s->charges[k].first += pass ? s->charge_now[2 * k] : -s->charge_now[2 * k];
-    }
+    for (int k = 0; k < lag_sim_ncharges(s); k++) s->charges[k].first += pass ? s->charge_now[2 * k] : -s->charge_now[2 * k];
   }
 }
 
-static double relative(const Charge *c, double x)
-{
-  return x == 0.0 ? 0 : x / fmax(fabs(c->begin), c->scale);
-}
+static double relative(const Charge *c, double x) { return x == 0.0 ? 0 : x / fmax(fabs(c->begin), c->scale); }
 
 /* Includes the present state in the peak. */
-static void with_present(Charge *c, double now, double work, double size)
-{
+static void with_present(Charge *c, double now, double work, double size) {
   double d = fabs(now - work - c->first);
-
   c->peak = d > c->peak || isnan(d) ? d : c->peak;
   c->scale = c->scale > 0 ? c->scale : size;
 }
 
-double lag_charge_drift(const lag_sim *s, int k)
-{
-  return relative(&s->charges[k], s->charges[k].peak);
-}
+double lag_charge_drift(const lag_sim *s, int k) { return relative(&s->charges[k], s->charges[k].peak); }
 
 /* Fits a line to the bins: *slope and *error; returns the trend. */
-static int trend_of(const Charge *c, double steps, double *slope, double *error)
-{
+static int trend_of(const Charge *c, double steps, double *slope, double *error) {
   const int fewest = 16;
   const double explained = 0.8; /* a line explains at most 6/pi^2 = 0.61 of a sine whose period is the run */
   int n = (int)c->bins;
   double t = 0, d = 0, tt = 0, td = 0, dd = 0;
-
   *slope = *error = NAN;
-  if (n < fewest || !isfinite(c->peak)) {
-    return LAG_TREND_UNKNOWN;
-  }
+  if (n < fewest || !isfinite(c->peak)) return LAG_TREND_UNKNOWN;
   for (int i = 0; i < n; i++) {
     t += c->t[i] / n;
     d += c->d[i] / n;
@@ -374,21 +283,14 @@ static int trend_of(const Charge *c, double steps, double *slope, double *error)
   }
   *slope = td / tt;
   *error = sqrt(fmax(dd - td * *slope, 0) / (n - 2) / tt);
-  if (c->peak <= 16 * DBL_EPSILON * c->scale * sqrt(steps)) {
-    return LAG_TREND_ROUNDING;
-  }
+  if (c->peak <= 16 * DBL_EPSILON * c->scale * sqrt(steps)) return LAG_TREND_ROUNDING;
   return td * td >= explained * tt * dd ? LAG_TREND_GROWS : LAG_TREND_OSCILLATES;
 }
 
-void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
-{
-  if (!st) {
-    return;
-  }
+void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st) {
+  if (!st) return;
   *st = (lag_charge_stats){.name = "", .unit = "", .begin = NAN, .now = NAN, .drift = NAN, .slope = NAN, .slope_error = NAN, .mass_condition = NAN, .mass_condition_of = ""};
-  if (!s || k < 0 || k >= lag_sim_ncharges(s)) {
-    return;
-  }
+  if (!s || k < 0 || k >= lag_sim_ncharges(s)) return;
   const lag_model *m = s->scene->model;
   const Run *r = s->run;
   Charge seen = s->charges[k], *c = &seen;
@@ -403,11 +305,8 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st)
   values_at(s, r->t, s->now);
   st->now = s->charge_now[2 * k];
   st->work = c->work + since;
-  if (r->begun == 0.0) {
-    st->begin = st->now;
-  } else {
-    with_present(c, st->now, st->work, s->charge_now[2 * k + 1]);
-  }
+  if (r->begun == 0.0) st->begin = st->now;
+  else with_present(c, st->now, st->work, s->charge_now[2 * k + 1]);
   st->drift = relative(c, c->peak);
   st->absolute = c->peak;
   st->trend = trend_of(c, r->steps, &st->slope, &st->slope_error);

@@ -27,48 +27,33 @@ static const double cosine[2 * N] = {1,  0.92387953251128674, 0.7071067811865475
                                      -1, -0.92387953251128674, -0.70710678118654752, -0.38268343236508977,
                                      0,  0.38268343236508977, 0.70710678118654752, 0.92387953251128674};
 
-static double sign_of(double g)
-{
-  return (g > 0) - (g < 0);
-}
+static double sign_of(double g) { return (g > 0) - (g < 0); }
 
 /* y[n] := the state at time t of the step, exact at its ends. */
-static int state_at(lag_sim *s, double t, double *y)
-{
+static int state_at(lag_sim *s, double t, double *y) {
   size_t bytes = (size_t)s->pb.n * sizeof *y;
-
-  if (t == s->run->step_t1) {
-    memcpy(y, s->y, bytes);
-  } else if (t == s->run->step_t0) {
-    memcpy(y, s->y0, bytes);
-  } else {
-    return lag_dense_state(s, t, y);
-  }
+  if (t == s->run->step_t1) memcpy(y, s->y, bytes);
+  else if (t == s->run->step_t0) memcpy(y, s->y0, bytes);
+  else return lag_dense_state(s, t, y);
   return LAG_OK;
 }
 
 /* g[nev] := the event functions at time t of the step. */
-static int g_at(lag_sim *s, double t, double *g)
-{
+static int g_at(lag_sim *s, double t, double *g) {
   int rc = state_at(s, t, s->yc);
-
   return rc ? rc : lag_events_eval(s, t, s->yc, g);
 }
 
-int lag_events_spread(lag_sim *s, const double *at_event, double *spread)
-{
+int lag_events_spread(lag_sim *s, const double *at_event, double *spread) {
   const Run *r = s->run;
   int nev = s->scene->model->nev, rc = 0;
   double last = 4 * DBL_EPSILON * fmax(fabs(r->step_t0), fabs(r->step_t1));
-
   memset(spread, 0, (size_t)nev * sizeof *spread);
   for (int i = -2; i <= 2 && rc == 0; i++) {
     double t = r->limit + i * last * r->dir;
     if (i != 0 && (t - r->from) * r->dir >= 0 && (t - r->step_t1) * r->dir <= 0) {
       rc = g_at(s, t, s->g1);
-      for (int k = 0; k < nev && rc == 0; k++) {
-        spread[k] = fmax(spread[k], fabs(s->g1[k] - at_event[k]));
-      }
+      for (int k = 0; k < nev && rc == 0; k++) spread[k] = fmax(spread[k], fabs(s->g1[k] - at_event[k]));
     }
   }
   return rc;
@@ -82,30 +67,24 @@ typedef struct Crossing {
   double lift; /* shift of g */
 } Crossing;
 
-static double g_of(void *context, double t)
-{
+static double g_of(void *context, double t) {
   Crossing *c = context;
   int rc = g_at(c->sim, t, c->sim->g1);
-
   c->rc = rc ? rc : c->rc;
   return c->sim->g1[c->k] + c->lift;
 }
 
 /* root[k] := the zero of g + lift. */
-static int find_crossing(lag_sim *s, int k, double lift, double ta, double ga, double tb, double gb)
-{
+static int find_crossing(lag_sim *s, int k, double lift, double ta, double ga, double tb, double gb) {
   Crossing c = {s, k, 0, lift};
-
   s->root[k] = ga + lift > 0 || gb + lift > 0 ? lag_root(g_of, &c, ta, ga + lift, tb, gb + lift) : tb;
   return c.rc;
 }
 
 /* Compares two successive values of g: updates sign_end, and root[] of the events that fire between them. */
-static int detect_sign_changes(lag_sim *s, double ta, const double *ga, double tb, const double *gb, int *found)
-{
+static int detect_sign_changes(lag_sim *s, double ta, const double *ga, double tb, const double *gb, int *found) {
   const lag_model *m = s->scene->model;
   int rc = 0;
-
   for (int k = 0; k < m->nev && rc == 0; k++) {
     double now = sign_of(gb[k]), was = s->sign_end[k];
     if (was == 0.0) {
@@ -129,38 +108,24 @@ static int detect_sign_changes(lag_sim *s, double ta, const double *ga, double t
 /* ---- parts of the step */
 
 /* Sample j of the N + 1 in a part of the step, and its time: at the Chebyshev extrema, both ends included. */
-static double *value(lag_sim *s, int j)
-{
-  return s->spare + j * s->scene->model->nev;
-}
+static double *value(lag_sim *s, int j) { return s->spare + j * s->scene->model->nev; }
 
-static double time_at(double ta, double tb, int j)
-{
-  return j == 0 ? ta : j == N ? tb : ta + (tb - ta) * (0.5 - 0.5 * cosine[j]);
-}
+static double time_at(double ta, double tb, int j) { return j == 0 ? ta : j == N ? tb : ta + (tb - ta) * (0.5 - 0.5 * cosine[j]); }
 
 /* Rounding of the event functions: their change when the state changes in its last digits. */
-static int find_rounding(lag_sim *s, double t, double *rounding)
-{
+static int find_rounding(lag_sim *s, double t, double *rounding) {
   const double last = 4 * DBL_EPSILON;
   int nev = s->scene->model->nev, n = s->pb.n;
   int rc = g_at(s, t, rounding);
-
-  for (int j = 0; j < n; j++) {
-    s->yc[j] += (j % 2 ? -last : last) * (fabs(s->yc[j]) + fabs(s->y[j] - s->y0[j]));
-  }
+  for (int j = 0; j < n; j++) s->yc[j] += (j % 2 ? -last : last) * (fabs(s->yc[j]) + fabs(s->y[j] - s->y0[j]));
   rc = rc ? rc : lag_events_eval(s, t * (1 + last), s->yc, s->g1);
-  for (int k = 0; k < nev && rc == 0; k++) {
-    rounding[k] = 4 * (fabs(s->g1[k] - rounding[k]) + last * fabs(rounding[k]));
-  }
+  for (int k = 0; k < nev && rc == 0; k++) rounding[k] = 4 * (fabs(s->g1[k] - rounding[k]) + last * fabs(rounding[k]));
   return rc;
 }
 
 /* Chebyshev coefficients of the polynomial of degree N through N + 1 values (mirrored in time, which matters nowhere). */
-static void coefficients(const double *value, int stride, double *c)
-{
+static void coefficients(const double *value, int stride, double *c) {
   double even[N / 2 + 1], odd[N / 2];
-
   for (int j = 0; j < N / 2; j++) {
     double a = value[j * stride] / (j ? 1 : 2), b = value[(N - j) * stride] / (j ? 1 : 2);
     even[j] = a + b;
@@ -169,65 +134,43 @@ static void coefficients(const double *value, int stride, double *c)
   even[N / 2] = value[N / 2 * stride];
   for (int k = 0; k <= N; k++) {
     double sum = k % 2 ? 0 : even[N / 2] * cosine[k * N / 2 % (2 * N)];
-    for (int j = 0; j < N / 2; j++) {
-      sum += (k % 2 ? odd[j] : even[j]) * cosine[j * k % (2 * N)];
-    }
+    for (int j = 0; j < N / 2; j++) sum += (k % 2 ? odd[j] : even[j]) * cosine[j * k % (2 * N)];
     c[k] = sum * (k % N ? 2.0 / N : 1.0 / N);
   }
 }
 
 /* Whether the derivative of the polynomial has one sign throughout. */
-static int is_monotonic(const double *c, double error)
-{
+static int is_monotonic(const double *c, double error) {
   double d[N + 2] = {0}, others = 0;
-
-  for (int k = N; k >= 1; k--) {
-    d[k - 1] = (k < N ? d[k + 1] : 0) + 2 * k * c[k];
-  }
-  for (int k = 1; k < N; k++) {
-    others += fabs(d[k]);
-  }
+  for (int k = N; k >= 1; k--) d[k - 1] = (k < N ? d[k + 1] : 0) + 2 * k * c[k];
+  for (int k = 1; k < N; k++) others += fabs(d[k]);
   return fabs(d[0] / 2) > others + 2 * N * error;
 }
 
 /* Halvings allowed to resolve one event in a part; 0: it is resolved. */
-static int halvings(const double *value, int stride, double rounding)
-{
+static int halvings(const double *value, int stride, double rounding) {
   const double rough = 1e-3; /* of the range of g, in the last three coefficients */
   double c[N + 1], range = 0;
-
   coefficients(value, stride, c);
-  for (int k = 1; k <= N; k++) {
-    range += fabs(c[k]);
-  }
+  for (int k = 1; k <= N; k++) range += fabs(c[k]);
   double error = fabs(c[N - 2]) + fabs(c[N - 1]) + fabs(c[N]);
-  if (range <= rounding) {
-    return 0;
-  }
-  if (error > rough * range && error > rounding) {
-    return fabs(c[0]) > 4 * range ? 0 : MOST_ROUGH;
-  }
+  if (range <= rounding) return 0;
+  if (error > rough * range && error > rounding) return fabs(c[0]) > 4 * range ? 0 : MOST_ROUGH;
   return fabs(c[0]) > range + error || is_monotonic(c, error) ? 0 : MOST_HALVINGS;
 }
 
 /* Samples 1 to N of a part; *most := halvings allowed. *known: rounding is known. */
-static int sample_part(lag_sim *s, double ta, double tb, int *known, int *most)
-{
+static int sample_part(lag_sim *s, double ta, double tb, int *known, int *most) {
   int nev = s->scene->model->nev, rc = 0;
   double *rounding = value(s, N + 1);
-
-  for (int j = 1; j <= N && rc == 0; j++) {
-    rc = g_at(s, time_at(ta, tb, j), value(s, j));
-  }
+  for (int j = 1; j <= N && rc == 0; j++) rc = g_at(s, time_at(ta, tb, j), value(s, j));
   for (int turn = *known; turn < 2 && rc == 0; turn++) {
     *most = 0;
     for (int k = 0; k < nev; k++) {
       int of_k = halvings(value(s, 0) + k, nev, turn ? rounding[k] : 0);
       *most = of_k > *most ? of_k : *most;
     }
-    if (*most == 0 || turn) {
-      break;
-    }
+    if (*most == 0 || turn) break;
     rc = find_rounding(s, time_at(ta, tb, N / 2), rounding);
     *known = 1;
   }
@@ -235,11 +178,9 @@ static int sample_part(lag_sim *s, double ta, double tb, int *known, int *most)
 }
 
 /* Walks the samples of a resolved part until an event is found. Sample 0 becomes the one at its end. */
-static int scan_samples(lag_sim *s, double ta, double tb, int *found)
-{
+static int scan_samples(lag_sim *s, double ta, double tb, int *found) {
   size_t bytes = (size_t)s->scene->model->nev * sizeof(double);
   int rc = 0, j = 0;
-
   while (j < N && rc == 0 && !*found) {
     rc = detect_sign_changes(s, time_at(ta, tb, j), value(s, j), time_at(ta, tb, j + 1), value(s, j + 1), found);
     j++;
@@ -250,11 +191,9 @@ static int scan_samples(lag_sim *s, double ta, double tb, int *found)
 }
 
 /* The first event in [a, b]; sample 0 is the one at a. Part i of 2^level equal parts follows part i - 1, or is half of an unresolved one. */
-static int search(lag_sim *s, double a, double b, int *found)
-{
+static int search(lag_sim *s, double a, double b, int *found) {
   int level = 0, known = 0, rc = 0;
   long i = 0;
-
   while (rc == 0 && !*found && !(level == 0 && i == 1)) {
     double ta = a + (b - a) * ldexp((double)i, -level), tb = a + (b - a) * ldexp((double)(i + 1), -level);
     tb = i + 1 == 1L << level ? b : tb;
@@ -266,24 +205,18 @@ static int search(lag_sim *s, double a, double b, int *found)
       continue;
     }
     rc = rc ? rc : scan_samples(s, ta, tb, found);
-    for (i++; level > 0 && i % 2 == 0; i /= 2) {
-      level--;
-    }
+    for (i++; level > 0 && i % 2 == 0; i /= 2) level--;
   }
   return rc;
 }
 
 /* *to := end of the part to search first: the first probe at which an event that has just fired is back on its other side, else the end of the
  * step. Sample 0 is the one at its start. */
-static int first_part(lag_sim *s, double *to)
-{
+static int first_part(lag_sim *s, double *to) {
   Run *r = s->run;
   int nev = s->scene->model->nev, rc = 0, back = 0;
   double *left = value(s, 1), *g = value(s, 2);
-
-  for (int k = 0; k < nev; k++) {
-    left[k] = 0;
-  }
+  for (int k = 0; k < nev; k++) left[k] = 0;
   for (int i = 0; i < PROBES && rc == 0 && !back; i++) {
     *to = r->from + (r->step_t1 - r->from) * probe_at[i];
     rc = g_at(s, *to, g);
@@ -298,30 +231,21 @@ static int first_part(lag_sim *s, double *to)
 }
 
 /* limit := the earliest root. */
-static void first_root(lag_sim *s)
-{
+static void first_root(lag_sim *s) {
   Run *r = s->run;
-
   r->pending = 1;
   r->limit = r->step_t1;
-  for (int k = 0; k < s->scene->model->nev; k++) {
-    if (!isnan(s->root[k]) && (s->root[k] - r->limit) * r->dir < 0) {
-      r->limit = s->root[k];
-    }
-  }
+  for (int k = 0; k < s->scene->model->nev; k++)
+    if (!isnan(s->root[k]) && (s->root[k] - r->limit) * r->dir < 0) r->limit = s->root[k];
 }
 
-int lag_events_locate(lag_sim *s)
-{
+int lag_events_locate(lag_sim *s) {
   Run *r = s->run;
   int nev = s->scene->model->nev, found = 0, unknown = 0;
   double to = r->step_t1;
-
   r->limit = r->step_t1;
   r->pending = 0;
-  if (nev == 0) {
-    return LAG_OK;
-  }
+  if (nev == 0) return LAG_OK;
   for (int k = 0; k < nev; k++) {
     s->root[k] = NAN;
     s->sign_end[k] = s->sign[k];
@@ -330,11 +254,7 @@ int lag_events_locate(lag_sim *s)
   int rc = g_at(s, r->from, value(s, 0));
   rc = rc == 0 && unknown ? first_part(s, &to) : rc;
   rc = rc ? rc : search(s, r->from, to, &found);
-  if (rc == 0 && !found && to != r->step_t1) {
-    rc = search(s, to, r->step_t1, &found);
-  }
-  if (rc == 0 && found) {
-    first_root(s);
-  }
+  if (rc == 0 && !found && to != r->step_t1) rc = search(s, to, r->step_t1, &found);
+  if (rc == 0 && found) first_root(s);
   return rc;
 }

@@ -7,8 +7,7 @@
 
 #include "core/core.h"
 
-const char *lag_status_name(int status)
-{
+const char *lag_status_name(int status) {
   static const struct {
     int status;
     const char *name;
@@ -19,39 +18,29 @@ const char *lag_status_name(int status)
                {LAG_EZENO, "events accumulate"}, {LAG_EMETHOD, "method failed"}, {LAG_EIO, "input or output failed"},
                {LAG_EDRIFT, "energy lost"}, {LAG_ESTALL, "stalled"}};
 
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-    if (names[i].status == status) {
-      return names[i].name;
-    }
-  }
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (names[i].status == status) return names[i].name;
   return "failed";
 }
 
-const char *lag_number_text(double x, char text[64])
-{
+const char *lag_number_text(double x, char text[64]) {
   for (int digits = DBL_DIG; digits <= DBL_DIG + 3; digits++) {
     snprintf(text, 64, "%.*g", digits, x);
-    if (strtod(text, NULL) == x) {
-      break;
-    }
+    if (strtod(text, NULL) == x) break;
   }
   return text;
 }
 
-int lag_fail(lag_sim *s, int status, const char *format, ...)
-{
+int lag_fail(lag_sim *s, int status, const char *format, ...) {
   va_list args;
-
   va_start(args, format);
   vsnprintf(s->message, sizeof s->message, format, args);
   va_end(args);
   return status;
 }
 
-int lag_note(lag_problem *pb, int status, double t, const char *format, ...)
-{
+int lag_note(lag_problem *pb, int status, double t, const char *format, ...) {
   va_list args;
-
   va_start(args, format);
   vsnprintf(pb->words, sizeof pb->words, format, args);
   va_end(args);
@@ -61,19 +50,13 @@ int lag_note(lag_problem *pb, int status, double t, const char *format, ...)
 }
 
 /* text := the name of component i of y', as "x''". */
-static void name_rate(const lag_sim *s, int i, char *text, size_t size)
-{
+static void name_rate(const lag_sim *s, int i, char *text, size_t size) {
   const lag_model *m = s->scene->model;
-
-  if (i >= 2 * m->nq) {
-    snprintf(text, size, "%s'", m->z[i - 2 * m->nq].name);
-  } else {
-    snprintf(text, size, "%s%s", m->q[i % m->nq].name, i >= m->nq ? "''" : "'");
-  }
+  if (i >= 2 * m->nq) snprintf(text, size, "%s'", m->z[i - 2 * m->nq].name);
+  else snprintf(text, size, "%s%s", m->q[i % m->nq].name, i >= m->nq ? "''" : "'");
 }
 
-static const char *reason(const lag_model *m, int status)
-{
+static const char *reason(const lag_model *m, int status) {
   switch (status) {
   case LAG_ESINGULAR:
     return m->flags & LAG_FIRST_ORDER ? "the two-form of L is singular"
@@ -89,18 +72,14 @@ static const char *reason(const lag_model *m, int status)
   }
 }
 
-int lag_explain(lag_sim *s, int status)
-{
+int lag_explain(lag_sim *s, int status) {
   const lag_model *m = s->scene->model;
   const lag_problem *pb = &s->pb;
   char text[256] = "", name[64] = "", advice[160] = "";
   size_t used = 0;
   double h = lag_equal_step(s);
   int which;
-
-  if (status == LAG_ENAN && pb->bad_index >= 0) {
-    name_rate(s, pb->bad_index, name, sizeof name);
-  }
+  if (status == LAG_ENAN && pb->bad_index >= 0) name_rate(s, pb->bad_index, name, sizeof name);
   if ((status == LAG_ESINGULAR || status == LAG_ESTEP) && !(m->flags & LAG_FIRST_ORDER)) {
     double condition = lag_mass_condition(&s->pb, s->run->t, s->now, &which);
     if (condition > (status == LAG_ESTEP ? 1e6 : 0)) {
@@ -113,15 +92,11 @@ int lag_explain(lag_sim *s, int status)
     used += (size_t)snprintf(text + used, sizeof text - used, "%s%s%s = %.6g", i ? ", " : "", v->name,
                              i >= m->nq && i < 2 * m->nq ? "'" : "", lag_sim_state_value(s, i));
   }
-  if (status == LAG_ESTEP && fabs(pb->bad_t) * DBL_EPSILON > 1e-9) {
+  if (status == LAG_ESTEP && fabs(pb->bad_t) * DBL_EPSILON > 1e-9)
     snprintf(advice, sizeof advice, ", or the time too late: times are %.1g s apart here", fabs(pb->bad_t) * DBL_EPSILON);
-  }
   if ((status == LAG_ENAN || status == LAG_EDOMAIN) && s->run->begun != 0.0) {
-    if (h > 0) {
-      snprintf(advice, sizeof advice, "; steps of %.3g s may be too long for it: take smaller ones, or dop853", h);
-    } else if (status == LAG_EDOMAIN) {
-      snprintf(advice, sizeof advice, ", and no smaller step helps");
-    }
+    if (h > 0) snprintf(advice, sizeof advice, "; steps of %.3g s may be too long for it: take smaller ones, or dop853", h);
+    else if (status == LAG_EDOMAIN) snprintf(advice, sizeof advice, ", and no smaller step helps");
   }
   return lag_fail(s, status, "at t = %.9g s: %s%s%s%s%s%s%s; last good state, t = %.9g s: %s%s", pb->bad_t, reason(m, status),
                   name[0] ? " for " : "", name, pb->detail ? " (" : "", pb->detail ? pb->detail : "",

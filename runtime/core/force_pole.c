@@ -17,12 +17,10 @@ enum { TURNS = 24, LEAST_TURNS = 12, BACK = 4 };
 
 /* Updates the rates of change of components nq to n; returns the component whose rate is rough (see above) and largest relative to its size; -1:
  * none. */
-static int find_rough(lag_sim *s, double t)
-{
+static int find_rough(lag_sim *s, double t) {
   const double rough = 0.1, rounding = 1e-9, steep = 4, fading = 0.99;
   int nq = s->pb.nq, n = s->pb.n, which = -1;
   double most = 0, dt = t - s->run->t, *one = s->rate_history, *two = one + n, *peak = two + n;
-
   for (int i = nq; i < n; i++) {
     double pace = (s->y[i] - s->now[i]) / dt, size = fabs(pace), bend = fabs(pace - 2 * one[i] + two[i]), faded = fading * peak[i];
     int grows = size > steep * fabs(two[i]) && size > peak[i];
@@ -39,63 +37,43 @@ static int find_rough(lag_sim *s, double t)
   return which;
 }
 
-void lag_reset_rate_history(lag_sim *s)
-{
-  for (int i = 0; i < 3 * s->pb.n; i++) {
-    s->rate_history[i] = NAN;
-  }
-}
+void lag_reset_rate_history(lag_sim *s) { for (int i = 0; i < 3 * s->pb.n; i++) s->rate_history[i] = NAN; }
 
 /* |derivative of component i| at fraction x of the straight line from now to y at t; NaN: no value. Leaves the state in ya; uses yb. Dense
  * output would not do: its velocities are wild beside a pole. */
-static double derivative_at(lag_sim *s, double x, double t, int i)
-{
-  for (int k = 0; k < s->pb.n; k++) {
-    s->ya[k] = s->now[k] + x * (s->y[k] - s->now[k]);
-  }
+static double derivative_at(lag_sim *s, double x, double t, int i) {
+  for (int k = 0; k < s->pb.n; k++) s->ya[k] = s->now[k] + x * (s->y[k] - s->now[k]);
   return lag_rhs(&s->pb, s->run->t + x * (t - s->run->t), s->ya, s->yb) ? NAN : fabs(s->yb[i]);
 }
 
 /* The fraction of the step at which the derivative of component i has a pole; NaN: it has none. */
-static double find_pole(lag_sim *s, double t, int i)
-{
+static double find_pole(lag_sim *s, double t, int i) {
   static const double parts[] = {0.5, 0.45, 0.55};
   const double falls = 0.4; /* in BACK turns; a pole of first order keeps half or more, a root a third or less */
   double from = 0, to = 1, a = derivative_at(s, from, t, i), b = derivative_at(s, to, t, i), before[BACK] = {0};
-
   for (int turn = 0; turn < TURNS; turn++) {
     double size = (to - from) * fmin(a, b), x = from, c = NAN;
-    if (!(size > 0) || (turn >= BACK && size < falls * before[turn % BACK])) {
-      return NAN;
-    }
+    if (!(size > 0) || (turn >= BACK && size < falls * before[turn % BACK])) return NAN;
     before[turn % BACK] = size;
     for (size_t k = 0; k < sizeof parts / sizeof *parts && !isfinite(c); k++) {
       x = from + parts[k] * (to - from);
       c = derivative_at(s, x, t, i);
     }
-    if (!isfinite(c)) {
-      return turn > LEAST_TURNS ? x : NAN;
-    }
+    if (!isfinite(c)) return turn > LEAST_TURNS ? x : NAN;
     *(a > b ? &to : &from) = x;
     *(a > b ? &b : &a) = c;
   }
   return from;
 }
 
-int lag_crosses_force_pole(lag_sim *s, double t)
-{
+int lag_crosses_force_pole(lag_sim *s, double t) {
   lag_problem *pb = &s->pb;
   int i = s->steps_equal && !pb->model->constraints ? find_rough(s, t) : -1;
-
-  if (i < 0) {
-    return LAG_OK;
-  }
+  if (i < 0) return LAG_OK;
   double calls = pb->rhs_calls, pole = find_pole(s, t, i);
 
   pb->rhs_calls = calls;
-  if (isnan(pole)) {
-    return LAG_OK;
-  }
+  if (isnan(pole)) return LAG_OK;
   const lag_model *m = pb->model;
   const char *name = i < 2 * pb->nq ? m->q[i - pb->nq].name : m->z[i - 2 * pb->nq].name;
   return lag_note(pb, LAG_EDOMAIN, s->run->t + pole * (t - s->run->t), "a pole of %s%s, which no motion crosses", name, i < 2 * pb->nq ? "''" : "'");

@@ -5,43 +5,30 @@
 #include "core/core.h"
 #include "core/rhs.h"
 
-static int outputs_at(lag_sim *s, double t, const double *y)
-{
-  return s->scene->observe ? lag_observe(s, t, y, s->out) : 0;
-}
+static int outputs_at(lag_sim *s, double t, const double *y) { return s->scene->observe ? lag_observe(s, t, y, s->out) : 0; }
 
-static int watches_outputs(const lag_scene *c)
-{
-  for (int i = 0; i < c->nmonitors; i++) {
-    if (c->monitors[i].output >= 0) {
-      return 1;
-    }
-  }
+static int watches_outputs(const lag_scene *c) {
+  for (int i = 0; i < c->nmonitors; i++)
+    if (c->monitors[i].output >= 0) return 1;
   return 0;
 }
 
 /* Updates the largest residuals of the constraints. */
-static void see_constraints(lag_sim *s, double t, const double *y)
-{
+static void see_constraints(lag_sim *s, double t, const double *y) {
   const lag_constraints *of = s->scene->model->constraints;
   double *c = s->pb.held, *r = c + (of ? of->n : 0);
   int rc = of ? lag_residuals(&s->pb, t, y, c, r) : 1;
-
   for (int k = 0; k < (rc ? 0 : of->n); k++) {
     s->run->c_peak = k < of->nholonomic ? fmax(s->run->c_peak, fabs(c[k])) : s->run->c_peak;
     s->run->r_peak = fmax(s->run->r_peak, fabs(r[k]));
   }
 }
 
-int lag_monitors_begin(lag_sim *s)
-{
+int lag_monitors_begin(lag_sim *s) {
   const lag_scene *c = s->scene;
-
   see_constraints(s, s->run->t, s->now);
   lag_charges_begin(s, s->run->t, s->now);
-  if (watches_outputs(c) && outputs_at(s, s->run->t, s->now)) {
-    return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at the start");
-  }
+  if (watches_outputs(c) && outputs_at(s, s->run->t, s->now)) return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at the start");
   for (int i = 0; i < c->nmonitors; i++) {
     int k = c->monitors[i].output;
     s->mon_first[i] = c->monitors[i].absolute || k < 0 ? 0 : s->out[k];
@@ -51,24 +38,16 @@ int lag_monitors_begin(lag_sim *s)
 }
 
 /* The largest of x and y, NaN if y is: a NaN must not be forgotten. */
-static double larger(double x, double y)
-{
-  return y > x || isnan(y) ? y : x;
-}
+static double larger(double x, double y) { return y > x || isnan(y) ? y : x; }
 
 /* Drift relative to the first value; of a quantity that begins at 0, in its declared unit. */
-static double relative(const lag_sim *s, int i, double peak)
-{
+static double relative(const lag_sim *s, int i, double peak) {
   double unit = s->scene->outputs[s->scene->monitors[i].output].factor, size = fabs(s->mon_first[i]);
-
   return peak / (size > 1e-9 * unit ? size : unit);
 }
 
-double lag_sim_monitor_drift(lag_sim *s, int i)
-{
-  if (!s || i < 0 || i >= s->scene->nmonitors) {
-    return NAN;
-  }
+double lag_sim_monitor_drift(lag_sim *s, int i) {
+  if (!s || i < 0 || i >= s->scene->nmonitors) return NAN;
   int k = s->scene->monitors[i].output;
   double peak = s->mon_peak[i];
 
@@ -77,20 +56,14 @@ double lag_sim_monitor_drift(lag_sim *s, int i)
     lag_sim_charge(s, -1 - k, &c);
     return c.drift;
   }
-  if (s->run->begun != 0.0) {
-    peak = larger(peak, outputs_at(s, s->run->t, s->now) ? NAN : fabs(s->out[k] - s->mon_first[i]));
-  }
+  if (s->run->begun != 0.0) peak = larger(peak, outputs_at(s, s->run->t, s->now) ? NAN : fabs(s->out[k] - s->mon_first[i]));
   return relative(s, i, peak);
 }
 
 /* Fails the run where monitor i passes its limit. */
-static int judge_monitor(lag_sim *s, int i, double drift)
-{
+static int judge_monitor(lag_sim *s, int i, double drift) {
   const lag_monitor *m = &s->scene->monitors[i];
-
-  if (drift <= m->limit) {
-    return LAG_OK;
-  }
+  if (drift <= m->limit) return LAG_OK;
   int rough = m->output < 0 && !lag_charge_flags(s, -1 - m->output) && !lag_method_balances(s->method);
   return lag_fail(s, LAG_EMONITOR, "monitor %s: drift %.3g is past its limit %.3g at t = %s s%s%s%s", m->name, drift, m->limit, LAG_TEXT(s->run->t),
                   rough ? "; the work of forces is not accounted for, as " : "", rough ? s->method->name : "",
@@ -99,32 +72,24 @@ static int judge_monitor(lag_sim *s, int i, double drift)
 
 /* Reports that the energy has no value. The equations of motion may still have one past the end of L's domain, as those of log(x) at x < 0, and
  * equal steps may cross that end. */
-static int left_domain(lag_sim *s, double t)
-{
+static int left_domain(lag_sim *s, double t) {
   s->pb.bad_t = t;
   s->pb.bad_index = -1;
   s->pb.detail = "of its energy: the motion has left the domain of L";
   return lag_explain(s, LAG_ENAN);
 }
 
-int lag_sim_judge(lag_sim *s)
-{
-  if (!s) {
-    return LAG_EINVAL;
-  }
+int lag_sim_judge(lag_sim *s) {
+  if (!s) return LAG_EINVAL;
   int rc = s->run->begun != 0.0 && lag_energy_undefined(s, s->run->t, s->now) ? left_domain(s, s->run->t) : LAG_OK;
 
-  for (int i = 0; i < s->scene->nmonitors && rc == 0 && s->run->begun != 0.0; i++) {
-    rc = judge_monitor(s, i, lag_sim_monitor_drift(s, i));
-  }
+  for (int i = 0; i < s->scene->nmonitors && rc == 0 && s->run->begun != 0.0; i++) rc = judge_monitor(s, i, lag_sim_monitor_drift(s, i));
   return rc ? rc : lag_energy_retained(s);
 }
 
-int lag_monitors_record(lag_sim *s, double t, const double *y)
-{
+int lag_monitors_record(lag_sim *s, double t, const double *y) {
   const lag_scene *c = s->scene;
   int lost = lag_charges_record(s, t, y);
-
   if (lost) {
     if (s->run->from == s->run->step_t0) {
       lag_copy(s->pb.n, s->y0, s->now);
@@ -132,20 +97,12 @@ int lag_monitors_record(lag_sim *s, double t, const double *y)
     }
     return lost == LAG_EDRIFT ? lost : left_domain(s, t);
   }
-  if (c->model->constraints) {
-    see_constraints(s, t, y);
-  }
-  if (c->nexact && lag_closed_form_record(s, t, y)) {
-    return LAG_EMODEL;
-  }
-  if (watches_outputs(c) && outputs_at(s, t, y)) {
-    return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
-  }
+  if (c->model->constraints) see_constraints(s, t, y);
+  if (c->nexact && lag_closed_form_record(s, t, y)) return LAG_EMODEL;
+  if (watches_outputs(c) && outputs_at(s, t, y)) return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
   for (int i = 0; i < c->nmonitors; i++) {
     int k = c->monitors[i].output;
-    if (k >= 0) {
-      s->mon_peak[i] = larger(s->mon_peak[i], fabs(s->out[k] - s->mon_first[i]));
-    }
+    if (k >= 0) s->mon_peak[i] = larger(s->mon_peak[i], fabs(s->out[k] - s->mon_first[i]));
   }
   int rc = LAG_OK;
   for (int i = 0; i < c->nmonitors && rc == 0; i++) { /* after all are updated: a report shows them all */
@@ -155,31 +112,23 @@ int lag_monitors_record(lag_sim *s, double t, const double *y)
   return rc;
 }
 
-int lag_monitors_jump(lag_sim *s, double t, const double *ya, const double *yb)
-{
+int lag_monitors_jump(lag_sim *s, double t, const double *ya, const double *yb) {
   const lag_scene *c = s->scene;
-
   see_constraints(s, t, yb);
   lag_charges_jump(s, t, ya, yb);
-  if (watches_outputs(c)) {
+  if (watches_outputs(c))
     for (int pass = 0; pass < 2; pass++) {
-      if (outputs_at(s, t, pass ? yb : ya)) {
-        return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
-      }
+      if (outputs_at(s, t, pass ? yb : ya)) return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
       for (int i = 0; i < c->nmonitors; i++) {
         int k = c->monitors[i].output;
         s->mon_first[i] += k >= 0 && !c->monitors[i].absolute ? (pass ? s->out[k] : -s->out[k]) : 0;
       }
     }
-  }
   return LAG_OK;
 }
 
-void lag_sim_stats(lag_sim *s, lag_stats *st)
-{
-  if (!s || !st) {
-    return;
-  }
+void lag_sim_stats(lag_sim *s, lag_stats *st) {
+  if (!s || !st) return;
   const Run *r = s->run;
   const lag_constraints *c = s->scene->model->constraints;
   lag_charge_stats energy = {.now = NAN, .drift = NAN};
@@ -194,9 +143,7 @@ void lag_sim_stats(lag_sim *s, lag_stats *st)
   st->iterations = (long long)s->pb.iterations;
   st->constraint = c ? r->c_peak : NAN;
   st->constraint_rate = c ? r->r_peak : NAN;
-  if (lag_sim_ncharges(s)) {
-    lag_sim_charge(s, 0, &energy);
-  }
+  if (lag_sim_ncharges(s)) lag_sim_charge(s, 0, &energy);
   st->energy = energy.now;
   st->energy_drift = energy.drift;
 }

@@ -8,28 +8,20 @@
 #include "core/core.h"
 #include "numeric/edit_distance.h"
 
-static int find_in(const lag_var *vars, int n, const char *name, size_t length)
-{
-  for (int i = 0; i < n; i++) {
-    if (strlen(vars[i].name) == length && memcmp(vars[i].name, name, length) == 0) {
-      return i;
-    }
-  }
+static int find_in(const lag_var *vars, int n, const char *name, size_t length) {
+  for (int i = 0; i < n; i++)
+    if (strlen(vars[i].name) == length && memcmp(vars[i].name, name, length) == 0) return i;
   return -1;
 }
 
-const char *lag_name_in_effect(const char *var)
-{
+const char *lag_name_in_effect(const char *var) {
   const char *dot = strpbrk(var, ".[");
-
   return dot && *dot == '.' ? dot + 1 : NULL;
 }
 
 /* The last variable that is called `name` inside its effect; adds to *count the number of them. */
-static int find_suffix(const lag_var *vars, int n, const char *name, int *count)
-{
+static int find_suffix(const lag_var *vars, int n, const char *name, int *count) {
   int found = -1;
-
   for (int i = 0; i < n; i++) {
     const char *own = lag_name_in_effect(vars[i].name);
     if (own && strcmp(own, name) == 0) {
@@ -41,61 +33,48 @@ static int find_suffix(const lag_var *vars, int n, const char *name, int *count)
 }
 
 /* Whether a variable is the input that closes a contact, which nobody may set. */
-static int is_switch(const lag_model *m, const lag_var *var)
-{
+static int is_switch(const lag_model *m, const lag_var *var) {
   int i = 0;
-
-  while (i < m->ncontacts && &m->u[m->contacts[i].input] != var) {
-    i++;
-  }
+  while (i < m->ncontacts && &m->u[m->contacts[i].input] != var) i++;
   return i < m->ncontacts;
 }
 
 /* Finds a name, inputs of contacts included. */
-static int find(const lag_model *m, const char *name, int *index, const lag_var **var)
-{
+static int find(const lag_model *m, const char *name, int *index, const lag_var **var) {
   size_t n = strlen(name);
   const struct {
     int kind, n;
     const lag_var *vars;
   } tables[] = {{LAG_IS_P, m->np, m->p}, {LAG_IS_Q, m->nq, m->q}, {LAG_IS_Z, m->nz, m->z}, {LAG_IS_U, m->nu, m->u}};
 
-  for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
+  for (size_t k = 0; k < sizeof tables / sizeof *tables; k++)
     if ((*index = find_in(tables[k].vars, tables[k].n, name, n)) >= 0) {
       *var = &tables[k].vars[*index];
       return tables[k].kind;
     }
-  }
   if (n > 1 && name[n - 1] == '\'' && (*index = find_in(m->q, m->nq, name, n - 1)) >= 0) {
     *var = &m->q[*index];
     return LAG_IS_V;
   }
   int count = 0, p = find_suffix(m->p, m->np, name, &count), u = find_suffix(m->u, m->nu, name, &count);
-  if (count != 1) {
-    return LAG_IS_NOTHING;
-  }
+  if (count != 1) return LAG_IS_NOTHING;
   *index = p >= 0 ? p : u;
   *var = p >= 0 ? &m->p[p] : &m->u[u];
   return p >= 0 ? LAG_IS_P : LAG_IS_U;
 }
 
-int lag_find_name(const lag_model *m, const char *name, int *index, const lag_var **var)
-{
+int lag_find_name(const lag_model *m, const char *name, int *index, const lag_var **var) {
   int kind = find(m, name, index, var);
-
   return kind == LAG_IS_U && is_switch(m, *var) ? LAG_IS_NOTHING : kind;
 }
 
-int lag_is_member(const char *var, const char *family, size_t length)
-{
+int lag_is_member(const char *var, const char *family, size_t length) {
   size_t stem = strcspn(var, "[");
   const char *close = strchr(var, ']'), *rest = close ? close + 1 : NULL;
-
   return rest && stem + strlen(rest) == length && memcmp(var, family, stem) == 0 && memcmp(family + stem, rest, length - stem) == 0;
 }
 
-int lag_family_member(const lag_model *m, const char *name, int k, char *part, size_t npart)
-{
+int lag_family_member(const lag_model *m, const char *name, int k, char *part, size_t npart) {
   const struct {
     int n;
     const lag_var *vars;
@@ -106,9 +85,7 @@ int lag_family_member(const lag_model *m, const char *name, int k, char *part, s
   for (size_t i = rate; i < (rate ? 2 : sizeof tables / sizeof *tables); i++) { /* only coordinates have rates to set */
     for (int j = 0; j < tables[i].n; j++) {
       const char *whole = tables[i].vars[j].name;
-      if (strncmp(whole, name, n) != 0 || !whole[n] || !strchr("[.", whole[n]) || is_switch(m, &tables[i].vars[j]) || k-- > 0) {
-        continue;
-      }
+      if (strncmp(whole, name, n) != 0 || !whole[n] || !strchr("[.", whole[n]) || is_switch(m, &tables[i].vars[j]) || k-- > 0) continue;
       snprintf(part, npart, "%s%s", whole, rate ? "'" : "");
       return 1;
     }
@@ -116,30 +93,24 @@ int lag_family_member(const lag_model *m, const char *name, int k, char *part, s
   return 0;
 }
 
-int lag_typo_distance(const char *name, const char *known)
-{
+int lag_typo_distance(const char *name, const char *known) {
   size_t na = strlen(name), nb = strlen(known);
-  if (na > LAG_LONGEST_WORD || nb > LAG_LONGEST_WORD) {
-    return strcmp(name, known) ? LAG_NO_TYPO : 0;
-  }
+  if (na > LAG_LONGEST_WORD || nb > LAG_LONGEST_WORD) return strcmp(name, known) ? LAG_NO_TYPO : 0;
   int n = (int)na, d = lag_edit_distance(name, na, known, nb, 2) / 2;
   int guess = n == 1 && known[0] && !known[1] && tolower((unsigned char)name[0]) != tolower((unsigned char)known[0]);
 
   return guess || d > n / 3 + 1 ? LAG_NO_TYPO : d;
 }
 
-void lag_try_nearest(lag_nearest *near, const char *known)
-{
+void lag_try_nearest(lag_nearest *near, const char *known) {
   int d = lag_typo_distance(near->name, known);
-
   if (d < (near->best ? near->least : LAG_NO_TYPO)) {
     near->least = d;
     near->best = known;
   }
 }
 
-int lag_nearest_name(const lag_model *m, const char *name, char *best, size_t nbest)
-{
+int lag_nearest_name(const lag_model *m, const char *name, char *best, size_t nbest) {
   const struct {
     int n;
     const lag_var *vars;
@@ -149,7 +120,7 @@ int lag_nearest_name(const lag_model *m, const char *name, char *best, size_t nb
   size_t n = strlen(name);
 
   best[0] = '\0';
-  for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
+  for (size_t k = 0; k < sizeof tables / sizeof *tables; k++)
     for (int i = 0; i < tables[k].n; i++) {
       char full[64];
       snprintf(full, sizeof full, "%s%s", tables[k].vars[i].name, tables[k].suffix);
@@ -160,6 +131,5 @@ int lag_nearest_name(const lag_model *m, const char *name, char *best, size_t nb
         snprintf(best, nbest, "%s", full);
       }
     }
-  }
   return best[0] != '\0';
 }

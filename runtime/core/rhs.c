@@ -6,25 +6,17 @@
 #include "core/core.h"
 #include "core/rhs.h"
 
-int lag_inputs(lag_problem *pb, double t)
-{
+int lag_inputs(lag_problem *pb, double t) {
   const lag_model *m = pb->model;
-
-  if (m->nu == 0) {
-    return 0;
-  }
+  if (m->nu == 0) return 0;
   if (m->inputs) {
     int rc = m->inputs(t, pb->p, pb->u);
-    if (rc) {
-      return rc;
-    }
+    if (rc) return rc;
   }
   for (int i = 0; i < m->nu; i++) {
     if (pb->signal[i].fn) {
       pb->u[i] = pb->signal[i].fn(pb->signal[i].context, t);
-      if (!isfinite(pb->u[i])) {
-        pb->detail = "the function of an input gave no finite value";
-      }
+      if (!isfinite(pb->u[i])) pb->detail = "the function of an input gave no finite value";
     } else if (!isnan(pb->hold[i])) {
       pb->u[i] = pb->hold[i];
     } else if (!m->inputs) {
@@ -34,23 +26,15 @@ int lag_inputs(lag_problem *pb, double t)
   return 0;
 }
 
-unsigned lag_facts(const lag_problem *pb)
-{
+unsigned lag_facts(const lag_problem *pb) {
   unsigned flags = pb->model->flags;
-
-  for (int i = 0; i < pb->model->nu; i++) {
-    if (pb->signal[i].fn) {
-      flags &= ~(unsigned)(LAG_AUTONOMOUS | LAG_SMOOTH);
-    }
-  }
+  for (int i = 0; i < pb->model->nu; i++)
+    if (pb->signal[i].fn) flags &= ~(unsigned)(LAG_AUTONOMOUS | LAG_SMOOTH);
   return flags;
 }
 
-int lag_rhs_prepare(lag_problem *pb, double t, const double **y)
-{
-  if (!pb->redundant) {
-    return lag_inputs(pb, t);
-  }
+int lag_rhs_prepare(lag_problem *pb, double t, const double **y) {
+  if (!pb->redundant) return lag_inputs(pb, t);
   double *at = pb->held + lag_constraint_scratch_size(pb->model) - pb->n;
   memcpy(at, *y, (size_t)pb->n * sizeof *at);
   int rc = lag_project(pb, t, at, NULL);
@@ -58,33 +42,23 @@ int lag_rhs_prepare(lag_problem *pb, double t, const double **y)
   return rc ? rc : lag_inputs(pb, t);
 }
 
-int lag_rhs(lag_problem *pb, double t, const double *y, double *dy)
-{
-  return lag_rhs_inline(pb, pb->nq, t, y, dy);
-}
+int lag_rhs(lag_problem *pb, double t, const double *y, double *dy) { return lag_rhs_inline(pb, pb->nq, t, y, dy); }
 
 /* The first row after t in direction dir; -1: none. */
-static int row_after(const lag_table *c, double t, double dir)
-{
+static int row_after(const lag_table *c, double t, double dir) {
   int k = 0, end = c->n;
-
   while (k < end) { /* rows before k are <= t (forward) or < t (backward) */
     int mid = (k + end) / 2;
-    if (dir > 0 ? c->row[mid][0] <= t : c->row[mid][0] < t) {
-      k = mid + 1;
-    } else {
-      end = mid;
-    }
+    if (dir > 0 ? c->row[mid][0] <= t : c->row[mid][0] < t) k = mid + 1;
+    else end = mid;
   }
   k = dir > 0 ? k : k - 1;
   return k < c->n ? k : -1;
 }
 
-double lag_next_row(const lag_problem *pb, double t, double *row)
-{
+double lag_next_row(const lag_problem *pb, double t, double *row) {
   const lag_model *m = pb->model;
   double least = HUGE_VAL;
-
   for (int i = 0; i < m->ntables; i++) {
     const lag_table *c = &m->tables[i];
     int in_use = isnan(pb->hold[c->input]) && !pb->signal[c->input].fn, k = in_use ? row_after(c, t, pb->dir) : -1;
@@ -96,32 +70,23 @@ double lag_next_row(const lag_problem *pb, double t, double *row)
   return least;
 }
 
-int lag_variation(lag_problem *pb, double t, const double *q, const double *v, double *Lq, double *Lv, double *Q)
-{
+int lag_variation(lag_problem *pb, double t, const double *q, const double *v, double *Lq, double *Lv, double *Q) {
   int rc = lag_inputs(pb, t);
-
   pb->rhs_calls++;
   return rc ? rc : pb->model->variation(t, q, v, NULL, pb->p, pb->u, Lq, Lv, Q, pb->work);
 }
 
-int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h)
-{
+int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h) {
   int rc = lag_inputs(pb, t);
-
   return rc ? rc : pb->model->second(t, q, v, NULL, pb->p, pb->u, h, pb->work);
 }
 
-int lag_not_finite(int n, const double *x)
-{
+int lag_not_finite(int n, const double *x) {
   double zero = 0;
-
   for (int i = 0; i < n; i++) {
     zero += x[i] * 0; /* NaN where x[i] is not finite */
   }
-  for (int i = 0; i < n && isnan(zero); i++) {
-    if (!isfinite(x[i])) {
-      return i;
-    }
-  }
+  for (int i = 0; i < n && isnan(zero); i++)
+    if (!isfinite(x[i])) return i;
   return -1;
 }

@@ -14,45 +14,33 @@
 #endif
 
 /* to[n] := from[n]. */
-LAG_ALWAYS_INLINE void lag_copy(int n, const double *from, double *to)
-{
+LAG_ALWAYS_INLINE void lag_copy(int n, const double *from, double *to) {
   int i = 0;
-
   for (; i + 1 < n; i += 2) {
     double a = from[i], b = from[i + 1];
     to[i] = a;
     to[i + 1] = b;
   }
-  if (i < n) {
-    to[i] = from[i];
-  }
+  if (i < n) to[i] = from[i];
 }
 
 /* The parts that few models have: pb->u := inputs; where constraints are redundant, *y := its projection onto them. */
 int lag_rhs_prepare(lag_problem *pb, double t, const double **y);
 
 /* Inline lag_inputs and lag_next_row. */
-LAG_ALWAYS_INLINE int lag_inputs_inline(lag_problem *pb, double t)
-{
-  return pb->model->nu ? lag_inputs(pb, t) : 0;
-}
+LAG_ALWAYS_INLINE int lag_inputs_inline(lag_problem *pb, double t) { return pb->model->nu ? lag_inputs(pb, t) : 0; }
 
-LAG_ALWAYS_INLINE double lag_next_row_inline(const lag_problem *pb, double t, double *row)
-{
+LAG_ALWAYS_INLINE double lag_next_row_inline(const lag_problem *pb, double t, double *row) {
   return pb->model->ntables ? lag_next_row(pb, t, row) : HUGE_VAL;
 }
 
 /* Inline lag_rhs; nq is the model's, perhaps a compile-time constant. */
-LAG_ALWAYS_INLINE int lag_rhs_inline(lag_problem *pb, int nq, double t, const double *y, double *dy)
-{
+LAG_ALWAYS_INLINE int lag_rhs_inline(lag_problem *pb, int nq, double t, const double *y, double *dy) {
   const lag_model *m = pb->model;
-
   pb->rhs_calls++;
   if (m->nu | pb->redundant) {
     int rc = lag_rhs_prepare(pb, t, &y);
-    if (rc) {
-      return rc;
-    }
+    if (rc) return rc;
   }
   lag_copy(nq, y + nq, dy);
   return m->accel(t, y, y + nq, y + 2 * nq, pb->p, pb->u, dy + nq, dy + 2 * nq, pb->work);

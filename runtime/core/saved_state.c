@@ -10,8 +10,7 @@
 #include "numeric/fnv1a.h"
 
 /* The hash h continued by x: all digits, sign and exponent, of any scalar type; NaN is one number. */
-static unsigned long long hash_number(unsigned long long h, double x)
-{
+static unsigned long long hash_number(unsigned long long h, double x) {
   int e = 0;
   double m = isfinite(x) ? frexp(x, &e) : 0;
   long long high = (long long)ldexp(m, 62), low = (long long)ldexp(m - ldexp((double)high, -62), 124);
@@ -22,36 +21,22 @@ static unsigned long long hash_number(unsigned long long h, double x)
 
 /* The seal of x[nsaved], whose own seal is not counted: 52 bits of a hash of its numbers, the signature, the method's options and the inputs that
  * are functions of the caller. */
-static double seal_of(const lag_sim *s, const double *x)
-{
+static double seal_of(const lag_sim *s, const double *x) {
   const size_t seal = offsetof(Run, seal) / sizeof(double);
   unsigned long long h = lag_sim_signature(s);
 
-  for (size_t i = 0; i < s->nsaved; i++) {
-    h = i == seal ? h : hash_number(h, x[i]);
-  }
-  for (int i = 0; s->options && i < s->method->noptions; i++) {
-    h = hash_number(h, s->options[i]);
-  }
-  for (int i = 0; i < s->scene->model->nu; i++) {
-    h = hash_number(h, s->signal[i].fn != NULL);
-  }
+  for (size_t i = 0; i < s->nsaved; i++) h = i == seal ? h : hash_number(h, x[i]);
+  for (int i = 0; s->options && i < s->method->noptions; i++) h = hash_number(h, s->options[i]);
+  for (int i = 0; i < s->scene->model->nu; i++) h = hash_number(h, s->signal[i].fn != NULL);
   return (double)(h >> 12);
 }
 
-size_t lag_sim_save_size(const lag_sim *s)
-{
-  return s ? s->nsaved : 0;
-}
+size_t lag_sim_save_size(const lag_sim *s) { return s ? s->nsaved : 0; }
 
-int lag_sim_save(lag_sim *s, double *x)
-{
-  if (!s || !x) {
-    return LAG_EINVAL;
-  }
-  if (s->method->flags & LAG_METHOD_NO_SAVE) {
+int lag_sim_save(lag_sim *s, double *x) {
+  if (!s || !x) return LAG_EINVAL;
+  if (s->method->flags & LAG_METHOD_NO_SAVE)
     return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be saved; those of liblag can", s->method->name);
-  }
   s->run->rhs_calls = s->pb.rhs_calls;
   s->run->rejected = s->pb.rejected;
   s->run->systems = s->pb.systems;
@@ -62,33 +47,22 @@ int lag_sim_save(lag_sim *s, double *x)
 }
 
 /* Sets the values outside the saved block that follow from it. */
-static void take_over(lag_sim *s)
-{
+static void take_over(lag_sim *s) {
   const lag_model *m = s->scene->model;
-
   s->pb.rhs_calls = s->run->rhs_calls;
   s->pb.rejected = s->run->rejected;
   s->pb.systems = s->run->systems;
   s->pb.iterations = s->run->iterations;
   s->pb.dir = s->run->dir != 0.0 ? s->run->dir : 1;
-  if (m->derive) {
-    m->derive(s->p);
-  }
+  if (m->derive) m->derive(s->p);
   lag_note_redundant(s);
   lag_reset_rate_history(s);
 }
 
-int lag_sim_load(lag_sim *s, const double *x)
-{
-  if (!s || !x) {
-    return LAG_EINVAL;
-  }
-  if (s->method->flags & LAG_METHOD_NO_SAVE) {
-    return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be resumed", s->method->name);
-  }
-  if (s->tangent) {
-    return lag_fail(s, LAG_EINVAL, "a saved state holds no tangent: load it first, then begin one");
-  }
+int lag_sim_load(lag_sim *s, const double *x) {
+  if (!s || !x) return LAG_EINVAL;
+  if (s->method->flags & LAG_METHOD_NO_SAVE) return lag_fail(s, LAG_EINVAL, "the state of method %s cannot be resumed", s->method->name);
+  if (s->tangent) return lag_fail(s, LAG_EINVAL, "a saved state holds no tangent: load it first, then begin one");
   if (x[offsetof(Run, seal) / sizeof *x] != seal_of(s, x)) {
     return lag_fail(s, LAG_EINVAL, "the saved state is damaged, or of another run: it is none of scene %s by method %s with these options and inputs",
                     s->scene->name, s->method->name);
@@ -99,16 +73,10 @@ int lag_sim_load(lag_sim *s, const double *x)
 }
 
 /* FNV-1a hash of text with its final 0, so that "ab","c" and "a","bc" differ. */
-static unsigned long long hash(unsigned long long h, const char *text)
-{
-  return lag_fnv1a(h, text, strlen(text) + 1);
-}
+static unsigned long long hash(unsigned long long h, const char *text) { return lag_fnv1a(h, text, strlen(text) + 1); }
 
-unsigned long long lag_sim_signature(const lag_sim *s)
-{
-  if (!s) {
-    return 0;
-  }
+unsigned long long lag_sim_signature(const lag_sim *s) {
+  if (!s) return 0;
   const lag_model *m = s->scene->model;
   unsigned long long h = hash(LAG_FNV1A_START, m->name);
   const struct {
@@ -118,14 +86,10 @@ unsigned long long lag_sim_signature(const lag_sim *s)
   char sizes[128];
 
   for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
-    for (int i = 0; i < tables[k].n; i++) {
-      h = hash(hash(h, tables[k].vars[i].name), tables[k].vars[i].unit);
-    }
+    for (int i = 0; i < tables[k].n; i++) h = hash(hash(h, tables[k].vars[i].name), tables[k].vars[i].unit);
     h = hash(h, ";");
   }
-  for (int i = 0; i < m->nev; i++) {
-    h = hash(h, m->ev[i].name);
-  }
+  for (int i = 0; i < m->nev; i++) h = hash(h, m->ev[i].name);
   snprintf(sizes, sizeof sizes, "%zu %zu %d %s", sizeof(double), s->nsaved, s->scene->nmonitors, LAG_VERSION);
   h = hash(hash(h, m->effects ? m->effects : ""), m->digest ? m->digest : "");
   h = hash(hash(h, s->scene->name), s->method->name);

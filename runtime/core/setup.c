@@ -13,8 +13,7 @@
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
 
 /* Allocates and lays out the blocks for this method, keeping only the settings of the caller (p, hold). opt: option values, which must live on. */
-static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
-{
+static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   const lag_model *m = s->scene->model;
   size_t np = (size_t)(m->np + m->nderived), nu = (size_t)m->nu, fixed = RUN_DOUBLES, n = (size_t)s->pb.n, nev = (size_t)m->nev;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
@@ -29,17 +28,13 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   const size_t parts = sizeof part / sizeof *part;
   lag_problem sized = s->pb;
 
-  for (size_t i = 0; i < parts; i++) {
-    fixed += part[i].n;
-  }
+  for (size_t i = 0; i < parts; i++) fixed += part[i].n;
   sized.opt = opt;
   sized.variant = method->variant;
   size_t before = (fixed + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, work = method->work_size(&sized), total = before + work;
   char *room = calloc(total * sizeof(double) + LINE - 1, 1);
 
-  if (!room) {
-    return LAG_ENOMEM;
-  }
+  if (!room) return LAG_ENOMEM;
   double *b = (double *)(void *)(room + (LINE - (uintptr_t)room % LINE) % LINE), *x = b + RUN_DOUBLES;
   if (s->saved) {
     memcpy(x, s->p, np * sizeof *x);
@@ -68,8 +63,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt)
   return LAG_OK;
 }
 
-static int alloc_scratch(lag_sim *s)
-{
+static int alloc_scratch(lag_sim *s) {
   const lag_model *m = s->scene->model;
   size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
   size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
@@ -78,17 +72,12 @@ static int alloc_scratch(lag_sim *s)
   double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->pb.ranks, &s->contact_scratch,
                             &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->rate_history};
   const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch, 3 * n};
-
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
   s->signal = calloc(nu + 1, sizeof *s->signal);
-  if (!s->scratch || !s->fixed || !s->start || !s->signal) {
-    return LAG_ENOMEM;
-  }
-  for (size_t i = 0; i < n; i++) {
-    s->start[i] = NAN;
-  }
+  if (!s->scratch || !s->fixed || !s->start || !s->signal) return LAG_ENOMEM;
+  for (size_t i = 0; i < n; i++) s->start[i] = NAN;
   lag_reset_rate_history(s);
   s->pb.u = s->u;
   s->pb.signal = s->signal;
@@ -96,53 +85,34 @@ static int alloc_scratch(lag_sim *s)
   return LAG_OK;
 }
 
-static const lag_method *find_method(const char *name)
-{
-  for (int i = 0; name && i < lag_nmethods; i++) {
-    if (strcmp(lag_methods[i]->name, name) == 0) {
-      return lag_methods[i];
-    }
-  }
+static const lag_method *find_method(const char *name) {
+  for (int i = 0; name && i < lag_nmethods; i++)
+    if (strcmp(lag_methods[i]->name, name) == 0) return lag_methods[i];
   return NULL;
 }
 
 /* Default values of the options; NULL: no memory. */
-static double *default_options(const lag_method *method)
-{
+static double *default_options(const lag_method *method) {
   double *values = malloc(((size_t)method->noptions + 1) * sizeof *values);
-
-  for (int i = 0; values && i < method->noptions; i++) {
-    values[i] = method->options[i].value;
-  }
+  for (int i = 0; values && i < method->noptions; i++) values[i] = method->options[i].value;
   return values;
 }
 
 /* Sets the state to the start as it is set now, so that a simulation can be inspected before it runs. */
-static void set_start_state(lag_sim *s)
-{
+static void set_start_state(lag_sim *s) {
   int nq = s->pb.nq, n = s->pb.n;
-
-  if (s->scene->start) {
-    s->scene->start(s->p, s->now, s->now + nq, s->now + 2 * nq);
-  }
-  for (int i = 0; i < n; i++) {
-    s->now[i] = isnan(s->start[i]) ? s->now[i] : s->start[i];
-  }
+  if (s->scene->start) s->scene->start(s->p, s->now, s->now + nq, s->now + 2 * nq);
+  for (int i = 0; i < n; i++) s->now[i] = isnan(s->start[i]) ? s->now[i] : s->start[i];
   memcpy(s->begin, s->now, (size_t)n * sizeof(double));
   s->run->t = s->scene->t0;
 }
 
-lag_sim *lag_sim_new(const lag_scene *scene)
-{
-  if (!scene || !scene->model) {
-    return NULL;
-  }
+lag_sim *lag_sim_new(const lag_scene *scene) {
+  if (!scene || !scene->model) return NULL;
   const lag_model *m = scene->model;
   lag_sim *s = m->abi == LAG_ABI && m->real_size == sizeof(double) ? calloc(1, sizeof *s) : NULL;
 
-  if (!s) {
-    return NULL;
-  }
+  if (!s) return NULL;
   s->scene = scene;
   s->pb = (lag_problem){.model = m, .nq = m->nq, .nz = m->nz, .n = 2 * m->nq + m->nz, .dir = 1, .bad_index = -1};
   s->pb.span = scene->has_span ? fabs(scene->t1 - scene->t0) : 0;
@@ -156,28 +126,19 @@ lag_sim *lag_sim_new(const lag_scene *scene)
     lag_sim_free(s);
     return NULL;
   }
-  for (int i = 0; i < m->nu; i++) {
-    s->hold[i] = NAN;
-  }
+  for (int i = 0; i < m->nu; i++) s->hold[i] = NAN;
   if ((method || !scene->method) && lag_sim_set_method(s, chosen, scene->options, method ? scene->noptions : 0) == LAG_ENOMEM) {
     lag_sim_free(s);
     return NULL;
   }
-  if (scene->params) {
-    scene->params(s->p, s->fixed);
-  }
+  if (scene->params) scene->params(s->p, s->fixed);
   set_start_state(s);
   return s;
 }
 
-void lag_sim_free(lag_sim *s)
-{
-  if (!s) {
-    return;
-  }
-  if (s->run && s->run->begun != 0.0 && s->method->fini) {
-    s->method->fini(s->method_work);
-  }
+void lag_sim_free(lag_sim *s) {
+  if (!s) return;
+  if (s->run && s->run->begun != 0.0 && s->method->fini) s->method->fini(s->method_work);
   lag_tangent_free(s);
   free(s->options);
   free(s->fixed);
@@ -188,38 +149,23 @@ void lag_sim_free(lag_sim *s)
   free(s);
 }
 
-static int begun(lag_sim *s)
-{
-  return s->run->begun != 0.0 ? lag_fail(s, LAG_EINVAL, "the run has begun: set this before the first step") : 0;
-}
+static int begun(lag_sim *s) { return s->run->begun != 0.0 ? lag_fail(s, LAG_EINVAL, "the run has begun: set this before the first step") : 0; }
 
-int lag_is_step_option(const char *option)
-{
-  return strcmp(option, "step") == 0 || strcmp(option, "max_step") == 0;
-}
+int lag_is_step_option(const char *option) { return strcmp(option, "step") == 0 || strcmp(option, "max_step") == 0; }
 
-const char *lag_step_error(const lag_sim *s, double x)
-{
+const char *lag_step_error(const lag_sim *s, double x) {
   const lag_scene *c = s->scene;
-
-  if (!(x > 0 && isfinite(x))) {
-    return "a step must be a positive number";
-  }
+  if (!(x > 0 && isfinite(x))) return "a step must be a positive number";
   return x < 4.5 * DBL_EPSILON * (c->has_span ? fmax(fabs(c->t0), fabs(c->t1)) : fmax(fabs(c->t0), 1))
              ? "time would not move in " LAG_PRECISION " precision" : NULL;
 }
 
-double lag_step_size(const lag_problem *pb, double option)
-{
-  return option > 0 ? option : (pb->span > 0 ? pb->span : 10) / 10000;
-}
+double lag_step_size(const lag_problem *pb, double option) { return option > 0 ? option : (pb->span > 0 ? pb->span : 10) / 10000; }
 
-double lag_equal_step(const lag_sim *s)
-{
+double lag_equal_step(const lag_sim *s) {
   const lag_method *m = s->method;
   int adaptive = (m->flags & LAG_METHOD_ADAPTIVE) != 0;
   double step = 0;
-
   for (int i = 0; i < m->noptions; i++) {
     step = strcmp(m->options[i].name, "step") == 0 ? s->options[i] : step;
     adaptive = strcmp(m->options[i].name, "adapt") == 0 ? s->options[i] == 0.0 : adaptive;
@@ -228,47 +174,34 @@ double lag_equal_step(const lag_sim *s)
 }
 
 /* *value := the value of one option; LAG_EINVAL when it is not allowed. */
-static int option_value(lag_sim *s, const lag_method *m, const lag_method_option *o, const lag_option *given, double *value)
-{
+static int option_value(lag_sim *s, const lag_method *m, const lag_method_option *o, const lag_option *given, double *value) {
   *value = given->value;
   if (given->text) {
-    for (int i = 0; o->choices && o->choices[i]; i++) {
+    for (int i = 0; o->choices && o->choices[i]; i++)
       if (strcmp(o->choices[i], given->text) == 0) {
         *value = i;
         return LAG_OK;
       }
-    }
     char words[128] = "";
-    for (int i = 0; o->choices && o->choices[i] && strlen(words) + strlen(o->choices[i]) + 3 < sizeof words; i++) {
+    for (int i = 0; o->choices && o->choices[i] && strlen(words) + strlen(o->choices[i]) + 3 < sizeof words; i++)
       strcat(strcat(words, i ? ", " : ""), o->choices[i]);
-    }
     return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"; it is %s", m->name, o->name, given->text,
                     o->choices ? words : "a number");
   }
   const char *wrong = lag_is_step_option(o->name) && *value != 0.0 ? lag_step_error(s, *value) : isfinite(*value) ? NULL : "it must be finite";
-  if (wrong) {
-    return lag_fail(s, LAG_EINVAL, "method %s: %s = %g: %s", m->name, o->name, *value, wrong);
-  }
-  if (!(*value >= o->min && *value <= o->max)) {
+  if (wrong) return lag_fail(s, LAG_EINVAL, "method %s: %s = %g: %s", m->name, o->name, *value, wrong);
+  if (!(*value >= o->min && *value <= o->max))
     return lag_fail(s, LAG_EINVAL, "method %s: option %s = %g is outside [%g, %g]", m->name, o->name, *value, o->min, o->max);
-  }
   return LAG_OK;
 }
 
-static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, int nopt, double *values)
-{
+static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, int nopt, double *values) {
   for (int k = 0; k < nopt; k++) {
     int i = 0;
-    while (i < m->noptions && opt[k].name && strcmp(m->options[i].name, opt[k].name) != 0) {
-      i++;
-    }
-    if (i == m->noptions || !opt[k].name) {
-      return lag_fail(s, LAG_EINVAL, "method %s has no option \"%s\"", m->name, opt[k].name ? opt[k].name : "");
-    }
+    while (i < m->noptions && opt[k].name && strcmp(m->options[i].name, opt[k].name) != 0) i++;
+    if (i == m->noptions || !opt[k].name) return lag_fail(s, LAG_EINVAL, "method %s has no option \"%s\"", m->name, opt[k].name ? opt[k].name : "");
     int rc = option_value(s, m, &m->options[i], &opt[k], &values[i]);
-    if (rc) {
-      return rc;
-    }
+    if (rc) return rc;
   }
   const char *wrong = m->check ? m->check(values) : NULL;
 
@@ -277,21 +210,16 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
 }
 
 /* Refuses a tolerance finer than the digits of the method's coefficients. */
-static int check_digits(lag_sim *s, const lag_method *method)
-{
-  if (method->finest < DBL_EPSILON || s->tol >= method->finest) {
-    return LAG_OK;
-  }
+static int check_digits(lag_sim *s, const lag_method *method) {
+  if (method->finest < DBL_EPSILON || s->tol >= method->finest) return LAG_OK;
   return lag_fail(s, LAG_EMETHOD, "method %s: its published coefficients have digits for a tolerance of %.0e, not for %.3g; taylor computes "
                   "its own", method->name, method->finest, s->tol);
 }
 
 /* Whether the method can integrate this model; if not, the message says why, and which method can. */
-static int check_method(lag_sim *s, const lag_method *method)
-{
+static int check_method(lag_sim *s, const lag_method *method) {
   const lag_model *m = s->scene->model;
   unsigned needs = method->flags, has = lag_facts(&s->pb);
-
   if (m->constraints && !(needs & LAG_METHOD_CONSTRAINTS)) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot hold constraints (%s); rk45, dop853 and variational can", method->name,
                     m->constraints->of[0].name);
@@ -300,24 +228,20 @@ static int check_method(lag_sim *s, const lag_method *method)
     return lag_fail(s, LAG_EMETHOD, "method %s finds velocities from momenta, and not all coordinates have inertia in this program; `lagc build --method %s` "
                     "builds a program where they have; rk45 and dop853 need none", method->name, method->name);
   }
-  if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) {
-    needs = (needs & ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION)) | LAG_METHOD_JACOBIAN;
-  }
+  if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) needs = (needs & ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION)) | LAG_METHOD_JACOBIAN;
   if ((needs & LAG_METHOD_NO_STATES) && (has & LAG_FIRST_ORDER)) {
     return lag_fail(s, LAG_EMETHOD, "method %s needs momenta beside coordinates, and L is linear in the velocities; gauss is symplectic there, rk45 and "
                     "dop853 can, too", method->name);
   }
-  if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0) {
+  if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0)
     return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can", method->name);
-  }
   if ((needs & LAG_METHOD_STEPS_TO) && m->nev > 0) {
     return lag_fail(s, LAG_EMETHOD, "method %s does not find events (%s), as its motion within a step is too rough; dop853 and radau do", method->name,
                     m->ev[0].name);
   }
   int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !m->constraints;
-  if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH)) {
+  if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH))
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min, max and tables; dop853 does not", method->name);
-  }
   if (((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) || ((needs & LAG_METHOD_JACOBIAN) && !m->linear && !m->constraints) ||
       ((needs & LAG_METHOD_TAYLOR) && !m->taylor)) {
     return lag_fail(s, LAG_EMETHOD,
@@ -327,23 +251,14 @@ static int check_method(lag_sim *s, const lag_method *method)
   return check_digits(s, method);
 }
 
-int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *opt, int nopt)
-{
-  if (!s) {
-    return LAG_EINVAL;
-  }
-  if (!method || nopt < 0 || (nopt > 0 && !opt)) {
-    return lag_fail(s, LAG_EINVAL, "no method, or no array of options");
-  }
+int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *opt, int nopt) {
+  if (!s) return LAG_EINVAL;
+  if (!method || nopt < 0 || (nopt > 0 && !opt)) return lag_fail(s, LAG_EINVAL, "no method, or no array of options");
   int rc = begun(s);
   double *values;
 
-  if (rc) {
-    return rc;
-  }
-  if ((rc = check_method(s, method)) != 0) {
-    return rc;
-  }
+  if (rc) return rc;
+  if ((rc = check_method(s, method)) != 0) return rc;
   values = default_options(method);
   rc = values ? read_options(s, method, opt, nopt, values) : LAG_ENOMEM;
   rc = rc ? rc : set_blocks(s, method, values);
@@ -359,22 +274,13 @@ int lag_sim_set_method(lag_sim *s, const lag_method *method, const lag_option *o
   return LAG_OK;
 }
 
-int lag_sim_set_tolerance(lag_sim *s, double tol)
-{
-  if (!s) {
-    return LAG_EINVAL;
-  }
+int lag_sim_set_tolerance(lag_sim *s, double tol) {
+  if (!s) return LAG_EINVAL;
   int rc = begun(s);
 
-  if (rc) {
-    return rc;
-  }
-  if (!(tol > 0 && isfinite(tol))) {
-    return lag_fail(s, LAG_EINVAL, "a tolerance of %g: it must be positive, for example 1e-9", tol);
-  }
-  if (tol >= 1) {
-    return lag_fail(s, LAG_EINVAL, "a tolerance of %g leaves no digit: it is the relative error of a step, for example 1e-9", tol);
-  }
+  if (rc) return rc;
+  if (!(tol > 0 && isfinite(tol))) return lag_fail(s, LAG_EINVAL, "a tolerance of %g: it must be positive, for example 1e-9", tol);
+  if (tol >= 1) return lag_fail(s, LAG_EINVAL, "a tolerance of %g leaves no digit: it is the relative error of a step, for example 1e-9", tol);
   if (tol < 4.5 * DBL_EPSILON) {
     return lag_fail(s, LAG_EINVAL, "a tolerance of %g is below what " LAG_PRECISION " precision can give: write %.0e or more" LAG_MORE_PRECISION,
                     tol, 4.51 * DBL_EPSILON);
@@ -383,24 +289,14 @@ int lag_sim_set_tolerance(lag_sim *s, double tol)
   return LAG_OK;
 }
 
-static int sign_ok(int sign, double x)
-{
-  return sign == 1 ? x > 0 : sign == 2 ? x >= 0 : sign == -1 ? x < 0 : sign == -2 ? x <= 0 : 1;
-}
+static int sign_ok(int sign, double x) { return sign == 1 ? x > 0 : sign == 2 ? x >= 0 : sign == -1 ? x < 0 : sign == -2 ? x <= 0 : 1; }
 
-static const char *sign_text(int sign)
-{
-  return sign == 1 ? "> 0" : sign == 2 ? ">= 0" : sign == -1 ? "< 0" : "<= 0";
-}
+static const char *sign_text(int sign) { return sign == 1 ? "> 0" : sign == 2 ? ">= 0" : sign == -1 ? "< 0" : "<= 0"; }
 
-static int unknown_name(lag_sim *s, const char *name)
-{
+static int unknown_name(lag_sim *s, const char *name) {
   const lag_model *m = s->scene->model;
   char near[64];
-
-  if (lag_family_member(m, name, 0, near, sizeof near)) {
-    return lag_fail(s, LAG_EINVAL, "%s has parts: set %s, and so on", name, near);
-  }
+  if (lag_family_member(m, name, 0, near, sizeof near)) return lag_fail(s, LAG_EINVAL, "%s has parts: set %s, and so on", name, near);
   return lag_nearest_name(m, name, near, sizeof near)
              ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name, m->name,
                         near)
@@ -408,28 +304,19 @@ static int unknown_name(lag_sim *s, const char *name)
 }
 
 /* A value in the declared unit of var, converted to SI; the offset of a unit does not apply to rates. */
-static double in_si(int kind, const lag_var *var, double value)
-{
-  return value * var->factor + (kind == LAG_IS_V ? 0 : var->offset);
-}
+static double in_si(int kind, const lag_var *var, double value) { return value * var->factor + (kind == LAG_IS_V ? 0 : var->offset); }
 
 /* Whether var may have `value`, in its declared unit. */
-static int check_value(lag_sim *s, int kind, const lag_var *var, const char *name, double value)
-{
-  if (!isfinite(value)) {
-    return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
-  }
-  if (kind == LAG_IS_P && !sign_ok(var->sign, in_si(kind, var, value))) {
+static int check_value(lag_sim *s, int kind, const lag_var *var, const char *name, double value) {
+  if (!isfinite(value)) return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
+  if (kind == LAG_IS_P && !sign_ok(var->sign, in_si(kind, var, value)))
     return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, value, var->name, sign_text(var->sign));
-  }
   return LAG_OK;
 }
 
 /* Sets parameter, input constant or start i to a value in SI. */
-static void give(lag_sim *s, int kind, int i, double value)
-{
+static void give(lag_sim *s, int kind, int i, double value) {
   int nq = s->pb.nq;
-
   switch (kind) {
   case LAG_IS_P:
     s->p[i] = value;
@@ -445,8 +332,7 @@ static void give(lag_sim *s, int kind, int i, double value)
 }
 
 /* Sets all members of the family `name`. 0: no such family; < 0: the value is not allowed. */
-static int set_family(lag_sim *s, const char *name, double value)
-{
+static int set_family(lag_sim *s, const char *name, double value) {
   const lag_model *m = s->scene->model;
   size_t n = strlen(name);
   int velocity = n > 1 && name[n - 1] == '\'', found = 0;
@@ -455,51 +341,35 @@ static int set_family(lag_sim *s, const char *name, double value)
     const lag_var *vars;
   } tables[] = {{LAG_IS_P, m->np, m->p}, {velocity ? LAG_IS_V : LAG_IS_Q, m->nq, m->q}, {LAG_IS_Z, m->nz, m->z}};
 
-  for (size_t k = 0; k < sizeof tables / sizeof *tables; k++) {
+  for (size_t k = 0; k < sizeof tables / sizeof *tables; k++)
     for (int i = 0; i < tables[k].n; i++) {
       const lag_var *var = &tables[k].vars[i];
-      if (!lag_is_member(var->name, name, n - (tables[k].kind == LAG_IS_V))) {
-        continue;
-      }
+      if (!lag_is_member(var->name, name, n - (tables[k].kind == LAG_IS_V))) continue;
       int rc = found ? LAG_OK : check_value(s, tables[k].kind, var, name, value); /* all members share unit and sign */
-      if (rc) {
-        return rc;
-      }
+      if (rc) return rc;
       give(s, tables[k].kind, i, in_si(tables[k].kind, var, value));
       found = 1;
     }
-  }
   return found;
 }
 
 /* full := the full name of the family `name` of one effect. 0: no effect, or more than one, has it. */
-static int effects_family(const lag_model *m, const char *name, char *full, size_t nfull)
-{
+static int effects_family(const lag_model *m, const char *name, char *full, size_t nfull) {
   int known = 0;
-
   for (int i = 0; i < m->np; i++) {
     const char *var = m->p[i].name, *own = lag_name_in_effect(var);
-    if (!own || !lag_is_member(own, name, strlen(name))) {
-      continue;
-    }
+    if (!own || !lag_is_member(own, name, strlen(name))) continue;
     size_t effect = (size_t)(own - var);
-    if (known && strncmp(full, var, effect) != 0) {
-      return 0;
-    }
+    if (known && strncmp(full, var, effect) != 0) return 0;
     snprintf(full, nfull, "%.*s%s", (int)effect, var, name);
     known = 1;
   }
   return known;
 }
 
-int lag_sim_set(lag_sim *s, const char *name, double value)
-{
-  if (!s) {
-    return LAG_EINVAL;
-  }
-  if (!name) {
-    return lag_fail(s, LAG_EINVAL, "a value without a name");
-  }
+int lag_sim_set(lag_sim *s, const char *name, double value) {
+  if (!s) return LAG_EINVAL;
+  if (!name) return lag_fail(s, LAG_EINVAL, "a value without a name");
   const lag_model *m = s->scene->model;
   const lag_var *var = NULL;
   int i, rc = begun(s), kind = lag_find_name(m, name, &i, &var);
@@ -507,16 +377,12 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
   if (rc == 0 && kind == LAG_IS_NOTHING) {
     char full[128];
     rc = set_family(s, name, value);
-    if (rc == 0 && effects_family(m, name, full, sizeof full)) {
-      rc = set_family(s, full, value);
-    }
+    if (rc == 0 && effects_family(m, name, full, sizeof full)) rc = set_family(s, full, value);
     rc = rc == 0 ? unknown_name(s, name) : rc > 0 ? LAG_OK : rc;
   } else if (rc == 0 && (rc = check_value(s, kind, var, name, value)) == 0) {
     give(s, kind, i, in_si(kind, var, value));
   }
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   if (s->scene->params) {
     s->scene->params(s->p, s->fixed); /* parameters may depend on this one */
   }
@@ -524,23 +390,15 @@ int lag_sim_set(lag_sim *s, const char *name, double value)
   return LAG_OK;
 }
 
-int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *context)
-{
-  if (!s) {
-    return LAG_EINVAL;
-  }
-  if (!name) {
-    return lag_fail(s, LAG_EINVAL, "an input without a name");
-  }
+int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *context) {
+  if (!s) return LAG_EINVAL;
+  if (!name) return lag_fail(s, LAG_EINVAL, "an input without a name");
   const lag_var *var = NULL;
   int i, rc = begun(s), kind = lag_find_name(s->scene->model, name, &i, &var);
 
-  if (rc) {
-    return rc;
-  }
-  if (kind != LAG_IS_U) {
+  if (rc) return rc;
+  if (kind != LAG_IS_U)
     return kind == LAG_IS_NOTHING ? unknown_name(s, name) : lag_fail(s, LAG_EINVAL, "%s is not an input; set it by lag_sim_set", name);
-  }
   lag_signal before = s->signal[i];
   s->signal[i] = (lag_signal){fn, context};
   if (s->options && (rc = check_method(s, s->method)) != 0) { /* the method may need a fact that an input function takes away */
@@ -551,31 +409,22 @@ int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *cont
   return LAG_OK;
 }
 
-int lag_setup_start(lag_sim *s)
-{
+int lag_setup_start(lag_sim *s) {
   const lag_scene *c = s->scene;
   const lag_model *m = c->model;
   int n = s->pb.n;
-
   int rc = check_digits(s, s->method);
 
-  if (rc) {
-    return rc;
-  }
-  for (int i = 0; i < m->np; i++) {
+  if (rc) return rc;
+  for (int i = 0; i < m->np; i++)
     if (!sign_ok(m->p[i].sign, s->p[i])) {
       return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, lag_declared(&m->p[i], s->p[i]),
                       m->p[i].name, sign_text(m->p[i].sign));
     }
-  }
   set_start_state(s);
-  if (lag_not_finite(n, s->now) >= 0) {
-    return lag_fail(s, LAG_ENAN, "the start is not finite");
-  }
+  if (lag_not_finite(n, s->now) >= 0) return lag_fail(s, LAG_ENAN, "the start is not finite");
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */
-  if ((rc = lag_consistent_start(s)) != 0) {
-    return rc;
-  }
+  if ((rc = lag_consistent_start(s)) != 0) return rc;
   memcpy(s->begin, s->now, (size_t)n * sizeof(double));
   memcpy(s->y, s->now, (size_t)n * sizeof(double));
   s->run->t = s->run->from = c->t0;

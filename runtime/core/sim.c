@@ -9,15 +9,12 @@
 
 /* Begins the run at the first advance: start, method, monitors, events. For t = t0 only the start is computed, as the direction of time is not
  * known yet. */
-static int begin(lag_sim *s, double t)
-{
+static int begin(lag_sim *s, double t) {
   s->run->dir = s->pb.dir = t < s->scene->t0 ? -1 : 1;
   int rc = lag_setup_start(s);
 
   rc = rc ? rc : lag_contact_begin(s);
-  if (rc || t == s->scene->t0) {
-    return rc;
-  }
+  if (rc || t == s->scene->t0) return rc;
   if (!s->options && s->scene->method && strcmp(s->scene->method, s->method->name) != 0) {
     return lag_fail(s, LAG_EMETHOD, "scene %s asks for the method %s, which is not in liblag.a: set it by lag_sim_set_method, or another", s->scene->name,
                     s->scene->method);
@@ -25,20 +22,16 @@ static int begin(lag_sim *s, double t)
   if (!s->options) { /* the scene's method was refused and not replaced: refuse it again, for the message */
     return lag_sim_set_method(s, s->method, s->scene->options, s->scene->noptions);
   }
-  if ((rc = s->method->init(s->method_work, &s->pb, s->options)) != 0) {
-    return lag_explain(s, rc);
-  }
+  if ((rc = s->method->init(s->method_work, &s->pb, s->options)) != 0) return lag_explain(s, rc);
   s->run->begun = 1;
   rc = lag_monitors_begin(s);
   return rc ? rc : lag_events_arm(s);
 }
 
 /* Passes a jump of a table, two rows next to each other in double precision, without a step. */
-static void pass_jump(lag_sim *s)
-{
+static void pass_jump(lag_sim *s) {
   Run *r = s->run;
   double row;
-
   if (lag_next_row_inline(&s->pb, r->t, &row) < HUGE_VAL && row == nextafter(r->t, r->dir * HUGE_VAL)) {
     r->t = row;
     s->method->reset(s->method_work, &s->pb);
@@ -46,16 +39,12 @@ static void pass_jump(lag_sim *s)
 }
 
 /* Makes a step of the method and locates its first event. */
-static int take(lag_sim *s, double t_stop)
-{
+static int take(lag_sim *s, double t_stop) {
   Run *r = s->run;
-
   pass_jump(s);
   double t = r->t, row = t_stop;
 
-  if (lag_next_row_inline(&s->pb, t, &row) < fabs(t_stop - t)) {
-    t_stop = row;
-  }
+  if (lag_next_row_inline(&s->pb, t, &row) < fabs(t_stop - t)) t_stop = row;
   lag_copy(s->pb.n, s->now, s->y0);
   s->pb.detail = NULL;
   s->pb.bad_t = t;
@@ -63,9 +52,7 @@ static int take(lag_sim *s, double t_stop)
   rc = rc ? rc : lag_changes_branch(s, t);
   rc = rc ? rc : lag_detect_stall(s, t);
   rc = rc ? rc : lag_crosses_force_pole(s, t);
-  if (rc) {
-    return lag_explain(s, rc);
-  }
+  if (rc) return lag_explain(s, rc);
   r->steps++;
   r->have_step = 1;
   r->step_t0 = r->from = r->t;
@@ -74,17 +61,13 @@ static int take(lag_sim *s, double t_stop)
 }
 
 /* `now` := the state at time t of the present step. */
-static int move_to(lag_sim *s, double t)
-{
+static int move_to(lag_sim *s, double t) {
   const Run *r = s->run;
-
   if (t == r->step_t1) {
     lag_copy(s->pb.n, s->y, s->now);
   } else if (t != r->t) {
     int rc = lag_dense_state(s, t, s->yc);
-    if (rc) {
-      return rc;
-    }
+    if (rc) return rc;
     lag_copy(s->pb.n, s->yc, s->now);
   }
   s->run->t = t;
@@ -92,44 +75,30 @@ static int move_to(lag_sim *s, double t)
 }
 
 /* Moves to the next event, or to the end of the step. */
-static int pass_limit(lag_sim *s)
-{
+static int pass_limit(lag_sim *s) {
   Run *r = s->run;
-
   int rc = move_to(s, r->limit);
 
   rc = rc ? rc : lag_monitors_record(s, r->t, s->now);
-  if (rc) {
-    return rc;
-  }
-  if (r->pending != 0.0) {
-    return lag_events_fire(s);
-  }
+  if (rc) return rc;
+  if (r->pending != 0.0) return lag_events_fire(s);
   r->have_step = 0;
   lag_copy(s->scene->model->nev, s->sign_end, s->sign);
   return LAG_OK;
 }
 
 /* Begins the run if needed; whether it can advance to t. */
-static int begin_or_check(lag_sim *s, double t)
-{
+static int begin_or_check(lag_sim *s, double t) {
   const Run *r = s->run;
   int rc = 0;
-
-  if (!isfinite(t)) {
-    return lag_fail(s, LAG_EINVAL, "cannot advance to t = %g", t);
-  }
-  if (r->begun == 0.0 && (rc = begin(s, t)) != 0) {
-    return rc;
-  }
+  if (!isfinite(t)) return lag_fail(s, LAG_EINVAL, "cannot advance to t = %g", t);
+  if (r->begun == 0.0 && (rc = begin(s, t)) != 0) return rc;
   return (t - r->t) * r->dir < 0 ? lag_fail(s, LAG_EINVAL, "cannot go from t = %g back to %g", r->t, t) : LAG_OK;
 }
 
 /* Ends the present step, or makes a new one. */
-static int continue_run(lag_sim *s, double t)
-{
+static int continue_run(lag_sim *s, double t) {
   int rc;
-
   if (s->run->have_step != 0.0) {
     rc = pass_limit(s);
     int bad = rc < 0 || !s->tangent ? rc : lag_tangent_pass(s);
@@ -137,52 +106,35 @@ static int continue_run(lag_sim *s, double t)
   } else {
     rc = take(s, t);
   }
-  if (rc == 0 && s->run->have_step == 0.0 && s->on_step && s->on_step(s->on_step_context, s)) {
-    rc = LAG_INTERRUPTED;
-  }
+  if (rc == 0 && s->run->have_step == 0.0 && s->on_step && s->on_step(s->on_step_context, s)) rc = LAG_INTERRUPTED;
   return rc;
 }
 
-int lag_sim_advance(lag_sim *s, double t)
-{
-  if (!s) {
-    return LAG_EINVAL;
-  }
+int lag_sim_advance(lag_sim *s, double t) {
+  if (!s) return LAG_EINVAL;
   const Run *r = s->run;
   int rc = begin_or_check(s, t);
 
   while (rc == 0) {
-    if (r->have_step != 0.0 && (r->limit - t) * r->dir >= 0) {
-      return move_to(s, t);
-    }
-    if (r->have_step == 0.0 && r->t == t) {
-      return LAG_OK;
-    }
+    if (r->have_step != 0.0 && (r->limit - t) * r->dir >= 0) return move_to(s, t);
+    if (r->have_step == 0.0 && r->t == t) return LAG_OK;
     rc = continue_run(s, t);
   }
   return rc;
 }
 
-int lag_sim_ensure_step(lag_sim *s, double t, double *reach)
-{
-  if (!s || !reach) {
-    return LAG_EINVAL;
-  }
+int lag_sim_ensure_step(lag_sim *s, double t, double *reach) {
+  if (!s || !reach) return LAG_EINVAL;
   const Run *r = s->run;
   int rc = begin_or_check(s, t);
 
-  while (rc == 0 && r->t != t && (r->have_step == 0.0 || r->limit == r->t)) {
-    rc = continue_run(s, t);
-  }
+  while (rc == 0 && r->t != t && (r->have_step == 0.0 || r->limit == r->t)) rc = continue_run(s, t);
   *reach = r->t == t || rc ? r->t : (r->limit - t) * r->dir < 0 ? r->limit : t;
   return rc;
 }
 
-int lag_sim_eval(lag_sim *s, double t, double *y)
-{
-  if (!s || !y || !isfinite(t)) {
-    return LAG_EINVAL;
-  }
+int lag_sim_eval(lag_sim *s, double t, double *y) {
+  if (!s || !y || !isfinite(t)) return LAG_EINVAL;
   const Run *r = s->run;
   size_t bytes = (size_t)s->pb.n * sizeof(double);
 
@@ -190,9 +142,7 @@ int lag_sim_eval(lag_sim *s, double t, double *y)
     memcpy(y, s->now, bytes);
     return LAG_OK;
   }
-  if (r->have_step == 0.0 || (t - r->step_t0) * r->dir < 0 || (t - r->limit) * r->dir > 0) {
-    return LAG_EINVAL;
-  }
+  if (r->have_step == 0.0 || (t - r->step_t0) * r->dir < 0 || (t - r->limit) * r->dir > 0) return LAG_EINVAL;
   if (t == r->step_t1) {
     memcpy(y, s->y, bytes);
     return LAG_OK;

@@ -20,50 +20,35 @@
 enum { MOST = 10000 };
 
 /* to[nswitch] := the switching functions at y, t. 0: they have values. */
-static int sides_at(lag_sim *s, double t, const double *y, double *to)
-{
+static int sides_at(lag_sim *s, double t, const double *y, double *to) {
   const lag_model *m = s->scene->model;
   int rc = lag_inputs(&s->pb, t);
-
   rc = rc ? rc : m->switch_values(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, to, s->work);
   return rc || lag_not_finite(m->nswitch, to) >= 0;
 }
 
 /* to[n] := the state at fraction x of the line from now to y at t1; *t := its time. */
-static void on_line(const lag_sim *s, double x, double t1, double *t, double *to)
-{
-  for (int i = 0; i < s->pb.n; i++) {
-    to[i] = s->now[i] + x * (s->y[i] - s->now[i]);
-  }
+static void on_line(const lag_sim *s, double x, double t1, double *t, double *to) {
+  for (int i = 0; i < s->pb.n; i++) to[i] = s->now[i] + x * (s->y[i] - s->now[i]);
   *t = s->run->t + x * (t1 - s->run->t);
 }
 
 /* Rate of switching function k along the flow at y, t; NaN: no value. Uses yb, yc. */
-static double rate_of(lag_sim *s, int k, double t, double dt, const double *y)
-{
+static double rate_of(lag_sim *s, int k, double t, double dt, const double *y) {
   double *now = s->sides + 2 * s->scene->model->nswitch, before, calls = s->pb.rhs_calls;
-
-  if (lag_rhs(&s->pb, t, y, s->yb) || sides_at(s, t, y, now)) {
-    return NAN;
-  }
+  if (lag_rhs(&s->pb, t, y, s->yb) || sides_at(s, t, y, now)) return NAN;
   s->pb.rhs_calls = calls;
   before = now[k];
-  for (int i = 0; i < s->pb.n; i++) {
-    s->yc[i] = y[i] + dt * s->yb[i];
-  }
+  for (int i = 0; i < s->pb.n; i++) s->yc[i] = y[i] + dt * s->yb[i];
   return sides_at(s, t + dt, s->yc, now) ? NAN : (now[k] - before) / dt;
 }
 
 /* Whether a step of equal size has stayed on one side of a surface although its first derivative leads across and the derivative there leads
  * back: its path is not that of the derivatives at its ends, r0 and r1. */
-static int equal_step_sticks(lag_sim *s, int k, double t, double dt)
-{
+static int equal_step_sticks(lag_sim *s, int k, double t, double dt) {
   const double part = 0.25;
   double first = s->sides[k], last = s->sides[k + s->scene->model->nswitch], whole = t - s->run->t, r0, r1;
-
-  if (!(lag_equal_step(s) > 0) || !(first * (r0 = rate_of(s, k, s->run->t, dt, s->now)) * whole < 0) || !(fabs(first) < fabs(r0 * whole))) {
-    return 0;
-  }
+  if (!(lag_equal_step(s) > 0) || !(first * (r0 = rate_of(s, k, s->run->t, dt, s->now)) * whole < 0) || !(fabs(first) < fabs(r0 * whole))) return 0;
   for (int i = 0; i < s->pb.n; i++) {
     s->ya[i] = s->now[i] + whole * s->yb[i]; /* rate_of has left the derivative there */
   }
@@ -72,30 +57,22 @@ static int equal_step_sticks(lag_sim *s, int k, double t, double dt)
 }
 
 /* Whether a motion that meets the surface of switching function k within the step to t stays on it. */
-static int stays(lag_sim *s, int k, double t)
-{
+static int stays(lag_sim *s, int k, double t) {
   const double near = 0x1p-6;
   const double *first = s->sides, *last = first + s->scene->model->nswitch;
   double *at = s->sides + 2 * s->scene->model->nswitch, dt = near * (t - s->run->t), a = 0, b = 1, when = 0, r0, r1;
-
   if (s->scene->model->switches[k].nonnegative) {
     r0 = rate_of(s, k, s->run->t, dt, s->now) * s->pb.dir;
     r1 = rate_of(s, k, t, dt, s->y) * s->pb.dir;
     return r0 < 0 && r1 < 0 && first[k] < -r0 * fabs(t - s->run->t) && r1 < near * r0;
   }
-  if (!(first[k] * last[k] < 0)) {
-    return first[k] * last[k] > 0 && equal_step_sticks(s, k, t, dt);
-  }
+  if (!(first[k] * last[k] < 0)) return first[k] * last[k] > 0 && equal_step_sticks(s, k, t, dt);
   for (int turn = 0, on_it = 0; turn < 60 && on_it < 4; turn++) {
     double mid = a + (b - a) * (on_it ? 0.3 + 0.1 * on_it : 0.5);
     on_line(s, mid, t, &when, s->ya);
-    if (sides_at(s, when, s->ya, at)) {
-      return 0;
-    }
+    if (sides_at(s, when, s->ya, at)) return 0;
     on_it = at[k] == 0.0 ? on_it + 1 : 0; /* exactly on the surface, where sign(0) belongs to neither side */
-    if (!on_it) {
-      *(at[k] * first[k] > 0 ? &a : &b) = mid;
-    }
+    if (!on_it) *(at[k] * first[k] > 0 ? &a : &b) = mid;
   }
   on_line(s, a, t, &when, s->ya);
   r0 = rate_of(s, k, when, dt, s->ya) * s->pb.dir;
@@ -104,68 +81,45 @@ static int stays(lag_sim *s, int k, double t)
   return r0 * first[k] < 0 && r1 * last[k] < 0;
 }
 
-static int say_switch(lag_sim *s, int k, double t)
-{
+static int say_switch(lag_sim *s, int k, double t) {
   const lag_switch *c = &s->scene->model->switches[k];
   char line[32] = "";
-
-  if (c->line) {
-    snprintf(line, sizeof line, " in line %d", c->line);
-  }
+  if (c->line) snprintf(line, sizeof line, " in line %d", c->line);
   return lag_note(&s->pb, LAG_ESTALL, t, "it stays where %s is 0: the force of `%s`%s jumps there and pulls back from both sides, as dry friction does on a "
                   "body that sticks, which is not supported; smooth the force, as tanh(v/w) for sign(v), or let an event stop the run", c->surface, c->text,
                   line);
 }
 
 /* Criterion 1: a sliding motion. */
-static int check_sliding(lag_sim *s, double t)
-{
+static int check_sliding(lag_sim *s, double t) {
   const lag_model *m = s->scene->model;
-
-  if (sides_at(s, s->run->t, s->now, s->sides) || sides_at(s, t, s->y, s->sides + m->nswitch)) {
-    return LAG_OK;
-  }
-  for (int k = 0; k < m->nswitch; k++) {
-    if (stays(s, k, t)) {
-      return say_switch(s, k, t);
-    }
-  }
+  if (sides_at(s, s->run->t, s->now, s->sides) || sides_at(s, t, s->y, s->sides + m->nswitch)) return LAG_OK;
+  for (int k = 0; k < m->nswitch; k++)
+    if (stays(s, k, t)) return say_switch(s, k, t);
   return LAG_OK;
 }
 
 /* The switching function near whose surface the motion has stayed: |value| < |rate| led. -1: none. */
-static int hangs_at(lag_sim *s, double t, double led)
-{
+static int hangs_at(lag_sim *s, double t, double led) {
   int k = s->scene->model->nswitch - 1;
-
-  while (k >= 0 && (sides_at(s, t, s->y, s->sides) || !(fabs(s->sides[k]) < fabs(rate_of(s, k, t, t - s->run->t, s->y)) * led))) {
-    k--;
-  }
+  while (k >= 0 && (sides_at(s, t, s->y, s->sides) || !(fabs(s->sides[k]) < fabs(rate_of(s, k, t, t - s->run->t, s->y)) * led))) k--;
   return k;
 }
 
 /* Criterion 2: shrinking steps. */
-static int check_pace(lag_sim *s, double t)
-{
+static int check_pace(lag_sim *s, double t) {
   const double pace = 1e-5, mean = 1e-2, dependent = 1e-2;
   Run *r = s->run;
   lag_problem *pb = &s->pb;
   double led = fabs(t - r->stall_since), gone = fabs(t - s->scene->t0);
   int k = -1;
   char line[32];
-
   r->stall_since = t;
-  if (led > pace * gone || led * r->steps > mean * MOST * gone || lag_equal_step(s) > 0) {
-    return 0;
-  }
+  if (led > pace * gone || led * r->steps > mean * MOST * gone || lag_equal_step(s) > 0) return 0;
   double apart = pb->model->constraints ? lag_independence(pb, t, s->y, &k) : 1;
-  if ((k < 0 || apart > dependent) && lag_facts(pb) & LAG_SMOOTH) {
-    return 0;
-  }
+  if ((k < 0 || apart > dependent) && lag_facts(pb) & LAG_SMOOTH) return 0;
   int at = hangs_at(s, t, led);
-  if (at >= 0) {
-    return say_switch(s, at, t);
-  }
+  if (at >= 0) return say_switch(s, at, t);
   if (k < 0 || apart > dependent) {
     return lag_note(pb, LAG_ESTEP, t, "the last %d steps advanced the time by only %.3g s: a force or a constraint jumps here, and the motion does not leave "
                     "the place; smooth it, as sqrt(x^2 + w^2) for abs(x), or model the jump as a contact or an event", MOST, led);
@@ -177,12 +131,10 @@ static int check_pace(lag_sim *s, double t)
 }
 
 /* Criterion 3: counts equal steps longer than half a period. */
-static void look_for_period(lag_sim *s, double t)
-{
+static void look_for_period(lag_sim *s, double t) {
   const double half_turn = 3.141592653589793;
   lag_problem *pb = &s->pb;
   double h = lag_equal_step(s), calls = pb->rhs_calls, square = 0, product = 0;
-
   if (!(h > 0) || pb->nq == 0 || lag_rhs(pb, s->run->t, s->now, s->ya) || lag_rhs(pb, t, s->y, s->yb)) {
     pb->rhs_calls = calls;
     return;
@@ -201,18 +153,13 @@ static void look_for_period(lag_sim *s, double t)
   }
 }
 
-int lag_detect_stall(lag_sim *s, double t)
-{
+int lag_detect_stall(lag_sim *s, double t) {
   Run *r = s->run;
   long long steps = (long long)r->steps + 1;
   int rc = 0;
 
-  if (s->scene->model->nswitch) {
-    rc = check_sliding(s, t);
-  }
-  if (rc == 0 && steps % MOST == 0) {
-    rc = check_pace(s, t);
-  }
+  if (s->scene->model->nswitch) rc = check_sliding(s, t);
+  if (rc == 0 && steps % MOST == 0) rc = check_pace(s, t);
   if (rc == 0 && (steps & (steps - 1)) == 0) { /* after 1, 2, 4, 8, ... steps */
     look_for_period(s, t);
   }

@@ -13,13 +13,9 @@
 #include "core/core.h"
 #include "numeric/dense.h"
 
-static size_t block(const lag_sim *s)
-{
-  return (size_t)s->pb.n * (size_t)s->tangent_columns;
-}
+static size_t block(const lag_sim *s) { return (size_t)s->pb.n * (size_t)s->tangent_columns; }
 
-void lag_tangent_free(lag_sim *s)
-{
+void lag_tangent_free(lag_sim *s) {
   free(s->tangent);
   s->tangent = s->tangent_jump = s->tangent_scratch = NULL;
   s->tangent_at_event = 0;
@@ -27,11 +23,9 @@ void lag_tangent_free(lag_sim *s)
 }
 
 /* Whether steps of the method can be differentiated; if not, the message says what to do. */
-static int check(lag_sim *s)
-{
+static int check(lag_sim *s) {
   const lag_model *m = s->scene->model;
   int in_p = m->nq > 0 && (s->method->flags & LAG_METHOD_VARIATION) && !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
-
   if (m->constraints) {
     return lag_fail(s, LAG_EMETHOD, "there is no tangent of a motion with constraints yet (%s): describe the model by coordinates that "
                                     "need no constraints",
@@ -49,77 +43,52 @@ static int check(lag_sim *s)
   return LAG_OK;
 }
 
-static int njump(const lag_sim *s)
-{
+static int njump(const lag_sim *s) {
   const lag_linear *l = s->scene->model->linear;
-
   return l && l->jumps ? l->njump : 0;
 }
 
 /* Scratch of a jump: its entries, S[n n] and a copy, four vectors and a copy of Y[n k]. */
-static size_t jump_size(const lag_sim *s, int k)
-{
+static size_t jump_size(const lag_sim *s, int k) {
   size_t n = (size_t)s->pb.n;
-
   return njump(s) ? (size_t)njump(s) + 2 * n * n + 4 * (n + 1) + n * (size_t)k : 0;
 }
 
 /* Allocates k columns, when there is another number of them. */
-static int make_room(lag_sim *s, int k)
-{
+static int make_room(lag_sim *s, int k) {
   size_t n = (size_t)s->pb.n, size = n * (size_t)k;
-
-  if (s->tangent && s->tangent_columns == k) {
-    return LAG_OK;
-  }
+  if (s->tangent && s->tangent_columns == k) return LAG_OK;
   lag_tangent_free(s);
   s->tangent = calloc(size + jump_size(s, k) + s->method->tangent_size(&s->pb, k) + 1, sizeof *s->tangent);
-  if (!s->tangent) {
-    return lag_fail(s, LAG_ENOMEM, "out of memory");
-  }
+  if (!s->tangent) return lag_fail(s, LAG_ENOMEM, "out of memory");
   s->tangent_jump = s->tangent + size;
   s->tangent_scratch = s->tangent_jump + jump_size(s, k);
   s->tangent_columns = k;
   return LAG_OK;
 }
 
-int lag_sim_set_tangent(lag_sim *s, int k, const double *Y)
-{
-  if (!s) {
-    return LAG_EINVAL;
-  }
+int lag_sim_set_tangent(lag_sim *s, int k, const double *Y) {
+  if (!s) return LAG_EINVAL;
   int n = s->pb.n, rc;
 
   if (k == 0) {
     lag_tangent_free(s);
     return LAG_OK;
   }
-  if (k < 0 || (!Y && k != n)) {
-    return lag_fail(s, LAG_EINVAL, "a tangent of %d columns: give them, or take all %d", k, n);
-  }
-  if (s->run->have_step != 0.0) {
+  if (k < 0 || (!Y && k != n)) return lag_fail(s, LAG_EINVAL, "a tangent of %d columns: give them, or take all %d", k, n);
+  if (s->run->have_step != 0.0)
     return lag_fail(s, LAG_EINVAL, "a tangent begins at the end of a step, and t = %s lies within one", LAG_TEXT(s->run->t));
-  }
-  if ((rc = check(s)) != 0 || (rc = make_room(s, k)) != 0) {
-    return rc;
-  }
-  if (Y) {
-    memcpy(s->tangent, Y, block(s) * sizeof *Y);
-  } else {
-    memset(s->tangent, 0, block(s) * sizeof *s->tangent);
-  }
-  for (int i = 0; i < n && !Y; i++) {
-    s->tangent[i * n + i] = 1;
-  }
+  if ((rc = check(s)) != 0 || (rc = make_room(s, k)) != 0) return rc;
+  if (Y) memcpy(s->tangent, Y, block(s) * sizeof *Y);
+  else memset(s->tangent, 0, block(s) * sizeof *s->tangent);
+  for (int i = 0; i < n && !Y; i++) s->tangent[i * n + i] = 1;
   return LAG_OK;
 }
 
 /* Y := D Y, with D the derivative of the last step up to t. */
-static int advance_tangent(lag_sim *s, double t, double *Y)
-{
+static int advance_tangent(lag_sim *s, double t, double *Y) {
   lag_problem *pb = &s->pb;
   double rhs_calls = pb->rhs_calls, systems = pb->systems, iterations = pb->iterations;
-
   pb->detail = NULL;
   pb->bad_index = -1;
   int rc = s->method->tangent(s->method_work, pb, t, s->tangent_columns, Y, s->tangent_scratch);
@@ -129,8 +98,7 @@ static int advance_tangent(lag_sim *s, double t, double *Y)
   return rc ? lag_explain(s, rc) : LAG_OK;
 }
 
-int lag_tangent_pass(lag_sim *s)
-{
+int lag_tangent_pass(lag_sim *s) {
   if (!s->tangent || s->run->have_step != 0.0 || s->tangent_at_event) {
     s->tangent_at_event = 0;
     return LAG_OK;
@@ -140,8 +108,7 @@ int lag_tangent_pass(lag_sim *s)
 
 /* ---- Events that change the state */
 
-static int refuse(lag_sim *s, int k, const char *why)
-{
+static int refuse(lag_sim *s, int k, const char *why) {
   return lag_fail(s, LAG_EMETHOD, "event %s changes the state at t = %s s: %s; take a scene without it, or end the run before",
                   s->scene->model->ev[k].name, LAG_TEXT(s->run->t), why);
 }
@@ -150,12 +117,10 @@ typedef struct Jump {
   double *d, *S, *g, *Rt, *before, *after, *Y, *copy; /* entries; S[n n]; gradient of g and g_t; R_t; f and f+; copies of the tangent and of S */
 } Jump;
 
-static Jump jump_layout(const lag_sim *s)
-{
+static Jump jump_layout(const lag_sim *s) {
   int n = s->pb.n;
   double *x = s->tangent_jump;
   Jump j = {.d = x};
-
   j.S = j.d + njump(s);
   j.g = j.S + n * n;
   j.Rt = j.g + n + 1;
@@ -167,17 +132,13 @@ static Jump jump_layout(const lag_sim *s)
 }
 
 /* S := R_y, and R_t, gradient of g and g_t of event k. 0: the model lists none. */
-static int collect_derivatives(const lag_sim *s, int k, const Jump *j)
-{
+static int collect_derivatives(const lag_sim *s, int k, const Jump *j) {
   const lag_linear *l = s->scene->model->linear;
   int n = s->pb.n, listed = 0;
-
   memset(j->S, 0, (size_t)(n * n) * sizeof(double));
   memset(j->Rt, 0, (size_t)n * sizeof(double));
   memset(j->g, 0, (size_t)(n + 1) * sizeof(double));
-  for (int i = 0; i < n; i++) {
-    j->S[i * n + i] = 1;
-  }
+  for (int i = 0; i < n; i++) j->S[i * n + i] = 1;
   for (int e = 0; e < njump(s); e++) { /* each component that is set has an entry for itself */
     const lag_jump *at = &l->jump[e];
     if (at->event == k) {
@@ -190,109 +151,70 @@ static int collect_derivatives(const lag_sim *s, int k, const Jump *j)
 }
 
 /* Y := S Y; returns whether it is finite. */
-static int apply_saltation(lag_sim *s, const Jump *j)
-{
+static int apply_saltation(lag_sim *s, const Jump *j) {
   int n = s->pb.n, k = s->tangent_columns;
-
   memcpy(j->Y, s->tangent, block(s) * sizeof(double));
   memset(s->tangent, 0, block(s) * sizeof(double));
-  for (int i = 0; i < n; i++) {
-    for (int c = 0; c < n; c++) {
-      for (int b = 0; b < k; b++) {
-        s->tangent[i * k + b] += j->S[i * n + c] * j->Y[c * k + b];
-      }
-    }
-  }
+  for (int i = 0; i < n; i++)
+    for (int c = 0; c < n; c++)
+      for (int b = 0; b < k; b++) s->tangent[i * k + b] += j->S[i * n + c] * j->Y[c * k + b];
   return lag_not_finite(n * k, s->tangent) < 0;
 }
 
 /* log |det S|, in `a`, a copy of S. */
-static double log_det(int n, const double *S, double *a)
-{
+static double log_det(int n, const double *S, double *a) {
   double log_of = 0;
-
   memcpy(a, S, (size_t)(n * n) * sizeof *a);
-  if (lag_eliminate((size_t)n, 0, a, a)) {
-    return -HUGE_VAL;
-  }
-  for (int c = 0; c < n; c++) {
-    log_of += log(fabs(a[c * n + c]));
-  }
+  if (lag_eliminate((size_t)n, 0, a, a)) return -HUGE_VAL;
+  for (int c = 0; c < n; c++) log_of += log(fabs(a[c * n + c]));
   return log_of;
 }
 
 /* Whether event k only touches zero: its rate there is negligible relative to its values at the ends of the step. */
-static int only_touches(lag_sim *s, int k, double rate)
-{
+static int only_touches(lag_sim *s, int k, double rate) {
   const Run *r = s->run;
   const double flat = 1e-6;
   double size = 0;
-
-  for (int end = 0; end < 2; end++) {
-    if (lag_events_eval(s, end ? r->step_t1 : r->step_t0, end ? s->y : s->y0, s->g1) == LAG_OK) {
-      size = fmax(size, fabs(s->g1[k]));
-    }
-  }
+  for (int end = 0; end < 2; end++)
+    if (lag_events_eval(s, end ? r->step_t1 : r->step_t0, end ? s->y : s->y0, s->g1) == LAG_OK) size = fmax(size, fabs(s->g1[k]));
   return fabs(rate * (r->step_t1 - r->step_t0)) < flat * size;
 }
 
-int lag_tangent_jump(lag_sim *s, int k, int more)
-{
+int lag_tangent_jump(lag_sim *s, int k, int more) {
   const lag_model *m = s->scene->model;
   lag_problem *pb = &s->pb;
   int n = pb->n, nq = pb->nq;
   double t = s->run->t, rhs_calls = pb->rhs_calls, rate = 0;
-
-  if (!s->tangent) {
-    return LAG_OK;
-  }
-  if (!m->linear) {
-    return refuse(s, k, "its effect on neighbouring motions needs derivatives, which `lagc build --with linear` builds in");
-  }
-  if (more) {
-    return refuse(s, k, "another event does so at the same time, and neighbouring motions may meet the two in either order");
-  }
+  if (!s->tangent) return LAG_OK;
+  if (!m->linear) return refuse(s, k, "its effect on neighbouring motions needs derivatives, which `lagc build --with linear` builds in");
+  if (more) return refuse(s, k, "another event does so at the same time, and neighbouring motions may meet the two in either order");
   Jump j = jump_layout(s);
-  if (njump(s) && (lag_inputs(pb, t) || m->linear->jumps(t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, j.d, s->work))) {
+  if (njump(s) && (lag_inputs(pb, t) || m->linear->jumps(t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, j.d, s->work)))
     return refuse(s, k, "its derivatives cannot be computed");
-  }
   if (!njump(s) || !collect_derivatives(s, k, &j)) {
     return refuse(s, k, "it depends on an input, whose rate a model does not have"); /* the compiler lists all others */
   }
   int rc = s->run->have_step != 0.0 && t != s->run->step_t0 ? advance_tangent(s, t, s->tangent) : LAG_OK;
-  if (rc || lag_rhs(pb, t, s->now, j.before) || lag_rhs(pb, t, s->yb, j.after)) {
-    return rc ? rc : refuse(s, k, "the rates there cannot be computed");
-  }
+  if (rc || lag_rhs(pb, t, s->now, j.before) || lag_rhs(pb, t, s->yb, j.after)) return rc ? rc : refuse(s, k, "the rates there cannot be computed");
   pb->rhs_calls = rhs_calls;
-  for (int c = 0; c < n; c++) {
-    rate += j.g[c] * j.before[c];
-  }
+  for (int c = 0; c < n; c++) rate += j.g[c] * j.before[c];
   rate += j.g[n];
   int touches = only_touches(s, k, rate);
   for (int i = 0; i < n; i++) {
     double gain = j.after[i] - j.Rt[i];
-    for (int c = 0; c < n; c++) {
-      gain -= j.S[i * n + c] * j.before[c];
-    }
-    for (int c = 0; c < n; c++) {
-      j.S[i * n + c] += gain * j.g[c] / rate;
-    }
+    for (int c = 0; c < n; c++) gain -= j.S[i * n + c] * j.before[c];
+    for (int c = 0; c < n; c++) j.S[i * n + c] += gain * j.g[c] / rate;
   }
   s->tangent_at_event = 1;
   s->tangent_log += log_det(n, j.S, j.copy);
   return apply_saltation(s, &j) && !touches ? LAG_OK : refuse(s, k, "the motion only touches it, and neighbouring motions may miss it");
 }
 
-int lag_sim_tangent(lag_sim *s, double *Y)
-{
-  if (!s || !Y) {
-    return LAG_EINVAL;
-  }
+int lag_sim_tangent(lag_sim *s, double *Y) {
+  if (!s || !Y) return LAG_EINVAL;
   const Run *r = s->run;
 
-  if (!s->tangent) {
-    return lag_fail(s, LAG_EINVAL, "this run has no tangent: lag_sim_set_tangent");
-  }
+  if (!s->tangent) return lag_fail(s, LAG_EINVAL, "this run has no tangent: lag_sim_set_tangent");
   memcpy(Y, s->tangent, block(s) * sizeof *Y);
   return r->have_step != 0.0 && r->t != r->step_t0 ? advance_tangent(s, r->t, Y) : LAG_OK;
 }

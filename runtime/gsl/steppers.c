@@ -28,8 +28,7 @@ typedef struct Gsl {
 enum { Y0, F0, Y1, F1, J0, J1, NARRAYS };
 enum { HEAD = (sizeof(Gsl) + sizeof(double) - 1) / sizeof(double) };
 
-static double *array(const void *work, int k)
-{
+static double *array(const void *work, int k) {
   const Gsl *w = work;
   return (double *)(uintptr_t)work + HEAD + k * w->pb->n;
 }
@@ -38,20 +37,13 @@ static const lag_method_option options[] = {
     {"step", "first step to try [s]; 0: a millionth of the scene's span", 0, 0, HUGE_VAL, NULL},
 };
 
-static size_t work_size(const lag_problem *pb)
-{
-  return HEAD + NARRAYS * (size_t)pb->n;
-}
+static size_t work_size(const lag_problem *pb) { return HEAD + NARRAYS * (size_t)pb->n; }
 
 /* f for GSL. A fatal failure of the model ends GSL's attempts at once; others make it try a smaller step. */
-static int gsl_rhs(double t, const double *y, double *dy, void *params)
-{
+static int gsl_rhs(double t, const double *y, double *dy, void *params) {
   Gsl *w = params;
   int rc = lag_rhs(w->pb, t, y, dy), bad = rc ? -1 : lag_not_finite(w->pb->n, dy);
-
-  if (rc == 0 && bad < 0) {
-    return GSL_SUCCESS;
-  }
+  if (rc == 0 && bad < 0) return GSL_SUCCESS;
   w->pb->bad_t = t;
   w->pb->bad_index = bad;
   if (rc < 0) {
@@ -62,12 +54,10 @@ static int gsl_rhs(double t, const double *y, double *dy, void *params)
 }
 
 /* df/dy and df/dt by central differences. */
-static int gsl_jacobian(double t, const double *y, double *dfdy, double *dfdt, void *params)
-{
+static int gsl_jacobian(double t, const double *y, double *dfdy, double *dfdt, void *params) {
   Gsl *w = params;
   int n = w->pb->n, rc = 0;
   double *x = array(w, F0), *fa = array(w, J0), *fb = array(w, J1), eps = cbrt(DBL_EPSILON);
-
   memcpy(x, y, (size_t)n * sizeof *x);
   for (int j = 0; j <= n && rc == 0; j++) {
     double at = j < n ? y[j] : t, d = eps * fmax(fabs(at), 1e-3), *where = j < n ? &x[j] : &t;
@@ -85,20 +75,16 @@ static int gsl_jacobian(double t, const double *y, double *dfdy, double *dfdt, v
 }
 
 /* Whether memory suffices for GSL's largest stepper, bsimp: GSL 2.7 does not check some of its allocations, and writes to NULL. */
-static int has_room(size_t n)
-{
+static int has_room(size_t n) {
   void *room = malloc((8 * n * n + 256 * n + 4096) * sizeof(double));
-
   free(room);
   return room != NULL;
 }
 
-static int init(void *work, lag_problem *pb, const double *opt)
-{
+static int init(void *work, lag_problem *pb, const double *opt) {
   const gsl_odeiv2_step_type *type = *(const gsl_odeiv2_step_type *const *)pb->variant;
   Gsl *w = work;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-
   w->pb = pb;
   w->h_option = opt[0] > 0 ? opt[0] : 1e-6 * (pb->span > 0 ? pb->span : 10);
   w->h = w->h_option;
@@ -109,38 +95,29 @@ static int init(void *work, lag_problem *pb, const double *opt)
   return w->driver ? LAG_OK : LAG_ENOMEM;
 }
 
-static void reset(void *work, lag_problem *pb)
-{
+static void reset(void *work, lag_problem *pb) {
   Gsl *w = work;
-
   (void)pb;
   gsl_odeiv2_driver_reset(w->driver);
   w->h = w->h_option;
 }
 
 /* The status of liblag for a failure of GSL. */
-static int failure(Gsl *w, int rc, double t)
-{
+static int failure(Gsl *w, int rc, double t) {
   w->pb->detail = gsl_strerror(rc);
-  if (w->fatal) {
-    return w->fatal;
-  }
-  if (w->pb->bad_index >= 0) {
-    return LAG_ENAN;
-  }
+  if (w->fatal) return w->fatal;
+  if (w->pb->bad_index >= 0) return LAG_ENAN;
   w->pb->bad_t = t;
   return LAG_EMETHOD;
 }
 
-static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
-{
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   Gsl *w = work;
   gsl_odeiv2_driver *d = w->driver;
   double at = *t, h = pb->dir * w->h, *y1 = array(w, Y1);
   size_t bytes = (size_t)pb->n * sizeof *y;
   unsigned long failed = d->e->failed_steps;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-
   w->fatal = 0;
   pb->bad_index = -1;
   memcpy(y1, y, bytes);
@@ -160,11 +137,9 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
 }
 
 /* Hermite interpolation. f at the ends is computed on the first call only, since most steps never need it. */
-static void dense(void *work, lag_problem *pb, double t, double *y)
-{
+static void dense(void *work, lag_problem *pb, double t, double *y) {
   Gsl *w = work;
   double h = w->t1 - w->t0;
-
   if (!w->have_f) {
     lag_rhs(w->pb, w->t0, array(w, Y0), array(w, F0));
     lag_rhs(w->pb, w->t1, array(w, Y1), array(w, F1));
@@ -173,8 +148,7 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
   lag_hermite(pb->nq, pb->nz, h, (t - w->t0) / h, array(w, Y0), array(w, F0), array(w, Y1), array(w, F1), y);
 }
 
-static void fini(void *work)
-{
+static void fini(void *work) {
   Gsl *w = work;
   gsl_odeiv2_driver_free(w->driver);
 }

@@ -11,13 +11,9 @@
 enum { RESOLUTION = 100000, TICKS = 1000000000 };
 
 /* Coordinates are written as integers: (x - *zero)/(*scale). *zero: the middle of all; *scale: extent/RESOLUTION. */
-static void choose_resolution(const Table *t, const Animation *a, double *zero, double *scale)
-{
+static void choose_resolution(const Table *t, const Animation *a, double *zero, double *scale) {
   double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
-
-  for (int k = 0; k < 2 * a->npoints; k++) {
-    lag_table_range(t, a->cols[k], &lo[k % 2], &hi[k % 2]);
-  }
+  for (int k = 0; k < 2 * a->npoints; k++) lag_table_range(t, a->cols[k], &lo[k % 2], &hi[k % 2]);
   double least = fmin(lo[0], lo[1]), most = fmax(hi[0], hi[1]), extent = fmax(hi[0] - lo[0], hi[1] - lo[1]);
   *zero = least <= most ? least / 2 + most / 2 : 0;
   double grain = extent > 0 && isfinite(extent) ? extent / RESOLUTION : fmax(fabs(*zero), 1) / RESOLUTION;
@@ -27,20 +23,15 @@ static void choose_resolution(const Table *t, const Animation *a, double *zero, 
 
 /* Playback speed, in seconds of the model per second of watching: 1 for runs of 1 to 90 s; else a round number, in years, days, hours or
  * seconds, that makes the run last about twenty seconds. */
-static double choose_speed(double span)
-{
+static double choose_speed(double span) {
   const char *name;
   double unit = lag_long_time_unit(span, &name);
-
-  if (span == 0.0 || (span >= 1 && span <= 90)) {
-    return 1;
-  }
+  if (span == 0.0 || (span >= 1 && span <= 90)) return 1;
   return unit > 0 ? unit * lag_tick_step(0, span / unit, 20) : lag_tick_step(0, span, 20);
 }
 
 /* choose_speed, limited to 280 frames per second: a swing has about seventy frames, and the eye follows about four swings per second. */
-static double followable_speed(const Table *t, double span)
-{
+static double followable_speed(const Table *t, double span) {
   enum { FRAMES_A_SECOND = 280 };
   double speed = choose_speed(span), most = t->nrows ? FRAMES_A_SECOND * span / (double)t->nrows : 0;
 
@@ -48,28 +39,20 @@ static double followable_speed(const Table *t, double span)
 }
 
 /* Whether x is an index, not a length: numbers without a unit, constant and not all equal, as of the masses of a string. */
-static int x_is_index(const Table *t, const Animation *a)
-{
+static int x_is_index(const Table *t, const Animation *a) {
   int differ = 0;
-
   for (int i = 0; i < a->npoints; i++) {
     int x = a->cols[2 * i];
-    if (t->cols[x].unit[0] || x == 0) {
-      return 0;
-    }
-    for (size_t k = 1; k < t->nrows; k++) {
-      if (lag_table_cell(t, k, x) != lag_table_cell(t, 0, x)) {
-        return 0;
-      }
-    }
+    if (t->cols[x].unit[0] || x == 0) return 0;
+    for (size_t k = 1; k < t->nrows; k++)
+      if (lag_table_cell(t, k, x) != lag_table_cell(t, 0, x)) return 0;
     differ |= t->nrows && lag_table_cell(t, 0, x) != lag_table_cell(t, 0, a->cols[0]);
   }
   return differ;
 }
 
 /* Writes the JSON object that page.html describes. */
-static void put_data(FILE *f, const Table *t, const Animation *a)
-{
+static void put_data(FILE *f, const Table *t, const Animation *a) {
   size_t n = t->nrows;
   double t0 = n ? lag_table_cell(t, 0, 0) : 0, t1 = n ? lag_table_cell(t, n - 1, 0) : 0, tick = t1 != t0 ? (t1 - t0) / TICKS : 1, zero, scale;
   long long before = 0;
@@ -106,27 +89,19 @@ static void put_data(FILE *f, const Table *t, const Animation *a)
   lag_json_end(&j, ']');
   putc('\n', f); /* a line a frame */
   lag_json_begin(&j, "v", '[');
-  for (size_t i = 0; i < n; i++) {
+  for (size_t i = 0; i < n; i++)
     for (int k = 0; k < 2 * a->npoints; k++) {
       double x = (lag_table_cell(t, i, a->cols[k]) - zero) / scale;
       fputs(k ? "," : i ? ",\n" : "", f);
-      if (isfinite(x)) {
-        fprintf(f, "%.0f", nearbyint(x) + 0.0);
-      } else {
-        fputs("null", f);
-      }
+      if (isfinite(x)) fprintf(f, "%.0f", nearbyint(x) + 0.0);
+      else fputs("null", f);
     }
-  }
   fputs("]}\n", f);
 }
 
-int lag_html_write(const char *path, const Table *t, const char *title, const Animation *a)
-{
+int lag_html_write(const char *path, const Table *t, const char *title, const Animation *a) {
   Outfile o;
-
-  if (lag_outfile_open(&o, path)) {
-    return -1;
-  }
+  if (lag_outfile_open(&o, path)) return -1;
   for (size_t i = 0; i < sizeof page / sizeof *page; i++) {
     const char *mark = strstr(page[i], "@TITLE@");
     if (strcmp(page[i], "@DATA@\n") == 0) {

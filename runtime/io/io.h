@@ -27,8 +27,7 @@ typedef struct Table {
 int lag_table_init(Table *t, const lag_sim *sim, int keep);
 void lag_table_free(Table *t);
 int lag_table_add(Table *t, const double *row);
-static inline double lag_table_cell(const Table *t, size_t row, int col)
-{
+static inline double lag_table_cell(const Table *t, size_t row, int col) {
   return t->data[row * (size_t)t->ncols + (size_t)col];
 }
 /* Widens [lo, hi] by the finite values of a column. */

@@ -4,8 +4,7 @@
 #include "io/io.h"
 #include "io/visible.h"
 
-static void quote(FILE *f, const char *s)
-{
+static void quote(FILE *f, const char *s) {
   putc('"', f);
   for (size_t n = strlen(s), at = 0; at < n;) {
     unsigned long code;
@@ -24,11 +23,8 @@ static void quote(FILE *f, const char *s)
   putc('"', f);
 }
 
-void lag_json_name(Json *j, const char *name)
-{
-  if (j->comma) {
-    fputs(", ", j->f);
-  }
+void lag_json_name(Json *j, const char *name) {
+  if (j->comma) fputs(", ", j->f);
   if (name) {
     quote(j->f, name);
     fputs(": ", j->f);
@@ -36,43 +32,34 @@ void lag_json_name(Json *j, const char *name)
   j->comma = 1;
 }
 
-void lag_json_begin(Json *j, const char *name, char bracket)
-{
+void lag_json_begin(Json *j, const char *name, char bracket) {
   lag_json_name(j, name);
   putc(bracket, j->f);
   j->comma = 0;
 }
 
-void lag_json_end(Json *j, char bracket)
-{
+void lag_json_end(Json *j, char bracket) {
   putc(bracket, j->f);
   j->comma = 1;
 }
 
-void lag_json_string(Json *j, const char *name, const char *s)
-{
+void lag_json_string(Json *j, const char *name, const char *s) {
   lag_json_name(j, name);
-  if (s) {
-    quote(j->f, s);
-  } else {
-    fputs("null", j->f);
-  }
+  if (s) quote(j->f, s);
+  else fputs("null", j->f);
 }
 
-void lag_json_number(Json *j, const char *name, double x)
-{
+void lag_json_number(Json *j, const char *name, double x) {
   lag_json_name(j, name);
   fputs(isfinite(x) ? lag_number_text(x, (char[64]){0}) : "null", j->f);
 }
 
-void lag_json_count(Json *j, const char *name, long long n)
-{
+void lag_json_count(Json *j, const char *name, long long n) {
   lag_json_name(j, name);
   fprintf(j->f, "%lld", n);
 }
 
-void lag_json_truth(Json *j, const char *name, int yes)
-{
+void lag_json_truth(Json *j, const char *name, int yes) {
   lag_json_name(j, name);
   fputs(yes < 0 ? "null" : yes ? "true" : "false", j->f);
 }

@@ -15,10 +15,8 @@ enum { WIDTH = 860, LEFT = 84, RIGHT = 150, TOP = 50, GAP = 26, BOTTOM = 52, MOS
 static const char *const colour[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7f00", "#444444"};
 
 /* text[n] := stroke attributes of series k: the second eight series are dashed, the third dotted. */
-static void stroke_of(int k, char *text, size_t n)
-{
+static void stroke_of(int k, char *text, size_t n) {
   static const char *const dashes[] = {"", " stroke-dasharray=\"5 3\"", " stroke-dasharray=\"1.5 2.5\""};
-
   snprintf(text, n, "stroke=\"%s\"%s", colour[k % 8], dashes[k / 8 % 3]);
 }
 
@@ -29,17 +27,13 @@ typedef struct Panel {
   int powers;                /* 1: data are exponents of ten, labelled 1e.. */
 } Panel;
 
-double lag_tick_step(double lo, double hi, int n)
-{
+double lag_tick_step(double lo, double hi, int n) {
   double raw = (hi - lo) / n, power = pow(10, floor(log10(raw))), f = raw / power;
-
   return power * (f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10);
 }
 
-void lag_write_markup(FILE *f, const char *s)
-{
+void lag_write_markup(FILE *f, const char *s) {
   char shown[VISIBLE_SIZE];
-
   for (size_t n = strlen(s), at = 0; at < n;) {
     at += show_visible(s + at, n - at, shown);
     for (const char *c = shown; *c; c++) {
@@ -54,16 +48,14 @@ void lag_write_markup(FILE *f, const char *s)
   }
 }
 
-static void text(FILE *f, double x, double y, const char *attributes, const char *s)
-{
+static void text(FILE *f, double x, double y, const char *attributes, const char *s) {
   fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, attributes);
   lag_write_markup(f, s);
   fputs("</text>\n", f);
 }
 
 /* Makes [lo, hi] a drawable interval: not empty, with a margin relative to its length. */
-static void widen(double *lo, double *hi, double margin)
-{
+static void widen(double *lo, double *hi, double margin) {
   if (!(*lo <= *hi)) {
     *lo = 0;
     *hi = 1;
@@ -77,63 +69,46 @@ static void widen(double *lo, double *hi, double margin)
   *hi += margin * d;
 }
 
-static double px(const Panel *p, double x)
-{
-  return p->x + (x - p->x0) / (p->x1 - p->x0) * p->w;
-}
+static double px(const Panel *p, double x) { return p->x + (x - p->x0) / (p->x1 - p->x0) * p->w; }
 
-static double py(const Panel *p, double y)
-{
-  return p->y + p->h - (y - p->y0) / (p->y1 - p->y0) * p->h;
-}
+static double py(const Panel *p, double y) { return p->y + p->h - (y - p->y0) / (p->y1 - p->y0) * p->h; }
 
-static void tick_label(char *s, size_t n, const Panel *p, double value, double step)
-{
+static void tick_label(char *s, size_t n, const Panel *p, double value, double step) {
   snprintf(s, n, p->powers ? "1e%.6g" : "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value);
 }
 
-static double tick_step(const Panel *p, double lo, double hi, int n)
-{
+static double tick_step(const Panel *p, double lo, double hi, int n) {
   double step = lag_tick_step(lo, hi, n);
-
   return p->powers ? fmax(step, 1) : step;
 }
 
 /* Offset subtracted from y labels where y varies so little that labels of all ticks would be equal; else 0. */
-static double label_offset(const Panel *p, double dy)
-{
+static double label_offset(const Panel *p, double dy) {
   double size = fmax(fabs(p->y0), fabs(p->y1));
   return size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0;
 }
 
 /* Number of x ticks per label, so that long labels (-3.086e+07) do not overlap. */
-static double label_stride(const Panel *p, double dx)
-{
+static double label_stride(const Panel *p, double dx) {
   enum { WIDTH_OF_CHARACTER = 7, ROOM = 10 };
   size_t longest = 0;
   char s[32];
   for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
     tick_label(s, sizeof s, p, k * dx, dx);
-    if (strlen(s) > longest) {
-      longest = strlen(s);
-    }
+    if (strlen(s) > longest) longest = strlen(s);
   }
   return ceil(((double)longest * WIDTH_OF_CHARACTER + ROOM) / (px(p, dx) - px(p, 0)));
 }
 
-static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
-{
+static void axes(FILE *f, const Panel *p, const char *ylabel, int last) {
   char s[32];
   double dx = tick_step(p, p->x0, p->x1, 8), dy = tick_step(p, p->y0, p->y1, p->h > 220 ? 7 : 4), base = label_offset(p, dy);
   double stride = label_stride(p, dx);
-
   fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y, p->w, p->h);
   for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
     fprintf(f, "<path d=\"M%.2f %.1fv%.1f\" class=\"g\"/>\n", px(p, k * dx), p->y, p->h);
     tick_label(s, sizeof s, p, k * dx, dx);
-    if (last && fmod(k, stride) == 0.0) {
-      text(f, px(p, k * dx), p->y + p->h + 17, "text-anchor=\"middle\"", s);
-    }
+    if (last && fmod(k, stride) == 0.0) text(f, px(p, k * dx), p->y + p->h + 17, "text-anchor=\"middle\"", s);
   }
   for (double k = ceil((p->y0 - base) / dy - 1e-9); k * dy <= p->y1 - base + 1e-9 * dy; k++) {
     double y = py(p, base + k * dy);
@@ -145,17 +120,14 @@ static void axes(FILE *f, const Panel *p, const char *ylabel, int last)
     snprintf(s, sizeof s, "%.14g +", base);
     text(f, p->x, p->y - 6, "font-size=\"11\"", s);
   }
-  if (last) {
-    text(f, p->x + p->w / 2, p->y + p->h + 40, "text-anchor=\"middle\" class=\"l\"", p->xlabel);
-  }
+  if (last) text(f, p->x + p->w / 2, p->y + p->h + 40, "text-anchor=\"middle\" class=\"l\"", p->xlabel);
   fprintf(f, "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\" class=\"l\">", 18.0, p->y + p->h / 2);
   lag_write_markup(f, ylabel);
   fputs("</text>\n", f);
 }
 
 /* Adds a point to an SVG path: "M" at the start of a piece, "L" within; a value that is not finite ends the piece. */
-static void point(FILE *f, const Panel *p, double x, double y, int *pen)
-{
+static void point(FILE *f, const Panel *p, double x, double y, int *pen) {
   if (!isfinite(x) || !isfinite(y)) {
     *pen = 0;
     return;
@@ -165,26 +137,20 @@ static void point(FILE *f, const Panel *p, double x, double y, int *pen)
 }
 
 /* Dots, as zero-length strokes with round ends in one element; smaller where there are many. */
-static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, const char *stroke)
-{
+static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, const char *stroke) {
   double width = t->nrows > 2000 ? 2 : t->nrows > 300 ? 2.6 : 4;
-
   fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"%.1f\" stroke-linecap=\"round\" d=\"", stroke, width);
   for (size_t i = 0; i < t->nrows; i++) {
     double x = lag_table_cell(t, i, xcol), y = lag_table_cell(t, i, ycol);
-    if (isfinite(x) && isfinite(y)) {
-      fprintf(f, "M%.2f %.2fh0", px(p, x), py(p, y));
-    }
+    if (isfinite(x) && isfinite(y)) fprintf(f, "M%.2f %.2fh0", px(p, x), py(p, y));
   }
   fputs("\"/>\n", f);
 }
 
 /* A curve against time: minimum and maximum of each pixel column. */
-static void min_max_curve(FILE *f, const Panel *p, const Table *t, int ycol)
-{
+static void min_max_curve(FILE *f, const Panel *p, const Table *t, int ycol) {
   size_t per = t->nrows / (size_t)(2 * p->w);
   int pen = 0;
-
   for (size_t i = 0; i < t->nrows; i += per + 1) {
     size_t lo = i, hi = i, end = i + per + 1 < t->nrows ? i + per + 1 : t->nrows;
     for (size_t j = i + 1; j < end; j++) {
@@ -193,54 +159,41 @@ static void min_max_curve(FILE *f, const Panel *p, const Table *t, int ycol)
     }
     size_t first = lo < hi ? lo : hi, second = lo < hi ? hi : lo;
     point(f, p, lag_table_cell(t, first, 0), lag_table_cell(t, first, ycol), &pen);
-    if (second != first) {
-      point(f, p, lag_table_cell(t, second, 0), lag_table_cell(t, second, ycol), &pen);
-    }
+    if (second != first) point(f, p, lag_table_cell(t, second, 0), lag_table_cell(t, second, ycol), &pen);
   }
 }
 
 /* One column against another, or few rows: a path without the points that are nearer than a third of a pixel to the one drawn last. */
-static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol)
-{
+static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol) {
   const double near = 0.3;
   double drawn_x = 0, drawn_y = 0;
   int pen = 0;
-
   for (size_t i = 0; i < t->nrows; i++) {
     double x = lag_table_cell(t, i, xcol), y = lag_table_cell(t, i, ycol);
-    if (pen && hypot(px(p, x) - drawn_x, py(p, y) - drawn_y) < near) {
-      continue;
-    }
+    if (pen && hypot(px(p, x) - drawn_x, py(p, y) - drawn_y) < near) continue;
     point(f, p, x, y, &pen);
     drawn_x = px(p, x);
     drawn_y = py(p, y);
   }
 }
 
-static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, int k)
-{
+static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, int k) {
   char stroke[64];
-
   if (t->points) {
     dots(f, p, t, xcol, ycol, colour[k % 8]);
     return;
   }
   stroke_of(k, stroke, sizeof stroke);
   fprintf(f, "<path fill=\"none\" %s stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"", stroke);
-  if (xcol == 0 && t->nrows > (size_t)(2 * p->w)) {
-    min_max_curve(f, p, t, ycol);
-  } else {
-    path(f, p, t, xcol, ycol);
-  }
+  if (xcol == 0 && t->nrows > (size_t)(2 * p->w)) min_max_curve(f, p, t, ycol);
+  else path(f, p, t, xcol, ycol);
   fputs("\"/>\n", f);
 }
 
 /* s[n] := `from`, shortened to at most `most` characters with "..." at the end. */
-static void truncate_text(const char *from, int most, char *s, size_t n)
-{
+static void truncate_text(const char *from, int most, char *s, size_t n) {
   int chars = 0;
   size_t i = 0;
-
   for (; from[i] && i + 4 < n; i++) {
     int begins = ((unsigned char)from[i] & 0xC0) != 0x80;
     if (begins && chars == most - 3 && strlen(from + i) > 3) {
@@ -254,21 +207,17 @@ static void truncate_text(const char *from, int most, char *s, size_t n)
 }
 
 /* s[n] := "name [unit]" for `room` pixels; a long name is shortened, the unit is not. */
-static void label_of(const char *name, const char *unit, double room, char *s, size_t n)
-{
+static void label_of(const char *name, const char *unit, double room, char *s, size_t n) {
   const double width_of_character = 8;
   char short_name[96];
-
   truncate_text(name, (int)(room / width_of_character) - (int)strlen(unit) - 3, short_name, sizeof short_name);
   snprintf(s, n, unit[0] ? "%s [%s]" : "%s", short_name, unit);
 }
 
 /* Line i of a legend for `total` series, with room for `room` lines; the last may say "and N more". */
-static void legend(FILE *f, const Panel *p, int i, int total, int room, int k, const char *name)
-{
+static void legend(FILE *f, const Panel *p, int i, int total, int room, int k, const char *name) {
   char s[160], stroke[64];
   double y = p->y + 12 + LINE * i, x = p->x + p->w + 14;
-
   if (i + 1 < room || (i + 1 == room && total == room)) {
     truncate_text(name, MOST_NAME, s, sizeof s);
     stroke_of(k, stroke, sizeof stroke);
@@ -280,25 +229,19 @@ static void legend(FILE *f, const Panel *p, int i, int total, int room, int k, c
   }
 }
 
-static int legend_room(const Panel *p)
-{
-  return (int)(p->h / LINE) < MOST_LEGEND ? (int)(p->h / LINE) : MOST_LEGEND;
-}
+static int legend_room(const Panel *p) { return (int)(p->h / LINE) < MOST_LEGEND ? (int)(p->h / LINE) : MOST_LEGEND; }
 
 /* The panel of one unit, with all its series and their legend. */
-static void unit_panel(FILE *f, const Table *t, const PlottedCurves *d, Panel *p, const char *unit, int last)
-{
+static void unit_panel(FILE *f, const Table *t, const PlottedCurves *d, Panel *p, const char *unit, int last) {
   char s[176];
   int shown = 0, total = 0;
-
   p->y0 = HUGE_VAL;
   p->y1 = -HUGE_VAL;
-  for (int i = 0; i < d->n; i++) {
+  for (int i = 0; i < d->n; i++)
     if (strcmp(t->cols[d->y[i]].unit, unit) == 0) {
       lag_table_range(t, d->y[i], &p->y0, &p->y1);
       total++;
     }
-  }
   widen(&p->y0, &p->y1, 0.06);
   snprintf(s, sizeof s, "[%s]", unit);
   axes(f, p, unit[0] ? s : "", last);
@@ -312,8 +255,7 @@ static void unit_panel(FILE *f, const Table *t, const PlottedCurves *d, Panel *p
 }
 
 /* Width of the legend right of the panels, in pixels. */
-static int legend_width(const Table *t, const PlottedCurves *d)
-{
+static int legend_width(const Table *t, const PlottedCurves *d) {
   enum { KEY = 41, CHARACTER = 8 };
   int most = (RIGHT - KEY) / CHARACTER;
   char s[sizeof t->cols->name];
@@ -325,8 +267,7 @@ static int legend_width(const Table *t, const PlottedCurves *d)
   return KEY + CHARACTER * most;
 }
 
-static void head(FILE *f, int width, int height, const char *title)
-{
+static void head(FILE *f, int width, int height, const char *title) {
   fprintf(f,
           "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" "
           "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"12\" fill=\"#333\">\n<title>",
@@ -340,31 +281,23 @@ static void head(FILE *f, int width, int height, const char *title)
 }
 
 /* units := distinct units of the drawn columns, in order of first use, at most MOST_PANELS. Returns their number. */
-static int units_of(const Table *t, const PlottedCurves *d, const char *units[MOST_PANELS])
-{
+static int units_of(const Table *t, const PlottedCurves *d, const char *units[MOST_PANELS]) {
   int n = 0;
-
   for (int i = 0; i < d->n; i++) {
     const char *unit = t->cols[d->y[i]].unit;
     int k = 0;
-    while (k < n && strcmp(units[k], unit) != 0) {
-      k++;
-    }
-    if (k == n && n < MOST_PANELS) {
-      units[n++] = unit;
-    }
+    while (k < n && strcmp(units[k], unit) != 0) k++;
+    if (k == n && n < MOST_PANELS) units[n++] = unit;
   }
   return n;
 }
 
-static void against_time(FILE *f, const Table *t, const char *title, const PlottedCurves *d)
-{
+static void against_time(FILE *f, const Table *t, const char *title, const PlottedCurves *d) {
   const char *units[MOST_PANELS];
   char xlabel[176];
   int n = units_of(t, d, units);
   double h = n == 1 ? 380 : n == 2 ? 230 : 170;
   Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - RIGHT, .h = h, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .xlabel = xlabel};
-
   label_of(t->cols[0].name, t->cols[0].unit, p.w, xlabel, sizeof xlabel);
   head(f, LEFT + (int)p.w + legend_width(t, d), TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
   lag_table_range(t, 0, &p.x0, &p.x1);
@@ -376,10 +309,8 @@ static void against_time(FILE *f, const Table *t, const char *title, const Plott
 }
 
 /* Equal scales for both axes: sets the height of the panel, within limits, and widens the ranges. */
-static void same_scale(Panel *p)
-{
+static void same_scale(Panel *p) {
   double flat = (p->y1 - p->y0) / (p->x1 - p->x0) * p->w;
-
   p->h = flat < 200 ? 200 : flat < p->h ? flat : p->h;
   double scale = fmax((p->x1 - p->x0) / p->w, (p->y1 - p->y0) / p->h), mx = (p->x0 + p->x1) / 2, my = (p->y0 + p->y1) / 2;
   p->x0 = mx - scale * p->w / 2;
@@ -389,39 +320,28 @@ static void same_scale(Panel *p)
 }
 
 /* Whether a column is the rate of another: its name is x' or (x)' for x. */
-static int is_rate(const char *rate, const char *of)
-{
+static int is_rate(const char *rate, const char *of) {
   size_t n = strlen(of);
-
   rate += rate[0] == '(' && of[0] != '(';
   return strncmp(rate, of, n) == 0 && (strcmp(rate + n, "'") == 0 || strcmp(rate + n, ")'") == 0);
 }
 
 /* Whether both axes get the same scale: columns of one unit, neither the rate of the other; without units only if their ranges are of
  * similar size. */
-static int shares_scale(const Table *t, int x, int y, const Panel *p)
-{
+static int shares_scale(const Table *t, int x, int y, const Panel *p) {
   const Column *a = &t->cols[x], *b = &t->cols[y];
   double ratio = (p->x1 - p->x0) / (p->y1 - p->y0);
-
-  if (strcmp(a->unit, b->unit) != 0 || is_rate(a->name, b->name) || is_rate(b->name, a->name)) {
-    return 0;
-  }
+  if (strcmp(a->unit, b->unit) != 0 || is_rate(a->name, b->name) || is_rate(b->name, a->name)) return 0;
   return a->unit[0] || (ratio > 1. / 4 && ratio < 4);
 }
 
-static void mark(FILE *f, double x, double y, const char *fill)
-{
-  if (isfinite(x) && isfinite(y)) {
-    fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"%s\"/>\n", x, y, fill);
-  }
+static void mark(FILE *f, double x, double y, const char *fill) {
+  if (isfinite(x) && isfinite(y)) fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"%s\"/>\n", x, y, fill);
 }
 
 /* Marks start and end of a path; only for one column against another. */
-static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y)
-{
+static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y) {
   static const char *const name[] = {"start", "end"}, *const fill[] = {"#009e73", "#d55e00"};
-
   for (int k = 0; k < 2 && t->nrows; k++) {
     size_t row = k ? t->nrows - 1 : 0;
     mark(f, px(p, lag_table_cell(t, row, x)), py(p, lag_table_cell(t, row, y)), fill[k]);
@@ -431,62 +351,42 @@ static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y)
 }
 
 /* Label of an axis: name of its column, or `name` for several, with the first unit among them. */
-static void axis_label(const Table *t, int n, const int *cols, const char *name, double room, char *s, size_t size)
-{
+static void axis_label(const Table *t, int n, const int *cols, const char *name, double room, char *s, size_t size) {
   const char *unit = "";
-
-  for (int i = n; i-- > 0;) {
-    unit = t->cols[cols[i]].unit[0] ? t->cols[cols[i]].unit : unit;
-  }
+  for (int i = n; i-- > 0;) unit = t->cols[cols[i]].unit[0] ? t->cols[cols[i]].unit : unit;
   label_of(n == 1 ? t->cols[cols[0]].name : name, unit, room, s, size);
 }
 
-static void paths(FILE *f, const Table *t, const char *title, const PlottedCurves *d)
-{
+static void paths(FILE *f, const Table *t, const char *title, const PlottedCurves *d) {
   char xlabel[176], ylabel[176];
   int x = d->x[0];
   Panel p = {.x = LEFT, .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380, .xlabel = xlabel,
              .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL, .powers = d->powers};
-
   for (int i = 0; i < d->n; i++) {
     lag_table_range(t, d->x[i], &p.x0, &p.x1);
     lag_table_range(t, d->y[i], &p.y0, &p.y1);
   }
   widen(&p.x0, &p.x1, x ? 0.05 : 0);
   widen(&p.y0, &p.y1, 0.05);
-  if (x && shares_scale(t, d->x[d->n - 1], d->y[d->n - 1], &p)) {
-    same_scale(&p);
-  }
+  if (x && shares_scale(t, d->x[d->n - 1], d->y[d->n - 1], &p)) same_scale(&p);
   axis_label(t, d->n, d->x, d->xname, p.w, xlabel, sizeof xlabel);
   axis_label(t, d->n, d->y, d->yname, p.h + 40, ylabel, sizeof ylabel);
   head(f, d->n > 1 ? LEFT + (int)p.w + legend_width(t, d) : WIDTH, TOP + (int)p.h + BOTTOM, title);
   axes(f, &p, ylabel, 1);
   for (int i = 0; i < d->n; i++) {
     curve(f, &p, t, d->x[i], d->y[i], i);
-    for (size_t k = 0; k < t->nrows && d->powers; k++) {
+    for (size_t k = 0; k < t->nrows && d->powers; k++)
       mark(f, px(&p, lag_table_cell(t, k, d->x[i])), py(&p, lag_table_cell(t, k, d->y[i])), colour[i % 8]);
-    }
-    if (d->n > 1) {
-      legend(f, &p, i, d->n, legend_room(&p), i, t->cols[d->y[i]].name);
-    }
+    if (d->n > 1) legend(f, &p, i, d->n, legend_room(&p), i, t->cols[d->y[i]].name);
   }
-  if (x && !t->points && !d->powers && d->n == 1) {
-    mark_ends(f, &p, t, x, d->y[0]);
-  }
+  if (x && !t->points && !d->powers && d->n == 1) mark_ends(f, &p, t, x, d->y[0]);
 }
 
-int lag_svg_write(const char *path, const Table *t, const char *title, const PlottedCurves *d)
-{
+int lag_svg_write(const char *path, const Table *t, const char *title, const PlottedCurves *d) {
   Outfile o;
-
-  if (lag_outfile_open(&o, path)) {
-    return -1;
-  }
-  if (!d->yname || (d->n > 1 && d->x[0] == 0)) {
-    against_time(o.f, t, title, d);
-  } else {
-    paths(o.f, t, title, d);
-  }
+  if (lag_outfile_open(&o, path)) return -1;
+  if (!d->yname || (d->n > 1 && d->x[0] == 0)) against_time(o.f, t, title, d);
+  else paths(o.f, t, title, d);
   fputs("</svg>\n", o.f);
   return lag_outfile_close(&o, OUTFILE_KEEP);
 }

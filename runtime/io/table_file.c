@@ -11,13 +11,10 @@
 
 #include "io/io.h"
 
-int lag_table_init(Table *t, const lag_sim *sim, int keep)
-{
+int lag_table_init(Table *t, const lag_sim *sim, int keep) {
   *t = (Table){.ncols = lag_sim_noutputs(sim) + 1, .keep = keep};
   t->cols = calloc((size_t)t->ncols, sizeof *t->cols);
-  if (!t->cols) {
-    return -1;
-  }
+  if (!t->cols) return -1;
   strcpy(t->cols[0].name, "t");
   strcpy(t->cols[0].unit, "s");
   for (int i = 1; i < t->ncols; i++) {
@@ -27,24 +24,18 @@ int lag_table_init(Table *t, const lag_sim *sim, int keep)
   return 0;
 }
 
-void lag_table_free(Table *t)
-{
+void lag_table_free(Table *t) {
   free(t->cols);
   free(t->data);
   *t = (Table){0};
 }
 
-int lag_table_add(Table *t, const double *row)
-{
-  if (!t->keep) {
-    return 0;
-  }
+int lag_table_add(Table *t, const double *row) {
+  if (!t->keep) return 0;
   if (t->nrows == t->capacity) {
     size_t capacity = t->capacity ? 2 * t->capacity : 1024;
     double *data = realloc(t->data, capacity * (size_t)t->ncols * sizeof *data);
-    if (!data) {
-      return -1;
-    }
+    if (!data) return -1;
     t->data = data;
     t->capacity = capacity;
   }
@@ -53,8 +44,7 @@ int lag_table_add(Table *t, const double *row)
   return 0;
 }
 
-void lag_table_range(const Table *t, int col, double *lo, double *hi)
-{
+void lag_table_range(const Table *t, int col, double *lo, double *hi) {
   for (size_t i = 0; i < t->nrows; i++) {
     double x = lag_table_cell(t, i, col);
     if (isfinite(x)) {
@@ -64,87 +54,67 @@ void lag_table_range(const Table *t, int col, double *lo, double *hi)
   }
 }
 
-double lag_long_time_unit(double span, const char **name)
-{
+double lag_long_time_unit(double span, const char **name) {
   static const struct {
     double seconds;
     const char *name;
   } units[] = {{31557600, "yr"}, {86400, "d"}, {3600, "h"}};
 
-  for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
+  for (size_t k = 0; k < sizeof units / sizeof *units; k++)
     if (span >= 2 * units[k].seconds) {
       *name = units[k].name;
       return units[k].seconds;
     }
-  }
   return 0;
 }
 
-void lag_table_scale_time(Table *t)
-{
+void lag_table_scale_time(Table *t) {
   const char *name = NULL;
   double unit = lag_long_time_unit(t->nrows ? fabs(lag_table_cell(t, t->nrows - 1, 0) - t->data[0]) : 0, &name);
   int has_units = 0;
-
-  for (int i = 1; i < t->ncols; i++) {
-    has_units |= t->cols[i].unit[0] && strcmp(t->cols[i].unit, "rad") != 0;
-  }
-  if (!has_units || !name) {
-    return;
-  }
-  for (size_t i = 0; i < t->nrows; i++) {
-    t->data[i * (size_t)t->ncols] /= unit;
-  }
+  for (int i = 1; i < t->ncols; i++) has_units |= t->cols[i].unit[0] && strcmp(t->cols[i].unit, "rad") != 0;
+  if (!has_units || !name) return;
+  for (size_t i = 0; i < t->nrows; i++) t->data[i * (size_t)t->ncols] /= unit;
   strcpy(t->cols[0].unit, name);
 }
 
 /* Writes a CSV field (RFC 4180): in quotes if it holds a comma, a quote or a line break; quotes are doubled. */
-static void csv_text(FILE *f, const char *s)
-{
+static void csv_text(FILE *f, const char *s) {
   if (!strpbrk(s, ",\"\r\n")) {
     fputs(s, f);
     return;
   }
   putc('"', f);
   for (; *s; s++) {
-    if (*s == '"') {
-      putc('"', f);
-    }
+    if (*s == '"') putc('"', f);
     putc(*s, f);
   }
   putc('"', f);
 }
 
-static void csv_head(Rows *r)
-{
+static void csv_head(Rows *r) {
   for (int i = 0; i < r->ncols; i++) {
     const Column *c = &r->cols[i];
     char text[sizeof c->name + sizeof c->unit + 4];
     snprintf(text, sizeof text, c->unit[0] ? "%s [%s]" : "%s", c->name, c->unit);
-    if (i) {
-      putc(',', r->out.f);
-    }
+    if (i) putc(',', r->out.f);
     csv_text(r->out.f, text);
   }
   putc('\n', r->out.f);
 }
 
 /* Writes a Python string literal. */
-static void python_text(FILE *f, const char *s)
-{
+static void python_text(FILE *f, const char *s) {
   putc('"', f);
   for (; *s; s++) {
-    if (*s == '"' || *s == '\\') {
-      putc('\\', f);
-    }
+    if (*s == '"' || *s == '\\') putc('\\', f);
     putc(*s, f);
   }
   putc('"', f);
 }
 
 /* Writes the dictionary of the .npy header up to the shape, whose number of rows is not known yet. */
-static void npy_dict(Rows *r, FILE *f)
-{
+static void npy_dict(Rows *r, FILE *f) {
   const union {
     uint16_t word;
     unsigned char byte[2];
@@ -170,51 +140,36 @@ static void npy_dict(Rows *r, FILE *f)
 }
 
 /* Writes the .npy header; its length does not depend on the number of rows, so it can be rewritten at the end. */
-static int npy_head(Rows *r)
-{
+static int npy_head(Rows *r) {
   char *dict = NULL;
   size_t size = 0;
   FILE *m = open_memstream(&dict, &size);
-
-  if (!m) {
-    return -1;
-  }
+  if (!m) return -1;
   npy_dict(r, m);
   fclose(m);
   size_t fixed = 12, total = (fixed + size + 32 + 63) / 64 * 64, length = total - fixed;
   FILE *f = r->out.f;
   fwrite("\x93NUMPY\3\0", 1, 8, f);
-  for (int i = 0; i < 4; i++) {
-    putc((int)(length >> 8 * i & 255), f);
-  }
+  for (int i = 0; i < 4; i++) putc((int)(length >> 8 * i & 255), f);
   fwrite(dict, 1, size, f);
   int n = fprintf(f, "%zu,), }", r->nrows);
-  for (size_t i = size + (size_t)n; i + 1 < length; i++) {
-    putc(' ', f);
-  }
+  for (size_t i = size + (size_t)n; i + 1 < length; i++) putc(' ', f);
   putc('\n', f);
   free(dict);
   return 0;
 }
 
-int lag_rows_open(Rows *r, const char *path, const Table *t)
-{
+int lag_rows_open(Rows *r, const char *path, const Table *t) {
   *r = (Rows){.ncols = t->ncols, .cols = t->cols};
   r->npy = lag_outfile_has_suffix(path, "npy");
-  if (lag_outfile_open(&r->out, path)) {
-    return -1;
-  }
+  if (lag_outfile_open(&r->out, path)) return -1;
   r->open = 1;
   return r->npy ? npy_head(r) : 0;
 }
 
-int lag_rows_write(Rows *r, const double *row)
-{
+int lag_rows_write(Rows *r, const double *row) {
   FILE *f = r->out.f;
-
-  if (!r->npy && r->nrows == 0) {
-    csv_head(r);
-  }
+  if (!r->npy && r->nrows == 0) csv_head(r);
   r->nrows++;
   if (r->npy) {
     fwrite(row, sizeof *row, (size_t)r->ncols, f);
@@ -223,25 +178,17 @@ int lag_rows_write(Rows *r, const double *row)
   for (int i = 0; i < r->ncols; i++) {
     const Column *c = &r->cols[i];
     fputs(i ? "," : "", f);
-    if (c->words) {
-      csv_text(f, c->words[(int)row[i]]);
-    } else {
-      fputs(lag_number_text(row[i], (char[64]){0}), f);
-    }
+    if (c->words) csv_text(f, c->words[(int)row[i]]);
+    else fputs(lag_number_text(row[i], (char[64]){0}), f);
   }
   putc('\n', f);
   return ferror(f) ? -1 : 0;
 }
 
-int lag_rows_close(Rows *r, int keep)
-{
-  if (!r->open) {
-    return 0;
-  }
+int lag_rows_close(Rows *r, int keep) {
+  if (!r->open) return 0;
   r->open = 0;
-  if (!r->npy && keep && r->nrows == 0) {
-    csv_head(r);
-  }
+  if (!r->npy && keep && r->nrows == 0) csv_head(r);
   if (r->npy && keep && (fseek(r->out.f, 0, SEEK_SET) != 0 || npy_head(r))) {
     int error = errno;
     lag_outfile_close(&r->out, 0);

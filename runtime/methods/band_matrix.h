@@ -10,22 +10,14 @@ typedef struct lag_band_matrix {
 } lag_band_matrix;
 
 /* Stored columns of a row: with exchanged rows U reaches 2 band to the right of the diagonal. */
-static inline int lag_band_matrix_width(int n, int band)
-{
-  return 3 * band + 1 < n ? 3 * band + 1 : n;
-}
+static inline int lag_band_matrix_width(int n, int band) { return 3 * band + 1 < n ? 3 * band + 1 : n; }
 
 /* Doubles of lag_band_matrix.a. */
-static inline int lag_band_matrix_size(int n, int band)
-{
-  return n * lag_band_matrix_width(n, band);
-}
+static inline int lag_band_matrix_size(int n, int band) { return n * lag_band_matrix_width(n, band); }
 
 /* Address of entry (i, j); entries of a row within the band are contiguous. */
-static inline double *lag_band_matrix_at(const lag_band_matrix *m, int i, int j)
-{
+static inline double *lag_band_matrix_at(const lag_band_matrix *m, int i, int j) {
   int w = lag_band_matrix_width(m->n, m->band), first = i - m->band;
-
   first = first > m->n - w ? m->n - w : first;
   return m->a + i * w + j - (first > 0 ? first : 0);
 }

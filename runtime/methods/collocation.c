@@ -48,48 +48,38 @@ typedef struct CollocationArrays {
 } CollocationArrays;
 
 /* Sets the pointers, unless x is NULL; returns the length of Collocation.x. */
-static size_t layout(CollocationArrays *a, const lag_problem *pb, int stages, double *x)
-{
+static size_t layout(CollocationArrays *a, const lag_problem *pb, int stages, double *x) {
   size_t n = (size_t)pb->n, m = n * (size_t)stages;
   double **const parts[] = {&a->comp, &a->y0, &a->y1, &a->f0, &a->f1, &a->Y, &a->u, &a->other, &a->R, &a->scale, &a->J.pivot,
                             &a->jacobian, &a->linear, &a->history, &a->J.a};
   const size_t sizes[] = {n, n, n, n, n, n, m, m, m, m, m, n * n, lag_linear_work(pb->model), lag_predictor_size((int)m), m * m};
-
   a->J.n = (int)m;
   a->J.band = (int)m - 1;
   return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
-static CollocationArrays arrays(Collocation *w, const lag_problem *pb)
-{
+static CollocationArrays arrays(Collocation *w, const lag_problem *pb) {
   CollocationArrays a;
-
   layout(&a, pb, (int)w->rule.free, w->x);
   return a;
 }
 
-size_t lag_collocation_size(const lag_problem *pb, int stages)
-{
+size_t lag_collocation_size(const lag_problem *pb, int stages) {
   CollocationArrays a;
-
   return sizeof(Collocation) / sizeof(double) + layout(&a, pb, stages, NULL);
 }
 
-void lag_collocation_reset(void *work, lag_problem *pb)
-{
+void lag_collocation_reset(void *work, lag_problem *pb) {
   Collocation *w = work;
   CollocationArrays a = arrays(w, pb);
   int m = pb->n * (int)w->rule.free;
-
   w->step.tc = w->ends = 0;
   memset(a.comp, 0, (size_t)pb->n * sizeof(double));
   memset(a.history, 0, lag_predictor_size(m) * sizeof(double));
 }
 
-void lag_collocation_init(void *work, lag_problem *pb, double h, int stages)
-{
+void lag_collocation_init(void *work, lag_problem *pb, double h, int stages) {
   Collocation *w = work;
-
   w->step.h = h;
   lag_rule_gauss(&w->rule, stages);
   lag_collocation_reset(work, pb);
@@ -106,59 +96,40 @@ typedef struct Step {
 } Step;
 
 /* Y[n] := y at stage i. */
-static void stage(const Collocation *w, const Step *s, int n, int i, double *Y)
-{
+static void stage(const Collocation *w, const Step *s, int n, int i, double *Y) {
   for (int j = 0; j < n; j++) {
     double moved = 0;
-    for (int k = 0; k < (int)w->rule.free; k++) {
-      moved += w->rule.integral[i][k] * s->u[k * n + j];
-    }
+    for (int k = 0; k < (int)w->rule.free; k++) moved += w->rule.integral[i][k] * s->u[k * n + j];
     Y[j] = s->y0[j] + ((s->comp ? s->comp[j] : 0) + s->h * moved);
   }
 }
 
-static double time_of(const Collocation *w, const Step *s, int i)
-{
-  return s->t + w->rule.c[i] * s->h;
-}
+static double time_of(const Collocation *w, const Step *s, int i) { return s->t + w->rule.c[i] * s->h; }
 
 /* R := f - u at all stages. LAG_OK, or a failure. */
-static int residual(const Collocation *w, const CollocationArrays *a, lag_problem *pb, const Step *s)
-{
+static int residual(const Collocation *w, const CollocationArrays *a, lag_problem *pb, const Step *s) {
   int n = pb->n;
-
   for (int i = 0; i < (int)w->rule.free; i++) {
     stage(w, s, n, i, a->Y);
     int rc = lag_step_rhs(pb, time_of(w, s, i), a->Y, a->R + i * n);
-    if (rc) {
-      return rc;
-    }
-    for (int j = 0; j < n; j++) {
-      a->R[i * n + j] -= s->u[i * n + j];
-    }
+    if (rc) return rc;
+    for (int j = 0; j < n; j++) a->R[i * n + j] -= s->u[i * n + j];
   }
   return LAG_OK;
 }
 
 /* Factors Newton's matrix 1 - h a_ik J_i at the present stages. */
-static int matrix(const Collocation *w, CollocationArrays *a, lag_problem *pb, const Step *s)
-{
+static int matrix(const Collocation *w, CollocationArrays *a, lag_problem *pb, const Step *s) {
   int n = pb->n, stages = (int)w->rule.free;
-
   for (int i = 0; i < stages; i++) {
     stage(w, s, n, i, a->Y);
     int rc = lag_jacobian(pb, time_of(w, s, i), a->Y, a->jacobian, a->linear);
-    if (rc) {
-      return lag_step_refused(pb, rc, time_of(w, s, i));
-    }
-    for (int j = 0; j < n; j++) {
+    if (rc) return lag_step_refused(pb, rc, time_of(w, s, i));
+    for (int j = 0; j < n; j++)
       for (int k = 0; k < stages; k++) {
         double *row = lag_band_matrix_at(&a->J, i * n + j, k * n), c = s->h * w->rule.integral[i][k];
-        for (int l = 0; l < n; l++) {
-          row[l] = (i == k && j == l ? 1 : 0) - c * a->jacobian[j * n + l];
-        }
+        for (int l = 0; l < n; l++) row[l] = (i == k && j == l ? 1 : 0) - c * a->jacobian[j * n + l];
       }
-    }
   }
   if (lag_band_matrix_factor(&a->J, a->scale)) {
     pb->detail = "the matrix of Newton's method is singular; take another step size";
@@ -168,11 +139,9 @@ static int matrix(const Collocation *w, CollocationArrays *a, lag_problem *pb, c
 }
 
 /* One Newton correction of u. */
-static lag_correction correct(const Collocation *w, const CollocationArrays *a, int n, const Step *s)
-{
+static lag_correction correct(const Collocation *w, const CollocationArrays *a, int n, const Step *s) {
   int m = n * (int)w->rule.free;
   lag_correction size = {0, 0};
-
   lag_band_matrix_solve(&a->J, a->R);
   for (int i = 0; i < m; i++) {
     s->u[i] += a->R[i];
@@ -183,22 +152,16 @@ static lag_correction correct(const Collocation *w, const CollocationArrays *a, 
 }
 
 /* Newton's method for u, from the guess in u. */
-static int solve(const Collocation *w, CollocationArrays *a, lag_problem *pb, const Step *s)
-{
+static int solve(const Collocation *w, CollocationArrays *a, lag_problem *pb, const Step *s) {
   lag_correction before = {1, 1};
-
   pb->systems += s->counted;
   for (int turn = 0; turn <= LAG_MOST_CORRECTIONS; turn++) {
     int fresh = lag_newton_needs_matrix(turn, before), rc = residual(w, a, pb, s);
     rc = rc || !fresh ? rc : matrix(w, a, pb, s);
-    if (rc) {
-      return rc;
-    }
+    if (rc) return rc;
     lag_correction now = correct(w, a, pb->n, s);
     pb->iterations += s->counted;
-    if (lag_newton_has_converged(now, before, fresh, turn)) {
-      return LAG_OK;
-    }
+    if (lag_newton_has_converged(now, before, fresh, turn)) return LAG_OK;
     before = now;
   }
   snprintf(pb->words, sizeof pb->words, "in a step of %.3g s Newton's method did not converge in %d corrections; take smaller steps, or radau or dop853",
@@ -208,47 +171,31 @@ static int solve(const Collocation *w, CollocationArrays *a, lag_problem *pb, co
 }
 
 /* Initial guess: u := the slope at the start of the step, for all stages. */
-static int constant_slope_guess(const Collocation *w, const CollocationArrays *a, lag_problem *pb, const Step *s)
-{
+static int constant_slope_guess(const Collocation *w, const CollocationArrays *a, lag_problem *pb, const Step *s) {
   int n = pb->n, rc = lag_step_rhs(pb, s->t, s->y0, a->Y);
-
-  for (int i = 0; i < (int)w->rule.free && rc == 0; i++) {
-    memcpy(s->u + i * n, a->Y, (size_t)n * sizeof *s->u);
-  }
+  for (int i = 0; i < (int)w->rule.free && rc == 0; i++) memcpy(s->u + i * n, a->Y, (size_t)n * sizeof *s->u);
   return rc;
 }
 
-int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
-{
+int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   Collocation *w = work;
   CollocationArrays a = arrays(w, pb);
   int n = pb->n, m = n * (int)w->rule.free;
   lag_next_step next;
   int rc = lag_fixed_step_begin(&w->step, pb, *t, &next);
   Step s = {.t = *t, .h = next.dt, .y0 = y, .comp = a.comp, .u = a.u, .counted = 1};
-
   (void)t_stop;
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   rc = LAG_EMETHOD;
-  if (lag_predictor_guess(a.history, m, a.u)) {
-    rc = solve(w, &a, pb, &s);
-  }
-  if (rc != 0 && (rc = constant_slope_guess(w, &a, pb, &s)) == 0) {
-    rc = solve(w, &a, pb, &s);
-  }
-  if (rc) {
-    return rc;
-  }
+  if (lag_predictor_guess(a.history, m, a.u)) rc = solve(w, &a, pb, &s);
+  if (rc != 0 && (rc = constant_slope_guess(w, &a, pb, &s)) == 0) rc = solve(w, &a, pb, &s);
+  if (rc) return rc;
   pb->detail = NULL;
   lag_predictor_add(a.history, m, a.u);
   memcpy(a.y0, y, (size_t)n * sizeof *y);
   for (int j = 0; j < n; j++) {
     double moved = 0;
-    for (int k = 0; k < (int)w->rule.free; k++) {
-      moved += w->rule.whole[k] * a.u[k * n + j];
-    }
+    for (int k = 0; k < (int)w->rule.free; k++) moved += w->rule.whole[k] * a.u[k * n + j];
     y[j] = lag_compensated_sum(y[j], next.dt * moved, &a.comp[j]);
   }
   memcpy(a.y1, y, (size_t)n * sizeof *y);
@@ -260,19 +207,15 @@ int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y, doub
 /* ---- Between steps */
 
 /* Solves a step of length dt from the start of the last one; slopes into a->other. */
-static int shorter(const Collocation *w, CollocationArrays *a, lag_problem *pb, double dt)
-{
+static int shorter(const Collocation *w, CollocationArrays *a, lag_problem *pb, double dt) {
   Step s = {.t = w->step.t0, .h = dt, .y0 = a->y0, .u = a->other};
   int rc = constant_slope_guess(w, a, pb, &s);
-
   return rc ? rc : solve(w, a, pb, &s);
 }
 
 /* y at s in [0, 1] of the last step: Hermite cubic, or linear where the model has no value at an end. */
-static void cubic(Collocation *w, const CollocationArrays *a, lag_problem *pb, double s, double *y)
-{
+static void cubic(Collocation *w, const CollocationArrays *a, lag_problem *pb, double s, double *y) {
   int n = pb->n;
-
   if (w->ends == 0.0) {
     int rc = lag_rhs(pb, w->step.t0, a->y0, a->f0) || lag_rhs(pb, w->step.t0 + w->step.dt, a->y1, a->f1);
     w->ends = rc || lag_not_finite(n, a->f0) >= 0 || lag_not_finite(n, a->f1) >= 0 ? -1 : 1;
@@ -281,27 +224,21 @@ static void cubic(Collocation *w, const CollocationArrays *a, lag_problem *pb, d
     lag_hermite(0, n, w->step.dt, s, a->y0, a->f0, a->y1, a->f1, y);
     return;
   }
-  for (int j = 0; j < n; j++) {
-    y[j] = a->y0[j] + s * (a->y1[j] - a->y0[j]);
-  }
+  for (int j = 0; j < n; j++) y[j] = a->y0[j] + s * (a->y1[j] - a->y0[j]);
 }
 
-void lag_collocation_dense(void *work, lag_problem *pb, double t, double *y)
-{
+void lag_collocation_dense(void *work, lag_problem *pb, double t, double *y) {
   Collocation *w = work;
   CollocationArrays a = arrays(w, pb);
   int n = pb->n, stages = (int)w->rule.free;
   double dt = t - w->step.t0, s = dt / w->step.dt;
-
   if (stages <= STAGES_WITH_CUBIC || s <= 0 || s >= 1 || shorter(w, &a, pb, dt) != 0) {
     cubic(w, &a, pb, s, y);
     return;
   }
   for (int j = 0; j < n; j++) {
     double moved = 0;
-    for (int k = 0; k < stages; k++) {
-      moved += w->rule.whole[k] * a.other[k * n + j];
-    }
+    for (int k = 0; k < stages; k++) moved += w->rule.whole[k] * a.other[k * n + j];
     y[j] = a.y0[j] + dt * moved;
   }
 }
@@ -310,25 +247,18 @@ void lag_collocation_dense(void *work, lag_problem *pb, double t, double *y)
 
 enum { WITH_END = LAG_RULE_FREE + 1 };
 
-size_t lag_collocation_tangent_size(const lag_problem *pb, int k)
-{
-  return lag_tangent_implicit_size(pb, WITH_END, k) + (size_t)(WITH_END * pb->n);
-}
+size_t lag_collocation_tangent_size(const lag_problem *pb, int k) { return lag_tangent_implicit_size(pb, WITH_END, k) + (size_t)(WITH_END * pb->n); }
 
 /* The end of the step is an additional last stage, on which no other stage depends. */
-int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
-{
+int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   Collocation *w = work;
   CollocationArrays a = arrays(w, pb);
   int n = pb->n, stages = (int)w->rule.free, all = stages + 1;
   double A[WITH_END * WITH_END] = {0}, c[WITH_END], step = w->step.h * pb->dir, dt = lag_tangent_span(w->step.t0, t, step);
   Step s = {.t = w->step.t0, .h = dt, .y0 = a.y0, .u = a.u};
-
   if (dt != step) {
     int rc = shorter(w, &a, pb, dt);
-    if (rc) {
-      return rc;
-    }
+    if (rc) return rc;
     s.u = a.other;
   }
   for (int i = 0; i < stages; i++) {

@@ -149,11 +149,9 @@ const lag_composition lag_compose_any8 = {
              0.345682732431999232720391019898425545, 0.0651012415444450404394088160483502612},
 };
 
-int lag_composition_substeps(const lag_composition *c, double *part)
-{
+int lag_composition_substeps(const lag_composition *c, double *part) {
   double before = 0;
   int n = 2 * c->stages;
-
   for (int i = 0; i < c->stages; i++) {
     part[2 * i] = c->kick[i] - before;
     part[2 * i + 1] = before = c->drift[i] - part[2 * i];

@@ -94,35 +94,27 @@ enum { LAST = 12, EXTRA = 3, NSTAGES = 16, HIGH = EMBEDDED_K1 + NSTAGES }; /* ar
 
 /* The three extra stages of dense output, and its four highest terms. have_extra := -1 where the model fails at a stage, though
  * the stages lie inside an accepted step. */
-static void extend(Embedded *w, lag_problem *pb)
-{
+static void extend(Embedded *w, lag_problem *pb) {
   EmbeddedShape as = embedded_shape(pb);
   int row = as.row;
   double *k = w->x + EMBEDDED_K1 * row, *y0 = w->x + EMBEDDED_Y0 * row, *ys = w->x + EMBEDDED_YS * row;
-
   w->have_extra = 1;
   if (embedded_stage(pair.tab, pb, as, LAST + 1, w->t0, w->dt, y0, k, ys) || embedded_stage(pair.tab, pb, as, LAST + 2, w->t0, w->dt, y0, k, ys) ||
       embedded_stage(pair.tab, pb, as, LAST + 3, w->t0, w->dt, y0, k, ys) || lag_not_finite(EXTRA * row, k + (LAST + 1) * row) >= 0) {
     w->have_extra = -1;
     return;
   }
-  for (int j = 0; j < LAG_MAX_DENSE; j++) {
-    embedded_combine(pair.tab->d[j], NSTAGES, as, k, w->x + (HIGH + j) * row);
-  }
+  for (int j = 0; j < LAG_MAX_DENSE; j++) embedded_combine(pair.tab->d[j], NSTAGES, as, k, w->x + (HIGH + j) * row);
 }
 
 /* HNW II.6, code dop853, function contd8. Where the extra stages failed: Hermite interpolation, of order 4. */
-static void dense(void *work, lag_problem *pb, double t, double *y)
-{
+static void dense(void *work, lag_problem *pb, double t, double *y) {
   Embedded *w = work;
   int n = pb->n, row = lag_embedded_row(pb);
   double h = w->dt, s = (t - w->t0) / h, r = 1 - s;
   const double *k1 = w->x + EMBEDDED_K1 * row, *k13 = k1 + LAST * row, *y0 = w->x + EMBEDDED_Y0 * row;
   const double *y1 = w->x + EMBEDDED_Y1 * row, *d = w->x + HIGH * row;
-
-  if (w->have_extra == 0.0) {
-    extend(w, pb);
-  }
+  if (w->have_extra == 0.0) extend(w, pb);
   if (w->have_extra < 0) {
     lag_hermite(pb->nq, pb->nz, h, s, y0, k1, y1, k13, y);
     return;

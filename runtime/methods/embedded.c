@@ -26,18 +26,14 @@ const lag_method_option lag_embedded_options[LAG_NADAPTIVE_OPTIONS] = {
     {"adapt", "off: every step has the size `step` (0: a 10000th of the scene's span), whatever the error", 0, 0, 1, lag_on_off},
 };
 
-size_t lag_embedded_work_size(const lag_problem *pb)
-{
+size_t lag_embedded_work_size(const lag_problem *pb) {
   const EmbeddedPair *pair = pb->variant;
   int arrays = EMBEDDED_K1 + pair->tab->stages + pair->tab->extra + pair->more;
-
   return sizeof(Embedded) / sizeof(double) + (size_t)arrays * (size_t)lag_embedded_row(pb);
 }
 
-void lag_embedded_reset(void *work, lag_problem *pb)
-{
+void lag_embedded_reset(void *work, lag_problem *pb) {
   Embedded *w = work;
-
   w->ready = w->have_extra = 0;
   w->h = w->limits.h_option;
   w->err_power = 0;
@@ -45,10 +41,8 @@ void lag_embedded_reset(void *work, lag_problem *pb)
   memset(lag_embedded_array(w, pb, EMBEDDED_COMP), 0, (size_t)pb->n * sizeof(double));
 }
 
-int lag_embedded_init(void *work, lag_problem *pb, const double *opt)
-{
+int lag_embedded_init(void *work, lag_problem *pb, const double *opt) {
   Embedded *w = work;
-
   lag_step_limits_init(&w->limits, pb, opt);
   w->per = 1 / (pb->n ? (double)pb->n : 1);
   lag_embedded_reset(work, pb);
@@ -56,19 +50,15 @@ int lag_embedded_init(void *work, lag_problem *pb, const double *opt)
 }
 
 /* Before a step: K1 := f(t, y), Y0 := y, w->h := the step to try. */
-static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y)
-{
+static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y) {
   int row = lag_embedded_row(pb);
   double *k1 = lag_embedded_array(w, pb, EMBEDDED_K1);
-
   lag_copy(pb->n, y, lag_embedded_array(w, pb, EMBEDDED_Y0));
   if (w->ready == 2.0) {
     lag_copy(pb->n, k1 + (pair->tab->stages - 1) * row, k1);
   } else if (w->ready == 0.0) {
     int rc = lag_step_rhs(pb, t, y, k1);
-    if (rc) {
-      return rc;
-    }
+    if (rc) return rc;
   }
   w->ready = 1;
   w->have_extra = 0;
@@ -82,33 +72,25 @@ static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, doubl
 }
 
 /* Largest step, at most pb->longest. */
-static double longest(const Embedded *w, const lag_problem *pb, double t)
-{
-  if (w->limits.fixed != 0.0) {
-    return HUGE_VAL;
-  }
+static double longest(const Embedded *w, const lag_problem *pb, double t) {
+  if (w->limits.fixed != 0.0) return HUGE_VAL;
   double most = lag_longest_step(&w->limits, t);
   return pb->longest > 0 ? lag_min(most, pb->longest) : most;
 }
 
 /* PI controller: the size of the next step from err2, the squared error. One power serves the error and its memory. */
-static void next_size(const EmbeddedPair *pair, Embedded *w, double err2, int retried)
-{
+static void next_size(const EmbeddedPair *pair, Embedded *w, double err2, int retried) {
   const double least = 1e-8; /* floor of the remembered squared error, and its value where none is known */
   double power = lag_rough_power(lag_max(err2, 1e-24), -pair->beta / 2), f = pair->safety;
   double memory = err2 > least ? power : lag_rough_power(least, -pair->beta / 2);
-
   f /= w->err_power > 0 ? w->err_power : lag_rough_power(least, -pair->beta / 2);
-  for (int i = 0; i < pair->ratio; i++) {
-    f *= power;
-  }
+  for (int i = 0; i < pair->ratio; i++) f *= power;
   w->h *= lag_max(pair->shrink_most, lag_min(retried ? 1 : pair->grow_most, f));
   w->err_power = memory;
 }
 
 /* Makes the step just computed the last accepted one. */
-static void accept(Embedded *w, lag_problem *pb, double *t, double *y, double dt, double tb, double tc)
-{
+static void accept(Embedded *w, lag_problem *pb, double *t, double *y, double dt, double tb, double tc) {
   lag_copy(pb->n, lag_embedded_array(w, pb, EMBEDDED_Y1), y);
   lag_copy(pb->n, lag_embedded_array(w, pb, EMBEDDED_COMP1), lag_embedded_array(w, pb, EMBEDDED_COMP));
   w->t0 = *t;
@@ -119,31 +101,23 @@ static void accept(Embedded *w, lag_problem *pb, double *t, double *y, double dt
 }
 
 /* Status of a step that would have to be shorter than rounding of t allows. */
-static int too_small(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, int cause)
-{
+static int too_small(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, int cause) {
   pb->bad_index = -1;
-  for (int s = 0; s < pair->tab->stages && cause == LAG_ENAN && pb->bad_index < 0; s++) {
+  for (int s = 0; s < pair->tab->stages && cause == LAG_ENAN && pb->bad_index < 0; s++)
     pb->bad_index = lag_not_finite(pb->n, lag_embedded_array(w, pb, EMBEDDED_K1 + s));
-  }
   return cause == LAG_ENAN || cause == LAG_EDOMAIN ? cause : lag_step_failed(pb, cause, t);
 }
 
 /* Squared norm of the part of sum coef_j K_j along the constraints; NaN where that is not known. */
-static double square_along(Embedded *w, lag_problem *pb, double tb, int count, const double *coef)
-{
+static double square_along(Embedded *w, lag_problem *pb, double tb, int count, const double *coef) {
   int row = lag_embedded_row(pb), n = pb->n;
   const double *y0 = w->x + EMBEDDED_Y0 * row, *y1 = w->x + EMBEDDED_Y1 * row, *k = w->x + EMBEDDED_K1 * row;
   double sum = 0, *e = w->x + EMBEDDED_YS * row;
-
   for (int i = 0; i < n; i++) {
     e[i] = 0;
-    for (int j = 0; j < count; j++) {
-      e[i] += coef[j] * k[j * row + i];
-    }
+    for (int j = 0; j < count; j++) e[i] += coef[j] * k[j * row + i];
   }
-  if (lag_project_tangent(pb, tb, y1, e)) {
-    return NAN;
-  }
+  if (lag_project_tangent(pb, tb, y1, e)) return NAN;
   for (int i = 0; i < n; i++) {
     double part = e[i] / (w->limits.atol + pb->tol * fmax(fabs(y0[i]), fabs(y1[i])));
     sum += part * part;
@@ -151,25 +125,20 @@ static double square_along(Embedded *w, lag_problem *pb, double tb, int count, c
   return sum * w->per;
 }
 
-double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt, double whole)
-{
+double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt, double whole) {
   double fine = dt * dt * square_along(w, pb, tb, tab->stages - late, tab->e);
   double coarse = late ? 0.01 * dt * dt * square_along(w, pb, tb, tab->stages - 1, tab->e3) : 0, both = fine + coarse;
-
   w->across = whole;
   return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
 }
 
-int lag_embedded_reversal(Embedded *w, lag_problem *pb, double tb)
-{
+int lag_embedded_reversal(Embedded *w, lag_problem *pb, double tb) {
   const double *y0 = lag_embedded_array(w, pb, EMBEDDED_Y0), *y1 = lag_embedded_array(w, pb, EMBEDDED_Y1);
   int nq = pb->nq;
-
   for (int i = 0; i < nq && !(pb->model->flags & LAG_AUTONOMOUS); i++) {
     double moved = y1[i] - y0[i], v0 = pb->dir * y0[nq + i], v1 = pb->dir * y1[nq + i];
-    if (((v0 > 0 && v1 > 0 && moved < 0) || (v0 < 0 && v1 < 0 && moved > 0)) && fabs(moved) > 1e-3 * lag_typical_magnitude(pb, y0, 1, i)) {
+    if (((v0 > 0 && v1 > 0 && moved < 0) || (v0 < 0 && v1 < 0 && moved > 0)) && fabs(moved) > 1e-3 * lag_typical_magnitude(pb, y0, 1, i))
       return lag_report_leap(pb, tb, y1, i, moved);
-    }
   }
   return LAG_OK;
 }
@@ -187,31 +156,21 @@ enum { SEARCH_TRIES = 8 };
 
 /* Badness of a step with respect to singular positions; above 1 another size should be tried. 0 where the step came near none
  * (w->across = 0). */
-static double singularity_penalty(const Embedded *w, lag_problem *pb, double tb)
-{
+static double singularity_penalty(const Embedded *w, lag_problem *pb, double tb) {
   const double factor = 100;  /* estimates across the constraints are some ten times too small there; squared */
   const double weight = 1e-2; /* weight of the derivative at the end, whose error is rounding/s^2 */
   int weakest;
-
-  if (w->across == 0.0) {
-    return 0;
-  }
+  if (w->across == 0.0) return 0;
   double across = factor * w->across * pb->tol, s = lag_independence(pb, tb, lag_embedded_array((Embedded *)w, pb, EMBEDDED_Y1), &weakest);
   return lag_max(across, weight * DBL_EPSILON / (pb->tol * s * s));
 }
 
 /* 1: try again with the step w->h; *err is the squared error of the step to tb, or NaN. 0: keep the step. After the last try without success
  * w->h and *err are those of the first. */
-static int try_other_size(SizeSearch *l, Embedded *w, lag_problem *pb, double tb, double *err)
-{
+static int try_other_size(SizeSearch *l, Embedded *w, lag_problem *pb, double tb, double *err) {
   double bad = l->tries <= SEARCH_TRIES ? singularity_penalty(w, pb, tb) : 0;
-
-  if (!(bad > 1) && (l->tries == 0 || l->tries > SEARCH_TRIES || *err <= 1)) {
-    return 0;
-  }
-  if (l->tries == 0) {
-    *l = (SizeSearch){.base = w->h, .base_err = *err, .least = HUGE_VAL};
-  }
+  if (!(bad > 1) && (l->tries == 0 || l->tries > SEARCH_TRIES || *err <= 1)) return 0;
+  if (l->tries == 0) *l = (SizeSearch){.base = w->h, .base_err = *err, .least = HUGE_VAL};
   if (*err <= 1 && bad < l->least) {
     l->best = w->h;
     l->least = bad;
@@ -226,13 +185,11 @@ static int try_other_size(SizeSearch *l, Embedded *w, lag_problem *pb, double tb
   return 1;
 }
 
-int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
-{
+int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   const EmbeddedPair *pair = pb->variant;
   Embedded *w = work;
   SizeSearch search = {.tries = 0};
   int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
-
   (void)t_stop;
   while (rc == 0) {
     double wanted = lag_min(w->h, longest(w, pb, *t)), row, gap = w->limits.fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
@@ -243,14 +200,10 @@ int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double 
       tb = row;
       tc = 0;
     }
-    if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) {
-      return too_small(pair, w, pb, *t, cause);
-    }
+    if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) return too_small(pair, w, pb, *t, cause);
     w->across = 0;
     double err = pair->trial(w, pb, *t, tb, dt, &rc); /* squared */
-    if (rc < 0) {
-      return rc;
-    }
+    if (rc < 0) return rc;
     if (w->limits.fixed == 0.0 && try_other_size(&search, w, pb, tb, &err)) {
       pb->rejected++;
       rc = 0;
@@ -272,9 +225,7 @@ int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double 
       cause = LAG_ESTEP;
       w->h *= fmax(pair->shrink_most, pair->safety * lag_rough_power(err, -0.5 * pair->ratio * pair->beta));
     }
-    if (w->limits.fixed != 0.0) {
-      return too_small(pair, w, pb, *t, cause);
-    }
+    if (w->limits.fixed != 0.0) return too_small(pair, w, pb, *t, cause);
     retried = 1;
     w->err_power = 0;
     pb->rejected++;
@@ -283,17 +234,13 @@ int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double 
   return rc;
 }
 
-size_t lag_embedded_tangent_size(const lag_problem *pb, int k)
-{
+size_t lag_embedded_tangent_size(const lag_problem *pb, int k) {
   const EmbeddedPair *pair = pb->variant;
-
   return lag_tangent_size(pb, pair->tab->stages, k);
 }
 
-int lag_embedded_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
-{
+int lag_embedded_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   const EmbeddedPair *pair = pb->variant;
   Embedded *w = work;
-
   return lag_tangent_explicit(pair->tab, pb, w->t0, lag_tangent_span(w->t0, t, w->dt), lag_embedded_array(w, pb, EMBEDDED_Y0), k, Y, scratch);
 }

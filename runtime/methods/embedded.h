@@ -45,15 +45,11 @@ extern const lag_method_option lag_embedded_options[LAG_NADAPTIVE_OPTIONS];
 
 /* Rows have even length, so that loops over pairs have no remainder. Small models share one length, known at compile time. */
 enum { EMBEDDED_SMALL = 8 };
-static inline int lag_embedded_row(const lag_problem *pb)
-{
+static inline int lag_embedded_row(const lag_problem *pb) {
   return pb->n <= EMBEDDED_SMALL ? EMBEDDED_SMALL : (pb->n + 1) & ~1;
 }
 
-static inline double *lag_embedded_array(Embedded *w, const lag_problem *pb, int which)
-{
-  return w->x + which * lag_embedded_row(pb);
-}
+static inline double *lag_embedded_array(Embedded *w, const lag_problem *pb, int which) { return w->x + which * lag_embedded_row(pb); }
 
 /* Members of lag_method of the same names; lag_method.variant is the EmbeddedPair. */
 size_t lag_embedded_work_size(const lag_problem *pb);

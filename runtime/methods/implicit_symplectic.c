@@ -14,29 +14,19 @@
 #include "methods/tangent.h"
 #include "numeric/workspace.h"
 
-size_t lag_implicit_size(const lag_problem *pb, int free)
-{
-  return lag_substeps_size(pb, free, 1);
-}
+size_t lag_implicit_size(const lag_problem *pb, int free) { return lag_substeps_size(pb, free, 1); }
 
-size_t lag_implicit_composed_size(const lag_problem *pb, const lag_composition *c)
-{
-  return lag_substeps_size(pb, 1, 2 * c->stages);
-}
+size_t lag_implicit_composed_size(const lag_problem *pb, const lag_composition *c) { return lag_substeps_size(pb, 1, 2 * c->stages); }
 
-void lag_implicit_reset(void *work, lag_problem *pb)
-{
+void lag_implicit_reset(void *work, lag_problem *pb) {
   Implicit *w = work;
-
   (void)pb;
   w->ready = w->have_path = 0;
   w->step.tc = 0;
 }
 
-void lag_implicit_init(void *work, lag_problem *pb, double h, int order, const lag_rule *rule)
-{
+void lag_implicit_init(void *work, lag_problem *pb, double h, int order, const lag_rule *rule) {
   Implicit *w = work;
-
   w->step.h = h;
   w->order = order;
   w->substeps = w->part[0] = 1;
@@ -45,11 +35,9 @@ void lag_implicit_init(void *work, lag_problem *pb, double h, int order, const l
   lag_implicit_reset(work, pb);
 }
 
-void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_composition *c)
-{
+void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_composition *c) {
   Implicit *w = work;
   lag_rule rule;
-
   lag_rule_euler(&rule, 0);
   lag_implicit_init(work, pb, h, c->order, &rule);
   lag_rule_euler(&w->rule[1], 1);
@@ -57,15 +45,11 @@ void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_compo
 }
 
 /* First step from y: p := dL/dv, compensations and histories := 0. */
-static int begin(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y)
-{
+static int begin(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y) {
   int nq = pb->nq;
   size_t bytes = (size_t)nq * sizeof(double);
   int rc = lag_variation(pb, t, y, y + nq, a->dq, a->p, a->dp);
-
-  if (rc) {
-    return lag_step_refused(pb, rc, t);
-  }
+  if (rc) return lag_step_refused(pb, rc, t);
   if ((pb->bad_index = lag_not_finite(nq, a->p)) >= 0) {
     pb->bad_index += nq;
     return lag_step_failed(pb, LAG_ENAN, t);
@@ -73,33 +57,25 @@ static int begin(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t
   memset(a->qc, 0, bytes);
   memset(a->pc, 0, bytes);
   memset(a->history, 0, (size_t)(a->path - a->history) * sizeof(double));
-  if (pb->model->constraints) {
-    memset(a->block.history, 0, (size_t)w->substeps * lag_predictor_size(pb->model->constraints->n) * sizeof(double));
-  }
+  if (pb->model->constraints) memset(a->block.history, 0, (size_t)w->substeps * lag_predictor_size(pb->model->constraints->n) * sizeof(double));
   w->ready = 1;
   return LAG_OK;
 }
 
 /* All substeps of a step, without constraints; then v at its end. */
-static int chain(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
-{
+static int chain(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double tb, const double *y, double dt) {
   double at = 0;
   int rc = 0;
-
   for (int k = 0; k < (int)w->substeps && rc == 0; k++) {
-    if ((rc = lag_substep(w, a, pb, t, y, dt, k, at, a->u, 0)) == 0) {
-      lag_substep_record(w, a, pb, k, a->u);
-    }
+    if ((rc = lag_substep(w, a, pb, t, y, dt, k, at, a->u, 0)) == 0) lag_substep_record(w, a, pb, k, a->u);
     at += w->part[k];
   }
   return rc ? rc : lag_substeps_velocity(w, a, pb, tb, y, 0);
 }
 
 /* Adds the increments to q and p: the step is accepted. */
-static void accept(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double *y)
-{
+static void accept(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double *y) {
   int nq = pb->nq;
-
   memcpy(a->y0, y, (size_t)pb->n * sizeof(double));
   for (int i = 0; i < nq; i++) {
     y[i] = lag_compensated_sum(y[i], a->dq[i], &a->qc[i]);
@@ -110,25 +86,17 @@ static void accept(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double
   w->have_path = 0;
 }
 
-int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
-{
+int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   Implicit *w = work;
   ImplicitArrays a = lag_substeps_arrays(w, pb);
   lag_next_step next;
   int rc = lag_fixed_step_begin(&w->step, pb, *t, &next);
-
   (void)t_stop;
-  if (rc) {
-    return rc;
-  }
-  if (w->ready == 0.0 && (rc = begin(w, &a, pb, *t, y)) != 0) {
-    return rc;
-  }
+  if (rc) return rc;
+  if (w->ready == 0.0 && (rc = begin(w, &a, pb, *t, y)) != 0) return rc;
   memset(a.dq, 0, (size_t)pb->nq * sizeof(double));
   memset(a.dp, 0, (size_t)pb->nq * sizeof(double));
-  if ((rc = (pb->model->constraints ? lag_rattle : chain)(w, &a, pb, *t, next.tb, y, next.dt)) != 0) {
-    return rc;
-  }
+  if ((rc = (pb->model->constraints ? lag_rattle : chain)(w, &a, pb, *t, next.tb, y, next.dt)) != 0) return rc;
   lag_predictor_add(a.history + (size_t)w->substeps * lag_substep_history(pb, w), pb->nq, a.v);
   accept(w, &a, pb, y);
   lag_fixed_step_end(&w->step, &next, t);
@@ -137,8 +105,7 @@ int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y, double 
 
 /* Builds dense output of the last step: 1 done, -1 only the Hermite form, -2 not even that. Each level takes two passes, because the
  * accelerations depend on velocities. */
-static int make_path(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const StepEnds *e, int level)
-{
+static int make_path(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const StepEnds *e, int level) {
   if (lag_rhs(pb, w->step.t0, a->y0, a->f0) || lag_rhs(pb, w->step.t0 + w->step.dt, a->y1, a->f1) || lag_not_finite(pb->n, a->f0) >= 0 ||
       lag_not_finite(pb->n, a->f1) >= 0) {
     return -2;
@@ -146,22 +113,15 @@ static int make_path(const Implicit *w, const ImplicitArrays *a, lag_problem *pb
   return level == 0 || lag_interpolant_make(a->path, pb, e, level, 2) == 0 ? 1 : -1;
 }
 
-void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y)
-{
+void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y) {
   Implicit *w = work;
   ImplicitArrays a = lag_substeps_arrays(w, pb);
   StepEnds ends = {w->step.t0, w->step.dt, a.y0, a.f0, a.y1, a.f1};
   int level = w->order > 6 ? 2 : w->order > 4 ? 1 : 0;
   double s = (t - w->step.t0) / w->step.dt;
-
-  if (w->have_path == 0.0 && w->order > 1) {
-    w->have_path = make_path(w, &a, pb, &ends, level);
-  }
-  if (w->order < 2 || w->have_path < -1) {
-    lag_interpolant_cubic(pb->nq, &ends, s, y);
-  } else {
-    lag_interpolant_at(a.path, pb, &ends, w->have_path > 0 ? level : 0, s, y);
-  }
+  if (w->have_path == 0.0 && w->order > 1) w->have_path = make_path(w, &a, pb, &ends, level);
+  if (w->order < 2 || w->have_path < -1) lag_interpolant_cubic(pb->nq, &ends, s, y);
+  else lag_interpolant_at(a.path, pb, &ends, w->have_path > 0 ? level : 0, s, y);
 }
 
 /* ---- Derivative of a step */
@@ -174,32 +134,24 @@ typedef struct Changes {
 } Changes;
 
 /* Sets the pointers, unless x is NULL; returns the length of the scratch. */
-static size_t layout(Changes *c, const lag_problem *pb, int k, double *x)
-{
+static size_t layout(Changes *c, const lag_problem *pb, int k, double *x) {
   size_t nq = (size_t)pb->nq, m = nq * (size_t)k;
   double **const parts[] = {&c->p, &c->ql, &c->pl, &c->v, &c->u, &c->force, &c->second, &c->dv, &c->du, &c->rest};
   const size_t sizes[] = {nq, nq, nq, nq, LAG_RULE_FREE * nq, LAG_RULE_POINTS * nq, (size_t)pb->model->nsecond, m, LAG_RULE_FREE * m,
                           lag_discrete_tangent_size(pb, LAG_RULE_FREE, k)};
-
   return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
-size_t lag_implicit_tangent_size(const lag_problem *pb, int k)
-{
+size_t lag_implicit_tangent_size(const lag_problem *pb, int k) {
   Changes c;
-
   return layout(&c, pb, k, NULL);
 }
 
 /* Start of the last step: Y = (dq, dv) becomes (dq, dp), and c->p := p. */
-static int to_momenta(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, int k, double *Y)
-{
+static int to_momenta(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, int k, double *Y) {
   int nq = pb->nq, m = nq * k, rc = lag_variation(pb, w->step.t0, a->y0, a->y0 + nq, c->v, c->p, c->force);
-
   rc = rc ? rc : lag_second_derivatives(pb, w->step.t0, a->y0, a->y0 + nq, c->second);
-  if (rc) {
-    return lag_step_refused(pb, rc, w->step.t0);
-  }
+  if (rc) return lag_step_refused(pb, rc, w->step.t0);
   memcpy(c->dv, Y + m, (size_t)m * sizeof *Y);
   memset(Y + m, 0, (size_t)m * sizeof *Y);
   lag_hessian_times(pb, c->second, k, Y, c->dv, Y + m, NULL);
@@ -208,8 +160,7 @@ static int to_momenta(const Implicit *w, const ImplicitArrays *a, lag_problem *p
 
 /* Y over substep j, which begins at t0 + at dt. whole: the step that was taken, whose velocities are known; else they are solved for. */
 static int over_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, int j, double at, double dt, int whole, int k,
-                     double *Y)
-{
+                     double *Y) {
   const lag_rule *r = &w->rule[j % 2];
   int nq = pb->nq, rc = 0;
   double h = w->part[j] * dt;
@@ -219,22 +170,16 @@ static int over_substep(const Implicit *w, const ImplicitArrays *a, lag_problem 
   lag_predictor_last(a->history + (size_t)j * lag_substep_history(pb, w), nq * (int)r->free, c->u);
   rc = whole ? 0 : lag_discrete_solve(&d);
   rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + nq * k, c->du, c->rest);
-  for (int i = 0; i < (int)r->free && rc == 0; i++) {
-    lag_tangent_add(nq, h * r->whole[i], c->u + i * nq, c->ql);
-  }
-  for (int i = 0; i < (int)r->points && rc == 0 && !whole; i++) {
-    lag_tangent_add(nq, h * r->b[i], c->force + i * nq, c->pl);
-  }
+  for (int i = 0; i < (int)r->free && rc == 0; i++) lag_tangent_add(nq, h * r->whole[i], c->u + i * nq, c->ql);
+  for (int i = 0; i < (int)r->points && rc == 0 && !whole; i++) lag_tangent_add(nq, h * r->b[i], c->force + i * nq, c->pl);
   return rc;
 }
 
 /* End of the step, t: Y = (dq, dp) becomes (dq, dv). */
-static int to_velocities(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, double t, int whole, int k, double *Y)
-{
+static int to_velocities(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, const Changes *c, double t, int whole, int k, double *Y) {
   int nq = pb->nq, m = nq * k, rc = 0;
   lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = t, .h = 0, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p, .dp = c->pl,
                     .u = c->v, .force = c->force, .work = a->discrete};
-
   memcpy(c->v, a->y1 + nq, (size_t)nq * sizeof *Y);
   rc = whole ? 0 : lag_discrete_solve(&d);
   rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + m, c->du, c->rest);
@@ -242,14 +187,12 @@ static int to_velocities(const Implicit *w, const ImplicitArrays *a, lag_problem
   return rc;
 }
 
-int lag_implicit_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
-{
+int lag_implicit_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   Implicit *w = work;
   ImplicitArrays a = lag_substeps_arrays(w, pb);
   Changes c;
   double step = w->step.h * pb->dir, dt = lag_tangent_span(w->step.t0, t, step), at = 0;
   int whole = dt == step;
-
   layout(&c, pb, k, scratch);
   memset(c.ql, 0, (size_t)(2 * pb->nq) * sizeof *scratch);
   int rc = to_momenta(w, &a, pb, &c, k, Y);

@@ -16,37 +16,22 @@ typedef struct Predictor {
   double x[];
 } Predictor;
 
-size_t lag_predictor_size(int m)
-{
-  return sizeof(Predictor) / sizeof(double) + (size_t)(DEGREE + 2) * (size_t)m;
-}
+size_t lag_predictor_size(int m) { return sizeof(Predictor) / sizeof(double) + (size_t)(DEGREE + 2) * (size_t)m; }
 
-int lag_predictor_guess(const double *history, int m, double *x)
-{
+int lag_predictor_guess(const double *history, int m, double *x) {
   const Predictor *h = (const void *)history;
-
-  if (h->known == 0.0) {
-    return 0;
-  }
+  if (h->known == 0.0) return 0;
   memcpy(x, h->x, (size_t)m * sizeof *x);
-  for (int j = 1; j <= (int)h->degree; j++) {
-    for (int i = 0; i < m; i++) {
-      x[i] += h->x[j * m + i];
-    }
-  }
+  for (int j = 1; j <= (int)h->degree; j++)
+    for (int i = 0; i < m; i++) x[i] += h->x[j * m + i];
   return 1;
 }
 
-void lag_predictor_last(const double *history, int m, double *x)
-{
-  memcpy(x, ((const Predictor *)(const void *)history)->x, (size_t)m * sizeof *x);
-}
+void lag_predictor_last(const double *history, int m, double *x) { memcpy(x, ((const Predictor *)(const void *)history)->x, (size_t)m * sizeof *x); }
 
 /* The largest difference of order j, relative to the size of each component. */
-static double largest_difference(const Predictor *h, int m, int j)
-{
+static double largest_difference(const Predictor *h, int m, int j) {
   double size = 0;
-
   for (int i = 0; i < m; i++) {
     double d = fabs(h->x[j * m + i]), scale = fabs(h->x[i]) + fabs(h->x[m + i]);
     size = fmax(size, d > 0 ? d / scale : 0);
@@ -54,12 +39,10 @@ static double largest_difference(const Predictor *h, int m, int j)
   return size;
 }
 
-void lag_predictor_add(double *history, int m, const double *x)
-{
+void lag_predictor_add(double *history, int m, const double *x) {
   Predictor *h = (void *)history;
   int known = (int)h->known;
   double best = HUGE_VAL;
-
   for (int i = 0; i < m; i++) {
     double fresh = x[i];
     for (int j = 0; j < known; j++) {
@@ -67,9 +50,7 @@ void lag_predictor_add(double *history, int m, const double *x)
       h->x[j * m + i] = fresh;
       fresh -= old;
     }
-    if (known < DEGREE + 2) {
-      h->x[known * m + i] = fresh;
-    }
+    if (known < DEGREE + 2) h->x[known * m + i] = fresh;
   }
   h->known = known < DEGREE + 2 ? known + 1 : known;
   h->degree = 0;

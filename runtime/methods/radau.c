@@ -76,14 +76,12 @@ typedef struct RadauArrays {
 } RadauArrays;
 
 /* Sets the pointers, unless x is NULL; returns the length of Radau.x. */
-static size_t layout(RadauArrays *a, const lag_problem *pb, double *x)
-{
+static size_t layout(RadauArrays *a, const lag_problem *pb, double *x) {
   size_t n = (size_t)pb->n, m = STAGES * n;
   double **const parts[] = {&a->f0, &a->y0, &a->y1, &a->comp, &a->comp1, &a->scale, &a->ys, &a->fs, &a->err, &a->real.pivot, &a->z, &a->w,
                             &a->dw, &a->path, &a->jacobian, &a->row, &a->complex.pivot, &a->real.a, &a->complex.a, &a->linear};
   const size_t sizes[] = {n, n, n, n, n, n, n, n, n, n, m, m, m, m, (size_t)(pb->nq + pb->nz) * n, 2 * n, 2 * n, n * n, 4 * n * n,
                           lag_linear_work(pb->model)};
-
   a->real.n = pb->n;
   a->complex.n = 2 * pb->n;
   a->real.band = pb->n - 1;
@@ -91,25 +89,19 @@ static size_t layout(RadauArrays *a, const lag_problem *pb, double *x)
   return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
-static RadauArrays arrays(Radau *w, const lag_problem *pb)
-{
+static RadauArrays arrays(Radau *w, const lag_problem *pb) {
   RadauArrays a;
-
   layout(&a, pb, w->x);
   return a;
 }
 
-static size_t work_size(const lag_problem *pb)
-{
+static size_t work_size(const lag_problem *pb) {
   RadauArrays a;
-
   return sizeof(Radau) / sizeof(double) + layout(&a, pb, NULL);
 }
 
-static void reset(void *work, lag_problem *pb)
-{
+static void reset(void *work, lag_problem *pb) {
   Radau *w = work;
-
   w->h = w->limits.h_option;
   w->ready = w->jacobian_age = w->factored = w->have_path = w->h_accepted = w->again = w->tc = 0;
   w->rate = 1;
@@ -117,10 +109,8 @@ static void reset(void *work, lag_problem *pb)
   memset(arrays(w, pb).comp, 0, (size_t)pb->n * sizeof(double));
 }
 
-static int init(void *work, lag_problem *pb, const double *opt)
-{
+static int init(void *work, lag_problem *pb, const double *opt) {
   Radau *w = work;
-
   lag_step_limits_init(&w->limits, pb, opt);
   w->rtol = 0.1 * cbrt(pb->tol * pb->tol);
   w->atol = w->rtol * (w->limits.atol / pb->tol);
@@ -131,37 +121,27 @@ static int init(void *work, lag_problem *pb, const double *opt)
 /* ---- Linear systems */
 
 /* a->jacobian := df/dy at (t, y); the LU factors become invalid. */
-static int update_jacobian(Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y)
-{
+static int update_jacobian(Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y) {
   int rc = lag_jacobian(pb, t, y, a->jacobian, a->linear);
-
-  if (rc) {
-    return lag_step_refused(pb, rc, t);
-  }
+  if (rc) return lag_step_refused(pb, rc, t);
   w->jacobian_age = 1;
   w->factored = 0;
   return LAG_OK;
 }
 
 /* m := c 1 - J in the block of rows and columns from `at` on. */
-static void put_minus_jacobian(const RadauArrays *a, const lag_problem *pb, const lag_band_matrix *m, int at, double c)
-{
+static void put_minus_jacobian(const RadauArrays *a, const lag_problem *pb, const lag_band_matrix *m, int at, double c) {
   int n = pb->n, nq = pb->nq;
-
   for (int i = 0; i < n; i++) {
     double *row = lag_band_matrix_at(m, at + i, at);
     const double *j = i < nq ? NULL : a->jacobian + (i - nq) * n;
-    for (int k = 0; k < n; k++) {
-      row[k] = (i == k ? c : 0) - (j ? j[k] : k == nq + i);
-    }
+    for (int k = 0; k < n; k++) row[k] = (i == k ? c : 0) - (j ? j[k] : k == nq + i);
   }
 }
 
 /* Builds and factors both matrices for steps of signed size h. -1: singular. */
-static int factor(Radau *w, RadauArrays *a, const lag_problem *pb, double h)
-{
+static int factor(Radau *w, RadauArrays *a, const lag_problem *pb, double h) {
   int n = pb->n;
-
   put_minus_jacobian(a, pb, &a->real, 0, real_eigenvalue / h);
   memset(a->complex.a, 0, (size_t)(4 * n * n) * sizeof(double));
   put_minus_jacobian(a, pb, &a->complex, 0, eigenvalue[0] / h);
@@ -171,47 +151,35 @@ static int factor(Radau *w, RadauArrays *a, const lag_problem *pb, double h)
     *lag_band_matrix_at(&a->complex, n + i, i) = eigenvalue[1] / h;
   }
   w->factored = 0;
-  if (lag_band_matrix_factor(&a->real, a->row) || lag_band_matrix_factor(&a->complex, a->row)) {
-    return -1;
-  }
+  if (lag_band_matrix_factor(&a->real, a->row) || lag_band_matrix_factor(&a->complex, a->row)) return -1;
   w->factored = h;
   return 0;
 }
 
 /* out := (m (x) 1) in, for three stages of n components. */
-static void apply_to_stages(const double (*m)[STAGES], int n, const double *in, double *out)
-{
-  for (int i = 0; i < n; i++) {
-    for (int s = 0; s < STAGES; s++) {
-      out[s * n + i] = m[s][0] * in[i] + m[s][1] * in[n + i] + m[s][2] * in[2 * n + i];
-    }
-  }
+static void apply_to_stages(const double (*m)[STAGES], int n, const double *in, double *out) {
+  for (int i = 0; i < n; i++)
+    for (int s = 0; s < STAGES; s++) out[s * n + i] = m[s][0] * in[i] + m[s][1] * in[n + i] + m[s][2] * in[2 * n + i];
 }
 
 /* ---- Newton's method */
 
 /* Start values: z, w := the last collocation polynomial, extrapolated; zero where there is none. */
-static void guess(const Radau *w, const RadauArrays *a, int n, double dt)
-{
+static void guess(const Radau *w, const RadauArrays *a, int n, double dt) {
   memset(a->z, 0, (size_t)(STAGES * n) * sizeof(double));
   for (int s = 0; s < STAGES && w->have_path != 0.0; s++) {
     double c = node[s] * dt / w->dt;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
       a->z[s * n + i] = c * (a->path[i] + (c - (node[1] - 1)) * (a->path[n + i] + (c - (node[0] - 1)) * a->path[2 * n + i]));
-    }
   }
   apply_to_stages(inverse_T, n, a->z, a->w);
 }
 
 /* dw := f at the stages. > 0: a smaller step may help. */
-static int stages(const RadauArrays *a, lag_problem *pb, double t, const double *y, double dt)
-{
+static int stages(const RadauArrays *a, lag_problem *pb, double t, const double *y, double dt) {
   int n = pb->n;
-
   for (int s = 0; s < STAGES; s++) {
-    for (int i = 0; i < n; i++) {
-      a->ys[i] = y[i] + (a->comp[i] + a->z[s * n + i]);
-    }
+    for (int i = 0; i < n; i++) a->ys[i] = y[i] + (a->comp[i] + a->z[s * n + i]);
     int rc = lag_rhs(pb, t + node[s] * dt, a->ys, a->dw + s * n);
     if (rc) {
       pb->bad_t = t + node[s] * dt;
@@ -226,15 +194,11 @@ static int stages(const RadauArrays *a, lag_problem *pb, double t, const double 
 }
 
 /* One Newton correction dw of w; z := T w. Returns its norm relative to the tolerance. */
-static double correct(const RadauArrays *a, int n, double h)
-{
+static double correct(const RadauArrays *a, int n, double h) {
   double g = real_eigenvalue / h, re = eigenvalue[0] / h, im = eigenvalue[1] / h, sum = 0;
-
   for (int i = 0; i < n; i++) {
     double f[STAGES] = {a->dw[i], a->dw[n + i], a->dw[2 * n + i]}, r[STAGES];
-    for (int s = 0; s < STAGES; s++) {
-      r[s] = inverse_T[s][0] * f[0] + inverse_T[s][1] * f[1] + inverse_T[s][2] * f[2];
-    }
+    for (int s = 0; s < STAGES; s++) r[s] = inverse_T[s][0] * f[0] + inverse_T[s][1] * f[1] + inverse_T[s][2] * f[2];
     a->dw[i] = r[0] - g * a->w[i];
     a->dw[n + i] = r[1] - (re * a->w[n + i] - im * a->w[2 * n + i]);
     a->dw[2 * n + i] = r[2] - (re * a->w[2 * n + i] + im * a->w[n + i]);
@@ -257,24 +221,18 @@ typedef struct Outcome {
   int corrections;
 } Outcome;
 
-static Outcome newton(Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y, double dt)
-{
+static Outcome newton(Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y, double dt) {
   double goal = fmax(10 * DBL_EPSILON / w->rtol, fmin(0.03, sqrt(w->rtol))), last = 0, last_rate = 0;
   Outcome o = {0, 0.5, 0};
-
   w->unsettled = pow(fmax(w->unsettled, DBL_EPSILON), 0.8);
   w->rate = contracts_well;
   pb->systems++;
   while (o.corrections < (w->limits.fixed != 0.0 ? MOST_WHEN_FIXED : MOST_CORRECTIONS)) {
-    if ((o.rc = stages(a, pb, t, y, dt)) != 0) {
-      return o;
-    }
+    if ((o.rc = stages(a, pb, t, y, dt)) != 0) return o;
     double size = correct(a, pb->n, dt);
     o.corrections++;
     pb->iterations++;
-    if (!isfinite(size)) {
-      break;
-    }
+    if (!isfinite(size)) break;
     if (o.corrections > 1) {
       double rate = size / last;
       w->rate = o.corrections == 2 ? rate : sqrt(rate * last_rate);
@@ -295,9 +253,7 @@ static Outcome newton(Radau *w, const RadauArrays *a, lag_problem *pb, double t,
       }
     }
     last = fmax(size, DBL_EPSILON);
-    if (w->unsettled * size <= goal) {
-      return o;
-    }
+    if (w->unsettled * size <= goal) return o;
   }
   o.rc = DIVERGED;
   return o;
@@ -306,16 +262,12 @@ static Outcome newton(Radau *w, const RadauArrays *a, lag_problem *pb, double t,
 /* ---- Error estimate and step size */
 
 /* a->err := (gamma/h - J)^-1 (f + sum error_weight_k z_k/h). Returns its norm, at least 1e-10. */
-static double estimate(const RadauArrays *a, const lag_problem *pb, const double *f, double dt)
-{
+static double estimate(const RadauArrays *a, const lag_problem *pb, const double *f, double dt) {
   int n = pb->n;
   double s = 0;
-
   for (int i = 0; i < n; i++) {
     a->err[i] = f[i];
-    for (int k = 0; k < STAGES; k++) {
-      a->err[i] += error_weight[k] / dt * a->z[k * n + i];
-    }
+    for (int k = 0; k < STAGES; k++) a->err[i] += error_weight[k] / dt * a->z[k * n + i];
   }
   lag_band_matrix_solve(&a->real, a->err);
   for (int i = 0; i < n; i++) {
@@ -326,28 +278,18 @@ static double estimate(const RadauArrays *a, const lag_problem *pb, const double
 }
 
 /* The error estimate; where it is large in the first step or after a rejected one, a second estimate, filtered for stiff f. */
-static double error_of(const Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y, double dt)
-{
+static double error_of(const Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y, double dt) {
   double err = estimate(a, pb, a->f0, dt);
-
-  if (!(err >= 1) || !(w->h_accepted == 0.0 || w->again != 0.0)) {
-    return err;
-  }
-  for (int i = 0; i < pb->n; i++) {
-    a->ys[i] = y[i] + a->err[i];
-  }
-  if (lag_rhs(pb, t, a->ys, a->fs) || lag_not_finite(pb->n, a->fs) >= 0) {
-    return err;
-  }
+  if (!(err >= 1) || !(w->h_accepted == 0.0 || w->again != 0.0)) return err;
+  for (int i = 0; i < pb->n; i++) a->ys[i] = y[i] + a->err[i];
+  if (lag_rhs(pb, t, a->ys, a->fs) || lag_not_finite(pb->n, a->fs) >= 0) return err;
   return estimate(a, pb, a->fs, dt);
 }
 
 /* Factor by which h is divided for this error and this number of corrections. */
-static double step_divisor(const Radau *w, double err, int corrections, int accepted)
-{
+static double step_divisor(const Radau *w, double err, int corrections, int accepted) {
   double slow = fmin(safety, safety * (1 + 2 * MOST_CORRECTIONS) / (corrections + 2 * MOST_CORRECTIONS));
   double quot = fmax(1 / grow_most, fmin(1 / shrink_most, sqrt(sqrt(err)) / slow));
-
   if (accepted && w->h_accepted > 0) {
     double seen = w->h_accepted / w->h * sqrt(sqrt(err * err / w->err_accepted)) / safety;
     quot = fmax(quot, fmax(1 / grow_most, fmin(1 / shrink_most, seen)));
@@ -356,30 +298,22 @@ static double step_divisor(const Radau *w, double err, int corrections, int acce
 }
 
 /* Size of the step after an accepted one; h is kept where the LU factors then can be. */
-static void next_size(Radau *w, double quot, double err)
-{
+static void next_size(Radau *w, double quot, double err) {
   double h = w->h / quot;
-
   w->h_accepted = w->h;
   w->err_accepted = fmax(1e-2, err);
-  if (w->again != 0.0) {
-    h = fmin(h, w->h);
-  }
+  if (w->again != 0.0) h = fmin(h, w->h);
   w->again = 0;
   int well = w->rate <= contracts_well, same = h >= keep_least * w->h && h <= keep_most * w->h;
   w->jacobian_age = well ? 2 : 0;
-  if (!(well && same)) {
-    w->h = h;
-  }
+  if (!(well && same)) w->h = h;
 }
 
 /* ---- Step */
 
 /* a->path := divided differences of the collocation polynomial from the end of the step (code RADAU5, CONT). */
-static void store_polynomial(const RadauArrays *a, int n)
-{
+static void store_polynomial(const RadauArrays *a, int n) {
   double c1 = node[0], c2 = node[1];
-
   for (int i = 0; i < n; i++) {
     double z1 = a->z[i], z2 = a->z[n + i], z3 = a->z[2 * n + i], k = (z1 - z2) / (c1 - c2);
     a->path[i] = (z2 - z3) / (c2 - 1);
@@ -388,10 +322,8 @@ static void store_polynomial(const RadauArrays *a, int n)
   }
 }
 
-static void accept(Radau *w, const RadauArrays *a, lag_problem *pb, double *t, double *y, double dt, double tb, double tc)
-{
+static void accept(Radau *w, const RadauArrays *a, lag_problem *pb, double *t, double *y, double dt, double tb, double tc) {
   size_t bytes = (size_t)pb->n * sizeof(double);
-
   store_polynomial(a, pb->n);
   memcpy(a->y0, y, bytes);
   memcpy(y, a->y1, bytes);
@@ -405,10 +337,8 @@ static void accept(Radau *w, const RadauArrays *a, lag_problem *pb, double *t, d
 }
 
 /* y1 := end of the step, projected to the constraints; fs := f there. > 0: a smaller step may help. */
-static int finish(const RadauArrays *a, lag_problem *pb, double tb, const double *y)
-{
+static int finish(const RadauArrays *a, lag_problem *pb, double tb, const double *y) {
   int n = pb->n, rc;
-
   for (int i = 0; i < n; i++) {
     a->comp1[i] = a->comp[i];
     a->y1[i] = lag_compensated_sum(y[i], a->z[2 * n + i], &a->comp1[i]);
@@ -423,56 +353,36 @@ static int finish(const RadauArrays *a, lag_problem *pb, double tb, const double
 }
 
 /* Before a step: f0, scale of errors, and w->h, the step to try. */
-static int prepare(Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y)
-{
+static int prepare(Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y) {
   lag_tolerance tol = {w->atol, w->rtol};
   int rc = w->ready != 0.0 ? 0 : lag_step_rhs(pb, t, y, a->f0);
-
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   w->ready = 1;
-  for (int i = 0; i < pb->n; i++) {
-    a->scale[i] = w->atol + w->rtol * fabs(y[i]);
-  }
+  for (int i = 0; i < pb->n; i++) a->scale[i] = w->atol + w->rtol * fabs(y[i]);
   lag_step_limits_begin(&w->limits, t);
-  if (w->h == 0.0) {
-    w->h = lag_first_step(pb, &tol, 5, w->limits.h_max, t, y, a->f0, a->ys, a->fs);
-  }
+  if (w->h == 0.0) w->h = lag_first_step(pb, &tol, 5, w->limits.h_max, t, y, a->f0, a->ys, a->fs);
   return LAG_OK;
 }
 
 /* Largest step, at most pb->longest. */
-static double longest(const Radau *w, const lag_problem *pb, double t)
-{
+static double longest(const Radau *w, const lag_problem *pb, double t) {
   double most = lag_longest_step(&w->limits, t);
-
   return pb->longest > 0 ? fmin(most, pb->longest) : most;
 }
 
 /* Computes the end of an accepted step and the size of the next. > 0: a smaller step may help. */
-static int conclude(Radau *w, const RadauArrays *a, lag_problem *pb, double tb, const double *y, double err, int corrections)
-{
+static int conclude(Radau *w, const RadauArrays *a, lag_problem *pb, double tb, const double *y, double err, int corrections) {
   int rc = finish(a, pb, tb, y);
-
-  if (rc) {
-    w->h /= 2;
-  } else if (w->limits.fixed != 0.0) {
-    w->jacobian_age = 0;
-  } else {
-    next_size(w, step_divisor(w, err, corrections, 1), err);
-  }
+  if (rc) w->h /= 2;
+  else if (w->limits.fixed != 0.0) w->jacobian_age = 0;
+  else next_size(w, step_divisor(w, err, corrections, 1), err);
   return rc;
 }
 
 /* One attempt at a step of dt. 0: it can be accepted. > 0: rejected, and w->h is the next size to try. */
-static int attempt(Radau *w, RadauArrays *a, lag_problem *pb, double t, double tb, const double *y, double dt)
-{
+static int attempt(Radau *w, RadauArrays *a, lag_problem *pb, double t, double tb, const double *y, double dt) {
   int rc = w->jacobian_age == 0.0 ? update_jacobian(w, a, pb, t, y) : 0;
-
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   if (w->factored != dt && factor(w, a, pb, dt)) {
     w->h /= 2;
     return DIVERGED;
@@ -484,16 +394,13 @@ static int attempt(Radau *w, RadauArrays *a, lag_problem *pb, double t, double t
     return o.rc;
   }
   double err = w->limits.fixed != 0.0 ? 0 : error_of(w, a, pb, t, y, dt);
-  if (err < 1) {
-    return conclude(w, a, pb, tb, y, err, o.corrections);
-  }
+  if (err < 1) return conclude(w, a, pb, tb, y, err, o.corrections);
   w->h = w->h_accepted == 0.0 ? 0.1 * w->h : w->h / (isfinite(err) ? step_divisor(w, err, o.corrections, 0) : 2);
   return REJECTED;
 }
 
 /* Status after the last attempt failed for `why`: h is at its minimum, or steps are of fixed size. */
-static int failure_status(const Radau *w, lag_problem *pb, double t, int why)
-{
+static int failure_status(const Radau *w, lag_problem *pb, double t, int why) {
   if (why == LAG_ERETRY) {
     return pb->bad_index >= 0 ? LAG_ENAN : LAG_EDOMAIN; /* bad_t is set */
   }
@@ -504,32 +411,24 @@ static int failure_status(const Radau *w, lag_problem *pb, double t, int why)
   return lag_step_failed(pb, why == DIVERGED ? LAG_EMETHOD : LAG_ESTEP, t);
 }
 
-static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
-{
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   Radau *w = work;
   RadauArrays a = arrays(w, pb);
   int rc = prepare(w, &a, pb, *t, y), why = REJECTED;
-
   (void)t_stop;
   w->h = w->limits.fixed != 0.0 ? w->limits.h_option : w->h;
   while (rc == 0) {
     w->h = w->limits.fixed != 0.0 ? w->h : fmin(w->h, longest(w, pb, *t));
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
-    if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) {
-      return failure_status(w, pb, *t, why);
-    }
+    if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) return failure_status(w, pb, *t, why);
     pb->bad_index = -1;
     why = attempt(w, &a, pb, *t, tb, y, dt);
     if (why == 0) {
       accept(w, &a, pb, t, y, dt, tb, tc);
       return LAG_OK;
     }
-    if (why < 0) {
-      return why;
-    }
-    if (w->limits.fixed != 0.0) {
-      return failure_status(w, pb, *t, why);
-    }
+    if (why < 0) return why;
+    if (w->limits.fixed != 0.0) return failure_status(w, pb, *t, why);
     w->jacobian_age = w->jacobian_age == 1.0 ? 1 : 0;
     w->again = 1;
     pb->rejected++;
@@ -537,35 +436,24 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return rc;
 }
 
-static void dense(void *work, lag_problem *pb, double t, double *y)
-{
+static void dense(void *work, lag_problem *pb, double t, double *y) {
   Radau *w = work;
   RadauArrays a = arrays(w, pb);
   int n = pb->n;
   double s = (t - (w->t0 + w->dt)) / w->dt;
-
-  for (int i = 0; i < n; i++) {
-    y[i] = a.y1[i] + s * (a.path[i] + (s - (node[1] - 1)) * (a.path[n + i] + (s - (node[0] - 1)) * a.path[2 * n + i]));
-  }
+  for (int i = 0; i < n; i++) y[i] = a.y1[i] + s * (a.path[i] + (s - (node[1] - 1)) * (a.path[n + i] + (s - (node[0] - 1)) * a.path[2 * n + i]));
 }
 
 /* ---- Derivative of a step */
 
-static size_t tangent_size(const lag_problem *pb, int k)
-{
-  return lag_tangent_implicit_size(pb, STAGES, k) + (size_t)(STAGES * pb->n);
-}
+static size_t tangent_size(const lag_problem *pb, int k) { return lag_tangent_implicit_size(pb, STAGES, k) + (size_t)(STAGES * pb->n); }
 
 /* The stages are values of the collocation polynomial. */
-static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
-{
+static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   Radau *w = work;
   int n = pb->n;
   double dt = lag_tangent_span(w->t0, t, w->dt);
-
-  for (int s = 0; s < STAGES; s++) {
-    dense(w, pb, w->t0 + node[s] * dt, scratch + s * n);
-  }
+  for (int s = 0; s < STAGES; s++) dense(w, pb, w->t0 + node[s] * dt, scratch + s * n);
   return lag_tangent_implicit(STAGES, butcher[0], node, pb, w->t0, dt, scratch, k, Y, scratch + STAGES * n);
 }
 

@@ -29,13 +29,11 @@ EMBEDDED_TRIAL(lag_dopri5_tableau, 0)
 static const EmbeddedPair pair = {&lag_dopri5_tableau, 0, 0.04, 4, 0.9, 0.2, 10, 0, trial};
 
 /* HNW II.6, code dopri5, function contd5. At the ends it returns the states themselves. */
-static void dense(void *work, lag_problem *pb, double t, double *y)
-{
+static void dense(void *work, lag_problem *pb, double t, double *y) {
   Embedded *w = work;
   int row = lag_embedded_row(pb), last = pair.tab->stages - 1;
   double s = (t - w->t0) / w->dt, r = 1 - s, *high = w->x + EMBEDDED_YS * row;
   const double *k = w->x + EMBEDDED_K1 * row, *y0 = w->x + EMBEDDED_Y0 * row, *y1 = w->x + EMBEDDED_Y1 * row;
-
   embedded_combine(pair.tab->d[0], last + 1, embedded_shape(pb), k, high);
   for (int i = 0; i < pb->n; i++) {
     double diff = y1[i] - y0[i], b = w->dt * k[i] - diff;

@@ -28,8 +28,7 @@ extern const char *const lag_on_off[];
 void lag_step_limits_init(lag_step_limits *l, const lag_problem *pb, const double *opt);
 
 /* Before each step: notes the time of the first one. */
-static inline void lag_step_limits_begin(lag_step_limits *l, double t)
-{
+static inline void lag_step_limits_begin(lag_step_limits *l, double t) {
   if (l->begun == 0.0) {
     l->begun = 1;
     l->t_begin = t;
@@ -37,10 +36,8 @@ static inline void lag_step_limits_begin(lag_step_limits *l, double t)
 }
 
 /* Largest step: the option, or else the time covered so far. */
-static inline double lag_longest_step(const lag_step_limits *l, double t)
-{
+static inline double lag_longest_step(const lag_step_limits *l, double t) {
   double seen = fabs(t - l->t_begin);
-
   return l->h_max > 0 ? l->h_max : seen > 0 ? seen : HUGE_VAL;
 }
 
@@ -50,8 +47,7 @@ static inline double lag_max(double a, double b) { return a > b ? a : b; }
 
 /* x^p for a normal x > 0 and |p| <= 1/8, with relative error 2e-4, enough for a step size; pow would take a tenth of a short step's time.
  * log2(x) and 2^y are the exponent and a cubic in the fraction, fitted at Chebyshev points: errors 7e-4 binary orders and 8e-5. */
-static inline double lag_rough_power(double x, double p)
-{
+static inline double lag_rough_power(double x, double p) {
 #ifdef LAG_REAL_IS_DOUBLE
   const uint64_t root = 0x3fe6a09e667f3bcd; /* the bits of sqrt(1/2): sqrt(1/2) <= 1 + u < sqrt(2) */
   const double whole = 6755399441055744.0;  /* 1.5 2^52: adding and subtracting this number rounds y to an integer */

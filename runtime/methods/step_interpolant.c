@@ -13,62 +13,38 @@
 
 enum { MAX_INTERVALS = 5, NV = MAX_INTERVALS + 2, NQ = MAX_INTERVALS + 3 };
 
-static int intervals(int level)
-{
-  return 2 * level + 1;
-}
+static int intervals(int level) { return 2 * level + 1; }
 
 /* A path: accelerations at x = 0..MAX_INTERVALS, coefficients of the accelerations of v and of q, a stage and its f. */
-size_t lag_interpolant_size(int nq)
-{
-  return (size_t)nq * (MAX_INTERVALS + 1 + NV + NQ + 4);
-}
+size_t lag_interpolant_size(int nq) { return (size_t)nq * (MAX_INTERVALS + 1 + NV + NQ + 4); }
 
 /* p := p (x - r); the degree rises from n to n + 1. */
-static void times_root(double *p, int n, double r)
-{
+static void times_root(double *p, int n, double r) {
   p[n + 1] = p[n];
-  for (int k = n; k > 0; k--) {
-    p[k] = p[k - 1] - r * p[k];
-  }
+  for (int k = n; k > 0; k--) p[k] = p[k - 1] - r * p[k];
   p[0] *= -r;
 }
 
 /* int_0^x p, for p of degree n. */
-static double integral(const double *p, int n, double x)
-{
+static double integral(const double *p, int n, double x) {
   double s = 0;
-
-  for (int k = n; k >= 0; k--) {
-    s = s * x + p[k] / (k + 1);
-  }
+  for (int k = n; k >= 0; k--) s = s * x + p[k] / (k + 1);
   return s * x;
 }
 
 /* int_0^x int_0^x p. */
-static double integral2(const double *p, int n, double x)
-{
+static double integral2(const double *p, int n, double x) {
   double s = 0;
-
-  for (int k = n; k >= 0; k--) {
-    s = s * x + p[k] / ((k + 1) * (k + 2));
-  }
+  for (int k = n; k >= 0; k--) s = s * x + p[k] / ((k + 1) * (k + 2));
   return s * x * x;
 }
 
 /* p := the polynomial of degree m that has the values a[k stride] at x = k, by Newton's forward differences. */
-static void interpolate(const double *a, int stride, int m, double *p)
-{
+static void interpolate(const double *a, int stride, int m, double *p) {
   double d[MAX_INTERVALS + 1];
-
-  for (int k = 0; k <= m; k++) {
-    d[k] = a[k * stride];
-  }
-  for (int j = 1; j <= m; j++) {
-    for (int k = m; k >= j; k--) {
-      d[k] = (d[k] - d[k - 1]) / j;
-    }
-  }
+  for (int k = 0; k <= m; k++) d[k] = a[k * stride];
+  for (int j = 1; j <= m; j++)
+    for (int k = m; k >= j; k--) d[k] = (d[k] - d[k - 1]) / j;
   p[0] = d[m];
   for (int k = m - 1, n = 0; k >= 0; k--, n++) {
     times_root(p, n, k);
@@ -77,13 +53,9 @@ static void interpolate(const double *a, int stride, int m, double *p)
 }
 
 /* Computes the coefficients of both polynomials from the accelerations in path. */
-static void fit(double *path, int nq, const StepEnds *e, int m)
-{
+static void fit(double *path, int nq, const StepEnds *e, int m) {
   double w[NV + 1] = {1}, w2[NQ + 1], g = e->h / m;
-
-  for (int k = 0; k <= m; k++) {
-    times_root(w, k, k);
-  }
+  for (int k = 0; k <= m; k++) times_root(w, k, k);
   memcpy(w2, w, sizeof w);
   times_root(w2, m + 1, 0.5 * m);
   double wi = integral(w, m + 1, m), w2i = integral2(w2, m + 2, m);
@@ -93,21 +65,15 @@ static void fit(double *path, int nq, const StepEnds *e, int m)
     interpolate(path + i, nq, m, cv);
     double alpha = ((e->y1[nq + i] - v0) / g - integral(cv, m, m)) / wi;
     cv[m + 1] = 0;
-    for (int k = 0; k <= m + 1; k++) {
-      cv[k] += alpha * w[k];
-    }
+    for (int k = 0; k <= m + 1; k++) cv[k] += alpha * w[k];
     double beta = ((e->y1[i] - q0 - e->h * v0) / (g * g) - integral2(cv, m + 1, m)) / w2i;
-    for (int k = 0; k <= m + 2; k++) {
-      cq[k] = (k <= m + 1 ? cv[k] : 0) + beta * w2[k];
-    }
+    for (int k = 0; k <= m + 2; k++) cq[k] = (k <= m + 1 ? cv[k] : 0) + beta * w2[k];
   }
 }
 
-void lag_interpolant_at(const double *path, const lag_problem *pb, const StepEnds *e, int level, double s, double *y)
-{
+void lag_interpolant_at(const double *path, const lag_problem *pb, const StepEnds *e, int level, double s, double *y) {
   int nq = pb->nq, m = intervals(level);
   double g = e->h / m, x = s * m;
-
   if (level == 0) {
     lag_hermite(nq, 0, e->h, s, e->y0, e->f0, e->y1, e->f1, y);
     return;
@@ -120,20 +86,16 @@ void lag_interpolant_at(const double *path, const lag_problem *pb, const StepEnd
 }
 
 /* Evaluates the accelerations of level l along the interpolant of level `from`, and fits the polynomials. */
-static int refine(double *path, lag_problem *pb, const StepEnds *e, int l, int from)
-{
+static int refine(double *path, lag_problem *pb, const StepEnds *e, int l, int from) {
   int nq = pb->nq, m = intervals(l);
   size_t bytes = (size_t)nq * sizeof(double);
   double *ys = path + (MAX_INTERVALS + 1 + NV + NQ) * nq, *fs = ys + 2 * nq;
-
   memcpy(path, e->f0 + nq, bytes);
   for (int k = 1; k < m; k++) {
     double s = (double)k / m;
     lag_interpolant_at(path, pb, e, from, s, ys);
     int rc = lag_rhs(pb, e->t0 + s * e->h, ys, fs);
-    if (rc || lag_not_finite(nq, fs + nq) >= 0) {
-      return LAG_ENAN;
-    }
+    if (rc || lag_not_finite(nq, fs + nq) >= 0) return LAG_ENAN;
     memcpy(path + k * nq, fs + nq, bytes);
   }
   memcpy(path + m * nq, e->f1 + nq, bytes);
@@ -141,23 +103,17 @@ static int refine(double *path, lag_problem *pb, const StepEnds *e, int l, int f
   return LAG_OK;
 }
 
-int lag_interpolant_make(double *path, lag_problem *pb, const StepEnds *e, int level, int passes)
-{
-  for (int l = 1; l <= level; l++) {
+int lag_interpolant_make(double *path, lag_problem *pb, const StepEnds *e, int level, int passes) {
+  for (int l = 1; l <= level; l++)
     for (int pass = 0; pass < passes; pass++) {
       int rc = refine(path, pb, e, l, pass ? l : l - 1);
-      if (rc) {
-        return rc;
-      }
+      if (rc) return rc;
     }
-  }
   return LAG_OK;
 }
 
-void lag_interpolant_cubic(int nq, const StepEnds *e, double s, double *y)
-{
+void lag_interpolant_cubic(int nq, const StepEnds *e, double s, double *y) {
   double h = e->h, r = 1 - s;
-
   for (int i = 0; i < nq; i++) {
     double d = e->y1[i] - e->y0[i], a = h * e->y0[nq + i] - d, b = d - h * e->y1[nq + i];
     y[i] = e->y0[i] + s * (d + r * (r * a + s * b));

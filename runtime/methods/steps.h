@@ -8,10 +8,8 @@
 
 /* s + d with compensation: *c is the rounding lost so far (two-sum, for operands of any size). A. Neumaier, ZAMM 54
  * (1974) 39, DOI 10.1002/zamm.19740540106. Rounding then grows at most with the root of the number of steps. */
-static inline double lag_compensated_sum(double s, double d, double *c)
-{
+static inline double lag_compensated_sum(double s, double d, double *c) {
   double x = d + *c, r = s + x, b = r - s;
-
   *c = (s - (r - b)) + (x - b);
   return r;
 }
@@ -29,8 +27,7 @@ typedef struct lag_next_step {
 } lag_next_step;
 
 /* LAG_ESTEP: the step is lost in the rounding of t. */
-static inline int lag_fixed_step_begin(const lag_fixed_step *s, lag_problem *pb, double t, lag_next_step *next)
-{
+static inline int lag_fixed_step_begin(const lag_fixed_step *s, lag_problem *pb, double t, lag_next_step *next) {
   next->dt = s->h * pb->dir;
   next->tc = s->tc;
   next->tb = lag_compensated_sum(t, next->dt, &next->tc);
@@ -42,8 +39,7 @@ static inline int lag_fixed_step_begin(const lag_fixed_step *s, lag_problem *pb,
   return LAG_OK;
 }
 
-static inline void lag_fixed_step_end(lag_fixed_step *s, const lag_next_step *next, double *t)
-{
+static inline void lag_fixed_step_end(lag_fixed_step *s, const lag_next_step *next, double *t) {
   s->t0 = *t;
   s->dt = next->tb - *t;
   s->tc = next->tc;
@@ -54,32 +50,25 @@ static inline void lag_fixed_step_end(lag_fixed_step *s, const lag_next_step *ne
 #define LAG_STEP_OPTION {"step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL}
 
 /* Records the time of a failure in pb; returns status. */
-static inline int lag_step_failed(lag_problem *pb, int status, double t)
-{
+static inline int lag_step_failed(lag_problem *pb, int status, double t) {
   pb->bad_t = t;
   return status;
 }
 
 /* Status of a step whose model call returned rc != 0, for a method that cannot take a smaller step. */
-static inline int lag_step_refused(lag_problem *pb, int rc, double t)
-{
+static inline int lag_step_refused(lag_problem *pb, int rc, double t) {
   return lag_step_failed(pb, rc > 0 ? LAG_EDOMAIN : rc == LAG_ESINGULAR ? LAG_ESINGULAR : LAG_EMODEL, t);
 }
 
 /* Status of a step whose projection (lag_project) returned rc != 0. */
-static inline int lag_step_not_projected(lag_problem *pb, int rc, double t)
-{
+static inline int lag_step_not_projected(lag_problem *pb, int rc, double t) {
   return rc > 0 ? lag_step_failed(pb, LAG_EMETHOD, t) : lag_step_refused(pb, rc, t);
 }
 
 /* dy := f(t, y), for a method that cannot take a smaller step. LAG_OK, or a failure, also where a rate is not finite. */
-static inline int lag_step_rhs(lag_problem *pb, double t, const double *y, double *dy)
-{
+static inline int lag_step_rhs(lag_problem *pb, double t, const double *y, double *dy) {
   int rc = lag_rhs(pb, t, y, dy);
-
-  if (rc) {
-    return lag_step_refused(pb, rc, t);
-  }
+  if (rc) return lag_step_refused(pb, rc, t);
   pb->bad_index = lag_not_finite(pb->n, dy);
   return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, t) : LAG_OK;
 }

@@ -46,19 +46,14 @@ int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f);
 void lag_tangent_times(const lag_tangent *w, const double *Y, double *out);
 
 /* Length of the step from t0 to t: exactly dt where t is the end of the last step, up to rounding. */
-static inline double lag_tangent_span(double t0, double t, double dt)
-{
+static inline double lag_tangent_span(double t0, double t, double dt) {
   double span = t - t0, rounding = 4 * DBL_EPSILON * (fabs(t0) + fabs(t));
-
   return fabs(span - dt) <= rounding ? dt : span;
 }
 
 /* out[m] += c x[m] */
-static inline void lag_tangent_add(int m, double c, const double *restrict x, double *restrict out)
-{
-  for (int i = 0; i < m; i++) {
-    out[i] += c * x[i];
-  }
+static inline void lag_tangent_add(int m, double c, const double *restrict x, double *restrict out) {
+  for (int i = 0; i < m; i++) out[i] += c * x[i];
 }
 
 #endif

@@ -54,44 +54,30 @@ typedef struct Taylor {
 
 enum { COMP, COMP1, Y1, SUM, SLOPE, SCALE, ARRAYS }; /* arrays of `width` doubles; the two series follow */
 
-static int width(const lag_problem *pb)
-{
-  return pb->model->taylor->width;
-}
+static int width(const lag_problem *pb) { return pb->model->taylor->width; }
 
-static double *array(Taylor *w, const lag_problem *pb, int which)
-{
-  return w->x + which * width(pb);
-}
+static double *array(Taylor *w, const lag_problem *pb, int which) { return w->x + which * width(pb); }
 
 /* Series 0 or 1: (order + 1) rows of `columns` doubles. */
-static double *series(Taylor *w, const lag_problem *pb, double which)
-{
+static double *series(Taylor *w, const lag_problem *pb, double which) {
   const lag_taylor *ty = pb->model->taylor;
-
   return w->x + ARRAYS * ty->width + (which > 0 ? (ty->order + 1) * ty->columns : 0);
 }
 
 /* [nu] 1 where the input is given by its formula, not held constant. */
-static double *follows(Taylor *w, const lag_problem *pb)
-{
+static double *follows(Taylor *w, const lag_problem *pb) {
   const lag_taylor *ty = pb->model->taylor;
-
   return w->x + ARRAYS * ty->width + 2 * (ty->order + 1) * ty->columns;
 }
 
-static size_t work_size(const lag_problem *pb)
-{
+static size_t work_size(const lag_problem *pb) {
   const lag_taylor *ty = pb->model->taylor;
   size_t head = sizeof(Taylor) / sizeof(double);
-
   return ty ? head + (size_t)(ARRAYS * ty->width + 2 * (ty->order + 1) * ty->columns + pb->model->nu) : head;
 }
 
-static void reset(void *work, lag_problem *pb)
-{
+static void reset(void *work, lag_problem *pb) {
   Taylor *w = work;
-
   w->ready = 0;
   w->tc = 0;
   memset(array(w, pb, COMP), 0, (size_t)width(pb) * sizeof(double));
@@ -99,10 +85,8 @@ static void reset(void *work, lag_problem *pb)
 
 /* The relative error aimed at in a step, as -log2: a fraction of the tolerance, and far below rounding where the tolerance is near
  * rounding. Errors of one sign add up as the number of steps, rounding as its root. */
-static double target_bits(const lag_problem *pb)
-{
+static double target_bits(const lag_problem *pb) {
   double left = 1.5 * (9 - lag_rough_log2(pb->tol / DBL_EPSILON)); /* extra bits: 10 at 1e-15, 0 at 1e-13 */
-
   return AIM - lag_rough_log2(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
 }
 
@@ -116,8 +100,7 @@ static const double per_step = 100, per_first = 1, per_term = 1, per_product = 2
 
 /* The order with the most time covered per operation. The rounding of an increment is proportional to the step: where only rounding is
  * left, products count fully, which gives lower orders and shorter steps. */
-static double best_order(const lag_problem *pb)
-{
+static double best_order(const lag_problem *pb) {
   enum { ROUNDING = 16 };
   const lag_taylor *ty = pb->model->taylor;
   double product = pb->tol < ROUNDING * DBL_EPSILON ? fmax(per_product, 1) : per_product;
@@ -133,30 +116,22 @@ static double best_order(const lag_problem *pb)
   return best;
 }
 
-static int init(void *work, lag_problem *pb, const double *opt)
-{
+static int init(void *work, lag_problem *pb, const double *opt) {
   Taylor *w = work;
-
   w->bits = target_bits(pb);
   w->order = fmin(pb->model->taylor->order, opt[OPT_ORDER] > 0 ? opt[OPT_ORDER] : best_order(pb));
-  for (int i = 0; i < WINDOW; i++) {
-    w->per_order[i] = 1 / fmax(w->order - i, 1);
-  }
+  for (int i = 0; i < WINDOW; i++) w->per_order[i] = 1 / fmax(w->order - i, 1);
   lag_step_limits_init(&w->limits, pb, opt);
   w->floor = w->limits.atol / pb->tol;
-  for (int i = 0; i < pb->model->nu; i++) {
-    follows(w, pb)[i] = isnan(pb->hold[i]) && pb->model->inputs;
-  }
+  for (int i = 0; i < pb->model->nu; i++) follows(w, pb)[i] = isnan(pb->hold[i]) && pb->model->inputs;
   reset(work, pb);
   return LAG_OK;
 }
 
 /* Order 0 of series[which] at t, y. Returns 0 or the model's status; > 0 with pb->bad_index >= 0 where a rate is not finite. */
-static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y)
-{
+static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y) {
   int nq = pb->nq, rc = lag_inputs_inline(pb, t);
   double *x = series(w, pb, which);
-
   pb->rhs_calls++;
   pb->bad_index = -1;
   rc = rc ? rc : pb->model->taylor->first(t, y, y + nq, y + 2 * nq, pb->p, pb->u, follows(w, pb), x, pb->work);
@@ -169,45 +144,32 @@ static int first(Taylor *w, lag_problem *pb, double which, double t, const doubl
 }
 
 /* Unit of time of the first series: the time scale of the state, as a power of 2. Later series use about the last step. */
-static double guess_unit(Taylor *w, const lag_problem *pb, const double *y)
-{
+static double guess_unit(Taylor *w, const lag_problem *pb, const double *y) {
   double fastest = 0;
   const double *rates = series(w, pb, w->now) + pb->n;
-
-  for (int i = 0; i < pb->n; i++) {
-    fastest = fmax(fastest, fabs(i < pb->nq ? y[pb->nq + i] : rates[i - pb->nq]) / (fabs(y[i]) + w->floor));
-  }
+  for (int i = 0; i < pb->n; i++) fastest = fmax(fastest, fabs(i < pb->nq ? y[pb->nq + i] : rates[i - pb->nq]) / (fabs(y[i]) + w->floor));
   return fastest > 0 && isfinite(fastest) ? ldexp(1, -ilogb(fastest)) : 1;
 }
 
 /* Expands series[which] from its order 0, with the given unit of time. 0: coefficients are not finite. */
-static int expand(Taylor *w, lag_problem *pb, double which, double unit)
-{
+static int expand(Taylor *w, lag_problem *pb, double which, double unit) {
   const lag_taylor *ty = pb->model->taylor;
   int order = (int)w->order;
   double *x = series(w, pb, which);
-
   for (int attempt = 0; attempt < 8; attempt++, unit *= 0x1p-40) {
     w->unit[which > 0] = pb->dir * unit;
     ty->rest(order, pb->dir * unit, x, pb->work);
-    if (lag_not_finite(pb->n, x + order * ty->columns) < 0) {
-      return 1;
-    }
+    if (lag_not_finite(pb->n, x + order * ty->columns) < 0) return 1;
   }
   return 0;
 }
 
 /* Expands the series at t, y where none is known: at the start, and after an event. */
-static int prepare(Taylor *w, lag_problem *pb, double t, const double *y)
-{
+static int prepare(Taylor *w, lag_problem *pb, double t, const double *y) {
   lag_step_limits_begin(&w->limits, t);
-  if (w->ready != 0.0) {
-    return LAG_OK;
-  }
+  if (w->ready != 0.0) return LAG_OK;
   int rc = first(w, pb, w->now, t, y);
-  if (rc) {
-    return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, t) : lag_step_refused(pb, rc, t);
-  }
+  if (rc) return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, t) : lag_step_refused(pb, rc, t);
   if (!expand(w, pb, w->now, guess_unit(w, pb, y))) {
     pb->detail = "the Taylor series does not exist here; dop853 needs none";
     return lag_step_failed(pb, LAG_ENAN, t);
@@ -217,15 +179,11 @@ static int prepare(Taylor *w, lag_problem *pb, double t, const double *y)
 }
 
 /* Step size by the root test, item 1 above. HUGE_VAL where the last coefficients are zero. */
-static double root_test_step(Taylor *w, lag_problem *pb, const double *y)
-{
+static double root_test_step(Taylor *w, lag_problem *pb, const double *y) {
   int n = pb->n, order = (int)w->order, columns = pb->model->taylor->columns;
   const double *x = series(w, pb, w->now);
   double *scale = array(w, pb, SCALE), root = -HUGE_VAL;
-
-  for (int i = 0; i < n; i++) {
-    scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + w->floor);
-  }
+  for (int i = 0; i < n; i++) scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + w->floor);
   for (int k = order; k > order - WINDOW && k > 0; k--) {
     const double *row = x + k * columns;
     double most = 0;
@@ -236,20 +194,16 @@ static double root_test_step(Taylor *w, lag_problem *pb, const double *y)
     double here = most > 0 ? lag_rough_log2(most) * w->per_order[order - k] : -HUGE_VAL;
     root = here > root ? here : root;
   }
-  if (root == -HUGE_VAL) {
-    return HUGE_VAL;
-  }
+  if (root == -HUGE_VAL) return HUGE_VAL;
   return fabs(w->unit[w->now > 0]) * lag_rough_exp2(-w->bits / (order + 1) - root);
 }
 
 /* Error of a step of dt that ends at Y1, in tolerances: item 2 above. If the polynomial omits c t^(p+1) + ..., its defect at the
  * end is (p + 1) c h^p; the error of q is one order smaller. */
-static double error_of(Taylor *w, lag_problem *pb, double dt)
-{
+static double error_of(Taylor *w, lag_problem *pb, double dt) {
   int nq = pb->nq, m = nq + pb->nz, order = (int)w->order;
   double per_unit = 1 / w->unit[w->now > 0], worst = 0, h = fabs(dt), to_v = h / (order + 1), to_q = h / (order + 2);
   const double *slope = array(w, pb, SLOPE) + nq, *scale = array(w, pb, SCALE), *rates = series(w, pb, 1 - w->now) + pb->n;
-
   for (int i = 0; i < m; i++) {
     double error = fabs(slope[i] * per_unit - rates[i]) * to_v, size = error * scale[nq + i];
     double of_q = i < nq ? error * to_q * scale[i] : 0;
@@ -260,11 +214,9 @@ static double error_of(Taylor *w, lag_problem *pb, double dt)
 }
 
 /* Y1, COMP1 := the state at t + dt and its compensation. */
-static void advance(Taylor *w, lag_problem *pb, const double *y, double dt)
-{
+static void advance(Taylor *w, lag_problem *pb, const double *y, double dt) {
   const double *comp = array(w, pb, COMP);
   double *sum = array(w, pb, SUM), *y1 = array(w, pb, Y1), *comp1 = array(w, pb, COMP1);
-
   pb->model->taylor->at((int)w->order, dt / w->unit[w->now > 0], series(w, pb, w->now), sum, array(w, pb, SLOPE));
   for (int i = 0; i < pb->n; i++) {
     comp1[i] = comp[i];
@@ -273,11 +225,9 @@ static void advance(Taylor *w, lag_problem *pb, const double *y, double dt)
 }
 
 /* Accepts the step, and expands the next series from order 0 at its end. */
-static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, double tb)
-{
+static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, double tb) {
   const double *y1 = array(w, pb, Y1), *comp1 = array(w, pb, COMP1);
   double *comp = array(w, pb, COMP);
-
   for (int i = 0; i < pb->n; i++) {
     y[i] = y1[i];
     comp[i] = comp1[i];
@@ -289,29 +239,22 @@ static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, 
   w->ready = expand(w, pb, w->now, lag_floor_power_of_two(dt));
 }
 
-static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
-{
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   Taylor *w = work;
   int cause = LAG_ESTEP, rc = prepare(w, pb, *t, y);
-
   (void)t_stop;
-  if (rc) {
-    return rc;
-  }
+  if (rc) return rc;
   double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t), last = HUGE_VAL;
   h = w->limits.fixed != 0.0 ? w->limits.h_option : h < most ? h : most;
   h = isfinite(h) ? h : 1;
   for (;;) {
     double tc = w->tc, tb = w->limits.fixed != 0.0 ? lag_compensated_sum(*t, pb->dir * h, &tc) : *t + pb->dir * h;
     double dt = tb - *t; /* the step between two times as rounded */
-    if (!(fabs(dt) > 4 * DBL_EPSILON * fabs(*t)) || h < DBL_MIN / DBL_EPSILON) {
+    if (!(fabs(dt) > 4 * DBL_EPSILON * fabs(*t)) || h < DBL_MIN / DBL_EPSILON)
       return cause == LAG_ESTEP || cause == LAG_ESINGULAR ? lag_step_failed(pb, cause, *t) : cause;
-    }
     advance(w, pb, y, dt);
     rc = first(w, pb, 1 - w->now, tb, array(w, pb, Y1));
-    if (rc < 0 && rc != LAG_ESINGULAR) {
-      return lag_step_refused(pb, rc, tb);
-    }
+    if (rc < 0 && rc != LAG_ESINGULAR) return lag_step_refused(pb, rc, tb);
     double error = rc ? NAN : error_of(w, pb, dt);
     if (error > last / 2) { /* the defect did not shrink with the step: rounding */
       w->noise = error;
@@ -324,44 +267,30 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     }
     cause = rc ? (pb->bad_index >= 0 ? LAG_ENAN : rc < 0 ? LAG_ESINGULAR : LAG_EDOMAIN) : LAG_ESTEP;
     pb->bad_t = tb;
-    if (w->limits.fixed != 0.0) {
-      return cause;
-    }
+    if (w->limits.fixed != 0.0) return cause;
     last = rc ? HUGE_VAL : error;
     h *= rc ? 0.5 : fmax(0.5, lag_rough_exp2(-(lag_rough_log2(error) + AIM) / (w->order + 1)));
     pb->rejected++;
   }
 }
 
-static void dense(void *work, lag_problem *pb, double t, double *y)
-{
+static void dense(void *work, lag_problem *pb, double t, double *y) {
   Taylor *w = work;
   double which = 1 - w->now, *sum = array(w, pb, SUM);
   const double *x = series(w, pb, which);
-
   pb->model->taylor->at((int)w->order, (t - w->t0) / w->unit[which > 0], x, sum, array(w, pb, SLOPE));
-  for (int i = 0; i < pb->n; i++) {
-    y[i] = x[i] + sum[i];
-  }
+  for (int i = 0; i < pb->n; i++) y[i] = x[i] + sum[i];
 }
 
-static size_t tangent_size(const lag_problem *pb, int k)
-{
-  return lag_tangent_along_size(pb, k);
-}
+static size_t tangent_size(const lag_problem *pb, int k) { return lag_tangent_along_size(pb, k); }
 
 /* The series is the motion to the tolerance, so its derivative is that of the flow. */
-static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
-{
+static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   const Taylor *w = work;
-
   return lag_tangent_along(dense, work, pb, w->t0, t - w->t0, k, Y, scratch);
 }
 
-static const char *check(const double *opt)
-{
-  return opt[OPT_ORDER] != floor(opt[OPT_ORDER]) ? "order: write a whole number" : NULL;
-}
+static const char *check(const double *opt) { return opt[OPT_ORDER] != floor(opt[OPT_ORDER]) ? "order: write a whole number" : NULL; }
 
 const lag_method lag_taylor_method = {
     .name = "taylor",

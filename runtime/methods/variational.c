@@ -22,18 +22,13 @@ static const lag_method_option gauss_options[] = {
     {"stages", "1, 2, 3 or 4: order 2, 4, 6, 8", 2, 1, 4, NULL},
 };
 
-static const char *variational_check(const double *opt)
-{
+static const char *variational_check(const double *opt) {
   return opt[OPT_ORDER] / 2 != (int)(opt[OPT_ORDER] / 2) ? "order: write 2, 4, 6 or 8" : NULL;
 }
 
-static int variational_order(const double *opt)
-{
-  return (int)opt[OPT_ORDER];
-}
+static int variational_order(const double *opt) { return (int)opt[OPT_ORDER]; }
 
-static const char *variational_refuses(const lag_model *model, const double *opt)
-{
+static const char *variational_refuses(const lag_model *model, const double *opt) {
   return model->constraints && opt[OPT_ORDER] > 2
              ? "with constraints only order 2 is possible: higher orders would need the constraints at points within the step, too; "
                "verlet4, verlet6 and "
@@ -41,35 +36,22 @@ static const char *variational_refuses(const lag_model *model, const double *opt
              : NULL;
 }
 
-static const char *gauss_check(const double *opt)
-{
-  return opt[OPT_STAGES] != (int)opt[OPT_STAGES] ? "stages: write 1, 2, 3 or 4" : NULL;
-}
+static const char *gauss_check(const double *opt) { return opt[OPT_STAGES] != (int)opt[OPT_STAGES] ? "stages: write 1, 2, 3 or 4" : NULL; }
 
-static int gauss_order(const double *opt)
-{
-  return 2 * (int)opt[OPT_STAGES];
-}
+static int gauss_order(const double *opt) { return 2 * (int)opt[OPT_STAGES]; }
 
 /* Gauss points a step; lag_method.variant computes the order from the options. */
-static int points(const lag_problem *pb)
-{
+static int points(const lag_problem *pb) {
   const lag_method *m = pb->variant;
-
   return m->order_of(pb->opt) / 2;
 }
 
-static size_t work_size(const lag_problem *pb)
-{
-  return (pb->nq ? lag_implicit_size : lag_collocation_size)(pb, points(pb));
-}
+static size_t work_size(const lag_problem *pb) { return (pb->nq ? lag_implicit_size : lag_collocation_size)(pb, points(pb)); }
 
-static int init(void *work, lag_problem *pb, const double *opt)
-{
+static int init(void *work, lag_problem *pb, const double *opt) {
   int u = points(pb);
   double h = lag_step_size(pb, opt[OPT_STEP]);
   lag_rule rule;
-
   if (pb->nq == 0) {
     lag_collocation_init(work, pb, h, u);
     return LAG_OK;
@@ -79,28 +61,17 @@ static int init(void *work, lag_problem *pb, const double *opt)
   return LAG_OK;
 }
 
-static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
-{
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   return (pb->nq ? lag_implicit_step : lag_collocation_step)(work, pb, t, y, t_stop);
 }
 
-static void dense(void *work, lag_problem *pb, double t, double *y)
-{
-  (pb->nq ? lag_implicit_dense : lag_collocation_dense)(work, pb, t, y);
-}
+static void dense(void *work, lag_problem *pb, double t, double *y) { (pb->nq ? lag_implicit_dense : lag_collocation_dense)(work, pb, t, y); }
 
-static void reset(void *work, lag_problem *pb)
-{
-  (pb->nq ? lag_implicit_reset : lag_collocation_reset)(work, pb);
-}
+static void reset(void *work, lag_problem *pb) { (pb->nq ? lag_implicit_reset : lag_collocation_reset)(work, pb); }
 
-static size_t tangent_size(const lag_problem *pb, int k)
-{
-  return (pb->nq ? lag_implicit_tangent_size : lag_collocation_tangent_size)(pb, k);
-}
+static size_t tangent_size(const lag_problem *pb, int k) { return (pb->nq ? lag_implicit_tangent_size : lag_collocation_tangent_size)(pb, k); }
 
-static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
-{
+static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   return (pb->nq ? lag_implicit_tangent : lag_collocation_tangent)(work, pb, t, k, Y, scratch);
 }
 

@@ -35,25 +35,16 @@ typedef struct Member {
   const lag_composition *separable, *any;
 } Member;
 
-static int is_explicit(const lag_problem *pb)
-{
-  return (pb->model->flags & LAG_SEPARABLE) && !pb->model->constraints;
-}
+static int is_explicit(const lag_problem *pb) { return (pb->model->flags & LAG_SEPARABLE) && !pb->model->constraints; }
 
-static size_t work_size(const lag_problem *pb)
-{
+static size_t work_size(const lag_problem *pb) {
   const Member *m = pb->variant;
-
-  if (!is_explicit(pb)) {
-    return lag_implicit_composed_size(pb, m->any);
-  }
+  if (!is_explicit(pb)) return lag_implicit_composed_size(pb, m->any);
   return sizeof(Verlet) / sizeof(double) + NARRAYS * (size_t)pb->n + lag_interpolant_size(pb->nq);
 }
 
-static void reset(void *work, lag_problem *pb)
-{
+static void reset(void *work, lag_problem *pb) {
   Verlet *w = work;
-
   if (!is_explicit(pb)) {
     lag_implicit_reset(work, pb);
     return;
@@ -63,12 +54,10 @@ static void reset(void *work, lag_problem *pb)
   memset(w->x + COMP * pb->n, 0, (size_t)pb->n * sizeof(double));
 }
 
-static int init(void *work, lag_problem *pb, const double *opt)
-{
+static int init(void *work, lag_problem *pb, const double *opt) {
   const Member *m = pb->variant;
   Verlet *w = work;
   double h = lag_step_size(pb, opt[0]);
-
   if (!is_explicit(pb)) {
     lag_implicit_compose(work, pb, h, m->any);
     return LAG_OK;
@@ -79,22 +68,16 @@ static int init(void *work, lag_problem *pb, const double *opt)
 }
 
 /* Adds one kick to the increment of v. */
-static void kick(Verlet *w, const lag_problem *pb, double h, const double *f)
-{
+static void kick(Verlet *w, const lag_problem *pb, double h, const double *f) {
   double *dv = w->x + DY * pb->n + pb->nq;
-
-  for (int i = 0; i < pb->nq; i++) {
-    dv[i] += h * f[pb->nq + i];
-  }
+  for (int i = 0; i < pb->nq; i++) dv[i] += h * f[pb->nq + i];
 }
 
 /* Adds one drift to the increment of q; YS := the state after it. */
-static void drift(Verlet *w, const lag_problem *pb, double h, const double *y)
-{
+static void drift(Verlet *w, const lag_problem *pb, double h, const double *y) {
   int nq = pb->nq, n = pb->n;
   const double *comp = w->x + COMP * n;
   double *dy = w->x + DY * n, *ys = w->x + YS * n;
-
   for (int i = 0; i < nq; i++) {
     ys[nq + i] = y[nq + i] + (comp[nq + i] + dy[nq + i]);
     dy[i] += h * ys[nq + i];
@@ -103,12 +86,10 @@ static void drift(Verlet *w, const lag_problem *pb, double h, const double *y)
 }
 
 /* Y1, COMP1 := y + increments with compensation, for nq components from i0 on. */
-static void add(Verlet *w, const lag_problem *pb, const double *y, int i0)
-{
+static void add(Verlet *w, const lag_problem *pb, const double *y, int i0) {
   int n = pb->n;
   const double *comp = w->x + COMP * n, *dy = w->x + DY * n;
   double *y1 = w->x + Y1 * n, *comp1 = w->x + COMP1 * n;
-
   for (int i = i0; i < i0 + pb->nq; i++) {
     comp1[i] = comp[i];
     y1[i] = lag_compensated_sum(y[i], dy[i], &comp1[i]);
@@ -116,11 +97,9 @@ static void add(Verlet *w, const lag_problem *pb, const double *y, int i0)
 }
 
 /* All kicks and drifts of a step, from F0 = f(t, y) to Y1 and F1 = f(tb, Y1). */
-static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double t, double tb, const double *y, double dt)
-{
+static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double t, double tb, const double *y, double dt) {
   int n = pb->n, nq = pb->nq, last = c->stages - 1, rc;
   double at = 0, *y1 = w->x + Y1 * n, *f = w->x + F0 * n;
-
   memset(w->x + DY * n, 0, (size_t)n * sizeof(double));
   for (int s = 0; s < c->stages; s++) {
     kick(w, pb, c->kick[s] * dt, f);
@@ -128,17 +107,13 @@ static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double 
     at += c->drift[s];
     if (s < last) {
       f = w->x + FS * n;
-      if ((rc = lag_step_rhs(pb, t + at * dt, w->x + YS * n, f)) != 0) {
-        return rc;
-      }
+      if ((rc = lag_step_rhs(pb, t + at * dt, w->x + YS * n, f)) != 0) return rc;
     }
   }
   /* Accelerations do not depend on velocities: those of the last stage serve until the last kick. */
   memcpy(y1 + nq, w->x + YS * n + nq, (size_t)nq * sizeof(double));
   add(w, pb, y, 0);
-  if ((rc = lag_step_rhs(pb, tb, y1, w->x + F1 * n)) != 0) {
-    return rc;
-  }
+  if ((rc = lag_step_rhs(pb, tb, y1, w->x + F1 * n)) != 0) return rc;
   kick(w, pb, c->kick[c->stages] * dt, w->x + F1 * n);
   add(w, pb, y, nq);
   memcpy(w->x + F1 * n, y1 + nq, (size_t)nq * sizeof(double));
@@ -146,28 +121,18 @@ static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double 
   return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, tb) : LAG_OK;
 }
 
-static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop)
-{
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   const Member *m = pb->variant;
   Verlet *w = work;
   int n = pb->n, rc;
   size_t bytes = (size_t)n * sizeof(double);
   lag_next_step next;
-
-  if (!is_explicit(pb)) {
-    return lag_implicit_step(work, pb, t, y, t_stop);
-  }
-  if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0) {
-    return rc;
-  }
-  if (w->ready == 0.0 && (rc = lag_step_rhs(pb, *t, y, w->x + F1 * n)) != 0) {
-    return rc;
-  }
+  if (!is_explicit(pb)) return lag_implicit_step(work, pb, t, y, t_stop);
+  if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0) return rc;
+  if (w->ready == 0.0 && (rc = lag_step_rhs(pb, *t, y, w->x + F1 * n)) != 0) return rc;
   memcpy(w->x + F0 * n, w->x + F1 * n, bytes);
   w->ready = w->have_path = 0; /* until this step succeeds */
-  if ((rc = compose(m->separable, w, pb, *t, next.tb, y, next.dt)) != 0) {
-    return rc;
-  }
+  if ((rc = compose(m->separable, w, pb, *t, next.tb, y, next.dt)) != 0) return rc;
   memcpy(w->x + Y0 * n, y, bytes);
   memcpy(y, w->x + Y1 * n, bytes);
   memcpy(w->x + COMP * n, w->x + COMP1 * n, bytes);
@@ -176,14 +141,12 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return LAG_OK;
 }
 
-static void dense(void *work, lag_problem *pb, double t, double *y)
-{
+static void dense(void *work, lag_problem *pb, double t, double *y) {
   const lag_composition *c = ((const Member *)pb->variant)->separable;
   Verlet *w = work;
   int n = pb->n;
   StepEnds ends = {w->step.t0, w->step.dt, w->x + Y0 * n, w->x + F0 * n, w->x + Y1 * n, w->x + F1 * n};
   double *path = w->x + NARRAYS * n;
-
   if (!is_explicit(pb)) {
     lag_implicit_dense(work, pb, t, y);
     return;
@@ -192,31 +155,22 @@ static void dense(void *work, lag_problem *pb, double t, double *y)
     lag_interpolant_cubic(pb->nq, &ends, (t - w->step.t0) / w->step.dt, y);
     return;
   }
-  if (c->refine > 0 && w->have_path == 0.0) {
-    w->have_path = lag_interpolant_make(path, pb, &ends, c->refine, 1) == 0 ? 1 : -1;
-  }
+  if (c->refine > 0 && w->have_path == 0.0) w->have_path = lag_interpolant_make(path, pb, &ends, c->refine, 1) == 0 ? 1 : -1;
   lag_interpolant_at(path, pb, &ends, w->have_path > 0 ? c->refine : 0, (t - w->step.t0) / w->step.dt, y);
 }
 
-static size_t tangent_size(const lag_problem *pb, int k)
-{
-  return is_explicit(pb) ? lag_tangent_size(pb, 0, k) : lag_implicit_tangent_size(pb, k);
-}
+static size_t tangent_size(const lag_problem *pb, int k) { return is_explicit(pb) ? lag_tangent_size(pb, 0, k) : lag_implicit_tangent_size(pb, k); }
 
 /* One kick of y by f, and of Y by the derivative F of f. */
-static void kick_both(int nq, int k, double h, const double *f, const double *F, double *y, double *Y)
-{
+static void kick_both(int nq, int k, double h, const double *f, const double *F, double *y, double *Y) {
   lag_tangent_add(nq, h, f + nq, y + nq);
   lag_tangent_add(nq * k, h, F + nq * k, Y + nq * k);
 }
 
 /* Repeats the kicks and drifts of compose with their derivatives: a kick adds the derivative of the force to dv, a drift adds
  * dv to dq. */
-static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch)
-{
-  if (!is_explicit(pb)) {
-    return lag_implicit_tangent(work, pb, t, k, Y, scratch);
-  }
+static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
+  if (!is_explicit(pb)) return lag_implicit_tangent(work, pb, t, k, Y, scratch);
   const lag_composition *c = ((const Member *)pb->variant)->separable;
   Verlet *w = work;
   int n = pb->n, nq = pb->nq, rc = 0;
@@ -226,9 +180,7 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
 
   memcpy(y, w->x + Y0 * n, (size_t)n * sizeof *y);
   for (int s = 0; s <= c->stages; s++) {
-    if ((rc = lag_tangent_at(&all, w->step.t0 + at * dt, y, f)) != 0) {
-      return rc;
-    }
+    if ((rc = lag_tangent_at(&all, w->step.t0 + at * dt, y, f)) != 0) return rc;
     lag_tangent_times(&all, Y, F);
     kick_both(nq, k, c->kick[s] * dt, f, F, y, Y);
     if (s < c->stages) {

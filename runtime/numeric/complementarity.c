@@ -11,49 +11,37 @@ const double lag_lcp_zero_pivot = 1e-10;
 static const double no_value = 1e-13;
 
 /* Exchanges basic variable r with nonbasic variable s. */
-static void pivot(int n, double *T, double *q, int r, int s)
-{
+static void pivot(int n, double *T, double *q, int r, int s) {
   double at = T[r * n + s];
-
   for (int j = 0; j < n; j++) { /* x_s = (basic_r - q_r - others)/at */
     T[r * n + j] = j == s ? 1 / at : -T[r * n + j] / at;
   }
   q[r] = -q[r] / at;
   for (int i = 0; i < n; i++) {
     double factor = T[i * n + s];
-    for (int j = 0; j < n && i != r; j++) {
-      T[i * n + j] = j == s ? factor * T[r * n + s] : T[i * n + j] + factor * T[r * n + j];
-    }
+    for (int j = 0; j < n && i != r; j++) T[i * n + j] = j == s ? factor * T[r * n + s] : T[i * n + j] + factor * T[r * n + j];
     q[i] += i == r ? 0 : factor * q[r];
   }
 }
 
 /* Swaps rows and columns r and s: two pivots have exchanged the pairs r and s, this puts them back. */
-static void exchange(int n, double *T, double *q, int r, int s)
-{
+static void exchange(int n, double *T, double *q, int r, int s) {
   lag_swap(&q[r], &q[s]);
   lag_swap_rows((size_t)n, T, (size_t)r, (size_t)s);
   lag_swap_columns((size_t)n, (size_t)n, T, (size_t)r, (size_t)s);
 }
 
 /* Scales M to a diagonal of ones, and q with it. */
-static void scale_to_unit_diagonal(int n, double *M, double *q, double *scale)
-{
-  for (int i = 0; i < n; i++) {
-    scale[i] = M[i * n + i] > 0 ? 1 / sqrt(M[i * n + i]) : 1;
-  }
+static void scale_to_unit_diagonal(int n, double *M, double *q, double *scale) {
+  for (int i = 0; i < n; i++) scale[i] = M[i * n + i] > 0 ? 1 / sqrt(M[i * n + i]) : 1;
   for (int i = 0; i < n; i++) {
     q[i] *= scale[i];
-    for (int j = 0; j < n; j++) {
-      M[i * n + j] *= scale[i] * scale[j];
-    }
+    for (int j = 0; j < n; j++) M[i * n + j] *= scale[i] * scale[j];
   }
 }
 
-int lag_solve_lcp(int n, double *M, double *q, double *scale, unsigned char *in, int *row)
-{
+int lag_solve_lcp(int n, double *M, double *q, double *scale, unsigned char *in, int *row) {
   double most = 0;
-
   scale_to_unit_diagonal(n, M, q, scale);
   for (int i = 0; i < n; i++) {
     in[i] = 0;
@@ -61,13 +49,9 @@ int lag_solve_lcp(int n, double *M, double *q, double *scale, unsigned char *in,
   }
   for (int turn = 0; turn < 1000 + 100 * n; turn++) {
     int r = 0, s = 0;
-    while (r < n && !(q[r] < -no_value * most)) {
-      r++;
-    }
+    while (r < n && !(q[r] < -no_value * most)) r++;
     if (r == n) {
-      for (int i = 0; i < n; i++) {
-        q[i] = fmax(q[i], 0) * (in[i] ? scale[i] : 1 / scale[i]);
-      }
+      for (int i = 0; i < n; i++) q[i] = fmax(q[i], 0) * (in[i] ? scale[i] : 1 / scale[i]);
       return 1;
     }
     if (M[r * n + r] > lag_lcp_zero_pivot) {
@@ -75,13 +59,9 @@ int lag_solve_lcp(int n, double *M, double *q, double *scale, unsigned char *in,
       in[r] ^= 1;
       continue;
     }
-    while (s < n && !(M[r * n + s] > lag_lcp_zero_pivot)) {
-      s++;
-    }
+    while (s < n && !(M[r * n + s] > lag_lcp_zero_pivot)) s++;
     *row = r;
-    if (s == n) {
-      return 0;
-    }
+    if (s == n) return 0;
     pivot(n, M, q, r, s);
     pivot(n, M, q, s, r);
     exchange(n, M, q, r, s);

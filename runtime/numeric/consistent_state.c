@@ -8,38 +8,24 @@
 
 enum { MOST_STEPS = 100, MOST_HALVINGS = 30, TRIES = 9 };
 
-void lag_loose_directions(int n, const double *held, const double *held_beside, double *loose)
-{
+void lag_loose_directions(int n, const double *held, const double *held_beside, double *loose) {
   const double part = 0.05; /* change of a squared projection: twice the effect of turning a direction by a hundredth */
-
-  for (int i = 0; i < n; i++) {
-    loose[i] = held_beside[i] - held[i] > part;
-  }
+  for (int i = 0; i < n; i++) loose[i] = held_beside[i] - held[i] > part;
 }
 
-static void copy(const lag_level *w, double *to, const double *from)
-{
-  memcpy(to, from, (size_t)w->n * sizeof *to);
-}
+static void copy(const lag_level *w, double *to, const double *from) { memcpy(to, from, (size_t)w->n * sizeof *to); }
 
 /* The worst constraint at x, -1 where terms or residuals have no value; *times: its residual in units of the rounding of its terms. */
-static int worst(lag_level *w, double *times)
-{
+static int worst(lag_level *w, double *times) {
   *times = HUGE_VAL;
-  if (w->terms(w, w->terms_here) || w->residuals(w, w->residual)) {
-    return -1;
-  }
+  if (w->terms(w, w->terms_here) || w->residuals(w, w->residual)) return -1;
   return lag_worst_residual(w->rows, w->residual, w->terms_here, w->rounding, times);
 }
 
 /* Merit function: sum of squared residuals relative to their terms at the start. Infinite where it has no value, so that no step leads there. */
-static double merit(lag_level *w)
-{
+static double merit(lag_level *w) {
   double s = 0;
-
-  if (w->residuals(w, w->residual)) {
-    return HUGE_VAL;
-  }
+  if (w->residuals(w, w->residual)) return HUGE_VAL;
   for (int k = 0; k < w->rows; k++) {
     double x = w->residual[k] / w->size[k];
     s += x * x;
@@ -47,34 +33,23 @@ static double merit(lag_level *w)
   return isfinite(s) ? s : HUGE_VAL;
 }
 
-static void move(lag_level *w, const double *from, double part)
-{
-  for (int a = 0; a < w->nfree; a++) {
-    w->x[w->free[a]] = from[w->free[a]] + part * w->d[a];
-  }
+static void move(lag_level *w, const double *from, double part) {
+  for (int a = 0; a < w->nfree; a++) w->x[w->free[a]] = from[w->free[a]] + part * w->d[a];
 }
 
 /* Damped Gauss-Newton steps from x; returns whether they arrive at the constraints. */
-static int descend(lag_level *w)
-{
+static int descend(lag_level *w) {
   double before = merit(w), times;
-
   for (int step = 0; step < MOST_STEPS && before > 0 && w->nfree > 0; step++) {
     double part = 1, now = HUGE_VAL;
     copy(w, w->from, w->x);
-    if (w->direction(w, 0, w->d)) {
-      return 0;
-    }
+    if (w->direction(w, 0, w->d)) return 0;
     for (int i = 0; i < MOST_HALVINGS && !(now < before); i++, part /= 2) {
       move(w, w->from, part);
       now = merit(w);
     }
-    if (!(now <= before)) {
-      copy(w, w->x, w->from);
-    }
-    if (!(now < before * (1 - 1e-6))) {
-      break;
-    }
+    if (!(now <= before)) copy(w, w->x, w->from);
+    if (!(now < before * (1 - 1e-6))) break;
     before = now;
   }
   worst(w, &times);
@@ -82,13 +57,10 @@ static int descend(lag_level *w)
 }
 
 /* Moves x along the constraints towards `asked`, as long as steps lead nearer. */
-static void approach(lag_level *w)
-{
+static void approach(lag_level *w) {
   for (int step = 0; step < MOST_STEPS; step++) {
     copy(w, w->best, w->x);
-    if (w->residuals(w, w->residual) || w->direction(w, 1, w->d)) {
-      break;
-    }
+    if (w->residuals(w, w->residual) || w->direction(w, 1, w->d)) break;
     double before = w->distance(w);
     move(w, w->best, 1);
     if (!descend(w) || !(w->distance(w) < before * (1 - 1e-14))) {
@@ -99,36 +71,24 @@ static void approach(lag_level *w)
 }
 
 /* Whether a constraint contains component i. */
-static int is_held(const lag_level *w, int i)
-{
+static int is_held(const lag_level *w, int i) {
   int e = 0;
-
-  while (e < w->entries && !(w->row[e] < w->rows && w->col[e] == i)) {
-    e++;
-  }
+  while (e < w->entries && !(w->row[e] < w->rows && w->col[e] == i)) e++;
   return e < w->entries;
 }
 
 /* Reaches the constraints by moving free components. Where no step helps, as half-way between two solutions, it tries displaced states: above
  * first, then ever further. */
-static int reach_constraints(lag_level *w)
-{
+static int reach_constraints(lag_level *w) {
   static const double beside[TRIES] = {0, 1e-3, -1e-3, 0.03, -0.03, 0.3, -0.3, 1, -1};
   double typical = 0;
   int tries = w->positions ? TRIES : 1;
-
-  for (int i = 0; i < w->n; i++) {
-    typical = fmax(typical, fabs(w->asked[i]));
-  }
+  for (int i = 0; i < w->n; i++) typical = fmax(typical, fabs(w->asked[i]));
   for (int k = 0; k < tries && w->nfree > 0; k++) {
     copy(w, w->x, w->asked);
-    for (int a = 0; a < w->nfree; a++) {
-      w->x[w->free[a]] += !is_held(w, w->free[a]) ? 0 : beside[k] * (typical > 0 ? typical : 1) * lag_uneven(a);
-    }
+    for (int a = 0; a < w->nfree; a++) w->x[w->free[a]] += !is_held(w, w->free[a]) ? 0 : beside[k] * (typical > 0 ? typical : 1) * lag_uneven(a);
     if (descend(w)) {
-      if (w->positions) {
-        approach(w);
-      }
+      if (w->positions) approach(w);
       return 1;
     }
   }
@@ -136,66 +96,46 @@ static int reach_constraints(lag_level *w)
 }
 
 /* w->free := the components that may move at this stage. */
-static void choose_free(lag_level *w, int stage)
-{
+static void choose_free(lag_level *w, int stage) {
   w->nfree = 0;
-  for (int i = 0; i < w->n; i++) {
-    if (w->stage(w, i) <= stage) {
-      w->free[w->nfree++] = i;
-    }
-  }
+  for (int i = 0; i < w->n; i++)
+    if (w->stage(w, i) <= stage) w->free[w->nfree++] = i;
 }
 
 /* ---- states that are refused */
 
 /* The worst constraint, which cannot be met, or is not met by a state that must hold exactly. */
-static lag_start_kind refuse(lag_level *w, lag_start_kind kind, int *constraint)
-{
+static lag_start_kind refuse(lag_level *w, lag_start_kind kind, int *constraint) {
   double times;
-
   *constraint = worst(w, &times);
   return *constraint < 0 || !isfinite(w->residual[*constraint]) ? LAG_START_NO_VALUE : kind;
 }
 
 /* slope[rows] := first-order change of each constraint when every component moves by its typical magnitude, here or as requested. */
-static int find_slopes(lag_level *w)
-{
+static int find_slopes(lag_level *w) {
   double *here = w->from, *asked = w->d;
-
   memset(w->slope, 0, (size_t)w->rows * sizeof *w->slope);
-  if (w->jacobian(w, w->A)) {
-    return 0;
-  }
+  if (w->jacobian(w, w->A)) return 0;
   w->scales(w, w->x, here);
   w->scales(w, w->asked, asked);
-  for (int e = 0; e < w->entries; e++) {
-    if (w->row[e] < w->rows) {
-      w->slope[w->row[e]] += fabs(w->A[e]) * fmax(here[w->col[e]], asked[w->col[e]]);
-    }
-  }
+  for (int e = 0; e < w->entries; e++)
+    if (w->row[e] < w->rows) w->slope[w->row[e]] += fabs(w->A[e]) * fmax(here[w->col[e]], asked[w->col[e]]);
   return 1;
 }
 
-static int is_flat(const lag_level *w, int k)
-{
-  return w->has_terms[k] != 0.0 && w->slope[k] < 1e-6 * w->size[k];
-}
+static int is_flat(const lag_level *w, int k) { return w->has_terms[k] != 0.0 && w->slope[k] < 1e-6 * w->size[k]; }
 
 /* Moves x by a hundredth, in components that a constraint contains or in all, then to the constraints; returns whether it arrives. */
-static int go_beside(lag_level *w, int all)
-{
+static int go_beside(lag_level *w, int all) {
   choose_free(w, LAG_MOVES_LAST);
   w->scales(w, w->x, w->d);
-  for (int i = 0; i < w->n; i++) {
-    w->x[i] += !all && !is_held(w, i) ? 0 : 0.01 * w->d[i] * lag_uneven(i);
-  }
+  for (int i = 0; i < w->n; i++) w->x[i] += !all && !is_held(w, i) ? 0 : 0.01 * w->d[i] * lag_uneven(i);
   return descend(w);
 }
 
 /* Whether constraint k, whose derivatives vanish at x, has vanishing derivatives at a displaced solution, too; not so for a linkage at its dead
  * centre. x stays. */
-static int is_flat_beside(lag_level *w, int k)
-{
+static int is_flat_beside(lag_level *w, int k) {
   copy(w, w->best, w->x);
   int flat = !go_beside(w, 0) || !find_slopes(w) || is_flat(w, k);
   copy(w, w->x, w->best);
@@ -205,64 +145,41 @@ static int is_flat_beside(lag_level *w, int k)
 
 /* Refuses a constraint whose derivatives vanish where it holds, as those of x^2 = 0: no force can hold it. A constraint without terms, as with a
  * factor that is 0, is left alone. reached: x obeys the constraints; else w->residual are those at x. */
-static lag_start_kind check_derivatives(lag_level *w, int reached, int *constraint)
-{
-  if (!w->positions || !find_slopes(w)) {
-    return LAG_START_FOUND;
-  }
+static lag_start_kind check_derivatives(lag_level *w, int reached, int *constraint) {
+  if (!w->positions || !find_slopes(w)) return LAG_START_FOUND;
   for (int k = 0; k < w->rows; k++) {
-    if (w->is_contact(w, k)) {
-      continue;
-    }
+    if (w->is_contact(w, k)) continue;
     *constraint = k;
-    if (!isfinite(w->slope[k]) && reached) {
-      return LAG_START_STEEP;
-    }
+    if (!isfinite(w->slope[k]) && reached) return LAG_START_STEEP;
     int holds = reached || fabs(w->residual[k]) <= 1e-6 * w->size[k];
-    if (is_flat(w, k) && holds && (!reached || is_flat_beside(w, k))) {
-      return LAG_START_FLAT;
-    }
+    if (is_flat(w, k) && holds && (!reached || is_flat_beside(w, k))) return LAG_START_FLAT;
   }
   return LAG_START_FOUND;
 }
 
 /* w->size := sizes of terms at x, 1 where there are none; w->has_terms: whether there are. */
-static void look_at_terms(lag_level *w)
-{
+static void look_at_terms(lag_level *w) {
   int rc = w->terms(w, w->size);
-
   for (int k = 0; k < w->rows; k++) {
     w->has_terms[k] = rc == 0 && w->size[k] > 0 && isfinite(w->size[k]);
     w->size[k] = w->has_terms[k] != 0.0 ? w->size[k] : 1;
   }
 }
 
-lag_start_kind lag_consistent_state(lag_level *w, int *constraint)
-{
+lag_start_kind lag_consistent_state(lag_level *w, int *constraint) {
   double off;
-
   *constraint = -1;
-  if (w->rows == 0) {
-    return LAG_START_FOUND;
-  }
+  if (w->rows == 0) return LAG_START_FOUND;
   copy(w, w->asked, w->x);
   worst(w, &off);
   look_at_terms(w);
-  if (!isfinite(merit(w))) {
-    return refuse(w, LAG_START_NONE, constraint);
-  }
-  if (off <= 2) {
-    return check_derivatives(w, 1, constraint);
-  }
-  if (w->exactly && !(off <= sqrt(w->rounding) / w->rounding)) {
-    return refuse(w, LAG_START_BROKEN, constraint);
-  }
+  if (!isfinite(merit(w))) return refuse(w, LAG_START_NONE, constraint);
+  if (off <= 2) return check_derivatives(w, 1, constraint);
+  if (w->exactly && !(off <= sqrt(w->rounding) / w->rounding)) return refuse(w, LAG_START_BROKEN, constraint);
   for (int stage = LAG_MOVES_FIRST; stage <= LAG_MOVES_LAST; stage++) {
     int before = w->nfree;
     choose_free(w, stage);
-    if ((stage == LAG_MOVES_FIRST || w->nfree != before) && reach_constraints(w)) {
-      return check_derivatives(w, 1, constraint);
-    }
+    if ((stage == LAG_MOVES_FIRST || w->nfree != before) && reach_constraints(w)) return check_derivatives(w, 1, constraint);
   }
   copy(w, w->x, w->asked);
   descend(w); /* as near as possible, for the message */
@@ -270,8 +187,7 @@ lag_start_kind lag_consistent_state(lag_level *w, int *constraint)
   return kind != LAG_START_FOUND ? kind : refuse(w, LAG_START_NONE, constraint);
 }
 
-int lag_state_beside(lag_level *w)
-{
+int lag_state_beside(lag_level *w) {
   look_at_terms(w);
   return go_beside(w, 1);
 }

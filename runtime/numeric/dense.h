@@ -4,10 +4,8 @@
 
 #include <stddef.h>
 
-static inline void lag_swap(double *a, double *b)
-{
+static inline void lag_swap(double *a, double *b) {
   double x = *a;
-
   *a = *b;
   *b = x;
 }

@@ -8,11 +8,8 @@
 #define LAG_FNV1A_START UINT64_C(0xcbf29ce484222325)
 
 /* The hash of what h is the hash of, followed by s[n]. */
-static inline uint64_t lag_fnv1a(uint64_t h, const char *s, size_t n)
-{
-  for (size_t i = 0; i < n; i++) {
-    h = (h ^ (unsigned char)s[i]) * UINT64_C(0x100000001b3);
-  }
+static inline uint64_t lag_fnv1a(uint64_t h, const char *s, size_t n) {
+  for (size_t i = 0; i < n; i++) h = (h ^ (unsigned char)s[i]) * UINT64_C(0x100000001b3);
   return h;
 }
 

@@ -5,22 +5,15 @@
 #include <math.h>
 #include <string.h>
 
-double lag_component_scale(double most, int periodic, const char *unit)
-{
+double lag_component_scale(double most, int periodic, const char *unit) {
   int is_angle = periodic || !unit[0] || strcmp(unit, "rad") == 0 || strcmp(unit, "deg") == 0;
-
   return most <= 0 || (most < 1 && is_angle) ? 1 : most;
 }
 
-double lag_uneven(int i)
-{
-  return 0.5 + fmod(0.618033988749894848 * (i + 1), 1);
-}
+double lag_uneven(int i) { return 0.5 + fmod(0.618033988749894848 * (i + 1), 1); }
 
-int lag_worst_residual(int n, const double *residual, const double *terms, double rounding, double *times)
-{
+int lag_worst_residual(int n, const double *residual, const double *terms, double rounding, double *times) {
   int which = -1;
-
   *times = -1;
   for (int k = 0; k < n; k++) {
     double x = fabs(residual[k]), part = x < DBL_MIN ? 0 : x / (rounding * terms[k]); /* subnormal numbers have lost digits */

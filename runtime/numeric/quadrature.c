@@ -5,10 +5,8 @@
 
 #include <math.h>
 
-double lag_legendre(int n, double x, double *below)
-{
+double lag_legendre(int n, double x, double *below) {
   double p = 1, q = 0;
-
   for (int k = 1; k <= n; k++) {
     double next = ((2 * k - 1) * x * p - (k - 1) * q) / k;
     q = p;
@@ -19,8 +17,7 @@ double lag_legendre(int n, double x, double *below)
 }
 
 /* Half of the zeros is computed and mirrored, so that the rule is symmetric to the last bit. */
-void lag_gauss_points(int n, double *c, double *b)
-{
+void lag_gauss_points(int n, double *c, double *b) {
   for (int i = 0; i < (n + 1) / 2; i++) {
     double below, slope = 1, x = cos(3.141592653589793 * (i + 0.75) / (n + 0.5));
     for (int turn = 0; turn < 10; turn++) {
@@ -38,8 +35,7 @@ void lag_gauss_points(int n, double *c, double *b)
 }
 
 /* The zeros of P_n - P_(n-1), whose derivative is n (P_n + P_(n-1))/(1 + x), from zeros of Chebyshev's polynomials. */
-void lag_radau_points(int n, double *c, double *b)
-{
+void lag_radau_points(int n, double *c, double *b) {
   for (int i = 1; i < n; i++) {
     double p, below, x = cos(2 * 3.141592653589793 * (n - i) / (2 * n - 1));
     for (int turn = 0; turn < 10; turn++) {

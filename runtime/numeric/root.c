@@ -5,14 +5,10 @@
 
 #include "numeric/root.h"
 
-double lag_root(double (*f)(void *context, double x), void *context, double a, double fa, double b, double fb)
-{
+double lag_root(double (*f)(void *context, double x), void *context, double a, double fa, double b, double fb) {
   double width = fabs(b - a), eps = 2 * DBL_EPSILON * fmax(fabs(a), fabs(b)) + DBL_MIN;
   double k1 = 0.2 / width; /* with exponent 2, the authors' defaults */
-
-  if (fa == 0.0) {
-    return a;
-  }
+  if (fa == 0.0) return a;
   int n_max = (int)ceil(log2(fmax(width / eps, 1))) + 1;
   for (int j = 0; j <= n_max + 60 && fabs(b - a) > eps; j++) {
     double half = a + (b - a) / 2, r = eps * ldexp(1, n_max - j) / 2 - fabs(b - a) / 2;
@@ -20,16 +16,10 @@ double lag_root(double (*f)(void *context, double x), void *context, double a, d
     double delta = k1 * (b - a) * (b - a);
     double x_t = delta <= fabs(half - x_f) ? x_f + sigma * delta : half;
     double x = r > 0 && fabs(x_t - half) <= r ? x_t : half - sigma * fmax(r, 0);
-    if (!(x > fmin(a, b) && x < fmax(a, b))) {
-      x = half;
-    }
-    if (x == a || x == b) {
-      break;
-    }
+    if (!(x > fmin(a, b) && x < fmax(a, b))) x = half;
+    if (x == a || x == b) break;
     double fx = f(context, x);
-    if (fx == 0.0) {
-      return x;
-    }
+    if (fx == 0.0) return x;
     if ((fx > 0) == (fb > 0)) {
       b = x;
       fb = fx;

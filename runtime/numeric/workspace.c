@@ -17,13 +17,9 @@ enum { GAP = 2 };
 enum { GAP = 0 };
 #endif
 
-double *lag_workspace(size_t n, double **const parts[], const size_t sizes[])
-{
+double *lag_workspace(size_t n, double **const parts[], const size_t sizes[]) {
   size_t total = 1;
-
-  for (size_t i = 0; i < n; i++) {
-    total += sizes[i] + GAP;
-  }
+  for (size_t i = 0; i < n; i++) total += sizes[i] + GAP;
   double *block = calloc(total, sizeof *block), *x = block;
   for (size_t i = 0; i < n && block; i++) {
     *parts[i] = x;
