@@ -417,17 +417,6 @@ static Verdict decide_stability(const ModeSearch *w) {
   return stays == 0 ? LAG_NEUTRAL : LAG_CENTRE;
 }
 
-const char *lag_verdict_name(Verdict verdict) {
-  switch (verdict) {
-  case LAG_UNSTABLE: return "unstable";
-  case LAG_DECAYS: return "asymptotically stable";
-  case LAG_MINIMUM: case LAG_DISSIPATIVE_MINIMUM: return "stable";
-  case LAG_NEUTRAL: return "neutral";
-  case LAG_GYROSCOPIC: case LAG_DEGENERATE: case LAG_FREE_SEPARATELY: case LAG_COORDINATE_POLE: case LAG_NONSMOOTH: case LAG_DEFECTIVE: case LAG_CENTRE: break;
-  }
-  return "undecided";
-}
-
 static int class_of(const Mode *m) { return m->re == 0.0 && m->im == 0.0 ? 0 : m->re > 0 ? 1 : 2; }
 
 static int by_class(const void *a, const void *b) {

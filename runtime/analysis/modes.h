@@ -45,7 +45,4 @@ typedef struct Modes {
 int lag_modes_find(Modes *modes, Equilibrium *rest, const lag_algebra *algebra);
 void lag_modes_free(Modes *modes);
 
-/* "unstable", "asymptotically stable", "stable", "neutral", "undecided". */
-const char *lag_verdict_name(Verdict verdict);
-
 #endif

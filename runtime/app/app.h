@@ -36,6 +36,7 @@ typedef struct App {
   lag_extras extras;
   Args args;
   const lag_scene *scene;
+  lag_scene bare;   /* for exponents and costs: the scene without monitors and closed forms, which would end a rough run or take time */
   lag_sim *sim;
   State state;      /* the saved state of --resume */
   int resumed;      /* 1: the run continues from `state` */
@@ -82,11 +83,13 @@ int lag_app_set_up(App *app);
 int lag_app_set_up_start(App *app);
 /* app->until := end of the run, from --until or the scene; called by both above. 0, or EXIT_USAGE after a message. */
 int lag_app_read_until(App *app);
-/* Whether word[n] is one of the words in a list with spaces; NULL: an empty list. */
+/* Whether word[n] is one of the words in a list with spaces or commas; NULL: an empty list. */
 int lag_app_has_word(const char *words, const char *word, size_t n);
 /* Sets one name=value, or all of the command line, in app->sim. */
 int lag_app_set_value(App *app, const char *text);
 int lag_app_set_values(App *app);
+/* Another simulation of app->scene with the values of the command line. NULL: no memory, or a message. */
+lag_sim *lag_app_fresh_sim(App *app);
 /* Sets tolerance and method of a new app->sim. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_method(App *app);
 /* Method i of this program; NULL past the last. */

@@ -13,10 +13,9 @@ enum { STEPS_OF_TRIAL = 600 };
 
 /* Trial run with the values of app->sim for the statistics *s. 0: no trial is possible. */
 static int run_trial(App *app, const lag_method *method, double bound, int most, Stiffness *s) {
-  lag_sim *run = app->sim, *trial = app->sim = lag_sim_new(app->scene);
-  int done = trial && lag_app_set_values(app) == 0 && lag_sim_set_tolerance(trial, lag_sim_tolerance(run)) == 0 &&
-             lag_sim_set_method(trial, method, NULL, 0) == 0 && lag_stiffness(trial, app->until, bound, most, s) == LAG_OK;
-  app->sim = run;
+  lag_sim *trial = lag_app_fresh_sim(app);
+  int done = trial && lag_sim_set_tolerance(trial, lag_sim_tolerance(app->sim)) == 0 && lag_sim_set_method(trial, method, NULL, 0) == 0 &&
+             lag_stiffness(trial, app->until, bound, most, s) == LAG_OK;
   lag_sim_free(trial);
   return done;
 }

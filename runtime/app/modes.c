@@ -73,73 +73,49 @@ static const char *caution_of(const App *app, const Equilibrium *r) {
   return NULL;
 }
 
+/* Verdicts on stability, and their reasons where these are the same for every model. */
+static const struct {
+  const char *name, *reason;
+} verdicts[] = {
+    [LAG_UNSTABLE] = {"unstable", NULL},
+    [LAG_DECAYS] = {"asymptotically stable", NULL},
+    [LAG_MINIMUM] = {"stable", "the energy, which is conserved, has a minimum here (Lagrange, Dirichlet)"},
+    [LAG_DISSIPATIVE_MINIMUM] = {"stable", "the energy, less the work of constant forces, has a minimum here, and nothing raises it (Lagrange, Dirichlet, Kelvin)"},
+    [LAG_NEUTRAL] = {"neutral", NULL},
+    [LAG_GYROSCOPIC] = {"undecided", NULL},
+    [LAG_DEGENERATE] = {"undecided", "a zero mode: the linearisation has no force along it, so it does not decide stability"},
+    [LAG_FREE_SEPARATELY] = {"undecided", "no force along each zero mode alone, but along some together, so the linearisation does not decide stability"},
+    [LAG_COORDINATE_POLE] = {"undecided", "a coordinate has lost its meaning here, as a longitude does at a pole; these are the modes of the others, and "
+                                          "coordinates without a pole here would show all"},
+    [LAG_NONSMOOTH] = {"undecided", "the forces' derivatives jump here, or have no limit, so that no motion is small enough to be linear"},
+    [LAG_DEFECTIVE] = {"undecided", "a multiple frequency with too few shapes: small motion grows in proportion to time, until the nonlinear terms matter"},
+    [LAG_CENTRE] = {"undecided", "some modes neither grow nor decay, and no energy is known that is conserved and has a minimum here"},
+};
+
 /* text[n] := the reason of the verdict on stability. */
 static void put_reason(const Modes *s, char *text, size_t n) {
-  const Mode *m = s->mode;
-  int last = s->n - 1;
-  switch (s->verdict) {
-  case LAG_UNSTABLE: {
-    double rate = 0;
-    int at = 0;
-    for (int i = 0; i < s->n; i++)
-      if (m[i].re > rate) {
-        rate = m[i].re;
-        at = i;
-      }
-    snprintf(text, n, "mode %d grows by a factor of e in %.6g s", at + 1, 1 / rate);
-    return;
-  }
-  case LAG_DECAYS: {
-    double slowest = m[last].re;
-    for (int i = 0; i < s->n; i++) slowest = fmax(slowest, m[i].re);
-    snprintf(text, n, "every mode decays, the slowest by a factor of e in %.6g s", -1 / slowest);
-    return;
-  }
-  case LAG_MINIMUM:
-    snprintf(text, n, "the energy, which is conserved, has a minimum here (Lagrange, Dirichlet)");
-    return;
-  case LAG_DISSIPATIVE_MINIMUM:
-    snprintf(text, n, "the energy, less the work of constant forces, has a minimum here, and nothing raises it (Lagrange, Dirichlet, Kelvin)");
-    return;
-  case LAG_NEUTRAL:
+  const Mode *last = &s->mode[s->n - 1], *top = s->mode; /* the one that grows fastest, or decays slowest */
+  for (int i = 0; i < s->n; i++) top = s->mode[i].re > top->re ? &s->mode[i] : top;
+  if (verdicts[s->verdict].reason) {
+    snprintf(text, n, "%s", verdicts[s->verdict].reason);
+  } else if (s->verdict == LAG_UNSTABLE) {
+    snprintf(text, n, "mode %d grows by a factor of e in %.6g s", (int)(top - s->mode) + 1, 1 / top->re);
+  } else if (s->verdict == LAG_DECAYS) {
+    snprintf(text, n, "every mode decays, the slowest by a factor of e in %.6g s", -1 / top->re);
+  } else if (s->verdict == LAG_NEUTRAL) {
     snprintf(text, n, "no force along the zero modes%s%s", s->drifts ? ", so a push causes an endless drift" : "",
-             m[last].re == 0.0 && m[last].im == 0.0              ? "; there are no others"
-             : s->lowering == 0 && s->pairs ? "; the energy has a minimum in all other directions"
-                                            : "; all other modes decay");
-    return;
-  case LAG_GYROSCOPIC:
-    snprintf(text, n, "all modes oscillate, but the energy falls in %d direction%s: forces at right angles to the motion alone hold "
-                      "it, and damping in all directions would make it unstable (Thomson, Tait, Chetaev)",
-             s->lowering, s->lowering == 1 ? "" : "s");
-    return;
-  case LAG_DEGENERATE:
-    snprintf(text, n, "a zero mode: the linearisation has no force along it, so it does not decide stability");
-    return;
-  case LAG_FREE_SEPARATELY:
-    snprintf(text, n, "no force along each zero mode alone, but along some together, so the linearisation does not decide stability");
-    return;
-  case LAG_COORDINATE_POLE:
-    snprintf(text, n, "a coordinate has lost its meaning here, as a longitude does at a pole; these are the modes of the others, and "
-                      "coordinates without a pole here would show all");
-    return;
-  case LAG_NONSMOOTH:
-    snprintf(text, n, "the forces' derivatives jump here, or have no limit, so that no motion is small enough to be linear");
-    return;
-  case LAG_DEFECTIVE:
-    snprintf(text, n, "a multiple frequency with too few shapes: small motion grows in proportion to time, until the "
-                      "nonlinear terms matter");
-    return;
-  case LAG_CENTRE:
-    snprintf(text, n, "some modes neither grow nor decay, and no energy is known that is conserved and has a minimum here");
-    return;
+             last->re == 0.0 && last->im == 0.0 ? "; there are no others"
+             : s->lowering == 0 && s->pairs     ? "; the energy has a minimum in all other directions"
+                                                : "; all other modes decay");
+  } else {
+    snprintf(text, n, "all modes oscillate, but the energy falls in %d direction%s: forces at right angles to the motion alone hold it, and damping in all "
+                      "directions would make it unstable (Thomson, Tait, Chetaev)", s->lowering, s->lowering == 1 ? "" : "s");
   }
 }
 
 /* ---- Text */
 
 enum { WIDE = 118, LISTED = 12, ALL_SHOWN = 6, MOST_MODES = 40, NUMBER = 13 };
-
-/* ---- Families */
 
 /* Consecutive members of one family, or a single variable. */
 typedef struct Group {
@@ -167,8 +143,6 @@ static Group group_at(const lag_model *m, int first, int n) {
   }
   return g;
 }
-
-/* ---- Text */
 
 /* A line of words that is wrapped at WIDE columns. */
 typedef struct Line {
@@ -332,7 +306,7 @@ static void put_modes(FILE *f, const App *app, const Modes *s) {
   int damped = 0;
   for (int i = 0; i < s->n; i++) damped |= s->mode[i].re != 0;
   put_reason(s, text, sizeof text);
-  Line line = {f, fprintf(f, "%s%s:", lag_verdict_name(s->verdict), s->verdict >= LAG_GYROSCOPIC ? " by the linearisation" : ""), 2};
+  Line line = {f, fprintf(f, "%s%s:", verdicts[s->verdict].name, s->verdict >= LAG_GYROSCOPIC ? " by the linearisation" : ""), 2};
   for (char *word = strtok(text, " "); word; word = strtok(NULL, " ")) put_word(&line, word);
   fprintf(f, "\n\nmode  %-*s  %-*s  %-*s", NUMBER, "rad/s", NUMBER, "Hz", NUMBER, "period [s]");
   if (damped) fprintf(f, "  %-*s  %-18s", NUMBER, "damping", "time to e [s]");
@@ -383,7 +357,7 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
   Json j = {.f = f};
   put_reason(s, text, sizeof text);
   json_head(&j, app, "ok");
-  lag_json_string(&j, "verdict", lag_verdict_name(s->verdict));
+  lag_json_string(&j, "verdict", verdicts[s->verdict].name);
   lag_json_string(&j, "reason", text);
   lag_json_string(&j, "note", caution_of(app, r));
   lag_json_count(&j, "steps", r->steps);
@@ -421,15 +395,15 @@ static int not_found(const App *app, const Equilibrium *r) {
     lag_json_end(&j, '}');
     putchar('\n');
   }
-  if (r->away) {
+  if (r->away)
     lag_app_error(&app->args, "no equilibrium found from the start of scene %s: forces only vanish at infinity. Where the model has one, start near it: %s=VALUE",
-              app->scene->name, v->name);
-    return EXIT_RUN;
-  }
-  lag_app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s. A force "
-                        "that vanishes nowhere has none: add a force that balances it, such as a spring; where it vanishes, start near there: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : at] - v->offset) / v->factor,
-            v->unit[0] ? " " : "", v->unit, v->name, i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
-            r->pole ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
+                  app->scene->name, v->name);
+  else
+    lag_app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s. A force "
+                              "that vanishes nowhere has none: add a force that balances it, such as a spring; where it vanishes, start near there: %s=VALUE",
+                  r->steps, app->scene->name, v->name, (r->y[i < nq ? i : at] - v->offset) / v->factor, v->unit[0] ? " " : "", v->unit, v->name,
+                  i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
+                  r->pole ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
   return EXIT_RUN;
 }
 

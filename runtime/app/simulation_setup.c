@@ -29,6 +29,11 @@ static int choose_scene(App *app) {
   for (int i = 0; i < p->nscenes; i++)
     if (!name || strcmp(p->scenes[i]->name, name) == 0) {
       app->scene = p->scenes[i];
+      if (app->args.lyapunov || app->args.cost || app->args.reference) {
+        app->bare = *app->scene;
+        app->bare.nmonitors = app->bare.nexact = 0;
+        app->scene = &app->bare;
+      }
       return 0;
     }
   return name ? no_scene(app, name) : lag_app_error(&app->args, "this program has no scenes");
@@ -152,8 +157,8 @@ static int set_tolerance(App *app) {
 }
 
 int lag_app_has_word(const char *words, const char *word, size_t n) {
-  for (const char *s = words; s && *s; s += strspn(s, " ")) {
-    size_t length = strcspn(s, " ");
+  for (const char *s = words; s && *s; s += strspn(s, ", ")) {
+    size_t length = strcspn(s, ", ");
     if (length == n && memcmp(s, word, n) == 0) return 1;
     s += length;
   }
@@ -296,6 +301,16 @@ int lag_app_set_values(App *app) {
   int rc = 0;
   for (int i = 0; i < a->nsets && rc == 0; i++) rc = lag_app_set_value(app, a->sets[i]);
   return rc;
+}
+
+lag_sim *lag_app_fresh_sim(App *app) {
+  lag_sim *own = app->sim, *fresh = app->sim = lag_sim_new(app->scene);
+  if (fresh && lag_app_set_values(app)) {
+    lag_sim_free(fresh);
+    fresh = NULL;
+  }
+  app->sim = own;
+  return fresh;
 }
 
 int lag_app_choose_method(App *app) {
