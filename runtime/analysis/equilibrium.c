@@ -74,56 +74,6 @@ int lag_perturbation_noise(Equilibrium *r, lag_values *values, const double *x, 
   return rc;
 }
 
-/* ---- Linear equations with a singular matrix */
-
-/* Reciprocal of the largest size in row i. */
-static double factor_of(int n, const double *size, int i) {
-  double most = 0;
-  for (int j = 0; j < n; j++) most = fmax(most, size[i * n + j]);
-  return most > 0 && isfinite(most) ? 1 / most : 1;
-}
-
-/* Eliminates column k below row k. Errors add as if independent. */
-static void eliminate_column(int n, int k, double *A, double *b, double *noise) {
-  for (int i = k + 1; i < n; i++) {
-    double factor = lag_eliminate_row(n, A, k, i);
-    if (factor != 0.0) {
-      b[i] -= factor * b[k];
-      noise[i] = hypot(hypot(noise[i], factor * noise[k]), DBL_EPSILON * factor * b[k]);
-    }
-  }
-}
-
-/* Solves A x = b, A[n * n], b[n], by Gaussian elimination with complete pivoting (J.H. Wilkinson, J. ACM 8 (1961) 281, DOI
- * 10.1145/321075.321076) after rows were divided by their largest size. size[n * n] >= |A|: size of the terms that make A; pivots that cancel
- * among them, to rounding, count as 0. Returns the rank; undetermined unknowns are 0; b[i] for i >= rank is then the residual of combinations of
- * equations that no unknown changes. noise[n]: error of b, on entry and on return. A is destroyed; column[n] is scratch. */
-static int pivot_solve(int n, double *A, const double *size, double *b, double *noise, double *x, double *column) {
-  int rank = 0;
-  for (int i = 0; i < n; i++) {
-    double factor = factor_of(n, size, i);
-    for (int j = 0; j < n; j++) A[i * n + j] *= factor;
-    b[i] *= factor;
-    noise[i] *= factor;
-    column[i] = i;
-    x[i] = 0;
-  }
-  for (int row, col; rank < n; rank++) {
-    double pivot = lag_complete_pivot(n, rank, A, &row, &col);
-    lag_swap(&b[rank], &b[row]);
-    lag_swap(&noise[rank], &noise[row]);
-    lag_swap(&column[rank], &column[col]);
-    if (!(pivot > 8 * n * DBL_EPSILON)) break;
-    eliminate_column(n, rank, A, b, noise);
-  }
-  for (int k = rank; k-- > 0;) {
-    double sum = b[k];
-    for (int j = k + 1; j < rank; j++) sum -= A[k * n + j] * x[(int)column[j]];
-    x[(int)column[k]] = sum / A[k * n + k];
-  }
-  return rank;
-}
-
 /* ---- Regularity of a place */
 
 /* Distance of M[n * n] from a singular matrix: the least pivot of symmetric elimination relative to size[n], the usual diagonal. M is destroyed. */
@@ -244,17 +194,40 @@ static int forces_and_noise(Equilibrium *r, const double *x) {
   return equations(r, x, r->f, NULL); /* r->rate at x */
 }
 
-/* Solves J dx = -b, where b[n] has the given noise; destroys all but dx. noise NULL: J is taken as exact. Returns the rank; b[i] for i >= rank
- * is the unbalanced force, 0 if it is noise. */
+/* Solves J dx = -b, where b[n] and J have the given noise (NULL: none), by Gaussian elimination with complete pivoting (J.H. Wilkinson, J. ACM 8
+ * (1961) 281, DOI 10.1145/321075.321076) after rows were divided by the largest size of terms in them; pivots that cancel among these, to rounding,
+ * count as 0. Destroys J and b. Returns the rank; undetermined unknowns are 0; b[i] for i >= rank is the unbalanced force of a combination of
+ * equations that no unknown changes, 0 if it is noise. Errors add as if independent. */
 static int solve(Equilibrium *r, double *b, const double *noise) {
-  int n = r->n;
-  double *size = r->scratch, *error = size + n * n, *work = error + n;
-  for (int i = 0; i < n * n; i++) size[i] = fabs(r->J[i]) + (noise ? noise[n + i] / DBL_EPSILON : 0);
+  int n = r->n, rank = 0;
+  double *A = r->J, *x = r->dx, *error = r->scratch, *column = error + n;
   for (int i = 0; i < n; i++) {
-    b[i] = -b[i];
-    error[i] = noise ? noise[i] : 0;
+    double size = 0;
+    for (int j = 0; j < n; j++) size = fmax(size, fabs(A[i * n + j]) + (noise ? noise[n + i * n + j] / DBL_EPSILON : 0));
+    double factor = size > 0 && isfinite(size) ? 1 / size : 1;
+    for (int j = 0; j < n; j++) A[i * n + j] *= factor;
+    b[i] *= -factor;
+    error[i] = noise ? noise[i] * factor : 0;
+    column[i] = i;
+    x[i] = 0;
   }
-  int rank = pivot_solve(n, r->J, size, b, error, r->dx, work);
+  for (int row, col; rank < n; rank++) {
+    double pivot = lag_complete_pivot(n, rank, A, &row, &col);
+    lag_swap(&b[rank], &b[row]);
+    lag_swap(&error[rank], &error[row]);
+    lag_swap(&column[rank], &column[col]);
+    if (!(pivot > 8 * n * DBL_EPSILON)) break;
+    for (int i = rank + 1; i < n; i++) {
+      double factor = lag_eliminate_row(n, A, rank, i);
+      b[i] -= factor * b[rank];
+      error[i] = hypot(hypot(error[i], factor * error[rank]), DBL_EPSILON * factor * b[rank]);
+    }
+  }
+  for (int k = rank; k-- > 0;) {
+    double sum = b[k];
+    for (int j = k + 1; j < rank; j++) sum -= A[k * n + j] * x[(int)column[j]];
+    x[(int)column[k]] = sum / A[k * n + k];
+  }
   for (int i = rank; i < n && noise; i++) b[i] = fabs(b[i]) <= CERTAIN * error[i] ? 0 : b[i];
   return rank;
 }
@@ -411,7 +384,7 @@ static int ran_away(Equilibrium *r) {
   return distance(r, r->x, r->begin) > 1e4 * start || largest_force(r, r->x) < 1e-6 * largest_force(r, r->begin);
 }
 
-/* x := the root to which Newton's method leads from there[n], if it is a root and within `farthest`; else x is unchanged. */
+/* x := the root to which Newton's method leads from there[n], if it is a root and within `farthest`; else x is unchanged. Whether x is a root. */
 static int newton_polish(Equilibrium *r, const double *there, double farthest) {
   size_t bytes = (size_t)r->n * sizeof(double);
   memcpy(r->kept, r->x, bytes);
@@ -421,21 +394,19 @@ static int newton_polish(Equilibrium *r, const double *there, double farthest) {
     if (is_root(r, r->x)) return 1;
   }
   memcpy(r->x, r->kept, bytes);
-  return 0;
+  return is_root(r, r->x);
 }
 
 /* Finds a root from x: by a trust region; if that gets stuck, by Newton's method. */
 static int find_root(Equilibrium *r, const lag_algebra *algebra) {
-  size_t bytes = (size_t)r->n * sizeof(double);
   int steps = 0;
-  memcpy(r->from, r->x, bytes);
+  memcpy(r->from, r->x, (size_t)r->n * sizeof(double));
   int rc = algebra->root(r->n, r->x, equations, r, MOST_STEPS, &steps);
   r->steps += steps;
   if (rc) return rc;
   round_to_zero(r);
-  if (vanish(r, r->x)) return 1;
-  memcpy(r->near, r->x, bytes);
-  return newton_polish(r, r->near, 0.1) || is_root(r, r->x) || newton_polish(r, r->from, 10) || is_root(r, r->x);
+  memcpy(r->near, r->x, (size_t)r->n * sizeof(double));
+  return vanish(r, r->x) || newton_polish(r, r->near, 0.1) || newton_polish(r, r->from, 10);
 }
 
 /* Searches a root near the start, stable or not; else one downhill; else any. */
@@ -458,11 +429,11 @@ static int search(Equilibrium *r, const lag_algebra *algebra) {
 static int allocate(Equilibrium *r) {
   const lag_model *m = r->sim->scene->model;
   size_t n = (size_t)r->n, nq = (size_t)m->nq, ny = (size_t)r->sim->pb.n;
-  double **const parts[] = {&r->start, &r->y, &r->rate, &r->scale, &r->x, &r->begin, &r->from, &r->first, &r->trial, &r->near, &r->kept,
+  double **const parts[] = {&r->start, &r->found, &r->y, &r->rate, &r->scale, &r->x, &r->begin, &r->from, &r->first, &r->trial, &r->near, &r->kept,
                             &r->f, &r->row, &r->dx, &r->step, &r->spread, &r->J, &r->W, &r->values, &r->noise, &r->scratch, &r->dr, &r->M,
                             &r->work};
-  const size_t sizes[] = {n, ny, ny, n, n, n, n, n, n, n, n, n, n, n, n, n, n * n, n * n, n + n * n, n + n * n, n * n + 3 * n + (size_t)(m->np + m->nderived),
-                          n * ny, nq * nq, lag_linear_work(m)};
+  const size_t sizes[] = {n, n, ny, ny, n, n, n, n, n, n, n, n, n, n, n, n, n, n * n, n * n, n + n * n, n + n * n,
+                          n * n + 3 * n + (size_t)(m->np + m->nderived), n * ny, nq * nq, lag_linear_work(m)};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&r->pool, sizes[i]);
   return r->pool.failed ? LAG_ENOMEM : LAG_OK;
 }
@@ -474,9 +445,10 @@ static int estimate_uncertainty(Equilibrium *r) {
   for (int pattern = 0; pattern < 3 && rc == 0; pattern++) {
     rc = forces_and_noise(r, r->x);
     for (int i = 0; i < n; i++) r->step[i] = pattern == 0 ? r->f[i] : CERTAIN * r->noise[i] * (pattern == 2 && i % 2 ? -1 : 1);
-    if (rc == 0) r->rank = solve(r, r->step, r->noise);
+    if (rc == 0) solve(r, r->step, r->noise);
     for (int i = 0; i < n && rc == 0; i++) r->spread[i] = fmax(r->spread[i], fmin(fabs(r->dx[i]), 0.1));
   }
+  for (int i = 0; i < n; i++) r->found[i] = r->x[i] * r->scale[i];
   r->pole = is_coordinate_pole(r);
   r->rough = rc == 0 && is_nonsmooth(r);
   rc = rc ? rc : equations(r, r->x, r->f, r->J);

@@ -11,7 +11,7 @@ typedef struct Equilibrium {
   Pool pool;
   lag_sim *sim;
   int n;
-  double *start;  /* [n] start of the simulation, in SI */
+  double *start, *found; /* [n] start of the simulation, and the equilibrium, in SI */
   double *y;      /* [2 nq + nz] the state at rest, or the last one tried */
   double *rate;   /* [2 nq + nz] y' there */
   double *scale;  /* [n] scales: of angles 1 rad, else the largest start in that unit, or one unit */
@@ -23,7 +23,6 @@ typedef struct Equilibrium {
   double *dx, *step;       /* [n] Newton step; right-hand side */
   double *values, *noise, *scratch; /* [n + n * n] f and J, and their perturbation noise */
   double *spread; /* [n] uncertainty of the root x, by rounding */
-  int rank;       /* of J there */
   int pole;       /* 1: a coordinate loses its meaning here, as longitude does at a pole */
   int rough;      /* 1: derivatives of forces jump here, or have no limit */
   double delta;
@@ -47,10 +46,10 @@ void lag_equilibrium_state(Equilibrium *rest, const double *x);
 /* out[] := values at the unknowns x[n] with the parameters of r->sim->pb.p. Not 0: no values. */
 typedef int lag_values(Equilibrium *r, const double *x, double *out);
 
-/* Parameters and unknowns are numbers of 53 bits, so values of a model are known no better than rounding of these lets them be. noise[count] := sum over all parameters
- * and unknowns of |change of values[count] at x| when one of them changes by DBL_EPSILON of itself; base[count] := the values. With more than 32
- * parameters and unknowns several are perturbed at once. Perturbations without values are skipped. scratch[count + np + nderived + n]. 0, or the
- * status of `values` at x. */
+/* Parameters and unknowns are numbers of 53 bits, so values of a model are known no better than rounding of these lets them be. noise[count] :=
+ * sum over all parameters and unknowns of |change of values[count] at x| when one of them changes by DBL_EPSILON of itself; base[count] := the
+ * values. With more than 32 parameters and unknowns several are perturbed at once. Perturbations without values are skipped. scratch[count + np +
+ * nderived + n]. 0, or the status of `values` at x. */
 int lag_perturbation_noise(Equilibrium *r, lag_values *values, const double *x, size_t count, double *base, double *noise, double *scratch);
 
 #endif

@@ -201,29 +201,27 @@ typedef struct ModeSearch {
 
 /* ---- Shapes */
 
+/* Index in y of unknown i: coordinates, then states. */
+static int place(const ModeSearch *w, int i) { return i < w->nq ? i : w->nq + i; }
+
 /* Amplitude of component i of a shape (coordinates, then states), in scales. */
 static double amplitude(const ModeSearch *w, int i, double re, double im) { return hypot(re, im) / w->rest->scale[i]; }
 
 /* The component to be normalised to 1: the coordinate with the largest kinetic energy; if only states move, the state with the largest
- * amplitude. */
+ * amplitude. Of equal ones the first, whatever rounding says. */
 static int reference(const ModeSearch *w, const double *re, const double *im) {
-  int best = 0, state = w->nq;
-  double most = -1, far = 0, state_far = 0;
+  int best[2] = {0, w->nq};
+  double most[2] = {-1, 0}, far[2] = {0, 0};
   for (int i = 0; i < w->n; i++) {
-    double e = amplitude(w, i, re[i], im[i]);
-    if (i < w->nq) {
-      double kinetic = hypot(re[i], im[i]) * w->m.weight[i];
-      far = fmax(far, e);
-      if (kinetic > most * (1 + 1e-9)) { /* the first of equal ones, whatever rounding says */
-        most = kinetic;
-        best = i;
-      }
-    } else if (e > state_far * (1 + 1e-9)) {
-      state_far = e;
-      state = i;
+    int state = i >= w->nq;
+    double amount = amplitude(w, i, re[i], im[i]), size = state ? amount : hypot(re[i], im[i]) * w->m.weight[i];
+    far[state] = fmax(far[state], amount);
+    if (size > most[state] * (1 + 1e-9)) {
+      most[state] = size;
+      best[state] = i;
     }
   }
-  return far > 1e-12 * state_far ? best : state;
+  return best[!(far[0] > 1e-12 * far[1])];
 }
 
 /* Adds a mode with the shape re + i im, [n] with a stride. */
@@ -373,16 +371,13 @@ static int modes_of_matrix(ModeSearch *w) {
   w->nkernel = s.nkernel;
   w->out->drifts = s.zeros > s.nkernel;
   w->kernel = lag_pool_doubles(pool, n * (size_t)s.nkernel);
-  for (int i = 0; i < w->n && w->kernel; i++) {
-    int row = i < w->nq ? i : w->nq + i;
-    for (int k = 0; k < s.nkernel; k++) w->kernel[i * s.nkernel + k] = s.kernel[row * s.n + s.n - s.nkernel + k];
-  }
+  for (int i = 0; i < w->n && w->kernel; i++)
+    for (int k = 0; k < s.nkernel; k++) w->kernel[i * s.nkernel + k] = s.kernel[place(w, i) * s.n + s.n - s.nkernel + k];
   for (int k = 0; k < s.count && rc == LAG_OK && !pool->failed; k++) {
     Mode mode = {.re = minimum ? 0 : s.re[k], .im = s.im[k], .repeats = (int)s.repeats[k]};
     for (int i = 0; i < w->n; i++) {
-      int row = i < w->nq ? i : w->nq + i;
-      re[i] = s.vre[row * s.n + k];
-      im[i] = s.vim[row * s.n + k];
+      re[i] = s.vre[place(w, i) * s.n + k];
+      im[i] = s.vim[place(w, i) * s.n + k];
     }
     rc = is_second_half(w, &s, k) || !is_first(&s, k) ? LAG_OK : add_mode(w, mode, re, im, 1);
   }
@@ -394,14 +389,13 @@ static int modes_of_matrix(ModeSearch *w) {
 
 static Verdict decide_stability(const ModeSearch *w) {
   const Modes *out = w->out;
-  int grows = 0, stays = 0, zeros = 0, bound = 0, defective = 0;
+  int grows = 0, stays = 0, zeros = 0, defective = 0;
   for (int i = 0; i < out->n; i++) {
     const Mode *m = &out->mode[i];
     int zero = m->re == 0.0 && m->im == 0.0;
     grows |= m->re > 0;
     stays += m->re == 0.0 && !zero;
     zeros += zero;
-    bound += zero && !m->free;
     defective |= m->re == 0.0 && m->repeats > 1;
   }
   if (grows) return LAG_UNSTABLE;
@@ -409,8 +403,7 @@ static Verdict decide_stability(const ModeSearch *w) {
   if (w->rest->rough) return LAG_NONSMOOTH;
   if (stays == 0 && zeros == 0) return LAG_DECAYS;
   if (defective) return LAG_DEFECTIVE;
-  if (bound) return LAG_DEGENERATE;
-  if (zeros && !out->together) return LAG_FREE_SEPARATELY;
+  if (zeros && !out->together) return LAG_DEGENERATE;
   if (w->conserves && out->lowering == 0) return zeros != w->m.flat ? LAG_DEGENERATE : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
   if (w->loses && out->lowering == 0 && zeros == 0 && w->m.flat == 0) return LAG_DISSIPATIVE_MINIMUM;
   if (w->conserves && out->lowering > 0) return LAG_GYROSCOPIC;

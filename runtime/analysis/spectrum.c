@@ -54,7 +54,8 @@ static void settle_cluster(Spectrum *s, int first, const double *cluster, const 
 
 static double modulus(const Spectrum *s, int k) { return hypot(s->re[k], s->im[k]); }
 
-/* Where A has a kernel: sets eigenvalues to 0 until there are as many zeros as it has vectors, the smallest first, and moves the others to the front. */
+/* Where A has a kernel: sets eigenvalues to 0 until there are as many zeros as it has vectors, the smallest first, and moves the others to the
+ * front. */
 static void separate_zeros(Spectrum *s) {
   int least = 0;
   for (int k = 0; k < s->n; k++) s->zeros += modulus(s, k) == 0.0;

@@ -61,14 +61,6 @@ static int compute_reference(App *app, Cost *c) {
   return rc;
 }
 
-/* Sample times, equally spaced over the run. */
-static int choose_times(App *app, Cost *c) {
-  double t0 = app->scene->t0, t1 = app->until;
-  if (t1 == t0) return lag_app_error(&app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0);
-  for (int i = 0; i < SAMPLES; i++) c->reference.t[i] = t0 + (t1 - t0) * (i + 1) / SAMPLES;
-  return 0;
-}
-
 static void write_reference(FILE *f, const Cost *c) {
   const Samples *s = &c->reference;
   fprintf(f, "samples %d %d\nby %s\nuncertainty %.17g\n", s->rows, s->n, c->reference_name, s->uncertainty);
@@ -173,7 +165,8 @@ static void table(FILE *f, const Cost *c) {
     snprintf(order, sizeof order, isnan(m->order) ? "  -" : m->method->flags & LAG_METHOD_ADAPTIVE ? "  %.1f" : "  %.2f", m->order);
     for (int k = 0; k < m->nruns; k++) {
       const CostRun *r = &m->run[k];
-      snprintf(setting, sizeof setting, "%.*s%s%s=%.9g)", (int)strcspn(m->name, ")"), m->name, m->option.name ? ", " : "(", knob_of(m->method), r->knob);
+      snprintf(setting, sizeof setting, "%.*s%s%s=%.9g)", (int)strcspn(m->name, ")"), m->name, m->option.name ? ", " : "(", knob_of(m->method),
+               r->knob);
       snprintf(spread, sizeof spread, isnan(r->spread) ? "-" : "%.0f %%", 50 * r->spread);
       fprintf(f, "%c %-44s %-9.2e %12.4g %6s %10lld %11lld%s\n", r->best ? '*' : ' ', setting, r->error, 1e3 * r->time, spread, r->steps, r->calls,
               k == 0 ? order : "");
@@ -209,7 +202,8 @@ static void print_time_table(FILE *f, const Cost *c) {
 static void print_omitted(FILE *f, const Cost *c) {
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
-    if (m->nruns == 0) fprintf(f, "not in the table: %s: %s\n", m->name, m->why[0] ? m->why : "no run had an error below 0.3 in the time allowed (--longest)");
+    const char *why = m->why[0] ? m->why : "no run had an error below 0.3 in the time allowed (--longest)";
+    if (m->nruns == 0) fprintf(f, "not in the table: %s: %s\n", m->name, why);
   }
 }
 
@@ -347,8 +341,11 @@ int lag_app_cost(App *app) {
   Cost cost = {0};
   int rc = lag_app_set_up_start(app);
   if (rc) return rc;
+  double t0 = app->scene->t0, span = app->until - t0;
   int n = app->sim->pb.n, failed = lag_samples_init(&cost.reference, SAMPLES, n) || !(cost.scale = calloc((size_t)n + 1, sizeof *cost.scale));
-  rc = failed ? lag_app_error(&app->args, "out of memory") : choose_times(app, &cost);
+  rc = failed ? lag_app_error(&app->args, "out of memory")
+       : span == 0.0 ? lag_app_error(&app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0) : 0;
+  for (int i = 0; i < SAMPLES && rc == 0; i++) cost.reference.t[i] = t0 + span * (i + 1) / SAMPLES;
   if (rc == 0 && !app->args.reference) {
     rc = run_cost(app, &cost);
   } else if (rc == 0 && (rc = compute_reference(app, &cost)) == 0) {

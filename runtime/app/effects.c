@@ -56,9 +56,7 @@ static void copy_start(const lag_sim *first, lag_sim *sim) {
     }
   if (own->derive) own->derive(sim->p);
   for (int i = 0; i < first->pb.n; i++) {
-    char name[128];
-    lag_sim_state_info(first, i, name, sizeof name, NULL, 0);
-    at = lag_component_index(own, name);
+    at = lag_component_index(own, lag_state_column(first, i).name);
     if (at >= 0 && sim->now[at] != first->now[i]) sim->start[at] = first->now[i];
   }
 }

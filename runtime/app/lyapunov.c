@@ -65,11 +65,7 @@ static int put_estimates(Job *job) {
   App *app = job->app;
   app->row[0] = job->l.t;
   for (int i = 0; i < job->l.k; i++) app->row[i + 1] = lag_lyapunov_exponent(&job->l, i);
-  if (app->rows.open && lag_rows_write(&app->rows, app->row)) {
-    app->bad_file = app->args.out;
-    return LAG_EIO;
-  }
-  return lag_table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
+  return lag_app_write_row(app, 1);
 }
 
 static void at_event(void *context, int k, double t, const double *before, const double *after) {
@@ -182,12 +178,13 @@ static int failed(App *app, const Job *job) {
   double t = lag_sim_time(app->sim);
   if (app->bad_file) return lag_app_io_error(app, app->bad_file);
   if (job->rc == LAG_EDOMAIN)
-    lag_app_error(a, "at t = %g s neighbouring motions become one within a step, an exponent of minus infinity; take fewer: --exponents %d, or smaller steps", t,
-                  job->l.k > 1 ? job->l.k - 1 : 1);
+    lag_app_error(a, "at t = %g s neighbouring motions become one within a step, an exponent of minus infinity; take fewer: --exponents %d, or "
+                     "smaller steps", t, job->l.k > 1 ? job->l.k - 1 : 1);
   else if (job->rc || app->status < 0)
     lag_app_error(a, "%s", job->rc == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
   else if (app->status == LAG_STOPPED)
-    lag_app_error(a, "an event stopped the run at t = %g s: exponents are means over a motion that goes on; take another start, or an earlier --until", t);
+    lag_app_error(a, "an event stopped the run at t = %g s: exponents are means over a motion that goes on; take another start, or an earlier "
+                     "--until", t);
   else return 0;
   return EXIT_RUN;
 }
