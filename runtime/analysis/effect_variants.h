@@ -7,22 +7,23 @@
 
 enum { LAG_VARIANT_ROWS = 256 };
 
+/* Zeros but for `sim` at the start. */
 typedef struct Variant {
-  lag_sim *sim;      /* the caller's */
+  lag_sim *sim;
   Samples run;       /* q, v, z [SI] at equally spaced times; the last row is the end, earlier where an event stopped the run */
-  int n;
   double difference; /* difference of its motion from the scene's, relative to the scene's size */
   double weight;     /* the largest |acceleration with - without| / |with| */
   double time;       /* time of one call of the right-hand side [s] */
   char why[200];     /* why there is no run; "": there is one */
 } Variant;
 
-/* Prepares a variant of a simulation at its start; it must not be moved before it is freed. LAG_OK or LAG_ENOMEM. */
-int lag_variant_init(Variant *v, lag_sim *sim);
-void lag_variant_free(Variant *v); /* not its sim */
+void lag_variant_free(Variant *v); /* with its sim */
 
 /* Runs the variant from t0 to t1. < 0: failure on the way, with v->why. */
 int lag_variant_run(Variant *v, double t0, double t1);
+
+/* The component of [q | v | z] of this name; -1: there is none. */
+int lag_component_index(const lag_model *m, const char *name);
 
 /* The largest difference of components of the same name, at times that both reached, and at their ends, relative to the scene's largest value of
  * its kind and unit; and of the times at which events ended them, relative to the span. HUGE_VAL where a difference is not finite. LAG_OK, or

@@ -47,18 +47,11 @@ static void random_vectors(Lyapunov *l) {
 }
 
 int lag_lyapunov_begin(Lyapunov *l, lag_sim *sim, int k, double from, double until) {
-  const lag_model *m = lag_sim_scene(sim)->model;
-  size_t kk = (size_t)k, nn = (size_t)(2 * m->nq + m->nz) * (size_t)(2 * m->nq + m->nz);
-  *l = (Lyapunov){.n = 2 * m->nq + m->nz, .k = k, .from = from, .until = until, .begun = NAN, .t = NAN, .half = NAN};
-  l->sum = lag_pool_doubles(&l->pool, kk);
-  l->at_half = lag_pool_doubles(&l->pool, kk);
-  l->block_sum = lag_pool_doubles(&l->pool, kk);
-  l->block = lag_pool_doubles(&l->pool, (size_t)LAG_LYAPUNOV_BLOCKS * (kk + 1));
-  l->Y = lag_pool_doubles(&l->pool, (size_t)l->n * kk);
-  l->J = lag_pool_doubles(&l->pool, nn);
-  l->A = lag_pool_doubles(&l->pool, nn);
-  l->B = lag_pool_doubles(&l->pool, nn);
-  l->work = lag_pool_doubles(&l->pool, lag_linear_work(m) + 1);
+  size_t n = (size_t)sim->pb.n, kk = (size_t)k, nn = n * n;
+  *l = (Lyapunov){.n = sim->pb.n, .k = k, .from = from, .until = until, .begun = NAN, .t = NAN, .half = NAN};
+  double **const parts[] = {&l->sum, &l->at_half, &l->block_sum, &l->block, &l->Y, &l->J, &l->A, &l->B, &l->work};
+  const size_t sizes[] = {kk, kk, kk, LAG_LYAPUNOV_BLOCKS * (kk + 1), n * kk, nn, nn, nn, lag_linear_work(sim->pb.model) + 1};
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&l->pool, sizes[i]);
   if (l->pool.failed) return LAG_ENOMEM;
   random_vectors(l);
   orthonormalise(l, 0);
@@ -134,16 +127,15 @@ int lag_lyapunov_step(Lyapunov *l, lag_sim *sim) {
   sim->tangent_log = 0;
   rc = rc ? rc : examine_jacobian(l, sim, l->t, sim->now);
   if (rc) return rc;
-  if (!counts && l->t >= l->from) {
-    l->begun = l->block_from = l->t;
+  if (!counts) {
+    if (l->t >= l->from) l->begun = l->block_from = l->t;
     return LAG_OK;
   }
-  if (!counts) return LAG_OK;
   l->steps++;
   double part = (l->t - l->begun) / (l->until - l->begun);
   if (isnan(l->half) && part >= 0.5) {
     l->half = l->t;
-    for (int a = 0; a < l->k; a++) l->at_half[a] = lag_lyapunov_exponent(l, a);
+    memcpy(l->at_half, l->sum, (size_t)l->k * sizeof(double));
   }
   if (l->nblocks < LAG_LYAPUNOV_BLOCKS - 1 && part * LAG_LYAPUNOV_BLOCKS >= l->nblocks + 1) close_block(l);
   return LAG_OK;
@@ -154,11 +146,16 @@ void lag_lyapunov_end(Lyapunov *l) {
   if (!isnan(l->begun) && l->nblocks < LAG_LYAPUNOV_BLOCKS && l->t - l->block_from >= whole / 2) close_block(l);
 }
 
-double lag_lyapunov_exponent(const Lyapunov *l, int i) {
+/* Mean rate of growth i, or for i = k of all, until t. */
+static double mean_rate(const Lyapunov *l, const double *sum, int i, double t) {
   double s = 0;
-  for (int a = 0; a < l->k; a++) s += a == i || i == l->k ? l->sum[a] : 0;
-  return l->t > l->begun ? s / (l->t - l->begun) : NAN;
+  for (int a = 0; a < l->k; a++) s += a == i || i == l->k ? sum[a] : 0;
+  return t > l->begun ? s / (t - l->begun) : NAN;
 }
+
+double lag_lyapunov_exponent(const Lyapunov *l, int i) { return mean_rate(l, l->sum, i, l->t); }
+
+double lag_lyapunov_at_half(const Lyapunov *l, int i) { return isnan(l->half) ? 0 : mean_rate(l, l->at_half, i, l->half); }
 
 double lag_lyapunov_spread(const Lyapunov *l, int i) {
   double mean = 0, square = 0;
@@ -174,9 +171,7 @@ double lag_lyapunov_spread(const Lyapunov *l, int i) {
 double lag_lyapunov_divergence(const Lyapunov *l) { return l->t > l->begun ? l->divergence / (l->t - l->begun) : NAN; }
 
 double lag_lyapunov_error(const Lyapunov *l, int i) {
-  double time = l->t - l->begun, half = 0, moved;
-  for (int a = 0; a < l->k; a++) half += a == i || i == l->k ? l->at_half[a] : 0;
-  moved = fabs(lag_lyapunov_exponent(l, i) - half);
+  double time = l->t - l->begun, moved = fabs(lag_lyapunov_exponent(l, i) - lag_lyapunov_at_half(l, i));
   return time > 0 ? fmax(fmax(moved, lag_lyapunov_spread(l, i)), fmax(1, DBL_EPSILON * (double)l->steps) / time) : NAN;
 }
 

@@ -17,7 +17,7 @@ typedef struct Lyapunov {
   long long steps;         /* steps since `begun` */
   int nblocks;             /* complete blocks, of equal length up to a step */
   double *block;           /* [LAG_LYAPUNOV_BLOCKS * (k + 1)] mean rates in each block, and their sum */
-  double half, *at_half;   /* middle of the measurement, and [k] the estimates then */
+  double half, *at_half;   /* middle of the measurement, and [k] `sum` then */
   double *Y;               /* [n * k] the vectors */
   double trace, traced, divergence; /* trace of Df, and its time; its integral since `begun`, plus log |det S| of events */
   double *J, *work, *A, *B; /* Df [n n], scratch of lag_jacobian, scratch [n n] */
@@ -43,8 +43,9 @@ void lag_lyapunov_event(Lyapunov *l, lag_sim *sim, double t, const double *befor
 /* At the end of the run: closes the last block if it is at least half full. */
 void lag_lyapunov_end(Lyapunov *l);
 
-/* Exponent i, or for i = k the sum of all; NaN without a measurement. */
+/* Exponent i, or for i = k the sum of all, and its estimate at half the time, 0 before; NaN without a measurement. */
 double lag_lyapunov_exponent(const Lyapunov *l, int i);
+double lag_lyapunov_at_half(const Lyapunov *l, int i);
 /* Standard error of exponent i from the means of blocks, as if these were independent; NaN where there are fewer than two. */
 double lag_lyapunov_spread(const Lyapunov *l, int i);
 

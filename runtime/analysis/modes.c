@@ -4,12 +4,187 @@
  * (1846) 85, DOI 10.1515/crll.1846.32.85). */
 #include "analysis/modes.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "analysis/matrices.h"
 #include "analysis/spectrum.h"
 #include "numeric/dense.h"
+
+/* ---- Matrices of small motion, and the noise of their entries */
+
+/* M x'' + C x' + K x = 0 in coordinates of mass 1: the model's times weight. */
+typedef struct Matrices {
+  int nq;
+  double *weight;              /* [nq] sqrt(M_ii); of a row with M_ii <= 0, the root of its size */
+  double *K, *C, *M;           /* [nq * nq] */
+  double *noise_K, *noise_C, *noise_M;
+  int definite, symmetric, undamped; /* to rounding: M is positive definite; K is symmetric; C = 0 */
+  int lowering;                /* number of directions in which the energy falls; -1: not known */
+  int flat;                    /* number of directions in which it is constant, to rounding */
+  double *values, *vectors;    /* eigenpairs K x = value M x, where lowering >= 0: [nq] ascending up to rounding, columns [nq * nq] in the model's SI units */
+  double *zero;                /* [nq] |value| up to this counts as 0 */
+} Matrices;
+
+/* noise[count] := at least the changes of values when the root moves to four corners of its uncertainty. */
+static void add_spread(Equilibrium *r, lag_values *values, size_t count, const double *base, double *noise, double *scratch) {
+  double *at = scratch + count;
+  for (int corner = 0; corner < 4; corner++) {
+    for (int i = 0; i < r->n; i++) {
+      double sign = (corner & 1 ? -1 : 1) * (corner & 2 && i % 2 ? -1 : 1);
+      at[i] = r->x[i] + sign * r->spread[i];
+    }
+    if (values(r, at, scratch) || lag_not_finite((int)count, scratch) >= 0) continue;
+    for (size_t i = 0; i < count; i++) noise[i] = fmax(noise[i], fabs(scratch[i] - base[i]));
+  }
+}
+
+/* Values at the state at rest and their noise: of the model's numbers, of the values themselves, and of the state. */
+static int with_noise(Pool *pool, Equilibrium *r, lag_values *values, size_t count, double **base, double **noise) {
+  size_t more = (size_t)(r->sim->pb.model->np + r->sim->pb.model->nderived) + (size_t)r->n;
+  double *scratch = lag_pool_doubles(pool, count + more);
+  *base = lag_pool_doubles(pool, count);
+  *noise = lag_pool_doubles(pool, count);
+  if (pool->failed) return LAG_ENOMEM;
+  int rc = lag_perturbation_noise(r, values, r->x, count, *base, *noise, scratch);
+  if (rc) return rc;
+  for (size_t i = 0; i < count; i++) (*noise)[i] += DBL_EPSILON * fabs((*base)[i]);
+  add_spread(r, values, count, *base, *noise, scratch);
+  lag_equilibrium_state(r, r->x);
+  return LAG_OK;
+}
+
+/* out := dr, then M. */
+static int linearisation(Equilibrium *r, const double *x, double *out) {
+  size_t rows = (size_t)r->n * (size_t)r->sim->pb.n;
+  lag_equilibrium_state(r, x);
+  return lag_linearise(&r->sim->pb, r->sim->run->t, r->y, NULL, out, out + rows, r->work);
+}
+
+static int jacobian(Equilibrium *r, const double *x, double *A) {
+  lag_problem *pb = &r->sim->pb;
+  lag_equilibrium_state(r, x);
+  memset(A, 0, (size_t)pb->nq * (size_t)pb->n * sizeof *A);
+  for (int i = 0; i < pb->nq; i++) A[i * pb->n + pb->nq + i] = 1;
+  return lag_jacobian(pb, r->sim->run->t, r->y, A + pb->nq * pb->n, r->work);
+}
+
+/* A[n * n] of y' = A y at rest, n = 2 nq + nz, and the noise of its entries. Memory and errors as of find_matrices. */
+static int state_matrix(Pool *pool, Equilibrium *rest, double **A, double **noise) {
+  size_t n = (size_t)rest->sim->pb.n;
+  return with_noise(pool, rest, jacobian, n * n, A, noise);
+}
+
+static double row_size(const double *row, int n) {
+  double most = 0;
+  for (int i = 0; i < n; i++) most = fmax(most, fabs(row[i]));
+  return most;
+}
+
+/* K, C, M := entries divided by the weights of row and column. */
+static void divide_by_weights(Matrices *m, int ny, const double *dr, double *K, double *C, double *M) {
+  int nq = m->nq;
+  const double *mass = dr + (size_t)(ny - nq) * (size_t)ny;
+  for (int i = 0; i < nq; i++)
+    for (int j = 0; j < nq; j++) {
+      double d = m->weight[i] * m->weight[j];
+      K[i * nq + j] = -dr[i * ny + j] / d;
+      C[i * nq + j] = -dr[i * ny + nq + j] / d;
+      M[i * nq + j] = mass[i * nq + j] / d;
+    }
+}
+
+/* Whether K is symmetric, and C zero, to rounding. */
+static void classify(Matrices *m) {
+  int nq = m->nq;
+  m->symmetric = m->undamped = 1;
+  for (int i = 0; i < nq; i++)
+    for (int j = 0; j < nq; j++) {
+      int a = i * nq + j, b = j * nq + i;
+      double size = fmin(row_size(m->K + i * nq, nq), row_size(m->K + j * nq, nq));
+      m->symmetric &= fabs(m->K[a] - m->K[b]) <= 8 * (fabs(m->noise_K[a]) + fabs(m->noise_K[b])) + 1e-13 * size;
+      m->undamped &= fabs(m->C[a]) <= 8 * fabs(m->noise_C[a]) + 4 * DBL_EPSILON * sqrt(size);
+    }
+}
+
+static int entries(Matrices *m, Pool *pool, Equilibrium *r) {
+  int nq = m->nq, ny = r->sim->pb.n;
+  size_t nn = (size_t)nq * (size_t)nq, rows = (size_t)r->n * (size_t)ny;
+  double **const parts[] = {&m->K, &m->C, &m->M, &m->noise_K, &m->noise_C, &m->noise_M}, *values, *noise;
+  int rc = with_noise(pool, r, linearisation, rows + nn, &values, &noise);
+  m->weight = lag_pool_doubles(pool, (size_t)nq);
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(pool, nn);
+  if (rc || pool->failed) return rc ? rc : LAG_ENOMEM;
+  const double *M = values + rows;
+  m->definite = 1;
+  for (int i = 0; i < nq; i++) {
+    double own = M[i * nq + i], size = row_size(M + i * nq, nq);
+    m->definite &= own > 0;
+    m->weight[i] = own > 0 ? sqrt(own) : size > 0 ? sqrt(size) : 1;
+  }
+  divide_by_weights(m, ny, values, m->K, m->C, m->M);
+  divide_by_weights(m, ny, noise, m->noise_K, m->noise_C, m->noise_M);
+  classify(m);
+  return LAG_OK;
+}
+
+/* ---- Signature */
+
+/* Eigenvalue k by Rayleigh's quotient, whose error is the square of the vector's; zero[k]: its noise. */
+static void settle_value(Matrices *m, int k) {
+  int nq = m->nq;
+  double top = 0, bottom = 0, of_K = 0, of_M = 0;
+  for (int i = 0; i < nq; i++) {
+    double x = m->vectors[i * nq + k];
+    for (int j = 0; j < nq && x != 0.0; j++) {
+      double xx = x * m->vectors[j * nq + k];
+      int a = i * nq + j;
+      top += xx * (m->K[a] + m->K[j * nq + i]) / 2;
+      bottom += xx * m->M[a];
+      of_K += fabs(xx * m->noise_K[a]);
+      of_M += fabs(xx * m->noise_M[a]);
+    }
+  }
+  m->values[k] = top / bottom;
+  m->zero[k] = 2 * (of_K + fabs(m->values[k]) * of_M) / bottom;
+}
+
+/* Counts directions of falling and of constant energy; divides vectors by the weights. */
+static void count_directions(Matrices *m) {
+  int nq = m->nq;
+  m->lowering = 0;
+  for (int k = 0; k < nq; k++) {
+    m->lowering += m->values[k] < -m->zero[k];
+    m->flat += fabs(m->values[k]) <= m->zero[k];
+    for (int i = 0; i < nq; i++) m->vectors[i * nq + k] /= m->weight[i];
+  }
+}
+
+static int signature(Matrices *m, Pool *pool, const lag_algebra *algebra) {
+  size_t nq = (size_t)m->nq, bytes = nq * nq * sizeof(double);
+  double *K = lag_pool_doubles(pool, nq * nq), *M = lag_pool_doubles(pool, nq * nq);
+  m->values = lag_pool_doubles(pool, nq);
+  m->zero = lag_pool_doubles(pool, nq);
+  m->vectors = lag_pool_doubles(pool, nq * nq);
+  if (pool->failed) return LAG_ENOMEM;
+  memcpy(K, m->K, bytes);
+  memcpy(M, m->M, bytes);
+  int rc = algebra->symmetric(m->nq, K, M, m->values, m->vectors);
+  for (int k = 0; k < m->nq && rc == LAG_OK; k++) settle_value(m, k);
+  if (rc == LAG_OK) count_directions(m);
+  m->definite &= rc != LAG_EINVAL;
+  return rc == LAG_EINVAL ? LAG_OK : rc;
+}
+
+/* Computes *m at the state at rest. Memory is the pool's. LAG_OK, LAG_ENOMEM, the model's status, LAG_EMETHOD. */
+static int find_matrices(Matrices *m, Pool *pool, Equilibrium *rest, const lag_algebra *algebra) {
+  *m = (Matrices){.nq = rest->sim->pb.nq, .lowering = -1};
+  int rc = entries(m, pool, rest);
+  return rc || !m->symmetric || !m->definite || m->nq == 0 ? rc : signature(m, pool, algebra);
+}
+
+/* ---- Modes */
 
 typedef struct ModeSearch {
   Modes *out;
@@ -26,29 +201,27 @@ typedef struct ModeSearch {
 
 /* ---- Shapes */
 
+/* Index in y of unknown i: coordinates, then states. */
+static int place(const ModeSearch *w, int i) { return i < w->nq ? i : w->nq + i; }
+
 /* Amplitude of component i of a shape (coordinates, then states), in scales. */
 static double amplitude(const ModeSearch *w, int i, double re, double im) { return hypot(re, im) / w->rest->scale[i]; }
 
 /* The component to be normalised to 1: the coordinate with the largest kinetic energy; if only states move, the state with the largest
- * amplitude. */
+ * amplitude. Of equal ones the first, whatever rounding says. */
 static int reference(const ModeSearch *w, const double *re, const double *im) {
-  int best = 0, state = w->nq;
-  double most = -1, far = 0, state_far = 0;
+  int best[2] = {0, w->nq};
+  double most[2] = {-1, 0}, far[2] = {0, 0};
   for (int i = 0; i < w->n; i++) {
-    double e = amplitude(w, i, re[i], im[i]);
-    if (i < w->nq) {
-      double kinetic = hypot(re[i], im[i]) * w->m.weight[i];
-      far = fmax(far, e);
-      if (kinetic > most * (1 + 1e-9)) { /* the first of equal ones, whatever rounding says */
-        most = kinetic;
-        best = i;
-      }
-    } else if (e > state_far * (1 + 1e-9)) {
-      state_far = e;
-      state = i;
+    int state = i >= w->nq;
+    double amount = amplitude(w, i, re[i], im[i]), size = state ? amount : hypot(re[i], im[i]) * w->m.weight[i];
+    far[state] = fmax(far[state], amount);
+    if (size > most[state] * (1 + 1e-9)) {
+      most[state] = size;
+      best[state] = i;
     }
   }
-  return far > 1e-12 * state_far ? best : state;
+  return best[!(far[0] > 1e-12 * far[1])];
 }
 
 /* Adds a mode with the shape re + i im, [n] with a stride. */
@@ -112,7 +285,7 @@ static int is_free(ModeSearch *w, const double *x, double most) {
   for (int i = 0; i < w->n; i++) far = fmax(far, amplitude(w, i, x[i], 0));
   for (size_t k = 0; k < sizeof steps / sizeof *steps && far > 0; k++) {
     double c = steps[k] / far;
-    if (!lag_equilibrium_holds(w->rest, x, c) && !lag_equilibrium_continues(w->rest, w->algebra, x, c)) return 0;
+    if (!lag_equilibrium_continues(w->rest, x, c)) return 0;
   }
   return far > 0;
 }
@@ -191,23 +364,20 @@ static int modes_of_matrix(ModeSearch *w) {
   Spectrum s;
   size_t n = (size_t)w->n;
   double *A, *noise, *re = lag_pool_doubles(pool, n), *im = lag_pool_doubles(pool, n);
-  int rc = lag_state_matrix(pool, w->rest, &A, &noise);
+  int rc = state_matrix(pool, w->rest, &A, &noise);
   rc = rc ? rc : pool->failed ? LAG_ENOMEM : lag_spectrum(&s, pool, w->algebra, w->ny, A, noise);
   if (rc) return rc;
   int minimum = w->conserves && w->m.lowering == 0 && w->m.flat == 0; /* then real parts are rounding */
   w->nkernel = s.nkernel;
   w->out->drifts = s.zeros > s.nkernel;
   w->kernel = lag_pool_doubles(pool, n * (size_t)s.nkernel);
-  for (int i = 0; i < w->n && w->kernel; i++) {
-    int row = i < w->nq ? i : w->nq + i;
-    for (int k = 0; k < s.nkernel; k++) w->kernel[i * s.nkernel + k] = s.kernel[row * s.nkernel + k];
-  }
+  for (int i = 0; i < w->n && w->kernel; i++)
+    for (int k = 0; k < s.nkernel; k++) w->kernel[i * s.nkernel + k] = s.kernel[place(w, i) * s.n + s.n - s.nkernel + k];
   for (int k = 0; k < s.count && rc == LAG_OK && !pool->failed; k++) {
     Mode mode = {.re = minimum ? 0 : s.re[k], .im = s.im[k], .repeats = (int)s.repeats[k]};
     for (int i = 0; i < w->n; i++) {
-      int row = i < w->nq ? i : w->nq + i;
-      re[i] = s.vre[row * s.count + k];
-      im[i] = s.vim[row * s.count + k];
+      re[i] = s.vre[place(w, i) * s.n + k];
+      im[i] = s.vim[place(w, i) * s.n + k];
     }
     rc = is_second_half(w, &s, k) || !is_first(&s, k) ? LAG_OK : add_mode(w, mode, re, im, 1);
   }
@@ -219,14 +389,13 @@ static int modes_of_matrix(ModeSearch *w) {
 
 static Verdict decide_stability(const ModeSearch *w) {
   const Modes *out = w->out;
-  int grows = 0, stays = 0, zeros = 0, bound = 0, defective = 0;
+  int grows = 0, stays = 0, zeros = 0, defective = 0;
   for (int i = 0; i < out->n; i++) {
     const Mode *m = &out->mode[i];
     int zero = m->re == 0.0 && m->im == 0.0;
     grows |= m->re > 0;
     stays += m->re == 0.0 && !zero;
     zeros += zero;
-    bound += zero && !m->free;
     defective |= m->re == 0.0 && m->repeats > 1;
   }
   if (grows) return LAG_UNSTABLE;
@@ -234,23 +403,11 @@ static Verdict decide_stability(const ModeSearch *w) {
   if (w->rest->rough) return LAG_NONSMOOTH;
   if (stays == 0 && zeros == 0) return LAG_DECAYS;
   if (defective) return LAG_DEFECTIVE;
-  if (bound) return LAG_DEGENERATE;
-  if (zeros && !out->together) return LAG_FREE_SEPARATELY;
+  if (zeros && !out->together) return LAG_DEGENERATE;
   if (w->conserves && out->lowering == 0) return zeros != w->m.flat ? LAG_DEGENERATE : zeros ? LAG_NEUTRAL : LAG_MINIMUM;
   if (w->loses && out->lowering == 0 && zeros == 0 && w->m.flat == 0) return LAG_DISSIPATIVE_MINIMUM;
   if (w->conserves && out->lowering > 0) return LAG_GYROSCOPIC;
   return stays == 0 ? LAG_NEUTRAL : LAG_CENTRE;
-}
-
-const char *lag_verdict_name(Verdict verdict) {
-  switch (verdict) {
-  case LAG_UNSTABLE: return "unstable";
-  case LAG_DECAYS: return "asymptotically stable";
-  case LAG_MINIMUM: case LAG_DISSIPATIVE_MINIMUM: return "stable";
-  case LAG_NEUTRAL: return "neutral";
-  case LAG_GYROSCOPIC: case LAG_DEGENERATE: case LAG_FREE_SEPARATELY: case LAG_COORDINATE_POLE: case LAG_NONSMOOTH: case LAG_DEFECTIVE: case LAG_CENTRE: break;
-  }
-  return "undecided";
 }
 
 static int class_of(const Mode *m) { return m->re == 0.0 && m->im == 0.0 ? 0 : m->re > 0 ? 1 : 2; }
@@ -270,7 +427,7 @@ int lag_modes_find(Modes *out, Equilibrium *rest, const lag_algebra *algebra) {
   w.loses = (pb->model->flags & LAG_LOSES_ENERGY) != 0 && pb->nz == 0;
   *out = (Modes){.lowering = -1, .pairs = w.conserves};
   out->mode = calloc((size_t)w.ny + 1, sizeof *out->mode);
-  int rc = out->mode ? lag_matrices_find(&w.m, &out->pool, rest, algebra) : LAG_ENOMEM;
+  int rc = out->mode ? find_matrices(&w.m, &out->pool, rest, algebra) : LAG_ENOMEM;
   if (rc) return rc;
   out->lowering = w.m.lowering;
   rc = pb->nz == 0 && w.m.undamped && out->lowering >= 0 ? modes_of_values(&w) : modes_of_matrix(&w);

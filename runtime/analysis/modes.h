@@ -21,8 +21,7 @@ typedef enum Verdict {
   LAG_DISSIPATIVE_MINIMUM,      /* a strict minimum of an energy that nothing raises: stable (Thomson & Tait; Chetaev) */
   LAG_NEUTRAL,     /* free motions; otherwise a minimum, or all modes decay */
   LAG_GYROSCOPIC,  /* not decided: all modes oscillate, but the energy has no minimum */
-  LAG_DEGENERATE,        /* not decided: a zero mode that is no free motion */
-  LAG_FREE_SEPARATELY,     /* not decided: zero modes that are free one by one, but not together */
+  LAG_DEGENERATE,        /* not decided: a zero mode that is no free motion, or several that are not free together */
   LAG_COORDINATE_POLE,        /* not decided: a coordinate loses its meaning here */
   LAG_NONSMOOTH,       /* not decided: derivatives of forces jump here, or have no limit */
   LAG_DEFECTIVE,   /* not decided: a multiple imaginary eigenvalue that lacks shapes */
@@ -44,8 +43,5 @@ typedef struct Modes {
  * converge. Call lag_modes_free in every case. */
 int lag_modes_find(Modes *modes, Equilibrium *rest, const lag_algebra *algebra);
 void lag_modes_free(Modes *modes);
-
-/* "unstable", "asymptotically stable", "stable", "neutral", "undecided". */
-const char *lag_verdict_name(Verdict verdict);
 
 #endif

@@ -8,13 +8,13 @@
 
 typedef struct Spectrum {
   int n;             /* rows of the matrix */
-  int count;         /* number of eigenvalues that are not 0 */
+  int count;         /* number of eigenvalues listed: all, or where the matrix has a kernel those that are not 0 */
   double *re, *im;   /* [count]; a part that may be rounding is 0 */
-  double *vre, *vim; /* [n * count], columns */
+  double *vre, *vim; /* [n * n], the first count columns */
   double *repeats;   /* [count] > 1: multiplicity of a defective eigenvalue */
   int zeros;         /* multiplicity of the eigenvalue 0 */
-  int nkernel;       /* number of its eigenvectors */
-  double *kernel;    /* [n * nkernel], columns */
+  int nkernel;       /* number of its eigenvectors: */
+  double *kernel;    /* [n * n], the last nkernel columns */
 } Spectrum;
 
 /* Spectrum of A[n * n], whose entries have errors up to noise[n * n] >= 0, at least those of rounding. Both are destroyed. Memory is the

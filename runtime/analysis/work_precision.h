@@ -48,6 +48,7 @@ enum { LAG_COST_MOST_RUNS = 40 };
 typedef struct CostMethod {
   const lag_method *method;
   lag_option option;
+  char name[64];  /* the caller's: "variational(order=4)" */
   CostRun run[LAG_COST_MOST_RUNS]; /* [nruns], from the least accurate on */
   int nruns;
   double order;   /* observed order, the slope of log error against log of the number of steps; NaN: not visible */

@@ -130,6 +130,14 @@ static void note_empty(App *app, double t) {
   }
 }
 
+int lag_app_write_row(App *app, int drawn) {
+  if (app->rows.open && lag_rows_write(&app->rows, app->row)) {
+    app->bad_file = app->args.out;
+    return LAG_EIO;
+  }
+  return drawn && lag_table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
+}
+
 int lag_app_put_row(App *app) {
   double t = lag_sim_time(app->sim);
   app->row[0] = app->last_row = t;
@@ -137,12 +145,7 @@ int lag_app_put_row(App *app) {
   rc = rc ? rc : lag_tangent_columns_row(app);
   if (rc) return rc;
   note_empty(app, t);
-  if (app->rows.open && lag_rows_write(&app->rows, app->row)) {
-    app->bad_file = app->args.out;
-    return LAG_EIO;
-  }
-  int drawn = app->args.every || !app->sampling.on; /* otherwise picture_sampling.c chooses the rows of pictures */
-  return drawn && lag_table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
+  return lag_app_write_row(app, app->args.every || !app->sampling.on); /* otherwise picture_sampling.c chooses the rows of pictures */
 }
 
 /* Advances along the grid and writes a row at each time up to app->until. */
@@ -175,11 +178,6 @@ static void run(App *app) {
   if (lag_sampling_close(app)) rc = LAG_ENOMEM;
   app->status = app->bad_file ? LAG_EIO : app->section_rc && rc >= 0 ? app->section_rc : rc;
   lag_app_stop_clock(app);
-}
-
-static void on_event(void *context, int k, double t, const double *before, const double *after) {
-  lag_event_log_note(context, k, t, before, after);
-  lag_section_note(context, k);
 }
 
 /* ---- Files */
@@ -318,7 +316,7 @@ static int simulate(App *app) {
   }
   note_tables(app);
   lag_sim_on_step(app->sim, lag_app_after_step, app);
-  lag_sim_on_event(app->sim, on_event, app);
+  lag_sim_on_event(app->sim, lag_event_note, app);
   lag_app_start_clock(app);
   run(app);
   return finish(app);

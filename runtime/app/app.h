@@ -22,13 +22,27 @@ typedef struct Args {
   int nsets;
 } Args;
 
+/* A column that pictures draw: its range so far, the deviation allowed, and the slopes of the swinging door. */
+typedef struct DrawnColumn {
+  int col;
+  double least, most, width, low, high;
+} DrawnColumn;
+
 /* The rows that pictures show, chosen while the run goes on (picture_sampling.c). */
 typedef struct PictureSampling {
   int on, places;   /* 1: rows are chosen here; number of samples in the last step */
-  RowThinning rows;
   double soonest;   /* steps that end within this time after the last sampled one are not sampled [s] */
   double seen_to, length; /* end of the last sampled step; for STEPS_TO methods the longest step that few samples resolve */
   double *y, *seen; /* [n] scratch; samples of a step, [MOST_PLACES + 1][ncols] */
+  int store;        /* 0: kept rows are counted, not stored */
+  size_t kept;
+  double part;      /* deviation allowed, as a part of the drawn range */
+  double longest;   /* longest time between kept rows */
+  int common;       /* 1: drawn columns share one scale, of the widest range */
+  int ndrawn;
+  DrawnColumn *drawn; /* [ncols] */
+  double *from, *last; /* [ncols] the row kept last; the last one since, if have_last */
+  int have_last;
 } PictureSampling;
 
 typedef struct App {
@@ -36,6 +50,7 @@ typedef struct App {
   lag_extras extras;
   Args args;
   const lag_scene *scene;
+  lag_scene bare;   /* for exponents and costs: the scene without monitors and closed forms, which would end a rough run or take time */
   lag_sim *sim;
   State state;      /* the saved state of --resume */
   int resumed;      /* 1: the run continues from `state` */
@@ -82,11 +97,12 @@ int lag_app_set_up(App *app);
 int lag_app_set_up_start(App *app);
 /* app->until := end of the run, from --until or the scene; called by both above. 0, or EXIT_USAGE after a message. */
 int lag_app_read_until(App *app);
-/* Whether word[n] is one of the words in a list with spaces; NULL: an empty list. */
+/* Whether word[n] is one of the words in a list with spaces or commas; NULL: an empty list. */
 int lag_app_has_word(const char *words, const char *word, size_t n);
-/* Sets one name=value, or all of the command line, in app->sim. */
+/* Sets one name=value in app->sim. */
 int lag_app_set_value(App *app, const char *text);
-int lag_app_set_values(App *app);
+/* Another simulation of app->scene with the values of the command line. NULL: no memory, or a message. */
+lag_sim *lag_app_fresh_sim(App *app);
 /* Sets tolerance and method of a new app->sim. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_method(App *app);
 /* Method i of this program; NULL past the last. */
@@ -99,7 +115,8 @@ int lag_app_unknown_method(const App *app, const char *name);
  * message. */
 int lag_app_choose_automatically(App *app, const lag_option *opt, int n);
 
-/* method_help.c: the table of all methods, or of the one of this name. */
+/* help.c: --help; the table of all methods, or of the one of this name. */
+void lag_app_help(const App *app, FILE *f);
 void lag_app_list_methods(const App *app, const char *name, FILE *f);
 
 /* column_lookup.c: app->drawn := columns of --plot-x and --plot-y, or all. 0, or EXIT_USAGE after a message. */
@@ -115,8 +132,9 @@ int lag_sampling_close(App *app);
 void lag_sampling_warn(App *app, char *note, size_t size);
 void lag_sampling_free(App *app);
 
-/* app.c: writes a row of the present state. LAG_OK, or a failure. */
+/* app.c: writes a row of the present state; writes app->row, also to the table if drawn. LAG_OK, or a failure. */
 int lag_app_put_row(App *app);
+int lag_app_write_row(App *app, int drawn);
 /* Signals that end a run (Ctrl-C, SIGTERM, SIGHUP) let it finish its step and write its files; nohup is respected. Called before files are
  * opened, so that none is left over. */
 void lag_app_catch_interrupt(void);
@@ -129,9 +147,8 @@ int lag_app_interrupted(void);
 /* Refuses outputs that would overwrite the model, this program, the resumed state or each other. 0, or EXIT_USAGE after a message. */
 int lag_app_check_outputs(const App *app);
 
-/* event_log.c: --section. 0, or EXIT_USAGE after a message. lag_section_note: event k has happened. */
+/* event_log.c: --section. 0, or EXIT_USAGE after a message. */
 int lag_section_choose(App *app);
-void lag_section_note(App *app, int k);
 
 /* tangent_columns.c: --tangent. lag_tangent_columns_open adds its columns to the table; 0, or EXIT_USAGE after a message. lag_tangent_columns_row: their values in
  * app->row; LAG_OK, or a failure. */
@@ -139,12 +156,6 @@ int lag_tangent_columns_open(App *app);
 int lag_tangent_columns_row(App *app);
 void lag_report_tangent(App *app, FILE *f);
 void lag_report_tangent_json(App *app, Json *j);
-
-/* charges_report.c: the report on energy and other charges; in JSON also on monitors. */
-void lag_report_charges(const App *app, FILE *f);
-void lag_report_charges_json(const App *app, Json *j);
-/* Whether the energy error exceeds the tolerance by far because the mass matrix was almost singular. */
-int lag_report_lost_digits(const App *app, const lag_charge_stats *energy);
 
 /* lyapunov.c: --lyapunov. Returns the exit status. */
 int lag_app_lyapunov(App *app);
@@ -158,15 +169,12 @@ int lag_app_effects(App *app);
 /* cost.c: --cost and --reference. Returns the exit status. */
 int lag_app_cost(App *app);
 
-/* help.c */
-void lag_app_help(const App *app, FILE *f);
-
 /* Prints that a file cannot be written, with errno; returns EXIT_USAGE. */
 int lag_app_io_error(const App *app, const char *path);
 
-/* event_log.c: the log of --events. 0, or EXIT_USAGE after a message. lag_event_log_note: as the function of lag_sim_on_event. */
+/* event_log.c: the log of --events. 0, or EXIT_USAGE after a message. lag_event_note: as the function of lag_sim_on_event, for both. */
 int lag_event_log_open(App *app);
-void lag_event_log_note(void *app, int k, double t, const double *before, const double *after);
+void lag_event_note(void *app, int k, double t, const double *before, const double *after);
 void lag_event_log_free(App *app);
 void lag_report_events(const App *app, FILE *f);
 void lag_report_events_json(const App *app, Json *j);

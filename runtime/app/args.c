@@ -155,13 +155,6 @@ static int check_analysis(const Args *a) {
   return 0;
 }
 
-/* Refuses .npy files in other precisions: NumPy has no type of 34 digits, and those of 19 depend on the machine. */
-static int check_npy(const Args *a) {
-  if (strcmp(LAG_PRECISION, "double") != 0 && a->out && lag_outfile_has_suffix(a->out, "npy"))
-    return lag_app_error(a, "%s: .npy files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", a->out);
-  return 0;
-}
-
 /* Refuses an output whose suffix is of another file type than is written. */
 static int check_kinds(const Args *a) {
   const struct {
@@ -194,7 +187,9 @@ static int check(const Args *a) {
     return lag_app_error(a, "--tangent and --%s: a saved state holds no tangent; run it in one piece", a->save ? "save-state" : "resume");
   if (a->section && a->every)
     return lag_app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
-  return check_kinds(a) || check_npy(a) || check_analysis(a) ? EXIT_USAGE : 0;
+  if (strcmp(LAG_PRECISION, "double") != 0 && a->out && lag_outfile_has_suffix(a->out, "npy")) /* NumPy has no type of 34 digits */
+    return lag_app_error(a, "%s: .npy files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", a->out);
+  return check_kinds(a) || check_analysis(a) ? EXIT_USAGE : 0;
 }
 
 int lag_args_parse(Args *a, int argc, char **argv) {

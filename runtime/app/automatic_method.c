@@ -1,25 +1,130 @@
-/* Automatic choice of the method where none is named. Enters: a simulation with its values and tolerance; leaves: its method, and
- * the reason. Holds: the choice depends on the model, the values and the tolerance, never on measured times. */
+/* Automatic choice of the method where none is named. Enters: a simulation with its values and tolerance; leaves: its method, and the reason.
+ * Holds: the choice depends on the model, the values and the tolerance, never on measured times. Stiffness is the dominant eigenvalue of the
+ * Jacobian by the power method, compared with a method's bound of stability at the steps of a trial run. */
 #include <math.h>
+#include <stdlib.h>
 
-#include "analysis/stiffness.h"
 #include "app/app.h"
+#include "core/core.h"
+#include "numeric/workspace.h"
 
 /* Between these tolerances dop853 is the cheapest method, as measured with `lagc cost`. */
 static const double below_taylor = 1e-9, above_rk45 = 1e-6;
 
 enum { MOST_OF_TRIAL = 200, MOST_OF_RADAU = 40 }; /* limits on the size of the state: beyond, Jacobians or factorizations take too long */
-enum { STEPS_OF_TRIAL = 600 };
+enum { STEPS_OF_TRIAL = 600, LEAST_STEPS = 30, ITERATIONS = 6, STAGES = 12, MARGIN = 4 };
 
-/* Trial run with the values of app->sim for the statistics *s. 0: no trial is possible. */
-static int run_trial(App *app, const lag_method *method, double bound, int most, Stiffness *s) {
-  lag_sim *run = app->sim, *trial = app->sim = lag_sim_new(app->scene);
-  int done = trial && lag_app_set_values(app) == 0 && lag_sim_set_tolerance(trial, lag_sim_tolerance(run)) == 0 &&
-             lag_sim_set_method(trial, method, NULL, 0) == 0 && lag_stiffness(trial, app->until, bound, most, s) == LAG_OK;
-  app->sim = run;
-  lag_sim_free(trial);
-  return done;
+/* Fraction of the stability bound above which a step counts as limited. Steps limited by stability vary about the bound, since steps past it let
+ * errors grow until one is refused (h*rho of rk45, whose bound is 3.3, lies between 2.2 and 4.2), so half of them may be below it. */
+static const double near_bound = 0.75;
+/* A mode counts as growing if its real part is more than this fraction of |eigenvalue|: accuracy, not stability, limits steps. Less may be
+ * rounding in the eigenvalue of an oscillation. */
+static const double growing = 0.1;
+
+typedef struct Stiffness {
+  int steps, looked, limited; /* steps made; of these examined; of these with h*rho near or past the stability bound. In a trial that gets past
+                               * half of its steps, only later ones count */
+  int unfinished;             /* 1: the trial ended at its largest number of steps */
+  double needed;              /* least number of steps of an explicit method at its stability bound: the sum of h*rho/bound */
+  double calls, until;        /* right-hand sides computed; time reached */
+} Stiffness;
+
+typedef struct Look {
+  Stiffness *s;
+  double bound, last;   /* stability bound; time of the step before */
+  int n, every;
+  double *J, *x, *y, *z, *work;
+} Look;
+
+static double dot(int n, const double *a, const double *b) {
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += a[i] * b[i];
+  return sum;
 }
+
+/* y := (df/dy) x; returns |y|. */
+static double apply_jacobian(const lag_problem *pb, const double *J, const double *x, double *y) {
+  size_t n = (size_t)pb->n, nq = (size_t)pb->nq;
+  for (size_t i = 0; i < n; i++) {
+    double value = i < nq ? x[nq + i] : 0;
+    for (size_t k = 0; i >= nq && k < n; k++) value += J[(i - nq) * n + k] * x[k];
+    y[i] = value;
+  }
+  return sqrt(dot(pb->n, y, y));
+}
+
+/* The dominant eigenvalue, or pair: returns its modulus, 0 where there is none, and its real part. Power method, continued from the vector of
+ * the last step. Then x, y = J x and z = J y lie in the span of the pair's vectors, z = a y + b x, and the pair are the roots of s^2 = a s + b.
+ * For a single eigenvalue y is along x, and s = y.x/x.x. */
+static double dominant(Look *l, const lag_problem *pb, double *real) {
+  const double alike = 1e-10; /* squared sine of an angle that counts as 0 */
+  int n = l->n;
+  *real = 0;
+  for (int i = 0; i < ITERATIONS; i++) {
+    double growth = apply_jacobian(pb, l->J, l->x, l->y);
+    if (!(growth > 0 && isfinite(growth))) return 0;
+    for (int k = 0; k < n; k++) l->x[k] = l->y[k] / growth;
+  }
+  double yy = apply_jacobian(pb, l->J, l->x, l->y), xy = dot(n, l->x, l->y); /* |x| = 1 */
+  apply_jacobian(pb, l->J, l->y, l->z);
+  double xz = dot(n, l->x, l->z), yz = dot(n, l->y, l->z), det = (yy - xy) * (yy + xy);
+  if (!(det > alike * yy * yy)) {
+    *real = xy;
+    return fabs(xy);
+  }
+  double a = (yz - xz * xy) / det, b = (xz * yy * yy - yz * xy) / det, inside = a * a / 4 + b;
+  *real = inside < 0 ? a / 2 : a / 2 + copysign(sqrt(inside), a);
+  return inside < 0 ? sqrt(-b) : fabs(*real);
+}
+
+static int examine_step(void *context, const lag_sim *sim) {
+  Look *l = context;
+  Stiffness *s = l->s;
+  lag_problem pb = sim->pb;
+  double t = sim->run->step_t1, h = fabs(t - l->last), real;
+  l->last = s->until = t;
+  s->calls = pb.rhs_calls;
+  if (s->steps == STEPS_OF_TRIAL / 2) { /* drops the statistics of the first half of the trial: they may be those of a transient */
+    s->looked = s->limited = 0;
+  }
+  if (s->steps++ % l->every == 0 && lag_jacobian(&pb, t, sim->y, l->J, l->work) == LAG_OK) {
+    double size = dominant(l, &pb, &real), reach = real * pb.dir > growing * size ? 0 : h * size / l->bound;
+    s->looked++;
+    s->limited += reach > near_bound;
+    s->needed += reach * l->every;
+  }
+  return s->steps >= STEPS_OF_TRIAL;
+}
+
+/* Runs a trial by `method` with the values of app->sim for at most STEPS_OF_TRIAL steps, and compares each with an explicit method's `bound` of
+ * stability on the negative real axis. A mode that grows in the direction of the run does not count: backwards, a stiff model is not stiff. Needs
+ * the model's linearisation. 0: no trial is possible. Source of the criterion, and of the bounds 3.3 of rk45 and 6.1 of dop853: Hairer, Wanner,
+ * Solving Ordinary Differential Equations II (1996), DOI 10.1007/978-3-642-05221-7, IV.2. */
+static int run_trial(App *app, const lag_method *method, double bound, Stiffness *s) {
+  lag_sim *trial = lag_app_fresh_sim(app);
+  size_t n = (size_t)app->sim->pb.n, rows = n - (size_t)app->sim->pb.nq;
+  Look l = {.s = s, .bound = bound, .last = app->scene->t0, .n = (int)n, .every = n <= 40 ? 1 : 5};
+  double **const parts[] = {&l.J, &l.x, &l.y, &l.z, &l.work};
+  const size_t sizes[] = {rows * n, n, n, n, lag_linear_work(app->scene->model)};
+  double *block = lag_workspace(sizeof parts / sizeof *parts, parts, sizes);
+  int ready = trial && block && lag_sim_set_tolerance(trial, lag_sim_tolerance(app->sim)) == 0 && lag_sim_set_method(trial, method, NULL, 0) == 0;
+  *s = (Stiffness){0};
+  if (ready) {
+    for (size_t i = 0; i < n; i++) l.x[i] = 1 + 0.1 * (double)(i % 7); /* unlikely to be an eigenvector of a model */
+    lag_sim_on_step(trial, examine_step, &l);
+    s->unfinished = lag_sim_advance(trial, app->until) == LAG_INTERRUPTED;
+  }
+  free(block);
+  lag_sim_free(trial);
+  return ready;
+}
+
+/* After a trial of radau, with n components of the state: whether its steps are so far past the bound that it is much cheaper than dop853 can be.
+ * At tight tolerances rounding or a transient may limit an explicit method's first steps far below the stability bound; this test still sees
+ * stiffness. Costs are right-hand sides, 12 a step of dop853; radau's Jacobian and decompositions count as n of them. */
+static int exceeds_stability(const Stiffness *s, int n) { return STAGES * s->needed > MARGIN * (s->calls + (double)n * s->steps); }
+
+/* ---- The choice */
 
 /* Whether the model is stiff, by a trial of `method`, and if needed of radau; why[size] := the reason. */
 static int is_stiff(App *app, const lag_method *method, char *why, size_t size) {
@@ -27,13 +132,13 @@ static int is_stiff(App *app, const lag_method *method, char *why, size_t size) 
   int n = 2 * m->nq + m->nz;
   double bound = method == &lag_rk45 ? 3.3 : 6.1;
   Stiffness s, radau;
-  if (!m->linear || m->constraints || n > MOST_OF_TRIAL || !run_trial(app, method, bound, STEPS_OF_TRIAL, &s)) return 0;
-  if (lag_is_stiff(&s)) {
+  if (!m->linear || m->constraints || n > MOST_OF_TRIAL || !run_trial(app, method, bound, &s)) return 0;
+  if (s.looked >= LEAST_STEPS && s.limited * 2 > s.looked) {
     snprintf(why, size, "radau, since the model is stiff: stability, not the tolerance, would limit %.0f %% of the first steps of %s",
              100.0 * s.limited / s.looked, method->name);
     return 1;
   }
-  if (!s.unfinished || n > MOST_OF_RADAU || !run_trial(app, &lag_radau, bound, STEPS_OF_TRIAL, &radau) || !lag_exceeds_stability(&radau, n)) return 0;
+  if (!s.unfinished || n > MOST_OF_RADAU || !run_trial(app, &lag_radau, bound, &radau) || !exceeds_stability(&radau, n)) return 0;
   snprintf(why, size, "radau, since the model is stiff: stability alone would demand %.2g steps of %s to t = %.3g s, and radau takes %d",
            radau.needed, method->name, radau.until, radau.steps);
   return 1;
@@ -51,19 +156,14 @@ int lag_app_choose_automatically(App *app, const lag_option *opt, int n) {
   if (is_stiff(app, plain, why, size) && set(app, &lag_radau, opt, n)) return 0;
   if (tol < below_taylor && !exponents && set(app, &lag_taylor_method, opt, n)) {
     snprintf(why, size, "taylor, since the tolerance is below %g", below_taylor);
-  } else if (set(app, plain, opt, n)) {
-    if (plain == &lag_rk45) {
-      snprintf(why, size, "rk45, since the tolerance is above %g", above_rk45);
-    } else if (exponents && tol < below_taylor) {
-      snprintf(why, size, "dop853, since tangent vectors cost less with dop853 than with taylor");
-    } else if (tol < below_taylor && app->scene->model->constraints) {
-      snprintf(why, size, "dop853, since taylor cannot hold constraints, with the tolerance below %g", below_taylor);
-    } else {
-      snprintf(why, size, "dop853, since %s %g", tol < below_taylor ? "taylor cannot take this run, with its tolerance below"
-                                                                      : "the tolerance is at most", tol < below_taylor ? below_taylor : above_rk45);
-    }
-  } else {
-    return lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
+    return 0;
   }
+  if (!set(app, plain, opt, n)) return lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
+  if (plain == &lag_rk45) snprintf(why, size, "rk45, since the tolerance is above %g", above_rk45);
+  else if (tol >= below_taylor) snprintf(why, size, "dop853, since the tolerance is at most %g", above_rk45);
+  else if (exponents) snprintf(why, size, "dop853, since tangent vectors cost less with dop853 than with taylor");
+  else if (app->scene->model->constraints)
+    snprintf(why, size, "dop853, since taylor cannot hold constraints, with the tolerance below %g", below_taylor);
+  else snprintf(why, size, "dop853, since taylor cannot take this run, with its tolerance below %g", below_taylor);
   return 0;
 }

@@ -11,9 +11,9 @@
 
 typedef struct Trial {
   App *app;
-  const lag_program *program;
-  Variant *v;  /* [program->nscenes] */
+  Variant *v;  /* [nscenes] */
   Variant finer; /* the first scene with smaller errors */
+  int nscenes;
   double t0, t1;
   const lag_method *method; /* named by the user, or chosen for the first scene */
   lag_option options[MOST_OPTIONS];
@@ -36,7 +36,7 @@ static int set_values(Trial *k) {
   App *app = k->app;
   for (int i = 0; i < app->args.nsets; i++) {
     int here = knows(app->scene, app->args.sets[i]), anywhere = here;
-    for (int s = 0; s < k->program->nscenes && !anywhere; s++) anywhere = knows(k->program->scenes[s], app->args.sets[i]);
+    for (int s = 0; s < k->nscenes && !anywhere; s++) anywhere = knows(k->app->program->scenes[s], app->args.sets[i]);
     int rc = here || !anywhere ? lag_app_set_value(app, app->args.sets[i]) : 0;
     if (rc) return rc;
   }
@@ -56,10 +56,8 @@ static void copy_start(const lag_sim *first, lag_sim *sim) {
     }
   if (own->derive) own->derive(sim->p);
   for (int i = 0; i < first->pb.n; i++) {
-    char name[128];
-    lag_sim_state_info(first, i, name, sizeof name, NULL, 0);
-    int kind = lag_find_name(own, name, &at, &var), place = kind == LAG_IS_V ? own->nq + at : kind == LAG_IS_Z ? 2 * own->nq + at : at;
-    if ((kind == LAG_IS_Q || kind == LAG_IS_V || kind == LAG_IS_Z) && sim->now[place] != first->now[i]) sim->start[place] = first->now[i];
+    at = lag_component_index(own, lag_state_column(first, i).name);
+    if (at >= 0 && sim->now[at] != first->now[i]) sim->start[at] = first->now[i];
   }
 }
 
@@ -81,18 +79,18 @@ static int set_method(Trial *k, lag_sim *sim, double tol) {
 /* app->sim := a simulation of scene number `scene` with the values of the command line. */
 static int make(Trial *k, int scene) {
   App *app = k->app;
-  app->scene = k->program->scenes[scene];
+  app->scene = k->app->program->scenes[scene];
   app->sim = lag_sim_new(app->scene);
   return !app->sim ? lag_app_error(&app->args, "out of memory") : lag_app_read_until(app) ? EXIT_USAGE : set_values(k);
 }
 
-/* Moves app->sim into a variant. */
-static int adopt_simulation(Trial *k, Variant *v) {
-  int rc = lag_variant_init(v, k->app->sim);
+/* v := a variant with app->sim. */
+static void adopt_simulation(Trial *k, Variant *v) {
+  *v = (Variant){.sim = k->app->sim};
   k->app->sim = NULL;
-  return rc ? lag_app_error(&k->app->args, "out of memory") : 0;
 }
 
+/* The first scene, whose method, start and times the others take. */
 static int prepare_first(Trial *k) {
   App *app = k->app;
   char method[256];
@@ -103,14 +101,11 @@ static int prepare_first(Trial *k) {
   printf("method %s\n", method);
   k->method = lag_sim_method(app->sim);
   k->tol = lag_sim_tolerance(app->sim);
-  return adopt_simulation(k, &k->v[0]);
-}
-
-static int choose_times(Trial *k) {
-  k->t0 = k->app->scene->t0;
-  k->t1 = k->app->until;
+  k->t0 = app->scene->t0;
+  k->t1 = app->until;
+  adopt_simulation(k, &k->v[0]);
   if (k->t1 == k->t0)
-    return lag_app_error(&k->app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", k->t0);
+    return lag_app_error(&app->args, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", k->t0);
   printf("span %.17g\n", k->t1 - k->t0);
   return 0;
 }
@@ -118,11 +113,11 @@ static int choose_times(Trial *k) {
 static int prepare_others(Trial *k) {
   int rc = 0;
   copy_options(k, 1);
-  for (int i = 1; i < k->program->nscenes && rc == 0; i++) {
+  for (int i = 1; i < k->nscenes && rc == 0; i++) {
     rc = make(k, i);
     if (rc == 0) copy_start(k->v[0].sim, k->app->sim);
     rc = rc ? rc : set_method(k, k->app->sim, k->tol);
-    rc = rc ? rc : adopt_simulation(k, &k->v[i]);
+    adopt_simulation(k, &k->v[i]);
   }
   return rc;
 }
@@ -138,7 +133,7 @@ static int measure_error(Trial *k) {
   int rc = make(k, 0);
   copy_options(k, 0.5);
   rc = rc ? rc : set_method(k, app->sim, tol);
-  rc = rc ? rc : adopt_simulation(k, &k->finer);
+  adopt_simulation(k, &k->finer);
   if (rc == 0 && lag_variant_run(&k->finer, k->t0, k->t1) < 0) {
     printf("error nan\n");
     return 0;
@@ -159,10 +154,9 @@ static int all_among(const char *words, const char *those) {
 }
 
 static int has_all_coordinates(const lag_model *m, const lag_model *other) {
-  const lag_var *var;
-  int index, all = 1;
-  for (int i = 0; i < other->nq; i++) all &= lag_find_name(m, other->q[i].name, &index, &var) == LAG_IS_Q;
-  for (int i = 0; i < other->nz; i++) all &= lag_find_name(m, other->z[i].name, &index, &var) == LAG_IS_Z;
+  int all = 1;
+  for (int i = 0; i < other->nq; i++) all &= lag_component_index(m, other->q[i].name) >= 0;
+  for (int i = 0; i < other->nz; i++) all &= lag_component_index(m, other->z[i].name) >= 0;
   return all;
 }
 
@@ -177,7 +171,7 @@ static int weigh(Variant *scene, Variant *v) {
 
 static int measure(Trial *k) {
   const Args *a = &k->app->args;
-  int all = strcmp(a->effects, "runs") != 0, n = k->program->nscenes, rc;
+  int all = strcmp(a->effects, "runs") != 0, n = k->nscenes, rc;
   if (lag_variant_run(&k->v[0], k->t0, k->t1) < 0) {
     lag_app_error(a, "%s", k->v[0].why);
     return EXIT_RUN;
@@ -192,26 +186,21 @@ static int measure(Trial *k) {
 }
 
 static void print(const Trial *k) {
-  for (int i = 0; i < k->program->nscenes; i++) {
+  for (int i = 0; i < k->nscenes; i++) {
     const Variant *v = &k->v[i];
-    printf("variant %d %d %.9g %.17g %.9g\n", i, k->program->scenes[i]->model->ops, v->time, v->difference, v->weight);
+    printf("variant %d %d %.9g %.17g %.9g\n", i, k->app->program->scenes[i]->model->ops, v->time, v->difference, v->weight);
     if (v->why[0]) printf("failed %d %s\n", i, v->why);
   }
 }
 
 int lag_app_effects(App *app) {
-  int n = app->program->nscenes;
-  Trial k = {.app = app, .program = app->program, .v = calloc((size_t)n + 1, sizeof *k.v)};
+  Trial k = {.app = app, .nscenes = app->program->nscenes};
+  k.v = calloc((size_t)k.nscenes + 1, sizeof *k.v);
   int rc = k.v ? prepare_first(&k) : lag_app_error(&app->args, "out of memory");
-  rc = rc ? rc : choose_times(&k);
   rc = rc ? rc : prepare_others(&k);
   rc = rc ? rc : measure(&k);
   if (rc == 0) print(&k);
-  for (int i = 0; k.v && i < n; i++) {
-    lag_sim_free(k.v[i].sim);
-    lag_variant_free(&k.v[i]);
-  }
-  lag_sim_free(k.finer.sim);
+  for (int i = 0; k.v && i < k.nscenes; i++) lag_variant_free(&k.v[i]);
   lag_variant_free(&k.finer);
   free(k.v);
   return rc ? rc : fflush(stdout) ? lag_app_io_error(app, "standard output") : EXIT_FINE;

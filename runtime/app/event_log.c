@@ -26,8 +26,7 @@ static int make_columns(App *app) {
   t->cols[1].words = app->log_names;
   for (int i = 0; i < n; i++) {
     Column *before = &t->cols[2 + i], *after = &t->cols[2 + n + i];
-    lag_sim_state_info(app->sim, i, before->name, sizeof before->name, before->unit, sizeof before->unit);
-    *after = *before;
+    *before = *after = lag_state_column(app->sim, i);
     strcpy(after->name + strnlen(after->name, sizeof after->name - sizeof " after"), " after");
   }
   return 0;
@@ -42,9 +41,10 @@ int lag_event_log_open(App *app) {
   return lag_rows_open(&app->log_rows, a->events, &app->log) ? lag_app_io_error(app, a->events) : 0;
 }
 
-void lag_event_log_note(void *context, int k, double t, const double *before, const double *after) {
+void lag_event_note(void *context, int k, double t, const double *before, const double *after) {
   App *app = context;
   int n = (app->log.ncols - 2) / 2;
+  if (k == app->section && app->section_rc == 0) app->section_rc = lag_app_put_row(app);
   if (!app->log_rows.open) return;
   app->log_row[0] = t;
   app->log_row[1] = k;
@@ -81,8 +81,6 @@ int lag_section_choose(App *app) {
   return lag_app_error(&app->args, "--section %s: scene %s has no such event; name one, or lagc run %s --section 'EXPR rising' makes it", name,
                    app->scene->name, app->program->source);
 }
-
-void lag_section_note(App *app, int k) { if (k == app->section && app->section_rc == 0) app->section_rc = lag_app_put_row(app); }
 
 /* ---- The report */
 

@@ -14,7 +14,6 @@ enum { TURNING = 10, ROWS = 500 }; /* default transient: a tenth of the time, in
 typedef struct Job {
   App *app;
   Lyapunov l;
-  lag_scene bare;  /* the scene without monitors and closed forms */
   int rc;          /* failure within a step; 0: none */
   double next_row; /* time of the next row of estimates */
 } Job;
@@ -66,11 +65,7 @@ static int put_estimates(Job *job) {
   App *app = job->app;
   app->row[0] = job->l.t;
   for (int i = 0; i < job->l.k; i++) app->row[i + 1] = lag_lyapunov_exponent(&job->l, i);
-  if (app->rows.open && lag_rows_write(&app->rows, app->row)) {
-    app->bad_file = app->args.out;
-    return LAG_EIO;
-  }
-  return lag_table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
+  return lag_app_write_row(app, 1);
 }
 
 static void at_event(void *context, int k, double t, const double *before, const double *after) {
@@ -104,19 +99,14 @@ static void caution(FILE *f, const Lyapunov *l) {
 
 /* Conclusions from the exponents that their errors allow: chaos, entropy, dimension. */
 static void conclude(FILE *f, const Lyapunov *l) {
-  double first = lag_lyapunov_exponent(l, 0), off = lag_lyapunov_error(l, 0), error, x;
-  switch (lag_lyapunov_sign(l, 0)) {
-  case 1:
+  double first = lag_lyapunov_exponent(l, 0), off = lag_lyapunov_error(l, 0), error, x = lag_lyapunov_entropy(l, &error);
+  int sign = lag_lyapunov_sign(l, 0);
+  if (sign > 0)
     fprintf(f, "chaotic, if the motion is bounded: small errors grow by a factor of e in %.3g s (%.3g to %.3g), in the mean\n", 1 / first, 1 / (first + off),
             1 / (first - off));
-    if (l->k == l->n) {
-      x = lag_lyapunov_entropy(l, &error);
-      fprintf(f, "sum of the positive exponents (entropy by Pesin): %.4g, error %.1g 1/s\n", x, error);
-    }
-    break;
-  case 0: fprintf(f, "not known to be chaotic: the first exponent is 0 within three errors; one below %.1g 1/s needs a longer run\n", 3 * off); break;
-  default: fputs("not chaotic: small errors decay\n", f);
-  }
+  if (sign > 0 && l->k == l->n) fprintf(f, "sum of the positive exponents (entropy by Pesin): %.4g, error %.1g 1/s\n", x, error);
+  if (sign == 0) fprintf(f, "not known to be chaotic: the first exponent is 0 within three errors; one below %.1g 1/s needs a longer run\n", 3 * off);
+  if (sign < 0) fputs("not chaotic: small errors decay\n", f);
   x = lag_lyapunov_dimension(l, &error);
   if (isfinite(x)) fprintf(f, "dimension by Kaplan and Yorke: %.4g, error %.1g\n", x, error);
   fprintf(f, "error: the largest of the standard error from %d blocks, of the change since half the time, and of one factor of e in the whole time; zero is "
@@ -135,11 +125,9 @@ static void put_text(FILE *f, App *app, const Lyapunov *l) {
   fprintf(f, "measured from t = %.6g to %.6g s, over %lld step%s\n", l->begun, l->t, l->steps, l->steps == 1 ? "" : "s");
   fprintf(f, "  %-4s%18s%14s%22s\n", "", "exponent [1/s]", "error", "at half the time");
   for (int i = 0; i < l->k; i++)
-    fprintf(f, "  %-4d%18.8g%14.2g%22.8g\n", i + 1, lag_lyapunov_exponent(l, i), lag_lyapunov_error(l, i), l->at_half[i]);
+    fprintf(f, "  %-4d%18.8g%14.2g%22.8g\n", i + 1, lag_lyapunov_exponent(l, i), lag_lyapunov_error(l, i), lag_lyapunov_at_half(l, i));
   if (l->k == l->n) {
-    double sum = 0;
-    for (int i = 0; i < l->k; i++) sum += l->at_half[i];
-    fprintf(f, "  %-4s%18.8g%14.2g%22.8g\n", "sum", lag_lyapunov_exponent(l, l->k), lag_lyapunov_error(l, l->k), sum);
+    fprintf(f, "  %-4s%18.8g%14.2g%22.8g\n", "sum", lag_lyapunov_exponent(l, l->k), lag_lyapunov_error(l, l->k), lag_lyapunov_at_half(l, l->k));
     caution(f, l);
   }
   if (l->nblocks < 2) {
@@ -155,8 +143,6 @@ static void json_list(Json *j, const char *name, const Lyapunov *l, double (*val
   lag_json_end(j, ']');
 }
 
-static double at_half(const Lyapunov *l, int i) { return l->at_half[i]; }
-
 static void put_json(FILE *f, const App *app, const Lyapunov *l) {
   int all = l->k == l->n, sign = lag_lyapunov_sign(l, 0);
   double error, dimension = lag_lyapunov_dimension(l, &error), entropy_error, entropy = lag_lyapunov_entropy(l, &entropy_error);
@@ -170,7 +156,7 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l) {
   json_list(&j, "exponents", l, lag_lyapunov_exponent);
   json_list(&j, "spread", l, lag_lyapunov_spread);
   json_list(&j, "errors", l, lag_lyapunov_error);
-  json_list(&j, "at_half", l, at_half);
+  json_list(&j, "at_half", l, lag_lyapunov_at_half);
   lag_json_number(&j, "sum", all ? lag_lyapunov_exponent(l, l->k) : NAN);
   lag_json_number(&j, "sum_spread", all ? lag_lyapunov_spread(l, l->k) : NAN);
   lag_json_number(&j, "divergence", lag_lyapunov_divergence(l));
@@ -189,22 +175,18 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l) {
 /* Exit status and message where there is no result; else 0. */
 static int failed(App *app, const Job *job) {
   const Args *a = &app->args;
+  double t = lag_sim_time(app->sim);
   if (app->bad_file) return lag_app_io_error(app, app->bad_file);
-  if (job->rc == LAG_EDOMAIN) {
+  if (job->rc == LAG_EDOMAIN)
     lag_app_error(a, "at t = %g s neighbouring motions become one within a step, an exponent of minus infinity; take fewer: --exponents %d, or "
-                 "smaller steps", lag_sim_time(app->sim), job->l.k > 1 ? job->l.k - 1 : 1);
-    return EXIT_RUN;
-  }
-  if (job->rc || app->status < 0) {
+                     "smaller steps", t, job->l.k > 1 ? job->l.k - 1 : 1);
+  else if (job->rc || app->status < 0)
     lag_app_error(a, "%s", job->rc == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
-    return EXIT_RUN;
-  }
-  if (app->status == LAG_STOPPED) {
+  else if (app->status == LAG_STOPPED)
     lag_app_error(a, "an event stopped the run at t = %g s: exponents are means over a motion that goes on; take another start, or an earlier "
-                 "--until", lag_sim_time(app->sim));
-    return EXIT_RUN;
-  }
-  return 0;
+                     "--until", t);
+  else return 0;
+  return EXIT_RUN;
 }
 
 static int finish(App *app, Job *job) {
@@ -237,24 +219,11 @@ static int run(App *app, Job *job) {
   return finish(app, job);
 }
 
-/* app->sim := the scene without monitors and closed forms, with values and method of the command line. */
-static int choose(App *app, Job *job) {
-  int rc = lag_app_set_up_start(app);
-  if (rc) return rc;
-  job->bare = *app->scene;
-  job->bare.nmonitors = job->bare.nexact = 0;
-  app->scene = &job->bare;
-  lag_sim_free(app->sim);
-  app->sim = lag_sim_new(app->scene);
-  if (!app->sim) return lag_app_error(&app->args, "out of memory");
-  rc = lag_app_set_values(app);
-  return rc ? rc : lag_app_choose_method(app);
-}
-
 int lag_app_lyapunov(App *app) {
   Job job = {.app = app};
   double from = 0;
-  int k = 0, rc = choose(app, &job);
+  int k = 0, rc = lag_app_set_up_start(app);
+  rc = rc ? rc : lag_app_choose_method(app);
   rc = rc ? rc : lag_app_check_outputs(app);
   rc = rc ? rc : choose_times(app, &from);
   rc = rc ? rc : choose_number(app, &k);

@@ -10,12 +10,6 @@
 /* Description of coordinate or state i of x[nq + nz]. */
 static const lag_var *variable(const lag_model *m, int i) { return i < m->nq ? &m->q[i] : &m->z[i - m->nq]; }
 
-/* x := the coordinates and states at the equilibrium, in SI. */
-static void get_unknowns(const Equilibrium *r, double *x) {
-  int nq = r->sim->pb.nq;
-  for (int i = 0; i < r->n; i++) x[i] = r->y[i < nq ? i : nq + i];
-}
-
 /* ---- Refusals */
 
 /* Name of the first input that changes in time; NULL: none. */
@@ -73,102 +67,50 @@ static const char *caution_of(const App *app, const Equilibrium *r) {
   return NULL;
 }
 
+/* Verdicts on stability, and their reasons where these are the same for every model. */
+static const struct {
+  const char *name, *reason;
+} verdicts[] = {
+    [LAG_UNSTABLE] = {"unstable", NULL},
+    [LAG_DECAYS] = {"asymptotically stable", NULL},
+    [LAG_MINIMUM] = {"stable", "the energy, which is conserved, has a minimum here (Lagrange, Dirichlet)"},
+    [LAG_DISSIPATIVE_MINIMUM] = {"stable", "the energy, less the work of constant forces, has a minimum here, and nothing raises it (Lagrange, "
+                                           "Dirichlet, Kelvin)"},
+    [LAG_NEUTRAL] = {"neutral", NULL},
+    [LAG_GYROSCOPIC] = {"undecided", NULL},
+    [LAG_DEGENERATE] = {"undecided", "a zero mode, or several together: the linearisation has no force along it, so it does not decide stability"},
+    [LAG_COORDINATE_POLE] = {"undecided", "a coordinate has lost its meaning here, as a longitude does at a pole; these are the modes of the others, "
+                                          "and coordinates without a pole here would show all"},
+    [LAG_NONSMOOTH] = {"undecided", "the forces' derivatives jump here, or have no limit, so that no motion is small enough to be linear"},
+    [LAG_DEFECTIVE] = {"undecided", "a multiple frequency with too few shapes: small motion grows in proportion to time, until the nonlinear "
+                                    "terms matter"},
+    [LAG_CENTRE] = {"undecided", "some modes neither grow nor decay, and no energy is known that is conserved and has a minimum here"},
+};
+
 /* text[n] := the reason of the verdict on stability. */
 static void put_reason(const Modes *s, char *text, size_t n) {
-  const Mode *m = s->mode;
-  int last = s->n - 1;
-  switch (s->verdict) {
-  case LAG_UNSTABLE: {
-    double rate = 0;
-    int at = 0;
-    for (int i = 0; i < s->n; i++)
-      if (m[i].re > rate) {
-        rate = m[i].re;
-        at = i;
-      }
-    snprintf(text, n, "mode %d grows by a factor of e in %.6g s", at + 1, 1 / rate);
-    return;
-  }
-  case LAG_DECAYS: {
-    double slowest = m[last].re;
-    for (int i = 0; i < s->n; i++) slowest = fmax(slowest, m[i].re);
-    snprintf(text, n, "every mode decays, the slowest by a factor of e in %.6g s", -1 / slowest);
-    return;
-  }
-  case LAG_MINIMUM:
-    snprintf(text, n, "the energy, which is conserved, has a minimum here (Lagrange, Dirichlet)");
-    return;
-  case LAG_DISSIPATIVE_MINIMUM:
-    snprintf(text, n, "the energy, less the work of constant forces, has a minimum here, and nothing raises it (Lagrange, Dirichlet, Kelvin)");
-    return;
-  case LAG_NEUTRAL:
+  const Mode *last = &s->mode[s->n - 1], *top = s->mode; /* the one that grows fastest, or decays slowest */
+  for (int i = 0; i < s->n; i++) top = s->mode[i].re > top->re ? &s->mode[i] : top;
+  if (verdicts[s->verdict].reason) {
+    snprintf(text, n, "%s", verdicts[s->verdict].reason);
+  } else if (s->verdict == LAG_UNSTABLE) {
+    snprintf(text, n, "mode %d grows by a factor of e in %.6g s", (int)(top - s->mode) + 1, 1 / top->re);
+  } else if (s->verdict == LAG_DECAYS) {
+    snprintf(text, n, "every mode decays, the slowest by a factor of e in %.6g s", -1 / top->re);
+  } else if (s->verdict == LAG_NEUTRAL) {
     snprintf(text, n, "no force along the zero modes%s%s", s->drifts ? ", so a push causes an endless drift" : "",
-             m[last].re == 0.0 && m[last].im == 0.0              ? "; there are no others"
-             : s->lowering == 0 && s->pairs ? "; the energy has a minimum in all other directions"
-                                            : "; all other modes decay");
-    return;
-  case LAG_GYROSCOPIC:
-    snprintf(text, n, "all modes oscillate, but the energy falls in %d direction%s: forces at right angles to the motion alone hold "
-                      "it, and damping in all directions would make it unstable (Thomson, Tait, Chetaev)",
-             s->lowering, s->lowering == 1 ? "" : "s");
-    return;
-  case LAG_DEGENERATE:
-    snprintf(text, n, "a zero mode: the linearisation has no force along it, so it does not decide stability");
-    return;
-  case LAG_FREE_SEPARATELY:
-    snprintf(text, n, "no force along each zero mode alone, but along some together, so the linearisation does not decide stability");
-    return;
-  case LAG_COORDINATE_POLE:
-    snprintf(text, n, "a coordinate has lost its meaning here, as a longitude does at a pole; these are the modes of the others, and "
-                      "coordinates without a pole here would show all");
-    return;
-  case LAG_NONSMOOTH:
-    snprintf(text, n, "the forces' derivatives jump here, or have no limit, so that no motion is small enough to be linear");
-    return;
-  case LAG_DEFECTIVE:
-    snprintf(text, n, "a multiple frequency with too few shapes: small motion grows in proportion to time, until the "
-                      "nonlinear terms matter");
-    return;
-  case LAG_CENTRE:
-    snprintf(text, n, "some modes neither grow nor decay, and no energy is known that is conserved and has a minimum here");
-    return;
-  }
-}
-
-/* ---- Text */
-
-enum { WIDE = 118, LISTED = 12, ALL_SHOWN = 6, MOST_MODES = 40, NUMBER = 13 };
-
-/* ---- Families */
-
-/* Consecutive members of one family, or a single variable. */
-typedef struct Group {
-  int first, count;
-  char label[96];
-} Group;
-
-/* Whether a and b are members of one family: equal but for the index in brackets. */
-static int same_family(const char *a, const char *b) {
-  const char *x = strchr(a, '['), *y = strchr(b, '['), *ax = x ? strchr(x, ']') : NULL, *by = y ? strchr(y, ']') : NULL;
-  return ax && by && x - a == y - b && memcmp(a, b, (size_t)(x - a)) == 0 && strcmp(ax, by) == 0;
-}
-
-/* The group that begins at variable `first` of n. */
-static Group group_at(const lag_model *m, int first, int n) {
-  Group g = {.first = first, .count = 1};
-  const char *name = variable(m, first)->name, *last = name;
-  while (first + g.count < n && same_family(name, variable(m, first + g.count)->name)) last = variable(m, first + g.count++)->name;
-  const char *from = strchr(name, '['), *to = strchr(last, '[');
-  if (g.count == 1 || !from || !to) {
-    snprintf(g.label, sizeof g.label, "%s", name);
+             last->re == 0.0 && last->im == 0.0 ? "; there are no others"
+             : s->lowering == 0 && s->pairs     ? "; the energy has a minimum in all other directions"
+                                                : "; all other modes decay");
   } else {
-    const char *end = strchr(from, ']'), *stop = strchr(to, ']');
-    snprintf(g.label, sizeof g.label, "%.*s..%.*s%s", (int)(end - name), name, (int)(stop - to - 1), to + 1, end);
+    snprintf(text, n, "all modes oscillate, but the energy falls in %d direction%s: forces at right angles to the motion alone hold it, and "
+                      "damping in all directions would make it unstable (Thomson, Tait, Chetaev)", s->lowering, s->lowering == 1 ? "" : "s");
   }
-  return g;
 }
 
 /* ---- Text */
+
+enum { WIDE = 118, LISTED = 24, ALL_SHOWN = 6, MOST_MODES = 40, NUMBER = 13 };
 
 /* A line of words that is wrapped at WIDE columns. */
 typedef struct Line {
@@ -199,7 +141,6 @@ typedef struct Vector {
   const double *re, *im;
   int state; /* 1: a state, shown with units and their offsets; 0: a change of state */
   int all;   /* 1: zero components are shown, too */
-  double most; /* largest component */
 } Vector;
 
 static int units_differ(const lag_model *m) {
@@ -214,70 +155,41 @@ static double part(const double *x, const Vector *v, int i) {
   return x ? (x[i] - (v->state ? var->offset : 0)) / var->factor : 0;
 }
 
-static int is_zero(const Vector *v, const Group *g) {
-  for (int i = g->first; i < g->first + g->count; i++)
-    if (hypot(part(v->re, v, i), part(v->im, v, i)) > 1e-9 * v->most) return 0;
-  return 1;
-}
-
-/* Prints a group, "u[1..8]: 0.34 0.64 ..."; of a large family every k-th member. */
-static void put_group(Line *l, const Vector *v, const Group *g) {
-  int every = g->count > LISTED ? (g->count + LISTED - 2) / (LISTED - 1) : 1;
-  const char *unit = v->state || units_differ(v->m) ? variable(v->m, g->first)->unit : "";
-  unit = strcmp(unit, "1") == 0 ? "" : unit;
-
-  for (int i = 0; i < g->count; i += every) {
-    char label[160] = "", value[64], word[300];
-    int k = g->first + i, ends = i + every >= g->count;
-    value_text(part(v->re, v, k), part(v->im, v, k), v->most, value, sizeof value);
-    if (i == 0) snprintf(label, sizeof label, every > 1 ? "%s (every %d): " : g->count > 1 ? "%s: " : "%s ", g->label, every);
-    snprintf(word, sizeof word, "%s%s%s%s", label, value, ends && unit[0] ? " " : "", ends ? unit : "");
+/* Prints components, "th1 1, th2 1.41421"; of many every k-th. */
+static void put_vector(Line *l, Vector v) {
+  int n = v.m->nq + v.m->nz, shown = 0, with_units = v.state || units_differ(v.m);
+  double most = 0;
+  for (int i = 0; i < n; i++) most = fmax(most, hypot(part(v.re, &v, i), part(v.im, &v, i)));
+  for (int i = 0; i < n; i++) shown += v.all || hypot(part(v.re, &v, i), part(v.im, &v, i)) > 1e-9 * most;
+  int every = shown > LISTED ? (shown + LISTED - 1) / LISTED : 1;
+  for (int i = 0, k = 0; i < n; i++) {
+    const lag_var *var = variable(v.m, i);
+    const char *unit = with_units && strcmp(var->unit, "1") != 0 ? var->unit : "";
+    char value[64], word[300];
+    if ((!v.all && hypot(part(v.re, &v, i), part(v.im, &v, i)) <= 1e-9 * most) || k++ % every) continue;
+    value_text(part(v.re, &v, i), part(v.im, &v, i), most, value, sizeof value);
+    snprintf(word, sizeof word, "%s %s%s%s%s", var->name, value, unit[0] ? " " : "", unit, k + every <= shown ? "," : "");
     put_word(l, word);
   }
+  if (every > 1) l->column += fprintf(l->f, " (every %d)", every);
 }
 
-static void put_vector(Line *l, Vector v) {
-  int n = v.m->nq + v.m->nz, some = 0;
-  for (int i = 0; i < n; i++) v.most = fmax(v.most, hypot(part(v.re, &v, i), part(v.im, &v, i)));
-  for (int first = 0; first < n;) {
-    Group g = group_at(v.m, first, n);
-    first += g.count;
-    if (!v.all && is_zero(&v, &g)) continue;
-    l->column += fprintf(l->f, "%s", some++ ? "," : "");
-    put_group(l, &v, &g);
-  }
-}
+/* Distance of a variable from its start, in scales. */
+static double moved(const Equilibrium *r, int i) { return fabs(r->found[i] - r->start[i]) / r->scale[i]; }
 
-/* Index of the variable farthest from its start, relative to its scale; -1: none moved. */
-static int farthest(const Equilibrium *r, const double *x) {
-  int best = -1;
-  double most = 0;
-  for (int i = 0; i < r->n; i++) {
-    double d = fabs(x[i] - r->start[i]) / r->scale[i];
-    if (d > most) {
-      most = d;
-      best = i;
-    }
-  }
-  return most > 1e-12 ? best : -1;
-}
-
-static void put_equilibrium(FILE *f, const App *app, const Equilibrium *r, double *x) {
+static void put_equilibrium(FILE *f, const App *app, const Equilibrium *r) {
   const lag_model *m = app->scene->model;
   Line line = {f, 0, 4};
   int far = 0, moving = 0;
-  get_unknowns(r, x);
-  far = farthest(r, x);
+  for (int i = 0; i < r->n; i++) far = moved(r, i) > moved(r, far) ? i : far;
   for (int i = 0; i < m->nq; i++) moving |= r->sim->now[m->nq + i] != 0;
   fprintf(f, "%s: scene %s\nequilibrium: ", m->name, app->scene->name);
-  if (far < 0) {
-    fputs("the start itself", f);
-  } else {
-    const lag_var *v = variable(m, far);
-    fprintf(f, "from the start %s moved by %.6g%s%s", v->name, (x[far] - r->start[far]) / v->factor, v->unit[0] ? " " : "", v->unit);
-  }
+  const lag_var *v = variable(m, far);
+  if (moved(r, far) > 1e-12)
+    fprintf(f, "from the start %s moved by %.6g%s%s", v->name, (r->found[far] - r->start[far]) / v->factor, v->unit[0] ? " " : "", v->unit);
+  else fputs("the start itself", f);
   fprintf(f, "%s\n ", moving ? ", at rest" : "");
-  put_vector(&line, (Vector){.m = m, .re = x, .state = 1, .all = 1});
+  put_vector(&line, (Vector){.m = m, .re = r->found, .state = 1, .all = 1});
   putc('\n', f);
 }
 
@@ -301,7 +213,7 @@ static void put_mode(FILE *f, const lag_model *model, const Mode *m, int k, int 
     fprintf(f, "  %-18s", text);
   }
   line.indent = line.column;
-  put_vector(&line, (Vector){model, m->shape_re, m->shape_im, 0, model->nq + model->nz <= ALL_SHOWN, 0});
+  put_vector(&line, (Vector){model, m->shape_re, m->shape_im, 0, model->nq + model->nz <= ALL_SHOWN});
   if (zero || m->repeats > 1) {
     char text[60];
     snprintf(text, sizeof text, m->repeats > 1 ? "(%d equal, too few shapes)" : m->free ? "(free)" : "(zero mode)", m->repeats);
@@ -332,7 +244,7 @@ static void put_modes(FILE *f, const App *app, const Modes *s) {
   int damped = 0;
   for (int i = 0; i < s->n; i++) damped |= s->mode[i].re != 0;
   put_reason(s, text, sizeof text);
-  Line line = {f, fprintf(f, "%s%s:", lag_verdict_name(s->verdict), s->verdict >= LAG_GYROSCOPIC ? " by the linearisation" : ""), 2};
+  Line line = {f, fprintf(f, "%s%s:", verdicts[s->verdict].name, s->verdict >= LAG_GYROSCOPIC ? " by the linearisation" : ""), 2};
   for (char *word = strtok(text, " "); word; word = strtok(NULL, " ")) put_word(&line, word);
   fprintf(f, "\n\nmode  %-*s  %-*s  %-*s", NUMBER, "rad/s", NUMBER, "Hz", NUMBER, "period [s]");
   if (damped) fprintf(f, "  %-*s  %-18s", NUMBER, "damping", "time to e [s]");
@@ -343,10 +255,10 @@ static void put_modes(FILE *f, const App *app, const Modes *s) {
   if (has_phases(app->scene->model, s)) fputs("a@p: amplitude a, p degrees ahead\n", f);
 }
 
-/* Prints the table of modes, text of 118 columns. x[nq + nz] is scratch. */
-static void put_text(FILE *f, const App *app, const Equilibrium *r, const Modes *s, double *x) {
+/* Prints the table of modes, text of 118 columns. */
+static void put_text(FILE *f, const App *app, const Equilibrium *r, const Modes *s) {
   const char *note = caution_of(app, r);
-  put_equilibrium(f, app, r, x);
+  put_equilibrium(f, app, r);
   if (note) fprintf(f, "note: %s\n", note);
   put_modes(f, app, s);
 }
@@ -377,19 +289,18 @@ static void json_head(Json *j, const App *app, const char *status) {
   lag_json_string(j, "status", status);
 }
 
-static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Modes *s, double *x) {
+static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Modes *s) {
   const lag_model *m = app->scene->model;
   char text[300];
   Json j = {.f = f};
   put_reason(s, text, sizeof text);
   json_head(&j, app, "ok");
-  lag_json_string(&j, "verdict", lag_verdict_name(s->verdict));
+  lag_json_string(&j, "verdict", verdicts[s->verdict].name);
   lag_json_string(&j, "reason", text);
   lag_json_string(&j, "note", caution_of(app, r));
   lag_json_count(&j, "steps", r->steps);
   json_vector(&j, "start", m, r->start, NULL);
-  get_unknowns(r, x);
-  json_vector(&j, "equilibrium", m, x, NULL);
+  json_vector(&j, "equilibrium", m, r->found, NULL);
   lag_json_truth(&j, "pairs", s->pairs != 0);
   lag_json_begin(&j, "modes", '[');
   for (int i = 0; i < s->n; i++) {
@@ -421,28 +332,26 @@ static int not_found(const App *app, const Equilibrium *r) {
     lag_json_end(&j, '}');
     putchar('\n');
   }
-  if (r->away) {
+  if (r->away)
     lag_app_error(&app->args, "no equilibrium found from the start of scene %s: forces only vanish at infinity. Where the model has one, start near it: %s=VALUE",
-              app->scene->name, v->name);
-    return EXIT_RUN;
-  }
-  lag_app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s. A force "
-                        "that vanishes nowhere has none: add a force that balances it, such as a spring; where it vanishes, start near there: %s=VALUE", r->steps, app->scene->name, v->name, (r->y[i < nq ? i : at] - v->offset) / v->factor,
-            v->unit[0] ? " " : "", v->unit, v->name, i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
-            r->pole ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
+                  app->scene->name, v->name);
+  else
+    lag_app_error(&app->args, "no equilibrium found in %d steps from the start of scene %s: at %s = %.6g%s%s, %s%s is still %.6g%s%s. A force "
+                              "that vanishes nowhere has none: add a force that balances it, such as a spring; where it vanishes, start near "
+                              "there: %s=VALUE",
+                  r->steps, app->scene->name, v->name, (r->y[i < nq ? i : at] - v->offset) / v->factor, v->unit[0] ? " " : "", v->unit, v->name,
+                  i < nq ? "''" : "'", r->rate[at] / v->factor, unit,
+                  r->pole ? "; the mass matrix is nearly singular there: other coordinates may help" : "", v->name);
   return EXIT_RUN;
 }
 
 /* Message for a failure of the analysis; returns the exit status. */
 static int analysis_failed(const App *app, int rc, const char *where) {
   const Args *a = &app->args;
+  const char *form = app->scene->model->flags & LAG_FIRST_ORDER ? "two-form of L" : "mass matrix";
   if (rc == LAG_ENOMEM) return lag_app_error(a, "out of memory");
-  if (rc == LAG_ESINGULAR) {
-    lag_app_error(a, "the %s is singular %s: choose other coordinates there, or another start: name=VALUE",
-              app->scene->model->flags & LAG_FIRST_ORDER ? "two-form of L" : "mass matrix", where);
-  } else {
-    lag_app_error(a, "%s %s; another start: name=VALUE", rc == LAG_EMETHOD ? "the eigenvalues do not converge" : "the model has no values", where);
-  }
+  if (rc == LAG_ESINGULAR) lag_app_error(a, "the %s is singular %s: choose other coordinates there, or another start: name=VALUE", form, where);
+  else lag_app_error(a, "%s %s; another start: name=VALUE", rc == LAG_EMETHOD ? "the eigenvalues do not converge" : "the model has no values", where);
   return EXIT_RUN;
 }
 
@@ -451,10 +360,9 @@ static int analyse(const App *app, Equilibrium *r, Modes *s) {
   if (rc == 0) return not_found(app, r);
   if (rc < 0) return analysis_failed(app, rc, "at the start");
   rc = lag_modes_find(s, r, app->extras.algebra);
-  double *x = rc ? NULL : lag_pool_doubles(&s->pool, (size_t)r->n);
-  if (rc || !x) return analysis_failed(app, rc ? rc : LAG_ENOMEM, "at the equilibrium");
-  if (app->args.json) json_modes(stdout, app, r, s, x);
-  else put_text(stdout, app, r, s, x);
+  if (rc) return analysis_failed(app, rc, "at the equilibrium");
+  if (app->args.json) json_modes(stdout, app, r, s);
+  else put_text(stdout, app, r, s);
   return fflush(stdout) ? lag_app_error(&app->args, "cannot write standard output") : EXIT_FINE;
 }
 

@@ -2,15 +2,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "analysis/effect_variants.h"
 #include "app/app.h"
 
 enum { MOST_LINES = 24 };
-
-/* Variable i of [q, v, z]: *c := its name and unit; returns its value in that unit. */
-static double state_var(const App *app, int i, Column *c) {
-  lag_sim_state_info(app->sim, i, c->name, sizeof c->name, c->unit, sizeof c->unit);
-  return lag_sim_state_value(app->sim, i);
-}
 
 void lag_report_method(const App *app, char *s, size_t n) {
   const lag_method *m = lag_sim_method(app->sim);
@@ -27,13 +22,112 @@ void lag_report_method(const App *app, char *s, size_t n) {
   if (used < n) snprintf(s[used - 1] == '(' ? s + used - 1 : s + used, n - used, "%s", s[used - 1] == '(' ? "" : ")");
 }
 
+/* ---- Energy and other charges: drift or balance of each, and whether it grows */
+
+/* The word after the name: "energy drift", "spin balance". */
+static const char *what_of(const lag_charge_stats *c) { return c->flags & LAG_CONSERVED ? "drift" : c->flags & LAG_BALANCED ? "balance" : "change"; }
+
+static void put_trend(const App *app, const lag_charge_stats *c, FILE *f) {
+  const lag_method *m = lag_sim_method(app->sim);
+  int bounded = (m->flags & LAG_METHOD_SYMPLECTIC) && (app->scene->model->flags & LAG_CONSERVES_ENERGY);
+  if (c->trend == LAG_TREND_GROWS) fprintf(f, ", grows by %.2g a second", fabs(c->slope));
+  if (c->trend == LAG_TREND_OSCILLATES) fputs(", oscillates", f);
+  if (c->trend == LAG_TREND_OSCILLATES && bounded) fprintf(f, " (as step^%d)", m->order_of ? m->order_of(lag_sim_options(app->sim)) : m->order);
+  if (c->trend == LAG_TREND_ROUNDING) fputs(", rounding", f);
+}
+
+/* Reason why there is no balance. */
+static const char *why_not(const App *app, const lag_charge_stats *c) {
+  if (c->flags & LAG_JUMPS) return "jumps where L does";
+  return lag_method_balances(lag_sim_method(app->sim)) ? "not conserved, or not known to be" : "not conserved; the dense output of the method is too coarse for a balance";
+}
+
+static void put_energy(const App *app, const lag_charge_stats *c, FILE *f) {
+  const char *size = "relative to the larger of |E0| and the median of |p.v| + |L|", *space = c->unit[0] ? " " : "";
+  if (!(c->flags & (LAG_CONSERVED | LAG_BALANCED))) {
+    fprintf(f, "(%s)", why_not(app, c));
+    return;
+  }
+  fprintf(f, "(%.3g%s%s; ", c->absolute, space, c->unit);
+  if (!(c->flags & LAG_CONSERVED)) fprintf(f, "work of forces and explicit time: %.6g%s%s; ", c->work, space, c->unit);
+  fprintf(f, "%s)", size);
+}
+
+static void put_charge(const App *app, const lag_charge_stats *c, FILE *f) {
+  fprintf(f, "(from %.6g%s%s", c->begin + 0.0, c->unit[0] ? " " : "", c->unit);
+  if (c->flags & LAG_CONSERVED) fputs(")", f);
+  else if (c->flags & LAG_BALANCED) fprintf(f, "; change by forces: %.6g)", c->work);
+  else fprintf(f, "; %s)", why_not(app, c));
+}
+
+/* Whether the energy error exceeds the tolerance by far because the mass matrix was almost singular. */
+static int lost_digits(const App *app, const lag_charge_stats *energy) {
+  const double singular = 1e6, digits = 100;
+  return (lag_sim_method(app->sim)->flags & LAG_METHOD_ADAPTIVE) && energy->energy_jump > digits * lag_sim_tolerance(app->sim) && energy->mass_condition > singular;
+}
+
+/* Warns that the tolerance was missed because the mass matrix was almost singular on the way. */
+static void put_lost_digits(const App *app, const lag_charge_stats *c, FILE *f) {
+  if (lost_digits(app, c)) {
+    fprintf(f, "accuracy: a tolerance of %.3g was asked for, and the energy is kept to %.2g: near t = %.9g s, where a step changed the energy by %.2g, the mass matrix is "
+               "almost singular (its condition is %s%.2g, by the inertia of %s) and accelerations have about %.0f digits less; a `rotation` instead of angles, or other "
+               "coordinates, has no such place (lagc help rotations)\n",
+            lag_sim_tolerance(app->sim), c->drift, c->energy_jump_t, c->energy_jump, c->mass_condition > 1e15 ? "above " : "", fmin(c->mass_condition, 1e15), c->mass_condition_of, floor(log10(fmin(c->mass_condition, 1e15))));
+  }
+}
+
+static void charges(const App *app, FILE *f) {
+  for (int k = 0; k < lag_sim_ncharges(app->sim); k++) {
+    lag_charge_stats c;
+    lag_sim_charge(app->sim, k, &c);
+    if (!isfinite(c.drift)) {
+      fprintf(f, "%s: not finite\n", c.name);
+      continue;
+    }
+    fprintf(f, "%s %s: %.3g ", c.name, what_of(&c), c.drift);
+    if (k) put_charge(app, &c, f);
+    else put_energy(app, &c, f);
+    put_trend(app, &c, f);
+    putc('\n', f);
+    if (k == 0) put_lost_digits(app, &c, f);
+  }
+}
+
+static void charges_json(const App *app, Json *j) {
+  static const char *const trends[] = {
+      [LAG_TREND_UNKNOWN] = NULL, [LAG_TREND_ROUNDING] = "rounding", [LAG_TREND_OSCILLATES] = "oscillates", [LAG_TREND_GROWS] = "grows"};
+  const lag_scene *s = app->scene;
+  lag_json_begin(j, "charges", '{');
+  for (int k = 0; k < lag_sim_ncharges(app->sim); k++) {
+    lag_charge_stats c;
+    lag_sim_charge(app->sim, k, &c);
+    lag_json_begin(j, c.name, '{');
+    lag_json_string(j, "is", c.flags & LAG_CONSERVED ? "conserved" : c.flags & LAG_BALANCED ? "balanced" : "not known");
+    lag_json_number(j, "initial", c.begin);
+    lag_json_number(j, "final", c.now);
+    lag_json_number(j, "work", c.work);
+    lag_json_number(j, "drift", c.drift);
+    lag_json_number(j, "drift_absolute", c.absolute);
+    lag_json_string(j, "unit", c.unit);
+    lag_json_number(j, "slope", c.slope);
+    lag_json_number(j, "slope_error", c.slope_error);
+    lag_json_string(j, "trend", trends[c.trend]);
+    lag_json_end(j, '}');
+  }
+  lag_json_end(j, '}');
+  lag_json_begin(j, "monitors", '{');
+  for (int i = 0; i < s->nmonitors; i++) lag_json_number(j, s->monitors[i].name, lag_sim_monitor_drift(app->sim, i));
+  lag_json_end(j, '}');
+}
+
+/* ---- The run */
+
 static void final_state(const App *app, FILE *f) {
   const lag_model *m = app->scene->model;
   int n = 2 * m->nq + m->nz;
   for (int i = 0; i < n && i < MOST_LINES; i++) {
-    Column c;
-    double x = state_var(app, i, &c);
-    fprintf(f, "  %-14s %.15g%s%s\n", c.name, x, c.unit[0] ? " " : "", c.unit);
+    Column c = lag_state_column(app->sim, i);
+    fprintf(f, "  %-14s %.15g%s%s\n", c.name, lag_sim_state_value(app->sim, i), c.unit[0] ? " " : "", c.unit);
   }
   if (n > MOST_LINES) fprintf(f, "  (and %d more)\n", n - MOST_LINES);
 }
@@ -62,10 +156,9 @@ static void constraints(const App *app, const lag_stats *st, FILE *f) {
   const lag_constraints *of = m->constraints;
   int n = 2 * m->nq, moved = 0, redundant = 0;
   for (int i = 0; of && i < n; i++) {
-    Column c;
+    Column c = lag_state_column(app->sim, i);
     double asked = lag_sim_requested_start(app->sim, i), begin = lag_sim_actual_start(app->sim, i);
     if (asked != begin && moved++ < MOST_LINES) {
-      state_var(app, i, &c);
       fprintf(f, "%s %s from %.15g to %.15g%s%s (by %.3g)\n", moved == 1 ? "start moved to the constraints:" : "  and", c.name, asked, begin,
               c.unit[0] ? " " : "", c.unit, begin - asked);
     }
@@ -132,9 +225,8 @@ static void verdict(const App *app, FILE *f) {
 static void exact(const App *app, FILE *f) {
   const lag_scene *c = app->scene;
   for (int k = 0; k < c->nexact && k < MOST_LINES; k++) {
-    Column v;
+    Column v = lag_state_column(app->sim, c->exact_of[k]);
     double largest, now;
-    state_var(app, c->exact_of[k], &v);
     lag_sim_exact(app->sim, k, &largest, &now);
     const char *unit = strcmp(v.unit, "degC") == 0 ? "K" : v.unit; /* a difference */
     if (isnan(largest)) {
@@ -151,9 +243,8 @@ static void exact_json(const App *app, Json *j) {
   if (c->nexact == 0) return;
   lag_json_begin(j, "exact", '{');
   for (int k = 0; k < c->nexact; k++) {
-    Column v;
+    Column v = lag_state_column(app->sim, c->exact_of[k]);
     double largest, now;
-    state_var(app, c->exact_of[k], &v);
     lag_sim_exact(app->sim, k, &largest, &now);
     lag_json_begin(j, v.name, '{');
     lag_json_number(j, "largest", largest);
@@ -175,7 +266,7 @@ void lag_report_text(App *app, FILE *f) {
   final_state(app, f);
   fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
   newton(app, &st, f);
-  lag_report_charges(app, f);
+  charges(app, f);
   constraints(app, &st, f);
   caveat(app, &st, f);
   for (int i = 0; i < c->nmonitors; i++)
@@ -194,18 +285,9 @@ void lag_report_text(App *app, FILE *f) {
 
 /* JSON members: outputs at the end, except coordinates, velocities and states, so that no name appears twice. */
 static void final_outputs(App *app, Json *j) {
-  int n = app->scene->model->nq * 2 + app->scene->model->nz, nout = lag_sim_noutputs(app->sim);
   if (app->scene->nout == 0 || lag_sim_outputs(app->sim, app->row + 1)) return;
-  for (int i = 0; i < nout; i++) {
-    const Column *o = &app->table.cols[i + 1];
-    int seen = 0;
-    for (int k = 0; k < n && !seen; k++) {
-      Column c;
-      state_var(app, k, &c);
-      seen = strcmp(c.name, o->name) == 0;
-    }
-    if (!seen) lag_json_number(j, o->name, app->row[i + 1]);
-  }
+  for (int i = 1; i <= lag_sim_noutputs(app->sim); i++)
+    if (lag_component_index(app->scene->model, app->table.cols[i].name) < 0) lag_json_number(j, app->table.cols[i].name, app->row[i]);
 }
 
 static void constraints_json(const App *app, Json *j) {
@@ -221,11 +303,9 @@ static void constraints_json(const App *app, Json *j) {
   lag_json_count(j, "rank_beside", lag_sim_nearby_rank(app->sim));
   lag_json_begin(j, "start_moved", '{');
   for (int i = 0; i < 2 * m->nq; i++) {
-    Column c;
     double asked = lag_sim_requested_start(app->sim, i), begin = lag_sim_actual_start(app->sim, i);
     if (asked != begin) {
-      state_var(app, i, &c);
-      lag_json_begin(j, c.name, '[');
+      lag_json_begin(j, lag_state_column(app->sim, i).name, '[');
       lag_json_number(j, NULL, asked);
       lag_json_number(j, NULL, begin);
       lag_json_end(j, ']');
@@ -267,7 +347,7 @@ void lag_report_json(App *app, FILE *f) {
   lag_json_number(&j, "energy_drift_absolute", m->flags & LAG_CONSERVES_ENERGY ? energy.absolute : NAN);
   lag_json_number(&j, "unresolved_period", st.unresolved);
   lag_json_count(&j, "rows_without_value", app->empty_rows);
-  if (lag_report_lost_digits(app, &energy)) {
+  if (lost_digits(app, &energy)) {
     lag_json_begin(&j, "digits_lost", '{');
     lag_json_number(&j, "t", energy.energy_jump_t);
     lag_json_number(&j, "energy_step", energy.energy_jump);
@@ -275,7 +355,7 @@ void lag_report_json(App *app, FILE *f) {
     lag_json_number(&j, "condition", energy.mass_condition);
     lag_json_end(&j, '}');
   }
-  lag_report_charges_json(app, &j);
+  charges_json(app, &j);
   lag_report_events_json(app, &j);
   exact_json(app, &j);
   lag_report_tangent_json(app, &j);
@@ -285,11 +365,7 @@ void lag_report_json(App *app, FILE *f) {
   lag_json_number(&j, "constraint_rate_residual", st.constraint_rate);
   constraints_json(app, &j);
   lag_json_begin(&j, "final", '{');
-  for (int i = 0; i < n; i++) {
-    Column c;
-    double x = state_var(app, i, &c);
-    lag_json_number(&j, c.name, x);
-  }
+  for (int i = 0; i < n; i++) lag_json_number(&j, lag_state_column(app->sim, i).name, lag_sim_state_value(app->sim, i));
   final_outputs(app, &j);
   lag_json_end(&j, '}');
   lag_json_end(&j, '}');

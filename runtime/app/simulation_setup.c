@@ -29,6 +29,11 @@ static int choose_scene(App *app) {
   for (int i = 0; i < p->nscenes; i++)
     if (!name || strcmp(p->scenes[i]->name, name) == 0) {
       app->scene = p->scenes[i];
+      if (app->args.lyapunov || app->args.cost || app->args.reference) {
+        app->bare = *app->scene;
+        app->bare.nmonitors = app->bare.nexact = 0;
+        app->scene = &app->bare;
+      }
       return 0;
     }
   return name ? no_scene(app, name) : lag_app_error(&app->args, "this program has no scenes");
@@ -152,33 +157,10 @@ static int set_tolerance(App *app) {
 }
 
 int lag_app_has_word(const char *words, const char *word, size_t n) {
-  for (const char *s = words; s && *s; s += strspn(s, " ")) {
-    size_t length = strcspn(s, " ");
+  for (const char *s = words; s && *s; s += strspn(s, ", ")) {
+    size_t length = strcspn(s, ", ");
     if (length == n && memcmp(s, word, n) == 0) return 1;
     s += length;
-  }
-  return 0;
-}
-
-/* Whether `name` is the parameter word[n], a member or component of it, or its last part (c of drag.c). */
-static int names_parameter(const char *name, const char *word, size_t n) {
-  for (size_t k = 1; name[k - 1]; k++) {
-    int whole = name[k] == '\0' || name[k] == '[' || name[k] == '.';
-    if (whole && k <= n && strncmp(name, word + n - k, k) == 0 && (k == n || word[n - k - 1] == '.')) return 1;
-  }
-  return 0;
-}
-
-/* EXIT_USAGE after a message if `name` is a parameter fixed by --fix; else 0. */
-static int refuse_fixed(const App *app, const char *name) {
-  const char *fixed = app->scene->model->fixed;
-  for (const char *s = fixed ? fixed : ""; *s; s += strspn(s, " ")) {
-    size_t n = strcspn(s, " ");
-    if (names_parameter(name, s, n)) {
-      return lag_app_error(&app->args, "%s is a number in this program (--fix); this builds one that takes all values: lagc build %s -o SIMULATOR", name,
-                       app->program->source);
-    }
-    s += n;
   }
   return 0;
 }
@@ -196,7 +178,10 @@ int lag_app_set_value(App *app, const char *text) {
                      "it: lagc run %s %s",
                      name, (int)(dot - text), text, app->scene->name, app->program->source, app->scene->name);
   }
-  if (refuse_fixed(app, name)) return EXIT_USAGE;
+  for (size_t k = 1; name[k - 1]; k++) /* a parameter, or a member or component of it */
+    if (strchr("[.", name[k]) && lag_app_has_word(app->scene->model->fixed, name, k))
+      return lag_app_error(a, "%s is a number in this program (--fix); this builds one that takes all values: lagc build %s -o SIMULATOR", name,
+                           app->program->source);
   snprintf(example, sizeof example, "%s=1.5", name);
   if (!lag_args_number(a, name, eq + 1, example, &x)) return EXIT_USAGE;
   return lag_sim_set(app->sim, name, x) ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : 0;
@@ -221,42 +206,39 @@ static int restore_method(App *app) {
 static int same_method(App *app) {
   const Args *a = &app->args;
   const State *st = &app->state;
-  int rc = set_tolerance(app);
-  rc = rc ? rc : a->method || a->step ? choose_method(app) : 0;
+  int rc = set_tolerance(app), named = a->method || a->step;
+  rc = rc ? rc : named ? choose_method(app) : 0;
   if (rc) return rc;
+  const lag_method *m = lag_sim_method(app->sim);
   if (a->tol && lag_sim_tolerance(app->sim) != st->tol)
     return lag_app_error(a, "%s was saved with --tol %g, and goes on with it; leave out --tol", a->resume, st->tol);
-  if (!a->method && !a->step) return 0;
-  int same = strcmp(lag_sim_method(app->sim)->name, st->method) == 0 && lag_sim_method(app->sim)->noptions == st->noptions &&
-             memcmp(lag_sim_options(app->sim), st->options, (size_t)st->noptions * sizeof(double)) == 0;
-  return same ? 0 : lag_app_error(a, "%s was saved with method %s, and goes on with it and its options; leave out %s", a->resume, st->method,
-                              a->method ? "--method" : "--step");
+  if (named && (strcmp(m->name, st->method) != 0 || m->noptions != st->noptions ||
+                memcmp(lag_sim_options(app->sim), st->options, (size_t)st->noptions * sizeof(double)) != 0))
+    return lag_app_error(a, "%s was saved with method %s, and goes on with it and its options; leave out %s", a->resume, st->method,
+                         a->method ? "--method" : "--step");
+  return 0;
 }
 
-/* Refuses name=value of a resumed run that differs: each is set in a new simulation and compared with the run. */
+/* Refuses name=value of a resumed run that differs: each is set in a simulation with the values of the run, and compared with it. */
 static int same_values(App *app) {
   const Args *a = &app->args;
-  lag_sim *run = app->sim;
+  lag_sim *run = app->sim, *other = app->sim = lag_sim_new(app->scene);
   size_t np = (size_t)app->scene->model->np, nu = (size_t)app->scene->model->nu, n = (size_t)run->pb.n;
-  int rc = 0;
-  for (int i = 0; i < a->nsets && rc == 0; i++) {
-    lag_sim *fresh = app->sim = lag_sim_new(app->scene);
-    if (!fresh) {
-      rc = lag_app_error(a, "out of memory");
-    } else {
-      memcpy(fresh->p, run->p, np * sizeof(double));
-      memset(fresh->fixed, 1, np);
-      memcpy(fresh->hold, run->hold, nu * sizeof(double));
-      memcpy(fresh->start, run->begin, n * sizeof(double));
-      rc = lag_app_set_value(app, a->sets[i]);
-    }
-    if (rc == 0 && (memcmp(fresh->p, run->p, np * sizeof(double)) != 0 || memcmp(fresh->begin, run->begin, n * sizeof(double)) != 0 ||
-                    memcmp(fresh->hold, run->hold, nu * sizeof(double)) != 0)) {
-      rc = lag_app_error(a, "%s was saved with another value of %.*s, and goes on with it; leave out %s", a->resume,
-                     (int)strcspn(a->sets[i], "="), a->sets[i], a->sets[i]);
-    }
-    lag_sim_free(fresh);
+  int rc = other ? 0 : lag_app_error(a, "out of memory");
+  if (other) {
+    memcpy(other->p, run->p, np * sizeof(double));
+    memset(other->fixed, 1, np);
+    memcpy(other->hold, run->hold, nu * sizeof(double));
+    memcpy(other->start, run->begin, n * sizeof(double));
   }
+  for (int i = 0; i < a->nsets && rc == 0; i++) {
+    rc = lag_app_set_value(app, a->sets[i]);
+    if (rc == 0 && (memcmp(other->p, run->p, np * sizeof(double)) != 0 || memcmp(other->begin, run->begin, n * sizeof(double)) != 0 ||
+                    memcmp(other->hold, run->hold, nu * sizeof(double)) != 0))
+      rc = lag_app_error(a, "%s was saved with another value of %.*s, and goes on with it; leave out %s", a->resume,
+                         (int)strcspn(a->sets[i], "="), a->sets[i], a->sets[i]);
+  }
+  lag_sim_free(other);
   app->sim = run;
   return rc;
 }
@@ -270,16 +252,6 @@ static int resume(App *app) {
   return same_values(app);
 }
 
-static int read_state(App *app) {
-  const Args *a = &app->args;
-  const char *why = NULL;
-  int rc = a->resume ? lag_state_read(a->resume, &app->state, &why) : 0;
-  if (rc < 0) return lag_app_error(a, "cannot read %s: %s", a->resume, strerror(errno));
-  if (rc > 0) return lag_app_error(a, "%s %s", a->resume, why);
-  app->resumed = a->resume != NULL;
-  return 0;
-}
-
 static int new_simulation(App *app) {
   int rc = choose_scene(app);
   if (rc) return rc;
@@ -291,11 +263,21 @@ static int new_simulation(App *app) {
   return lag_app_read_until(app);
 }
 
-int lag_app_set_values(App *app) {
+static int set_values(App *app) {
   const Args *a = &app->args;
   int rc = 0;
   for (int i = 0; i < a->nsets && rc == 0; i++) rc = lag_app_set_value(app, a->sets[i]);
   return rc;
+}
+
+lag_sim *lag_app_fresh_sim(App *app) {
+  lag_sim *own = app->sim, *fresh = app->sim = lag_sim_new(app->scene);
+  if (fresh && set_values(app)) {
+    lag_sim_free(fresh);
+    fresh = NULL;
+  }
+  app->sim = own;
+  return fresh;
 }
 
 int lag_app_choose_method(App *app) {
@@ -305,13 +287,17 @@ int lag_app_choose_method(App *app) {
 
 int lag_app_set_up_start(App *app) {
   int rc = new_simulation(app);
-  return rc ? rc : lag_app_set_values(app);
+  return rc ? rc : set_values(app);
 }
 
 int lag_app_set_up(App *app) {
-  int rc = read_state(app);
-  if (rc || (rc = new_simulation(app)) != 0) return rc;
-  if (app->resumed) return resume(app);
-  rc = lag_app_set_values(app);
+  const Args *a = &app->args;
+  const char *why = NULL;
+  int rc = a->resume ? lag_state_read(a->resume, &app->state, &why) : 0;
+  if (rc < 0) return lag_app_error(a, "cannot read %s: %s", a->resume, strerror(errno));
+  if (rc > 0) return lag_app_error(a, "%s %s", a->resume, why);
+  app->resumed = a->resume != NULL;
+  if (app->resumed) return (rc = new_simulation(app)) ? rc : resume(app);
+  rc = lag_app_set_up_start(app);
   return rc ? rc : lag_app_choose_method(app);
 }

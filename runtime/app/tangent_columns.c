@@ -4,14 +4,12 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "core/core.h"
 
 /* Most components of the state for the matrix in the report, and for columns. */
 enum { SHOWN = 8, MOST_COMPONENTS = 64 };
 
-static int components(const App *app) {
-  const lag_model *m = app->scene->model;
-  return 2 * m->nq + m->nz;
-}
+static int components(const App *app) { return app->sim->pb.n; }
 
 /* s[n] := unit as numerator or denominator of a fraction, in parentheses if compound. */
 static void put_in_fraction(char *s, size_t n, const char *unit) {
@@ -19,18 +17,15 @@ static void put_in_fraction(char *s, size_t n, const char *unit) {
   snprintf(s, n, "%s%s%s", several ? "(" : "", unit[0] ? unit : "1", several ? ")" : "");
 }
 
-/* *c := name and unit of dx/dy(0) for components i and j. */
-static void describe(const App *app, int i, int j, Column *c) {
-  char name[2][96], unit[2][64];
-  for (int k = 0; k < 2; k++) lag_sim_state_info(app->sim, k ? j : i, name[k], sizeof name[k], unit[k], sizeof unit[k]);
-  snprintf(c->name, sizeof c->name, "d%.40s/d%.40s(0)", name[0], name[1]);
-  if (strcmp(unit[0], unit[1]) == 0) {
-    c->unit[0] = '\0';
-    return;
-  }
-  put_in_fraction(name[0], sizeof name[0], unit[0]);
-  put_in_fraction(name[1], sizeof name[1], unit[1]);
-  snprintf(c->unit, sizeof c->unit, "%.30s/%.30s", name[0], name[1]);
+/* Name and unit of dx/dy(0) for components i and j. */
+static Column describe(const App *app, int i, int j) {
+  Column x = lag_state_column(app->sim, i), y = lag_state_column(app->sim, j), c = {0};
+  char over[72], under[72];
+  put_in_fraction(over, sizeof over, x.unit);
+  put_in_fraction(under, sizeof under, y.unit);
+  snprintf(c.name, sizeof c.name, "d%.40s/d%.40s(0)", x.name, y.name);
+  if (strcmp(x.unit, y.unit) != 0) snprintf(c.unit, sizeof c.unit, "%.30s/%.30s", over, under);
+  return c;
 }
 
 int lag_tangent_columns_open(App *app) {
@@ -49,10 +44,7 @@ int lag_tangent_columns_open(App *app) {
   app->row = row ? row : app->row;
   if (!cols || !row) return lag_app_error(a, "out of memory");
   t->ncols = before + n * n;
-  for (int k = 0; k < n * n; k++) {
-    cols[before + k] = (Column){0};
-    describe(app, k / n, k % n, &cols[before + k]);
-  }
+  for (int k = 0; k < n * n; k++) cols[before + k] = describe(app, k / n, k % n);
   return 0;
 }
 
@@ -68,23 +60,21 @@ int lag_tangent_columns_row(App *app) {
 
 /* ---- The report */
 
+/* dx/dy(0) at the end of the run; NULL: it is not asked for, or not known. */
+static const double *final_tangent(App *app) {
+  int n = components(app);
+  return !app->args.tangent || app->status < 0 || lag_tangent_columns_row(app) ? NULL : app->row + app->table.ncols - n * n;
+}
+
 void lag_report_tangent(App *app, FILE *f) {
   int n = components(app);
-  char name[96];
-  if (!app->args.tangent || app->status < 0 || lag_tangent_columns_row(app)) return;
-  const double *J = app->row + app->table.ncols - n * n;
-  if (n > SHOWN) {
-    fprintf(f, "tangent: %d by %d, in the rows of -o and in --json\n", n, n);
-    return;
-  }
+  const double *J = final_tangent(app);
+  if (J && n > SHOWN) fprintf(f, "tangent: %d by %d, in the rows of -o and in --json\n", n, n);
+  if (!J || n > SHOWN) return;
   fprintf(f, "tangent: derivative of the state by the state at the start\n  %-14s", "");
-  for (int j = 0; j < n; j++) {
-    lag_sim_state_info(app->sim, j, name, sizeof name, NULL, 0);
-    fprintf(f, " %14.10s(0)", name);
-  }
+  for (int j = 0; j < n; j++) fprintf(f, " %14.10s(0)", lag_state_column(app->sim, j).name);
   for (int i = 0; i < n; i++) {
-    lag_sim_state_info(app->sim, i, name, sizeof name, NULL, 0);
-    fprintf(f, "\n  %-14s", name);
+    fprintf(f, "\n  %-14s", lag_state_column(app->sim, i).name);
     for (int j = 0; j < n; j++) fprintf(f, " %17.10g", J[i * n + j]);
   }
   putc('\n', f);
@@ -92,17 +82,12 @@ void lag_report_tangent(App *app, FILE *f) {
 
 void lag_report_tangent_json(App *app, Json *out) {
   int n = components(app);
-  char name[96];
-  if (!app->args.tangent || app->status < 0 || lag_tangent_columns_row(app)) return;
-  const double *J = app->row + app->table.ncols - n * n;
+  const double *J = final_tangent(app);
+  if (!J) return;
   lag_json_begin(out, "tangent", '{');
   for (int i = 0; i < n; i++) {
-    lag_sim_state_info(app->sim, i, name, sizeof name, NULL, 0);
-    lag_json_begin(out, name, '{');
-    for (int j = 0; j < n; j++) {
-      lag_sim_state_info(app->sim, j, name, sizeof name, NULL, 0);
-      lag_json_number(out, name, J[i * n + j]);
-    }
+    lag_json_begin(out, lag_state_column(app->sim, i).name, '{');
+    for (int j = 0; j < n; j++) lag_json_number(out, lag_state_column(app->sim, j).name, J[i * n + j]);
     lag_json_end(out, '}');
   }
   lag_json_end(out, '}');

@@ -18,23 +18,19 @@
 typedef struct Problem {
   lag_equations *equations;
   void *context;
-  double *f, *J; /* scratch */
+  double *f; /* scratch */
 } Problem;
 
 /* Residuals; 1e100 each where the equations have no values, so that the step is refused. */
 static int equations_f(const gsl_vector *x, void *context, gsl_vector *f) {
   Problem *p = context;
-  int rc = p->equations(p->context, x->data, p->f, NULL) || lag_not_finite((int)f->size, p->f) >= 0;
-  for (size_t i = 0; i < f->size; i++) gsl_vector_set(f, i, rc ? 1e100 : p->f[i]);
+  if (p->equations(p->context, x->data, f->data, NULL) || lag_not_finite((int)f->size, f->data) >= 0) gsl_vector_set_all(f, 1e100);
   return GSL_SUCCESS;
 }
 
 static int equations_df(const gsl_vector *x, void *context, gsl_matrix *J) {
   Problem *p = context;
-  int n = (int)x->size;
-  if (p->equations(p->context, x->data, p->f, p->J) || lag_not_finite(n * n, p->J) >= 0) return GSL_EDOM;
-  gsl_matrix_const_view view = gsl_matrix_const_view_array(p->J, x->size, x->size);
-  return gsl_matrix_memcpy(J, &view.matrix);
+  return p->equations(p->context, x->data, p->f, J->data) || lag_not_finite((int)(J->size1 * J->size2), J->data) >= 0 ? GSL_EDOM : GSL_SUCCESS;
 }
 
 /* Dogleg steps (Powell, 1970), solved by QR with column pivoting, so that a singular Jacobian is no obstacle. */
@@ -62,14 +58,13 @@ static int root(int n, double *x, lag_equations *equations, void *context, int m
   parameters.solver = gsl_multifit_nlinear_solver_qr;
   parameters.scale = gsl_multifit_nlinear_scale_levenberg;
   gsl_multifit_nlinear_workspace *w = gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, size, size);
-  gsl_vector *f = gsl_vector_alloc(size), *J = gsl_vector_alloc(size * size);
+  gsl_vector *f = gsl_vector_alloc(size);
   int rc = LAG_ENOMEM;
-  if (w && f && J) {
-    Problem p = {equations, context, f->data, J->data};
+  if (w && f) {
+    Problem p = {equations, context, f->data};
     gsl_multifit_nlinear_fdf fdf = {.f = equations_f, .df = equations_df, .n = size, .p = size, .params = &p};
     rc = iterate(w, &fdf, x, most, steps);
   }
-  gsl_vector_free(J);
   gsl_vector_free(f);
   if (w) gsl_multifit_nlinear_free(w);
   gsl_set_error_handler(handler);

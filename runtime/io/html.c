@@ -21,20 +21,15 @@ static void choose_resolution(const Table *t, const Animation *a, double *zero, 
   *scale = grain;
 }
 
-/* Playback speed, in seconds of the model per second of watching: 1 for runs of 1 to 90 s; else a round number, in years, days, hours or
- * seconds, that makes the run last about twenty seconds. */
-static double choose_speed(double span) {
+/* Playback speed, in seconds of the model per second of watching: 1 for runs of 1 to 90 s; else a round number, in years, days, hours or seconds,
+ * that makes the run last about twenty seconds; but at most 280 frames per second: a swing has about seventy frames, and the eye follows about
+ * four swings per second. */
+static double choose_speed(const Table *t, double span) {
+  enum { FRAMES_A_SECOND = 280, LASTS = 20 };
   const char *name;
-  double unit = lag_long_time_unit(span, &name);
-  if (span == 0.0 || (span >= 1 && span <= 90)) return 1;
-  return unit > 0 ? unit * lag_tick_step(0, span / unit, 20) : lag_tick_step(0, span, 20);
-}
-
-/* choose_speed, limited to 280 frames per second: a swing has about seventy frames, and the eye follows about four swings per second. */
-static double followable_speed(const Table *t, double span) {
-  enum { FRAMES_A_SECOND = 280 };
-  double speed = choose_speed(span), most = t->nrows ? FRAMES_A_SECOND * span / (double)t->nrows : 0;
-
+  double unit = lag_long_time_unit(span, &name), most = t->nrows ? FRAMES_A_SECOND * span / (double)t->nrows : 0;
+  if (unit <= 0) unit = 1;
+  double speed = span == 0.0 || (span >= 1 && span <= 90) ? 1 : unit * lag_tick_step(0, span / unit, LASTS);
   return most > 0 && speed > most ? lag_tick_step(0, most / 1.6, 1) : speed;
 }
 
@@ -63,7 +58,7 @@ static void put_data(FILE *f, const Table *t, const Animation *a) {
   lag_json_number(&j, "t0", t0);
   lag_json_number(&j, "tick", tick);
   lag_json_number(&j, "t1", t1);
-  lag_json_number(&j, "speed", followable_speed(t, fabs(t1 - t0)));
+  lag_json_number(&j, "speed", choose_speed(t, fabs(t1 - t0)));
   lag_json_number(&j, "zero", zero);
   lag_json_number(&j, "scale", scale);
   lag_json_truth(&j, "rods", a->rods);

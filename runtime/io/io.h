@@ -23,6 +23,10 @@ typedef struct Table {
   size_t nrows, capacity;
 } Table;
 
+/* s[n] := name and unit of a column, "th [rad]". Returns s. */
+const char *lag_column_label(const Column *c, char *s, size_t n);
+/* Name and unit of component i of the state. */
+Column lag_state_column(const lag_sim *sim, int i);
 /* Columns from the outputs of the simulation. -1: no memory, as of lag_table_add. */
 int lag_table_init(Table *t, const lag_sim *sim, int keep);
 void lag_table_free(Table *t);
@@ -51,35 +55,9 @@ int lag_rows_open(Rows *r, const char *path, const Table *t);
 int lag_rows_write(Rows *r, const double *row);
 int lag_rows_close(Rows *r, int keep);
 
-/* Selects the rows that a picture needs: straight lines between kept rows miss no row by more than a part of the range of each
- * drawn column. */
-typedef struct RowThinning {
-  Table *table;    /* receives the kept rows */
-  int store;       /* 0: kept rows are counted, not stored */
-  double part;     /* deviation allowed, as a part of the range */
-  double longest;  /* longest time between kept rows */
-  int common;      /* 1: drawn columns share one scale, of the widest range */
-  size_t kept;
-  int ndrawn, *drawn;   /* [ncols] indices of the drawn columns */
-  double *memory, *low, *high, *least, *most, *from, *last, *width; /* [ncols] each */
-  int have_last;
-} RowThinning;
-
-/* -1: no memory. lag_thin_free must be called in any case. */
-int lag_thin_init(RowThinning *w, Table *t, int store, double part, double longest);
-void lag_thin_free(RowThinning *w);
-/* Adds a column to the drawn ones. */
-void lag_thin_add_column(RowThinning *w, int col);
-/* Widens the ranges by a row; called before lag_thin_add of the row. */
-void lag_thin_extend_range(RowThinning *w, const double *row);
-/* Whether the row `between` lies on the line from a to b, within the allowed deviation. */
-int lag_thin_is_straight(const RowThinning *w, const double *a, const double *b, const double *between);
-/* Adds a row; rows come in order of time. lag_thin_flush keeps the last row; more may follow. -1: no memory. */
-int lag_thin_add(RowThinning *w, const double *row);
-int lag_thin_flush(RowThinning *w);
-/* Thins the kept rows: doubles `part` until at most `most` rows are left or part is 1/2. -1: no memory. */
-int lag_thin_reduce(RowThinning *w, size_t most);
-
+/* Makes [lo, hi] a drawable interval: with a margin relative to its length; half of the values on each side where it is narrower than `least`
+ * times these; [0, 1] where it is empty. */
+void lag_widen_range(double *lo, double *hi, double least, double margin);
 /* Step of axis ticks: 1, 2 or 5 times a power of ten, about n of them from lo to hi. */
 double lag_tick_step(double lo, double hi, int n);
 
@@ -115,6 +93,8 @@ typedef struct Json {
   int comma; /* 1: the next member follows another one */
 } Json;
 
+/* Writes s in quotes: a literal of JSON, and of Python. */
+void lag_json_quote(FILE *f, const char *s);
 /* Begins a member whose value the caller writes to j->f. */
 void lag_json_name(Json *j, const char *name);
 /* A member that is an object or an array; bracket: one of { [ and then } ]. */

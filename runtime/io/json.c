@@ -4,7 +4,7 @@
 #include "io/io.h"
 #include "io/visible.h"
 
-static void quote(FILE *f, const char *s) {
+void lag_json_quote(FILE *f, const char *s) {
   putc('"', f);
   for (size_t n = strlen(s), at = 0; at < n;) {
     unsigned long code;
@@ -26,7 +26,7 @@ static void quote(FILE *f, const char *s) {
 void lag_json_name(Json *j, const char *name) {
   if (j->comma) fputs(", ", j->f);
   if (name) {
-    quote(j->f, name);
+    lag_json_quote(j->f, name);
     fputs(": ", j->f);
   }
   j->comma = 1;
@@ -45,7 +45,7 @@ void lag_json_end(Json *j, char bracket) {
 
 void lag_json_string(Json *j, const char *name, const char *s) {
   lag_json_name(j, name);
-  if (s) quote(j->f, s);
+  if (s) lag_json_quote(j->f, s);
   else fputs("null", j->f);
 }
 

@@ -123,23 +123,19 @@ int lag_outfile_open(Outfile *o, const char *path) {
   return o->f ? 0 : -1;
 }
 
+/* errno, or EIO where a library left it 0. */
+static int error_number(void) { return errno ? errno : EIO; }
+
 int lag_outfile_close(Outfile *o, int keep) {
-  int bad = ferror(o->f) != 0, error;
-  errno = bad ? EIO : 0;
-  if (fflush(o->f) != 0 || (keep == OUTFILE_SYNC && o->part[0] && fsync(fileno(o->f)) != 0)) bad = 1;
-  error = errno;
+  int is_part = o->part[0] != '\0', error = ferror(o->f) ? EIO : 0;
+  errno = 0;
+  if (!error && (fflush(o->f) != 0 || (keep == OUTFILE_SYNC && is_part && fsync(fileno(o->f)) != 0))) error = error_number();
   if (o->f != stdout) {
-    if (o->part[0] && !bad && keep && rename(o->part, o->path) != 0) { /* before the lock is released */
-      error = errno;
-      bad = 1;
-    }
-    if (o->part[0] && (bad || !keep)) remove(o->part);
-    if (fclose(o->f) != 0 && !bad) {
-      bad = 1;
-      error = errno;
-    }
+    if (is_part && !error && keep && rename(o->part, o->path) != 0) error = error_number(); /* before the lock is released */
+    if (is_part && (error || !keep)) remove(o->part);
+    if (fclose(o->f) != 0 && !error) error = error_number();
   }
   o->f = NULL;
-  errno = error ? error : EIO;
-  return bad ? -1 : 0;
+  errno = error;
+  return error ? -1 : 0;
 }

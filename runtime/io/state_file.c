@@ -56,46 +56,46 @@ static char *read_whole_file(const char *path, size_t size) {
   return text;
 }
 
-/* value := rest of the line at *p, which must begin with key; *p moves to the next line. 0: no such line. */
-static int field(char **p, const char *key, char *value, size_t size) {
+/* Whether the text at *p begins with key; *p then moves past it. */
+static int skip(char **p, const char *key) {
   size_t n = strlen(key);
-  char *end = strchr(*p, '\n');
-  if (strncmp(*p, key, n) != 0 || !end || (size_t)(end - *p) - n >= size) return 0;
-  memcpy(value, *p + n, (size_t)(end - *p) - n);
-  value[(size_t)(end - *p) - n] = '\0';
-  *p = end + 1;
+  int found = strncmp(*p, key, n) == 0;
+  *p += found ? n : 0;
+  return found;
+}
+
+/* value := the rest of the line at *p behind key; *p moves to the next line. 0: no such line. */
+static int field(char **p, const char *key, char *value, size_t size) {
+  size_t n = skip(p, key) ? strcspn(*p, "\n") : size;
+  if (n >= size || (*p)[n] != '\n') return 0;
+  snprintf(value, size, "%.*s", (int)n, *p);
+  *p += n + 1;
   return 1;
 }
 
-/* *x := number at the start of *text; *text moves past it and one blank. 0: no number. */
-static int number(char **text, double *x) {
+/* *x := the number behind key at *p, which moves past it and one blank. 0: no number. */
+static int number(char **p, const char *key, double *x) {
   char *end;
-  *x = strtod(*text, &end);
-  if (end == *text || (*end && *end != ' ' && *end != '\n')) return 0;
-  *text = end + (*end != '\0');
+  if (!skip(p, key)) return 0;
+  *x = strtod(*p, &end);
+  if (end == *p || (*end && *end != ' ' && *end != '\n')) return 0;
+  *p = end + (*end != '\0');
   return 1;
-}
-
-static int read_options(State *s, char *text) {
-  double n = -1;
-  int i = 0;
-  if (!number(&text, &n) || !(n >= 0 && n <= (double)(sizeof s->options / sizeof *s->options)) || n != (double)(int)n) return 0;
-  s->noptions = (int)n;
-  while (i < s->noptions && number(&text, &s->options[i])) i++;
-  return i == s->noptions && !*text;
 }
 
 static int read_head(char **p, State *s) {
-  char x[1024], *at = x;
-  if (!field(p, "lag-state 1", x, sizeof x) || !field(p, "program ", s->program, sizeof s->program) ||
-      !field(p, "scene ", s->scene, sizeof s->scene) || !field(p, "method ", s->method, sizeof s->method) ||
-      !field(p, "tolerance ", x, sizeof x) || !number(&at, &s->tol) || !field(p, "options ", x, sizeof x) || !read_options(s, x) ||
-      !field(p, "signature ", x, sizeof x)) {
+  const int most = (int)(sizeof s->options / sizeof *s->options);
+  char x[32];
+  double n;
+  int i = 0;
+  if (!skip(p, "lag-state 1\n") || !field(p, "program ", s->program, sizeof s->program) || !field(p, "scene ", s->scene, sizeof s->scene) ||
+      !field(p, "method ", s->method, sizeof s->method) || !number(p, "tolerance ", &s->tol) || !number(p, "options ", &n) || !(n >= 0 && n <= most))
     return 0;
-  }
+  s->noptions = (int)n;
+  while (i < s->noptions && number(p, "", &s->options[i])) i++;
+  if (i < s->noptions || !field(p, "signature ", x, sizeof x)) return 0;
   s->signature = strtoull(x, NULL, 16);
-  at = x;
-  if (!field(p, "t ", x, sizeof x) || !number(&at, &s->t) || !field(p, "data ", x, sizeof x)) return 0;
+  if (!number(p, "t ", &s->t) || !field(p, "data ", x, sizeof x)) return 0;
   s->n = (size_t)strtoull(x, NULL, 10);
   return 1;
 }
@@ -104,7 +104,7 @@ static int read_head(char **p, State *s) {
 static int read_data(char **p, State *s) {
   size_t i = 0;
   if (s->n > strlen(*p) || (s->data = malloc((s->n + 1) * sizeof(double))) == NULL) return 0;
-  while (i < s->n && number(p, &s->data[i])) i++;
+  while (i < s->n && number(p, "", &s->data[i])) i++;
   return i == s->n;
 }
 

@@ -33,17 +33,14 @@ double lag_tick_step(double lo, double hi, int n) {
 }
 
 void lag_write_markup(FILE *f, const char *s) {
+  static const char special[] = "<>&\"", *const entity[] = {"&lt;", "&gt;", "&amp;", "&quot;"};
   char shown[VISIBLE_SIZE];
   for (size_t n = strlen(s), at = 0; at < n;) {
     at += show_visible(s + at, n - at, shown);
     for (const char *c = shown; *c; c++) {
-      switch (*c) {
-      case '<': fputs("&lt;", f); break;
-      case '>': fputs("&gt;", f); break;
-      case '&': fputs("&amp;", f); break;
-      case '"': fputs("&quot;", f); break;
-      default: putc(*c, f);
-      }
+      const char *which = strchr(special, *c);
+      if (which) fputs(entity[which - special], f);
+      else putc(*c, f);
     }
   }
 }
@@ -54,14 +51,13 @@ static void text(FILE *f, double x, double y, const char *attributes, const char
   fputs("</text>\n", f);
 }
 
-/* Makes [lo, hi] a drawable interval: not empty, with a margin relative to its length. */
-static void widen(double *lo, double *hi, double margin) {
+void lag_widen_range(double *lo, double *hi, double least, double margin) {
   if (!(*lo <= *hi)) {
     *lo = 0;
     *hi = 1;
   }
   double d = *hi - *lo;
-  if (d <= 1e-12 * fmax(fabs(*lo), fabs(*hi)) || d == 0.0) {
+  if (d <= least * fmax(fabs(*lo), fabs(*hi)) || d == 0.0) {
     d = *lo == 0.0 ? 1 : fabs(*lo);
     margin = 0.5;
   }
@@ -82,12 +78,6 @@ static double tick_step(const Panel *p, double lo, double hi, int n) {
   return p->powers ? fmax(step, 1) : step;
 }
 
-/* Offset subtracted from y labels where y varies so little that labels of all ticks would be equal; else 0. */
-static double label_offset(const Panel *p, double dy) {
-  double size = fmax(fabs(p->y0), fabs(p->y1));
-  return size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0;
-}
-
 /* Number of x ticks per label, so that long labels (-3.086e+07) do not overlap. */
 static double label_stride(const Panel *p, double dx) {
   enum { WIDTH_OF_CHARACTER = 7, ROOM = 10 };
@@ -102,7 +92,8 @@ static double label_stride(const Panel *p, double dx) {
 
 static void axes(FILE *f, const Panel *p, const char *ylabel, int last) {
   char s[32];
-  double dx = tick_step(p, p->x0, p->x1, 8), dy = tick_step(p, p->y0, p->y1, p->h > 220 ? 7 : 4), base = label_offset(p, dy);
+  double dx = tick_step(p, p->x0, p->x1, 8), dy = tick_step(p, p->y0, p->y1, p->h > 220 ? 7 : 4), size = fmax(fabs(p->y0), fabs(p->y1));
+  double base = size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0; /* left out of labels that would be equal otherwise */
   double stride = label_stride(p, dx);
   fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y, p->w, p->h);
   for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
@@ -214,9 +205,10 @@ static void label_of(const char *name, const char *unit, double room, char *s, s
   snprintf(s, n, unit[0] ? "%s [%s]" : "%s", short_name, unit);
 }
 
-/* Line i of a legend for `total` series, with room for `room` lines; the last may say "and N more". */
-static void legend(FILE *f, const Panel *p, int i, int total, int room, int k, const char *name) {
+/* Line i of a legend for `total` series; the last that fits beside the panel may say "and N more". */
+static void legend(FILE *f, const Panel *p, int i, int total, int k, const char *name) {
   char s[160], stroke[64];
+  int room = p->h < LINE * MOST_LEGEND ? (int)(p->h / LINE) : MOST_LEGEND;
   double y = p->y + 12 + LINE * i, x = p->x + p->w + 14;
   if (i + 1 < room || (i + 1 == room && total == room)) {
     truncate_text(name, MOST_NAME, s, sizeof s);
@@ -229,28 +221,20 @@ static void legend(FILE *f, const Panel *p, int i, int total, int room, int k, c
   }
 }
 
-static int legend_room(const Panel *p) { return (int)(p->h / LINE) < MOST_LEGEND ? (int)(p->h / LINE) : MOST_LEGEND; }
+static void mark(FILE *f, double x, double y, const char *fill) {
+  if (isfinite(x) && isfinite(y)) fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"%s\"/>\n", x, y, fill);
+}
 
-/* The panel of one unit, with all its series and their legend. */
-static void unit_panel(FILE *f, const Table *t, const PlottedCurves *d, Panel *p, const char *unit, int last) {
-  char s[176];
+/* The series of one unit against time, or all against their columns where it is NULL, with their legend. */
+static void draw_series(FILE *f, const Panel *p, const Table *t, const PlottedCurves *d, const char *unit) {
   int shown = 0, total = 0;
-  p->y0 = HUGE_VAL;
-  p->y1 = -HUGE_VAL;
-  for (int i = 0; i < d->n; i++)
-    if (strcmp(t->cols[d->y[i]].unit, unit) == 0) {
-      lag_table_range(t, d->y[i], &p->y0, &p->y1);
-      total++;
-    }
-  widen(&p->y0, &p->y1, 0.06);
-  snprintf(s, sizeof s, "[%s]", unit);
-  axes(f, p, unit[0] ? s : "", last);
+  for (int i = 0; i < d->n; i++) total += !unit || strcmp(t->cols[d->y[i]].unit, unit) == 0;
   for (int i = 0; i < d->n; i++) {
-    const Column *c = &t->cols[d->y[i]];
-    if (strcmp(c->unit, unit) == 0) {
-      curve(f, p, t, 0, d->y[i], i);
-      legend(f, p, shown++, total, legend_room(p), i, c->name);
-    }
+    int x = unit ? 0 : d->x[i], y = d->y[i];
+    if (unit && strcmp(t->cols[y].unit, unit) != 0) continue;
+    curve(f, p, t, x, y, i);
+    for (size_t k = 0; k < t->nrows && d->powers; k++) mark(f, px(p, lag_table_cell(t, k, x)), py(p, lag_table_cell(t, k, y)), colour[i % 8]);
+    if (unit || total > 1) legend(f, p, shown++, total, i, t->cols[y].name);
   }
 }
 
@@ -301,9 +285,17 @@ static void against_time(FILE *f, const Table *t, const char *title, const Plott
   label_of(t->cols[0].name, t->cols[0].unit, p.w, xlabel, sizeof xlabel);
   head(f, LEFT + (int)p.w + legend_width(t, d), TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
   lag_table_range(t, 0, &p.x0, &p.x1);
-  widen(&p.x0, &p.x1, 0);
+  lag_widen_range(&p.x0, &p.x1, 1e-12, 0);
   for (int k = 0; k < n; k++) {
-    unit_panel(f, t, d, &p, units[k], k == n - 1);
+    char s[sizeof t->cols->unit + 3];
+    p.y0 = HUGE_VAL;
+    p.y1 = -HUGE_VAL;
+    for (int i = 0; i < d->n; i++)
+      if (strcmp(t->cols[d->y[i]].unit, units[k]) == 0) lag_table_range(t, d->y[i], &p.y0, &p.y1);
+    lag_widen_range(&p.y0, &p.y1, 1e-12, 0.06);
+    snprintf(s, sizeof s, "[%s]", units[k]);
+    axes(f, &p, units[k][0] ? s : "", k == n - 1);
+    draw_series(f, &p, t, d, units[k]);
     p.y += h + GAP;
   }
 }
@@ -335,10 +327,6 @@ static int shares_scale(const Table *t, int x, int y, const Panel *p) {
   return a->unit[0] || (ratio > 1. / 4 && ratio < 4);
 }
 
-static void mark(FILE *f, double x, double y, const char *fill) {
-  if (isfinite(x) && isfinite(y)) fprintf(f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"%s\"/>\n", x, y, fill);
-}
-
 /* Marks start and end of a path; only for one column against another. */
 static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y) {
   static const char *const name[] = {"start", "end"}, *const fill[] = {"#009e73", "#d55e00"};
@@ -366,19 +354,14 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
     lag_table_range(t, d->x[i], &p.x0, &p.x1);
     lag_table_range(t, d->y[i], &p.y0, &p.y1);
   }
-  widen(&p.x0, &p.x1, x ? 0.05 : 0);
-  widen(&p.y0, &p.y1, 0.05);
+  lag_widen_range(&p.x0, &p.x1, 1e-12, x ? 0.05 : 0);
+  lag_widen_range(&p.y0, &p.y1, 1e-12, 0.05);
   if (x && shares_scale(t, d->x[d->n - 1], d->y[d->n - 1], &p)) same_scale(&p);
   axis_label(t, d->n, d->x, d->xname, p.w, xlabel, sizeof xlabel);
   axis_label(t, d->n, d->y, d->yname, p.h + 40, ylabel, sizeof ylabel);
   head(f, d->n > 1 ? LEFT + (int)p.w + legend_width(t, d) : WIDTH, TOP + (int)p.h + BOTTOM, title);
   axes(f, &p, ylabel, 1);
-  for (int i = 0; i < d->n; i++) {
-    curve(f, &p, t, d->x[i], d->y[i], i);
-    for (size_t k = 0; k < t->nrows && d->powers; k++)
-      mark(f, px(&p, lag_table_cell(t, k, d->x[i])), py(&p, lag_table_cell(t, k, d->y[i])), colour[i % 8]);
-    if (d->n > 1) legend(f, &p, i, d->n, legend_room(&p), i, t->cols[d->y[i]].name);
-  }
+  draw_series(f, &p, t, d, NULL);
   if (x && !t->points && !d->powers && d->n == 1) mark_ends(f, &p, t, x, d->y[0]);
 }
 

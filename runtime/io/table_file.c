@@ -11,6 +11,17 @@
 
 #include "io/io.h"
 
+const char *lag_column_label(const Column *c, char *s, size_t n) {
+  snprintf(s, n, c->unit[0] ? "%s [%s]" : "%s", c->name, c->unit);
+  return s;
+}
+
+Column lag_state_column(const lag_sim *sim, int i) {
+  Column c = {0};
+  lag_sim_state_info(sim, i, c.name, sizeof c.name, c.unit, sizeof c.unit);
+  return c;
+}
+
 int lag_table_init(Table *t, const lag_sim *sim, int keep) {
   *t = (Table){.ncols = lag_sim_noutputs(sim) + 1, .keep = keep};
   t->cols = calloc((size_t)t->ncols, sizeof *t->cols);
@@ -80,61 +91,37 @@ void lag_table_scale_time(Table *t) {
 
 /* Writes a CSV field (RFC 4180): in quotes if it holds a comma, a quote or a line break; quotes are doubled. */
 static void csv_text(FILE *f, const char *s) {
-  if (!strpbrk(s, ",\"\r\n")) {
-    fputs(s, f);
-    return;
-  }
-  putc('"', f);
-  for (; *s; s++) {
-    if (*s == '"') putc('"', f);
-    putc(*s, f);
-  }
-  putc('"', f);
+  const char *quote = strpbrk(s, ",\"\r\n") ? "\"" : "";
+  fputs(quote, f);
+  for (; *s; s++) fprintf(f, *s == '"' ? "\"\"" : "%c", *s);
+  fputs(quote, f);
 }
 
 static void csv_head(Rows *r) {
   for (int i = 0; i < r->ncols; i++) {
-    const Column *c = &r->cols[i];
-    char text[sizeof c->name + sizeof c->unit + 4];
-    snprintf(text, sizeof text, c->unit[0] ? "%s [%s]" : "%s", c->name, c->unit);
+    char text[sizeof(Column) + 4];
     if (i) putc(',', r->out.f);
-    csv_text(r->out.f, text);
+    csv_text(r->out.f, lag_column_label(&r->cols[i], text, sizeof text));
   }
   putc('\n', r->out.f);
 }
 
-/* Writes a Python string literal. */
-static void python_text(FILE *f, const char *s) {
-  putc('"', f);
-  for (; *s; s++) {
-    if (*s == '"' || *s == '\\') putc('\\', f);
-    putc(*s, f);
-  }
-  putc('"', f);
-}
-
 /* Writes the dictionary of the .npy header up to the shape, whose number of rows is not known yet. */
 static void npy_dict(Rows *r, FILE *f) {
-  const union {
-    uint16_t word;
-    unsigned char byte[2];
-  } probe = {1};
-  char order = probe.byte[0] ? '<' : '>';
-
+  const uint16_t probe = 1;
+  char order = *(const unsigned char *)&probe ? '<' : '>';
   fputs("{'descr': [", f);
   for (int i = 0; i < r->ncols; i++) {
     const Column *c = &r->cols[i];
-    char title[sizeof c->name + sizeof c->unit + 4];
-    snprintf(title, sizeof title, "%s [%s]", c->name, c->unit);
+    char title[sizeof *c + 4];
     fputs(i ? ", (" : "(", f);
     if (c->unit[0]) {
       putc('(', f);
-      python_text(f, title);
+      lag_json_quote(f, lag_column_label(c, title, sizeof title));
       fputs(", ", f);
     }
-    python_text(f, c->name);
-    fputs(c->unit[0] ? "), " : ", ", f);
-    fprintf(f, "'%cf8')", order);
+    lag_json_quote(f, c->name);
+    fprintf(f, "%s'%cf8')", c->unit[0] ? "), " : ", ", order);
   }
   fputs("], 'fortran_order': False, 'shape': (", f);
 }

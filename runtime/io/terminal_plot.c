@@ -26,16 +26,11 @@ static void line(Chart *c, int xa, int ya, int xb, int yb) {
   for (int i = 0; i <= n; i++) plot(c, xa + (n ? i * dx / n : 0), ya + (n ? i * dy / n : 0));
 }
 
-/* Range of a column. A range narrower than `least` times the values is widened, so that the curve is flat in the middle. */
 static void range(const Table *t, int col, double least, double *lo, double *hi) {
   *lo = HUGE_VAL;
   *hi = -HUGE_VAL;
   lag_table_range(t, col, lo, hi);
-  if (!(*hi - *lo > least * fmax(fabs(*lo), fabs(*hi)))) {
-    double mid = isfinite(*lo) ? *lo : 0;
-    *lo = mid - (mid == 0.0 ? 1 : fabs(mid) / 2);
-    *hi = mid + (mid == 0.0 ? 1 : fabs(mid) / 2);
-  }
+  lag_widen_range(lo, hi, least, 0);
 }
 
 static void draw(Chart *c, const Table *t, int col_x, int col) {
@@ -54,22 +49,18 @@ static void draw(Chart *c, const Table *t, int col_x, int col) {
   }
 }
 
-/* s[n] := name and unit, "th [rad]". */
-static void label(char *s, size_t n, const Column *c) { snprintf(s, n, c->unit[0] ? "%s [%s]" : "%s", c->name, c->unit); }
-
 static void print_x_axis(FILE *f, const Chart *c, const Column *name) {
   char left[32], right[32], middle[200];
   snprintf(left, sizeof left, "%.5g", c->x0);
   snprintf(right, sizeof right, "%.5g", c->x1);
-  label(middle, sizeof middle, name);
+  lag_column_label(name, middle, sizeof middle);
   int gap = COLS - (int)strlen(left) - (int)strlen(right) - (int)strlen(middle), half = gap > 1 ? gap / 2 : 1;
   fprintf(f, "%13s%s%*s%s%*s%s\n", "", left, half, "", middle, gap > half ? gap - half : 1, "", right);
 }
 
 static void print_chart(FILE *f, const Chart *c, const Column *name) {
   char title[200];
-  label(title, sizeof title, name);
-  fprintf(f, "%s\n", title);
+  fprintf(f, "%s\n", lag_column_label(name, title, sizeof title));
   for (int r = 0; r < c->rows; r++) {
     if (r == 0 || r == c->rows - 1) {
       fprintf(f, "%11.4g \xe2\x94\xa4", r ? c->y0 : c->y1); /* U+2524 */

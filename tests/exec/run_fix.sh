@@ -72,7 +72,6 @@ check "a fixed parameter" says 2 "m is a number in this program (--fix); this bu
 check "a member" says 2 'k[2] is a number' "$dir/sim" driven 'k[2]=3'
 check "a family" says 2 'k is a number' "$dir/sim" driven k=3
 check "of an effect" says 2 'drive.a.x is a number' "$dir/sim" driven drive.a.x=3
-check "by its last name" says 2 'a.y is a number' "$dir/sim" driven a.y=3
 check "where the effect is off it is that" says 2 'effect drive is not in scene' "$dir/sim" rest drive.a.x=3
 check "others can be set" "$dir/sim" driven c=0.5 F=2 --quiet
 check "scenes keep their own numbers" sh -c '[ "$("$0" heavy --json | sed "s/.*final//")" != "$("$0" rest --json | sed "s/.*final//")" ]' "$dir/sim"

@@ -87,11 +87,11 @@ static void check_vectors(double A[N][N], const Spectrum *s, double tolerance)
   for (int k = 0; k < s->count; k++) {
     double off = 0, size = 0;
     for (int i = 0; i < N; i++) {
-      double x = s->vre[i * s->count + k], y = s->vim[i * s->count + k];
+      double x = s->vre[i * s->n + k], y = s->vim[i * s->n + k];
       double re = s->im[k] * y - s->re[k] * x, im = -s->im[k] * x - s->re[k] * y;
       for (int j = 0; j < N; j++) {
-        re += A[i][j] * s->vre[j * s->count + k];
-        im += A[i][j] * s->vim[j * s->count + k];
+        re += A[i][j] * s->vre[j * s->n + k];
+        im += A[i][j] * s->vim[j * s->n + k];
       }
       off = fmax(off, hypot(re, im));
       size = fmax(size, hypot(x, y));
@@ -104,9 +104,9 @@ static void check_vectors(double A[N][N], const Spectrum *s, double tolerance)
     for (int i = 0; i < N; i++) {
       double sum = 0;
       for (int j = 0; j < N; j++) {
-        sum += A[i][j] * s->kernel[j * s->nkernel + k];
+        sum += A[i][j] * s->kernel[j * s->n + s->n - s->nkernel + k];
       }
-      size = fmax(size, fabs(s->kernel[i * s->nkernel + k]));
+      size = fmax(size, fabs(s->kernel[i * s->n + s->n - s->nkernel + k]));
       assert_close(sum, 0, tolerance);
     }
     assert_true(size > 0);
