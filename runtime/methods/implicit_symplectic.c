@@ -117,7 +117,7 @@ void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y) {
   Implicit *w = work;
   ImplicitArrays a = lag_substeps_arrays(w, pb);
   StepEnds ends = {w->step.t0, w->step.dt, a.y0, a.f0, a.y1, a.f1};
-  int level = w->order > 6 ? 2 : w->order > 4 ? 1 : 0;
+  int level = lag_interpolant_level(w->order);
   double s = (t - w->step.t0) / w->step.dt;
   if (w->have_path == 0.0 && w->order > 1) w->have_path = make_path(w, &a, pb, &ends, level);
   if (w->order < 2 || w->have_path < -1) lag_interpolant_cubic(pb->nq, &ends, s, y);
