@@ -43,7 +43,9 @@ void lag_embedded_reset(void *work, lag_problem *pb) {
 
 int lag_embedded_init(void *work, lag_problem *pb, const double *opt) {
   Embedded *w = work;
-  lag_step_limits_init(&w->limits, pb, opt);
+  const EmbeddedPair *pair = pb->variant;
+  if (pair->tab->order_embedded) lag_step_limits_init(&w->limits, pb, opt);
+  else w->limits = (lag_step_limits){.fixed = 1, .h_option = lag_step_size(pb, opt[LAG_OPT_STEP])};
   w->per = 1 / (pb->n ? (double)pb->n : 1);
   lag_embedded_reset(work, pb);
   return LAG_OK;

@@ -45,7 +45,7 @@ static inline double lag_longest_step(const lag_step_limits *l, double t) {
 static inline double lag_min(double a, double b) { return a < b ? a : b; }
 static inline double lag_max(double a, double b) { return a > b ? a : b; }
 
-/* x^p for a normal x > 0 and |p| <= 1/8, with relative error 2e-4, enough for a step size; pow would take a tenth of a short step's time.
+/* x^p for a normal x > 0, with relative error 2e-4 for |p| <= 1/8 and 6e-4 for |p| <= 1, enough for a step size; pow would take a tenth of a short step's time.
  * log2(x) and 2^y are the exponent and a cubic in the fraction, fitted at Chebyshev points: errors 7e-4 binary orders and 8e-5. */
 static inline double lag_rough_power(double x, double p) {
 #ifdef LAG_REAL_IS_DOUBLE
