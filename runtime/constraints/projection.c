@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 #include "numeric/magnitudes.h"
 
 enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
@@ -172,18 +173,6 @@ static double parts_left(int n, const double *now, const double *before, double 
   return most;
 }
 
-/* x += d, with the rounding error of that sum in lost, or without (NULL). */
-static void add(int n, double *x, double *lost, const double *d) {
-  for (int i = 0; i < n; i++) {
-    double before = x[i], add = d[i] + (lost ? lost[i] : 0), b;
-    x[i] = before + add;
-    b = x[i] - before;
-    if (lost) { /* as lag_compensated_sum of methods/steps.h */
-      lost[i] = (before - (x[i] - b)) + (add - b);
-    }
-  }
-}
-
 /* Reports the worst of constraints that cannot be met. */
 static int report_unmet(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic) {
   int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
@@ -245,7 +234,7 @@ static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double 
     }
     int rc = lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force);
     if (rc || lag_not_finite(nq, w->d) >= 0) return rc < 0 ? rc : report_unmet(pb, w, t, y, holonomic);
-    add(nq, x, lost_x, w->d);
+    for (int i = 0; i < nq; i++) x[i] = lost_x ? lag_compensated_sum(x[i], w->d[i], &lost_x[i]) : x[i] + w->d[i];
     if ((rc = lag_residuals(pb, t, y, w->c, w->r)) != 0) return rc;
     double most = parts_left(n, residual, w->before, &least);
     int lost_in_rounding = is_rounding(nq, x, w->d, most);

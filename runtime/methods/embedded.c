@@ -73,13 +73,6 @@ static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, doubl
   return LAG_OK;
 }
 
-/* Largest step, at most pb->longest. */
-static double longest(const Embedded *w, const lag_problem *pb, double t) {
-  if (w->limits.fixed != 0.0) return HUGE_VAL;
-  double most = lag_longest_step(&w->limits, t);
-  return pb->longest > 0 ? lag_min(most, pb->longest) : most;
-}
-
 /* PI controller: the size of the next step from err2, the squared error. One power serves the error and its memory. */
 static void next_size(const EmbeddedPair *pair, Embedded *w, double err2, int retried) {
   const double least = 1e-8; /* floor of the remembered squared error, and its value where none is known */
@@ -194,7 +187,7 @@ int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double 
   int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
   (void)t_stop;
   while (rc == 0) {
-    double wanted = lag_min(w->h, longest(w, pb, *t)), row, gap = w->limits.fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
+    double wanted = lag_min(w->h, lag_longest_step(&w->limits, *t, pb->longest)), row, gap = w->limits.fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
     int clipped = wanted * (1 + 1e-4) >= gap; /* the rest after this step would be too short */
     w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);

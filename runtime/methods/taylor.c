@@ -241,7 +241,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int cause = LAG_ESTEP, rc = prepare(w, pb, *t, y);
   (void)t_stop;
   if (rc) return rc;
-  double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t), last = HUGE_VAL;
+  double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t, 0), last = HUGE_VAL;
   h = w->limits.fixed != 0.0 ? w->limits.h_option : h < most ? h : most;
   h = isfinite(h) ? h : 1;
   for (;;) {
