@@ -78,7 +78,7 @@ double lag_mass_condition(lag_problem *pb, double t, const double *y, int *which
   *which = 0;
   if (M && column && n > 0) {
     int begun = 0, rc = 0;
-    for (int now = pb->begin == NULL; now < 2 && rc == 0; now++) { /* units of inertia 1 at the start, if it was there: inertia that has vanished since shows */
+    for (int now = pb->begin == NULL; now < 2 && rc == 0; now++) { /* inertia 1 at the start: if it has vanished since, that shows */
       memcpy(at, now ? y : pb->begin, (size_t)pb->n * sizeof *at);
       rc = of ? lag_constraint_jacobian(pb, t, at, A, x, M) : mass_by_energy(pb, t, at, M, x);
       if (rc == 0 && !begun) memcpy(unit, x, n * sizeof *x);

@@ -20,8 +20,8 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   double **const parts[] = {&s->p, &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign,
                             &s->noise, &s->root, &s->sign_end, &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->mon_first, &s->mon_peak,
                             &s->exact_peak, &s->charge_block};
-  const size_t sizes[] = {(size_t)m->np, (size_t)m->nderived, nu, n, n, nc, (size_t)m->nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nmon, nmon,
-                          (size_t)s->scene->nexact, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)};
+  const size_t sizes[] = {(size_t)m->np, (size_t)m->nderived, nu, n, n, nc, (size_t)m->nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev,
+                          nmon, nmon, (size_t)s->scene->nexact, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)};
   const size_t nparts = sizeof sizes / sizeof *sizes, fixed = RUN_DOUBLES + lag_cut(NULL, nparts, parts, sizes);
   lag_problem sized = s->pb;
 

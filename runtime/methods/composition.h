@@ -17,7 +17,9 @@ typedef struct lag_composition {
 
 static inline double lag_composition_drift(const lag_composition *c, int i) { return c->drift[2 * i < c->stages ? i : c->stages - 1 - i]; }
 
-static inline double lag_composition_kick(const lag_composition *c, int i) { return c->kick[2 * i <= c->stages || c->order == 1 ? i : c->stages - i]; }
+static inline double lag_composition_kick(const lag_composition *c, int i) {
+  return c->kick[2 * i <= c->stages || c->order == 1 ? i : c->stages - i];
+}
 
 /* For q'' = f(t, q) with constant M; symplectic Euler and Verlet for any two flows. */
 extern const lag_composition lag_compose_euler, lag_compose_verlet, lag_compose_verlet4, lag_compose_verlet6,

@@ -187,7 +187,8 @@ int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double 
   int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
   (void)t_stop;
   while (rc == 0) {
-    double wanted = lag_min(w->h, lag_longest_step(&w->limits, *t, pb->longest)), row, gap = w->limits.fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
+    double wanted = lag_min(w->h, lag_longest_step(&w->limits, *t, pb->longest)), row;
+    double gap = w->limits.fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
     int clipped = wanted * (1 + 1e-4) >= gap; /* the rest after this step would be too short */
     w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
