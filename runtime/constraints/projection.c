@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 #include "numeric/magnitudes.h"
 
 enum { MOST_TURNS = 20, MOST_STRIKES = 3 };
@@ -172,18 +173,6 @@ static double parts_left(int n, const double *now, const double *before, double 
   return most;
 }
 
-/* x += d, with the rounding error of that sum in lost, or without (NULL). */
-static void add(int n, double *x, double *lost, const double *d) {
-  for (int i = 0; i < n; i++) {
-    double before = x[i], add = d[i] + (lost ? lost[i] : 0), b;
-    x[i] = before + add;
-    b = x[i] - before;
-    if (lost) { /* as lag_compensated_sum of methods/steps.h */
-      lost[i] = (before - (x[i] - b)) + (add - b);
-    }
-  }
-}
-
 /* Reports the worst of constraints that cannot be met. */
 static int report_unmet(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic) {
   int k = lag_worst_constraint(pb, t, y, holonomic, NULL);
@@ -205,87 +194,25 @@ static void negative_product(const ConstraintScratch *w, int n, const double *x,
   }
 }
 
-/* w->before[k] := deviation of constraint k from a straight line along w->d, the change that would remove the residual -w->g: its rounding. */
-static int nonlinearity(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic) {
-  static const double parts[] = {0.25, 0.5, 0.75, 1, 1.5, 2};
-  int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, at = holonomic ? 0 : nq, rc = 0;
-  memset(w->before, 0, (size_t)n * sizeof *w->before);
-  for (size_t j = 0; j < sizeof parts / sizeof *parts && rc == 0; j++) {
-    memcpy(w->other, y, (size_t)pb->n * sizeof *y);
-    for (int i = 0; i < nq; i++) w->other[at + i] += parts[j] * w->d[i];
-    rc = lag_residuals(pb, t, w->other, w->c, w->r);
-    for (int k = 0; k < n && rc == 0; k++) w->before[k] = fmax(w->before[k], fabs((holonomic ? w->c : w->r)[k] + (1 - parts[j]) * w->g[k]));
-  }
-  return rc;
-}
-
-/* Whether the residual is rounding of some constraints, and removing the rest takes a smaller change than that. Needed where a state at 0 shows
- * no size: 0.6^2 + 0.8^2 - 1 is rounding of terms that no coordinate shows. */
-static int is_noise(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic, const double *residual) {
-  int nq = pb->nq, n = holonomic ? w->of->nholonomic : w->of->n, noise = 0;
-  double *rest = w->other;
-  for (int k = 0; k < n; k++) w->g[k] = -residual[k];
-  if (lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force) || lag_not_finite(nq, w->d) >= 0 ||
-      w->of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->M, pb->work)) {
-    return 0;
-  }
-  negative_product(w, n, w->d, w->before);
-  memset(w->c, 0, (size_t)n * sizeof *w->c); /* sizes of the terms of A d */
-  for (int e = 0; e < w->of->njacobian; e++) {
-    const lag_entry *at_e = &w->of->jacobian[e];
-    w->c[at_e->row] += at_e->row < n ? fabs(w->A[e] * w->d[at_e->col]) : 0;
-  }
-  for (int k = 0; k < n; k++)
-    if (!(fabs(w->before[k] + w->g[k]) <= 1e-3 * fabs(w->g[k]) + 1e-9 * w->c[k])) {
-      return 0; /* no change removes it: it contradicts others */
-    }
-  if (nonlinearity(pb, w, t, y, holonomic)) return 0;
-  for (int k = 0; k < n; k++) {
-    int is = fabs(w->g[k]) <= 4 * w->before[k];
-    w->g[k] = is ? 0 : w->g[k];
-    noise |= is;
-  }
-  if (!noise || lag_least_change(pb, t, y, holonomic, w->g, rest, w->force)) return 0;
-  for (int i = 0; i < nq; i++) {
-    noise &= fabs(rest[i]) <= 2 * lag_unit_magnitude(pb, w->d, i); /* they may be equal up to rounding */
-  }
-  return noise;
-}
-
-/* Whether the coordinates of some unit were all 0 at the start, so that nothing tells their scale. */
-static int began_at_0(const lag_problem *pb) {
-  int zero = 0;
-  for (int i = 0; i < pb->nq && pb->begin; i++) zero |= !(lag_unit_magnitude(pb, pb->begin, i) > 0);
-  return zero;
-}
-
 int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holonomic, const double *residual) {
-  const double rounding = 0x1p10 * DBL_EPSILON;
+  const double rounding = 0x1p10 * DBL_EPSILON, time = holonomic || !(pb->span > 0) ? 1 : pb->span;
   ConstraintScratch w = layout(pb);
-  double *terms = w.terms[holonomic], worst = HUGE_VAL;
+  double *terms = w.terms[holonomic], worst;
   int n = holonomic ? w.of->nholonomic : w.of->n, met = 1;
-  for (int k = 0; k < n; k++) {
-    met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* terms from the last time suffice where the answer is clear */
-  }
+  for (int k = 0; k < n; k++) met &= fabs(residual[k]) <= rounding * terms[k] / 4; /* terms from the last time suffice where the answer is clear */
   if (met) return 1;
-  lag_worst_constraint(pb, t, y, holonomic, &worst);
-  met = worst <= 0x1p10;
-  if (!met && began_at_0(pb)) {
-    met = is_noise(pb, &w, t, y, holonomic, residual);
-    met = lag_residuals(pb, t, y, w.c, w.r) == 0 && met; /* is_noise() has overwritten the residuals that newton() needs */
-  } else if (met) { /* only where met: terms of a state off the constraints may have any size */
+  if (lag_worst_constraint(pb, t, y, holonomic, &worst) < 0) return 0;
+  if (worst <= 0x1p10) { /* only then: terms of a state off the constraints may have any size */
     memcpy(terms, w.g, (size_t)n * sizeof *terms);
+    return 1;
   }
+  for (int e = 0; e < w.of->njacobian && pb->begin; e++) { /* a unit that was 0 throughout at the start has no scale: one unit counts */
+    const lag_entry *at = &w.of->jacobian[e];
+    if (at->row < n && !(lag_unit_magnitude(pb, pb->begin, at->col) > 0)) w.g[at->row] += fabs(w.A[e]) / time;
+  }
+  met = pb->begin != NULL;
+  for (int k = 0; k < n; k++) met &= fabs(residual[k]) <= rounding * w.g[k];
   return met;
-}
-
-/* Whether the residuals of y, w->c and w->r, are rounding in the last digits of their terms. */
-static int is_clean(lag_problem *pb, const ConstraintScratch *w, double t, const double *y, int holonomic) {
-  const double *residual = holonomic ? w->c : w->r;
-  int n = holonomic ? w->of->nholonomic : w->of->n, clean = 1;
-  if (lag_constraint_terms(pb, t, y, holonomic, w->g) || lag_residuals(pb, t, y, w->c, w->r)) return 0;
-  for (int k = 0; k < n; k++) clean &= fabs(residual[k]) <= 4 * DBL_EPSILON * w->g[k];
-  return clean;
 }
 
 /* Newton's iteration of positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of y, before and after. */
@@ -295,9 +222,11 @@ static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double 
   double *lost_x = lost ? lost + (x - y) : NULL;
   for (int turn = 0; turn < MOST_TURNS; turn++) {
     int busy = 0;
+    double digits = HUGE_VAL;
     for (int k = 0; k < n; k++) busy |= !(residual[k] == 0.0);
-    if (!busy || (turn > holonomic && is_clean(pb, w, t, y, holonomic))) {
-      return LAG_OK; /* is_clean: coordinates that are 0 up to rounding never stop moving by more than their last digits */
+    if (turn > holonomic && busy) lag_worst_constraint(pb, t, y, holonomic, &digits);
+    if (!busy || digits <= 4) { /* coordinates that are 0 up to rounding never stop moving by more than their last digits */
+      return LAG_OK;
     }
     for (int k = 0; k < n; k++) {
       w->before[k] = residual[k];
@@ -305,7 +234,7 @@ static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double 
     }
     int rc = lag_least_change(pb, t, y, holonomic, w->g, w->d, w->force);
     if (rc || lag_not_finite(nq, w->d) >= 0) return rc < 0 ? rc : report_unmet(pb, w, t, y, holonomic);
-    add(nq, x, lost_x, w->d);
+    for (int i = 0; i < nq; i++) x[i] = lost_x ? lag_compensated_sum(x[i], w->d[i], &lost_x[i]) : x[i] + w->d[i];
     if ((rc = lag_residuals(pb, t, y, w->c, w->r)) != 0) return rc;
     double most = parts_left(n, residual, w->before, &least);
     int lost_in_rounding = is_rounding(nq, x, w->d, most);

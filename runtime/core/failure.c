@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/core.h"
 
@@ -49,13 +50,6 @@ int lag_note(lag_problem *pb, int status, double t, const char *format, ...) {
   return status;
 }
 
-/* text := the name of component i of y', as "x''". */
-static void name_rate(const lag_sim *s, int i, char *text, size_t size) {
-  const lag_model *m = s->scene->model;
-  if (i >= 2 * m->nq) snprintf(text, size, "%s'", m->z[i - 2 * m->nq].name);
-  else snprintf(text, size, "%s%s", m->q[i % m->nq].name, i >= m->nq ? "''" : "'");
-}
-
 static const char *reason(const lag_model *m, int status) {
   switch (status) {
   case LAG_ESINGULAR:
@@ -79,7 +73,10 @@ int lag_explain(lag_sim *s, int status) {
   size_t used = 0;
   double h = lag_equal_step(s);
   int which;
-  if (status == LAG_ENAN && pb->bad_index >= 0) name_rate(s, pb->bad_index, name, sizeof name);
+  if (status == LAG_ENAN && pb->bad_index >= 0) {
+    lag_sim_state_info(s, pb->bad_index, name, sizeof name - 1, NULL, 0);
+    strcat(name, "'");
+  }
   if ((status == LAG_ESINGULAR || status == LAG_ESTEP) && !(m->flags & LAG_FIRST_ORDER)) {
     double condition = lag_mass_condition(&s->pb, s->run->t, s->now, &which);
     if (condition > (status == LAG_ESTEP ? 1e6 : 0)) {
@@ -88,9 +85,9 @@ int lag_explain(lag_sim *s, int status) {
     }
   }
   for (int i = 0; i < pb->n && i < 8 && used < sizeof text; i++) {
-    const lag_var *v = i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
-    used += (size_t)snprintf(text + used, sizeof text - used, "%s%s%s = %.6g", i ? ", " : "", v->name,
-                             i >= m->nq && i < 2 * m->nq ? "'" : "", lag_sim_state_value(s, i));
+    char of[128];
+    lag_sim_state_info(s, i, of, sizeof of, NULL, 0);
+    used += (size_t)snprintf(text + used, sizeof text - used, "%s%s = %.6g", i ? ", " : "", of, lag_sim_state_value(s, i));
   }
   if (status == LAG_ESTEP && fabs(pb->bad_t) * DBL_EPSILON > 1e-9)
     snprintf(advice, sizeof advice, ", or the time too late: times are %.1g s apart here", fabs(pb->bad_t) * DBL_EPSILON);

@@ -74,7 +74,7 @@ int lag_crosses_force_pole(lag_sim *s, double t) {
 
   pb->rhs_calls = calls;
   if (isnan(pole)) return LAG_OK;
-  const lag_model *m = pb->model;
-  const char *name = i < 2 * pb->nq ? m->q[i - pb->nq].name : m->z[i - 2 * pb->nq].name;
-  return lag_note(pb, LAG_EDOMAIN, s->run->t + pole * (t - s->run->t), "a pole of %s%s, which no motion crosses", name, i < 2 * pb->nq ? "''" : "'");
+  char name[128];
+  lag_sim_state_info(s, i, name, sizeof name, NULL, 0);
+  return lag_note(pb, LAG_EDOMAIN, s->run->t + pole * (t - s->run->t), "a pole of %s', which no motion crosses", name);
 }

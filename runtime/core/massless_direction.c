@@ -77,15 +77,13 @@ double lag_mass_condition(lag_problem *pb, double t, const double *y, int *which
   int *column = malloc((n + 1) * sizeof *column);
   *which = 0;
   if (M && column && n > 0) {
-    memcpy(at, y, (size_t)pb->n * sizeof *at);
-    int rc = of ? lag_constraint_jacobian(pb, t, y, A, unit, M) : mass_by_energy(pb, t, at, M, unit);
-    if (rc == 0 && pb->begin) { /* scaled to inertia 1 at the start, if there was any, so that inertia that has vanished since then shows */
-      double *then = calloc(n * n + m * n, sizeof *then);
-      memcpy(at, pb->begin, (size_t)pb->n * sizeof *at);
-      memcpy(x, unit, n * sizeof *x);
-      if (!then || (of ? lag_constraint_jacobian(pb, t, pb->begin, then + n * n, unit, then) : mass_by_energy(pb, t, at, then, unit)))
-        memcpy(unit, x, n * sizeof *x);
-      free(then);
+    int begun = 0, rc = 0;
+    for (int now = pb->begin == NULL; now < 2 && rc == 0; now++) { /* inertia 1 at the start: if it has vanished since, that shows */
+      memcpy(at, now ? y : pb->begin, (size_t)pb->n * sizeof *at);
+      rc = of ? lag_constraint_jacobian(pb, t, at, A, x, M) : mass_by_energy(pb, t, at, M, x);
+      if (rc == 0 && !begun) memcpy(unit, x, n * sizeof *x);
+      begun |= !now && rc == 0;
+      rc = now ? rc : 0;
     }
     for (size_t k = 0; k < n * n; k++) M[k] *= unit[k / n] * unit[k % n];
     for (size_t k = 0; k < m && rc == 0; k++) {

@@ -1,5 +1,5 @@
 /* Inline parts of the right-hand side, called so often, for so few numbers, that a function call would take as long as the work: for rhs.c and
- * for methods with many stages. */
+ * for methods with many stages; and the compensated sum of all steps. */
 #ifndef LAG_CORE_RHS_H
 #define LAG_CORE_RHS_H
 
@@ -12,6 +12,14 @@
 #else
 #define LAG_ALWAYS_INLINE static inline
 #endif
+
+/* s + d with compensation: *c is the rounding lost so far (two-sum, for operands of any size). A. Neumaier, ZAMM 54
+ * (1974) 39, DOI 10.1002/zamm.19740540106. Rounding then grows at most with the root of the number of steps. */
+static inline double lag_compensated_sum(double s, double d, double *c) {
+  double x = d + *c, r = s + x, b = r - s;
+  *c = (s - (r - b)) + (x - b);
+  return r;
+}
 
 /* to[n] := from[n]. */
 LAG_ALWAYS_INLINE void lag_copy(int n, const double *from, double *to) {

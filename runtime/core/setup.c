@@ -15,20 +15,16 @@ enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_D
 /* Allocates and lays out the blocks for this method, keeping only the settings of the caller (p, hold). opt: option values, which must live on. */
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   const lag_model *m = s->scene->model;
-  size_t np = (size_t)(m->np + m->nderived), nu = (size_t)m->nu, fixed = RUN_DOUBLES, n = (size_t)s->pb.n, nev = (size_t)m->nev;
+  size_t np = (size_t)(m->np + m->nderived), nu = (size_t)m->nu, n = (size_t)s->pb.n, nev = (size_t)m->nev;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  const struct {
-    double **at;
-    size_t n;
-  } part[] = {{&s->p, (size_t)m->np}, {&s->derived, (size_t)m->nderived}, {&s->hold, nu}, {&s->begin, n}, {&s->asked, n}, {&s->redundant, nc},
-              {&s->loose, (size_t)m->nq}, {&s->kept, nc}, {&s->y, n}, {&s->y0, n}, {&s->now, n}, {&s->sign, nev}, {&s->noise, nev},
-              {&s->root, nev}, {&s->sign_end, nev}, {&s->count, nev}, {&s->first, nev}, {&s->last, nev}, {&s->interval, nev}, {&s->shorter, nev},
-              {&s->mon_first, nmon}, {&s->mon_peak, nmon}, {&s->exact_peak, (size_t)s->scene->nexact},
-              {&s->charge_block, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)}};
-  const size_t parts = sizeof part / sizeof *part;
+  double **const parts[] = {&s->p, &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign,
+                            &s->noise, &s->root, &s->sign_end, &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->mon_first, &s->mon_peak,
+                            &s->exact_peak, &s->charge_block};
+  const size_t sizes[] = {(size_t)m->np, (size_t)m->nderived, nu, n, n, nc, (size_t)m->nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev,
+                          nmon, nmon, (size_t)s->scene->nexact, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)};
+  const size_t nparts = sizeof sizes / sizeof *sizes, fixed = RUN_DOUBLES + lag_cut(NULL, nparts, parts, sizes);
   lag_problem sized = s->pb;
 
-  for (size_t i = 0; i < parts; i++) fixed += part[i].n;
   sized.opt = opt;
   sized.variant = method->variant;
   size_t before = (fixed + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, work = method->work_size(&sized), total = before + work;
@@ -45,10 +41,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  for (size_t i = 0; i < parts; i++) {
-    *part[i].at = x;
-    x += part[i].n;
-  }
+  lag_cut(x, nparts, parts, sizes);
   s->method_work = b + before;
   s->nwork = work;
   s->pb.p = s->p;

@@ -20,7 +20,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "methods/band_matrix.h"
 #include "methods/predictor.h"
 #include "methods/galerkin_rule.h"
 #include "methods/newton.h"
@@ -120,16 +119,12 @@ static int residual(const Collocation *w, const CollocationArrays *a, lag_proble
 
 /* Factors Newton's matrix 1 - h a_ik J_i at the present stages. */
 static int matrix(const Collocation *w, CollocationArrays *a, lag_problem *pb, const Step *s) {
-  int n = pb->n, stages = (int)w->rule.free;
-  for (int i = 0; i < stages; i++) {
-    stage(w, s, n, i, a->Y);
-    int rc = lag_jacobian(pb, time_of(w, s, i), a->Y, a->jacobian, a->linear);
-    if (rc) return lag_step_refused(pb, rc, time_of(w, s, i));
-    for (int j = 0; j < n; j++)
-      for (int k = 0; k < stages; k++) {
-        double *row = lag_band_matrix_at(&a->J, i * n + j, k * n), c = s->h * w->rule.integral[i][k];
-        for (int l = 0; l < n; l++) row[l] = (i == k && j == l ? 1 : 0) - c * a->jacobian[j * n + l];
-      }
+  lag_tangent at = {pb, 0, a->jacobian, a->linear};
+  for (int i = 0; i < (int)w->rule.free; i++) {
+    stage(w, s, pb->n, i, a->Y);
+    int rc = lag_tangent_at(&at, time_of(w, s, i), a->Y, NULL);
+    if (rc) return rc;
+    lag_tangent_put_stage(&at, &a->J, (int)w->rule.free, i, s->h, w->rule.integral[i]);
   }
   if (lag_band_matrix_factor(&a->J, a->scale)) {
     pb->detail = "the matrix of Newton's method is singular; take another step size";

@@ -11,11 +11,15 @@ enum { LAG_MAX_DRIFTS = 19 };
 
 typedef struct lag_composition {
   int order;
-  int refine;   /* refinement level of dense output (step_interpolant.h) */
   int stages;   /* number of drifts, and of evaluations of f a step: the last one serves the next step, too */
-  double drift[LAG_MAX_DRIFTS];
-  double kick[LAG_MAX_DRIFTS + 1];
+  double drift[(LAG_MAX_DRIFTS + 1) / 2], kick[(LAG_MAX_DRIFTS + 1) / 2]; /* the first halves, in the middle included; of order 1: all */
 } lag_composition;
+
+static inline double lag_composition_drift(const lag_composition *c, int i) { return c->drift[2 * i < c->stages ? i : c->stages - 1 - i]; }
+
+static inline double lag_composition_kick(const lag_composition *c, int i) {
+  return c->kick[2 * i <= c->stages || c->order == 1 ? i : c->stages - i];
+}
 
 /* For q'' = f(t, q) with constant M; symplectic Euler and Verlet for any two flows. */
 extern const lag_composition lag_compose_euler, lag_compose_verlet, lag_compose_verlet4, lag_compose_verlet6,

@@ -104,51 +104,31 @@ static int residual(const lag_discrete *d, const NewtonArrays *w) {
   return LAG_OK;
 }
 
-/* Coefficients of the derivatives at one point in equation k, column of free velocity l: p (p) and forces (f) by velocities (v) and
- * by coordinates (q). */
-typedef struct Weights {
-  double pv[LAG_RULE_FREE][LAG_RULE_FREE], pq[LAG_RULE_FREE][LAG_RULE_FREE];
-  double fv[LAG_RULE_FREE][LAG_RULE_FREE], fq[LAG_RULE_FREE][LAG_RULE_FREE];
-} Weights;
-
-static Weights weights(const lag_discrete *d, const NewtonArrays *w, int i) {
-  const lag_rule *r = d->rule;
-  Weights c;
-  for (int k = 0; k < w->free; k++) {
-    double moved = r->b[i] * r->value[i][k], pushed = -d->h * r->b[i] * (r->whole[k] - r->integral[i][k]);
-    for (int l = 0; l < w->free; l++) {
-      double v = r->value[i][l], q = d->h * r->integral[i][l];
-      c.pv[k][l] = moved * v;
-      c.pq[k][l] = moved * q;
-      c.fv[k][l] = pushed * v;
-      c.fq[k][l] = pushed * q;
-    }
-  }
-  return c;
-}
-
-/* Adds c x to the block (row, col) of the matrix. Unknown u_k of coordinate a has index a free + k, so that the matrix of a
- * chain is banded. */
-static void add_block(const NewtonArrays *w, int row, int col, double (*c)[LAG_RULE_FREE], double x) {
+/* Adds of[k] by[l] x to the block (row, col) of the matrix, in equation k and column of free velocity l. Unknown u_k of coordinate a has index
+ * a free + k, so that the matrix of a chain is banded. */
+static void add_block(const NewtonArrays *w, int row, int col, const double *of, const double *by, double x) {
   for (int k = 0; k < w->free; k++) {
     double *at = lag_band_matrix_at(&w->J, row * w->free + k, col * w->free);
-    for (int l = 0; l < w->free; l++) at[l] += c[k][l] * x;
+    for (int l = 0; l < w->free; l++) at[l] += of[k] * by[l] * x;
   }
 }
 
 /* Adds the second derivatives at point i to the matrix. */
 static void scatter(const lag_discrete *d, const NewtonArrays *w, int i) {
   const lag_model *m = d->pb->model;
-  Weights c = weights(d, w, i);
+  const lag_rule *r = d->rule;
+  double of_f[LAG_RULE_FREE], of_p[LAG_RULE_FREE], by_q[LAG_RULE_FREE];
+  for (int k = 0; k < w->free; k++) {
+    of_f[k] = -d->h * r->b[i] * (r->whole[k] - r->integral[i][k]);
+    of_p[k] = r->b[i] * r->value[i][k];
+    by_q[k] = d->h * r->integral[i][k];
+  }
   for (int e = 0; e < m->nsecond; e++) {
     int row = m->second_at[e].row, col = m->second_at[e].col, part = m->second_at[e].part;
-    double (*on)[LAG_RULE_FREE] = part == LAG_VV ? c.pv : part == LAG_VQ ? c.pq : part == LAG_FV ? c.fv : c.fq;
-    add_block(w, row, col, on, w->h[e]);
-    if (part == LAG_VQ) {
-      add_block(w, col, row, c.fv, w->h[e]); /* d2L/dq dv is its transpose */
-    } else if (row != col && (part == LAG_QQ || part == LAG_VV)) {
-      add_block(w, col, row, on, w->h[e]);
-    }
+    const double *of = part == LAG_VV || part == LAG_VQ ? of_p : of_f, *by = part == LAG_VV || part == LAG_FV ? r->value[i] : by_q;
+    add_block(w, row, col, of, by, w->h[e]);
+    if (part == LAG_VQ) add_block(w, col, row, of_f, r->value[i], w->h[e]); /* d2L/dq dv is its transpose */
+    else if (row != col && (part == LAG_QQ || part == LAG_VV)) add_block(w, col, row, of, by, w->h[e]);
   }
 }
 

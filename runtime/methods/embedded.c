@@ -43,7 +43,9 @@ void lag_embedded_reset(void *work, lag_problem *pb) {
 
 int lag_embedded_init(void *work, lag_problem *pb, const double *opt) {
   Embedded *w = work;
-  lag_step_limits_init(&w->limits, pb, opt);
+  const EmbeddedPair *pair = pb->variant;
+  if (pair->tab->order_embedded) lag_step_limits_init(&w->limits, pb, opt);
+  else w->limits = (lag_step_limits){.fixed = 1, .h_option = lag_step_size(pb, opt[LAG_OPT_STEP])};
   w->per = 1 / (pb->n ? (double)pb->n : 1);
   lag_embedded_reset(work, pb);
   return LAG_OK;
@@ -69,13 +71,6 @@ static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, doubl
     w->h = lag_first_step(pb, &tol, pair->tab->order, w->limits.h_max, t, y, k1, lag_embedded_array(w, pb, EMBEDDED_Y1), k1 + row);
   }
   return LAG_OK;
-}
-
-/* Largest step, at most pb->longest. */
-static double longest(const Embedded *w, const lag_problem *pb, double t) {
-  if (w->limits.fixed != 0.0) return HUGE_VAL;
-  double most = lag_longest_step(&w->limits, t);
-  return pb->longest > 0 ? lag_min(most, pb->longest) : most;
 }
 
 /* PI controller: the size of the next step from err2, the squared error. One power serves the error and its memory. */
@@ -192,7 +187,8 @@ int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double 
   int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
   (void)t_stop;
   while (rc == 0) {
-    double wanted = lag_min(w->h, longest(w, pb, *t)), row, gap = w->limits.fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
+    double wanted = lag_min(w->h, lag_longest_step(&w->limits, *t, pb->longest)), row;
+    double gap = w->limits.fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
     int clipped = wanted * (1 + 1e-4) >= gap; /* the rest after this step would be too short */
     w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);

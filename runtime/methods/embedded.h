@@ -1,5 +1,5 @@
-/* Embedded explicit Runge-Kutta methods, shared by rk45 and dop853: a method is a tableau, the constants of its step
- * control, and its dense output. */
+/* Explicit Runge-Kutta methods, shared by rk4, rk45 and dop853: a method is a tableau, the constants of its step control, and its dense output. A
+ * tableau whose order_embedded is 0 has no error estimate: all its steps are of equal size. */
 #ifndef LAG_METHODS_EMBEDDED_H
 #define LAG_METHODS_EMBEDDED_H
 
@@ -66,11 +66,12 @@ int lag_embedded_reversal(Embedded *w, lag_problem *pb, double tb);
  * and says nothing of the result. whole: squared error including that part, kept in w->across. */
 double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt, double whole);
 
-/* The members of both descriptors but dense, a function of the file that uses it, as is `pair`. */
+/* The members that descriptors share, all but dense, a function of the file that uses it, as is `pair`. */
 #define EMBEDDED_DESCRIPTOR                                                                                          \
   .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_CONSTRAINTS,                                                     \
-  .noptions = LAG_NADAPTIVE_OPTIONS, .options = lag_embedded_options, .variant = &pair,                              \
-  .work_size = lag_embedded_work_size, .init = lag_embedded_init, .step = lag_embedded_step, .dense = dense,         \
+  .noptions = LAG_NADAPTIVE_OPTIONS, .options = lag_embedded_options, EMBEDDED_FUNCTIONS
+#define EMBEDDED_FUNCTIONS                                                                                           \
+  .variant = &pair, .work_size = lag_embedded_work_size, .init = lag_embedded_init, .step = lag_embedded_step, .dense = dense,         \
   .reset = lag_embedded_reset,                                                                                    \
   .tangent_size = lag_embedded_tangent_size, .tangent = lag_embedded_tangent
 

@@ -1,4 +1,4 @@
-/* Stages and error of one trial step, inlined for a constant tableau: dop853.c and rk45.c include this file and expand
+/* Stages and error of one trial step, inlined for a constant tableau: rk4.c, rk45.c and dop853.c include this file and expand
  * EMBEDDED_TRIAL. Sums over stages are then unrolled, without zero coefficients.
  * Holds: each component is summed in the same order for every n, so its value does not depend on the other components. */
 #ifndef LAG_METHODS_EMBEDDED_TRIAL_H
@@ -49,7 +49,7 @@ LAG_ALWAYS_INLINE embedded_part embedded_newest(const volatile double *k) {
     s += coef[j] * embedded_at(k + (j) * row);    \
   }
 
-/* sum_j coef[j] k_j over j < count, for the components of one part; coef[0] is not 0. */
+/* sum_j coef[j] k_j over j < count, for the components of one part. */
 LAG_ALWAYS_INLINE embedded_part embedded_sum(const double *coef, int count, const double *k, int row) {
   embedded_part s = coef[0] * embedded_at(k);
   EMBEDDED_TERM(1) EMBEDDED_TERM(2) EMBEDDED_TERM(3) EMBEDDED_TERM(4) EMBEDDED_TERM(5) EMBEDDED_TERM(6) EMBEDDED_TERM(7)
@@ -153,7 +153,9 @@ LAG_ALWAYS_INLINE double embedded_trial(const lag_tableau *tab, int late, Embedd
   EMBEDDED_STAGE(1) EMBEDDED_STAGE(2) EMBEDDED_STAGE(3) EMBEDDED_STAGE(4) EMBEDDED_STAGE(5) EMBEDDED_STAGE(6)
   EMBEDDED_STAGE(7) EMBEDDED_STAGE(8) EMBEDDED_STAGE(9) EMBEDDED_STAGE(10) EMBEDDED_STAGE(11)
   embedded_result(tab, w, as, dt);
+  if (!tab->order_embedded && lag_not_finite(pb->n, w->x + EMBEDDED_Y1 * row) >= 0) return NAN;
   if (!late && (*rc = embedded_end(pb, w, as, tb, k + last * row)) != 0) return NAN;
+  if (!tab->order_embedded) return lag_not_finite(pb->n, k + last * row) < 0 ? 0 : NAN;
   double err = embedded_error(tab, late, w, pb, as, dt);
   if (err > 1 && pb->model->constraints) err = lag_embedded_error_along(tab, late, w, pb, tb, dt, err);
   if (late && (err <= 1 || (w->limits.fixed != 0.0 && !isnan(err)))) {

@@ -1,6 +1,6 @@
 /* Symplectic steps in q and p for any L. Enters: t, y = [q|v]; leaves: t + h, y one step later. Holds: p is carried from step to
- * step, and v is solved from dL/dv(q, v) = p; sums over steps of q, p and t are compensated (steps.h). Dense output is a
- * polynomial through both ends (step_interpolant.h): accurate to the order of the method, not symplectic. */
+ * step, and v is solved from dL/dv(q, v) = p; within a step q and p are values at its start plus increments, and sums over steps of q, p and t are
+ * compensated (steps.h). Dense output is a polynomial through both ends (step_interpolant.h): accurate to the order of the method, not symplectic. */
 #include "methods/implicit_symplectic.h"
 
 #include <math.h>
@@ -8,15 +8,104 @@
 
 #include "methods/discrete_lagrangian.h"
 #include "methods/predictor.h"
-#include "methods/substeps.h"
 #include "methods/step_interpolant.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
 #include "numeric/workspace.h"
 
-size_t lag_implicit_size(const lag_problem *pb, int free) { return lag_substeps_size(pb, free, 1); }
+/* Doubles of the history of one substep. */
+static size_t substep_history(const lag_problem *pb, const Implicit *w) { return lag_predictor_size(pb->nq * (int)w->rule[0].free); }
 
-size_t lag_implicit_composed_size(const lag_problem *pb, const lag_composition *c) { return lag_substeps_size(pb, 1, 2 * c->stages); }
+/* Sets the pointers of a block, unless x is NULL; returns its length. */
+static size_t block_layout(ConstraintBlock *b, const lag_problem *pb, int substeps, double *x) {
+  const lag_constraints *of = pb->model->constraints;
+  size_t n = (size_t)pb->n, nq = (size_t)pb->nq, nc = (size_t)of->n;
+  double **const parts[] = {&b->from, &b->to, &b->dq, &b->dp, &b->impulse, &b->d, &b->force, &b->c, &b->r, &b->g, &b->sum,
+                            &b->A, &b->M, &b->change, &b->end_jacobian, &b->history};
+  const size_t sizes[] = {n, n, nq, nq, nq, nq, nq, nc, nc, nc, nc, (size_t)of->njacobian, (size_t)of->nmass, nc * nq, nc * nc,
+                          (size_t)substeps * lag_predictor_size(of->n)};
+  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+}
+
+/* Sets the pointers, unless x is NULL; returns the length of Implicit.x. */
+static size_t state_layout(ImplicitArrays *a, const lag_problem *pb, int free, int substeps, double *x) {
+  const int constrained = pb->model->constraints != NULL;
+  size_t n = (size_t)pb->n, nq = (size_t)pb->nq, m = nq * (size_t)free;
+  double **const parts[] = {&a->p, &a->qc, &a->pc, &a->dq, &a->dp, &a->ql, &a->pl, &a->v, &a->y0, &a->y1, &a->f0, &a->f1, &a->u, &a->force,
+                            &a->history, &a->path, &a->discrete};
+  const size_t sizes[] = {nq, nq, nq, nq, nq, nq, nq, nq, n, n, n, n, 2 * m, m,
+                          (size_t)substeps * lag_predictor_size((int)m) + lag_predictor_size(pb->nq), lag_interpolant_size(pb->nq),
+                          x && !constrained ? 0 : lag_discrete_size(pb, free)}; /* the search for its band takes time in each step */
+  size_t length = lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  return length + (constrained ? block_layout(&a->block, pb, substeps, x ? x + length : NULL) : 0);
+}
+
+static ImplicitArrays arrays(Implicit *w, const lag_problem *pb) {
+  ImplicitArrays a;
+  state_layout(&a, pb, (int)w->rule[0].free, (int)w->substeps, w->x);
+  return a;
+}
+
+static size_t state_size(const lag_problem *pb, int free, int substeps) {
+  ImplicitArrays a;
+  return sizeof(Implicit) / sizeof(double) + state_layout(&a, pb, free, substeps, NULL);
+}
+
+/* Initial guess: u := velocities at the nodes of substep k, extrapolated linearly from y at t. */
+static int linear_guess(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y, double dt, int k, double at, double *u) {
+  const lag_rule *r = &w->rule[k % 2];
+  int nq = pb->nq, rc = lag_step_rhs(pb, t, y, a->f1);
+  for (int j = 0; j < (int)r->free && rc == 0; j++)
+    for (int i = 0; i < nq; i++) u[j * nq + i] = y[nq + i] + dt * (at + w->part[k] * r->node[j]) * a->f1[nq + i];
+  return rc;
+}
+
+void lag_substeps_gather(const ImplicitArrays *a, int nq) {
+  for (int i = 0; i < nq; i++) {
+    a->ql[i] = a->qc[i] + a->dq[i];
+    a->pl[i] = a->pc[i] + a->dp[i];
+  }
+}
+
+int lag_substep(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, const double *y, double dt, int k, double at, double *u,
+             int known) {
+  const lag_rule *r = &w->rule[k % 2];
+  int nq = pb->nq, m = nq * (int)r->free, rc = LAG_EMETHOD;
+  double *history = a->history + (size_t)k * substep_history(pb, w), h = w->part[k] * dt;
+  lag_discrete d = {.rule = r, .pb = pb, .t = t + at * dt, .h = h, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
+                    .dp = a->pl, .u = u, .force = a->force, .work = a->discrete, .counted = 1};
+
+  lag_substeps_gather(a, nq);
+  if (known || lag_predictor_guess(history, m, u)) rc = lag_discrete_solve(&d);
+  pb->detail = NULL; /* forget the message of the first attempt */
+  if (rc != 0 && (rc = linear_guess(w, a, pb, t, y, dt, k, at, u)) == 0) rc = lag_discrete_solve(&d);
+  if (rc) return rc;
+  for (int i = 0; i < nq; i++) {
+    for (int j = 0; j < (int)r->free; j++) a->dq[i] += h * (r->whole[j] * u[j * nq + i]);
+    for (int j = 0; j < (int)r->points; j++) a->dp[i] += h * (r->b[j] * a->force[j * nq + i]);
+  }
+  return LAG_OK;
+}
+
+void lag_substep_record(const Implicit *w, const ImplicitArrays *a, const lag_problem *pb, int k, const double *u) {
+  lag_predictor_add(a->history + (size_t)k * substep_history(pb, w), pb->nq * (int)w->rule[k % 2].free, u);
+}
+
+int lag_substeps_velocity(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double tb, const double *y, int known) {
+  int nq = pb->nq;
+  const double *history = a->history + (size_t)w->substeps * substep_history(pb, w);
+  lag_discrete d = {.rule = &w->momentum, .pb = pb, .t = tb, .h = 0, .size = w->step.h, .q = y, .dq = a->ql, .p = a->p,
+                    .dp = a->pl, .u = a->v, .force = a->force, .work = a->discrete};
+  lag_substeps_gather(a, nq);
+  if (!known && !lag_predictor_guess(history, nq, a->v)) memcpy(a->v, a->u, (size_t)nq * sizeof(double));
+  return lag_discrete_solve(&d);
+}
+
+/* ---- A step */
+
+size_t lag_implicit_size(const lag_problem *pb, int free) { return state_size(pb, free, 1); }
+
+size_t lag_implicit_composed_size(const lag_problem *pb, const lag_composition *c) { return state_size(pb, 1, 2 * c->stages); }
 
 void lag_implicit_reset(void *work, lag_problem *pb) {
   Implicit *w = work;
@@ -88,7 +177,7 @@ static void accept(Implicit *w, const ImplicitArrays *a, lag_problem *pb, double
 
 int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   Implicit *w = work;
-  ImplicitArrays a = lag_substeps_arrays(w, pb);
+  ImplicitArrays a = arrays(w, pb);
   lag_next_step next;
   int rc = lag_fixed_step_begin(&w->step, pb, *t, &next);
   (void)t_stop;
@@ -97,7 +186,7 @@ int lag_implicit_step(void *work, lag_problem *pb, double *t, double *y, double 
   memset(a.dq, 0, (size_t)pb->nq * sizeof(double));
   memset(a.dp, 0, (size_t)pb->nq * sizeof(double));
   if ((rc = (pb->model->constraints ? lag_rattle : chain)(w, &a, pb, *t, next.tb, y, next.dt)) != 0) return rc;
-  lag_predictor_add(a.history + (size_t)w->substeps * lag_substep_history(pb, w), pb->nq, a.v);
+  lag_predictor_add(a.history + (size_t)w->substeps * substep_history(pb, w), pb->nq, a.v);
   accept(w, &a, pb, y);
   lag_fixed_step_end(&w->step, &next, t);
   return LAG_OK;
@@ -115,9 +204,9 @@ static int make_path(const Implicit *w, const ImplicitArrays *a, lag_problem *pb
 
 void lag_implicit_dense(void *work, lag_problem *pb, double t, double *y) {
   Implicit *w = work;
-  ImplicitArrays a = lag_substeps_arrays(w, pb);
+  ImplicitArrays a = arrays(w, pb);
   StepEnds ends = {w->step.t0, w->step.dt, a.y0, a.f0, a.y1, a.f1};
-  int level = w->order > 6 ? 2 : w->order > 4 ? 1 : 0;
+  int level = lag_interpolant_level(w->order);
   double s = (t - w->step.t0) / w->step.dt;
   if (w->have_path == 0.0 && w->order > 1) w->have_path = make_path(w, &a, pb, &ends, level);
   if (w->order < 2 || w->have_path < -1) lag_interpolant_cubic(pb->nq, &ends, s, y);
@@ -167,7 +256,7 @@ static int over_substep(const Implicit *w, const ImplicitArrays *a, lag_problem 
   lag_discrete d = {.rule = r, .pb = pb, .t = w->step.t0 + at * dt, .h = h, .size = w->step.h, .q = a->y0, .dq = c->ql, .p = c->p,
                     .dp = c->pl, .u = c->u, .force = c->force, .work = a->discrete};
 
-  lag_predictor_last(a->history + (size_t)j * lag_substep_history(pb, w), nq * (int)r->free, c->u);
+  lag_predictor_last(a->history + (size_t)j * substep_history(pb, w), nq * (int)r->free, c->u);
   rc = whole ? 0 : lag_discrete_solve(&d);
   rc = rc ? rc : lag_discrete_tangent(&d, k, Y, Y + nq * k, c->du, c->rest);
   for (int i = 0; i < (int)r->free && rc == 0; i++) lag_tangent_add(nq, h * r->whole[i], c->u + i * nq, c->ql);
@@ -189,7 +278,7 @@ static int to_velocities(const Implicit *w, const ImplicitArrays *a, lag_problem
 
 int lag_implicit_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   Implicit *w = work;
-  ImplicitArrays a = lag_substeps_arrays(w, pb);
+  ImplicitArrays a = arrays(w, pb);
   Changes c;
   double step = w->step.h * pb->dir, dt = lag_tangent_span(w->step.t0, t, step), at = 0;
   int whole = dt == step;

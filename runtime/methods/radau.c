@@ -364,12 +364,6 @@ static int prepare(Radau *w, const RadauArrays *a, lag_problem *pb, double t, co
   return LAG_OK;
 }
 
-/* Largest step, at most pb->longest. */
-static double longest(const Radau *w, const lag_problem *pb, double t) {
-  double most = lag_longest_step(&w->limits, t);
-  return pb->longest > 0 ? fmin(most, pb->longest) : most;
-}
-
 /* Computes the end of an accepted step and the size of the next. > 0: a smaller step may help. */
 static int conclude(Radau *w, const RadauArrays *a, lag_problem *pb, double tb, const double *y, double err, int corrections) {
   int rc = finish(a, pb, tb, y);
@@ -418,7 +412,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   (void)t_stop;
   w->h = w->limits.fixed != 0.0 ? w->limits.h_option : w->h;
   while (rc == 0) {
-    w->h = w->limits.fixed != 0.0 ? w->h : fmin(w->h, longest(w, pb, *t));
+    w->h = fmin(w->h, lag_longest_step(&w->limits, *t, pb->longest));
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
     if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) return failure_status(w, pb, *t, why);
     pb->bad_index = -1;

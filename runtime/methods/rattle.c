@@ -10,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "methods/implicit_symplectic.h"
 #include "methods/predictor.h"
-#include "methods/substeps.h"
 #include "methods/steps.h"
 #include "numeric/dense.h"
 
@@ -81,34 +81,9 @@ static int find_changes(const ImplicitArrays *a, lag_problem *pb, double t0) {
   return rc;
 }
 
-/* Adds to b->end_jacobian the derivatives of the coefficients of velocity constraints by the end of the block. These coefficients vanish at the
- * origin for x*y' = y*x'; a block over that place, where they change sign, is found only by the full Newton matrix. */
-static int add_rate_derivatives(const ImplicitArrays *a, lag_problem *pb, double t1, double h) {
-  const ConstraintBlock *b = &a->block;
-  const lag_constraints *of = pb->model->constraints;
-  const double small = 1e-3; /* of the length of the block's motion; quadratic terms cancel in the central difference */
-  int nq = pb->nq, n = of->n, rc = 0;
-  memcpy(b->d, b->to, (size_t)nq * sizeof(double));
-  for (int k = 0; k < n; k++) {
-    const double *change = b->change + k * nq;
-    double part = HUGE_VAL;
-    for (int i = 0; i < nq; i++) {
-      double way = fabs(h) * lag_unit_magnitude(pb, b->to + nq, i);
-      part = change[i] != 0.0 && way > 0 ? fmin(part, small * way / fabs(change[i])) : part;
-    }
-    for (int side = 1; side >= -1 && part < HUGE_VAL && rc == 0; side -= 2) {
-      for (int i = 0; i < nq; i++) b->to[i] = b->d[i] + side * part * change[i];
-      rc = lag_residuals(pb, t1, b->to, b->c, b->r);
-      for (int j = of->nholonomic; j < n && rc == 0; j++) b->end_jacobian[j * n + k] += h / 2 * side * b->r[j] / (2 * part);
-    }
-  }
-  memcpy(b->to, b->d, (size_t)nq * sizeof(double));
-  return rc;
-}
-
 /* b->g: from the change of constraints wanted at the end of a block, t1, to the change at its start that causes it; pivots below `least` are
  * left out. The two differ near a singular position, even in sign, as of a stretched linkage. Needs b->change. */
-static int end_to_start_change(const ImplicitArrays *a, lag_problem *pb, double t1, double h, double least) {
+static int end_to_start_change(const ImplicitArrays *a, lag_problem *pb, double t1, double least) {
   const ConstraintBlock *b = &a->block;
   const lag_constraints *of = pb->model->constraints;
   int nq = pb->nq, n = of->n, rc = lag_inputs(pb, t1);
@@ -120,7 +95,6 @@ static int end_to_start_change(const ImplicitArrays *a, lag_problem *pb, double 
     for (int k = 0; k < n; k++) b->end_jacobian[row * n + k] += part * b->A[e] * b->change[k * nq + of->jacobian[e].col];
   }
   for (int k = of->nholonomic; k < n; k++) b->end_jacobian[k * n + k] += 0.5;
-  rc = rc == 0 && of->nholonomic < n ? add_rate_derivatives(a, pb, t1, h) : rc;
   if (rc == 0) {
     memcpy(b->c, b->g, (size_t)n * sizeof(double));
     lag_gauss_jordan(n, b->end_jacobian, b->c, b->r, least);
@@ -174,7 +148,7 @@ static int find_impulse(const Implicit *w, const ImplicitArrays *a, lag_problem 
     }
     known = 1;
     rc = constraint_defect(a, pb, t + at * dt, t1, h, y);
-    if (rc == 0 && steered) rc = end_to_start_change(a, pb, t1, h, least);
+    if (rc == 0 && steered) rc = end_to_start_change(a, pb, t1, least);
     rc = rc ? rc : lag_least_change(pb, t + at * dt, b->from, holonomic, b->g, b->d, b->force);
     if (rc) return lag_step_refused(pb, rc, t + at * dt);
     if (lag_not_finite(nq, b->d) >= 0) break;

@@ -35,17 +35,17 @@ static inline void lag_step_limits_begin(lag_step_limits *l, double t) {
   }
 }
 
-/* Largest step: the option, or else the time covered so far. */
-static inline double lag_longest_step(const lag_step_limits *l, double t) {
-  double seen = fabs(t - l->t_begin);
-  return l->h_max > 0 ? l->h_max : seen > 0 ? seen : HUGE_VAL;
-}
-
 /* Minimum and maximum of two numbers; b where a is NaN. */
 static inline double lag_min(double a, double b) { return a < b ? a : b; }
 static inline double lag_max(double a, double b) { return a > b ? a : b; }
 
-/* x^p for a normal x > 0 and |p| <= 1/8, with relative error 2e-4, enough for a step size; pow would take a tenth of a short step's time.
+/* Largest step: the option, or else the time covered so far; at most `longest` (0: no limit). Without limit where all steps have one size. */
+static inline double lag_longest_step(const lag_step_limits *l, double t, double longest) {
+  double seen = fabs(t - l->t_begin), most = l->h_max > 0 ? l->h_max : seen > 0 ? seen : HUGE_VAL;
+  return l->fixed != 0.0 ? HUGE_VAL : longest > 0 ? lag_min(most, longest) : most;
+}
+
+/* x^p for a normal x > 0, with relative error 2e-4 for |p| <= 1/8 and 6e-4 for |p| <= 1, enough for a step size; pow would take a tenth of a short step's time.
  * log2(x) and 2^y are the exponent and a cubic in the fraction, fitted at Chebyshev points: errors 7e-4 binary orders and 8e-5. */
 static inline double lag_rough_power(double x, double p) {
 #ifdef LAG_REAL_IS_DOUBLE

@@ -10,6 +10,9 @@ typedef struct StepEnds {
   const double *y0, *f0, *y1, *f1;
 } StepEnds;
 
+/* The level for a method of this order: 0, 1, 2 have order 4, 6, 8. */
+static inline int lag_interpolant_level(double order) { return order > 6 ? 2 : order > 4 ? 1 : 0; }
+
 /* Doubles of a path. */
 size_t lag_interpolant_size(int nq);
 

@@ -1,18 +1,8 @@
-/* Shared by all methods: compensated sums, the option `step`, and the status of a failed step. */
+/* Shared by all methods: steps of equal size, the option `step`, and the status of a failed step. */
 #ifndef LAG_METHODS_STEPS_H
 #define LAG_METHODS_STEPS_H
 
-#include <math.h>
-
-#include "lag.h"
-
-/* s + d with compensation: *c is the rounding lost so far (two-sum, for operands of any size). A. Neumaier, ZAMM 54
- * (1974) 39, DOI 10.1002/zamm.19740540106. Rounding then grows at most with the root of the number of steps. */
-static inline double lag_compensated_sum(double s, double d, double *c) {
-  double x = d + *c, r = s + x, b = r - s;
-  *c = (s - (r - b)) + (x - b);
-  return r;
-}
+#include "core/rhs.h"
 
 /* Steps of equal size: head of a method's saved state. */
 typedef struct lag_fixed_step {

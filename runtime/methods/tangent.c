@@ -5,7 +5,6 @@
 
 #include <string.h>
 
-#include "methods/band_matrix.h"
 #include "methods/steps.h"
 
 lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double **rest) {
@@ -72,8 +71,7 @@ size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k) {
   return lag_tangent_size(pb, 0, k) + big * ((size_t)k + 3 + big);
 }
 
-/* Sets the rows of stage s of m = 1 - dt A (x) J; a[stages]: row s of A. */
-static void put_stage(const lag_tangent *w, const lag_band_matrix *m, int stages, int s, double dt, const double *a) {
+void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int stages, int s, double dt, const double *a) {
   int n = w->pb->n, nq = w->pb->nq;
   for (int i = 0; i < n; i++) {
     const double *J = i < nq ? NULL : w->jacobian + (i - nq) * n;
@@ -95,7 +93,7 @@ int lag_tangent_implicit(int stages, const double *A, const double *c, lag_probl
 
   for (int s = 0; s < stages; s++) {
     if ((rc = lag_tangent_at(&w, t0 + c[s] * dt, ys + s * n, NULL)) != 0) return rc;
-    put_stage(&w, &m, stages, s, dt, A + s * stages);
+    lag_tangent_put_stage(&w, &m, stages, s, dt, A + s * stages);
     lag_tangent_times(&w, Y, K + s * n * k);
   }
   if (lag_band_matrix_factor(&m, scale)) {

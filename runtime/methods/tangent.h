@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "lag.h"
+#include "methods/band_matrix.h"
 #include "methods/tableau.h"
 
 /* Doubles of scratch of lag_tangent_explicit; with 0 stages: for lag_tangent_layout, two vectors [n] and two matrices [n k]. */
@@ -41,6 +42,9 @@ typedef struct lag_tangent {
 lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double **rest);
 /* w->jacobian := df/dy at (t, y), and f[n], unless NULL, := f(t, y). LAG_OK, or a failure. */
 int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f);
+
+/* Sets the rows of stage s of m = 1 - dt A (x) df/dy, the matrix of an implicit Runge-Kutta method; a[stages]: row s of A. */
+void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int stages, int s, double dt, const double *a);
 
 /* out[n k] := df/dy Y. */
 void lag_tangent_times(const lag_tangent *w, const double *Y, double *out);

@@ -20,7 +20,6 @@
 
 #include "core/rhs.h"
 #include "lag.h"
-#include "methods/rough_math.h"
 #include "methods/step_control.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
@@ -39,7 +38,7 @@ static const lag_method_option options[NOPTIONS] = {
 
 /* Saved state of the method, doubles only; x holds the arrays named below. */
 typedef struct Taylor {
-  double order, bits; /* bits: -log2 of the relative error of a step, from target_bits() */
+  double order, reach; /* reach: r h of item 1 above */
   double per_order[WINDOW]; /* 1/k of the orders in the root test, from the highest down */
   double floor;     /* absolute/relative tolerance, the least size of a component in error norms */
   lag_step_limits limits;
@@ -86,8 +85,8 @@ static void reset(void *work, lag_problem *pb) {
 /* The relative error aimed at in a step, as -log2: a fraction of the tolerance, and far below rounding where the tolerance is near
  * rounding. Errors of one sign add up as the number of steps, rounding as its root. */
 static double target_bits(const lag_problem *pb) {
-  double left = 1.5 * (9 - lag_rough_log2(pb->tol / DBL_EPSILON)); /* extra bits: 10 at 1e-15, 0 at 1e-13 */
-  return AIM - lag_rough_log2(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
+  double left = 1.5 * (9 - log2(pb->tol / DBL_EPSILON)); /* extra bits: 10 at 1e-15, 0 at 1e-13 */
+  return AIM - log2(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
 }
 
 /* Costs in operations of `next`: of a step besides its series, of an operation of order 0, of a term in the sums over lower orders, and of
@@ -118,8 +117,8 @@ static double best_order(const lag_problem *pb) {
 
 static int init(void *work, lag_problem *pb, const double *opt) {
   Taylor *w = work;
-  w->bits = target_bits(pb);
   w->order = fmin(pb->model->taylor->order, opt[OPT_ORDER] > 0 ? opt[OPT_ORDER] : best_order(pb));
+  w->reach = exp2(-target_bits(pb) / (w->order + 1));
   for (int i = 0; i < WINDOW; i++) w->per_order[i] = 1 / fmax(w->order - i, 1);
   lag_step_limits_init(&w->limits, pb, opt);
   w->floor = w->limits.atol / pb->tol;
@@ -182,7 +181,7 @@ static int prepare(Taylor *w, lag_problem *pb, double t, const double *y) {
 static double root_test_step(Taylor *w, lag_problem *pb, const double *y) {
   int n = pb->n, order = (int)w->order, columns = pb->model->taylor->columns;
   const double *x = series(w, pb, w->now);
-  double *scale = array(w, pb, SCALE), root = -HUGE_VAL;
+  double *scale = array(w, pb, SCALE), root = 0;
   for (int i = 0; i < n; i++) scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + w->floor);
   for (int k = order; k > order - WINDOW && k > 0; k--) {
     const double *row = x + k * columns;
@@ -191,11 +190,9 @@ static double root_test_step(Taylor *w, lag_problem *pb, const double *y) {
       double size = fabs(row[i]) * scale[i];
       most = size > most ? size : most;
     }
-    double here = most > 0 ? lag_rough_log2(most) * w->per_order[order - k] : -HUGE_VAL;
-    root = here > root ? here : root;
+    root = lag_max(most > DBL_MIN ? lag_rough_power(most, w->per_order[order - k]) : 0, root);
   }
-  if (root == -HUGE_VAL) return HUGE_VAL;
-  return fabs(w->unit[w->now > 0]) * lag_rough_exp2(-w->bits / (order + 1) - root);
+  return root > 0 ? fabs(w->unit[w->now > 0]) * w->reach / root : HUGE_VAL;
 }
 
 /* Error of a step of dt that ends at Y1, in tolerances: item 2 above. If the polynomial omits c t^(p+1) + ..., its defect at the
@@ -236,7 +233,7 @@ static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, 
   w->dt = dt;
   *t = tb;
   w->now = 1 - w->now;
-  w->ready = expand(w, pb, w->now, lag_floor_power_of_two(dt));
+  w->ready = expand(w, pb, w->now, ldexp(1, ilogb(dt)));
 }
 
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
@@ -244,7 +241,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   int cause = LAG_ESTEP, rc = prepare(w, pb, *t, y);
   (void)t_stop;
   if (rc) return rc;
-  double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t), last = HUGE_VAL;
+  double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t, 0), last = HUGE_VAL;
   h = w->limits.fixed != 0.0 ? w->limits.h_option : h < most ? h : most;
   h = isfinite(h) ? h : 1;
   for (;;) {
@@ -269,7 +266,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     pb->bad_t = tb;
     if (w->limits.fixed != 0.0) return cause;
     last = rc ? HUGE_VAL : error;
-    h *= rc ? 0.5 : fmax(0.5, lag_rough_exp2(-(lag_rough_log2(error) + AIM) / (w->order + 1)));
+    h *= rc ? 0.5 : fmax(0.5, pow(error * (1 << AIM), -1 / (w->order + 1)));
     pb->rejected++;
   }
 }

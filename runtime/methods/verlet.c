@@ -102,9 +102,9 @@ static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double 
   double at = 0, *y1 = w->x + Y1 * n, *f = w->x + F0 * n;
   memset(w->x + DY * n, 0, (size_t)n * sizeof(double));
   for (int s = 0; s < c->stages; s++) {
-    kick(w, pb, c->kick[s] * dt, f);
-    drift(w, pb, c->drift[s] * dt, y);
-    at += c->drift[s];
+    kick(w, pb, lag_composition_kick(c, s) * dt, f);
+    drift(w, pb, lag_composition_drift(c, s) * dt, y);
+    at += lag_composition_drift(c, s);
     if (s < last) {
       f = w->x + FS * n;
       if ((rc = lag_step_rhs(pb, t + at * dt, w->x + YS * n, f)) != 0) return rc;
@@ -114,7 +114,7 @@ static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double 
   memcpy(y1 + nq, w->x + YS * n + nq, (size_t)nq * sizeof(double));
   add(w, pb, y, 0);
   if ((rc = lag_step_rhs(pb, tb, y1, w->x + F1 * n)) != 0) return rc;
-  kick(w, pb, c->kick[c->stages] * dt, w->x + F1 * n);
+  kick(w, pb, lag_composition_kick(c, c->stages) * dt, w->x + F1 * n);
   add(w, pb, y, nq);
   memcpy(w->x + F1 * n, y1 + nq, (size_t)nq * sizeof(double));
   pb->bad_index = lag_not_finite(n, y1);
@@ -155,8 +155,9 @@ static void dense(void *work, lag_problem *pb, double t, double *y) {
     lag_interpolant_cubic(pb->nq, &ends, (t - w->step.t0) / w->step.dt, y);
     return;
   }
-  if (c->refine > 0 && w->have_path == 0.0) w->have_path = lag_interpolant_make(path, pb, &ends, c->refine, 1) == 0 ? 1 : -1;
-  lag_interpolant_at(path, pb, &ends, w->have_path > 0 ? c->refine : 0, (t - w->step.t0) / w->step.dt, y);
+  int level = lag_interpolant_level(c->order);
+  if (level > 0 && w->have_path == 0.0) w->have_path = lag_interpolant_make(path, pb, &ends, level, 1) == 0 ? 1 : -1;
+  lag_interpolant_at(path, pb, &ends, w->have_path > 0 ? level : 0, (t - w->step.t0) / w->step.dt, y);
 }
 
 static size_t tangent_size(const lag_problem *pb, int k) { return is_explicit(pb) ? lag_tangent_size(pb, 0, k) : lag_implicit_tangent_size(pb, k); }
@@ -182,11 +183,11 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
   for (int s = 0; s <= c->stages; s++) {
     if ((rc = lag_tangent_at(&all, w->step.t0 + at * dt, y, f)) != 0) return rc;
     lag_tangent_times(&all, Y, F);
-    kick_both(nq, k, c->kick[s] * dt, f, F, y, Y);
+    kick_both(nq, k, lag_composition_kick(c, s) * dt, f, F, y, Y);
     if (s < c->stages) {
-      lag_tangent_add(nq, c->drift[s] * dt, y + nq, y);
-      lag_tangent_add(nq * k, c->drift[s] * dt, Y + nq * k, Y);
-      at += c->drift[s];
+      lag_tangent_add(nq, lag_composition_drift(c, s) * dt, y + nq, y);
+      lag_tangent_add(nq * k, lag_composition_drift(c, s) * dt, Y + nq * k, Y);
+      at += lag_composition_drift(c, s);
     }
   }
   return LAG_OK;
