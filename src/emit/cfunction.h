@@ -8,19 +8,11 @@
 /* Macros for selection and logic (PREFIX_SELECT, PREFIX_MASK, ...), each under #ifndef: vector types have no ternary in C. */
 void csupport_logic(const char *prefix, StrBuf *out);
 
-/* Function that solves linear systems of one kind in a loop: lower_solve, lower_solve_definite, or lower_multiply (w[2 n] =
- * right-hand side, solution). SOLVE_CONSTRAINED is not one of them: see math_kkt_solver. */
-void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrBuf *out);
+/* Function that solves a linear system in a loop: lower_solve. With constraints: see math_kkt_solver. */
+void csupport_solver(const char *prefix, const char *lower, StrBuf *out);
 
 /* `static LAG_REAL lower_spline(t, n, row)`, for inputs given by a table. */
 void csupport_spline(const char *prefix, const char *lower, StrBuf *out);
-
-/* Factorization for several right-hand sides: lag_factor(n, w) and lag_substitute(n, w), with w[n*n + 2 n] = matrix,
- * right-hand side, row exchanges. */
-void csupport_factor(const char *prefix, const char *lower, StrBuf *out);
-
-/* lag_invert(n, w), which calls the functions of csupport_factor; the layout of w stands at Solve in ir/prog.h (IR_INVERT). */
-void csupport_inverter(const char *prefix, const char *lower, StrBuf *out);
 
 /* Appends text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
 void csupport_expand(const char *text, const char *prefix, const char *lower, StrBuf *out);

@@ -79,7 +79,7 @@ void cloop_prepare(Writer *w) {
       if (x && (!l || roll_step(r, l, offset, which).kind == STEP_SAME)) name_load(w, x);
     }
     for (uint32_t j = 0; i->op == IR_NEST && j < w->p->nests.at[i->index].nouter; j++) name_load(w, w->p->nests.at[i->index].outer[j]);
-    if (!ir_has_solve(i->op)) continue;
+    if (i->op != IR_SOLVE) continue;
     const Solve *s = &w->p->solves.at[i->index];
     for (uint32_t j = 0; j < solve_elements(s); j++) name_load(w, s->matrix[j]);
     for (uint32_t j = 0; j < solve_unknowns(s); j++) name_load(w, s->rhs[j]);

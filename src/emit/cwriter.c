@@ -166,7 +166,7 @@ static CExpr choose(Writer *w, const Ins *i) {
 
 static CExpr solved(Writer *w, const Ins *i) {
   const Solve *k = &w->p->solves.at[w->p->ins.at[i->a].index];
-  return (CExpr){arena_printf(w->a, "w[%u]", k->inverse ? k->n + i->index : k->place + (k->n + k->m) * k->n + i->index), C_ATOM, 0};
+  return (CExpr){arena_printf(w->a, "w[%u]", solve_elements(k) + i->index), C_ATOM, 0};
 }
 
 CExpr cwriter_spell(Writer *w, const Ins *i) {
@@ -192,7 +192,7 @@ CExpr cwriter_spell(Writer *w, const Ins *i) {
     case IR_OR: return macro(w, "OR", i->a, i->b, 0, 2);
     case IR_SELECT: return macro(w, "SELECT", i->a, i->b, i->c, 3);
     case IR_SOLVED: return solved(w, i);
-    case IR_PIVOT: case IR_SOLVE: case IR_INVERT: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
+    case IR_PIVOT: case IR_SOLVE: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }
   return (CExpr){"", C_ATOM, 0};
 }
@@ -450,10 +450,9 @@ void cwriter_instruction(Writer *w, Slot s) {
     cwriter_pivot(w, i);
     return;
   }
-  if (ir_has_solve(i->op)) {
+  if (i->op == IR_SOLVE) {
     write_arrays(w);
-    if (i->op == IR_SOLVE) csolve_write(w, i);
-    else csolve_write_inverse(w, i);
+    csolve_write(w, i);
     return;
   }
   if (i->op == IR_TABLE) {
@@ -562,7 +561,7 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   count_uses(&w);
   cloop_prepare(&w);
   cnest_prepare(&w);
-  if (prog_has_pivots(p)) sb_printf(out, "  %s_PIVOTS;\n", style->prefix);
+  if (prog_has_pivots(p) && !style->is_regular) sb_printf(out, "  %s_PIVOTS;\n", style->prefix);
   cwriter_find_sincos(&w);
   if (w.rolls.loops.n || p->nests.n) write_arrays(&w);
   write_code(&w);

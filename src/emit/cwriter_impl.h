@@ -84,9 +84,6 @@ const char *cloop_stem(Arena *a, const char *name);
 /* Writes an IR_SOLVE. */
 void csolve_write(Writer *w, const Ins *i);
 
-/* Writes an IR_INVERT. */
-void csolve_write_inverse(Writer *w, const Ins *i);
-
 /* Writes a whole loop. */
 void cloop_write(Writer *w, uint32_t loop);
 

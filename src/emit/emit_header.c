@@ -44,7 +44,6 @@ static const char *const *globals_of(Header *h) {
   uint32_t n = 0;
   for (uint32_t i = 0; i < h->taken.taken.n; i++) all[n++] = h->taken.taken.at[i].name;
   all[n++] = arena_printf(h->a, "%s_solve", h->lower);
-  all[n++] = arena_printf(h->a, "%s_solve_definite", h->lower);
   all[n++] = arena_printf(h->a, "%s_cubic", h->lower);
   all[n++] = arena_printf(h->a, "%s_spline", h->lower);
   all[n++] = arena_printf(h->a, "%s_params", h->lower);

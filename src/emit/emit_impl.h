@@ -22,8 +22,7 @@ void emit_function(const File *f, const Prog *p, const char *comment, const char
 /* Style of a function of this file. */
 CStyle emit_style(const File *f, const char *const *own, const char *const *written);
 
-/* emit_params.c: functions that factor and invert matrices, if needed; the function `derive`; a scene's `params`. */
-void emit_inverses(const File *f);
+/* emit_params.c: the function `derive`; a scene's `params`. */
 void emit_derive(const File *f);
 void emit_params(const File *f, const IrScene *s, const char *id);
 

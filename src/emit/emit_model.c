@@ -81,7 +81,7 @@ const char *const emit_state_args =
   "    const LAG_REAL *p, const LAG_REAL *u";
 
 CStyle emit_style(const File *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .invert = "lag_invert", .multiply = "lag_multiply", .kkt = "lag_kkt", .spline = "lag_spline", .math = math_prefix(f->u, "lag")};
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .kkt = "lag_kkt", .spline = "lag_spline", .math = math_prefix(f->u, "lag")};
 }
 
 /* Whether the function is called once a step, or once a row of output. */
@@ -312,32 +312,18 @@ static int has_long_tables(const IrUnit *u) {
   return is_long;
 }
 
-/* Programs whose systems lag_solve and its kin solve in `work`: not the plain outputs, which only a header has, and not derived parameters and Taylor
- * coefficients, whose factors have functions and room of their own. */
-static ProgList solving_programs(const IrUnit *u) {
-  ProgList all = unit_programs(u), kept = {0};
-  for (uint32_t i = 0; i < all.n; i++) {
-    const Prog *p = all.at[i];
-    int apart = p == u->derived || (u->taylor && (p == u->taylor->first || p == u->taylor->next));
-    for (uint32_t k = 0; k < u->scenes.n; k++) apart |= p == u->scenes.at[k].observe_plain && p != u->scenes.at[k].observe;
-    if (!apart) vec_push(u->arena, &kept, p);
-  }
-  return kept;
-}
-
 static uint32_t work_size(const IrUnit *u) {
-  ProgList all = solving_programs(u);
+  ProgList all = unit_programs(u);
   uint32_t most = 0;
   for (uint32_t i = 0; i < all.n; i++)
     if (prog_work_size(all.at[i]) > most) most = prog_work_size(all.at[i]);
   return most;
 }
 
-/* Whether a linear system of that kind is solved by a loop. */
-static int needs_solver(const IrUnit *u, SolveKind kind) {
-  ProgList all = solving_programs(u);
+static int needs_solver(const IrUnit *u) {
+  ProgList all = unit_programs(u);
   int some = 0;
-  for (uint32_t i = 0; i < all.n; i++) some |= prog_solves(all.at[i], kind);
+  for (uint32_t i = 0; i < all.n; i++) some |= prog_solves_dense(all.at[i]);
   return some;
 }
 
@@ -513,9 +499,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   sb_putc(out, '\n');
   math_functions(u, "LAG", "lag", out);
   if (has_long_tables(u)) table_macros(out);
-  for (SolveKind kind = SOLVE_PIVOTING; kind <= SOLVE_INVERSE; kind++)
-    if (kind != SOLVE_CONSTRAINED && needs_solver(u, kind)) csupport_solver(kind, "LAG", "lag", out);
-  emit_inverses(&f);
+  if (needs_solver(u)) csupport_solver("LAG", "lag", out);
   math_kkt_solver(u, "LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
   size_t begin = out->n;

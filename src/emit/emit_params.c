@@ -1,13 +1,6 @@
 /* Parameters in an emitted model: the values of a scene, and the derived parameters computed once. */
 #include "emit/emit_impl.h"
 
-void emit_inverses(const File *f) {
-  const IrUnit *u = f->u;
-  int inverts = u->derived && u->derived->solves.n, taylor = u->taylor && u->taylor->room;
-  if (inverts || taylor) csupport_factor("LAG", "lag", f->out);
-  if (inverts) csupport_inverter("LAG", "lag", f->out);
-}
-
 void emit_derive(const File *f) {
   static const char *const own[] = {"p", NULL}, *const written[] = {"p"};
   if (!f->u->nderived) return;

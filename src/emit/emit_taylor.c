@@ -225,8 +225,7 @@ typedef struct {
 } TaylorWriter;
 
 static CStyle style_for(const TaylorWriter *w, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = w->globals, .factor = "lag_factor", .substitute = "lag_substitute",
-                  .math = w->math};
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = w->globals, .solve = "lag_solve", .math = w->math};
 }
 
 /* Whether the sums are few enough that the coefficients of the last order stay in registers. */
@@ -283,6 +282,7 @@ static void next(const TaylorWriter *w) {
   CStyle st = style_for(w, own, written);
   st.paired = 1u << 0 | 1u << 1 | 1u << 2 | 1u << 3;
   st.padded = 1u << 2 | 1u << 3 | (unsigned)sums_fit_registers(s) << 1;
+  st.is_regular = 1; /* as at order 0 */
   st.apart = 1; /* y may be x: it reads the state and t, and writes the rates */
   sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n", op_count_text(s->next, w->a));
   sb_printf(w->out, "static %svoid taylor_next(", ops_total(prog_count(s->next)) <= INLINE_MAX ? "TAYLOR_INLINE " : "");

@@ -280,9 +280,7 @@ void header_implementation(const Header *h) {
   sb_putc(h->out, '\n');
   math_functions(h->u, h->upper, h->lower, h->out);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
-  for (SolveKind kind = SOLVE_PIVOTING; kind <= SOLVE_DEFINITE; kind++)
-    if (kind != SOLVE_CONSTRAINED && (prog_solves(h->u->accel, kind) || prog_solves(h->scene->observe_plain, kind)))
-      csupport_solver(kind, h->upper, h->lower, h->out);
+  if (prog_solves_dense(h->u->accel) || prog_solves_dense(h->scene->observe_plain)) csupport_solver(h->upper, h->lower, h->out);
   math_kkt_solver(h->u, h->upper, h->lower, h->out);
   if (h->u->inputs->tables.n) csupport_spline(h->upper, h->lower, h->out);
   defaults(h);

@@ -60,12 +60,14 @@ static void solve_pair(Prog *p, const FactorRecord *f, uint32_t k, const Slot *b
   x[j] = divided(p, f, k, n2, m->divisor);
 }
 
-/* By the matrix that another function left factored at its place. */
 static void solve_loop(Prog *p, const FactorBlock *m, const Slot *b, Slot *x) {
-  Slot *rhs = ARENA_ARRAY(p->arena, Slot, m->n), *y = ARENA_ARRAY(p->arena, Slot, m->n);
-  for (uint32_t i = 0; i < m->n; i++) rhs[i] = b[m->at[i]];
-  prog_solve(p, (Solve){.n = m->n, .place = m->place, .rhs = rhs}, y);
-  for (uint32_t i = 0; i < m->n; i++) x[m->at[i]] = y[i];
+  uint32_t n = m->n;
+  Slot *full = ARENA_ARRAY(p->arena, Slot, n * n), *rhs = ARENA_ARRAY(p->arena, Slot, n), *y = ARENA_ARRAY(p->arena, Slot, n);
+  for (uint32_t i = 0; i < n; i++)
+    for (uint32_t j = 0; j < n; j++) full[i * n + j] = m->M[i >= j ? i * n + j : j * n + i];
+  for (uint32_t i = 0; i < n; i++) rhs[i] = b[m->at[i]];
+  prog_solve(p, (Solve){.n = n, .matrix = full, .rhs = rhs}, y);
+  for (uint32_t i = 0; i < n; i++) x[m->at[i]] = y[i];
 }
 
 void factor_record_solve(Prog *p, const FactorRecord *f, Slot *b, const Slot *s, Slot *x) {

@@ -27,7 +27,7 @@ Prog *prog_new_like(const Prog *p) {
 /* --- value numbering --- */
 
 /* Whether equal instructions may be merged; a pivot need not be checked twice. */
-static int is_pure(IrOp op) { return op != IR_SOLVE && op != IR_INVERT && op != IR_NEST && op != IR_TITLE; }
+static int is_pure(IrOp op) { return op != IR_SOLVE && op != IR_NEST && op != IR_TITLE; }
 
 static uint32_t hash_ins(const Ins *i) {
   uint32_t h = (uint32_t)i->op * 0x9e3779b9u;
@@ -83,7 +83,7 @@ static Slot fold(Prog *p, const Ins *i) {
       return p->ins.at[i->a].op == IR_NEG ? p->ins.at[i->a].a : NOT_A_SLOT;
     case IR_CONST: case IR_PI: case IR_LOAD: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_MIN: case IR_MAX:
     case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: case IR_SELECT:
-    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_INVERT: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
+    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }
   return NOT_A_SLOT;
 }
@@ -134,8 +134,6 @@ void prog_name(Prog *p, Slot s, Name name) {
 
 int ir_is_scalar(IrArray array) { return array == ARR_T || array == ARR_ORDER || array == ARR_PER_ORDER || array == ARR_UP; }
 
-int ir_has_solve(IrOp op) { return op == IR_SOLVE || op == IR_INVERT; }
-
 int ir_is_condition(IrOp op) { return op >= IR_LT && op <= IR_OR; }
 
 const char *ir_made_name(Arena *a, const Ins *i, int of_one, const char *x, const char *y) {
@@ -155,11 +153,11 @@ static void mark_needed(const Prog *p, unsigned char *need) {
   for (uint32_t i = 0; i < p->stores.n; i++) need[p->stores.at[i].slot] = 1;
   for (Slot s = p->ins.n; s-- > 1;) {
     const Ins *i = &p->ins.at[s];
-    if (i->op == IR_PIVOT || i->op == IR_TITLE || i->op == IR_INVERT) need[s] = 1;
+    if (i->op == IR_PIVOT || i->op == IR_TITLE) need[s] = 1;
     if (!need[s]) continue;
     need[i->a] = need[i->b] = need[i->c] = 1;
     for (uint32_t j = 0; i->op == IR_NEST && j < p->nests.at[i->index].nouter; j++) need[p->nests.at[i->index].outer[j]] = 1;
-    if (!ir_has_solve(i->op)) continue;
+    if (i->op != IR_SOLVE) continue;
     const Solve *k = &p->solves.at[i->index];
     for (uint32_t j = 0; j < solve_elements(k); j++) need[k->matrix[j]] = 1;
     for (uint32_t j = 0; j < solve_unknowns(k); j++) need[k->rhs[j]] = 1;
@@ -167,7 +165,6 @@ static void mark_needed(const Prog *p, unsigned char *need) {
 }
 
 static const Slot *moved(Arena *a, const Slot *map, const Slot *from, uint32_t n) {
-  if (!from) return NULL;
   Slot *to = ARENA_ARRAY(a, Slot, n);
   for (uint32_t i = 0; i < n; i++) to[i] = map[from[i]];
   return to;
@@ -188,7 +185,7 @@ Ins prog_import(Prog *to, const Prog *from, const Slot *map, Ins i) {
     to->cells = from->cells;
     vec_push(to->arena, &to->nests, n);
   }
-  if (!ir_has_solve(i.op)) return i;
+  if (i.op != IR_SOLVE) return i;
   Solve k = from->solves.at[i.index];
   k.matrix = moved(to->arena, map, k.matrix, solve_elements(&k));
   k.rhs = moved(to->arena, map, k.rhs, solve_unknowns(&k));
@@ -208,7 +205,7 @@ uint32_t *prog_uses(const Prog *p) {
     uses[i->b]++;
     uses[i->c]++;
     for (uint32_t j = 0; i->op == IR_NEST && j < p->nests.at[i->index].nouter; j++) uses[p->nests.at[i->index].outer[j]]++;
-    if (!ir_has_solve(i->op)) continue;
+    if (i->op != IR_SOLVE) continue;
     const Solve *k = &p->solves.at[i->index];
     for (uint32_t j = 0; j < solve_elements(k); j++) uses[k->matrix[j]]++;
     for (uint32_t j = 0; j < solve_unknowns(k); j++) uses[k->rhs[j]]++;
@@ -318,7 +315,6 @@ OpCount prog_count(const Prog *p) {
       case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND:
       case IR_OR: case IR_SELECT: c.other++; break;
       case IR_SOLVE: c = ops_sum(c, solve_count(p->arena, &p->solves.at[i->index])); break;
-      case IR_INVERT: c = ops_sum(c, invert_count(&p->solves.at[i->index])); break;
       case IR_NEST: c = ops_sum(c, count_nest(&p->nests.at[i->index])); break;
       case IR_NEG: case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVED: case IR_TITLE: break;
     }
@@ -336,9 +332,9 @@ int prog_has_pivots(const Prog *p) {
   return 0;
 }
 
-int prog_solves(const Prog *p, SolveKind kind) {
+int prog_solves_dense(const Prog *p) {
   for (uint32_t i = 0; p && i < p->solves.n; i++)
-    if (solve_kind(&p->solves.at[i]) == kind) return 1;
+    if (!p->solves.at[i].m) return 1;
   return 0;
 }
 
@@ -348,7 +344,6 @@ uint32_t prog_work_size(const Prog *p) {
     const Solve *k = &p->solves.at[i];
     uint32_t n = k->n, m = k->m, system = n * n + m * n + n + m, scratch = n * n + m * n + m * m + 2 * n + 9 * m;
     uint32_t lane = (system + scratch + 3) / 4; /* where reals are vectors, each lane is solved by itself in doubles: at most a quarter of the room */
-    if (k->inverse) system = 2 * n;
     uint32_t need = system + (!m ? 0 : scratch > lane ? scratch : lane);
     if (need > most) most = need;
   }
@@ -359,7 +354,7 @@ uint32_t prog_work_size(const Prog *p) {
 
 static const char *const op_names[] = {
   "const", "pi", "load", "add", "sub", "mul", "div", "neg", "sqrt", "fn", "fn2", "min", "max", "sign",
-  "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "invert", "nest", "table", "title",
+  "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "nest", "table", "title",
 };
 
 static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g", "free", "x", "s", "c", "order", "per_order", "up", "sum", "outer"};
@@ -383,7 +378,7 @@ void prog_dump(const Prog *p, StrBuf *out) {
     }
     if (i->op == IR_LOAD) sb_printf(out, " %s[%u]", array_names[i->array], i->index);
     if (i->text) sb_printf(out, " %s", i->text);
-    if (i->op == IR_PIVOT || i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_INVERT || i->op == IR_NEST || i->op == IR_TABLE) sb_printf(out, " #%u", i->index);
+    if (i->op == IR_PIVOT || i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_NEST || i->op == IR_TABLE) sb_printf(out, " #%u", i->index);
     if (i->a) sb_printf(out, " %%%u", i->a);
     if (i->b) sb_printf(out, " %%%u", i->b);
     if (i->c) sb_printf(out, " %%%u", i->c);

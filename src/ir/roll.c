@@ -12,7 +12,7 @@ Slot roll_operand(const Ins *i, int which) { return which == 0 ? i->a : which ==
  * classes of their own. */
 static uint32_t class_of(const Prog *p, Slot s) {
   const Ins *i = &p->ins.at[s];
-  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_INVERT || i->op == IR_NEST || i->op == IR_TITLE || i->op == IR_TABLE) return UINT32_MAX - s;
+  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_NEST || i->op == IR_TITLE || i->op == IR_TABLE) return UINT32_MAX - s;
   uint32_t h = (uint32_t)i->op * 31 + i->index;
   for (const char *c = i->text; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
   for (int k = 0; k < 3; k++) { /* kinds of operands that must agree: none, array, number, value */
@@ -279,7 +279,7 @@ static void find_kept(Rolls *r) {
     const Ins *i = code_at(r, k);
     for (int which = 0; which < 3; which++) keep_from(r, roll_operand(i, which), k);
     for (uint32_t j = 0; i->op == IR_NEST && j < r->p->nests.at[i->index].nouter; j++) keep_from(r, r->p->nests.at[i->index].outer[j], k);
-    if (!ir_has_solve(i->op)) continue;
+    if (i->op != IR_SOLVE) continue;
     const Solve *s = &r->p->solves.at[i->index];
     for (uint32_t j = 0; j < solve_elements(s); j++) keep_from(r, s->matrix[j], UINT32_MAX);
     for (uint32_t j = 0; j < solve_unknowns(s); j++) keep_from(r, s->rhs[j], UINT32_MAX);

@@ -9,7 +9,7 @@ uint32_t ir_latency(IrOp op) {
     case IR_NEG: case IR_SELECT: return 1;
     case IR_DIV: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_TABLE: return 16;
     case IR_CONST: case IR_PI: case IR_LOAD: case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ:
-    case IR_NOT: case IR_AND: case IR_OR: case IR_PIVOT: case IR_SOLVED: case IR_INVERT: case IR_NEST: case IR_TITLE: break;
+    case IR_NOT: case IR_AND: case IR_OR: case IR_PIVOT: case IR_SOLVED: case IR_NEST: case IR_TITLE: break;
   }
   return 0;
 }

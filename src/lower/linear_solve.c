@@ -1,8 +1,7 @@
 /* M q'' = f, and its solution, as instructions.
  *
  * A positive definite mass matrix is eliminated in straight-line code (eliminate.c, gram_schmidt.c) unless that would be long. Otherwise M falls into
- * blocks of coupled coordinates: one by division, two by Cramer's rule, more by a loop within the band, with partial pivoting
- * where M may be indefinite. Coordinates that a constraint couples are one block, solved with their multipliers. */
+ * blocks of coupled coordinates: one by division, two by Cramer's rule, more by a loop with partial pivoting. Coordinates that a constraint couples are one block, solved with their multipliers. */
 #include "base/union_find.h"
 #include "lower/lower_impl.h"
 
@@ -160,15 +159,6 @@ static void list_filled(Arena *a, Solve *k) {
   k->filled = filled;
 }
 
-/* Half-bandwidth of a lower triangle M[n*n]: the largest i - j of a nonzero element. */
-static uint32_t band_width(uint32_t n, const Slot *M) {
-  uint32_t widest = 0;
-  for (uint32_t i = 0; i < n; i++)
-    for (uint32_t j = 0; j < i; j++)
-      if (M[(size_t)i*n + j] && i - j > widest) widest = i - j;
-  return widest;
-}
-
 /* Solves the block by a loop of the runtime: x[n], then the m multipliers. */
 static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   Arena *a = l->p->arena;
@@ -178,10 +168,7 @@ static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
     for (size_t j = 0; j < n; j++) full[i * n + j] = i >= j ? b->M[i * n + j] : b->M[j * n + i];
   for (size_t k = 0; k < m * n; k++) full[n * n + k] = b->A[k];
   for (size_t i = 0; i < n + m; i++) rhs[i] = i < n ? b->f[i] : b->g[i - n];
-  int definite = !m && !l->factored && (l->e->definite_mass || l->e->definite_by_values);
-  for (size_t i = 0; definite && i < n; i++)
-    for (size_t j = 0; j < i; j++) full[i * n + j] = 0; /* the loop reads the upper triangle only */
-  Solve k = {.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .matrix = full, .rhs = rhs};
+  Solve k = {.n = b->n, .m = b->m, .coarse = coarse, .matrix = full, .rhs = rhs};
   if (m) list_filled(a, &k);
   prog_solve(l->p, k, x);
 }
@@ -211,19 +198,15 @@ static int is_empty(const Block *b) {
   return 1;
 }
 
-/* Records blocks for factor_record_solve; those factored by a loop get a place each, so that their factors survive. */
+/* Records blocks for factor_record_solve. */
 static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
   FactorRecord *f = l->factored;
-  uint32_t place = 0, loop = 0;
   *f = (FactorRecord){.n = l->e->n};
   for (uint32_t k = 0; k < n; k++) {
     const Block *b = &blocks[k];
     if (is_empty(b)) continue; /* the solution of an empty block is 0 to all orders */
-    FactorBlock kept = {.n = b->n, .at = b->at, .M = b->M, .divisor = b->n == 2 ? b->divisor : b->M[0], .place = place};
+    FactorBlock kept = {.n = b->n, .at = b->at, .M = b->M, .divisor = b->n == 2 ? b->divisor : b->M[0]};
     vec_push(l->p->arena, &f->blocks, kept);
-    if (b->n < 3) continue;
-    l->p->solves.at[loop++].place = place;
-    place += factor_record_size(b->n);
   }
   l->x = x;
 }
@@ -274,7 +257,6 @@ void lower_solution(Lower *l, Slot *acc) {
   push_entries(l, &roots, &k->A);
   for (uint32_t i = 0; i < e->n; i++) vec_push(l->p->arena, &roots, s->f[i]);
   for (uint32_t i = 0; i < k->n; i++) vec_push(l->p->arena, &roots, k->demand[i]);
-  lower_find_denominator(l, roots.at, roots.n);
   prog_title(l->p, k->n ? "mass matrix M, forces f, constraints A q'' = g" : "mass matrix M and forces f");
   lower_roots(l, roots.at, roots.n);
   l->multipliers = ARENA_ARRAY(l->p->arena, Slot, k->n + 1);

@@ -302,9 +302,8 @@ static FactorRecord factors_in_next(ModelSeries *w) {
   for (uint32_t k = 0; k < f->blocks.n; k++) {
     FactorBlock b = f->blocks.at[k];
     if (b.n < 3) inverse[k] = seen_inverse(w, b.divisor);
-    if (b.n == 2) b.M = seen_slots(w, b.M, 4);
+    if (b.n >= 2) b.M = seen_slots(w, b.M, b.n * b.n);
     vec_push(w->m.arena, &seen.blocks, b);
-    if (b.n > 2) w->out->room += factor_record_size(b.n);
   }
   return seen;
 }
@@ -432,5 +431,6 @@ Series *series_new(const IrSystem *sys, const char **why) {
   out->columns = (3 * sys->nq + 2 * sys->nz + (out->uses_time ? 1 : 0) + 3) / 4 * 4;
   out->first = first;
   out->next = next;
+  out->room = prog_work_size(first);
   return out;
 }

@@ -250,7 +250,7 @@ Val series_instruction(SeriesBuilder *m, const Ins *i, Slot at_zero, Val u, Val 
     case IR_TABLE: return refuse(m, "a table");
     case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: return refuse(m, "if");
     case IR_SELECT: return choice(m, at_zero, i->a, v, w);
-    case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_INVERT: case IR_NEST: case IR_TITLE: break;
+    case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_NEST: case IR_TITLE: break;
   }
   return 0;
 }
