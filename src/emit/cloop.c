@@ -147,8 +147,7 @@ static void declare_kept(Writer *w, const Body *b, int conditions) {
     else sb_printf(&text, "%s%s[%u]", text.n ? ", " : "", names[k], l->count + l->kept[k] - 1);
   }
   if (!text.n) return;
-  cwriter_statement(w, arena_printf(w->a, "%s_%s %s;", w->style->prefix, conditions ? "MASK" : "REAL", sb_text(&text)));
-  sb_putc(w->out, '\n');
+  cwriter_line(w, arena_printf(w->a, "%s_%s %s;", w->style->prefix, conditions ? "MASK" : "REAL", sb_text(&text)));
 }
 
 /* Copies the values that the first turns take from the code before the loop into the kept arrays. */
@@ -157,8 +156,7 @@ static void write_first_values(Writer *w, const Body *b) {
   for (uint32_t k = 0; k < l->period; k++)
     for (uint32_t t = 0; t + 1 < l->kept[k] && !l->carried[k]; t++) {
       uint32_t place = l->begin + k - (l->kept[k] - 1 - t) * l->period;
-      cwriter_statement(w, arena_printf(w->a, "%s[%u] = %s;", w->kept[b->number][k], t, cwriter_operand(w, w->rolls.code[place]).text));
-      sb_putc(w->out, '\n');
+      cwriter_line(w, arena_printf(w->a, "%s[%u] = %s;", w->kept[b->number][k], t, cwriter_operand(w, w->rolls.code[place]).text));
     }
 }
 
@@ -177,9 +175,8 @@ static void name_turn_loads(Writer *w, Body *b) {
       const Ins *i = &w->p->ins.at[x];
       const char *name = cnames_take(&w->names, cloop_stem(w->a, i->name));
       vec_push(w->a, &b->loads, ((TurnLoad){x, s.step, name}));
-      cwriter_statement(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, cwriter_array(w, i->array),
+      cwriter_line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, cwriter_array(w, i->array),
                                         index_text(w, i->index, s.step)));
-      sb_putc(w->out, '\n');
     }
 }
 
@@ -240,8 +237,7 @@ static void write_value(Writer *w, const Body *b, uint32_t offset, Slot s, const
     x = w->piece[s];
   }
   if (!kept || carried) return;
-  cwriter_statement(w, arena_printf(w->a, "%s[%s] = %s;", w->kept[b->number][offset], index_text(w, kept - 1, 1), x.text));
-  sb_putc(w->out, '\n');
+  cwriter_line(w, arena_printf(w->a, "%s[%s] = %s;", w->kept[b->number][offset], index_text(w, kept - 1, 1), x.text));
 }
 
 static void write_turn(Writer *w, const Body *b) {
@@ -271,8 +267,7 @@ static void write_turn_end(Writer *w, const Body *b) {
   }
   for (uint32_t k = 0; k < l->period; k++) {
     if (!l->carried[k]) continue;
-    cwriter_statement(w, arena_printf(w->a, "%s = %s;", w->kept[b->number][k], w->piece[code_of(w, l, 0, k)].text));
-    sb_putc(w->out, '\n');
+    cwriter_line(w, arena_printf(w->a, "%s = %s;", w->kept[b->number][k], w->piece[code_of(w, l, 0, k)].text));
   }
 }
 
@@ -285,15 +280,13 @@ void cloop_write(Writer *w, uint32_t loop) {
   declare_kept(w, &b, 0);
   declare_kept(w, &b, 1);
   write_first_values(w, &b);
-  cwriter_statement(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) {", b.l->count));
-  sb_putc(w->out, '\n');
+  cwriter_line(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) {", b.l->count));
   w->indent += 2;
   name_turn_loads(w, &b);
   write_turn(w, &b);
   write_turn_end(w, &b);
   w->indent -= 2;
-  cwriter_statement(w, "}");
-  sb_putc(w->out, '\n');
+  cwriter_line(w, "}");
   for (uint32_t k = 0; k < b.l->period; k++)
     for (uint32_t t = 0; t < b.l->count && b.l->kept[k]; t++) {
       Slot s = code_of(w, b.l, t, k);

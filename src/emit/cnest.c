@@ -42,11 +42,6 @@ static const char *turn_of_row(const Nesting *x, int behind) {
   return index_text(x, (IrSubscript){.first = behind ? n->turns : 0, .by_row = n->skew + (behind ? n->more : 0)});
 }
 
-static void line(Writer *w, const char *text) {
-  cwriter_statement(w, text);
-  sb_putc(w->out, '\n');
-}
-
 /* --- the turn --- */
 
 static void find_varying(Nesting *x) {
@@ -67,7 +62,7 @@ static void write_load(Nesting *x, const Writer *around, Slot s) {
     w->piece[s] = (CExpr){w->style->in[i->array], C_ATOM, 0};
   } else {
     const char *name = cnames_take(&w->names, i->name ? i->name : "sum");
-    line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,
+    cwriter_line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,
                          i->array == ARR_P && w->parameters ? w->parameters : cwriter_array(w, i->array), place(x, i->index)));
     w->piece[s] = (CExpr){name, C_ATOM, 0};
   }
@@ -87,20 +82,20 @@ static void write_additions(Nesting *x) {
   for (uint32_t k = 0; k < w->p->stores.n; k++) {
     const Store *st = &w->p->stores.at[k];
     const char *sum = x->partial[k] ? x->partial[k] : arena_printf(w->a, "%s[%s]", w->cells, place(x, st->index));
-    line(w, arena_printf(w->a, "%s %s %s;", sum, st->array ? "-=" : "+=", cwriter_operand(w, st->slot).text));
+    cwriter_line(w, arena_printf(w->a, "%s %s %s;", sum, st->array ? "-=" : "+=", cwriter_operand(w, st->slot).text));
   }
 }
 
 /* --- the loops --- */
 
 static void open_loop(Writer *w, const char *counter, const char *from, const char *end) {
-  line(w, arena_printf(w->a, "for (int %s = %s; %s < %s; %s++) {", counter, from, counter, end, counter));
+  cwriter_line(w, arena_printf(w->a, "for (int %s = %s; %s < %s; %s++) {", counter, from, counter, end, counter));
   w->indent += 2;
 }
 
 static void close_loop(Writer *w) {
   w->indent -= 2;
-  line(w, "}");
+  cwriter_line(w, "}");
 }
 
 static void declare_partial(Nesting *x) {
@@ -111,13 +106,13 @@ static void declare_partial(Nesting *x) {
     x->partial[k] = cnames_take(&w->names, "part");
     sb_printf(&text, "%s%s = %s_C(0.0)", text.n ? ", " : "", x->partial[k], w->style->prefix);
   }
-  if (text.n) line(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&text)));
+  if (text.n) cwriter_line(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&text)));
 }
 
 static void add_partial(Nesting *x) {
   Writer *w = &x->body;
   for (uint32_t k = 0; k < w->p->stores.n; k++)
-    if (x->partial[k]) line(w, arena_printf(w->a, "%s[%s] += %s;", w->cells, place(x, w->p->stores.at[k].index), x->partial[k]));
+    if (x->partial[k]) cwriter_line(w, arena_printf(w->a, "%s[%s] += %s;", w->cells, place(x, w->p->stores.at[k].index), x->partial[k]));
 }
 
 static void write_rows(Nesting *x, const Writer *around) {
@@ -190,7 +185,7 @@ static void copy_parameters(Writer *w) {
   sb_printf(&text, "const %s_REAL %s[%lld] = {", w->style->prefix, w->parameters, (long long)end);
   for (int64_t k = 0; k < end; k++) sb_printf(&text, "%s%s->%s", k ? ", " : "", w->style->in[ARR_P], w->style->params[k]);
   sb_puts(&text, "};");
-  line(w, sb_text(&text));
+  cwriter_line(w, sb_text(&text));
 }
 
 void cnest_prepare(Writer *w) {
@@ -199,7 +194,7 @@ void cnest_prepare(Writer *w) {
   w->cells = cnames_take(&w->names, "sum");
   w->row = cnames_take(&w->names, "i");
   w->turn = cnames_take(&w->names, "j");
-  line(w, arena_printf(w->a, "%s_REAL %s[%u];", w->style->prefix, w->cells, w->p->cells));
-  line(w, arena_printf(w->a, "for (int %s = 0; %s < %u; %s++) %s[%s] = %s_C(0.0);", w->row, w->row, w->p->cells, w->row, w->cells, w->row,
+  cwriter_line(w, arena_printf(w->a, "%s_REAL %s[%u];", w->style->prefix, w->cells, w->p->cells));
+  cwriter_line(w, arena_printf(w->a, "for (int %s = 0; %s < %u; %s++) %s[%s] = %s_C(0.0);", w->row, w->row, w->p->cells, w->row, w->cells, w->row,
                        w->style->prefix));
 }

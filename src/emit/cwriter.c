@@ -214,6 +214,11 @@ void cwriter_statement(Writer *w, const char *text) {
   }
 }
 
+void cwriter_line(Writer *w, const char *text) {
+  cwriter_statement(w, text);
+  sb_putc(w->out, '\n');
+}
+
 /* Whether the text is short enough to stand inside another expression; a long prefix counts as three letters. */
 int cwriter_is_short(const Writer *w, CExpr x) {
   enum { INLINE_MAX = 64 };
@@ -275,9 +280,8 @@ void cwriter_declare(Writer *w, Slot s, CExpr name, CExpr x) {
 void cwriter_pivot(Writer *w, const Ins *i) {
   const char *m = w->style->prefix;
   cwriter_flush_title(w);
-  cwriter_statement(w, i->index ? arena_printf(w->a, "%s_POSITIVE(%s);", m, cwriter_operand(w, i->a).text)
+  cwriter_line(w, i->index ? arena_printf(w->a, "%s_POSITIVE(%s);", m, cwriter_operand(w, i->a).text)
                                 : arena_printf(w->a, "%s_PIVOT(%s != %s_C(0.0));", m, wrapped(w, i->a, C_CMP + 1), m));
-  sb_putc(w->out, '\n');
 }
 
 /* Rows of a table, as many on a line as fit. */
@@ -432,10 +436,8 @@ static int write_sincos_batch(Writer *w, Slot s) {
   StrBuf names = strbuf(w->a), arguments = strbuf(w->a);
   for (uint32_t k = 0; k < n; k++) declare_pair(w, at[k], &w->p->ins.at[at[k]], &w->p->ins.at[w->pair[at[k]]], &names, &arguments);
   cwriter_flush_title(w);
-  cwriter_statement(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&names)));
-  sb_putc(w->out, '\n');
-  cwriter_statement(w, arena_printf(w->a, "%s_sincos%u(%s);", w->style->math, n, sb_text(&arguments)));
-  sb_putc(w->out, '\n');
+  cwriter_line(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&names)));
+  cwriter_line(w, arena_printf(w->a, "%s_sincos%u(%s);", w->style->math, n, sb_text(&arguments)));
   return 1;
 }
 
@@ -496,8 +498,7 @@ static int is_paired(const Writer *w, uint32_t k) {
 static uint32_t write_pair(Writer *w, uint32_t k) {
   const Store *st = &w->p->stores.at[k], *other = next_store(w, k);
   const char *x = cwriter_operand(w, st->slot).text, *y = cwriter_operand(w, other ? other->slot : 0).text;
-  cwriter_statement(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
-  sb_putc(w->out, '\n');
+  cwriter_line(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
   return other ? 2 : 1;
 }
 

@@ -39,8 +39,9 @@ CExpr cwriter_operand(const Writer *w, Slot s);
 CExpr cwriter_spell(Writer *w, const Ins *i);
 int cwriter_is_short(const Writer *w, CExpr x);
 
-/* Appends a statement, broken at spaces where it is long, without a line end. */
+/* Appends a statement, broken at spaces where it is long; cwriter_line with a line end. */
 void cwriter_statement(Writer *w, const char *text);
+void cwriter_line(Writer *w, const char *text);
 void cwriter_pivot(Writer *w, const Ins *i);
 void cwriter_flush_title(Writer *w);
 

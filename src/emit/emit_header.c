@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "emit/embedded_math.h"
 #include "emit/header_impl.h"
 
 /* --- names --- */

@@ -1,10 +1,6 @@
 /* C of the Taylor recurrences: order 0, the step from order k to k + 1, the convolution sums over rows of coefficients,
  * and the evaluation of the series; each row operation also with vectors of four doubles (AVX2). */
-#include "emit/emit_taylor.h"
-
-#include <string.h>
-
-#include "emit/cfunction.h"
+#include "emit/emit_impl.h"
 
 enum { LANES = 4 };    /* row lengths are multiples of this */
 enum { CALL = 25 };    /* extra cost of a function call, in operations */

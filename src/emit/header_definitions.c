@@ -1,7 +1,6 @@
 /* Definitions of an emitted header: support functions, functions around programs, constraints, Runge-Kutta step. */
 #include <string.h>
 
-#include "emit/embedded_math.h"
 #include "emit/header_impl.h"
 
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
