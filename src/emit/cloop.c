@@ -74,15 +74,10 @@ void cloop_prepare(Writer *w) {
     const Ins *i = &w->p->ins.at[r->code[k]];
     const Loop *l = r->loop[k] ? loop_at(w, r->loop[k] - 1) : NULL;
     uint32_t offset = l ? (k - l->begin) % l->period : 0;
-    for (int which = 0; which < 3; which++) {
-      Slot x = roll_operand(i, which);
-      if (x && (!l || roll_step(r, l, offset, which).kind == STEP_SAME)) name_load(w, x);
+    for (uint32_t j = 0; j < prog_operands(w->p, i); j++) {
+      Slot x = prog_operand(w->p, i, j);
+      if (x && (!l || roll_step(r, l, offset, (int)j).kind == STEP_SAME)) name_load(w, x);
     }
-    for (uint32_t j = 0; i->op == IR_NEST && j < w->p->nests.at[i->index].nouter; j++) name_load(w, w->p->nests.at[i->index].outer[j]);
-    if (i->op != IR_SOLVE) continue;
-    const Solve *s = &w->p->solves.at[i->index];
-    for (uint32_t j = 0; j < solve_elements(s); j++) name_load(w, s->matrix[j]);
-    for (uint32_t j = 0; j < solve_unknowns(s); j++) name_load(w, s->rhs[j]);
   }
   for (uint32_t k = 0; k < w->p->stores.n;) {
     uint32_t n = cloop_stores(w, k);
@@ -115,7 +110,7 @@ static void count_own_uses(Writer *w, Body *b) {
     const Ins *i = &w->p->ins.at[code_of(w, b->l, 0, k)];
     int twice = i->op == IR_PIVOT || i->op == IR_SIGN || i->op == IR_MIN || i->op == IR_MAX; /* spelled twice */
     for (int which = 0; which < 3; which++) {
-      Slot x = roll_operand(i, which);
+      Slot x = ins_operand(i, which);
       if (x && roll_step(&w->rolls, b->l, k, which).kind == STEP_OWN) b->own_uses[offset_of(w, b->l, x)] += twice ? 2 : 1;
     }
   }
@@ -169,7 +164,7 @@ static const TurnLoad *turn_load(const Body *b, Slot first, int64_t step) {
 static void name_turn_loads(Writer *w, Body *b) {
   for (uint32_t k = 0; k < b->l->period; k++)
     for (int which = 0; which < 3; which++) {
-      Slot x = roll_operand(&w->p->ins.at[code_of(w, b->l, 0, k)], which);
+      Slot x = ins_operand(&w->p->ins.at[code_of(w, b->l, 0, k)], which);
       Step s = x ? roll_step(&w->rolls, b->l, k, which) : (Step){.kind = STEP_SAME};
       if (s.kind != STEP_LOAD || turn_load(b, x, s.step)) continue;
       const Ins *i = &w->p->ins.at[x];
@@ -196,7 +191,7 @@ static CExpr turn_operand(const Writer *w, const Body *b, uint32_t offset, int w
     case STEP_NUMBER: {
       Num unit = {0};
       int64_t first = 0;
-      Slot y = roll_operand(&w->p->ins.at[code_of(w, b->l, 1, offset)], which);
+      Slot y = ins_operand(&w->p->ins.at[code_of(w, b->l, 1, offset)], which);
       roll_number(&w->p->ins.at[x], &w->p->ins.at[y], &unit, &first);
       return multiple(w, unit, index_text(w, first, 1));
     }
@@ -246,13 +241,13 @@ static void write_turn(Writer *w, const Body *b) {
     const Ins *i = &w->p->ins.at[s];
     CExpr before[3], now[3];
     for (int which = 0; which < 3; which++) {
-      Slot x = roll_operand(i, which);
+      Slot x = ins_operand(i, which);
       before[which] = w->piece[x];
       now[which] = x ? turn_operand(w, b, k, which, x) : before[which];
     }
-    for (int which = 0; which < 3; which++) w->piece[roll_operand(i, which)] = now[which];
+    for (int which = 0; which < 3; which++) w->piece[ins_operand(i, which)] = now[which];
     write_value(w, b, k, s, i);
-    for (int which = 3; which-- > 0;) w->piece[roll_operand(i, which)] = before[which];
+    for (int which = 3; which-- > 0;) w->piece[ins_operand(i, which)] = before[which];
   }
 }
 

@@ -360,7 +360,7 @@ static void write_arrays(Writer *w) {
 /* Declares the loads of the arrays that instruction s reads: here and not at the top, where calls in between would have to save them. */
 static void write_arrays_of(Writer *w, Slot s) {
   for (int which = 0; which < 3; which++) {
-    const Ins *x = &w->p->ins.at[roll_operand(&w->p->ins.at[s], which)];
+    const Ins *x = &w->p->ins.at[ins_operand(&w->p->ins.at[s], which)];
     if (x->op == IR_LOAD) write_array(w, (int)x->array);
   }
 }

@@ -29,37 +29,8 @@ static Real call2(const char *name, Real x, Real y) {
   return NAN;
 }
 
-/* Gauss elimination with partial pivoting of a[n*n] x = b[n]; b becomes x. */
-static int solve(Real *a, Real *b, uint32_t n) {
-  for (uint32_t k = 0; k < n; k++) {
-    uint32_t p = k;
-    for (uint32_t i = k + 1; i < n; i++)
-      if (fabsl(a[i * n + k]) > fabsl(a[p * n + k])) p = i;
-    if (!(fabsl(a[p * n + k]) > 0)) return -1;
-    for (uint32_t j = 0; j < n; j++) {
-      Real t = a[k * n + j];
-      a[k * n + j] = a[p * n + j];
-      a[p * n + j] = t;
-    }
-    Real t = b[k];
-    b[k] = b[p];
-    b[p] = t;
-    for (uint32_t i = k + 1; i < n; i++) {
-      Real f = a[i * n + k] / a[k * n + k];
-      for (uint32_t j = k; j < n; j++) a[i * n + j] -= f * a[k * n + j];
-      b[i] -= f * b[k];
-    }
-  }
-  for (uint32_t k = n; k-- > 0;) {
-    for (uint32_t j = k + 1; j < n; j++) b[k] -= a[k * n + j] * b[j];
-    b[k] /= a[k * n + k];
-  }
-  return 0;
-}
-
-/* [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Redundant constraints get
- * multipliers 0. */
-static const Real *solved_constrained(const Prog *p, const Solve *s, const Real *v, int *status) {
+/* Solves M x = f, or [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Redundant constraints get multipliers 0. */
+static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *status) {
   uint32_t n = s->n, total = solve_unknowns(s);
   Real *b = ARENA_ARRAY(p->arena, Real, total);
   ArenaMark before = arena_mark(p->arena);
@@ -71,18 +42,9 @@ static const Real *solved_constrained(const Prog *p, const Solve *s, const Real 
     sparse_put(p->arena, &system, i, j, x);
     if (i >= n) sparse_put(p->arena, &system, j, i, -x);
   }
-  sparse_solve(p->arena, total, &system, b, 1e-13L, NULL);
+  uint32_t rank = sparse_solve(p->arena, total, &system, b, s->m ? 1e-13L : 0, NULL);
   arena_forget(p->arena, before);
-  *status = isfinite(b[0]) ? 0 : -1;
-  return b;
-}
-
-static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *status) {
-  if (s->m) return solved_constrained(p, s, v, status);
-  Real *a = ARENA_ARRAY(p->arena, Real, s->n * s->n), *b = ARENA_ARRAY(p->arena, Real, s->n);
-  for (uint32_t i = 0; i < s->n * s->n; i++) a[i] = v[s->matrix[i]];
-  for (uint32_t i = 0; i < s->n; i++) b[i] = v[s->rhs[i]];
-  *status = solve(a, b, s->n);
+  *status = isfinite(b[0]) && (s->m || rank == n) ? 0 : -1;
   return b;
 }
 

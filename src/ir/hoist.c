@@ -58,14 +58,7 @@ static unsigned char *mark_needed(const Prog *p, const unsigned char *worthy) {
     const Ins *i = &p->ins.at[s];
     if (i->op == IR_PIVOT || i->op == IR_TITLE || i->op == IR_SOLVE) mark[s] |= HERE;
     unsigned char below = worthy[s] && mark[s] ? ONCE : mark[s];
-    mark[i->a] |= below;
-    mark[i->b] |= below;
-    mark[i->c] |= below;
-    for (uint32_t j = 0; i->op == IR_NEST && mark[s] && j < p->nests.at[i->index].nouter; j++) mark[p->nests.at[i->index].outer[j]] |= HERE;
-    if (i->op != IR_SOLVE) continue;
-    const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; j < solve_elements(k); j++) mark[k->matrix[j]] |= HERE;
-    for (uint32_t j = 0; j < solve_unknowns(k); j++) mark[k->rhs[j]] |= HERE;
+    for (uint32_t k = 0; k < prog_operands(p, i); k++) mark[prog_operand(p, i, k)] |= below;
   }
   return mark;
 }

@@ -99,7 +99,6 @@ typedef struct {
   VEC(Link) gives;           /* shares for hubs: their nodes; their indices are the last entries of `columns` */
   VEC(uint32_t) words;       /* serialised form, for comparison */
   VEC(int64_t) columns;      /* array indices of one piece */
-  VEC(uint32_t) class_of;    /* by column: class of the hub, from 1; 0: an array */
   VEC(uint32_t) array;       /* by column: the array, or ARR_COUNT + class of the hub */
   Children children, given;  /* scratch */
   VEC(Slot) open;

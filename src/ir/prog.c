@@ -106,6 +106,17 @@ Slot prog_ins(Prog *p, Ins i) {
 }
 
 Slot prog_op(Prog *p, IrOp op, Slot a, Slot b) { return prog_ins(p, (Ins){.op = op, .a = a, .b = b}); }
+
+Slot prog_add_product(Prog *p, Slot x, Slot a, Slot b) {
+  Slot ab = prog_op(p, IR_MUL, a, b);
+  return prog_op(p, IR_ADD, x, ab);
+}
+
+Slot prog_sub_product(Prog *p, Slot x, Slot a, Slot b) {
+  Slot ab = prog_op(p, IR_MUL, a, b);
+  return prog_op(p, IR_SUB, x, ab);
+}
+
 Slot prog_num(Prog *p, Num n) { return num_value(n) == 0 ? 0 : prog_ins(p, (Ins){.op = IR_CONST, .number = num_drop_error(n)}); }
 void prog_title(Prog *p, const char *text) { prog_ins(p, (Ins){.op = IR_TITLE, .text = text}); }
 
@@ -121,6 +132,10 @@ void prog_copy_stores(Prog *to, const Prog *from, const Slot *map) {
 }
 
 void prog_solve(Prog *p, Solve k, Slot *x) {
+  uint32_t *filled = ARENA_ARRAY(p->arena, uint32_t, solve_elements(&k) + 1);
+  for (uint32_t j = 0; j < solve_elements(&k); j++)
+    if (k.matrix[j]) filled[k.nfilled++] = j;
+  k.filled = filled;
   vec_push(p->arena, &p->solves, k);
   Slot s = prog_ins(p, (Ins){.op = IR_SOLVE, .index = p->solves.n - 1});
   for (uint32_t i = 0; i < k.n + k.m; i++) x[i] = prog_ins(p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
@@ -149,18 +164,24 @@ int ir_is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_LOAD;
 
 /* --- passes --- */
 
+uint32_t prog_operands(const Prog *p, const Ins *i) {
+  const Solve *k = i->op == IR_SOLVE ? &p->solves.at[i->index] : NULL;
+  return 3 + (i->op == IR_NEST ? p->nests.at[i->index].nouter : k ? solve_elements(k) + solve_unknowns(k) : 0);
+}
+
+Slot prog_operand(const Prog *p, const Ins *i, uint32_t k) {
+  if (k < 3) return ins_operand(i, (int)k);
+  if (i->op == IR_NEST) return p->nests.at[i->index].outer[k - 3];
+  const Solve *s = &p->solves.at[i->index];
+  return k - 3 < solve_elements(s) ? s->matrix[k - 3] : s->rhs[k - 3 - solve_elements(s)];
+}
+
 static void mark_needed(const Prog *p, unsigned char *need) {
   for (uint32_t i = 0; i < p->stores.n; i++) need[p->stores.at[i].slot] = 1;
   for (Slot s = p->ins.n; s-- > 1;) {
     const Ins *i = &p->ins.at[s];
     if (i->op == IR_PIVOT || i->op == IR_TITLE) need[s] = 1;
-    if (!need[s]) continue;
-    need[i->a] = need[i->b] = need[i->c] = 1;
-    for (uint32_t j = 0; i->op == IR_NEST && j < p->nests.at[i->index].nouter; j++) need[p->nests.at[i->index].outer[j]] = 1;
-    if (i->op != IR_SOLVE) continue;
-    const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; j < solve_elements(k); j++) need[k->matrix[j]] = 1;
-    for (uint32_t j = 0; j < solve_unknowns(k); j++) need[k->rhs[j]] = 1;
+    for (uint32_t k = 0; need[s] && k < prog_operands(p, i); k++) need[prog_operand(p, i, k)] = 1;
   }
 }
 
@@ -201,14 +222,7 @@ uint32_t *prog_uses(const Prog *p) {
   uint32_t *uses = ARENA_ARRAY(p->arena, uint32_t, p->ins.n);
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
-    uses[i->a]++;
-    uses[i->b]++;
-    uses[i->c]++;
-    for (uint32_t j = 0; i->op == IR_NEST && j < p->nests.at[i->index].nouter; j++) uses[p->nests.at[i->index].outer[j]]++;
-    if (i->op != IR_SOLVE) continue;
-    const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; j < solve_elements(k); j++) uses[k->matrix[j]]++;
-    for (uint32_t j = 0; j < solve_unknowns(k); j++) uses[k->rhs[j]]++;
+    for (uint32_t k = 0; k < prog_operands(p, i); k++) uses[prog_operand(p, i, k)]++;
   }
   for (uint32_t k = 0; k < p->stores.n; k++) uses[p->stores.at[k].slot]++;
   return uses;

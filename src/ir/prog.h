@@ -68,6 +68,9 @@ typedef struct {
   const char *text; /* a function's name; a title */
 } Ins;
 
+/* Operand 0, 1, 2 of an instruction. */
+static inline Slot ins_operand(const Ins *i, int k) { return k == 0 ? i->a : k == 1 ? i->b : i->c; }
+
 /* out[index] = slot; the comment names the value. */
 typedef struct {
   uint32_t array; /* output array, numbered in the order of the emitted function's declaration */
@@ -159,6 +162,8 @@ Prog *prog_new_like(const Prog *p);
  * Simplifies x + 0, 1*x and the like. */
 Slot prog_ins(Prog *p, Ins i);
 Slot prog_op(Prog *p, IrOp op, Slot a, Slot b);
+Slot prog_add_product(Prog *p, Slot x, Slot a, Slot b); /* x + a*b */
+Slot prog_sub_product(Prog *p, Slot x, Slot a, Slot b); /* x - a*b */
 Slot prog_num(Prog *p, Num n);
 void prog_title(Prog *p, const char *text);
 void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *comment);
@@ -166,7 +171,7 @@ void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *com
 /* Appends the stores of `from`, their slots renumbered by map[slot]. */
 void prog_copy_stores(Prog *to, const Prog *from, const Slot *map);
 
-/* Appends the solve and its solution x[n + m]. */
+/* Appends the solve, with `filled` listed, and its solution x[n + m]. */
 void prog_solve(Prog *p, Solve k, Slot *x);
 
 /* Gives a value the user's or the theory's name, unless it has a name or is a leaf. */
@@ -227,6 +232,11 @@ Ins prog_import(Prog *to, const Prog *from, const Slot *map, Ins i);
 /* All programs with instructions: part 0 is p itself, parts 1 ... prog_parts - 1 are the bodies of its nests. */
 uint32_t prog_parts(const Prog *p);
 const Prog *prog_part(const Prog *p, uint32_t k);
+
+/* Number of operands of an instruction, and operand k (0: a structural zero): a, b, c; then the values that its nest reads, or the matrix and
+ * the right-hand side of its system. */
+uint32_t prog_operands(const Prog *p, const Ins *i);
+Slot prog_operand(const Prog *p, const Ins *i, uint32_t k);
 
 /* Number of uses of each value by instructions, stores, solves and nests: [p->ins.n]. */
 uint32_t *prog_uses(const Prog *p);

@@ -63,6 +63,4 @@ Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which);
  * division by the unit's denominator rounds as the number itself. Returns 0 when the numbers have no such form. */
 int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first);
 
-Slot roll_operand(const Ins *i, int which);
-
 #endif

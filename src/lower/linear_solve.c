@@ -141,22 +141,14 @@ static void solve_one(Lower *l, const Block *b, Slot *x) {
 static void solve_two(Lower *l, Block *b, Slot *x) {
   Slot m11 = b->M[0], m12 = b->M[2], m22 = b->M[3];
   Slot square = op(l, IR_MUL, m11, m22);
-  Slot det = lower_minus_product(l, square, m12, m12);
+  Slot det = prog_sub_product(l->p, square, m12, m12);
   prog_name(l->p, det, "det_M");
   b->divisor = det;
   lower_pivot(l, det, 0);
   Slot top1 = op(l, IR_MUL, b->f[0], m22), top2 = op(l, IR_MUL, m11, b->f[1]);
-  Slot n1 = lower_minus_product(l, top1, m12, b->f[1]), n2 = lower_minus_product(l, top2, m12, b->f[0]);
+  Slot n1 = prog_sub_product(l->p, top1, m12, b->f[1]), n2 = prog_sub_product(l->p, top2, m12, b->f[0]);
   x[0] = op(l, IR_DIV, n1, det);
   x[1] = op(l, IR_DIV, n2, det);
-}
-
-/* Lists the nonzero elements of the matrix. */
-static void list_filled(Arena *a, Solve *k) {
-  uint32_t *filled = ARENA_ARRAY(a, uint32_t, solve_elements(k) + 1);
-  for (uint32_t j = 0; j < solve_elements(k); j++)
-    if (k->matrix[j]) filled[k->nfilled++] = j;
-  k->filled = filled;
 }
 
 /* Solves the block by a loop of the runtime: x[n], then the m multipliers. */
@@ -169,7 +161,6 @@ static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
   for (size_t k = 0; k < m * n; k++) full[n * n + k] = b->A[k];
   for (size_t i = 0; i < n + m; i++) rhs[i] = i < n ? b->f[i] : b->g[i - n];
   Solve k = {.n = b->n, .m = b->m, .coarse = coarse, .matrix = full, .rhs = rhs};
-  if (m) list_filled(a, &k);
   prog_solve(l->p, k, x);
 }
 
@@ -283,7 +274,7 @@ void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, Slot 
   solve_blocks(l, &sides, d, multipliers);
   for (uint32_t i = 0; i < e->n; i++) force[i] = 0;
   for (uint32_t k = 0; k < A->n && A->at[k].row < nrows; k++) {
-    Slot part = op(l, IR_MUL, lower_slot(l, A->at[k].e), multipliers[A->at[k].row]), *sum = &force[A->at[k].col];
-    *sum = op(l, IR_ADD, *sum, part);
+    Slot *sum = &force[A->at[k].col];
+    *sum = prog_add_product(l->p, *sum, lower_slot(l, A->at[k].e), multipliers[A->at[k].row]);
   }
 }

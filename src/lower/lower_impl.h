@@ -45,9 +45,6 @@ void lower_gram_schmidt(Lower *l, Slot *acc);
 /* Names "M12", "f1" by numbers of coordinates, from 1 (j UINT32_MAX: i alone); the stem alone when there is one coordinate. */
 Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j);
 
-/* x - a*b, with structural zeros skipped. */
-Slot lower_minus_product(Lower *l, Slot x, Slot a, Slot b);
-
 /* Check that d is positive, or (positive 0) not zero; none where d is a number that passes. */
 void lower_pivot(Lower *l, Slot d, int positive);
 
