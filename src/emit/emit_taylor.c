@@ -48,7 +48,8 @@ static const char *const wide_head =
   "typedef double taylor_four __attribute__((vector_size(32), aligned(8), may_alias));\n"
   "#endif\n";
 
-/* Templates, see fill(): $ is the suffix (none or _wide), # the vector type, @ an attribute, % the place of an unroll pragma. */
+/* Templates, see fill(): $ is the suffix (none or _wide), # the vector type, @ an attribute, % the place of an unroll pragma, ~N an unrolled loop
+ * over N vectors. */
 static const char *const at =
   "\n@static void taylor_at$(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
   "  enum { PARTS = 4*sizeof(LAG_REAL)/sizeof(#) };\n"
@@ -60,20 +61,17 @@ static const char *const at =
   "      for (int g = 0; g < (int)PARTS; g++) e[g] = row[g];\n"
   "    for (; k > 0; k -= 2) {\n"
   "      const # *const odd = (const # *)(x + k*TAYLOR_COLUMNS + i), *const even = (const # *)(x + (k - 1)*TAYLOR_COLUMNS + i);\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PARTS; g++) {\n"
+  "      ~PARTS {\n"
   "        d[g] = d[g]*u + o[g];\n"
   "        o[g] = o[g]*u + odd[g];\n"
   "      }\n"
   "      if (k == 1) break;\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PARTS; g++) {\n"
+  "      ~PARTS {\n"
   "        de[g] = de[g]*u + e[g];\n"
   "        e[g] = e[g]*u + even[g];\n"
   "      }\n"
   "    }\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) {\n"
+  "    ~PARTS {\n"
   "      ((# *)(y + i))[g] = e[g]*u + o[g]*s;\n"
   "      ((# *)(dy + i))[g] = (de[g]*u + e[g])*(twice*s) + d[g]*(twice*u) + o[g];\n"
   "    }\n"
@@ -88,20 +86,16 @@ static const char *const sums =
   "    # s[PARTS] = {0};\n"
   "%    for (int j = 2; j < last; j++) {\n"
   "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->b[k - j] + i);\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PARTS; g++) s[g] += a[g]*b[g];\n"
+  "      ~PARTS s[g] += a[g]*b[g];\n"
   "    }\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) ((# *)(w->s + i))[g] = s[g];\n"
+  "    ~PARTS ((# *)(w->s + i))[g] = s[g];\n"
   "    const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + i), *const b1 = (const taylor_pair *)(w->b[1] + i);\n"
   "    const taylor_pair *const an = (const taylor_pair *)(w->a[last] + i), *const bn = (const taylor_pair *)(w->b[last] + i);\n"
   "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
   "    if (k > 2) {\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PAIRS; g++) out[g] = out[g] + an[g]*b1[g] + a1[g]*bn[g];\n"
+  "      ~PAIRS out[g] = out[g] + an[g]*b1[g] + a1[g]*bn[g];\n"
   "    } else if (k == 2) {\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PAIRS; g++) out[g] = a1[g]*bn[g];\n"
+  "      ~PAIRS out[g] = a1[g]*bn[g];\n"
   "    }\n"
   "  }\n"
   "}\n";
@@ -115,24 +109,19 @@ static const char *const squares =
   "    # s[PARTS] = {0};\n"
   "%    for (int j = 2; j < k - j; j++) {\n"
   "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->a[k - j] + i);\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PARTS; g++) s[g] += a[g]*b[g];\n"
+  "      ~PARTS s[g] += a[g]*b[g];\n"
   "    }\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) s[g] *= twice;\n"
+  "    ~PARTS s[g] *= twice;\n"
   "    const # *const m = (const # *)(w->a[half] + i);\n"
   "    if (half > 1 && 2*half == k) {\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PARTS; g++) s[g] += m[g]*m[g];\n"
+  "      ~PARTS s[g] += m[g]*m[g];\n"
   "    }\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) ((# *)(w->s + i))[g] = s[g];\n"
+  "    ~PARTS ((# *)(w->s + i))[g] = s[g];\n"
   "    if (k < 2) continue;\n"
   "    const taylor_pair *const a = (const taylor_pair *)(w->a[1] + i), *const b = (const taylor_pair *)(w->a[last] + i);\n"
   "    const LAG_REAL weight = k > 2 ? twice : LAG_C(1.0);\n"
   "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) out[g] += weight*(a[g]*b[g]);\n"
+  "    ~PAIRS out[g] += weight*(a[g]*b[g]);\n"
   "  }\n"
   "}\n";
 
@@ -147,25 +136,19 @@ static const char *const register_sums =
   "  TAYLOR_UNROLL_4\n"
   "  for (int j = 3; j < k - 2; j++) {\n"
   "    const # *const aj = (const # *)w->a[j], *const bj = (const # *)w->b[k - j];\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) far[g] += aj[g]*bj[g];\n"
+  "    ~PARTS far[g] += aj[g]*bj[g];\n"
   "  }\n"
-  "  TAYLOR_UNROLL\n"
-  "  for (int g = 0; g < (int)PAIRS; g++) s[g] = taylor_part$(far, g);\n"
+  "  ~PAIRS s[g] = taylor_part$(far, g);\n"
   "  if (k > 4) {\n"
   "    const taylor_pair *const am = (const taylor_pair *)w->a[k - 2], *const bm = (const taylor_pair *)w->b[k - 2];\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += am[g]*b2[g] + a2[g]*bm[g];\n"
+  "    ~PAIRS s[g] += am[g]*b2[g] + a2[g]*bm[g];\n"
   "  } else if (k == 4) {\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] = a2[g]*b2[g];\n"
+  "    ~PAIRS s[g] = a2[g]*b2[g];\n"
   "  }\n"
   "  if (k > 2) {\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += a[g]*b1[g] + a1[g]*b[g];\n"
+  "    ~PAIRS s[g] += a[g]*b1[g] + a1[g]*b[g];\n"
   "  } else if (k == 2) {\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] = a[g]*b[g];\n"
+  "    ~PAIRS s[g] = a[g]*b[g];\n"
   "  }\n"
   "}\n";
 
@@ -179,27 +162,21 @@ static const char *const register_squares =
   "  TAYLOR_UNROLL_4\n"
   "  for (int j = 3; j < k - j; j++) {\n"
   "    const # *const aj = (const # *)(w->a[j] + TAYLOR_SQUARES), *const bj = (const # *)(w->a[k - j] + TAYLOR_SQUARES);\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) far[g] += aj[g]*bj[g];\n"
+  "    ~PARTS far[g] += aj[g]*bj[g];\n"
   "  }\n"
-  "  TAYLOR_UNROLL\n"
-  "  for (int g = 0; g < (int)PAIRS; g++) s[g] = twice*taylor_part$(far, g);\n"
+  "  ~PAIRS s[g] = twice*taylor_part$(far, g);\n"
   "  if (half > 1 && 2*half == k) {\n"
   "    const taylor_pair *const m = (const taylor_pair *)(w->a[half] + TAYLOR_SQUARES);\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += m[g]*m[g];\n"
+  "    ~PAIRS s[g] += m[g]*m[g];\n"
   "  }\n"
   "  if (k > 4) {\n"
   "    const taylor_pair *const am = (const taylor_pair *)(w->a[k - 2] + TAYLOR_SQUARES);\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += twice*(am[g]*a2[g]);\n"
+  "    ~PAIRS s[g] += twice*(am[g]*a2[g]);\n"
   "  }\n"
   "  if (k > 2) {\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += twice*(a[g]*a1[g]);\n"
+  "    ~PAIRS s[g] += twice*(a[g]*a1[g]);\n"
   "  } else if (k == 2) {\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] = a[g]*a[g];\n"
+  "    ~PAIRS s[g] = a[g]*a[g];\n"
   "  }\n"
   "}\n";
 
@@ -383,6 +360,15 @@ static void rest(const TaylorWriter *w, const char *suffix, const char *attribut
   sb_puts(w->out, "    per_k = per_next;\n  }\n}\n");
 }
 
+/* Appends the head of the loop `~PARTS` or `~PAIRS` at text, indented as in its line; returns the length of that word. */
+static size_t unrolled(StrBuf *out, const char *text) {
+  enum { WORD = 5 };
+  size_t column = 0;
+  while (text[-1 - (int)column] == ' ') column++;
+  sb_printf(out, "TAYLOR_UNROLL\n%*sfor (int g = 0; g < (int)%.*s; g++)", (int)column, "", WORD, text + 1);
+  return WORD;
+}
+
 /* Appends a template with its marks filled in. The loop over orders is unrolled where there is a single group of sums. */
 static void fill(const TaylorWriter *w, const char *text, const char *suffix, const char *type, const char *attribute) {
   StrBuf *out = w->out;
@@ -391,6 +377,7 @@ static void fill(const TaylorWriter *w, const char *text, const char *suffix, co
     else if (*text == '#' && text[1] == ' ') sb_puts(out, type);
     else if (*text == '#' && text[1] == ')') sb_puts(out, type);
     else if (*text == '@') sb_puts(out, attribute);
+    else if (*text == '~') text += unrolled(out, text);
     else if (*text == '%' && text[1] == ' ') sb_puts(out, w->s->first_square == w->s->group ? "    TAYLOR_UNROLL_4\n" : "");
     else sb_putc(out, *text);
   }

@@ -28,7 +28,7 @@ static void forward(Prog *p, const FactorRecord *f, uint32_t v, Slot *b, const S
   }
 }
 
-static void backward(Prog *p, const FactorRecord *f, uint32_t v, const Slot *b, const Slot *s, Slot *x) {
+void factor_record_backward(Prog *p, const FactorRecord *f, uint32_t v, const Slot *b, const Slot *s, Slot *x) {
   if (v < f->n) {
     x[v] = divided(p, f, v, b[v], f->pivot[v]);
     for (uint32_t k = 0; k < f->below[v].n; k++) x[v] = prog_sub_product(p, x[v], f->below[v].at[k].value, x[f->below[v].at[k].col]);
@@ -63,7 +63,7 @@ static void solve_loop(Prog *p, const FactorBlock *m, const Slot *b, Slot *x) {
 void factor_record_solve(Prog *p, const FactorRecord *f, Slot *b, const Slot *s, Slot *x) {
   uint32_t total = f->n + f->ndefs;
   for (uint32_t k = 0; f->straight && k < total; k++) forward(p, f, f->order[k], b, s);
-  for (uint32_t k = total; f->straight && k-- > 0;) backward(p, f, f->order[k], b, s, x);
+  for (uint32_t k = total; f->straight && k-- > 0;) factor_record_backward(p, f, f->order[k], b, s, x);
   for (uint32_t k = 0; k < f->blocks.n; k++) {
     const FactorBlock *m = &f->blocks.at[k];
     if (m->n == 1) x[m->at[0]] = divided(p, f, k, b[m->at[0]], m->divisor);

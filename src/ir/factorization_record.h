@@ -31,4 +31,7 @@ typedef struct {
  * C u' + s[n + k] (s NULL: 0). b is destroyed. */
 void factor_record_solve(Prog *p, const FactorRecord *f, Slot *b, const Slot *s, Slot *x);
 
+/* Computes x[v] from b and the unknowns eliminated after v: the step of back substitution. */
+void factor_record_backward(Prog *p, const FactorRecord *f, uint32_t v, const Slot *b, const Slot *s, Slot *x);
+
 #endif

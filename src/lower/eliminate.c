@@ -121,29 +121,11 @@ static void eliminate_definition(Elimination *y, uint32_t v) {
   }
 }
 
-/* --- substitution --- */
-
-static void substitute(Elimination *y, uint32_t v) {
-  if (v < y->s->n) {
-    y->x[v] = op(y, IR_DIV, y->b[v], sparse_get(&y->H, v, v));
-    for (uint32_t k = 0; k < y->factor[v].n; k++)
-      y->x[v] = prog_sub_product(y->l->p, y->x[v], y->factor[v].at[k].value, y->x[y->factor[v].at[k].col]);
-    return;
-  }
-  for (uint32_t k = 0; k < y->C[v].n; k++) {
-    Slot part = op(y, IR_MUL, y->C[v].at[k].value, y->x[y->C[v].at[k].col]);
-    y->x[v] = op(y, IR_ADD, y->x[v], part);
-  }
-}
-
-/* Records the factors for factor_record_solve. */
-static void keep_factors(const Elimination *y) {
-  Lower *l = y->l;
-  Slot *pivot = ARENA_ARRAY(l->p->arena, Slot, y->s->n + 1);
+static FactorRecord record(const Elimination *y) {
+  Slot *pivot = ARENA_ARRAY(y->l->p->arena, Slot, y->s->n + 1);
   for (uint32_t v = 0; v < y->s->n; v++) pivot[v] = sparse_get(&y->H, v, v);
-  *l->factored = (FactorRecord){.n = y->s->n, .ndefs = y->s->ndefs, .straight = 1, .order = y->s->order, .pivot = pivot, .below = y->factor,
-                            .C = y->C, .row = y->H.rows};
-  l->x = y->x;
+  return (FactorRecord){.n = y->s->n, .ndefs = y->s->ndefs, .straight = 1, .order = y->s->order, .pivot = pivot, .below = y->factor, .C = y->C,
+                        .row = y->H.rows};
 }
 
 void lower_elimination(Lower *l, Slot *acc) {
@@ -156,7 +138,9 @@ void lower_elimination(Lower *l, Slot *acc) {
     else eliminate_definition(&y, v);
     sparse_eliminate(&y.H, v);
   }
-  for (uint32_t k = total; k-- > 0;) substitute(&y, y.s->order[k]);
+  FactorRecord factors = record(&y);
+  for (uint32_t k = total; k-- > 0;) factor_record_backward(l->p, &factors, y.s->order[k], y.b, NULL, y.x);
   for (uint32_t i = 0; i < y.s->n; i++) acc[i] = y.x[i];
-  if (l->factored) keep_factors(&y);
+  if (l->factored) *l->factored = factors;
+  l->x = y.x;
 }

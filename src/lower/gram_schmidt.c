@@ -53,12 +53,9 @@ void lower_gram_schmidt(Lower *l, Slot *acc) {
   }
   prog_title(l->p, "M q'' = f, M = W^T C W by orthogonal columns of W");
   for (uint32_t k = 0; k < n; k++) orthogonalise_by(&y, order[k], order + k + 1, n - k - 1);
-  for (uint32_t k = n; k-- > 0;) {
-    uint32_t v = order[k];
-    acc[v] = op(&y, IR_DIV, y.b[v], y.pivot[v]);
-    for (uint32_t i = 0; i < y.below[v].n; i++) acc[v] = prog_sub_product(l->p, acc[v], y.below[v].at[i].value, acc[y.below[v].at[i].col]);
-  }
-  if (!l->factored) return;
-  *l->factored = (FactorRecord){.n = n, .straight = 1, .order = order, .pivot = y.pivot, .below = y.below, .C = ARENA_ARRAY(a, SparseRow, n), .row = ARENA_ARRAY(a, SparseRow, n)};
+  FactorRecord factors = {.n = n, .straight = 1, .order = order, .pivot = y.pivot, .below = y.below, .C = ARENA_ARRAY(a, SparseRow, n),
+                          .row = ARENA_ARRAY(a, SparseRow, n)};
+  for (uint32_t k = n; k-- > 0;) factor_record_backward(l->p, &factors, order[k], y.b, NULL, acc);
+  if (l->factored) *l->factored = factors;
   l->x = acc;
 }
