@@ -16,9 +16,8 @@ int cloop_share_turn(const Writer *w, Slot a, Slot b) {
   uint32_t la = pa ? w->rolls.loop[pa - 1] : 0, lb = pb ? w->rolls.loop[pb - 1] : 0;
   if (la != lb || !la) return la == lb;
   const Loop *l = loop_at(w, la - 1);
-  pa -= 1 + l->begin, pb -= 1 + l->begin;
-  if (pa / l->period != pb / l->period) return 0;
-  Step x = roll_step(&w->rolls, l, pa % l->period, 0), y = roll_step(&w->rolls, l, pb % l->period, 0);
+  if (loop_turn(l, pa - 1) != loop_turn(l, pb - 1)) return 0;
+  Step x = roll_step(&w->rolls, l, loop_offset(l, pa - 1), 0), y = roll_step(&w->rolls, l, loop_offset(l, pb - 1), 0);
   return x.kind == y.kind && x.step == y.step && x.back == y.back;
 }
 
@@ -38,21 +37,32 @@ const char *cloop_stem(Arena *a, const char *name) {
   return arena_strndup(a, sb_text(&b), n);
 }
 
-/* Text of the index first + step*k. */
-static const char *index_text(const Writer *w, int64_t first, int64_t step) {
-  const char *k = step == 1 || step == -1 ? "k" : arena_printf(w->a, "%lld*k", (long long)(step < 0 ? -step : step));
-  if (step < 0) return arena_printf(w->a, "%lld - %s", (long long)first, k);
-  return first ? arena_printf(w->a, "%s %c %lld", k, first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first)) : k;
+/* Appends a term such as " + 3*k". */
+static void put_term(StrBuf *b, int64_t factor, const char *counter) {
+  const char *sign = factor < 0 ? b->n ? " - " : "-" : b->n ? " + " : "";
+  int64_t size = factor < 0 ? -factor : factor;
+  if (size == 1) sb_printf(b, "%s%s", sign, counter);
+  else if (size) sb_printf(b, "%s%lld*%s", sign, (long long)size, counter);
 }
+
+const char *cloop_index(Arena *a, int64_t first, int64_t by_i, const char *i, int64_t by_j, const char *j) {
+  StrBuf b = strbuf(a);
+  int leads = by_i <= 0 && by_j <= 0; /* the number is written first */
+  if (leads && (first || (by_i >= 0 && by_j >= 0))) sb_printf(&b, "%lld", (long long)first);
+  put_term(&b, by_i, i);
+  put_term(&b, by_j, j);
+  if (!leads && first) sb_printf(&b, " %c %lld", first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first));
+  return sb_text(&b);
+}
+
+/* Text of the index first + step*k. */
+static const char *index_text(const Writer *w, int64_t first, int64_t step) { return cloop_index(w->a, first, step, "k", 0, ""); }
 
 /* The element of the kept array that holds the value at `place` of a loop; if step is not 0, its index advances by `step`
  * iterations per k. */
 static CExpr kept_value(const Writer *w, uint32_t place, int64_t step) {
-  uint32_t in = w->rolls.loop[place] - 1, offset, turn;
-  const Loop *l = loop_at(w, in);
-  offset = (place - l->begin) % l->period;
-  turn = (place - l->begin) / l->period;
-  int64_t first = (int64_t)(l->kept[offset] - 1) + turn;
+  uint32_t in = w->rolls.loop[place] - 1, offset = loop_offset(loop_at(w, in), place);
+  int64_t first = (int64_t)(loop_at(w, in)->kept[offset] - 1) + loop_turn(loop_at(w, in), place);
   const char *index = step ? index_text(w, first, step) : arena_printf(w->a, "%lld", (long long)first);
   return (CExpr){arena_printf(w->a, "%s[%s]", w->kept[in][offset], index), C_ATOM, 1};
 }
@@ -73,7 +83,7 @@ void cloop_prepare(Writer *w) {
   for (uint32_t k = 0; k < r->n; k++) {
     const Ins *i = &w->p->ins.at[r->code[k]];
     const Loop *l = r->loop[k] ? loop_at(w, r->loop[k] - 1) : NULL;
-    uint32_t offset = l ? (k - l->begin) % l->period : 0;
+    uint32_t offset = l ? loop_offset(l, k) : 0;
     for (uint32_t j = 0; j < prog_operands(w->p, i); j++) {
       Slot x = prog_operand(w->p, i, j);
       if (x && (!l || roll_step(r, l, offset, (int)j).kind == STEP_SAME)) name_load(w, x);

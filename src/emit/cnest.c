@@ -15,23 +15,8 @@ typedef struct {
 
 static int has_rows(const Nest *n) { return n->rows > 1; }
 
-/* Appends a term such as " + 3*i". */
-static void put_term(StrBuf *b, int64_t factor, const char *counter) {
-  if (!factor) return;
-  const char *sign = factor < 0 ? b->n ? " - " : "-" : b->n ? " + " : "";
-  int64_t size = factor < 0 ? -factor : factor;
-  if (size == 1) sb_printf(b, "%s%s", sign, counter);
-  else sb_printf(b, "%s%lld*%s", sign, (long long)size, counter);
-}
-
 static const char *index_text(const Nesting *x, IrSubscript at) {
-  StrBuf b = strbuf(x->body.a);
-  int64_t first = at.first;
-  put_term(&b, has_rows(x->n) ? at.by_row : 0, x->i);
-  put_term(&b, nest_has_turns(x->n) ? at.by_turn : 0, x->j);
-  if (!b.n) sb_printf(&b, "%lld", (long long)first);
-  else if (first) sb_printf(&b, " %c %lld", first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first));
-  return sb_text(&b);
+  return cloop_index(x->body.a, at.first, has_rows(x->n) ? at.by_row : 0, x->i, nest_has_turns(x->n) ? at.by_turn : 0, x->j);
 }
 
 static const char *place(const Nesting *x, uint32_t k) { return index_text(x, x->n->at[k]); }

@@ -120,24 +120,19 @@ static CExpr negative(Writer *w, const Ins *i) {
   return (CExpr){arena_printf(w->a, "-%s", wrapped(w, i->a, product ? C_MUL : C_ATOM)), product ? C_MUL : C_UNARY, 0};
 }
 
-static CExpr macro(Writer *w, const char *name, Slot a, Slot b, Slot c, int n) {
-  const char *x = cwriter_operand(w, a).text, *y = cwriter_operand(w, b).text, *z = cwriter_operand(w, c).text, *m = w->style->prefix;
-  const char *t = n == 1 ? arena_printf(w->a, "%s_%s(%s)", m, name, x) : n == 2 ? arena_printf(w->a, "%s_%s(%s, %s)", m, name, x, y)
-                         : arena_printf(w->a, "%s_%s(%s, %s, %s)", m, name, x, y, z);
-  return (CExpr){t, C_ATOM, 0};
+/* A call of `head` with n operands. */
+static CExpr call(Writer *w, const char *head, const Ins *i, int n) {
+  StrBuf b = strbuf(w->a);
+  for (int k = 0; k < n; k++) sb_printf(&b, "%s%s", k ? ", " : "", cwriter_operand(w, ins_operand(i, k)).text);
+  return (CExpr){arena_printf(w->a, "%s(%s)", head, sb_text(&b)), C_ATOM, 0};
 }
 
-/* Whether the function is embedded in the file. */
-static int is_own(const Writer *w, const char *fn) { return w->style->math && (strcmp(fn, "sin") == 0 || strcmp(fn, "cos") == 0); }
+static CExpr macro(Writer *w, const char *name, const Ins *i, int n) { return call(w, arena_printf(w->a, "%s_%s", w->style->prefix, name), i, n); }
 
-static CExpr call1(Writer *w, const char *fn, Slot a) {
-  if (is_own(w, fn)) return (CExpr){arena_printf(w->a, "%s_%s(%s)", w->style->math, fn, cwriter_operand(w, a).text), C_ATOM, 0};
-  return (CExpr){arena_printf(w->a, "%s_FN(%s)(%s)", w->style->prefix, fn, cwriter_operand(w, a).text), C_ATOM, 0};
-}
-
-static CExpr call2(Writer *w, const char *fn, Slot a, Slot b) {
-  const char *x = cwriter_operand(w, a).text, *y = cwriter_operand(w, b).text; /* slot 0 is the number 0 */
-  return (CExpr){arena_printf(w->a, "%s_FN(%s)(%s, %s)", w->style->prefix, fn, x, y), C_ATOM, 0};
+/* A function of the C library; sin and cos may be embedded in the file. */
+static CExpr function(Writer *w, const char *fn, const Ins *i, int n) {
+  int is_own = w->style->math && (strcmp(fn, "sin") == 0 || strcmp(fn, "cos") == 0);
+  return call(w, is_own ? arena_printf(w->a, "%s_%s", w->style->math, fn) : arena_printf(w->a, "%s_FN(%s)", w->style->prefix, fn), i, n);
 }
 
 /* Element `index` of an array: p->m1 where the parameters are a struct. */
@@ -180,17 +175,17 @@ CExpr cwriter_spell(Writer *w, const Ins *i) {
     case IR_MUL: return infix(w, i, "*", C_MUL);
     case IR_DIV: return infix(w, i, "/", C_MUL);
     case IR_NEG: return negative(w, i);
-    case IR_SQRT: return call1(w, "sqrt", i->a);
-    case IR_FN1: return call1(w, i->text, i->a);
-    case IR_FN2: return call2(w, i->text, i->a, i->b);
+    case IR_SQRT: return function(w, "sqrt", i, 1);
+    case IR_FN1: return function(w, i->text, i, 1);
+    case IR_FN2: return function(w, i->text, i, 2);
     case IR_MIN: case IR_MAX: case IR_SIGN: return choose(w, i);
     case IR_LT: return infix(w, i, " < ", C_CMP);
     case IR_LE: return infix(w, i, " <= ", C_CMP);
     case IR_EQ: return infix(w, i, " == ", C_CMP);
-    case IR_NOT: return macro(w, "NOT", i->a, 0, 0, 1);
-    case IR_AND: return macro(w, "AND", i->a, i->b, 0, 2);
-    case IR_OR: return macro(w, "OR", i->a, i->b, 0, 2);
-    case IR_SELECT: return macro(w, "SELECT", i->a, i->b, i->c, 3);
+    case IR_NOT: return macro(w, "NOT", i, 1);
+    case IR_AND: return macro(w, "AND", i, 2);
+    case IR_OR: return macro(w, "OR", i, 2);
+    case IR_SELECT: return macro(w, "SELECT", i, 3);
     case IR_SOLVED: return solved(w, i);
     case IR_PIVOT: case IR_SOLVE: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }

@@ -82,6 +82,9 @@ int cloop_names_load(const Writer *w, Slot s);
 /* Name without indices, common to all turns of a loop: x[3]' -> x', D12 -> D, L2_11 -> L. */
 const char *cloop_stem(Arena *a, const char *name);
 
+/* Text of the index first + by_i*i + by_j*j. */
+const char *cloop_index(Arena *a, int64_t first, int64_t by_i, const char *i, int64_t by_j, const char *j);
+
 /* Writes an IR_SOLVE. */
 void csolve_write(Writer *w, const Ins *i);
 

@@ -236,6 +236,7 @@ static void emit_params(const File *f, const IrScene *s, const char *id) {
   }
   sb_puts(f->out, f->u->nderived ? "  derive(p);\n}\n" : "}\n");
 }
+
 static void emit_inputs(const File *f) {
   static const char *const own[] = {"t", "p", "u", NULL}, *const written[] = {"u"};
   const Prog *p = f->u->inputs;

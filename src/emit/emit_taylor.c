@@ -267,6 +267,28 @@ static void next(const TaylorWriter *w) {
   sb_puts(w->out, "}\n");
 }
 
+/* Appends the head of the loop `~N` at text, indented as in its line (begin: of the template); returns the length of N. */
+static size_t unrolled(StrBuf *out, const char *begin, const char *text) {
+  size_t column = 0, n = strspn(text + 1, "ABCDEFGHIJKLMNOPQRSTUVWXYZ");
+  while (text - column > begin && *(text - column - 1) == ' ') column++;
+  sb_printf(out, "TAYLOR_UNROLL\n%*sfor (int g = 0; g < (int)%.*s; g++)", (int)column, "", (int)n, text + 1);
+  return n;
+}
+
+/* Appends a template with its marks filled in. The loop over orders is unrolled where there is a single group of sums. */
+static void fill(const TaylorWriter *w, const char *text, const char *suffix, const char *type, const char *attribute) {
+  StrBuf *out = w->out;
+  for (const char *begin = text; *text; text++) {
+    if (*text == '$') sb_puts(out, suffix);
+    else if (*text == '#' && text[1] == ' ') sb_puts(out, type);
+    else if (*text == '#' && text[1] == ')') sb_puts(out, type);
+    else if (*text == '@') sb_puts(out, attribute);
+    else if (*text == '~') text += unrolled(out, begin, text);
+    else if (*text == '%' && text[1] == ' ') sb_puts(out, w->s->first_square == w->s->group ? "    TAYLOR_UNROLL_4\n" : "");
+    else sb_putc(out, *text);
+  }
+}
+
 /* Column of order 0 that holds the rate of column i of the state. */
 static uint32_t rate_column(const Series *s, uint32_t i) { return i < s->nq ? s->nq + i : s->nq + s->nz + i; }
 
@@ -305,40 +327,32 @@ static void orders_in_registers(const TaylorWriter *w, const char *suffix) {
   const Series *s = w->s;
   uint32_t state = 2 * s->nq + s->nz;
   int reads_row = s->uses_time; /* t stands behind the state, in the row */
-  sb_puts(w->out, "  enum { STATE = TAYLOR_STATE/TAYLOR_PER_PAIR, PAIRS = TAYLOR_PAIRED/TAYLOR_PER_PAIR, SQUARES = TAYLOR_SQUARES/TAYLOR_PER_PAIR,\n"
-                  "    ALL = TAYLOR_SQUARED ? SQUARES + TAYLOR_SQUARED/TAYLOR_PER_PAIR : PAIRS };\n"
-                  "  const taylor_pair zero = {0};\n"
-                  "  taylor_pair y1[STATE], a[ALL + 1], b[PAIRS + 1];\n"
-                  "  TAYLOR_UNROLL\n"
-                  "  for (int g = 0; g < (int)ALL; g++) a[g] = zero;\n"
-                  "  TAYLOR_UNROLL\n"
-                  "  for (int g = 0; g < (int)PAIRS; g++) b[g] = zero;\n");
+  fill(w, "  enum { STATE = TAYLOR_STATE/TAYLOR_PER_PAIR, PAIRS = TAYLOR_PAIRED/TAYLOR_PER_PAIR, SQUARES = TAYLOR_SQUARES/TAYLOR_PER_PAIR,\n"
+          "    ALL = TAYLOR_SQUARED ? SQUARES + TAYLOR_SQUARED/TAYLOR_PER_PAIR : PAIRS };\n"
+          "  const taylor_pair zero = {0};\n"
+          "  taylor_pair y1[STATE], a[ALL + 1], b[PAIRS + 1];\n"
+          "  ~ALL a[g] = zero;\n"
+          "  ~PAIRS b[g] = zero;\n", "", "", "");
   for (uint32_t i = 0; i < state; i += 2) {
     sb_printf(w->out, "  LAG_PAIR(y1, %u, T*x[%u], ", i, rate_column(s, i));
     if (i + 1 < state) sb_printf(w->out, "T*x[%u]);\n", rate_column(s, i + 1));
     else sb_puts(w->out, "LAG_C(0.0));\n");
   }
-  sb_puts(w->out, "  TAYLOR_UNROLL\n"
-                  "  for (int g = 0; g < (int)STATE; g++) ((taylor_pair *)(x + TAYLOR_COLUMNS))[g] = y1[g];\n"
-                  "  for (int k = 1; k < n; k++) {\n"
-                  "    LAG_REAL *const row = x + k*TAYLOR_COLUMNS;\n"
-                  "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n"
-                  "    taylor_pair s[ALL + 1], sum[ALL + 1];\n");
-  if (!reads_row) sb_puts(w->out, "    taylor_pair y[STATE];\n"
-                                  "    TAYLOR_UNROLL\n"
-                                  "    for (int g = 0; g < (int)STATE; g++) y[g] = y1[g];\n");
+  fill(w, "  ~STATE ((taylor_pair *)(x + TAYLOR_COLUMNS))[g] = y1[g];\n"
+          "  for (int k = 1; k < n; k++) {\n"
+          "    LAG_REAL *const row = x + k*TAYLOR_COLUMNS;\n"
+          "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n"
+          "    taylor_pair s[ALL + 1], sum[ALL + 1];\n", "", "", "");
+  if (!reads_row) fill(w, "    taylor_pair y[STATE];\n"
+                          "    ~STATE y[g] = y1[g];\n", "", "", "");
   if (s->sums) sb_printf(w->out, "    taylor_sums%s(k, w, a, b, sum);\n", suffix);
   if (s->squares) sb_printf(w->out, "    taylor_squares%s(k, w, a + SQUARES, sum + SQUARES);\n", suffix);
-  sb_puts(w->out, "    TAYLOR_UNROLL\n"
-                  "    for (int g = 0; g < (int)ALL; g++) s[g] = sum[g];\n");
+  fill(w, "    ~ALL s[g] = sum[g];\n", "", "", "");
   sb_printf(w->out, "    taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, (const LAG_REAL *)s, w->c, %s, row, (LAG_REAL *)y1, (LAG_REAL *)a, (LAG_REAL *)b%s);\n",
             reads_row ? "row" : "(const LAG_REAL *)y", s->room ? ", w->m" : "");
-  sb_puts(w->out, "    TAYLOR_UNROLL\n"
-                  "    for (int g = 0; g < (int)STATE; g++) ((taylor_pair *)(row + TAYLOR_COLUMNS))[g] = y1[g];\n"
-                  "    TAYLOR_UNROLL\n"
-                  "    for (int g = 0; g < (int)ALL; g++) ((taylor_pair *)w->a[k])[g] = a[g];\n"
-                  "    TAYLOR_UNROLL\n"
-                  "    for (int g = 0; g < (int)PAIRS; g++) ((taylor_pair *)w->b[k])[g] = b[g];\n");
+  fill(w, "    ~STATE ((taylor_pair *)(row + TAYLOR_COLUMNS))[g] = y1[g];\n"
+          "    ~ALL ((taylor_pair *)w->a[k])[g] = a[g];\n"
+          "    ~PAIRS ((taylor_pair *)w->b[k])[g] = b[g];\n", "", "", "");
 }
 
 static void rest(const TaylorWriter *w, const char *suffix, const char *attribute) {
@@ -358,29 +372,6 @@ static void rest(const TaylorWriter *w, const char *suffix, const char *attribut
   }
   if (s->uses_time) sb_printf(w->out, "    row[TAYLOR_COLUMNS + %u] = LAG_C(0.0);\n", t);
   sb_puts(w->out, "    per_k = per_next;\n  }\n}\n");
-}
-
-/* Appends the head of the loop `~PARTS` or `~PAIRS` at text, indented as in its line; returns the length of that word. */
-static size_t unrolled(StrBuf *out, const char *text) {
-  enum { WORD = 5 };
-  size_t column = 0;
-  while (text[-1 - (int)column] == ' ') column++;
-  sb_printf(out, "TAYLOR_UNROLL\n%*sfor (int g = 0; g < (int)%.*s; g++)", (int)column, "", WORD, text + 1);
-  return WORD;
-}
-
-/* Appends a template with its marks filled in. The loop over orders is unrolled where there is a single group of sums. */
-static void fill(const TaylorWriter *w, const char *text, const char *suffix, const char *type, const char *attribute) {
-  StrBuf *out = w->out;
-  for (; *text; text++) {
-    if (*text == '$') sb_puts(out, suffix);
-    else if (*text == '#' && text[1] == ' ') sb_puts(out, type);
-    else if (*text == '#' && text[1] == ')') sb_puts(out, type);
-    else if (*text == '@') sb_puts(out, attribute);
-    else if (*text == '~') text += unrolled(out, text);
-    else if (*text == '%' && text[1] == ' ') sb_puts(out, w->s->first_square == w->s->group ? "    TAYLOR_UNROLL_4\n" : "");
-    else sb_putc(out, *text);
-  }
 }
 
 /* Writes the row operations: sums, squares, all orders, evaluation of the series. */

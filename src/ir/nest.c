@@ -84,8 +84,7 @@ static void find_nests(Search *s, const PieceGroup *x) {
   uint32_t n = x->pieces.n, *order = ARENA_ARRAY(a, uint32_t, n);
   Fits fits = {0};
   for (uint32_t k = 0; k < n; k++) order[k] = k;
-  Indices all = {a, x->columns.at, x->tape.array.at, x->tape.columns.n};
-  nest_affine(&all, order, n, &fits);
+  nest_affine((Indices){a, x->columns.at, x->tape.array.at, x->tape.columns.n, n, order, NULL}, &fits);
   for (uint32_t k = 0; k < fits.n; k++) add_nest(s, x, &fits.at[k]);
 }
 

@@ -125,18 +125,9 @@ static uint32_t turns_within(const Search *f, uint32_t begin, uint32_t period, u
   return turns;
 }
 
-/* Whether the classes and the group's first instruction go on for the fewest turns: most groups fail here. */
-static int may_begin(const Search *f, uint32_t begin, uint32_t period) {
-  const Rolls *r = f->r;
-  if (equal_classes(f, begin, period) < (FEWEST_TURNS - 1) * period) return 0;
-  for (int which = 0; which < 3; which++)
-    if (ins_operand(code_at(r, begin), which) && turns_of(f, begin, period, 0, which, FEWEST_TURNS) < FEWEST_TURNS) return 0;
-  return 1;
-}
-
 /* Number of turns of the group; 1 when there are fewer than FEWEST_TURNS. */
 static uint32_t turns_at(const Search *f, uint32_t begin, uint32_t period) {
-  if (begin < f->failed[period] || !may_begin(f, begin, period) || turns_within(f, begin, period, FEWEST_TURNS) < FEWEST_TURNS) return 1;
+  if (begin < f->failed[period] || turns_within(f, begin, period, FEWEST_TURNS) < FEWEST_TURNS) return 1;
   return turns_within(f, begin, period, f->r->n / period + 1);
 }
 
@@ -177,10 +168,6 @@ static Loop longest_at(const Search *f, uint32_t begin) {
 
 /* --- values that loops store, keep and carry --- */
 
-/* Turn of the loop, and offset in the period, of a place in the code. */
-static uint32_t turn_of(const Loop *l, uint32_t place) { return (place - l->begin) / l->period; }
-static uint32_t offset_of(const Loop *l, uint32_t place) { return (place - l->begin) % l->period; }
-
 /* Stores of one value of a loop. by_turn: 1 + the number of the store; 0: none. */
 typedef struct {
   uint32_t *by_turn;
@@ -210,9 +197,9 @@ static void find_stores(Rolls *r) {
     if (!in) continue;
     const Loop *l = &r->loops.at[in - 1];
     if (!of[in - 1]) of[in - 1] = ARENA_ARRAY(a, Stored, l->period);
-    Stored *s = &of[in - 1][offset_of(l, place)];
+    Stored *s = &of[in - 1][loop_offset(l, place)];
     if (!s->by_turn) s->by_turn = ARENA_ARRAY(a, uint32_t, l->count);
-    uint32_t *turn = &s->by_turn[turn_of(l, place)];
+    uint32_t *turn = &s->by_turn[loop_turn(l, place)];
     if (*turn) s->twice = 1;
     *turn = k + 1;
   }
@@ -232,7 +219,7 @@ static void find_stores(Rolls *r) {
 
 static void keep(Rolls *r, uint32_t place, uint32_t back) {
   const Loop *l = &r->loops.at[r->loop[place] - 1];
-  uint32_t *kept = &l->kept[offset_of(l, place)];
+  uint32_t *kept = &l->kept[loop_offset(l, place)];
   if (*kept < back + 1) *kept = back + 1;
 }
 
@@ -243,7 +230,7 @@ static void keep_from(Rolls *r, Slot x, uint32_t user) {
   if (!in || (user < r->n && r->loop[user] == in)) return;
   const Loop *l = &r->loops.at[in - 1];
   keep(r, at, 0);
-  if (turn_of(l, at) + 1 < l->count) l->carried[offset_of(l, at)] = 0;
+  if (loop_turn(l, at) + 1 < l->count) l->carried[loop_offset(l, at)] = 0;
 }
 
 /* Keeps the values that turns take from earlier turns. */

@@ -23,6 +23,10 @@ typedef struct {
   VEC(LoopStore) stores;
 } Loop;
 
+/* Iteration, and offset in the period, of a place in the code. */
+static inline uint32_t loop_turn(const Loop *l, uint32_t place) { return (place - l->begin) / l->period; }
+static inline uint32_t loop_offset(const Loop *l, uint32_t place) { return (place - l->begin) % l->period; }
+
 /* How an operand changes from iteration to iteration. */
 typedef enum {
   STEP_SAME,   /* one value in all iterations */
