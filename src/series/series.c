@@ -420,6 +420,6 @@ Series *series_new(const IrSystem *sys, const char **why) {
   out->columns = (3 * sys->nq + 2 * sys->nz + (out->uses_time ? 1 : 0) + 3) / 4 * 4;
   out->first = first;
   out->next = next;
-  out->room = prog_work_size(first);
+  out->room = prog_work_size(prog_work_size(first) > prog_work_size(next) ? first : next);
   return out;
 }
