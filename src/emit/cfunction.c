@@ -34,22 +34,19 @@ static const char *const positive_of_header =
   "#endif\n";
 
 /* Gauss elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed.,
- * algorithm 3.4.1). Rows are exchanged under a mask, so that each lane of a vector has its own pivots.
- * With half-bandwidth b, pivot rows come from at most b rows below, and fill reaches 2 b to the right (4.3.3). */
+ * algorithm 3.4.1). Rows are exchanged under a mask, so that each lane of a vector has its own pivots. */
 static const char *const solver =
-  "\n/* M x = b by elimination with partial pivoting: M[n*n] row-major is destroyed, b becomes x. Entries more than `band` beside the\n"
-  " * diagonal are zero. Returns whether M is regular, or has\n"
+  "\n/* M x = b by elimination with partial pivoting: M[n*n] row-major is destroyed, b becomes x. Returns whether M is regular, or has\n"
   " * elements that are no numbers: then x has none. */\n"
-  "static LAG_MASK lag_solve(int n, int band, LAG_REAL *M, LAG_REAL *b) {\n"
+  "static LAG_MASK lag_solve(int n, LAG_REAL *M, LAG_REAL *b) {\n"
   "  LAG_MASK regular = LAG_C(0.0) == LAG_C(0.0);\n"
   "  for (int k = 0; k < n; k++) {\n"
-  "    const int end = band < n - k ? k + band + 1 : n, right = band < n - end ? end + band : n;\n"
-  "    for (int i = k + 1; i < end; i++) { /* the largest element of column k is moved to row k */\n"
+  "    for (int i = k + 1; i < n; i++) { /* the largest element of column k is moved to row k */\n"
   "      const LAG_REAL here = LAG_FN(fabs)(M[i*n + k]);\n"
   "      const LAG_MASK larger = LAG_OR(here > LAG_FN(fabs)(M[k*n + k]), here != here);\n"
   "      if (!LAG_ANY(larger)) continue;\n"
-  "      for (int j = k; j <= right; j++) {\n"
-  "        LAG_REAL *const upper = j < right ? &M[k*n + j] : &b[k], *const lower = j < right ? &M[i*n + j] : &b[i];\n"
+  "      for (int j = k; j <= n; j++) {\n"
+  "        LAG_REAL *const upper = j < n ? &M[k*n + j] : &b[k], *const lower = j < n ? &M[i*n + j] : &b[i];\n"
   "        const LAG_REAL was = *upper;\n"
   "        *upper = LAG_SELECT(larger, *lower, was);\n"
   "        *lower = LAG_SELECT(larger, was, *lower);\n"
@@ -57,42 +54,17 @@ static const char *const solver =
   "    }\n"
   "    regular = LAG_AND(regular, LAG_NOT(LAG_FN(fabs)(M[k*n + k]) <= LAG_C(0.0)));\n"
   "    if (!LAG_ANY(regular)) break;\n"
-  "    for (int i = k + 1; i < end; i++) {\n"
+  "    for (int i = k + 1; i < n; i++) {\n"
   "      const LAG_REAL factor = M[i*n + k]/M[k*n + k];\n"
-  "      for (int j = k + 1; j < right; j++) M[i*n + j] -= factor*M[k*n + j];\n"
+  "      for (int j = k + 1; j < n; j++) M[i*n + j] -= factor*M[k*n + j];\n"
   "      b[i] -= factor*b[k];\n"
   "    }\n"
   "  }\n"
   "  for (int k = n - 1; k >= 0; k--) {\n"
-  "    for (int j = k + 1; j < n && j - k <= 2*band; j++) b[k] -= M[k*n + j]*b[j];\n"
+  "    for (int j = k + 1; j < n; j++) b[k] -= M[k*n + j]*b[j];\n"
   "    b[k] /= M[k*n + k];\n"
   "  }\n"
   "  return regular;\n"
-  "}\n";
-
-/* L D L^T of a definite matrix, without pivoting (Golub & Van Loan, 4th ed., 4.2.1 and 4.3.5); the upper triangle becomes D L^T. */
-static const char *const definite_solver =
-  "\n/* M x = b without pivoting, from the upper triangle of M[n*n], which is destroyed; b becomes x. Entries more than `band` beside the\n"
-  " * diagonal are zero. Returns whether M is positive definite, or has elements that are no numbers. */\n"
-  "static LAG_MASK lag_solve_definite(int n, int band, LAG_REAL *M, LAG_REAL *b) {\n"
-  "  LAG_MASK positive = LAG_C(0.0) == LAG_C(0.0);\n"
-  "  for (int k = 0; k < n; k++) {\n"
-  "    const int end = band < n - k ? k + band + 1 : n;\n"
-  "    positive = LAG_AND(positive, LAG_NOT(M[k*n + k] <= LAG_C(0.0)));\n"
-  "    if (!LAG_ANY(positive)) return positive;\n"
-  "    const LAG_REAL inverse = LAG_C(1.0)/M[k*n + k];\n"
-  "    for (int i = k + 1; i < end; i++) {\n"
-  "      const LAG_REAL factor = M[k*n + i]*inverse;\n"
-  "      for (int j = i; j < end; j++) M[i*n + j] -= factor*M[k*n + j];\n"
-  "      b[i] -= factor*b[k];\n"
-  "    }\n"
-  "    M[k*n + k] = inverse;\n"
-  "  }\n"
-  "  for (int k = n - 1; k >= 0; k--) {\n"
-  "    for (int j = k + 1; j < n && j - k <= band; j++) b[k] -= M[k*n + j]*b[j];\n"
-  "    b[k] *= M[k*n + k];\n"
-  "  }\n"
-  "  return positive;\n"
   "}\n";
 
 /* Cubic spline. Lanes in different intervals are evaluated one interval after the other. */
@@ -122,81 +94,6 @@ static const char *const spline =
   "  return y;\n"
   "}\n";
 
-/* L U factorization by the elimination of `solver`: multipliers stay below the diagonal, row exchanges in `rows`. */
-static const char *const factorizer =
-  "\n/* Factors M[n*n] of w = [M | b | rows] by elimination with partial pivoting. Returns whether M is regular, or has\n"
-  " * elements that are no numbers: then x has none. */\n"
-  "static LAG_MASK lag_factor(int n, LAG_REAL *w) {\n"
-  "  LAG_REAL *const M = w, *const rows = w + n*n + n;\n"
-  "  LAG_MASK regular = LAG_C(0.0) == LAG_C(0.0);\n"
-  "  for (int k = 0; k < n; k++) {\n"
-  "    LAG_REAL most = LAG_FN(fabs)(M[k*n + k]), top = LAG_C(0.0) + (LAG_LANE)k;\n"
-  "    for (int i = k + 1; i < n; i++) {\n"
-  "      const LAG_REAL size = LAG_FN(fabs)(M[i*n + k]);\n"
-  "      const LAG_MASK larger = LAG_OR(size > most, size != size);\n"
-  "      most = LAG_SELECT(larger, size, most);\n"
-  "      top = LAG_SELECT(larger, LAG_C(0.0) + (LAG_LANE)i, top);\n"
-  "    }\n"
-  "    regular = LAG_AND(regular, LAG_NOT(most <= LAG_C(0.0)));\n"
-  "    if (!LAG_ANY(regular)) break;\n"
-  "    rows[k] = top;\n"
-  "    for (int i = k + 1; i < n; i++) {\n"
-  "      const LAG_MASK here = top == LAG_C(0.0) + (LAG_LANE)i;\n"
-  "      for (int j = 0; j < n && LAG_ANY(here); j++) {\n"
-  "        const LAG_REAL was = M[k*n + j];\n"
-  "        M[k*n + j] = LAG_SELECT(here, M[i*n + j], was);\n"
-  "        M[i*n + j] = LAG_SELECT(here, was, M[i*n + j]);\n"
-  "      }\n"
-  "    }\n"
-  "    for (int i = k + 1; i < n; i++) {\n"
-  "      const LAG_REAL factor = M[i*n + k] /= M[k*n + k];\n"
-  "      for (int j = k + 1; j < n; j++) M[i*n + j] -= factor*M[k*n + j];\n"
-  "    }\n"
-  "  }\n"
-  "  return regular;\n"
-  "}\n"
-  "\n/* b becomes the solution of M x = b, M as lag_factor left it. */\n"
-  "static void lag_substitute(int n, LAG_REAL *w) {\n"
-  "  const LAG_REAL *const M = w, *const rows = w + n*n + n;\n"
-  "  LAG_REAL *const b = w + n*n;\n"
-  "  for (int k = 0; k < n; k++)\n"
-  "    for (int i = k + 1; i < n; i++) {\n"
-  "      const LAG_MASK here = rows[k] == LAG_C(0.0) + (LAG_LANE)i;\n"
-  "      const LAG_REAL was = b[k];\n"
-  "      b[k] = LAG_SELECT(here, b[i], was);\n"
-  "      b[i] = LAG_SELECT(here, was, b[i]);\n"
-  "    }\n"
-  "  for (int i = 1; i < n; i++)\n"
-  "    for (int j = 0; j < i; j++) b[i] -= M[i*n + j]*b[j];\n"
-  "  for (int i = n - 1; i >= 0; i--) {\n"
-  "    for (int j = i + 1; j < n; j++) b[i] -= M[i*n + j]*b[j];\n"
-  "    b[i] /= M[i*n + i];\n"
-  "  }\n"
-  "}\n";
-
-/* Inverse of a symmetric matrix, column by column from the unit vectors; and the product with it. */
-static const char *const inverter =
-  "\n/* w = [M | n | n | inverse | 1, or 0 where M is singular], from the symmetric M[n*n]. */\n"
-  "static void lag_invert(int n, LAG_REAL *w) {\n"
-  "  LAG_REAL *const b = w + n*n, *const inverse = b + 2*n;\n"
-  "  const LAG_MASK regular = lag_factor(n, w);\n"
-  "  for (int j = 0; j < n; j++) {\n"
-  "    for (int i = 0; i < n; i++) b[i] = LAG_C(0.0) + (LAG_LANE)(i == j);\n"
-  "    lag_substitute(n, w);\n"
-  "    for (int i = j; i < n; i++) inverse[i*n + j] = inverse[j*n + i] = b[i];\n"
-  "  }\n"
-  "  inverse[n*n] = LAG_SELECT(regular, LAG_C(1.0), LAG_C(0.0));\n"
-  "}\n";
-static const char *const multiplier =
-  "\n/* w[n] = M^-1 b, with b[n] before it. */\n"
-  "static void lag_multiply(int n, const LAG_REAL *inverse, LAG_REAL *w) {\n"
-  "  for (int i = 0; i < n; i++) {\n"
-  "    LAG_REAL x = LAG_C(0.0);\n"
-  "    for (int j = 0; j < n; j++) x += inverse[i*n + j]*w[j];\n"
-  "    w[n + i] = x;\n"
-  "  }\n"
-  "}\n";
-
 void csupport_expand(const char *text, const char *prefix, const char *lower, StrBuf *out) {
   for (const char *s = text; *s;) {
     int upper = strncmp(s, "LAG_", 4) == 0, is_lower = strncmp(s, "lag_", 4) == 0;
@@ -213,12 +110,7 @@ void csupport_logic(const char *prefix, StrBuf *out) {
   csupport_expand(logic, prefix, "", out);
   csupport_expand(strcmp(prefix, "LAG") == 0 ? positive : positive_of_header, prefix, "", out);
 }
-void csupport_factor(const char *prefix, const char *lower, StrBuf *out) { csupport_expand(factorizer, prefix, lower, out); }
-void csupport_inverter(const char *prefix, const char *lower, StrBuf *out) { csupport_expand(inverter, prefix, lower, out); }
-void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrBuf *out) {
-  const char *const texts[] = {[SOLVE_PIVOTING] = solver, [SOLVE_DEFINITE] = definite_solver, [SOLVE_INVERSE] = multiplier};
-  csupport_expand(texts[kind], prefix, lower, out);
-}
+void csupport_solver(const char *prefix, const char *lower, StrBuf *out) { csupport_expand(solver, prefix, lower, out); }
 void csupport_spline(const char *prefix, const char *lower, StrBuf *out) { csupport_expand(spline, prefix, lower, out); }
 
 /* Whether the program uses the parameter `name`: reads, writes, or needs it as workspace. */

@@ -1,5 +1,5 @@
-/* Parts common to all emitted files: macros of the scalar type, support functions (linear solvers, splines), and the C
- * function around the body of a Prog. */
+/* Parts common to all emitted files: macros of the scalar type, support functions (linear solver, splines), the C function around the body
+ * of a Prog, and (embedded_math.c) sections of runtime/include/lag_math.h and lag_kkt.h. */
 #ifndef LAGC_CFUNCTION_H
 #define LAGC_CFUNCTION_H
 
@@ -8,19 +8,11 @@
 /* Macros for selection and logic (PREFIX_SELECT, PREFIX_MASK, ...), each under #ifndef: vector types have no ternary in C. */
 void csupport_logic(const char *prefix, StrBuf *out);
 
-/* Function that solves linear systems of one kind in a loop: lower_solve, lower_solve_definite, or lower_multiply (w[2 n] =
- * right-hand side, solution). SOLVE_CONSTRAINED is not one of them: see math_kkt_solver. */
-void csupport_solver(SolveKind kind, const char *prefix, const char *lower, StrBuf *out);
+/* Function that solves a linear system in a loop: lower_solve. With constraints: see math_kkt_solver. */
+void csupport_solver(const char *prefix, const char *lower, StrBuf *out);
 
 /* `static LAG_REAL lower_spline(t, n, row)`, for inputs given by a table. */
 void csupport_spline(const char *prefix, const char *lower, StrBuf *out);
-
-/* Factorization for several right-hand sides: lag_factor(n, w) and lag_substitute(n, w), with w[n*n + 2 n] = matrix,
- * right-hand side, row exchanges. */
-void csupport_factor(const char *prefix, const char *lower, StrBuf *out);
-
-/* lag_invert(n, w), which calls the functions of csupport_factor; the layout of w stands at Solve in ir/prog.h (IR_INVERT). */
-void csupport_inverter(const char *prefix, const char *lower, StrBuf *out);
 
 /* Appends text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
 void csupport_expand(const char *text, const char *prefix, const char *lower, StrBuf *out);
@@ -43,5 +35,21 @@ void cwrite_guarded(const char *condition, const char *body, StrBuf *out);
 
 /* Shortest text that reads back as x; integers below 1e9 without exponent. */
 const char *shortest_double(Arena *a, double x);
+
+/* Vector lanes (PREFIX_LANES): mask type, selection, functions lane by lane. Must precede everything that has a default. */
+void math_lanes(const char *prefix, const char *lower, StrBuf *out);
+
+/* Functions that the unit calls and that do not come from the C library: lower_sincos, lower_sin, lower_cos, and exp and log
+ * over lanes. Must follow PREFIX_FN and PREFIX_C. */
+void math_functions(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out);
+
+/* `static LAG_MASK lower_kkt(n, m, coarse, w)`, if the model has constraints. */
+void math_kkt_solver(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out);
+
+/* Prefix of sincos, sin and cos in emitted code of the unit (`lower`); NULL: the C library's sin and cos. */
+const char *math_prefix(const IrUnit *u, const char *lower);
+
+/* Sentence for the head of the file: where its elementary functions come from. */
+const char *math_source_text(const IrUnit *u);
 
 #endif

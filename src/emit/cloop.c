@@ -16,9 +16,8 @@ int cloop_share_turn(const Writer *w, Slot a, Slot b) {
   uint32_t la = pa ? w->rolls.loop[pa - 1] : 0, lb = pb ? w->rolls.loop[pb - 1] : 0;
   if (la != lb || !la) return la == lb;
   const Loop *l = loop_at(w, la - 1);
-  pa -= 1 + l->begin, pb -= 1 + l->begin;
-  if (pa / l->period != pb / l->period) return 0;
-  Step x = roll_step(&w->rolls, l, pa % l->period, 0), y = roll_step(&w->rolls, l, pb % l->period, 0);
+  if (loop_turn(l, pa - 1) != loop_turn(l, pb - 1)) return 0;
+  Step x = roll_step(&w->rolls, l, loop_offset(l, pa - 1), 0), y = roll_step(&w->rolls, l, loop_offset(l, pb - 1), 0);
   return x.kind == y.kind && x.step == y.step && x.back == y.back;
 }
 
@@ -38,21 +37,32 @@ const char *cloop_stem(Arena *a, const char *name) {
   return arena_strndup(a, sb_text(&b), n);
 }
 
-/* Text of the index first + step*k. */
-static const char *index_text(const Writer *w, int64_t first, int64_t step) {
-  const char *k = step == 1 || step == -1 ? "k" : arena_printf(w->a, "%lld*k", (long long)(step < 0 ? -step : step));
-  if (step < 0) return arena_printf(w->a, "%lld - %s", (long long)first, k);
-  return first ? arena_printf(w->a, "%s %c %lld", k, first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first)) : k;
+/* Appends a term such as " + 3*k". */
+static void put_term(StrBuf *b, int64_t factor, const char *counter) {
+  const char *sign = factor < 0 ? b->n ? " - " : "-" : b->n ? " + " : "";
+  int64_t size = factor < 0 ? -factor : factor;
+  if (size == 1) sb_printf(b, "%s%s", sign, counter);
+  else if (size) sb_printf(b, "%s%lld*%s", sign, (long long)size, counter);
 }
+
+const char *cloop_index(Arena *a, int64_t first, int64_t by_i, const char *i, int64_t by_j, const char *j) {
+  StrBuf b = strbuf(a);
+  int leads = by_i <= 0 && by_j <= 0; /* the number is written first */
+  if (leads && (first || (by_i >= 0 && by_j >= 0))) sb_printf(&b, "%lld", (long long)first);
+  put_term(&b, by_i, i);
+  put_term(&b, by_j, j);
+  if (!leads && first) sb_printf(&b, " %c %lld", first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first));
+  return sb_text(&b);
+}
+
+/* Text of the index first + step*k. */
+static const char *index_text(const Writer *w, int64_t first, int64_t step) { return cloop_index(w->a, first, step, "k", 0, ""); }
 
 /* The element of the kept array that holds the value at `place` of a loop; if step is not 0, its index advances by `step`
  * iterations per k. */
 static CExpr kept_value(const Writer *w, uint32_t place, int64_t step) {
-  uint32_t in = w->rolls.loop[place] - 1, offset, turn;
-  const Loop *l = loop_at(w, in);
-  offset = (place - l->begin) % l->period;
-  turn = (place - l->begin) / l->period;
-  int64_t first = (int64_t)(l->kept[offset] - 1) + turn;
+  uint32_t in = w->rolls.loop[place] - 1, offset = loop_offset(loop_at(w, in), place);
+  int64_t first = (int64_t)(loop_at(w, in)->kept[offset] - 1) + loop_turn(loop_at(w, in), place);
   const char *index = step ? index_text(w, first, step) : arena_printf(w->a, "%lld", (long long)first);
   return (CExpr){arena_printf(w->a, "%s[%s]", w->kept[in][offset], index), C_ATOM, 1};
 }
@@ -73,16 +83,11 @@ void cloop_prepare(Writer *w) {
   for (uint32_t k = 0; k < r->n; k++) {
     const Ins *i = &w->p->ins.at[r->code[k]];
     const Loop *l = r->loop[k] ? loop_at(w, r->loop[k] - 1) : NULL;
-    uint32_t offset = l ? (k - l->begin) % l->period : 0;
-    for (int which = 0; which < 3; which++) {
-      Slot x = roll_operand(i, which);
-      if (x && (!l || roll_step(r, l, offset, which).kind == STEP_SAME)) name_load(w, x);
+    uint32_t offset = l ? loop_offset(l, k) : 0;
+    for (uint32_t j = 0; j < prog_operands(w->p, i); j++) {
+      Slot x = prog_operand(w->p, i, j);
+      if (x && (!l || roll_step(r, l, offset, (int)j).kind == STEP_SAME)) name_load(w, x);
     }
-    for (uint32_t j = 0; i->op == IR_NEST && j < w->p->nests.at[i->index].nouter; j++) name_load(w, w->p->nests.at[i->index].outer[j]);
-    if (!ir_has_solve(i->op)) continue;
-    const Solve *s = &w->p->solves.at[i->index];
-    for (uint32_t j = 0; j < solve_elements(s); j++) name_load(w, s->matrix[j]);
-    for (uint32_t j = 0; j < solve_unknowns(s); j++) name_load(w, s->rhs[j]);
   }
   for (uint32_t k = 0; k < w->p->stores.n;) {
     uint32_t n = cloop_stores(w, k);
@@ -115,7 +120,7 @@ static void count_own_uses(Writer *w, Body *b) {
     const Ins *i = &w->p->ins.at[code_of(w, b->l, 0, k)];
     int twice = i->op == IR_PIVOT || i->op == IR_SIGN || i->op == IR_MIN || i->op == IR_MAX; /* spelled twice */
     for (int which = 0; which < 3; which++) {
-      Slot x = roll_operand(i, which);
+      Slot x = ins_operand(i, which);
       if (x && roll_step(&w->rolls, b->l, k, which).kind == STEP_OWN) b->own_uses[offset_of(w, b->l, x)] += twice ? 2 : 1;
     }
   }
@@ -147,8 +152,7 @@ static void declare_kept(Writer *w, const Body *b, int conditions) {
     else sb_printf(&text, "%s%s[%u]", text.n ? ", " : "", names[k], l->count + l->kept[k] - 1);
   }
   if (!text.n) return;
-  cwriter_statement(w, arena_printf(w->a, "%s_%s %s;", w->style->prefix, conditions ? "MASK" : "REAL", sb_text(&text)));
-  sb_putc(w->out, '\n');
+  cwriter_line(w, arena_printf(w->a, "%s_%s %s;", w->style->prefix, conditions ? "MASK" : "REAL", sb_text(&text)));
 }
 
 /* Copies the values that the first turns take from the code before the loop into the kept arrays. */
@@ -157,8 +161,7 @@ static void write_first_values(Writer *w, const Body *b) {
   for (uint32_t k = 0; k < l->period; k++)
     for (uint32_t t = 0; t + 1 < l->kept[k] && !l->carried[k]; t++) {
       uint32_t place = l->begin + k - (l->kept[k] - 1 - t) * l->period;
-      cwriter_statement(w, arena_printf(w->a, "%s[%u] = %s;", w->kept[b->number][k], t, cwriter_operand(w, w->rolls.code[place]).text));
-      sb_putc(w->out, '\n');
+      cwriter_line(w, arena_printf(w->a, "%s[%u] = %s;", w->kept[b->number][k], t, cwriter_operand(w, w->rolls.code[place]).text));
     }
 }
 
@@ -171,15 +174,14 @@ static const TurnLoad *turn_load(const Body *b, Slot first, int64_t step) {
 static void name_turn_loads(Writer *w, Body *b) {
   for (uint32_t k = 0; k < b->l->period; k++)
     for (int which = 0; which < 3; which++) {
-      Slot x = roll_operand(&w->p->ins.at[code_of(w, b->l, 0, k)], which);
+      Slot x = ins_operand(&w->p->ins.at[code_of(w, b->l, 0, k)], which);
       Step s = x ? roll_step(&w->rolls, b->l, k, which) : (Step){.kind = STEP_SAME};
       if (s.kind != STEP_LOAD || turn_load(b, x, s.step)) continue;
       const Ins *i = &w->p->ins.at[x];
       const char *name = cnames_take(&w->names, cloop_stem(w->a, i->name));
       vec_push(w->a, &b->loads, ((TurnLoad){x, s.step, name}));
-      cwriter_statement(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, cwriter_array(w, i->array),
+      cwriter_line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name, cwriter_array(w, i->array),
                                         index_text(w, i->index, s.step)));
-      sb_putc(w->out, '\n');
     }
 }
 
@@ -199,7 +201,7 @@ static CExpr turn_operand(const Writer *w, const Body *b, uint32_t offset, int w
     case STEP_NUMBER: {
       Num unit = {0};
       int64_t first = 0;
-      Slot y = roll_operand(&w->p->ins.at[code_of(w, b->l, 1, offset)], which);
+      Slot y = ins_operand(&w->p->ins.at[code_of(w, b->l, 1, offset)], which);
       roll_number(&w->p->ins.at[x], &w->p->ins.at[y], &unit, &first);
       return multiple(w, unit, index_text(w, first, 1));
     }
@@ -240,8 +242,7 @@ static void write_value(Writer *w, const Body *b, uint32_t offset, Slot s, const
     x = w->piece[s];
   }
   if (!kept || carried) return;
-  cwriter_statement(w, arena_printf(w->a, "%s[%s] = %s;", w->kept[b->number][offset], index_text(w, kept - 1, 1), x.text));
-  sb_putc(w->out, '\n');
+  cwriter_line(w, arena_printf(w->a, "%s[%s] = %s;", w->kept[b->number][offset], index_text(w, kept - 1, 1), x.text));
 }
 
 static void write_turn(Writer *w, const Body *b) {
@@ -250,13 +251,13 @@ static void write_turn(Writer *w, const Body *b) {
     const Ins *i = &w->p->ins.at[s];
     CExpr before[3], now[3];
     for (int which = 0; which < 3; which++) {
-      Slot x = roll_operand(i, which);
+      Slot x = ins_operand(i, which);
       before[which] = w->piece[x];
       now[which] = x ? turn_operand(w, b, k, which, x) : before[which];
     }
-    for (int which = 0; which < 3; which++) w->piece[roll_operand(i, which)] = now[which];
+    for (int which = 0; which < 3; which++) w->piece[ins_operand(i, which)] = now[which];
     write_value(w, b, k, s, i);
-    for (int which = 3; which-- > 0;) w->piece[roll_operand(i, which)] = before[which];
+    for (int which = 3; which-- > 0;) w->piece[ins_operand(i, which)] = before[which];
   }
 }
 
@@ -271,8 +272,7 @@ static void write_turn_end(Writer *w, const Body *b) {
   }
   for (uint32_t k = 0; k < l->period; k++) {
     if (!l->carried[k]) continue;
-    cwriter_statement(w, arena_printf(w->a, "%s = %s;", w->kept[b->number][k], w->piece[code_of(w, l, 0, k)].text));
-    sb_putc(w->out, '\n');
+    cwriter_line(w, arena_printf(w->a, "%s = %s;", w->kept[b->number][k], w->piece[code_of(w, l, 0, k)].text));
   }
 }
 
@@ -285,15 +285,13 @@ void cloop_write(Writer *w, uint32_t loop) {
   declare_kept(w, &b, 0);
   declare_kept(w, &b, 1);
   write_first_values(w, &b);
-  cwriter_statement(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) {", b.l->count));
-  sb_putc(w->out, '\n');
+  cwriter_line(w, arena_printf(w->a, "for (int k = 0; k < %u; k++) {", b.l->count));
   w->indent += 2;
   name_turn_loads(w, &b);
   write_turn(w, &b);
   write_turn_end(w, &b);
   w->indent -= 2;
-  cwriter_statement(w, "}");
-  sb_putc(w->out, '\n');
+  cwriter_line(w, "}");
   for (uint32_t k = 0; k < b.l->period; k++)
     for (uint32_t t = 0; t < b.l->count && b.l->kept[k]; t++) {
       Slot s = code_of(w, b.l, t, k);

@@ -15,23 +15,8 @@ typedef struct {
 
 static int has_rows(const Nest *n) { return n->rows > 1; }
 
-/* Appends a term such as " + 3*i". */
-static void put_term(StrBuf *b, int64_t factor, const char *counter) {
-  if (!factor) return;
-  const char *sign = factor < 0 ? b->n ? " - " : "-" : b->n ? " + " : "";
-  int64_t size = factor < 0 ? -factor : factor;
-  if (size == 1) sb_printf(b, "%s%s", sign, counter);
-  else sb_printf(b, "%s%lld*%s", sign, (long long)size, counter);
-}
-
 static const char *index_text(const Nesting *x, IrSubscript at) {
-  StrBuf b = strbuf(x->body.a);
-  int64_t first = at.first;
-  put_term(&b, has_rows(x->n) ? at.by_row : 0, x->i);
-  put_term(&b, nest_has_turns(x->n) ? at.by_turn : 0, x->j);
-  if (!b.n) sb_printf(&b, "%lld", (long long)first);
-  else if (first) sb_printf(&b, " %c %lld", first < 0 ? '-' : '+', (long long)(first < 0 ? -first : first));
-  return sb_text(&b);
+  return cloop_index(x->body.a, at.first, has_rows(x->n) ? at.by_row : 0, x->i, nest_has_turns(x->n) ? at.by_turn : 0, x->j);
 }
 
 static const char *place(const Nesting *x, uint32_t k) { return index_text(x, x->n->at[k]); }
@@ -40,11 +25,6 @@ static const char *place(const Nesting *x, uint32_t k) { return index_text(x, x-
 static const char *turn_of_row(const Nesting *x, int behind) {
   const Nest *n = x->n;
   return index_text(x, (IrSubscript){.first = behind ? n->turns : 0, .by_row = n->skew + (behind ? n->more : 0)});
-}
-
-static void line(Writer *w, const char *text) {
-  cwriter_statement(w, text);
-  sb_putc(w->out, '\n');
 }
 
 /* --- the turn --- */
@@ -67,7 +47,7 @@ static void write_load(Nesting *x, const Writer *around, Slot s) {
     w->piece[s] = (CExpr){w->style->in[i->array], C_ATOM, 0};
   } else {
     const char *name = cnames_take(&w->names, i->name ? i->name : "sum");
-    line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,
+    cwriter_line(w, arena_printf(w->a, "const %s_REAL %s = %s[%s];", w->style->prefix, name,
                          i->array == ARR_P && w->parameters ? w->parameters : cwriter_array(w, i->array), place(x, i->index)));
     w->piece[s] = (CExpr){name, C_ATOM, 0};
   }
@@ -87,20 +67,20 @@ static void write_additions(Nesting *x) {
   for (uint32_t k = 0; k < w->p->stores.n; k++) {
     const Store *st = &w->p->stores.at[k];
     const char *sum = x->partial[k] ? x->partial[k] : arena_printf(w->a, "%s[%s]", w->cells, place(x, st->index));
-    line(w, arena_printf(w->a, "%s %s %s;", sum, st->array ? "-=" : "+=", cwriter_operand(w, st->slot).text));
+    cwriter_line(w, arena_printf(w->a, "%s %s %s;", sum, st->array ? "-=" : "+=", cwriter_operand(w, st->slot).text));
   }
 }
 
 /* --- the loops --- */
 
 static void open_loop(Writer *w, const char *counter, const char *from, const char *end) {
-  line(w, arena_printf(w->a, "for (int %s = %s; %s < %s; %s++) {", counter, from, counter, end, counter));
+  cwriter_line(w, arena_printf(w->a, "for (int %s = %s; %s < %s; %s++) {", counter, from, counter, end, counter));
   w->indent += 2;
 }
 
 static void close_loop(Writer *w) {
   w->indent -= 2;
-  line(w, "}");
+  cwriter_line(w, "}");
 }
 
 static void declare_partial(Nesting *x) {
@@ -111,13 +91,13 @@ static void declare_partial(Nesting *x) {
     x->partial[k] = cnames_take(&w->names, "part");
     sb_printf(&text, "%s%s = %s_C(0.0)", text.n ? ", " : "", x->partial[k], w->style->prefix);
   }
-  if (text.n) line(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&text)));
+  if (text.n) cwriter_line(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&text)));
 }
 
 static void add_partial(Nesting *x) {
   Writer *w = &x->body;
   for (uint32_t k = 0; k < w->p->stores.n; k++)
-    if (x->partial[k]) line(w, arena_printf(w->a, "%s[%s] += %s;", w->cells, place(x, w->p->stores.at[k].index), x->partial[k]));
+    if (x->partial[k]) cwriter_line(w, arena_printf(w->a, "%s[%s] += %s;", w->cells, place(x, w->p->stores.at[k].index), x->partial[k]));
 }
 
 static void write_rows(Nesting *x, const Writer *around) {
@@ -190,7 +170,7 @@ static void copy_parameters(Writer *w) {
   sb_printf(&text, "const %s_REAL %s[%lld] = {", w->style->prefix, w->parameters, (long long)end);
   for (int64_t k = 0; k < end; k++) sb_printf(&text, "%s%s->%s", k ? ", " : "", w->style->in[ARR_P], w->style->params[k]);
   sb_puts(&text, "};");
-  line(w, sb_text(&text));
+  cwriter_line(w, sb_text(&text));
 }
 
 void cnest_prepare(Writer *w) {
@@ -199,7 +179,7 @@ void cnest_prepare(Writer *w) {
   w->cells = cnames_take(&w->names, "sum");
   w->row = cnames_take(&w->names, "i");
   w->turn = cnames_take(&w->names, "j");
-  line(w, arena_printf(w->a, "%s_REAL %s[%u];", w->style->prefix, w->cells, w->p->cells));
-  line(w, arena_printf(w->a, "for (int %s = 0; %s < %u; %s++) %s[%s] = %s_C(0.0);", w->row, w->row, w->p->cells, w->row, w->cells, w->row,
+  cwriter_line(w, arena_printf(w->a, "%s_REAL %s[%u];", w->style->prefix, w->cells, w->p->cells));
+  cwriter_line(w, arena_printf(w->a, "for (int %s = 0; %s < %u; %s++) %s[%s] = %s_C(0.0);", w->row, w->row, w->p->cells, w->row, w->cells, w->row,
                        w->style->prefix));
 }

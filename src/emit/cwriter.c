@@ -120,24 +120,19 @@ static CExpr negative(Writer *w, const Ins *i) {
   return (CExpr){arena_printf(w->a, "-%s", wrapped(w, i->a, product ? C_MUL : C_ATOM)), product ? C_MUL : C_UNARY, 0};
 }
 
-static CExpr macro(Writer *w, const char *name, Slot a, Slot b, Slot c, int n) {
-  const char *x = cwriter_operand(w, a).text, *y = cwriter_operand(w, b).text, *z = cwriter_operand(w, c).text, *m = w->style->prefix;
-  const char *t = n == 1 ? arena_printf(w->a, "%s_%s(%s)", m, name, x) : n == 2 ? arena_printf(w->a, "%s_%s(%s, %s)", m, name, x, y)
-                         : arena_printf(w->a, "%s_%s(%s, %s, %s)", m, name, x, y, z);
-  return (CExpr){t, C_ATOM, 0};
+/* A call of `head` with n operands. */
+static CExpr call(Writer *w, const char *head, const Ins *i, int n) {
+  StrBuf b = strbuf(w->a);
+  for (int k = 0; k < n; k++) sb_printf(&b, "%s%s", k ? ", " : "", cwriter_operand(w, ins_operand(i, k)).text);
+  return (CExpr){arena_printf(w->a, "%s(%s)", head, sb_text(&b)), C_ATOM, 0};
 }
 
-/* Whether the function is embedded in the file. */
-static int is_own(const Writer *w, const char *fn) { return w->style->math && (strcmp(fn, "sin") == 0 || strcmp(fn, "cos") == 0); }
+static CExpr macro(Writer *w, const char *name, const Ins *i, int n) { return call(w, arena_printf(w->a, "%s_%s", w->style->prefix, name), i, n); }
 
-static CExpr call1(Writer *w, const char *fn, Slot a) {
-  if (is_own(w, fn)) return (CExpr){arena_printf(w->a, "%s_%s(%s)", w->style->math, fn, cwriter_operand(w, a).text), C_ATOM, 0};
-  return (CExpr){arena_printf(w->a, "%s_FN(%s)(%s)", w->style->prefix, fn, cwriter_operand(w, a).text), C_ATOM, 0};
-}
-
-static CExpr call2(Writer *w, const char *fn, Slot a, Slot b) {
-  const char *x = cwriter_operand(w, a).text, *y = cwriter_operand(w, b).text; /* slot 0 is the number 0 */
-  return (CExpr){arena_printf(w->a, "%s_FN(%s)(%s, %s)", w->style->prefix, fn, x, y), C_ATOM, 0};
+/* A function of the C library; sin and cos may be embedded in the file. */
+static CExpr function(Writer *w, const char *fn, const Ins *i, int n) {
+  int is_own = w->style->math && (strcmp(fn, "sin") == 0 || strcmp(fn, "cos") == 0);
+  return call(w, is_own ? arena_printf(w->a, "%s_%s", w->style->math, fn) : arena_printf(w->a, "%s_FN(%s)", w->style->prefix, fn), i, n);
 }
 
 /* Element `index` of an array: p->m1 where the parameters are a struct. */
@@ -166,7 +161,7 @@ static CExpr choose(Writer *w, const Ins *i) {
 
 static CExpr solved(Writer *w, const Ins *i) {
   const Solve *k = &w->p->solves.at[w->p->ins.at[i->a].index];
-  return (CExpr){arena_printf(w->a, "w[%u]", k->inverse ? k->n + i->index : k->place + (k->n + k->m) * k->n + i->index), C_ATOM, 0};
+  return (CExpr){arena_printf(w->a, "w[%u]", solve_elements(k) + i->index), C_ATOM, 0};
 }
 
 CExpr cwriter_spell(Writer *w, const Ins *i) {
@@ -180,19 +175,19 @@ CExpr cwriter_spell(Writer *w, const Ins *i) {
     case IR_MUL: return infix(w, i, "*", C_MUL);
     case IR_DIV: return infix(w, i, "/", C_MUL);
     case IR_NEG: return negative(w, i);
-    case IR_SQRT: return call1(w, "sqrt", i->a);
-    case IR_FN1: return call1(w, i->text, i->a);
-    case IR_FN2: return call2(w, i->text, i->a, i->b);
+    case IR_SQRT: return function(w, "sqrt", i, 1);
+    case IR_FN1: return function(w, i->text, i, 1);
+    case IR_FN2: return function(w, i->text, i, 2);
     case IR_MIN: case IR_MAX: case IR_SIGN: return choose(w, i);
     case IR_LT: return infix(w, i, " < ", C_CMP);
     case IR_LE: return infix(w, i, " <= ", C_CMP);
     case IR_EQ: return infix(w, i, " == ", C_CMP);
-    case IR_NOT: return macro(w, "NOT", i->a, 0, 0, 1);
-    case IR_AND: return macro(w, "AND", i->a, i->b, 0, 2);
-    case IR_OR: return macro(w, "OR", i->a, i->b, 0, 2);
-    case IR_SELECT: return macro(w, "SELECT", i->a, i->b, i->c, 3);
+    case IR_NOT: return macro(w, "NOT", i, 1);
+    case IR_AND: return macro(w, "AND", i, 2);
+    case IR_OR: return macro(w, "OR", i, 2);
+    case IR_SELECT: return macro(w, "SELECT", i, 3);
     case IR_SOLVED: return solved(w, i);
-    case IR_PIVOT: case IR_SOLVE: case IR_INVERT: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
+    case IR_PIVOT: case IR_SOLVE: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }
   return (CExpr){"", C_ATOM, 0};
 }
@@ -212,6 +207,11 @@ void cwriter_statement(Writer *w, const char *text) {
     column += n;
     text += n;
   }
+}
+
+void cwriter_line(Writer *w, const char *text) {
+  cwriter_statement(w, text);
+  sb_putc(w->out, '\n');
 }
 
 /* Whether the text is short enough to stand inside another expression; a long prefix counts as three letters. */
@@ -275,9 +275,8 @@ void cwriter_declare(Writer *w, Slot s, CExpr name, CExpr x) {
 void cwriter_pivot(Writer *w, const Ins *i) {
   const char *m = w->style->prefix;
   cwriter_flush_title(w);
-  cwriter_statement(w, i->index ? arena_printf(w->a, "%s_POSITIVE(%s);", m, cwriter_operand(w, i->a).text)
+  cwriter_line(w, i->index ? arena_printf(w->a, "%s_POSITIVE(%s);", m, cwriter_operand(w, i->a).text)
                                 : arena_printf(w->a, "%s_PIVOT(%s != %s_C(0.0));", m, wrapped(w, i->a, C_CMP + 1), m));
-  sb_putc(w->out, '\n');
 }
 
 /* Rows of a table, as many on a line as fit. */
@@ -356,7 +355,7 @@ static void write_arrays(Writer *w) {
 /* Declares the loads of the arrays that instruction s reads: here and not at the top, where calls in between would have to save them. */
 static void write_arrays_of(Writer *w, Slot s) {
   for (int which = 0; which < 3; which++) {
-    const Ins *x = &w->p->ins.at[roll_operand(&w->p->ins.at[s], which)];
+    const Ins *x = &w->p->ins.at[ins_operand(&w->p->ins.at[s], which)];
     if (x->op == IR_LOAD) write_array(w, (int)x->array);
   }
 }
@@ -432,10 +431,8 @@ static int write_sincos_batch(Writer *w, Slot s) {
   StrBuf names = strbuf(w->a), arguments = strbuf(w->a);
   for (uint32_t k = 0; k < n; k++) declare_pair(w, at[k], &w->p->ins.at[at[k]], &w->p->ins.at[w->pair[at[k]]], &names, &arguments);
   cwriter_flush_title(w);
-  cwriter_statement(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&names)));
-  sb_putc(w->out, '\n');
-  cwriter_statement(w, arena_printf(w->a, "%s_sincos%u(%s);", w->style->math, n, sb_text(&arguments)));
-  sb_putc(w->out, '\n');
+  cwriter_line(w, arena_printf(w->a, "%s_REAL %s;", w->style->prefix, sb_text(&names)));
+  cwriter_line(w, arena_printf(w->a, "%s_sincos%u(%s);", w->style->math, n, sb_text(&arguments)));
   return 1;
 }
 
@@ -450,10 +447,9 @@ void cwriter_instruction(Writer *w, Slot s) {
     cwriter_pivot(w, i);
     return;
   }
-  if (ir_has_solve(i->op)) {
+  if (i->op == IR_SOLVE) {
     write_arrays(w);
-    if (i->op == IR_SOLVE) csolve_write(w, i);
-    else csolve_write_inverse(w, i);
+    csolve_write(w, i);
     return;
   }
   if (i->op == IR_TABLE) {
@@ -497,8 +493,7 @@ static int is_paired(const Writer *w, uint32_t k) {
 static uint32_t write_pair(Writer *w, uint32_t k) {
   const Store *st = &w->p->stores.at[k], *other = next_store(w, k);
   const char *x = cwriter_operand(w, st->slot).text, *y = cwriter_operand(w, other ? other->slot : 0).text;
-  cwriter_statement(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
-  sb_putc(w->out, '\n');
+  cwriter_line(w, arena_printf(w->a, "%s_PAIR(%s, %u, %s, %s);", w->style->prefix, w->style->out[st->array], st->index, x, y));
   return other ? 2 : 1;
 }
 
@@ -562,7 +557,7 @@ void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out) {
   count_uses(&w);
   cloop_prepare(&w);
   cnest_prepare(&w);
-  if (prog_has_pivots(p)) sb_printf(out, "  %s_PIVOTS;\n", style->prefix);
+  if (prog_has_pivots(p) && !style->is_regular) sb_printf(out, "  %s_PIVOTS;\n", style->prefix);
   cwriter_find_sincos(&w);
   if (w.rolls.loops.n || p->nests.n) write_arrays(&w);
   write_code(&w);

@@ -20,8 +20,7 @@ typedef struct {
   const char *const *own;           /* names in the function's scope, NULL at the end */
   const char *const *globals;         /* names that the function must not hide, NULL at the end; or NULL */
   const char *solve, *kkt;          /* functions that solve a linear system, and one with constraints */
-  const char *invert, *multiply;    /* functions that invert a matrix of parameters, and multiply by that inverse */
-  const char *factor, *substitute;  /* functions used instead of `solve` where factors are kept; or NULL */
+  int is_regular;                   /* 1: linear systems were found regular before, and the function returns no status */
   const char *spline;               /* function that evaluates tables */
   const char *const *rows;          /* names of the arrays of table rows; NULL: the body declares them */
   int prefer_short_code;                /* 1: prefer short code to fast code */

@@ -39,8 +39,9 @@ CExpr cwriter_operand(const Writer *w, Slot s);
 CExpr cwriter_spell(Writer *w, const Ins *i);
 int cwriter_is_short(const Writer *w, CExpr x);
 
-/* Appends a statement, broken at spaces where it is long, without a line end. */
+/* Appends a statement, broken at spaces where it is long; cwriter_line with a line end. */
 void cwriter_statement(Writer *w, const char *text);
+void cwriter_line(Writer *w, const char *text);
 void cwriter_pivot(Writer *w, const Ins *i);
 void cwriter_flush_title(Writer *w);
 
@@ -81,11 +82,11 @@ int cloop_names_load(const Writer *w, Slot s);
 /* Name without indices, common to all turns of a loop: x[3]' -> x', D12 -> D, L2_11 -> L. */
 const char *cloop_stem(Arena *a, const char *name);
 
+/* Text of the index first + by_i*i + by_j*j. */
+const char *cloop_index(Arena *a, int64_t first, int64_t by_i, const char *i, int64_t by_j, const char *j);
+
 /* Writes an IR_SOLVE. */
 void csolve_write(Writer *w, const Ins *i);
-
-/* Writes an IR_INVERT. */
-void csolve_write_inverse(Writer *w, const Ins *i);
 
 /* Writes a whole loop. */
 void cloop_write(Writer *w, uint32_t loop);

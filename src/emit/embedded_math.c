@@ -1,9 +1,8 @@
 /* Embedding of lag_math.h and lag_kkt.h: the sections that a unit needs, with its prefix. */
-#include "emit/embedded_math.h"
+#include "emit/cfunction.h"
 
 #include <string.h>
 
-#include "emit/cfunction.h"
 #include "emit/lag_kkt.h"  /* static const char *const lag_kkt[]: generated from runtime/include/lag_kkt.h */
 #include "emit/lag_math.h" /* static const char *const lag_math[]: generated from runtime/include/lag_math.h */
 

@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "emit/embedded_math.h"
 #include "emit/header_impl.h"
 
 /* --- names --- */
@@ -43,15 +42,8 @@ static const char *const *globals_of(Header *h) {
   const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 20);
   uint32_t n = 0;
   for (uint32_t i = 0; i < h->taken.taken.n; i++) all[n++] = h->taken.taken.at[i].name;
-  all[n++] = arena_printf(h->a, "%s_solve", h->lower);
-  all[n++] = arena_printf(h->a, "%s_solve_definite", h->lower);
-  all[n++] = arena_printf(h->a, "%s_cubic", h->lower);
-  all[n++] = arena_printf(h->a, "%s_spline", h->lower);
-  all[n++] = arena_printf(h->a, "%s_params", h->lower);
-  all[n++] = arena_printf(h->a, "%s_state", h->lower);
-  all[n++] = arena_printf(h->a, "%s_step", h->lower);
-  all[n++] = arena_printf(h->a, "%s_input_fn", h->lower);
-  static const char *const functions[] = {"sincos", "sincos2", "sincos4", "sin", "cos", "lanes", "lanes_mask"};
+  static const char *const functions[] = {"solve", "cubic", "spline", "params", "state", "step", "input_fn", "sincos", "sincos2", "sincos4", "sin", "cos",
+                                          "lanes", "lanes_mask"};
   for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) all[n++] = arena_printf(h->a, "%s_%s", h->lower, functions[i]);
   all[n++] = "singular";
   return all;

@@ -1,33 +1,22 @@
-/* State of one emitted model file, shared by emit_model.c, emit_params.c and emit_charges.c. */
+/* Parts of the emitted model file that emit_model.c puts together: Taylor recurrences (emit_taylor.c), tables of variables (variable_tables.c). */
 #ifndef LAGC_EMIT_IMPL_H
 #define LAGC_EMIT_IMPL_H
 
 #include "emit/cfunction.h"
 #include "ir/unit.h"
 
-typedef struct {
-  const IrUnit *u;
-  Arena *a;
-  const char *name;           /* identifier of the lag_model */
-  const char *const *globals; /* names that functions must not hide, NULL at the end */
-  StrBuf *out;
-} File;
+/* Series -> the functions that compute a model's Taylor coefficients, and the const lag_taylor called `taylor`. globals, math: as in CStyle. */
+void emit_taylor(const Series *s, const char *const *globals, const char *math, StrBuf *out);
 
-/* Input parameters common to all functions of a state, as C text. */
-extern const char *const emit_state_args;
+/* Whether a table of variables (names, units, factors) is written with macros, as runs of numbered names (u[1], u[2], ...) are, so that the
+ * text does not grow with the length of families; if so, table_macros must precede it. */
+int table_needs_macros(const IrVar *v, uint32_t n);
+void table_macros(StrBuf *out);
 
-/* Appends a function with the body of p. own: names of its parameters; written: names of its output arrays. */
-void emit_function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *written);
+/* `static const lag_var NAME[] = {...};`, or nothing for an empty table. */
+void table_vars(const char *name, const IrVar *v, uint32_t n, Arena *a, StrBuf *out);
 
-/* Style of a function of this file. */
-CStyle emit_style(const File *f, const char *const *own, const char *const *written);
-
-/* emit_params.c: functions that factor and invert matrices, if needed; the function `derive`; a scene's `params`. */
-void emit_inverses(const File *f);
-void emit_derive(const File *f);
-void emit_params(const File *f, const IrScene *s, const char *id);
-
-/* emit_charges.c: functions and tables of conserved charges; nothing for a model without charges. */
-void emit_charges(const File *f);
+/* Number of a table in the model's precision: digits (or NULL) if longer than the double's text; integers stay plain. */
+const char *table_number(Arena *a, double x, const char *digits);
 
 #endif

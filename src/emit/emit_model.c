@@ -4,10 +4,14 @@
 #include <string.h>
 
 #include "base/hash.h"
-#include "emit/embedded_math.h"
-#include "emit/variable_tables.h"
 #include "emit/emit_impl.h"
-#include "emit/emit_taylor.h"
+
+typedef struct {
+  const IrUnit *u;
+  Arena *a;
+  const char *const *globals; /* names that functions must not hide, NULL at the end */
+  StrBuf *out;
+} File;
 
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
@@ -76,12 +80,18 @@ static const char *const *globals_of(const IrUnit *u, const char *name) {
 
 /* --- functions --- */
 
-const char *const emit_state_args =
-  "LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n"
-  "    const LAG_REAL *p, const LAG_REAL *u";
+static void flag_text(unsigned flags, const char *const *names, uint32_t n, StrBuf *out) {
+  int some = 0;
+  for (uint32_t i = 0; i < n; i++)
+    if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);
+  if (!some) sb_putc(out, '0');
+}
 
-CStyle emit_style(const File *f, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .invert = "lag_invert", .multiply = "lag_multiply", .kkt = "lag_kkt", .spline = "lag_spline", .math = math_prefix(f->u, "lag")};
+static const char *const one_out[] = {"out", NULL};
+
+static CStyle style_for(const File *f, const char *const *own, const char *const *written) {
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .kkt = "lag_kkt",
+                  .spline = "lag_spline", .math = math_prefix(f->u, "lag")};
 }
 
 /* Whether the function is called once a step, or once a row of output. */
@@ -91,71 +101,62 @@ static int is_seldom_called(const IrUnit *u, const Prog *p) {
   return seldom;
 }
 
-void emit_function(const File *f, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *written) {
-  CStyle st = emit_style(f, own, written);
+/* Appends the function NAME of the state around p, if there is one; in: a further array that it reads, or NULL; written: its output arrays,
+ * NULL at the end. */
+static void state_function(const File *f, const Prog *p, const char *name, const char *comment, const char *in, const char *const *written) {
+  const char *own[12] = {"t", "q", "v", "z", "p", "u"};
+  uint32_t n = 6, outputs = 0;
+  StrBuf head = strbuf(f->a);
+  if (!p) return;
+  while (written[outputs]) outputs++;
+  sb_printf(&head, "static int %s(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u", name);
+  if (in) sb_printf(&head, ", const LAG_REAL *%s", own[n++] = in);
+  for (uint32_t k = 0; k < outputs; k++) sb_printf(&head, "%s LAG_REAL *%s", !k && (in || outputs > 2) ? ",\n   " : ",", own[n++] = written[k]);
+  sb_puts(&head, ", LAG_REAL *w)");
+  own[n] = "w";
+  CStyle st = style_for(f, own, written);
   st.prefer_short_code = is_seldom_called(f->u, p);
-  CFunction c = {.comment = comment, .head = head, .returns = 1};
+  CFunction c = {.comment = comment, .head = sb_text(&head), .returns = 1};
   cfunction(p, &st, &c, f->out);
 }
 
 static void accel(const File *f) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "a", "zd", "w", NULL}, *const written[] = {"a", "zd"};
+  static const char *const written[] = {"a", "zd", NULL};
   const char *what = !f->u->z.n ? "Accelerations" : f->u->q.n ? "Accelerations and rates" : "Rates";
-  const char *comment = arena_printf(f->a, "%s: %s.", what, op_count_text(f->u->accel, f->a));
-  const char *head = arena_printf(f->a, "static int accel(%s, LAG_REAL *a, LAG_REAL *zd, LAG_REAL *w)", emit_state_args);
-  emit_function(f, f->u->accel, comment, head, own, written);
+  state_function(f, f->u->accel, "accel", arena_printf(f->a, "%s: %s.", what, op_count_text(f->u->accel, f->a)), NULL, written);
 }
 
 void emit_accel(const IrUnit *u, StrBuf *out) {
   accel(&(File){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out});
 }
 
-static void emit_energy(const File *f) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
-  if (!f->u->energy) return;
-  const char *head = arena_printf(f->a, "static int energy(%s, LAG_REAL *out, LAG_REAL *w)", emit_state_args);
-  emit_function(f, f->u->energy, "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", head, own, written);
-}
-
 static void emit_variation(const File *f) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "Lq", "Lv", "Q", "w", NULL}, *const written[] = {"Lq", "Lv", "Q"};
-  static const char *const own2[] = {"t", "q", "v", "z", "p", "u", "h", "w", NULL}, *const written2[] = {"h"};
+  static const char *const written[] = {"Lq", "Lv", "Q", NULL}, *const derivatives[] = {"h", NULL};
   const IrUnit *u = f->u;
   if (!u->variation) return;
-  const char *head = arena_printf(f->a, "static int variation(%s,\n    LAG_REAL *Lq, LAG_REAL *Lv, LAG_REAL *Q, LAG_REAL *w)", emit_state_args);
-  emit_function(f, u->variation, "dL/dq, the momenta dL/dq', and the generalised forces outside of L.", head, own, written);
-  head = arena_printf(f->a, "static int second(%s, LAG_REAL *h, LAG_REAL *w)", emit_state_args);
-  emit_function(f, u->second, arena_printf(f->a, "Their nonzero derivatives: %s.", op_count_text(u->second, f->a)), head, own2, written2);
-}
-
-static void emit_action(const File *f, uint32_t i) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "q1", "v1", "z1", "w", NULL}, *const written[] = {"q1", "v1", "z1"};
-  const char *comment = arena_printf(f->a, "What the event %s does.", f->u->events.at[i].name);
-  const char *head = arena_printf(f->a, "static int act_%s(%s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, LAG_REAL *w)",
-                                  cname_of_event(f->u, i), emit_state_args);
-  emit_function(f, f->u->events.at[i].action, comment, head, own, written);
+  state_function(f, u->variation, "variation", "dL/dq, the momenta dL/dq', and the generalised forces outside of L.", NULL, written);
+  state_function(f, u->second, "second", arena_printf(f->a, "Their nonzero derivatives: %s.", op_count_text(u->second, f->a)), NULL, derivatives);
 }
 
 static void emit_events(const File *f) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
+  static const char *const written[] = {"q1", "v1", "z1", NULL};
   const IrUnit *u = f->u;
   if (!u->events.n) return;
-  const char *head = arena_printf(f->a, "static int events(%s, LAG_REAL *out, LAG_REAL *w)", emit_state_args);
-  emit_function(f, u->event_values, "An event happens where its function changes sign.", head, own, written);
-  for (uint32_t i = 0; i < u->events.n; i++) emit_action(f, i);
-  sb_printf(f->out, "\nstatic int act(int k, %s,\n    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n", emit_state_args);
-  sb_puts(f->out, "  switch (k) {\n");
+  state_function(f, u->event_values, "events", "An event happens where its function changes sign.", NULL, one_out);
+  for (uint32_t i = 0; i < u->events.n; i++)
+    state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", cname_of_event(u, i)),
+                   arena_printf(f->a, "What the event %s does.", u->events.at[i].name), NULL, written);
+  sb_puts(f->out, "\nstatic int act(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u,\n"
+                  "    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n  switch (k) {\n");
   for (uint32_t i = 0; i < u->events.n; i++)
     sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
   sb_puts(f->out, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
 }
 
 static void emit_switches(const File *f) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
   const IrUnit *u = f->u;
   if (!u->switches.n) return;
-  const char *head = arena_printf(f->a, "static int switch_values(%s, LAG_REAL *out, LAG_REAL *w)", emit_state_args);
-  emit_function(f, u->switch_values, "Switching functions: forces jump where one of them is 0.", head, own, written);
+  state_function(f, u->switch_values, "switch_values", "Switching functions: forces jump where one of them is 0.", NULL, one_out);
   sb_puts(f->out, "\nstatic const lag_switch switch_table[] = {\n");
   for (uint32_t i = 0; i < u->switches.n; i++) {
     const IrSwitch *s = &u->switches.at[i];
@@ -164,11 +165,83 @@ static void emit_switches(const File *f) {
   sb_puts(f->out, "};\n");
 }
 
+/* Charges of symmetries. */
+static void emit_charges(const File *f) {
+  static const char *const flags[CHARGE_FLAGS] = {
+#define CHARGE_FLAG(name) "LAG_" #name,
+#include "ir/flags.def"
+#undef CHARGE_FLAG
+  };
+  const IrUnit *u = f->u;
+  if (!u->charges.n) return;
+  state_function(f, u->charge_values, "charge_values", "The charges of symmetries, and the scales of their drifts.", NULL, one_out);
+  state_function(f, u->charge_powers, "charge_powers", "Rates of change of the energy and of these charges.", NULL, one_out);
+  sb_puts(f->out, "\nstatic const lag_charge charge_table[] = {\n");
+  for (uint32_t i = 0; i < u->charges.n; i++) {
+    const IrCharge *c = &u->charges.at[i];
+    sb_printf(f->out, "  {%s, %s, ", c_string(f->a, c->name), c_string(f->a, c->unit));
+    flag_text(c->flags, flags, CHARGE_FLAGS, f->out);
+    sb_puts(f->out, "},\n");
+  }
+  sb_printf(f->out, "};\n\nstatic const lag_charges charges = {\n  .n = %u, .of = charge_table, .values = %s, .powers = %s,\n};\n", u->charges.n,
+            u->charge_values ? "charge_values" : "NULL", u->charge_powers ? "charge_powers" : "NULL");
+}
+
+/* --- parameters and inputs --- */
+
+static void emit_derive(const File *f) {
+  static const char *const own[] = {"p", NULL}, *const written[] = {"p"};
+  if (!f->u->nderived) return;
+  CStyle st = style_for(f, own, written);
+  st.apart = st.prefer_short_code = 1;
+  CFunction c = {.comment = arena_printf(f->a, "Derived parameters, for the functions below: %s.", op_count_text(f->u->derived, f->a)),
+                 .head = "static void derive(LAG_REAL *p)"};
+  cfunction(f->u->derived, &st, &c, f->out);
+}
+
+/* Whether the parameter of p is a constant equal to that of `like`. */
+static int is_number_like(const Prog *p, const Prog *like) {
+  if (p->stores.n != 1 || like->stores.n != 1) return 0;
+  const Ins *x = &p->ins.at[p->stores.at[0].slot], *y = &like->ins.at[like->stores.at[0].slot];
+  return p->stores.at[0].slot && like->stores.at[0].slot && x->op == IR_CONST && y->op == IR_CONST && num_equal(x->number, y->number);
+}
+
+/* Number of parameters from i on with one constant value if at least 16; otherwise 1. */
+static uint32_t same_params(const IrUnit *u, const IrScene *s, uint32_t i) {
+  enum { MANY = 16 };
+  uint32_t n = 1;
+  while (i + n < u->p.n && is_number_like(s->params[i + n], s->params[i])) n++;
+  return n >= MANY ? n : 1;
+}
+
+/* Function params_ID: parameters in order, as each formula may use the parameters before it. */
+static void emit_params(const File *f, const IrScene *s, const char *id) {
+  static const char *const own[] = {"p", "fixed", NULL}, *const written[] = {"p"};
+  sb_printf(f->out, "\nstatic void params_%s(LAG_REAL *p, const unsigned char *fixed) {\n", id);
+  if (!f->u->p.n) sb_puts(f->out, "  (void)p; (void)fixed;\n");
+  for (uint32_t i = 0, same; i < f->u->p.n; i += same) {
+    same = same_params(f->u, s, i);
+    if (same > 1) {
+      const Prog *p = s->params[i];
+      sb_printf(f->out, "  for (int k = 0; k < %u; k++) /* %s ... %s */\n    if (!fixed[k + %u]) p[k + %u] = %s;\n", same,
+                comment_text(f->a, f->u->p.at[i].name), comment_text(f->a, f->u->p.at[i + same - 1].name), i, i,
+                c_number(f->a, "LAG", p->ins.at[p->stores.at[0].slot].number));
+      continue;
+    }
+    CStyle st = style_for(f, own, written);
+    st.loads_inline = 1;
+    StrBuf body = strbuf(f->a);
+    cwrite_body(s->params[i], &st, f->a, &body);
+    cwrite_guarded(arena_printf(f->a, "if (!fixed[%u]) ", i), sb_text(&body), f->out);
+  }
+  sb_puts(f->out, f->u->nderived ? "  derive(p);\n}\n" : "}\n");
+}
+
 static void emit_inputs(const File *f) {
   static const char *const own[] = {"t", "p", "u", NULL}, *const written[] = {"u"};
   const Prog *p = f->u->inputs;
   if (!f->u->u.n) return;
-  CStyle st = emit_style(f, own, written);
+  CStyle st = style_for(f, own, written);
   st.rows = rows_names(f->u);
   for (uint32_t i = 0; i < p->tables.n; i++) {
     sb_putc(f->out, '\n');
@@ -188,12 +261,11 @@ static void entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out
 }
 
 static void emit_jumps(const File *f) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "d", "w", NULL}, *const written[] = {"d"};
+  static const char *const written[] = {"d", NULL};
   const IrUnit *u = f->u;
   enum { A_LINE = 8 };
   if (!u->jumps) return;
-  const char *head = arena_printf(f->a, "static int jumps(%s, LAG_REAL *d, LAG_REAL *w)", emit_state_args);
-  emit_function(f, u->jumps, "Linearised events: derivatives of their functions and of the values that their actions set.", head, own, written);
+  state_function(f, u->jumps, "jumps", "Linearised events: derivatives of their functions and of the values that their actions set.", NULL, written);
   sb_puts(f->out, "\nstatic const lag_jump jump_table[] = {");
   for (uint32_t i = 0; i < u->jump_at.n; i++)
     sb_printf(f->out, "%s{%u, %d, %u},", i % A_LINE ? " " : "\n  ", u->jump_at.at[i].event, u->jump_at.at[i].row, u->jump_at.at[i].col);
@@ -201,12 +273,11 @@ static void emit_jumps(const File *f) {
 }
 
 static void emit_linear(const File *f) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "a", "dr", "M", "w", NULL}, *const written[] = {"dr", "M"};
+  static const char *const written[] = {"dr", "M", NULL};
   const IrUnit *u = f->u;
   if (!u->linear) return;
   const char *comment = arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.", op_count_text(u->linear, f->a));
-  const char *head = arena_printf(f->a, "static int linearise(%s, const LAG_REAL *a,\n    LAG_REAL *dr, LAG_REAL *M, LAG_REAL *w)", emit_state_args);
-  emit_function(f, u->linear, comment, head, own, written);
+  state_function(f, u->linear, "linearise", comment, "a", written);
   entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
   entries("mass_table", u->linear_mass.at, u->linear_mass.n, f->out);
   emit_jumps(f);
@@ -219,12 +290,6 @@ static void emit_linear(const File *f) {
 
 /* --- constraints --- */
 
-static void emit_change(const File *f, const Prog *p, const char *name, const char *comment) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "g", "d", "force", "w", NULL}, *const written[] = {"d", "force"};
-  const char *head = arena_printf(f->a, "static int %s(%s, const LAG_REAL *g,\n    LAG_REAL *d, LAG_REAL *force, LAG_REAL *w)", name, emit_state_args);
-  emit_function(f, p, comment, head, own, written);
-}
-
 static void constraint_table(const IrUnit *u, StrBuf *out) {
   const IrConstraints *k = &u->constraints;
   Arena *a = u->arena;
@@ -235,20 +300,17 @@ static void constraint_table(const IrUnit *u, StrBuf *out) {
 }
 
 static void emit_constraints(const File *f) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "c", "r", "w", NULL}, *const written[] = {"c", "r"};
-  static const char *const own2[] = {"t", "q", "v", "z", "p", "u", "A", "M", "w", NULL}, *const written2[] = {"A", "M"};
+  static const char *const residuals[] = {"c", "r", NULL}, *const matrices[] = {"A", "M", NULL}, *const change[] = {"d", "force", NULL};
   const IrConstraints *k = &f->u->constraints;
   if (!k->of.n) return;
-  const char *head = arena_printf(f->a, "static int residuals(%s, LAG_REAL *c, LAG_REAL *r, LAG_REAL *w)", emit_state_args);
-  emit_function(f, k->residuals, k->nkept > k->nholonomic ? "What the constraints say is zero, or stays as it is at the start: c on positions; r on velocities."
-                                                            : "What the constraints say is zero: c on positions, r on velocities.", head, own, written);
-  head = arena_printf(f->a, "static int matrices(%s, LAG_REAL *A, LAG_REAL *M, LAG_REAL *w)", emit_state_args);
-  emit_function(f, k->matrices, "A, the derivatives of r by the velocities, and the mass matrix: the entries that are not zero.", head, own2, written2);
+  state_function(f, k->residuals, "residuals", k->nkept > k->nholonomic ? "What the constraints say is zero, or stays as it is at the start: c on positions; r on velocities."
+                                                                        : "What the constraints say is zero: c on positions, r on velocities.", NULL, residuals);
+  state_function(f, k->matrices, "matrices", "A, the derivatives of r by the velocities, and the mass matrix: the entries that are not zero.", NULL, matrices);
   int both = k->velocity == k->position;
   if (k->nkept)
-    emit_change(f, k->position, "correct_positions", both ? "The least change d with A d = g, for positions or velocities; force: M d."
-                                                           : "The least change d of positions with A d = g; force: M d.");
-  if (!both) emit_change(f, k->velocity, "correct_velocities", "The least change d of velocities with A d = g; force: M d.");
+    state_function(f, k->position, "correct_positions", both ? "The least change d with A d = g, for positions or velocities; force: M d."
+                                                             : "The least change d of positions with A d = g; force: M d.", "g", change);
+  if (!both) state_function(f, k->velocity, "correct_velocities", "The least change d of velocities with A d = g; force: M d.", "g", change);
   constraint_table(f->u, f->out);
   entries("jacobian_table", k->jacobian.at, k->jacobian.n, f->out);
   entries("inertia_table", k->mass.at, k->mass.n, f->out);
@@ -269,7 +331,7 @@ static void emit_constraints(const File *f) {
 
 static void emit_start(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"p", "q", "v", "z", NULL}, *const written[] = {"q", "v", "z"};
-  CStyle st = emit_style(f, own, written);
+  CStyle st = style_for(f, own, written);
   sb_printf(f->out, "\nstatic void start_%s(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z) {\n", id);
   sb_puts(f->out, "  (void)p; (void)q; (void)v; (void)z;\n");
   if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
@@ -279,19 +341,12 @@ static void emit_start(const File *f, const IrScene *s, const char *id) {
   sb_puts(f->out, "}\n");
 }
 
-static void emit_observe(const File *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"t", "q", "v", "z", "p", "u", "out", "w", NULL}, *const written[] = {"out"};
-  const char *comment = arena_printf(f->a, "Outputs of the scene %s.", s->name);
-  const char *head = arena_printf(f->a, "static int observe_%s(%s, LAG_REAL *out, LAG_REAL *w)", id, emit_state_args);
-  emit_function(f, s->observe, comment, head, own, written);
-}
-
 /* Function of the closed forms; its arguments q0, v0, z0 are the state at the start. */
 static void emit_exact(const File *f, const IrScene *s, const char *id) {
   static const char *const own[] = {"t", "q0", "v0", "z0", "p", "u", "out", NULL}, *const written[] = {"out"};
   static const char *const from_start[ARR_COUNT] = {"t", "q0", "v0", "z0", "p", "u", "a"};
   if (!s->exact_of.n) return;
-  CStyle st = emit_style(f, own, written);
+  CStyle st = style_for(f, own, written);
   st.in = from_start;
   CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .returns = 1};
   c.head = arena_printf(f->a, "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
@@ -312,45 +367,19 @@ static int has_long_tables(const IrUnit *u) {
   return is_long;
 }
 
-/* Programs whose systems lag_solve and its kin solve in `work`: not the plain outputs, which only a header has, and not derived parameters and Taylor
- * coefficients, whose factors have functions and room of their own. */
-static ProgList solving_programs(const IrUnit *u) {
-  ProgList all = unit_programs(u), kept = {0};
-  for (uint32_t i = 0; i < all.n; i++) {
-    const Prog *p = all.at[i];
-    int apart = p == u->derived || (u->taylor && (p == u->taylor->first || p == u->taylor->next));
-    for (uint32_t k = 0; k < u->scenes.n; k++) apart |= p == u->scenes.at[k].observe_plain && p != u->scenes.at[k].observe;
-    if (!apart) vec_push(u->arena, &kept, p);
-  }
-  return kept;
-}
-
 static uint32_t work_size(const IrUnit *u) {
-  ProgList all = solving_programs(u);
+  ProgList all = unit_programs(u);
   uint32_t most = 0;
   for (uint32_t i = 0; i < all.n; i++)
     if (prog_work_size(all.at[i]) > most) most = prog_work_size(all.at[i]);
   return most;
 }
 
-/* Whether a linear system of that kind is solved by a loop. */
-static int needs_solver(const IrUnit *u, SolveKind kind) {
-  ProgList all = solving_programs(u);
+static int needs_solver(const IrUnit *u) {
+  ProgList all = unit_programs(u);
   int some = 0;
-  for (uint32_t i = 0; i < all.n; i++) some |= prog_solves(all.at[i], kind);
+  for (uint32_t i = 0; i < all.n; i++) some |= prog_solves_dense(all.at[i]);
   return some;
-}
-
-static void flag_text(unsigned flags, StrBuf *out) {
-  static const char *const names[UNIT_FLAGS] = {
-#define MODEL_FLAG(name) "LAG_" #name,
-#include "ir/flags.def"
-#undef MODEL_FLAG
-  };
-  int some = 0;
-  for (size_t i = 0; i < UNIT_FLAGS; i++)
-    if (flags >> i & 1) sb_printf(out, "%s%s", some++ ? " | " : "", names[i]);
-  if (!some) sb_putc(out, '0');
 }
 
 static const char *or_null(uint32_t n, const char *name) { return n ? name : "NULL"; }
@@ -384,6 +413,11 @@ static void second_table(const IrUnit *u, StrBuf *out) {
 }
 
 static void emit_tables(const IrUnit *u, const char *name, const char *digest, StrBuf *out) {
+  static const char *const flags[UNIT_FLAGS] = {
+#define MODEL_FLAG(name) "LAG_" #name,
+#include "ir/flags.def"
+#undef MODEL_FLAG
+  };
   table_vars("q_table", u->q.at, u->q.n, u->arena, out);
   table_vars("z_table", u->z.at, u->z.n, u->arena, out);
   table_vars("p_table", u->p.at, u->p.n, u->arena, out);
@@ -399,7 +433,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   const char *model = c_string(u->arena, u->name), *doc = c_string(u->arena, u->doc), *effects = c_string(u->arena, u->effects);
   sb_printf(out, "\nconst lag_model %s = {\n", name);
   sb_printf(out, "  .abi = LAG_ABI, .real_size = sizeof(LAG_REAL),\n  .name = %s,\n  .doc = %s,\n  .effects = %s,\n  .digest = \"%s\",\n  .flags = ", model, doc, effects, digest);
-  flag_text(u->flags, out);
+  flag_text(u->flags, flags, UNIT_FLAGS, out);
   sb_printf(out, ",\n  .ops = %u,\n", ops_as_int(ops_total(prog_count(u->accel))));
   sb_printf(out, "  .nq = %u, .nz = %u, .np = %u, .nu = %u, .nev = %u, .nw = %u,\n", u->q.n, u->z.n, u->p.n, u->u.n, u->events.n, work_size(u));
   sb_printf(out, "  .q = %s, .z = %s, .p = %s, .u = %s, .ev = %s,\n", or_null(u->q.n, "q_table"), or_null(u->z.n, "z_table"),
@@ -465,14 +499,14 @@ static const char *list_name(const IrUnit *u, uint32_t n, const char *stem, cons
   return n ? arena_printf(u->arena, "%s_%s", stem, id) : "NULL";
 }
 
-static void emit_scene(const File *f, uint32_t index) {
+static void emit_scene(const File *f, const char *name, uint32_t index) {
   const IrUnit *u = f->u;
   const IrScene *s = &u->scenes.at[index];
-  const char *id = scene_id(u, index), *name = f->name;
+  const char *id = scene_id(u, index);
   StrBuf *out = f->out;
   emit_params(f, s, id);
   emit_start(f, s, id);
-  emit_observe(f, s, id);
+  state_function(f, s->observe, arena_printf(f->a, "observe_%s", id), arena_printf(f->a, "Outputs of the scene %s.", s->name), NULL, one_out);
   emit_exact(f, s, id);
   emit_scene_lists(u, s, id, out);
   emit_given(u, s, id, out);
@@ -505,7 +539,7 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
 }
 
 void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
-  File f = {.u = u, .a = u->arena, .name = name, .globals = globals_of(u, name), .out = out};
+  File f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
   math_lanes("LAG", "lag", out);
   sb_puts(out, prelude);
@@ -513,15 +547,13 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   sb_putc(out, '\n');
   math_functions(u, "LAG", "lag", out);
   if (has_long_tables(u)) table_macros(out);
-  for (SolveKind kind = SOLVE_PIVOTING; kind <= SOLVE_INVERSE; kind++)
-    if (kind != SOLVE_CONSTRAINED && needs_solver(u, kind)) csupport_solver(kind, "LAG", "lag", out);
-  emit_inverses(&f);
+  if (needs_solver(u)) csupport_solver("LAG", "lag", out);
   math_kkt_solver(u, "LAG", "lag", out);
   if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
   size_t begin = out->n;
   emit_derive(&f);
   accel(&f);
-  emit_energy(&f);
+  state_function(&f, u->energy, "energy", "The energy p q' - L, and the scale |p q'| + |L| that its drift is compared with.", NULL, one_out);
   emit_events(&f);
   emit_inputs(&f);
   emit_constraints(&f);
@@ -532,7 +564,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   if (u->taylor) emit_taylor(u->taylor, f.globals, math_prefix(u, "lag"), out);
   emit_variation(&f);
   emit_tables(u, name, digest, out);
-  for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, i);
+  for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, name, i);
 }
 
 static void emit_main(int gsl, StrBuf *out) {

@@ -1,10 +1,6 @@
 /* C of the Taylor recurrences: order 0, the step from order k to k + 1, the convolution sums over rows of coefficients,
  * and the evaluation of the series; each row operation also with vectors of four doubles (AVX2). */
-#include "emit/emit_taylor.h"
-
-#include <string.h>
-
-#include "emit/cfunction.h"
+#include "emit/emit_impl.h"
 
 enum { LANES = 4 };    /* row lengths are multiples of this */
 enum { CALL = 25 };    /* extra cost of a function call, in operations */
@@ -52,7 +48,8 @@ static const char *const wide_head =
   "typedef double taylor_four __attribute__((vector_size(32), aligned(8), may_alias));\n"
   "#endif\n";
 
-/* Templates, see fill(): $ is the suffix (none or _wide), # the vector type, @ an attribute, % the place of an unroll pragma. */
+/* Templates, see fill(): $ is the suffix (none or _wide), # the vector type, @ an attribute, % the place of an unroll pragma, ~N an unrolled loop
+ * over N vectors. */
 static const char *const at =
   "\n@static void taylor_at$(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy) {\n"
   "  enum { PARTS = 4*sizeof(LAG_REAL)/sizeof(#) };\n"
@@ -64,20 +61,17 @@ static const char *const at =
   "      for (int g = 0; g < (int)PARTS; g++) e[g] = row[g];\n"
   "    for (; k > 0; k -= 2) {\n"
   "      const # *const odd = (const # *)(x + k*TAYLOR_COLUMNS + i), *const even = (const # *)(x + (k - 1)*TAYLOR_COLUMNS + i);\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PARTS; g++) {\n"
+  "      ~PARTS {\n"
   "        d[g] = d[g]*u + o[g];\n"
   "        o[g] = o[g]*u + odd[g];\n"
   "      }\n"
   "      if (k == 1) break;\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PARTS; g++) {\n"
+  "      ~PARTS {\n"
   "        de[g] = de[g]*u + e[g];\n"
   "        e[g] = e[g]*u + even[g];\n"
   "      }\n"
   "    }\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) {\n"
+  "    ~PARTS {\n"
   "      ((# *)(y + i))[g] = e[g]*u + o[g]*s;\n"
   "      ((# *)(dy + i))[g] = (de[g]*u + e[g])*(twice*s) + d[g]*(twice*u) + o[g];\n"
   "    }\n"
@@ -92,20 +86,16 @@ static const char *const sums =
   "    # s[PARTS] = {0};\n"
   "%    for (int j = 2; j < last; j++) {\n"
   "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->b[k - j] + i);\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PARTS; g++) s[g] += a[g]*b[g];\n"
+  "      ~PARTS s[g] += a[g]*b[g];\n"
   "    }\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) ((# *)(w->s + i))[g] = s[g];\n"
+  "    ~PARTS ((# *)(w->s + i))[g] = s[g];\n"
   "    const taylor_pair *const a1 = (const taylor_pair *)(w->a[1] + i), *const b1 = (const taylor_pair *)(w->b[1] + i);\n"
   "    const taylor_pair *const an = (const taylor_pair *)(w->a[last] + i), *const bn = (const taylor_pair *)(w->b[last] + i);\n"
   "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
   "    if (k > 2) {\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PAIRS; g++) out[g] = out[g] + an[g]*b1[g] + a1[g]*bn[g];\n"
+  "      ~PAIRS out[g] = out[g] + an[g]*b1[g] + a1[g]*bn[g];\n"
   "    } else if (k == 2) {\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PAIRS; g++) out[g] = a1[g]*bn[g];\n"
+  "      ~PAIRS out[g] = a1[g]*bn[g];\n"
   "    }\n"
   "  }\n"
   "}\n";
@@ -119,24 +109,19 @@ static const char *const squares =
   "    # s[PARTS] = {0};\n"
   "%    for (int j = 2; j < k - j; j++) {\n"
   "      const # *const a = (const # *)(w->a[j] + i), *const b = (const # *)(w->a[k - j] + i);\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PARTS; g++) s[g] += a[g]*b[g];\n"
+  "      ~PARTS s[g] += a[g]*b[g];\n"
   "    }\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) s[g] *= twice;\n"
+  "    ~PARTS s[g] *= twice;\n"
   "    const # *const m = (const # *)(w->a[half] + i);\n"
   "    if (half > 1 && 2*half == k) {\n"
-  "      TAYLOR_UNROLL\n"
-  "      for (int g = 0; g < (int)PARTS; g++) s[g] += m[g]*m[g];\n"
+  "      ~PARTS s[g] += m[g]*m[g];\n"
   "    }\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) ((# *)(w->s + i))[g] = s[g];\n"
+  "    ~PARTS ((# *)(w->s + i))[g] = s[g];\n"
   "    if (k < 2) continue;\n"
   "    const taylor_pair *const a = (const taylor_pair *)(w->a[1] + i), *const b = (const taylor_pair *)(w->a[last] + i);\n"
   "    const LAG_REAL weight = k > 2 ? twice : LAG_C(1.0);\n"
   "    taylor_pair *const out = (taylor_pair *)(w->s + i);\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) out[g] += weight*(a[g]*b[g]);\n"
+  "    ~PAIRS out[g] += weight*(a[g]*b[g]);\n"
   "  }\n"
   "}\n";
 
@@ -151,25 +136,19 @@ static const char *const register_sums =
   "  TAYLOR_UNROLL_4\n"
   "  for (int j = 3; j < k - 2; j++) {\n"
   "    const # *const aj = (const # *)w->a[j], *const bj = (const # *)w->b[k - j];\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) far[g] += aj[g]*bj[g];\n"
+  "    ~PARTS far[g] += aj[g]*bj[g];\n"
   "  }\n"
-  "  TAYLOR_UNROLL\n"
-  "  for (int g = 0; g < (int)PAIRS; g++) s[g] = taylor_part$(far, g);\n"
+  "  ~PAIRS s[g] = taylor_part$(far, g);\n"
   "  if (k > 4) {\n"
   "    const taylor_pair *const am = (const taylor_pair *)w->a[k - 2], *const bm = (const taylor_pair *)w->b[k - 2];\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += am[g]*b2[g] + a2[g]*bm[g];\n"
+  "    ~PAIRS s[g] += am[g]*b2[g] + a2[g]*bm[g];\n"
   "  } else if (k == 4) {\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] = a2[g]*b2[g];\n"
+  "    ~PAIRS s[g] = a2[g]*b2[g];\n"
   "  }\n"
   "  if (k > 2) {\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += a[g]*b1[g] + a1[g]*b[g];\n"
+  "    ~PAIRS s[g] += a[g]*b1[g] + a1[g]*b[g];\n"
   "  } else if (k == 2) {\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] = a[g]*b[g];\n"
+  "    ~PAIRS s[g] = a[g]*b[g];\n"
   "  }\n"
   "}\n";
 
@@ -183,27 +162,21 @@ static const char *const register_squares =
   "  TAYLOR_UNROLL_4\n"
   "  for (int j = 3; j < k - j; j++) {\n"
   "    const # *const aj = (const # *)(w->a[j] + TAYLOR_SQUARES), *const bj = (const # *)(w->a[k - j] + TAYLOR_SQUARES);\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PARTS; g++) far[g] += aj[g]*bj[g];\n"
+  "    ~PARTS far[g] += aj[g]*bj[g];\n"
   "  }\n"
-  "  TAYLOR_UNROLL\n"
-  "  for (int g = 0; g < (int)PAIRS; g++) s[g] = twice*taylor_part$(far, g);\n"
+  "  ~PAIRS s[g] = twice*taylor_part$(far, g);\n"
   "  if (half > 1 && 2*half == k) {\n"
   "    const taylor_pair *const m = (const taylor_pair *)(w->a[half] + TAYLOR_SQUARES);\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += m[g]*m[g];\n"
+  "    ~PAIRS s[g] += m[g]*m[g];\n"
   "  }\n"
   "  if (k > 4) {\n"
   "    const taylor_pair *const am = (const taylor_pair *)(w->a[k - 2] + TAYLOR_SQUARES);\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += twice*(am[g]*a2[g]);\n"
+  "    ~PAIRS s[g] += twice*(am[g]*a2[g]);\n"
   "  }\n"
   "  if (k > 2) {\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] += twice*(a[g]*a1[g]);\n"
+  "    ~PAIRS s[g] += twice*(a[g]*a1[g]);\n"
   "  } else if (k == 2) {\n"
-  "    TAYLOR_UNROLL\n"
-  "    for (int g = 0; g < (int)PAIRS; g++) s[g] = a[g]*a[g];\n"
+  "    ~PAIRS s[g] = a[g]*a[g];\n"
   "  }\n"
   "}\n";
 
@@ -225,8 +198,7 @@ typedef struct {
 } TaylorWriter;
 
 static CStyle style_for(const TaylorWriter *w, const char *const *own, const char *const *written) {
-  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = w->globals, .factor = "lag_factor", .substitute = "lag_substitute",
-                  .math = w->math};
+  return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = w->globals, .solve = "lag_solve", .math = w->math};
 }
 
 /* Whether the sums are few enough that the coefficients of the last order stay in registers. */
@@ -283,6 +255,7 @@ static void next(const TaylorWriter *w) {
   CStyle st = style_for(w, own, written);
   st.paired = 1u << 0 | 1u << 1 | 1u << 2 | 1u << 3;
   st.padded = 1u << 2 | 1u << 3 | (unsigned)sums_fit_registers(s) << 1;
+  st.is_regular = 1; /* as at order 0 */
   st.apart = 1; /* y may be x: it reads the state and t, and writes the rates */
   sb_printf(w->out, "\n/* Order k > 0, besides the sums: %s. Each name stands for coefficient k of its value. */\n", op_count_text(s->next, w->a));
   sb_printf(w->out, "static %svoid taylor_next(", ops_total(prog_count(s->next)) <= INLINE_MAX ? "TAYLOR_INLINE " : "");
@@ -292,6 +265,28 @@ static void next(const TaylorWriter *w) {
   sb_puts(w->out, "  (void)order; (void)per_order; (void)up; (void)s; (void)c; (void)a; (void)b;\n");
   cwrite_body(s->next, &st, w->a, w->out);
   sb_puts(w->out, "}\n");
+}
+
+/* Appends the head of the loop `~N` at text, indented as in its line (begin: of the template); returns the length of N. */
+static size_t unrolled(StrBuf *out, const char *begin, const char *text) {
+  size_t column = 0, n = strspn(text + 1, "ABCDEFGHIJKLMNOPQRSTUVWXYZ");
+  while (text - column > begin && *(text - column - 1) == ' ') column++;
+  sb_printf(out, "TAYLOR_UNROLL\n%*sfor (int g = 0; g < (int)%.*s; g++)", (int)column, "", (int)n, text + 1);
+  return n;
+}
+
+/* Appends a template with its marks filled in. The loop over orders is unrolled where there is a single group of sums. */
+static void fill(const TaylorWriter *w, const char *text, const char *suffix, const char *type, const char *attribute) {
+  StrBuf *out = w->out;
+  for (const char *begin = text; *text; text++) {
+    if (*text == '$') sb_puts(out, suffix);
+    else if (*text == '#' && text[1] == ' ') sb_puts(out, type);
+    else if (*text == '#' && text[1] == ')') sb_puts(out, type);
+    else if (*text == '@') sb_puts(out, attribute);
+    else if (*text == '~') text += unrolled(out, begin, text);
+    else if (*text == '%' && text[1] == ' ') sb_puts(out, w->s->first_square == w->s->group ? "    TAYLOR_UNROLL_4\n" : "");
+    else sb_putc(out, *text);
+  }
 }
 
 /* Column of order 0 that holds the rate of column i of the state. */
@@ -332,40 +327,32 @@ static void orders_in_registers(const TaylorWriter *w, const char *suffix) {
   const Series *s = w->s;
   uint32_t state = 2 * s->nq + s->nz;
   int reads_row = s->uses_time; /* t stands behind the state, in the row */
-  sb_puts(w->out, "  enum { STATE = TAYLOR_STATE/TAYLOR_PER_PAIR, PAIRS = TAYLOR_PAIRED/TAYLOR_PER_PAIR, SQUARES = TAYLOR_SQUARES/TAYLOR_PER_PAIR,\n"
-                  "    ALL = TAYLOR_SQUARED ? SQUARES + TAYLOR_SQUARED/TAYLOR_PER_PAIR : PAIRS };\n"
-                  "  const taylor_pair zero = {0};\n"
-                  "  taylor_pair y1[STATE], a[ALL + 1], b[PAIRS + 1];\n"
-                  "  TAYLOR_UNROLL\n"
-                  "  for (int g = 0; g < (int)ALL; g++) a[g] = zero;\n"
-                  "  TAYLOR_UNROLL\n"
-                  "  for (int g = 0; g < (int)PAIRS; g++) b[g] = zero;\n");
+  fill(w, "  enum { STATE = TAYLOR_STATE/TAYLOR_PER_PAIR, PAIRS = TAYLOR_PAIRED/TAYLOR_PER_PAIR, SQUARES = TAYLOR_SQUARES/TAYLOR_PER_PAIR,\n"
+          "    ALL = TAYLOR_SQUARED ? SQUARES + TAYLOR_SQUARED/TAYLOR_PER_PAIR : PAIRS };\n"
+          "  const taylor_pair zero = {0};\n"
+          "  taylor_pair y1[STATE], a[ALL + 1], b[PAIRS + 1];\n"
+          "  ~ALL a[g] = zero;\n"
+          "  ~PAIRS b[g] = zero;\n", "", "", "");
   for (uint32_t i = 0; i < state; i += 2) {
     sb_printf(w->out, "  LAG_PAIR(y1, %u, T*x[%u], ", i, rate_column(s, i));
     if (i + 1 < state) sb_printf(w->out, "T*x[%u]);\n", rate_column(s, i + 1));
     else sb_puts(w->out, "LAG_C(0.0));\n");
   }
-  sb_puts(w->out, "  TAYLOR_UNROLL\n"
-                  "  for (int g = 0; g < (int)STATE; g++) ((taylor_pair *)(x + TAYLOR_COLUMNS))[g] = y1[g];\n"
-                  "  for (int k = 1; k < n; k++) {\n"
-                  "    LAG_REAL *const row = x + k*TAYLOR_COLUMNS;\n"
-                  "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n"
-                  "    taylor_pair s[ALL + 1], sum[ALL + 1];\n");
-  if (!reads_row) sb_puts(w->out, "    taylor_pair y[STATE];\n"
-                                  "    TAYLOR_UNROLL\n"
-                                  "    for (int g = 0; g < (int)STATE; g++) y[g] = y1[g];\n");
+  fill(w, "  ~STATE ((taylor_pair *)(x + TAYLOR_COLUMNS))[g] = y1[g];\n"
+          "  for (int k = 1; k < n; k++) {\n"
+          "    LAG_REAL *const row = x + k*TAYLOR_COLUMNS;\n"
+          "    const LAG_REAL per_next = LAG_C(1.0)/(LAG_LANE)(k + 1);\n"
+          "    taylor_pair s[ALL + 1], sum[ALL + 1];\n", "", "", "");
+  if (!reads_row) fill(w, "    taylor_pair y[STATE];\n"
+                          "    ~STATE y[g] = y1[g];\n", "", "", "");
   if (s->sums) sb_printf(w->out, "    taylor_sums%s(k, w, a, b, sum);\n", suffix);
   if (s->squares) sb_printf(w->out, "    taylor_squares%s(k, w, a + SQUARES, sum + SQUARES);\n", suffix);
-  sb_puts(w->out, "    TAYLOR_UNROLL\n"
-                  "    for (int g = 0; g < (int)ALL; g++) s[g] = sum[g];\n");
+  fill(w, "    ~ALL s[g] = sum[g];\n", "", "", "");
   sb_printf(w->out, "    taylor_next(LAG_C(0.0) + (LAG_LANE)k, per_k, T*per_next, (const LAG_REAL *)s, w->c, %s, row, (LAG_REAL *)y1, (LAG_REAL *)a, (LAG_REAL *)b%s);\n",
             reads_row ? "row" : "(const LAG_REAL *)y", s->room ? ", w->m" : "");
-  sb_puts(w->out, "    TAYLOR_UNROLL\n"
-                  "    for (int g = 0; g < (int)STATE; g++) ((taylor_pair *)(row + TAYLOR_COLUMNS))[g] = y1[g];\n"
-                  "    TAYLOR_UNROLL\n"
-                  "    for (int g = 0; g < (int)ALL; g++) ((taylor_pair *)w->a[k])[g] = a[g];\n"
-                  "    TAYLOR_UNROLL\n"
-                  "    for (int g = 0; g < (int)PAIRS; g++) ((taylor_pair *)w->b[k])[g] = b[g];\n");
+  fill(w, "    ~STATE ((taylor_pair *)(row + TAYLOR_COLUMNS))[g] = y1[g];\n"
+          "    ~ALL ((taylor_pair *)w->a[k])[g] = a[g];\n"
+          "    ~PAIRS ((taylor_pair *)w->b[k])[g] = b[g];\n", "", "", "");
 }
 
 static void rest(const TaylorWriter *w, const char *suffix, const char *attribute) {
@@ -385,19 +372,6 @@ static void rest(const TaylorWriter *w, const char *suffix, const char *attribut
   }
   if (s->uses_time) sb_printf(w->out, "    row[TAYLOR_COLUMNS + %u] = LAG_C(0.0);\n", t);
   sb_puts(w->out, "    per_k = per_next;\n  }\n}\n");
-}
-
-/* Appends a template with its marks filled in. The loop over orders is unrolled where there is a single group of sums. */
-static void fill(const TaylorWriter *w, const char *text, const char *suffix, const char *type, const char *attribute) {
-  StrBuf *out = w->out;
-  for (; *text; text++) {
-    if (*text == '$') sb_puts(out, suffix);
-    else if (*text == '#' && text[1] == ' ') sb_puts(out, type);
-    else if (*text == '#' && text[1] == ')') sb_puts(out, type);
-    else if (*text == '@') sb_puts(out, attribute);
-    else if (*text == '%' && text[1] == ' ') sb_puts(out, w->s->first_square == w->s->group ? "    TAYLOR_UNROLL_4\n" : "");
-    else sb_putc(out, *text);
-  }
 }
 
 /* Writes the row operations: sums, squares, all orders, evaluation of the series. */

@@ -1,7 +1,6 @@
 /* Definitions of an emitted header: support functions, functions around programs, constraints, Runge-Kutta step. */
 #include <string.h>
 
-#include "emit/embedded_math.h"
 #include "emit/header_impl.h"
 
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
@@ -101,18 +100,17 @@ static CStyle style_for(const Header *h, const char *const *own, const char *con
 
 static const char *api(const Header *h, HeaderFn f) { return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f))); }
 
-static void state_function(const Header *h, const Prog *p, const char *head, const char *const *out, int returns) {
-  CStyle st = style_for(h, own_names(h, out), out);
-  CFunction c = {.head = head, .returns = returns, .own_work = 1};
+/* A function of the state around p; own: its further parameters; out: its output arrays. */
+static void state_function(const Header *h, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *out, int returns) {
+  CStyle st = style_for(h, own_names(h, own), out);
+  CFunction c = {.comment = comment, .head = head, .returns = returns, .own_work = 1};
   cfunction(p, &st, &c, h->out);
 }
 
 static void accel(const Header *h) {
-  static const char *const out[] = {"a", "zd"}, *const none[] = {"a", NULL}, *const both[] = {"a", "zd", NULL};
-  const char *const *extra = !h->u->q.n ? both + 1 : h->u->z.n ? both : none;
-  CStyle st = style_for(h, own_names(h, extra), out);
-  CFunction c = {.head = api(h, FN_ACCEL), .returns = 1, .own_work = 1};
-  cfunction(h->u->accel, &st, &c, h->out);
+  static const char *const out[] = {"a", "zd", NULL}, *const none[] = {"a", NULL};
+  const char *const *extra = !h->u->q.n ? out + 1 : h->u->z.n ? out : none;
+  state_function(h, h->u->accel, NULL, api(h, FN_ACCEL), extra, out, 1);
 }
 
 /* --- parameters and the start --- */
@@ -185,10 +183,8 @@ static void action(const Header *h, uint32_t i) {
   sb_printf(&head, "static int %s(%s", event_id(h, i), header_state_args(h, 1, ""));
   for (uint32_t k = 0; k < n; k++) sb_printf(&head, ", %s_REAL *%s", h->upper, own[k]);
   sb_putc(&head, ')');
-  CStyle st = style_for(h, own_names(h, own), out);
-  CFunction c = {.comment = arena_printf(h->a, "Action of the event %s: q1, v1, z1 hold the state after it.", h->u->events.at[i].name),
-                 .head = header_wrapped(h, sb_text(&head)), .returns = 1, .own_work = 1};
-  cfunction(h->u->events.at[i].action, &st, &c, h->out);
+  const char *comment = arena_printf(h->a, "Action of the event %s: q1, v1, z1 hold the state after it.", h->u->events.at[i].name);
+  state_function(h, h->u->events.at[i].action, comment, header_wrapped(h, sb_text(&head)), own, out, 1);
 }
 
 static void act(const Header *h) {
@@ -207,9 +203,7 @@ static void act(const Header *h) {
 /* Internal function `static int lower_NAME(state, extra...)` around p. */
 static void internal_function(const Header *h, const Prog *p, const char *name, const char *params, const char *const *extra, const char *const *out) {
   const char *head = arena_printf(h->a, "static int %s_%s(%s, %s)", h->lower, name, header_state_args(h, 1, ""), params);
-  CStyle st = style_for(h, own_names(h, extra), out);
-  CFunction c = {.head = header_wrapped(h, head), .returns = 1, .own_work = 1};
-  cfunction(p, &st, &c, h->out);
+  state_function(h, p, NULL, header_wrapped(h, head), extra, out, 1);
 }
 
 static void change(const Header *h, const Prog *p, const char *name) {
@@ -280,9 +274,7 @@ void header_implementation(const Header *h) {
   sb_putc(h->out, '\n');
   math_functions(h->u, h->upper, h->lower, h->out);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
-  for (SolveKind kind = SOLVE_PIVOTING; kind <= SOLVE_DEFINITE; kind++)
-    if (kind != SOLVE_CONSTRAINED && (prog_solves(h->u->accel, kind) || prog_solves(h->scene->observe_plain, kind)))
-      csupport_solver(kind, h->upper, h->lower, h->out);
+  if (prog_solves_dense(h->u->accel) || prog_solves_dense(h->scene->observe_plain)) csupport_solver(h->upper, h->lower, h->out);
   math_kkt_solver(h->u, h->upper, h->lower, h->out);
   if (h->u->inputs->tables.n) csupport_spline(h->upper, h->lower, h->out);
   defaults(h);
@@ -290,11 +282,11 @@ void header_implementation(const Header *h) {
   start(h);
   inputs(h);
   accel(h);
-  if (header_has(h, FN_ENERGY)) state_function(h, h->u->energy, api(h, FN_ENERGY), e, 0);
-  if (header_has(h, FN_CHARGES)) state_function(h, h->u->charge_values, api(h, FN_CHARGES), out, 1);
-  if (header_has(h, FN_POWERS)) state_function(h, h->u->charge_powers, api(h, FN_POWERS), out, 1);
-  if (header_has(h, FN_OBSERVE)) state_function(h, h->scene->observe_plain, api(h, FN_OBSERVE), out, 1);
-  if (header_has(h, FN_EVENTS)) state_function(h, h->u->event_values, api(h, FN_EVENTS), g, 1);
+  if (header_has(h, FN_ENERGY)) state_function(h, h->u->energy, NULL, api(h, FN_ENERGY), e, e, 0);
+  if (header_has(h, FN_CHARGES)) state_function(h, h->u->charge_values, NULL, api(h, FN_CHARGES), out, out, 1);
+  if (header_has(h, FN_POWERS)) state_function(h, h->u->charge_powers, NULL, api(h, FN_POWERS), out, out, 1);
+  if (header_has(h, FN_OBSERVE)) state_function(h, h->scene->observe_plain, NULL, api(h, FN_OBSERVE), out, out, 1);
+  if (header_has(h, FN_EVENTS)) state_function(h, h->u->event_values, NULL, api(h, FN_EVENTS), g, g, 1);
   act(h);
   hold(h);
   rk4_step(h);

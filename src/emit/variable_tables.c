@@ -1,11 +1,9 @@
 /* Tables of variables: entry by entry, or as runs of groups that differ in one number that counts up. */
-#include "emit/variable_tables.h"
+#include "emit/emit_impl.h"
 
 #include <string.h>
 
 #include "base/decimal_literal.h"
-#include "emit/cfunction.h"
-#include "emit/cwriter.h"
 
 /* LAG_10(f, 12) is f(120) ... f(129): numbers are pasted from their digits. */
 enum { LARGEST_BLOCK = 10000, MOST_IN_GROUP = 16, FEWEST_GROUPS = 32 };

@@ -16,13 +16,11 @@ static const struct {
   {"cosh", coshl}, {"tanh", tanhl}, {"exp", expl}, {"log", logl}, {"cbrt", cbrtl}, {"fabs", fabsl},
 };
 
-static Real call1(const char *name, Real x) {
+long double prog_call1(const char *name, long double x) {
   for (size_t i = 0; i < sizeof functions / sizeof *functions; i++)
     if (strcmp(functions[i].name, name) == 0) return functions[i].f(x);
   return NAN;
 }
-
-long double prog_call1(const char *name, long double x) { return call1(name, x); }
 
 static Real call2(const char *name, Real x, Real y) {
   if (strcmp(name, "pow") == 0) return powl(x, y);
@@ -31,56 +29,8 @@ static Real call2(const char *name, Real x, Real y) {
   return NAN;
 }
 
-/* Gauss elimination with partial pivoting of a[n*n] x = b[n]; b becomes x. */
-static int solve(Real *a, Real *b, uint32_t n) {
-  for (uint32_t k = 0; k < n; k++) {
-    uint32_t p = k;
-    for (uint32_t i = k + 1; i < n; i++)
-      if (fabsl(a[i * n + k]) > fabsl(a[p * n + k])) p = i;
-    if (!(fabsl(a[p * n + k]) > 0)) return -1;
-    for (uint32_t j = 0; j < n; j++) {
-      Real t = a[k * n + j];
-      a[k * n + j] = a[p * n + j];
-      a[p * n + j] = t;
-    }
-    Real t = b[k];
-    b[k] = b[p];
-    b[p] = t;
-    for (uint32_t i = k + 1; i < n; i++) {
-      Real f = a[i * n + k] / a[k * n + k];
-      for (uint32_t j = k; j < n; j++) a[i * n + j] -= f * a[k * n + j];
-      b[i] -= f * b[k];
-    }
-  }
-  for (uint32_t k = n; k-- > 0;) {
-    for (uint32_t j = k + 1; j < n; j++) b[k] -= a[k * n + j] * b[j];
-    b[k] /= a[k * n + k];
-  }
-  return 0;
-}
-
-/* Elimination of a[n*n] x = b[n] without pivoting, from the upper triangle; b becomes x. */
-static int solve_definite(Real *a, Real *b, uint32_t n) {
-  for (uint32_t k = 0; k < n; k++) {
-    if (!(a[k * n + k] > 0)) return -1;
-    Real inverse = 1 / a[k * n + k];
-    for (uint32_t i = k + 1; i < n; i++) {
-      Real f = a[k * n + i] * inverse;
-      for (uint32_t j = i; j < n; j++) a[i * n + j] -= f * a[k * n + j];
-      b[i] -= f * b[k];
-    }
-    a[k * n + k] = inverse;
-  }
-  for (uint32_t k = n; k-- > 0;) {
-    for (uint32_t j = k + 1; j < n; j++) b[k] -= a[k * n + j] * b[j];
-    b[k] *= a[k * n + k];
-  }
-  return 0;
-}
-
-/* [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Redundant constraints get
- * multipliers 0. */
-static const Real *solved_constrained(const Prog *p, const Solve *s, const Real *v, int *status) {
+/* Solves M x = f, or [M -A^T; A 0] [x; l] = [f; g], as one system of n + m equations. Redundant constraints get multipliers 0. */
+static const Real *solved(const Prog *p, const Solve *s, const Real *v, int *status) {
   uint32_t n = s->n, total = solve_unknowns(s);
   Real *b = ARENA_ARRAY(p->arena, Real, total);
   ArenaMark before = arena_mark(p->arena);
@@ -92,47 +42,15 @@ static const Real *solved_constrained(const Prog *p, const Solve *s, const Real 
     sparse_put(p->arena, &system, i, j, x);
     if (i >= n) sparse_put(p->arena, &system, j, i, -x);
   }
-  sparse_solve(p->arena, total, &system, b, 1e-13L, NULL);
+  uint32_t rank = sparse_solve(p->arena, total, &system, b, s->m ? 1e-13L : 0, NULL);
   arena_forget(p->arena, before);
-  *status = isfinite(b[0]) ? 0 : -1;
+  *status = isfinite(b[0]) && (s->m || rank == n) ? 0 : -1;
   return b;
-}
-
-/* The product of rhs with an inverse whose lower triangle stands among the parameters. */
-static const Real *multiplied(const Prog *p, const Solve *s, const Real *v, const Real *inverse) {
-  Real *b = ARENA_ARRAY(p->arena, Real, s->n);
-  for (uint32_t i = 0; i < s->n; i++)
-    for (uint32_t j = 0; j < s->n; j++) b[i] += inverse[i > j ? i * s->n + j : j * s->n + i] * v[s->rhs[j]];
-  return b;
-}
-
-static const Real *solved(const Prog *p, const Solve *s, const Real *v, const Real *parameters, int *status) {
-  if (s->m) return solved_constrained(p, s, v, status);
-  if (s->inverse) return multiplied(p, s, v, parameters + s->inverse);
-  Real *a = ARENA_ARRAY(p->arena, Real, s->n * s->n), *b = ARENA_ARRAY(p->arena, Real, s->n);
-  for (uint32_t i = 0; i < s->n * s->n; i++) a[i] = v[s->matrix[i]];
-  for (uint32_t i = 0; i < s->n; i++) b[i] = v[s->rhs[i]];
-  *status = s->definite ? solve_definite(a, b, s->n) : solve(a, b, s->n);
-  return b;
-}
-
-/* Writes the inverse, column by column, and its flag among the parameters. */
-static void invert(const Prog *p, const Solve *s, const Real *v, Real *parameters) {
-  Real *a = ARENA_ARRAY(p->arena, Real, s->n * s->n), *b = ARENA_ARRAY(p->arena, Real, s->n), *to = parameters + s->place;
-  int status = 0;
-  for (uint32_t j = 0; j < s->n && status == 0; j++) {
-    for (uint32_t i = 0; i < s->n * s->n; i++) a[i] = v[s->matrix[i]];
-    for (uint32_t i = 0; i < s->n; i++) b[i] = i == j;
-    status = solve(a, b, s->n);
-    for (uint32_t i = 0; i < s->n; i++) to[solve_inverse(s) + i * s->n + j] = b[i];
-  }
-  to[solve_is_regular(s)] = status == 0;
 }
 
 typedef struct {
   const Prog *p;
   const Real *const *in;
-  Real *const *out;
   Real *v, *cells;
   const Real **solution;
 } Run;
@@ -153,7 +71,7 @@ static int run_ins(Run *r, Slot s, const Ins *i) {
     case IR_DIV: v[s] = x / y; break;
     case IR_NEG: v[s] = -x; break;
     case IR_SQRT: v[s] = sqrtl(x); break;
-    case IR_FN1: v[s] = call1(i->text, x); break;
+    case IR_FN1: v[s] = prog_call1(i->text, x); break;
     case IR_FN2: v[s] = call2(i->text, x, y); break;
     case IR_MIN: v[s] = x < y ? x : y; break;
     case IR_MAX: v[s] = x > y ? x : y; break;
@@ -166,11 +84,10 @@ static int run_ins(Run *r, Slot s, const Ins *i) {
     case IR_OR: v[s] = x != 0 || y != 0; break;
     case IR_SELECT: v[s] = x != 0 ? y : v[i->c]; break;
     case IR_PIVOT: return (i->index ? x > 0 : x != 0) ? 0 : -1;
-    case IR_SOLVE: r->solution[s] = solved(r->p, &r->p->solves.at[i->index], v, r->in[ARR_P], &status); return status;
+    case IR_SOLVE: r->solution[s] = solved(r->p, &r->p->solves.at[i->index], v, &status); return status;
     case IR_SOLVED: v[s] = r->solution[i->a][i->index]; break;
     case IR_NEST: return run_nest(r, &r->p->nests.at[i->index]);
     case IR_TABLE: v[s] = spline_at(r->p->tables.at[i->index].curve, x); break;
-    case IR_INVERT: invert(r->p, &r->p->solves.at[i->index], v, r->out[0]); break;
     case IR_TITLE: break;
   }
   if (fabsl(v[s]) > DBL_MAX) v[s] = copysignl(INFINITY, v[s]); /* doubles overflow here */
@@ -232,7 +149,7 @@ static int run_all(Run *r) {
 
 int prog_eval(const Prog *p, const Real *const in[ARR_COUNT], Real *const *out) {
   ArenaMark before = arena_mark(p->arena);
-  Run r = {.p = p, .in = in, .out = out, .v = ARENA_ARRAY(p->arena, Real, p->ins.n), .cells = ARENA_ARRAY(p->arena, Real, p->cells + 1),
+  Run r = {.p = p, .in = in, .v = ARENA_ARRAY(p->arena, Real, p->ins.n), .cells = ARENA_ARRAY(p->arena, Real, p->cells + 1),
            .solution = ARENA_ARRAY(p->arena, const Real *, p->ins.n)};
   int status = run_all(&r);
   for (uint32_t k = 0; k < p->stores.n && status == 0; k++) out[p->stores.at[k].array][p->stores.at[k].index] = r.v[p->stores.at[k].slot];

@@ -33,7 +33,7 @@ static Slot product_without(Factor *f, const Product *p, uint32_t out) {
 /* a*x + a*y as a*(x + y); 0 where there is no common factor. */
 static Slot factored_sum(Factor *f, const Ins *i) {
   if (!product_is_part(f->from, f->uses, i->a) || !product_is_part(f->from, f->uses, i->b)) return 0;
-  Product x = product_of(f->from, f->uses, i->a), y = product_of(f->from, f->uses, i->b);
+  Product x = product_of(f->from, f->uses, i->a, NULL), y = product_of(f->from, f->uses, i->b, NULL);
   uint32_t in_y, in_x = common_factor(f, &x, &y, &in_y);
   if (in_x == NONE) return 0;
   Slot a = product_without(f, &x, in_x), b = product_without(f, &y, in_y);

@@ -1,17 +1,7 @@
-/* Forward and backward substitution with recorded factors, as instructions. The order of operations is that of eliminate.c and solve.c. */
+/* Forward and backward substitution with recorded factors, as instructions. The order of operations is that of eliminate.c and linear_solve.c. */
 #include "ir/factorization_record.h"
 
 static Slot op(Prog *p, IrOp o, Slot a, Slot b) { return prog_op(p, o, a, b); }
-
-static Slot minus_product(Prog *p, Slot x, Slot a, Slot b) {
-  Slot ab = op(p, IR_MUL, a, b);
-  return op(p, IR_SUB, x, ab);
-}
-
-static Slot plus_product(Prog *p, Slot x, Slot a, Slot b) {
-  Slot ab = op(p, IR_MUL, a, b);
-  return op(p, IR_ADD, x, ab);
-}
 
 static Slot divided(Prog *p, const FactorRecord *f, uint32_t i, Slot x, Slot divisor) {
   return f->inverse ? op(p, IR_MUL, x, f->inverse[i]) : op(p, IR_DIV, x, divisor);
@@ -24,28 +14,28 @@ static void forward(Prog *p, const FactorRecord *f, uint32_t v, Slot *b, const S
   if (v < f->n) {
     for (uint32_t k = 0; k < f->below[v].n; k++) {
       SparseEntry l = f->below[v].at[k];
-      b[l.col] = minus_product(p, b[l.col], l.value, b[v]);
+      b[l.col] = prog_sub_product(p, b[l.col], l.value, b[v]);
     }
     return;
   }
   Slot moved = s ? s[v] : 0, own = b[v];
   for (uint32_t k = 0; k < f->row[v].n; k++)
-    if (f->row[v].at[k].col == v) own = minus_product(p, own, f->row[v].at[k].value, moved);
-  for (uint32_t k = 0; k < f->C[v].n; k++) b[f->C[v].at[k].col] = plus_product(p, b[f->C[v].at[k].col], f->C[v].at[k].value, own);
+    if (f->row[v].at[k].col == v) own = prog_sub_product(p, own, f->row[v].at[k].value, moved);
+  for (uint32_t k = 0; k < f->C[v].n; k++) b[f->C[v].at[k].col] = prog_add_product(p, b[f->C[v].at[k].col], f->C[v].at[k].value, own);
   for (uint32_t k = 0; k < f->row[v].n; k++) {
     SparseEntry r = f->row[v].at[k];
-    if (r.col != v) b[r.col] = minus_product(p, b[r.col], r.value, moved);
+    if (r.col != v) b[r.col] = prog_sub_product(p, b[r.col], r.value, moved);
   }
 }
 
-static void backward(Prog *p, const FactorRecord *f, uint32_t v, const Slot *b, const Slot *s, Slot *x) {
+void factor_record_backward(Prog *p, const FactorRecord *f, uint32_t v, const Slot *b, const Slot *s, Slot *x) {
   if (v < f->n) {
     x[v] = divided(p, f, v, b[v], f->pivot[v]);
-    for (uint32_t k = 0; k < f->below[v].n; k++) x[v] = minus_product(p, x[v], f->below[v].at[k].value, x[f->below[v].at[k].col]);
+    for (uint32_t k = 0; k < f->below[v].n; k++) x[v] = prog_sub_product(p, x[v], f->below[v].at[k].value, x[f->below[v].at[k].col]);
     return;
   }
   x[v] = s ? s[v] : 0;
-  for (uint32_t k = 0; k < f->C[v].n; k++) x[v] = plus_product(p, x[v], f->C[v].at[k].value, x[f->C[v].at[k].col]);
+  for (uint32_t k = 0; k < f->C[v].n; k++) x[v] = prog_add_product(p, x[v], f->C[v].at[k].value, x[f->C[v].at[k].col]);
 }
 
 /* --- blocks --- */
@@ -55,23 +45,25 @@ static void solve_pair(Prog *p, const FactorRecord *f, uint32_t k, const Slot *b
   const uint32_t i = m->at[0], j = m->at[1];
   const Slot m11 = m->M[0], m12 = m->M[2], m22 = m->M[3];
   Slot top1 = op(p, IR_MUL, b[i], m22), top2 = op(p, IR_MUL, m11, b[j]);
-  Slot n1 = minus_product(p, top1, m12, b[j]), n2 = minus_product(p, top2, m12, b[i]);
+  Slot n1 = prog_sub_product(p, top1, m12, b[j]), n2 = prog_sub_product(p, top2, m12, b[i]);
   x[i] = divided(p, f, k, n1, m->divisor);
   x[j] = divided(p, f, k, n2, m->divisor);
 }
 
-/* By the matrix that another function left factored at its place. */
 static void solve_loop(Prog *p, const FactorBlock *m, const Slot *b, Slot *x) {
-  Slot *rhs = ARENA_ARRAY(p->arena, Slot, m->n), *y = ARENA_ARRAY(p->arena, Slot, m->n);
-  for (uint32_t i = 0; i < m->n; i++) rhs[i] = b[m->at[i]];
-  prog_solve(p, (Solve){.n = m->n, .place = m->place, .rhs = rhs}, y);
-  for (uint32_t i = 0; i < m->n; i++) x[m->at[i]] = y[i];
+  uint32_t n = m->n;
+  Slot *full = ARENA_ARRAY(p->arena, Slot, n * n), *rhs = ARENA_ARRAY(p->arena, Slot, n), *y = ARENA_ARRAY(p->arena, Slot, n);
+  for (uint32_t i = 0; i < n; i++)
+    for (uint32_t j = 0; j < n; j++) full[i * n + j] = m->M[i >= j ? i * n + j : j * n + i];
+  for (uint32_t i = 0; i < n; i++) rhs[i] = b[m->at[i]];
+  prog_solve(p, (Solve){.n = n, .matrix = full, .rhs = rhs}, y);
+  for (uint32_t i = 0; i < n; i++) x[m->at[i]] = y[i];
 }
 
 void factor_record_solve(Prog *p, const FactorRecord *f, Slot *b, const Slot *s, Slot *x) {
   uint32_t total = f->n + f->ndefs;
   for (uint32_t k = 0; f->straight && k < total; k++) forward(p, f, f->order[k], b, s);
-  for (uint32_t k = total; f->straight && k-- > 0;) backward(p, f, f->order[k], b, s, x);
+  for (uint32_t k = total; f->straight && k-- > 0;) factor_record_backward(p, f, f->order[k], b, s, x);
   for (uint32_t k = 0; k < f->blocks.n; k++) {
     const FactorBlock *m = &f->blocks.at[k];
     if (m->n == 1) x[m->at[0]] = divided(p, f, k, b[m->at[0]], m->divisor);

@@ -6,13 +6,12 @@
 #include "base/sparse_pattern.h"
 #include "ir/prog.h"
 
-/* A block: n = 1: M and its divisor M; n = 2: m11, m12, m22, divisor det M; n > 2: factored by a loop. */
+/* A block: n = 1: M and its divisor M; n = 2: m11, m12, m22, divisor det M; n > 2: solved by a loop. */
 typedef struct {
   uint32_t n;
   const uint32_t *at; /* [n] the coordinates */
   const Slot *M;      /* [n*n] row-major, lower triangle filled */
   Slot divisor;
-  uint32_t place;     /* n > 2: of the factored matrix in the work space */
 } FactorBlock;
 
 /* Variables are those of LinearSystem in mech/eqns.h: 0 .. n-1 accelerations, n + k the rate of definition k. */
@@ -28,11 +27,11 @@ typedef struct {
   const Slot *inverse;     /* reciprocals of pivots [n], or of divisors of blocks [blocks.n]; NULL: divide */
 } FactorRecord;
 
-/* Size of a factored matrix in the work space, in reals: M[n*n], right-hand side [n], order of rows [n]. */
-static inline uint32_t factor_record_size(uint32_t n) { return n * n + 2 * n; }
-
 /* Appends to p, of which f has the slots, the solution x[n + ndefs] for the right-hand side b[n + ndefs], where the rate of definition k is
  * C u' + s[n + k] (s NULL: 0). b is destroyed. */
 void factor_record_solve(Prog *p, const FactorRecord *f, Slot *b, const Slot *s, Slot *x);
+
+/* Computes x[v] from b and the unknowns eliminated after v: the step of back substitution. */
+void factor_record_backward(Prog *p, const FactorRecord *f, uint32_t v, const Slot *b, const Slot *s, Slot *x);
 
 #endif

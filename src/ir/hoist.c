@@ -5,7 +5,6 @@
 #include "ir/roll.h"
 
 enum {
-  STRAIGHT_UP_TO = 12, /* coordinates; products with larger inverses are loops */
   FEW = 64, /* derived parameters: up to so many are always worth their place, more must save operations */
   A_SHARE = 8 /* of a call's operations must be saved: 1/A_SHARE */
 };
@@ -20,7 +19,7 @@ typedef struct {
 /* Whether the instruction can move to `derived`: loads of parameters, and operations without effects. */
 static int can_move(const Ins *i) {
   switch (i->op) {
-    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_INVERT: case IR_NEST: case IR_TABLE: case IR_TITLE: return 0;
+    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_NEST: case IR_TABLE: case IR_TITLE: return 0;
     case IR_LOAD: return i->array == ARR_P;
     default: return 1;
   }
@@ -50,19 +49,8 @@ static unsigned char *find_worthy(const Prog *p, const unsigned char *constant) 
   return worthy;
 }
 
-/* Whether a solve becomes a product with a derived inverse: its matrix is constant, and the product with the inverse, which has no zeros,
- * takes no more operations than the solve. */
-static int is_constant_solve(const Prog *p, const unsigned char *constant, const Ins *i) {
-  if (i->op != IR_SOLVE) return 0;
-  const Solve *k = &p->solves.at[i->index];
-  int all = !k->m && k->matrix;
-  for (uint32_t j = 0; all && j < solve_elements(k); j++) all = constant[k->matrix[j]];
-  Solve product = {.n = k->n, .inverse = 1};
-  return all && ops_total(solve_count(p->arena, &product)) <= ops_total(solve_count(p->arena, k));
-}
-
 /* mark[s]: HERE where the remaining program needs slot s, ONCE where derived parameters do. */
-static unsigned char *mark_needed(const Prog *p, const unsigned char *constant, const unsigned char *worthy) {
+static unsigned char *mark_needed(const Prog *p, const unsigned char *worthy) {
   enum { HERE = 1, ONCE = 2 };
   unsigned char *mark = ARENA_ARRAY(p->arena, unsigned char, p->ins.n);
   for (uint32_t k = 0; k < p->stores.n; k++) mark[p->stores.at[k].slot] |= HERE;
@@ -70,15 +58,7 @@ static unsigned char *mark_needed(const Prog *p, const unsigned char *constant, 
     const Ins *i = &p->ins.at[s];
     if (i->op == IR_PIVOT || i->op == IR_TITLE || i->op == IR_SOLVE) mark[s] |= HERE;
     unsigned char below = worthy[s] && mark[s] ? ONCE : mark[s];
-    mark[i->a] |= below;
-    mark[i->b] |= below;
-    mark[i->c] |= below;
-    for (uint32_t j = 0; i->op == IR_NEST && mark[s] && j < p->nests.at[i->index].nouter; j++) mark[p->nests.at[i->index].outer[j]] |= HERE;
-    if (i->op != IR_SOLVE) continue;
-    const Solve *k = &p->solves.at[i->index];
-    int once = is_constant_solve(p, constant, i);
-    for (uint32_t j = 0; j < solve_elements(k); j++) mark[k->matrix[j]] |= once ? ONCE : HERE;
-    for (uint32_t j = 0; j < solve_unknowns(k); j++) mark[k->rhs[j]] |= HERE;
+    for (uint32_t k = 0; k < prog_operands(p, i); k++) mark[prog_operand(p, i, k)] |= below;
   }
   return mark;
 }
@@ -86,12 +66,11 @@ static unsigned char *mark_needed(const Prog *p, const unsigned char *constant, 
 static int is_derived(const unsigned char *worthy, const unsigned char *mark, Slot s) { return worthy[s] && mark[s] & 1; }
 
 /* Whether the operations saved are worth the derived parameters that they take. */
-static int is_profitable(const Prog *p, const unsigned char *constant, const unsigned char *worthy, const unsigned char *mark) {
+static int is_profitable(const Prog *p, const unsigned char *worthy, const unsigned char *mark) {
   Prog once = {.arena = p->arena};
   uint64_t taken = 0;
   vec_push(p->arena, &once.ins, ((Ins){0}));
   for (Slot s = 1; s < p->ins.n; s++) {
-    if (is_constant_solve(p, constant, &p->ins.at[s])) return 1;
     taken += (uint64_t)is_derived(worthy, mark, s);
     int leaves = mark[s] == 2 || is_derived(worthy, mark, s);
     if (leaves) vec_push(p->arena, &once.ins, ((Ins){.op = p->ins.at[s].op}));
@@ -127,74 +106,16 @@ static Ins load_derived(Hoist *h, Slot s) {
   return (Ins){.op = IR_LOAD, .array = ARR_P, .index = h->first + *at - 1, .name = h->called.at[s]};
 }
 
-/* A program, the remaining program, and the slots of its values in both. */
-typedef struct {
-  const Prog *from;
-  Prog *left;
-  const Slot *map, *once; /* by slot of `from`: slot of `left`, slot of `derived` */
-  Slot **solved;          /* by slot of `from`: solution of a solve that became a product with an inverse; or NULL */
-} Split;
-
-static Slot load_at(const Split *r, uint32_t index, Name name) { return prog_ins(r->left, (Ins){.op = IR_LOAD, .array = ARR_P, .index = index, .name = name}); }
-
-/* x = M^-1 f in straight-line code, from the lower triangle of M^-1 at parameter `inverse`. */
-static Slot *multiplied(const Split *r, const Solve *k, uint32_t inverse) {
-  Arena *a = r->left->arena;
-  Slot *x = ARENA_ARRAY(a, Slot, k->n);
-  for (uint32_t i = 0; i < k->n; i++)
-    for (uint32_t j = 0; j < k->n; j++) {
-      uint32_t row = i > j ? i : j, col = i > j ? j : i;
-      Slot f = r->map[k->rhs[j]];
-      if (!f) continue;
-      Slot entry = load_at(r, inverse + row * k->n + col, arena_printf(a, k->n > 9 ? "inv_M%u_%u" : "inv_M%u%u", row + 1, col + 1));
-      x[i] = prog_op(r->left, IR_ADD, x[i], prog_op(r->left, IR_MUL, entry, f));
-    }
-  return x;
-}
-
-static Slot *multiplied_by_loop(const Split *r, const Solve *k, uint32_t inverse) {
-  Arena *a = r->left->arena;
-  Slot *x = ARENA_ARRAY(a, Slot, k->n), *rhs = ARENA_ARRAY(a, Slot, k->n);
-  for (uint32_t i = 0; i < k->n; i++) rhs[i] = r->map[k->rhs[i]];
-  prog_solve(r->left, (Solve){.n = k->n, .inverse = inverse, .rhs = rhs}, x);
-  return x;
-}
-
-/* Turns a solve with a constant matrix into an inverse in `derived`, symmetric to the last bit, and a product with it. The forward error
- * is as small as with factors, the residual is not: N. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 14.1. */
-static Slot *invert(Hoist *h, const Split *r, const Solve *k) {
-  Prog *p = h->derived;
-  Slot *matrix = ARENA_ARRAY(p->arena, Slot, solve_elements(k));
-  Solve inverted = {.n = k->n, .place = h->first + h->n, .matrix = matrix};
-  for (uint32_t i = 0; i < k->n; i++)
-    for (uint32_t j = i; j < k->n; j++) matrix[i * k->n + j] = matrix[j * k->n + i] = r->once[k->matrix[i * k->n + j]];
-  vec_push(p->arena, &p->solves, inverted);
-  derive(h, (Ins){.op = IR_INVERT, .index = p->solves.n - 1});
-  h->n += solve_is_regular(k) + 1;
-  Slot regular = load_at(r, inverted.place + solve_is_regular(k), "is_regular");
-  prog_ins(r->left, (Ins){.op = IR_PIVOT, .a = regular});
-  uint32_t inverse = inverted.place + solve_inverse(k);
-  return k->n <= STRAIGHT_UP_TO ? multiplied(r, k, inverse) : multiplied_by_loop(r, k, inverse);
-}
-
 static Prog *split_program(Hoist *h, const Prog *p) {
-  unsigned char *constant = find_constant(p), *worthy = find_worthy(p, constant), *mark = mark_needed(p, constant, worthy);
-  if (!is_profitable(p, constant, worthy, mark)) return NULL;
+  unsigned char *constant = find_constant(p), *worthy = find_worthy(p, constant), *mark = mark_needed(p, worthy);
+  if (!is_profitable(p, worthy, mark)) return NULL;
   Prog *left = prog_new_like(p);
   Slot *map = ARENA_ARRAY(p->arena, Slot, p->ins.n), *once = ARENA_ARRAY(p->arena, Slot, p->ins.n);
-  Split rest = {p, left, map, once, ARENA_ARRAY(p->arena, Slot *, p->ins.n)};
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
-    if (mark[s] & 2 || is_derived(worthy, mark, s)) {
-      once[s] = derive(h, prog_import(h->derived, p, once, *i));
-    }
+    if (mark[s] & 2 || is_derived(worthy, mark, s)) once[s] = derive(h, prog_import(h->derived, p, once, *i));
     if (is_derived(worthy, mark, s)) {
       map[s] = once[s] ? prog_ins(left, load_derived(h, once[s])) : 0;
-    } else if (is_constant_solve(p, constant, i)) {
-      rest.solved[s] = invert(h, &rest, &p->solves.at[i->index]);
-    } else if (i->op == IR_SOLVED && rest.solved[i->a]) {
-      map[s] = rest.solved[i->a][i->index];
-      prog_name(left, map[s], i->name);
     } else if (mark[s] & 1) {
       map[s] = prog_ins(left, prog_import(left, p, map, *i));
       prog_name(left, map[s], i->name);
@@ -206,7 +127,7 @@ static Prog *split_program(Hoist *h, const Prog *p) {
 
 static void hoist_from(Hoist *h, const Prog **p) {
   Prog *left = *p ? split_program(h, *p) : NULL;
-  if (left) *p = prog_tidy(left); /* removes sign changes that products with an inverse took in */
+  if (left) *p = prog_tidy(left);
 }
 
 void unit_hoist(IrUnit *u) {

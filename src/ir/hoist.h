@@ -1,5 +1,5 @@
 /* Derived parameters: values that depend on parameters alone are computed when parameters change, not at each call. A constant mass
- * matrix is factored or inverted then, too. */
+ * matrix that is eliminated in straight-line code is factored then, too. */
 #ifndef LAGC_IR_HOIST_H
 #define LAGC_IR_HOIST_H
 

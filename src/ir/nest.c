@@ -21,7 +21,7 @@ typedef struct {
 
 typedef struct {
   Nest nest;
-  const uint32_t *class_of; /* by position in nest.at: class of the hub, from 1; 0: an array */
+  const uint32_t *array; /* by position in nest.at: the array, or ARR_COUNT + class of the hub */
 } FoundNest;
 
 typedef struct {
@@ -49,28 +49,14 @@ static int same_words(const CanonicalForm *x, const CanonicalForm *y) {
   return x->words.n == y->words.n && x->columns.n == y->columns.n && memcmp(x->words.at, y->words.at, x->words.n * sizeof *x->words.at) == 0;
 }
 
-#define COPY(a, v) \
-  do { \
-    (v).at = memcpy(arena_alloc((a), ((v).n + 1) * sizeof *(v).at), (v).at, (v).n * sizeof *(v).at); \
-    (v).cap = (v).n; \
-  } while (0)
-
-static CanonicalForm copy_tape(Arena *a, const CanonicalForm *t) {
-  CanonicalForm r = *t;
-  COPY(a, r.nodes);
-  COPY(a, r.links);
-  COPY(a, r.gives);
-  COPY(a, r.words);
-  COPY(a, r.class_of);
-  COPY(a, r.array);
-  return r;
-}
-
-static PieceGroup *group_of(Search *s, const CanonicalForm *t) {
+/* The group of the form in s->tape, which a new group takes. */
+static PieceGroup *group_of(Search *s) {
+  const CanonicalForm *t = &s->tape;
   uint32_t hash = hash_words(t), slot = idtable_start(&s->table, hash), id;
   while (idtable_next(&s->table, hash, &slot, &id))
     if (same_words(&s->groups.at[id].tape, t)) return &s->groups.at[id];
-  vec_push(s->c.a, &s->groups, ((PieceGroup){.tape = copy_tape(s->c.a, t)}));
+  vec_push(s->c.a, &s->groups, ((PieceGroup){.tape = *t}));
+  s->tape = (CanonicalForm){0};
   idtable_add(&s->table, hash, s->groups.n - 1);
   return &s->groups.at[s->groups.n - 1];
 }
@@ -81,7 +67,7 @@ static void add_nest(Search *s, const PieceGroup *x, const Fit *f) {
   Arena *a = s->c.a;
   Nest n = {.rows = f->rows, .skew = f->skew, .turns = f->turns, .more = f->more, .at = f->at, .n = x->tape.columns.n, .count = f->count};
   n.body = nest_body(&s->c, &x->tape, f, &n.outer, &n.nouter);
-  vec_push(a, &s->found, ((FoundNest){n, x->tape.class_of.at}));
+  vec_push(a, &s->found, ((FoundNest){n, x->tape.array.at}));
   for (uint32_t k = 0; k < f->count; k++) {
     uint32_t piece = x->pieces.at[f->pieces[k]];
     const HubTerms *gives = &s->c.pieces.at[piece - 1].gives;
@@ -98,8 +84,7 @@ static void find_nests(Search *s, const PieceGroup *x) {
   uint32_t n = x->pieces.n, *order = ARENA_ARRAY(a, uint32_t, n);
   Fits fits = {0};
   for (uint32_t k = 0; k < n; k++) order[k] = k;
-  Indices all = {a, x->columns.at, x->tape.array.at, x->tape.columns.n};
-  nest_affine(&all, order, n, &fits);
+  nest_affine((Indices){a, x->columns.at, x->tape.array.at, x->tape.columns.n, n, order, NULL}, &fits);
   for (uint32_t k = 0; k < fits.n; k++) add_nest(s, x, &fits.at[k]);
 }
 
@@ -111,8 +96,9 @@ static void search_wave(Search *s, uint32_t from) {
     Piece *q = &s->c.pieces.at[s->ready.at[k] - 1];
     if (!q->apart || !q->gives.n || q->n > MOST_VALUES) continue;
     nest_canonical_form(&s->c, q, s->local, s->ready.at[k], &s->tape);
-    PieceGroup *x = group_of(s, &s->tape);
-    for (uint32_t j = 0; j < s->tape.columns.n; j++) vec_push(s->c.a, &x->columns, s->tape.columns.at[j]);
+    const CanonicalForm form = s->tape;
+    PieceGroup *x = group_of(s);
+    for (uint32_t j = 0; j < form.columns.n; j++) vec_push(s->c.a, &x->columns, form.columns.at[j]);
     vec_push(s->c.a, &x->pieces, s->ready.at[k]);
   }
   for (uint32_t k = 0; k < s->groups.n; k++)
@@ -228,7 +214,7 @@ static Slot make_nest(Rebuild *r, uint32_t k) {
   IrSubscript *at = ARENA_ARRAY(r->to->arena, IrSubscript, n.n + 1);
   for (uint32_t j = 0; j < n.n; j++) {
     at[j] = n.at[j];
-    if (f->class_of[j]) at[j].first += r->base[f->class_of[j] - 1];
+    if (f->array[j] >= ARR_COUNT) at[j].first += r->base[f->array[j] - ARR_COUNT];
   }
   Slot *outer = ARENA_ARRAY(r->to->arena, Slot, n.nouter + 1);
   for (uint32_t j = 0; j < n.nouter; j++) outer[j] = r->map[n.outer[j]];

@@ -74,7 +74,7 @@ static Slot value(BodyBuilder *m, uint32_t id) {
   }
   uint32_t next = n->first;
   for (int k = 0; k < 3; k++) /* structural zeros are no children */
-    if (k == 0 ? i->a : k == 1 ? i->b : i->c) x[k] = m->slot[m->t->links.at[next++].id];
+    if (ins_operand(i, k)) x[k] = m->slot[m->t->links.at[next++].id];
   return prog_ins(m->body, (Ins){.op = i->op, .a = x[0], .b = x[1], .c = x[2], .index = i->index, .text = i->text});
 }
 

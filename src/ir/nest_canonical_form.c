@@ -40,7 +40,7 @@ void nest_children(const Partition *c, Slot s, Children *to) {
     take_factors(c, s, to);
   } else {
     for (int k = 0; k < 3; k++)
-      if (k == 0 ? i->a : k == 1 ? i->b : i->c) vec_push(c->a, to, child(c, k == 0 ? i->a : k == 1 ? i->b : i->c, 0));
+      if (ins_operand(i, k)) vec_push(c->a, to, child(c, ins_operand(i, k), 0));
     return;
   }
   qsort(to->at, to->n, sizeof *to->at, by_signature);
@@ -62,7 +62,6 @@ static void word(FormWriter *w, uint64_t x) {
 static uint32_t column(FormWriter *w, int64_t index, uint32_t array) {
   vec_push(w->c->a, &w->t->columns, index);
   vec_push(w->c->a, &w->t->array, array);
-  vec_push(w->c->a, &w->t->class_of, array < ARR_COUNT ? 0 : array - ARR_COUNT + 1);
   return w->t->columns.n - 1;
 }
 
@@ -127,7 +126,7 @@ static void write_value(FormWriter *w, Slot s) {
 
 void nest_canonical_form(const Partition *c, Piece *piece, Local *local, uint32_t stamp, CanonicalForm *t) {
   FormWriter w = {.c = c, .local = local, .stamp = stamp, .t = t};
-  t->nodes.n = t->links.n = t->gives.n = t->words.n = t->columns.n = t->class_of.n = t->array.n = t->given.n = 0;
+  t->nodes.n = t->links.n = t->gives.n = t->words.n = t->columns.n = t->array.n = t->given.n = 0;
   for (uint32_t k = 0; k < piece->gives.n; k++) {
     HubTerm s = piece->gives.at[k];
     vec_push(c->a, &t->given, ((Child){s.value, s.minus, c->sig[s.value], c->number[s.hub], k}));

@@ -99,7 +99,6 @@ typedef struct {
   VEC(Link) gives;           /* shares for hubs: their nodes; their indices are the last entries of `columns` */
   VEC(uint32_t) words;       /* serialised form, for comparison */
   VEC(int64_t) columns;      /* array indices of one piece */
-  VEC(uint32_t) class_of;    /* by column: class of the hub, from 1; 0: an array */
   VEC(uint32_t) array;       /* by column: the array, or ARR_COUNT + class of the hub */
   Children children, given;  /* scratch */
   VEC(Slot) open;
@@ -123,16 +122,18 @@ typedef struct {
 
 typedef VEC(Fit) Fits;
 
-/* Indices of the pieces of a group: columns[piece*width + k] is an index into array[k]. */
+/* Indices of the n pieces of a group: columns[piece*width + k] is an index into array[k]. */
 typedef struct {
   Arena *a;
   const int64_t *columns;
   const uint32_t *array;
-  uint32_t width;
+  uint32_t width, n;
+  uint32_t *order;             /* [n] numbers of the pieces */
+  const unsigned char *varies; /* [width] by column: differs between pieces; set by nest_affine */
 } Indices;
 
-/* Sorts `order`, the numbers of n pieces, and appends nests with affine indices; pieces outside of these stay as they are. */
-void nest_affine(const Indices *x, uint32_t *order, uint32_t n, Fits *fits);
+/* Sorts `order`, and appends nests with affine indices; pieces outside of these stay as they are. */
+void nest_affine(Indices all, Fits *fits);
 
 /* The body of a nest; outer[nouter]: slots of the program around it that the body reads. */
 const Prog *nest_body(const Partition *c, const CanonicalForm *t, const Fit *f, const Slot **outer, uint32_t *nouter);

@@ -11,7 +11,6 @@ enum { FEWEST_TERMS = 8, FEW = 8 };
 int nest_is_sum(IrOp op) { return op == IR_ADD || op == IR_SUB || op == IR_NEG; }
 
 static IrOp op_of(const Partition *c, Slot s) { return c->p->ins.at[s].op; }
-static Slot operand(const Ins *i, int k) { return k == 0 ? i->a : k == 1 ? i->b : i->c; }
 
 /* --- long sums --- */
 
@@ -19,30 +18,11 @@ static void find_joined(Partition *c) {
   for (Slot s = 1; s < c->p->ins.n; s++) {
     const Ins *i = &c->p->ins.at[s];
     for (int k = 0; k < 2; k++) {
-      Slot x = operand(i, k);
+      Slot x = ins_operand(i, k);
       int alike = nest_is_sum(i->op) ? nest_is_sum(op_of(c, x)) : i->op == IR_MUL && op_of(c, x) == IR_MUL;
       if (x && alike && c->uses[x] == 1) c->joined[x] = 1;
     }
   }
-}
-
-/* Sums that begin with the same few terms share that partial sum by chance of their order: it is joined to both. */
-static void join_common_beginnings(Partition *c) {
-  enum { SHORT = 4 };
-  const Prog *p = c->p;
-  unsigned char *users = ARENA_ARRAY(c->a, unsigned char, p->ins.n), *terms = ARENA_ARRAY(c->a, unsigned char, p->ins.n);
-  for (Slot s = 1; s < p->ins.n; s++) {
-    const Ins *i = &p->ins.at[s];
-    for (int k = 0; k < 2 && nest_is_sum(i->op); k++) {
-      Slot x = operand(i, k);
-      uint32_t n = terms[s];
-      if (x) n += c->joined[x] ? terms[x] : 1;
-      terms[s] = n > SHORT ? SHORT + 1 : (unsigned char)n;
-      if (x && users[x] < 2) users[x]++;
-    }
-  }
-  for (Slot s = 1; s < p->ins.n; s++)
-    if (nest_is_sum(op_of(c, s)) && c->uses[s] == 2 && users[s] == 2 && terms[s] <= SHORT) c->joined[s] = 1;
 }
 
 static void find_long_sums(Partition *c) {
@@ -52,7 +32,7 @@ static void find_long_sums(Partition *c) {
     const Ins *i = &p->ins.at[s];
     if (!nest_is_sum(i->op)) continue;
     for (int k = 0; k < 2; k++)
-      if (operand(i, k)) terms[s] += c->joined[operand(i, k)] ? terms[operand(i, k)] : 1;
+      if (ins_operand(i, k)) terms[s] += c->joined[ins_operand(i, k)] ? terms[ins_operand(i, k)] : 1;
     if (!c->joined[s] && terms[s] >= FEWEST_TERMS) c->hub[s] = HUB_SUM;
   }
 }
@@ -62,7 +42,7 @@ static void find_sums_in_common(Partition *c) {
   const Prog *p = c->p;
   uint32_t *uses = ARENA_ARRAY(c->a, uint32_t, p->ins.n); /* number of sums with the term; of a partial sum, number of sums that contain it */
   for (Slot s = p->ins.n; s-- > 1;)
-    for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++) uses[operand(&p->ins.at[s], k)] += c->joined[s] ? uses[s] : 1;
+    for (int k = 0; k < 2 && nest_is_sum(op_of(c, s)); k++) uses[ins_operand(&p->ins.at[s], k)] += c->joined[s] ? uses[s] : 1;
   for (Slot s = 1; s < p->ins.n; s++) {
     if (!nest_is_sum(op_of(c, s)) || c->joined[s]) continue;
     c->terms->n = 0;
@@ -78,7 +58,7 @@ static void mark_parts(Partition *c) {
     const Ins *i = &c->p->ins.at[s];
     if (c->hub[s]) c->sum[s] = s;
     for (int k = 0; k < 2 && c->sum[s]; k++)
-      if (c->joined[operand(i, k)]) c->sum[operand(i, k)] = c->sum[s];
+      if (c->joined[ins_operand(i, k)]) c->sum[ins_operand(i, k)] = c->sum[s];
   }
 }
 
@@ -147,7 +127,7 @@ static void sign(Partition *c, Slot s) {
   } else {
     uint64_t h = with(with(8, (uint64_t)i->op), i->index);
     for (const char *t = i->text; t && *t; t++) h = with(h, (unsigned char)*t);
-    for (int k = 0; k < 3; k++) h = with(h, c->sig[operand(i, k)]);
+    for (int k = 0; k < 3; k++) h = with(h, c->sig[ins_operand(i, k)]);
     c->sig[s] = h;
   }
 }
@@ -161,7 +141,7 @@ static void order(Partition *c, Slot s) {
     c->mass[s] = (uint64_t)i->index + 1;
   }
   for (int k = 0; k < 3; k++) {
-    Slot x = operand(i, k);
+    Slot x = ins_operand(i, k);
     if (!x) continue;
     c->mass[s] += c->mass[x];
     if (c->low[x] < c->low[s]) c->low[s] = c->low[x];
@@ -217,7 +197,7 @@ static Slot *find_users(const Partition *c, Slot *parent) {
   Slot *user = ARENA_ARRAY(c->a, Slot, c->p->ins.n);
   for (Slot s = 1; s < c->p->ins.n; s++)
     for (int k = 0; k < 3; k++) {
-      Slot x = operand(&c->p->ins.at[s], k);
+      Slot x = ins_operand(&c->p->ins.at[s], k);
       if (x && c->hub[x]) user[x] = same_or_mixed(user[x], in_piece(c, s) ? union_find_root(parent, s) : MIXED);
     }
   for (uint32_t k = 0; k < c->p->stores.n; k++) user[c->p->stores.at[k].slot] = MIXED;
@@ -262,7 +242,7 @@ static void find_pieces(Partition *c) {
   Slot *parent = union_find_new(c->a, p->ins.n);
   for (Slot s = 1; s < p->ins.n; s++)
     for (int k = 0; k < 3 && in_piece(c, s); k++) {
-      Slot x = operand(&p->ins.at[s], k);
+      Slot x = ins_operand(&p->ins.at[s], k);
       if (in_piece(c, x) && !c->hub[x]) union_find_join(parent, s, x);
     }
   for (int turn = 0; turn < TURNS && return_hubs(c, parent); turn++) {}
@@ -307,7 +287,7 @@ static void find_shares(Partition *c) {
     const Ins *i = &p->ins.at[s];
     if (i->op == IR_PIVOT) not_apart(c, i->a);
     for (int k = 0; k < 3 && c->piece[s]; k++)
-      if (operand(i, k) && c->hub[operand(i, k)] && c->piece[operand(i, k)] != c->piece[s]) wait_for(c, operand(i, k), c->piece[s], 0);
+      if (ins_operand(i, k) && c->hub[ins_operand(i, k)] && c->piece[ins_operand(i, k)] != c->piece[s]) wait_for(c, ins_operand(i, k), c->piece[s], 0);
     terms.n = 0;
     if (c->hub[s] == HUB_SUM) nest_terms(c, s, &terms);
     if (c->hub[s] == HUB_SHARED || c->hub[s] == HUB_STORED) vec_push(c->a, &terms, ((HubTerm){s, s, 0}));
@@ -336,7 +316,7 @@ static void list_hubs(Partition *c) {
       seen[s] = 1;
       if (c->hub[s]) vec_push(c->a, &c->hubs, s);
       for (int j = 3; j-- > 0;)
-        if (operand(&p->ins.at[s], j)) vec_push(c->a, &open, operand(&p->ins.at[s], j));
+        if (ins_operand(&p->ins.at[s], j)) vec_push(c->a, &open, ins_operand(&p->ins.at[s], j));
     }
   }
 }
@@ -398,7 +378,6 @@ Partition nest_partition(const Prog *p, unsigned ends) {
   c.terms_of = ARENA_ARRAY(a, uint32_t, n);
   c.last_waiting = ARENA_ARRAY(a, uint32_t, n);
   find_joined(&c);
-  join_common_beginnings(&c);
   find_long_sums(&c);
   if (ends & CUT_COMMON_TERMS) find_sums_in_common(&c);
   mark_parts(&c);

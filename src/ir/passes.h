@@ -1,4 +1,4 @@
-/* The passes over a program: one table drives their order, the listing of --dump=passes, and a verification after each. */
+/* The passes over a program: their order, the listing of --dump=passes, and a verification after each. */
 #ifndef LAGC_IR_PASSES_H
 #define LAGC_IR_PASSES_H
 

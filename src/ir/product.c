@@ -6,7 +6,7 @@ int product_is_part(const Prog *p, const uint32_t *uses, Slot s) {
   return s && i->op == IR_MUL && uses[s] == 1 && !i->name;
 }
 
-Product product_of(const Prog *p, const uint32_t *uses, Slot s) {
+Product product_of(const Prog *p, const uint32_t *uses, Slot s, unsigned char *inside) {
   const Ins *whole = &p->ins.at[s];
   Product r = {{whole->a, whole->b}, 2};
   for (uint32_t k = 0; k < r.n;) {
@@ -15,27 +15,10 @@ Product product_of(const Prog *p, const uint32_t *uses, Slot s) {
       k++;
       continue;
     }
+    if (inside) inside[r.at[k]] = 1;
     r.at[k] = i->a;
     for (uint32_t j = r.n++; j > k + 1; j--) r.at[j] = r.at[j - 1];
     r.at[k + 1] = i->b;
   }
   return r;
-}
-
-static int is_factor(const Product *p, Slot s) {
-  for (uint32_t k = 0; k < p->n; k++)
-    if (p->at[k] == s) return 1;
-  return 0;
-}
-
-void product_mark_inside(const Prog *p, const uint32_t *uses, Slot s, const Product *of, unsigned char *inside) {
-  Slot open[MOST_FACTORS] = {s};
-  for (uint32_t k = 0, n = 1; k < n; k++) {
-    const Slot parts[] = {p->ins.at[open[k]].a, p->ins.at[open[k]].b};
-    for (int i = 0; i < 2; i++) {
-      if (!product_is_part(p, uses, parts[i]) || is_factor(of, parts[i])) continue;
-      inside[parts[i]] = 1;
-      open[n++] = parts[i];
-    }
-  }
 }

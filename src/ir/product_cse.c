@@ -38,8 +38,7 @@ typedef struct {
 static void find_products(ProductCse *s) {
   for (Slot k = s->from->ins.n; k-- > 1;) {
     if (s->from->ins.at[k].op != IR_MUL || s->inside[k]) continue;
-    ProductAt w = {k, product_of(s->from, s->uses, k)};
-    product_mark_inside(s->from, s->uses, k, &w.of, s->inside);
+    ProductAt w = {k, product_of(s->from, s->uses, k, s->inside)};
     vec_push(s->from->arena, &s->products, w);
     s->product[k] = s->products.n;
   }

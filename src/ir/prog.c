@@ -27,7 +27,7 @@ Prog *prog_new_like(const Prog *p) {
 /* --- value numbering --- */
 
 /* Whether equal instructions may be merged; a pivot need not be checked twice. */
-static int is_pure(IrOp op) { return op != IR_SOLVE && op != IR_INVERT && op != IR_NEST && op != IR_TITLE; }
+static int is_pure(IrOp op) { return op != IR_SOLVE && op != IR_NEST && op != IR_TITLE; }
 
 static uint32_t hash_ins(const Ins *i) {
   uint32_t h = (uint32_t)i->op * 0x9e3779b9u;
@@ -83,7 +83,7 @@ static Slot fold(Prog *p, const Ins *i) {
       return p->ins.at[i->a].op == IR_NEG ? p->ins.at[i->a].a : NOT_A_SLOT;
     case IR_CONST: case IR_PI: case IR_LOAD: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_MIN: case IR_MAX:
     case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: case IR_SELECT:
-    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_INVERT: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
+    case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_NEST: case IR_TABLE: case IR_TITLE: break;
   }
   return NOT_A_SLOT;
 }
@@ -106,6 +106,17 @@ Slot prog_ins(Prog *p, Ins i) {
 }
 
 Slot prog_op(Prog *p, IrOp op, Slot a, Slot b) { return prog_ins(p, (Ins){.op = op, .a = a, .b = b}); }
+
+Slot prog_add_product(Prog *p, Slot x, Slot a, Slot b) {
+  Slot ab = prog_op(p, IR_MUL, a, b);
+  return prog_op(p, IR_ADD, x, ab);
+}
+
+Slot prog_sub_product(Prog *p, Slot x, Slot a, Slot b) {
+  Slot ab = prog_op(p, IR_MUL, a, b);
+  return prog_op(p, IR_SUB, x, ab);
+}
+
 Slot prog_num(Prog *p, Num n) { return num_value(n) == 0 ? 0 : prog_ins(p, (Ins){.op = IR_CONST, .number = num_drop_error(n)}); }
 void prog_title(Prog *p, const char *text) { prog_ins(p, (Ins){.op = IR_TITLE, .text = text}); }
 
@@ -121,6 +132,10 @@ void prog_copy_stores(Prog *to, const Prog *from, const Slot *map) {
 }
 
 void prog_solve(Prog *p, Solve k, Slot *x) {
+  uint32_t *filled = ARENA_ARRAY(p->arena, uint32_t, solve_elements(&k) + 1);
+  for (uint32_t j = 0; j < solve_elements(&k); j++)
+    if (k.matrix[j]) filled[k.nfilled++] = j;
+  k.filled = filled;
   vec_push(p->arena, &p->solves, k);
   Slot s = prog_ins(p, (Ins){.op = IR_SOLVE, .index = p->solves.n - 1});
   for (uint32_t i = 0; i < k.n + k.m; i++) x[i] = prog_ins(p, (Ins){.op = IR_SOLVED, .a = s, .index = i});
@@ -133,8 +148,6 @@ void prog_name(Prog *p, Slot s, Name name) {
 }
 
 int ir_is_scalar(IrArray array) { return array == ARR_T || array == ARR_ORDER || array == ARR_PER_ORDER || array == ARR_UP; }
-
-int ir_has_solve(IrOp op) { return op == IR_SOLVE || op == IR_INVERT; }
 
 int ir_is_condition(IrOp op) { return op >= IR_LT && op <= IR_OR; }
 
@@ -151,23 +164,28 @@ int ir_is_leaf(IrOp op) { return op == IR_CONST || op == IR_PI || op == IR_LOAD;
 
 /* --- passes --- */
 
+uint32_t prog_operands(const Prog *p, const Ins *i) {
+  const Solve *k = i->op == IR_SOLVE ? &p->solves.at[i->index] : NULL;
+  return 3 + (i->op == IR_NEST ? p->nests.at[i->index].nouter : k ? solve_elements(k) + solve_unknowns(k) : 0);
+}
+
+Slot prog_operand(const Prog *p, const Ins *i, uint32_t k) {
+  if (k < 3) return ins_operand(i, (int)k);
+  if (i->op == IR_NEST) return p->nests.at[i->index].outer[k - 3];
+  const Solve *s = &p->solves.at[i->index];
+  return k - 3 < solve_elements(s) ? s->matrix[k - 3] : s->rhs[k - 3 - solve_elements(s)];
+}
+
 static void mark_needed(const Prog *p, unsigned char *need) {
   for (uint32_t i = 0; i < p->stores.n; i++) need[p->stores.at[i].slot] = 1;
   for (Slot s = p->ins.n; s-- > 1;) {
     const Ins *i = &p->ins.at[s];
-    if (i->op == IR_PIVOT || i->op == IR_TITLE || i->op == IR_INVERT) need[s] = 1;
-    if (!need[s]) continue;
-    need[i->a] = need[i->b] = need[i->c] = 1;
-    for (uint32_t j = 0; i->op == IR_NEST && j < p->nests.at[i->index].nouter; j++) need[p->nests.at[i->index].outer[j]] = 1;
-    if (!ir_has_solve(i->op)) continue;
-    const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; j < solve_elements(k); j++) need[k->matrix[j]] = 1;
-    for (uint32_t j = 0; j < solve_unknowns(k); j++) need[k->rhs[j]] = 1;
+    if (i->op == IR_PIVOT || i->op == IR_TITLE) need[s] = 1;
+    for (uint32_t k = 0; need[s] && k < prog_operands(p, i); k++) need[prog_operand(p, i, k)] = 1;
   }
 }
 
 static const Slot *moved(Arena *a, const Slot *map, const Slot *from, uint32_t n) {
-  if (!from) return NULL;
   Slot *to = ARENA_ARRAY(a, Slot, n);
   for (uint32_t i = 0; i < n; i++) to[i] = map[from[i]];
   return to;
@@ -188,7 +206,7 @@ Ins prog_import(Prog *to, const Prog *from, const Slot *map, Ins i) {
     to->cells = from->cells;
     vec_push(to->arena, &to->nests, n);
   }
-  if (!ir_has_solve(i.op)) return i;
+  if (i.op != IR_SOLVE) return i;
   Solve k = from->solves.at[i.index];
   k.matrix = moved(to->arena, map, k.matrix, solve_elements(&k));
   k.rhs = moved(to->arena, map, k.rhs, solve_unknowns(&k));
@@ -204,14 +222,7 @@ uint32_t *prog_uses(const Prog *p) {
   uint32_t *uses = ARENA_ARRAY(p->arena, uint32_t, p->ins.n);
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
-    uses[i->a]++;
-    uses[i->b]++;
-    uses[i->c]++;
-    for (uint32_t j = 0; i->op == IR_NEST && j < p->nests.at[i->index].nouter; j++) uses[p->nests.at[i->index].outer[j]]++;
-    if (!ir_has_solve(i->op)) continue;
-    const Solve *k = &p->solves.at[i->index];
-    for (uint32_t j = 0; j < solve_elements(k); j++) uses[k->matrix[j]]++;
-    for (uint32_t j = 0; j < solve_unknowns(k); j++) uses[k->rhs[j]]++;
+    for (uint32_t k = 0; k < prog_operands(p, i); k++) uses[prog_operand(p, i, k)]++;
   }
   for (uint32_t k = 0; k < p->stores.n; k++) uses[p->stores.at[k].slot]++;
   return uses;
@@ -318,7 +329,6 @@ OpCount prog_count(const Prog *p) {
       case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND:
       case IR_OR: case IR_SELECT: c.other++; break;
       case IR_SOLVE: c = ops_sum(c, solve_count(p->arena, &p->solves.at[i->index])); break;
-      case IR_INVERT: c = ops_sum(c, invert_count(&p->solves.at[i->index])); break;
       case IR_NEST: c = ops_sum(c, count_nest(&p->nests.at[i->index])); break;
       case IR_NEG: case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVED: case IR_TITLE: break;
     }
@@ -336,9 +346,9 @@ int prog_has_pivots(const Prog *p) {
   return 0;
 }
 
-int prog_solves(const Prog *p, SolveKind kind) {
+int prog_solves_dense(const Prog *p) {
   for (uint32_t i = 0; p && i < p->solves.n; i++)
-    if (solve_kind(&p->solves.at[i]) == kind) return 1;
+    if (!p->solves.at[i].m) return 1;
   return 0;
 }
 
@@ -348,7 +358,6 @@ uint32_t prog_work_size(const Prog *p) {
     const Solve *k = &p->solves.at[i];
     uint32_t n = k->n, m = k->m, system = n * n + m * n + n + m, scratch = n * n + m * n + m * m + 2 * n + 9 * m;
     uint32_t lane = (system + scratch + 3) / 4; /* where reals are vectors, each lane is solved by itself in doubles: at most a quarter of the room */
-    if (k->inverse) system = 2 * n;
     uint32_t need = system + (!m ? 0 : scratch > lane ? scratch : lane);
     if (need > most) most = need;
   }
@@ -359,7 +368,7 @@ uint32_t prog_work_size(const Prog *p) {
 
 static const char *const op_names[] = {
   "const", "pi", "load", "add", "sub", "mul", "div", "neg", "sqrt", "fn", "fn2", "min", "max", "sign",
-  "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "invert", "nest", "table", "title",
+  "lt", "le", "eq", "not", "and", "or", "select", "pivot", "solve", "solved", "nest", "table", "title",
 };
 
 static const char *const array_names[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g", "free", "x", "s", "c", "order", "per_order", "up", "sum", "outer"};
@@ -383,7 +392,7 @@ void prog_dump(const Prog *p, StrBuf *out) {
     }
     if (i->op == IR_LOAD) sb_printf(out, " %s[%u]", array_names[i->array], i->index);
     if (i->text) sb_printf(out, " %s", i->text);
-    if (i->op == IR_PIVOT || i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_INVERT || i->op == IR_NEST || i->op == IR_TABLE) sb_printf(out, " #%u", i->index);
+    if (i->op == IR_PIVOT || i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_NEST || i->op == IR_TABLE) sb_printf(out, " #%u", i->index);
     if (i->a) sb_printf(out, " %%%u", i->a);
     if (i->b) sb_printf(out, " %%%u", i->b);
     if (i->c) sb_printf(out, " %%%u", i->c);

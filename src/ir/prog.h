@@ -39,7 +39,6 @@ typedef enum {
   IR_PIVOT,  /* fails unless a > 0 (index 1), or a != 0 (index 0) */
   IR_SOLVE,  /* solves block `index` of prog->solves, with pivoting; fails when singular */
   IR_SOLVED, /* component `index` of the solution of solve a */
-  IR_INVERT, /* inverts block `index` of prog->solves, with pivoting, into the parameters: see Solve */
   IR_NEST,   /* runs nest `index` of prog->nests; a: the nest that must run before, or 0 */
   IR_TABLE,  /* value at a of the spline of prog->tables[index] */
   IR_TITLE   /* text: a comment line above the instructions that follow */
@@ -69,6 +68,9 @@ typedef struct {
   const char *text; /* a function's name; a title */
 } Ins;
 
+/* Operand 0, 1, 2 of an instruction. */
+static inline Slot ins_operand(const Ins *i, int k) { return k == 0 ? i->a : k == 1 ? i->b : i->c; }
+
 /* out[index] = slot; the comment names the value. */
 typedef struct {
   uint32_t array; /* output array, numbered in the order of the emitted function's declaration */
@@ -77,34 +79,20 @@ typedef struct {
   const char *comment;
 } Store;
 
-/* A dense system that a loop solves: matrix[n*n] row-major (0: zero), rhs[n]; its factors stand at `place` in the work space.
- * matrix == NULL: the matrix at `place` was factored before, by another function.
+/* A system that a loop solves: matrix[n*n] row-major (0: zero), rhs[n].
  * m > 0 constraints: M x - A^T l = f, A x = g. A[m*n] follows M, g follows f, l follows x. filled: indices of the nonzero elements of the
- * matrix. coarse: nearly dependent constraints count as dependent (lag_kkt.h).
- * m == 0: entries farther than `band` from the diagonal are zero; definite: eliminated without pivoting, from the upper triangle.
- * inverse != 0: index of the inverse among the parameters; the solution is a product, and there is no matrix.
- * For IR_INVERT `place` is an index among the parameters, where it writes [matrix | n | n | inverse | 1 if regular, else 0]; no rhs. */
+ * matrix. coarse: nearly dependent constraints count as dependent (lag_kkt.h). */
 typedef struct {
-  uint32_t n, m, place, band, inverse;
-  int coarse, definite;
+  uint32_t n, m;
+  int coarse;
   const Slot *matrix, *rhs;
   const uint32_t *filled; /* [nfilled] */
   uint32_t nfilled;
 } Solve;
 
 /* Lengths of matrix and of rhs. */
-static inline uint32_t solve_elements(const Solve *k) { return k->matrix ? (k->n + k->m) * k->n : 0; }
-static inline uint32_t solve_unknowns(const Solve *k) { return k->rhs ? k->n + k->m : 0; }
-
-/* Offsets from `place` of the inverse that IR_INVERT writes, and of its flag for a regular matrix. */
-static inline uint32_t solve_inverse(const Solve *k) { return k->n * k->n + 2 * k->n; }
-static inline uint32_t solve_is_regular(const Solve *k) { return 2 * k->n * k->n + 2 * k->n; }
-
-/* Kinds of systems; the runtime has one function for each. */
-typedef enum { SOLVE_PIVOTING, SOLVE_CONSTRAINED, SOLVE_DEFINITE, SOLVE_INVERSE } SolveKind;
-static inline SolveKind solve_kind(const Solve *k) {
-  return k->inverse ? SOLVE_INVERSE : k->m ? SOLVE_CONSTRAINED : k->definite ? SOLVE_DEFINITE : SOLVE_PIVOTING;
-}
+static inline uint32_t solve_elements(const Solve *k) { return (k->n + k->m) * k->n; }
+static inline uint32_t solve_unknowns(const Solve *k) { return k->n + k->m; }
 
 /* Array index in row i, turn j of a nest: first + by_row*i + by_turn*j. */
 typedef struct {
@@ -174,6 +162,8 @@ Prog *prog_new_like(const Prog *p);
  * Simplifies x + 0, 1*x and the like. */
 Slot prog_ins(Prog *p, Ins i);
 Slot prog_op(Prog *p, IrOp op, Slot a, Slot b);
+Slot prog_add_product(Prog *p, Slot x, Slot a, Slot b); /* x + a*b */
+Slot prog_sub_product(Prog *p, Slot x, Slot a, Slot b); /* x - a*b */
 Slot prog_num(Prog *p, Num n);
 void prog_title(Prog *p, const char *text);
 void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *comment);
@@ -181,16 +171,13 @@ void prog_store(Prog *p, uint32_t array, uint32_t index, Slot s, const char *com
 /* Appends the stores of `from`, their slots renumbered by map[slot]. */
 void prog_copy_stores(Prog *to, const Prog *from, const Slot *map);
 
-/* Appends the solve and its solution x[n + m]. */
+/* Appends the solve, with `filled` listed, and its solution x[n + m]. */
 void prog_solve(Prog *p, Solve k, Slot *x);
 
 /* Gives a value the user's or the theory's name, unless it has a name or is a leaf. */
 void prog_name(Prog *p, Slot s, Name name);
 
 int ir_is_condition(IrOp op);
-
-/* Whether the instruction's `index` is the number of a Solve. */
-int ir_has_solve(IrOp op);
 
 /* Name of an unnamed value made from the names x and y of its operands (NULL: none): sin_th1, m2_l1, th1_dot_sq, inv_M11; or NULL.
  * of_one: the first operand is the number 1. */
@@ -246,6 +233,11 @@ Ins prog_import(Prog *to, const Prog *from, const Slot *map, Ins i);
 uint32_t prog_parts(const Prog *p);
 const Prog *prog_part(const Prog *p, uint32_t k);
 
+/* Number of operands of an instruction, and operand k (0: a structural zero): a, b, c; then the values that its nest reads, or the matrix and
+ * the right-hand side of its system. */
+uint32_t prog_operands(const Prog *p, const Ins *i);
+Slot prog_operand(const Prog *p, const Ins *i, uint32_t k);
+
 /* Number of uses of each value by instructions, stores, solves and nests: [p->ins.n]. */
 uint32_t *prog_uses(const Prog *p);
 
@@ -267,16 +259,15 @@ void prog_dump(const Prog *p, StrBuf *out);
 /* Whether the program may fail at a zero pivot: IR_PIVOT, IR_SOLVE. */
 int prog_has_pivots(const Prog *p);
 
-/* Whether the program has a solve of that kind. p may be NULL. */
-int prog_solves(const Prog *p, SolveKind kind);
+/* Whether the program solves a system without constraints. p may be NULL. */
+int prog_solves_dense(const Prog *p);
 
 /* Size of the work space that IR_SOLVE needs, in reals. */
 uint32_t prog_work_size(const Prog *p);
 
-/* solve_cost.c: operations of a system that a loop solves, and of an inversion. With constraints, counted for independent ones and a
- * positive definite M, where zeros outside of envelopes cost nothing. */
+/* solve_cost.c: operations of a system that a loop solves. With constraints, counted for independent ones and a positive definite M, where
+ * zeros outside of envelopes cost nothing. */
 OpCount solve_count(Arena *a, const Solve *k);
-OpCount invert_count(const Solve *k);
 
 OpCount prog_count(const Prog *p);
 uint64_t ops_total(OpCount c);
@@ -284,8 +275,8 @@ uint64_t ops_total(OpCount c);
 /* As an int, saturated at INT32_MAX. */
 uint32_t ops_as_int(uint64_t ops);
 
-/* Evaluates the program in extended precision, with the range of doubles: in[array] are the inputs, out[array][index] the stores. For the
- * program of derived parameters, in[ARR_P] is out[0]. Returns 0, or -1 when a pivot failed. */
+/* Evaluates the program in extended precision, with the range of doubles: in[array] are the inputs, out[array][index] the stores.
+ * Returns 0, or -1 when a pivot failed. */
 int prog_eval(const Prog *p, const long double *const in[ARR_COUNT], long double *const *out);
 
 #endif

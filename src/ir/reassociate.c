@@ -138,16 +138,13 @@ static Slot add_up(Reassociation *b) {
 /* --- products --- */
 
 static void mark_factors(Reassociation *b) {
-  for (Slot s = b->from->ins.n; s-- > 1;) {
-    if (b->from->ins.at[s].op != IR_MUL || b->inside[s]) continue;
-    Product of = product_of(b->from, b->uses, s);
-    product_mark_inside(b->from, b->uses, s, &of, b->inside);
-  }
+  for (Slot s = b->from->ins.n; s-- > 1;)
+    if (b->from->ins.at[s].op == IR_MUL && !b->inside[s]) product_of(b->from, b->uses, s, b->inside);
 }
 
 /* The product as a tree: multiplies the two earliest factors, again and again. */
 static Slot multiply(Reassociation *b, Slot s) {
-  Product of = product_of(b->from, b->uses, s);
+  Product of = product_of(b->from, b->uses, s, NULL);
   Term t[MOST_FACTORS];
   for (uint32_t k = 0; k < of.n; k++) t[k] = (Term){.slot = b->map[of.at[k]], .ready = ready(b, b->map[of.at[k]]), .rank = k};
   for (uint32_t n = of.n; n > 1; n--) {

@@ -6,17 +6,15 @@
 
 enum { LONGEST_PERIOD = 400, FEWEST_TURNS = 8, MOST_BACK = 2 };
 
-Slot roll_operand(const Ins *i, int which) { return which == 0 ? i->a : which == 1 ? i->b : i->c; }
-
 /* Class by operation and kinds of operands: instructions of one class may be turns of one loop. Solves, nests, tables and titles have
  * classes of their own. */
 static uint32_t class_of(const Prog *p, Slot s) {
   const Ins *i = &p->ins.at[s];
-  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_INVERT || i->op == IR_NEST || i->op == IR_TITLE || i->op == IR_TABLE) return UINT32_MAX - s;
+  if (i->op == IR_SOLVE || i->op == IR_SOLVED || i->op == IR_NEST || i->op == IR_TITLE || i->op == IR_TABLE) return UINT32_MAX - s;
   uint32_t h = (uint32_t)i->op * 31 + i->index;
   for (const char *c = i->text; c && *c; c++) h = (h ^ (unsigned char)*c) * 16777619u;
   for (int k = 0; k < 3; k++) { /* kinds of operands that must agree: none, array, number, value */
-    Slot x = roll_operand(i, k);
+    Slot x = ins_operand(i, k);
     h = h * 5 + (!x ? 0 : !ir_is_leaf(p->ins.at[x].op) ? 1 : p->ins.at[x].op == IR_LOAD ? 2 + 8 * (uint32_t)p->ins.at[x].array : 3);
   }
   return h & 0x3fffffffu;
@@ -62,7 +60,7 @@ static Step step_between(const Rolls *r, uint32_t begin, uint32_t period, Slot x
 }
 
 Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which) {
-  Slot x = roll_operand(code_at(r, l->begin + offset), which), y = roll_operand(code_at(r, l->begin + l->period + offset), which);
+  Slot x = ins_operand(code_at(r, l->begin + offset), which), y = ins_operand(code_at(r, l->begin + l->period + offset), which);
   Step s = step_between(r, l->begin, l->period, x, y);
   if (s.kind == STEP_OTHER) s.step /= (int64_t)r->loops.at[r->loop[place_of(r, x)] - 1].period;
   return s;
@@ -71,10 +69,10 @@ Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which) {
 /* Number of turns, at most `most`, in which the operand follows the step from its first to its second value. */
 static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint32_t offset, int which, uint32_t most) {
   const Rolls *r = f->r;
-  Slot x = roll_operand(code_at(r, begin + offset), which), y = roll_operand(code_at(r, begin + period + offset), which);
+  Slot x = ins_operand(code_at(r, begin + offset), which), y = ins_operand(code_at(r, begin + period + offset), which);
   Step s = step_between(r, begin, period, x, y);
   const Ins *first = &r->p->ins.at[x];
-  uint32_t last = most;
+  uint32_t in = 0; /* the loop of x, from 1, for STEP_OTHER */
   Num unit = {0};
   int64_t multiple = 0;
   if (s.kind == STEP_SAME && r->place[x] && place_of(r, x) >= begin) return 1; /* a value of the first iteration, which later iterations cannot use */
@@ -82,29 +80,20 @@ static uint32_t turns_of(const Search *f, uint32_t begin, uint32_t period, uint3
   if (s.kind == STEP_LOAD && (first->op != IR_LOAD || !(f->by_index >> first->array & 1))) return 1;
   if (s.kind == STEP_OWN && s.step != period) return 1;
   if (s.kind == STEP_OTHER) {
-    uint32_t in = r->loop[place_of(r, x)];
+    in = r->loop[place_of(r, x)];
     if (!in) return 1;
-    const Loop *l = &r->loops.at[in - 1];
-    if (s.step % (int64_t)l->period != 0) return 1;
-    int64_t from = place_of(r, x), end = (int64_t)l->begin + (int64_t)l->period * l->count;
-    for (uint32_t t = 1; t < most; t++) {
-      int64_t at = from + t * s.step;
-      if (at < l->begin || at >= end) {
-        last = t;
-        break;
-      }
-    }
+    if (s.step % (int64_t)r->loops.at[in - 1].period != 0) return 1;
   }
-  for (uint32_t t = 1; t < last; t++) {
-    Slot z = roll_operand(code_at(r, begin + t * period + offset), which);
+  for (uint32_t t = 1; t < most; t++) {
+    Slot z = ins_operand(code_at(r, begin + t * period + offset), which);
     const Ins *now = &r->p->ins.at[z];
     int follows = s.kind == STEP_SAME ? z == x
                   : s.kind == STEP_NUMBER ? now->op == IR_CONST && num_equal(now->number, num_mul(unit, num_int(multiple + t)))
                   : s.kind == STEP_LOAD ? now->op == IR_LOAD && now->index == (uint32_t)((int64_t)first->index + t * s.step)
-                                        : r->place[z] && (int64_t)place_of(r, z) == (int64_t)place_of(r, x) + t * s.step;
+                                        : r->place[z] && (int64_t)place_of(r, z) == (int64_t)place_of(r, x) + t * s.step && (!in || r->loop[place_of(r, z)] == in);
     if (!follows) return t;
   }
-  return last;
+  return most;
 }
 
 /* Whether operands that are one value in the first turn are one value in the second. */
@@ -130,24 +119,15 @@ static uint32_t turns_within(const Search *f, uint32_t begin, uint32_t period, u
   for (uint32_t k = 0; k < period && turns >= FEWEST_TURNS; k++) {
     if (!same_sharing(r, begin, period, k)) turns = 1;
     for (int which = 0; which < 3 && turns >= FEWEST_TURNS; which++)
-      if (roll_operand(code_at(r, begin + k), which)) turns = turns_of(f, begin, period, k, which, turns);
+      if (ins_operand(code_at(r, begin + k), which)) turns = turns_of(f, begin, period, k, which, turns);
     if (turns < FEWEST_TURNS) f->failed[period] = begin + k + 1;
   }
   return turns;
 }
 
-/* Whether the classes and the group's first instruction go on for the fewest turns: most groups fail here. */
-static int may_begin(const Search *f, uint32_t begin, uint32_t period) {
-  const Rolls *r = f->r;
-  if (equal_classes(f, begin, period) < (FEWEST_TURNS - 1) * period) return 0;
-  for (int which = 0; which < 3; which++)
-    if (roll_operand(code_at(r, begin), which) && turns_of(f, begin, period, 0, which, FEWEST_TURNS) < FEWEST_TURNS) return 0;
-  return 1;
-}
-
 /* Number of turns of the group; 1 when there are fewer than FEWEST_TURNS. */
 static uint32_t turns_at(const Search *f, uint32_t begin, uint32_t period) {
-  if (begin < f->failed[period] || !may_begin(f, begin, period) || turns_within(f, begin, period, FEWEST_TURNS) < FEWEST_TURNS) return 1;
+  if (begin < f->failed[period] || turns_within(f, begin, period, FEWEST_TURNS) < FEWEST_TURNS) return 1;
   return turns_within(f, begin, period, f->r->n / period + 1);
 }
 
@@ -156,7 +136,7 @@ static uint32_t carried(const Rolls *r, const Loop *l) {
   uint32_t n = 0;
   for (uint32_t k = 0; k < l->period; k++)
     for (int which = 0; which < 3; which++) {
-      Slot x = roll_operand(code_at(r, l->begin + k), which), y = roll_operand(code_at(r, l->begin + l->period + k), which);
+      Slot x = ins_operand(code_at(r, l->begin + k), which), y = ins_operand(code_at(r, l->begin + l->period + k), which);
       n += x && step_between(r, l->begin, l->period, x, y).kind == STEP_BEFORE;
     }
   return n;
@@ -188,10 +168,6 @@ static Loop longest_at(const Search *f, uint32_t begin) {
 
 /* --- values that loops store, keep and carry --- */
 
-/* Turn of the loop, and offset in the period, of a place in the code. */
-static uint32_t turn_of(const Loop *l, uint32_t place) { return (place - l->begin) / l->period; }
-static uint32_t offset_of(const Loop *l, uint32_t place) { return (place - l->begin) % l->period; }
-
 /* Stores of one value of a loop. by_turn: 1 + the number of the store; 0: none. */
 typedef struct {
   uint32_t *by_turn;
@@ -221,9 +197,9 @@ static void find_stores(Rolls *r) {
     if (!in) continue;
     const Loop *l = &r->loops.at[in - 1];
     if (!of[in - 1]) of[in - 1] = ARENA_ARRAY(a, Stored, l->period);
-    Stored *s = &of[in - 1][offset_of(l, place)];
+    Stored *s = &of[in - 1][loop_offset(l, place)];
     if (!s->by_turn) s->by_turn = ARENA_ARRAY(a, uint32_t, l->count);
-    uint32_t *turn = &s->by_turn[turn_of(l, place)];
+    uint32_t *turn = &s->by_turn[loop_turn(l, place)];
     if (*turn) s->twice = 1;
     *turn = k + 1;
   }
@@ -243,7 +219,7 @@ static void find_stores(Rolls *r) {
 
 static void keep(Rolls *r, uint32_t place, uint32_t back) {
   const Loop *l = &r->loops.at[r->loop[place] - 1];
-  uint32_t *kept = &l->kept[offset_of(l, place)];
+  uint32_t *kept = &l->kept[loop_offset(l, place)];
   if (*kept < back + 1) *kept = back + 1;
 }
 
@@ -254,7 +230,7 @@ static void keep_from(Rolls *r, Slot x, uint32_t user) {
   if (!in || (user < r->n && r->loop[user] == in)) return;
   const Loop *l = &r->loops.at[in - 1];
   keep(r, at, 0);
-  if (turn_of(l, at) + 1 < l->count) l->carried[offset_of(l, at)] = 0;
+  if (loop_turn(l, at) + 1 < l->count) l->carried[loop_offset(l, at)] = 0;
 }
 
 /* Keeps the values that turns take from earlier turns. */
@@ -263,10 +239,10 @@ static void keep_carried(Rolls *r) {
     const Loop *l = &r->loops.at[k];
     for (uint32_t offset = 0; offset < l->period; offset++)
       for (int which = 0; which < 3; which++) {
-        if (!roll_operand(code_at(r, l->begin + offset), which)) continue;
+        if (!ins_operand(code_at(r, l->begin + offset), which)) continue;
         Step s = roll_step(r, l, offset, which);
         if (s.kind != STEP_BEFORE) continue;
-        uint32_t from = place_of(r, roll_operand(code_at(r, l->begin + offset), which)) + s.back * l->period;
+        uint32_t from = place_of(r, ins_operand(code_at(r, l->begin + offset), which)) + s.back * l->period;
         keep(r, from, s.back);
       }
     for (uint32_t offset = 0; offset < l->period; offset++) l->carried[offset] &= l->kept[offset] == 2;
@@ -277,12 +253,7 @@ static void find_kept(Rolls *r) {
   for (uint32_t k = 0; k < r->loops.n; k++) memset(r->loops.at[k].carried, 1, r->loops.at[k].period);
   for (uint32_t k = 0; k < r->n; k++) {
     const Ins *i = code_at(r, k);
-    for (int which = 0; which < 3; which++) keep_from(r, roll_operand(i, which), k);
-    for (uint32_t j = 0; i->op == IR_NEST && j < r->p->nests.at[i->index].nouter; j++) keep_from(r, r->p->nests.at[i->index].outer[j], k);
-    if (!ir_has_solve(i->op)) continue;
-    const Solve *s = &r->p->solves.at[i->index];
-    for (uint32_t j = 0; j < solve_elements(s); j++) keep_from(r, s->matrix[j], UINT32_MAX);
-    for (uint32_t j = 0; j < solve_unknowns(s); j++) keep_from(r, s->rhs[j], UINT32_MAX);
+    for (uint32_t j = 0; j < prog_operands(r->p, i); j++) keep_from(r, prog_operand(r->p, i, j), k);
   }
   for (uint32_t k = 0; k < r->p->stores.n; k++)
     if (!r->stored[k]) keep_from(r, r->p->stores.at[k].slot, UINT32_MAX);

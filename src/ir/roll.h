@@ -23,6 +23,10 @@ typedef struct {
   VEC(LoopStore) stores;
 } Loop;
 
+/* Iteration, and offset in the period, of a place in the code. */
+static inline uint32_t loop_turn(const Loop *l, uint32_t place) { return (place - l->begin) / l->period; }
+static inline uint32_t loop_offset(const Loop *l, uint32_t place) { return (place - l->begin) % l->period; }
+
 /* How an operand changes from iteration to iteration. */
 typedef enum {
   STEP_SAME,   /* one value in all iterations */
@@ -62,7 +66,5 @@ Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which);
 /* Numbers of a STEP_NUMBER, unit*(first + r), from those of its first two iterations, x and y. The numerators are exact in binary, so that
  * division by the unit's denominator rounds as the number itself. Returns 0 when the numbers have no such form. */
 int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first);
-
-Slot roll_operand(const Ins *i, int which);
 
 #endif

@@ -9,7 +9,7 @@ uint32_t ir_latency(IrOp op) {
     case IR_NEG: case IR_SELECT: return 1;
     case IR_DIV: case IR_SQRT: case IR_FN1: case IR_FN2: case IR_TABLE: return 16;
     case IR_CONST: case IR_PI: case IR_LOAD: case IR_MIN: case IR_MAX: case IR_SIGN: case IR_LT: case IR_LE: case IR_EQ:
-    case IR_NOT: case IR_AND: case IR_OR: case IR_PIVOT: case IR_SOLVED: case IR_INVERT: case IR_NEST: case IR_TITLE: break;
+    case IR_NOT: case IR_AND: case IR_OR: case IR_PIVOT: case IR_SOLVED: case IR_NEST: case IR_TITLE: break;
   }
   return 0;
 }
@@ -30,10 +30,9 @@ static void compute(Schedule *d, Slot s) {
   while (d->open.n) {
     Slot x = d->open.at[d->open.n - 1];
     const Ins *i = &d->from->ins.at[x];
-    Slot next = !i->a || d->done[i->a] ? !i->b || d->done[i->b] ? !i->c || d->done[i->c] ? 0 : i->c : i->b : i->a;
-    const Nest *n = i->op == IR_NEST ? &d->from->nests.at[i->index] : NULL;
-    for (uint32_t k = 0; n && !next && k < n->nouter; k++)
-      if (!d->done[n->outer[k]]) next = n->outer[k];
+    Slot next = 0;
+    for (uint32_t k = 0; k < prog_operands(d->from, i) && !next; k++)
+      if (!d->done[prog_operand(d->from, i, k)]) next = prog_operand(d->from, i, k);
     if (!d->done[x] && next) {
       vec_push(d->to->arena, &d->open, next);
       continue;
@@ -49,6 +48,7 @@ static void compute(Schedule *d, Slot s) {
 Prog *prog_schedule_by_store(const Prog *p) {
   Arena *a = p->arena;
   Schedule d = {.from = p, .to = prog_new_like(p), .map = ARENA_ARRAY(a, Slot, p->ins.n), .done = ARENA_ARRAY(a, unsigned char, p->ins.n)};
+  d.done[0] = 1;
   for (Slot s = 1; s < p->ins.n; s++)
     if (p->ins.at[s].op == IR_PIVOT) compute(&d, s);
   for (uint32_t k = 0; k < p->stores.n; k++)

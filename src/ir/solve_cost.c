@@ -73,26 +73,14 @@ static Ops by_complement(Arena *a, const Solve *k) {
   return c;
 }
 
-/* Elimination and two substitutions within the band, a lower bound: exchanges of rows may widen it. */
-static OpCount of_pivoting(const Solve *k) {
+/* Elimination and two substitutions. */
+static OpCount by_pivoting(const Solve *k) {
   OpCount c = {.div = k->n};
   for (uint64_t left = k->n; left-- > 0;) {
-    uint64_t b = left < k->band ? left : k->band;
-    c.mul += b*b + 2*b;
-    c.div += b;
+    c.mul += left*left + 2*left;
+    c.div += left;
   }
   c.add = c.mul;
-  return c;
-}
-
-/* Elimination and two substitutions from the upper triangle, by reciprocals of pivots. */
-static OpCount of_definite(const Solve *k) {
-  OpCount c = {.div = k->n, .mul = k->n};
-  for (uint64_t left = k->n; left-- > 0;) {
-    uint64_t b = left < k->band ? left : k->band;
-    c.add += b*(b + 1)/2 + 2*b;
-    c.mul += b*(b + 1)/2 + 3*b;
-  }
   return c;
 }
 
@@ -106,11 +94,5 @@ OpCount solve_count(Arena *a, const Solve *k) {
     uint64_t both = 2*n*n*n + 2*m*n*n + (n > m ? n - m : 0)*n*n/3;
     return (OpCount){.add = both, .mul = both, .div = n*n/2 + m*n + 2*(n + m), .sqrt = m};
   }
-  if (k->inverse) return (OpCount){.add = n*(n - 1), .mul = n*n};
-  return k->definite ? of_definite(k) : of_pivoting(k);
-}
-
-OpCount invert_count(const Solve *k) {
-  uint64_t n = k->n, both = n*n*n/3 + n*n*n; /* a factorization and 2 n substitutions */
-  return (OpCount){.add = both, .mul = both, .div = n*n};
+  return by_pivoting(k);
 }

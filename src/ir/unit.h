@@ -139,7 +139,7 @@ typedef struct {
   uint32_t group;        /* columns in a group; the last group of sums, and of squares, is padded */
   uint32_t first_square, width; /* column where squares begin; number of columns */
   uint32_t constants;    /* length of c */
-  uint32_t room;         /* work space of blocks that a loop factors, in reals */
+  uint32_t room;         /* work space of systems that a loop solves, in reals */
   int uses_time;
 } Series;
 

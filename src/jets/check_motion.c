@@ -226,6 +226,6 @@ static CheckVerdict check_taylor(Check *c) {
 CheckVerdict check_motion(Check *c) {
   CheckVerdict v = c->far ? AGREES : check_charges(c);
   if (v != DISAGREES && !c->far && c->u->linear && c->dynamics->lagrangian && !c->m->first_order) v = worse(v, check_linear(c));
-  if (v != DISAGREES && !c->far && c->u->taylor && c->e->smooth && !c->u->taylor->room && c->n <= LONG_TAPE / 100) v = worse(v, check_taylor(c));
+  if (v != DISAGREES && !c->far && c->u->taylor && c->e->smooth && c->n <= LONG_TAPE / 100) v = worse(v, check_taylor(c));
   return v == DISAGREES ? v : AGREES;
 }

@@ -3,6 +3,11 @@
 
 #include "jets/self_check_impl.h"
 
+/* Compares value r of the text's outputs, if it has one, with the program's. */
+static CheckVerdict check_output_value(Check *c, Ref r, Real program, Span span, const char *what, const char *name) {
+  return r ? check_value(c, check_coefficient(c->outputs->tape, c->at_outputs, r, 0, 0), program, span, what, name) : AGREES;
+}
+
 /* --- dynamics: values from the last check_run_text, whatever its direction --- */
 
 static CheckVerdict check_flows(Check *c) {
@@ -51,12 +56,12 @@ static CheckVerdict check_events(Check *c) {
   CheckVerdict v = AGREES;
   if (!m->events.n || !check_run(c, c->u->event_values, (Real *const[]){g})) return AGREES;
   for (uint32_t i = 0; i < m->events.n; i++)
-    if (o->events[i]) v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, o->events[i], 0, 0), g[i], m->events.at[i].span, "the event", m->events.at[i].name));
+    v = worse(v, check_output_value(c, o->events[i], g[i], m->events.at[i].span, "the event", m->events.at[i].name));
   for (int k = 0; k < 3; k++) set[k] = ARENA_ARRAY(c->arena, Real, (k < 2 ? m->coords.n : m->states.n) + 1);
   for (uint32_t i = 0; i < o->actions.n; i++) {
     const TextAction *a = &o->actions.at[i];
     if (!a->value || !check_run(c, c->u->events.at[a->event].action, set)) continue;
-    v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, a->value, 0, 0), set[a->kind == SYM_COORD ? 0 : a->kind == SYM_VEL ? 1 : 2][a->index],
+    v = worse(v, check_output_value(c, a->value, set[a->kind == SYM_COORD ? 0 : a->kind == SYM_VEL ? 1 : 2][a->index],
                                m->events.at[a->event].span, "the value set by the event", m->events.at[a->event].name));
   }
   return v;
@@ -70,7 +75,7 @@ static CheckVerdict check_outputs(Check *c) {
   CheckVerdict v = AGREES;
   if (!e->noutputs || !check_run(c, scene->observe, (Real *const[]){value})) return AGREES;
   for (uint32_t i = 0; i < e->noutputs; i++) {
-    if (o->outputs[i]) v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, o->outputs[i], 0, 0), value[i], e->outputs[i].span, "the output", e->outputs[i].name));
+    v = worse(v, check_output_value(c, o->outputs[i], value[i], e->outputs[i].span, "the output", e->outputs[i].name));
     if (o->is_energy[i] && c->has_energy) v = worse(v, check_compare(c, &c->energy, value[i], e->outputs[i].span, "the output", e->outputs[i].name));
   }
   return v;
@@ -82,7 +87,7 @@ static CheckVerdict check_signals(Check *c) {
   CheckVerdict v = AGREES;
   if (!c->m->inputs.n || !check_run(c, c->u->inputs, (Real *const[]){value})) return AGREES;
   for (uint32_t i = 0; i < c->m->inputs.n; i++)
-    if (o->signals[i]) v = worse(v, check_value(c, check_coefficient(o->tape, c->at_outputs, o->signals[i], 0, 0), value[i], c->m->inputs.at[i].span, "the input", c->m->inputs.at[i].name));
+    v = worse(v, check_output_value(c, o->signals[i], value[i], c->m->inputs.at[i].span, "the input", c->m->inputs.at[i].name));
   return v;
 }
 

@@ -192,23 +192,6 @@ int text_range(TextEval *t, AstId lo, AstId hi, Name effect, const IndexVars *ar
   return whole(t, &a, from) && whole(t, &b, to);
 }
 
-/* Evaluates lets of large models in order of declaration: members of a chain then find their predecessors evaluated. */
-static void begin_families(TextEval *t) {
-  enum { LONG = 256 };
-  static const IndexVars none;
-  for (uint32_t i = 0; i < t->b->lets.n && t->b->lets.n > LONG && !t->tape->too_long; i++) {
-    const Definition *d = &t->b->lets.at[i];
-    IndexVars around = none;
-    for (int k = 0; k < 2; k++)
-      if (d->index[k].name) vec_push(t->arena, &around, d->index[k]);
-    if (t->lets[i].at[0]) continue;
-    TextValue v = text_value(t, d->stmt->rhs, d->effect, &around);
-    v.bare = 0;
-    t->lets[i] = v;
-  }
-  t->why = NULL;
-}
-
 TextEval *text_new(const Model *m, Arena *a) {
   TextEval *t = ARENA_NEW(a, TextEval);
   const Builder *b = m->builder;
@@ -216,6 +199,5 @@ TextEval *text_new(const Model *m, Arena *a) {
   t->lets = ARENA_ARRAY(a, TextValue, b->lets.n + 1);
   t->observes = ARENA_ARRAY(a, TextValue, b->observes.n + 1);
   t->constants = ARENA_ARRAY(a, TextValue, b->constants.n + 1);
-  begin_families(t);
   return t;
 }

@@ -42,9 +42,6 @@ Ref text_component(TextEval *t, const TextValue *v, uint32_t k, const Unit *unit
 /* Evaluates the ends of a range; 0: not integer constants. */
 int text_range(TextEval *t, AstId lo, AstId hi, Name effect, const IndexVars *around, int64_t *from, int64_t *to);
 
-/* Vector v rotated by q. */
-TextValue text_turned(TextEval *t, const TextValue *q, const TextValue *v);
-
 static inline uint32_t text_components(const TextValue *v) { return v->n ? v->n : 1; }
 
 #endif

@@ -58,7 +58,7 @@ static TextValue product(TextEval *t, const TextValue *p, const TextValue *q) {
 }
 
 /* Rotated vector v + 2 u x (u x v + w v) for q = (w, u). */
-TextValue text_turned(TextEval *t, const TextValue *q, const TextValue *v) {
+static TextValue turned(TextEval *t, const TextValue *q, const TextValue *v) {
   TextValue r = {.n = 3};
   Ref inner[3], outer[3], twice = tape_number(t->tape, num_int(2));
   cross(t, q->at + 1, v->at, inner);
@@ -110,7 +110,7 @@ TextValue text_pair(TextEval *t, AstKind op, const TextValue *x, const TextValue
   static const TapeOp ops[] = {[AST_ADD] = TAPE_ADD, [AST_SUB] = TAPE_SUB, [AST_MUL] = TAPE_MUL, [AST_DIV] = TAPE_DIV};
   if (!x->at[0] || !y->at[0]) return NOTHING;
   if (op == AST_MUL && x->n == ROTATION && y->n == ROTATION) return product(t, x, y);
-  if (op == AST_MUL && x->n == ROTATION && y->n) return text_turned(t, x, y);
+  if (op == AST_MUL && x->n == ROTATION && y->n) return turned(t, x, y);
   if (x->n == ROTATION) return scaled_rotation(t, op, x, y);
   if (y->n == ROTATION) return scaled_rotation(t, op, y, x);
   TextValue r = {.n = x->n ? x->n : y->n, .bare = x->bare && y->bare};

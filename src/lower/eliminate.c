@@ -18,11 +18,6 @@ typedef struct {
 
 static Slot op(const Elimination *y, IrOp o, Slot a, Slot b) { return prog_op(y->l->p, o, a, b); }
 
-Slot lower_minus_product(Lower *l, Slot x, Slot a, Slot b) {
-  Slot ab = prog_op(l->p, IR_MUL, a, b);
-  return prog_op(l->p, IR_SUB, x, ab);
-}
-
 void lower_pivot(Lower *l, Slot d, int positive) {
   const Ins *i = &l->p->ins.at[d];
   if (d && i->op == IR_CONST && (num_sign(i->number) > 0 || !positive)) return;
@@ -73,10 +68,10 @@ static void eliminate_coordinate(Elimination *y, uint32_t v) {
     if (h.col < y->s->n) prog_name(y->l->p, f, lower_numbered(y->l, "L", v, h.col));
     for (uint32_t j = 0; j < below->n; j++) { /* earlier entries of the column */
       SparseEntry g = below->at[j];
-      sparse_set(&y->H, h.col, g.col, lower_minus_product(y->l, sparse_get(&y->H, h.col, g.col), h.value, g.value));
+      sparse_set(&y->H, h.col, g.col, prog_sub_product(y->l->p, sparse_get(&y->H, h.col, g.col), h.value, g.value));
     }
-    sparse_set(&y->H, h.col, h.col, lower_minus_product(y->l, sparse_get(&y->H, h.col, h.col), h.value, f));
-    y->b[h.col] = lower_minus_product(y->l, y->b[h.col], f, y->b[v]);
+    sparse_set(&y->H, h.col, h.col, prog_sub_product(y->l->p, sparse_get(&y->H, h.col, h.col), h.value, f));
+    y->b[h.col] = prog_sub_product(y->l->p, y->b[h.col], f, y->b[v]);
     vec_push(y->l->p->arena, below, ((SparseEntry){h.col, f}));
   }
 }
@@ -101,8 +96,7 @@ static void step_entries(Elimination *y, const SparseRow *row, const SparseRow *
 }
 
 static void add_product(Elimination *y, const StepEntry *s, const StepEntry *t, Slot a, Slot b) {
-  Slot ab = op(y, IR_MUL, a, b);
-  sparse_set(&y->H, s->col, t->col, op(y, IR_ADD, sparse_get(&y->H, s->col, t->col), ab));
+  sparse_set(&y->H, s->col, t->col, prog_add_product(y->l->p, sparse_get(&y->H, s->col, t->col), a, b));
 }
 
 /* Substitutes w_v' = C_v u' into the quadratic form: H += c r^T + r c^T + h c c^T = c y^T + r c^T with
@@ -123,34 +117,15 @@ static void eliminate_definition(Elimination *y, uint32_t v) {
       add_product(y, s, t, turned ? s->c : t->c, turned ? t->y : s->y);
       if (!turned) add_product(y, s, t, s->c, t->r);
     }
-    Slot cb = op(y, IR_MUL, s->c, y->b[v]);
-    y->b[s->col] = op(y, IR_ADD, y->b[s->col], cb);
+    y->b[s->col] = prog_add_product(y->l->p, y->b[s->col], s->c, y->b[v]);
   }
 }
 
-/* --- substitution --- */
-
-static void substitute(Elimination *y, uint32_t v) {
-  if (v < y->s->n) {
-    y->x[v] = op(y, IR_DIV, y->b[v], sparse_get(&y->H, v, v));
-    for (uint32_t k = 0; k < y->factor[v].n; k++)
-      y->x[v] = lower_minus_product(y->l, y->x[v], y->factor[v].at[k].value, y->x[y->factor[v].at[k].col]);
-    return;
-  }
-  for (uint32_t k = 0; k < y->C[v].n; k++) {
-    Slot part = op(y, IR_MUL, y->C[v].at[k].value, y->x[y->C[v].at[k].col]);
-    y->x[v] = op(y, IR_ADD, y->x[v], part);
-  }
-}
-
-/* Records the factors for factor_record_solve. */
-static void keep_factors(const Elimination *y) {
-  Lower *l = y->l;
-  Slot *pivot = ARENA_ARRAY(l->p->arena, Slot, y->s->n + 1);
+static FactorRecord record(const Elimination *y) {
+  Slot *pivot = ARENA_ARRAY(y->l->p->arena, Slot, y->s->n + 1);
   for (uint32_t v = 0; v < y->s->n; v++) pivot[v] = sparse_get(&y->H, v, v);
-  *l->factored = (FactorRecord){.n = y->s->n, .ndefs = y->s->ndefs, .straight = 1, .order = y->s->order, .pivot = pivot, .below = y->factor,
-                            .C = y->C, .row = y->H.rows};
-  l->x = y->x;
+  return (FactorRecord){.n = y->s->n, .ndefs = y->s->ndefs, .straight = 1, .order = y->s->order, .pivot = pivot, .below = y->factor, .C = y->C,
+                        .row = y->H.rows};
 }
 
 void lower_elimination(Lower *l, Slot *acc) {
@@ -163,7 +138,9 @@ void lower_elimination(Lower *l, Slot *acc) {
     else eliminate_definition(&y, v);
     sparse_eliminate(&y.H, v);
   }
-  for (uint32_t k = total; k-- > 0;) substitute(&y, y.s->order[k]);
+  FactorRecord factors = record(&y);
+  for (uint32_t k = total; k-- > 0;) factor_record_backward(l->p, &factors, y.s->order[k], y.b, NULL, y.x);
   for (uint32_t i = 0; i < y.s->n; i++) acc[i] = y.x[i];
-  if (l->factored) keep_factors(&y);
+  if (l->factored) *l->factored = factors;
+  l->x = y.x;
 }

@@ -17,10 +17,7 @@ static Slot op(const Gram *y, IrOp o, Slot a, Slot b) { return prog_op(y->l->p, 
 /* Inner product sum over k of weighted[k] W[k][u]. */
 static Slot product(const Gram *y, const Slot *weighted, uint32_t u) {
   Slot sum = 0;
-  for (uint32_t k = 0; k < y->s->n; k++) {
-    Slot part = op(y, IR_MUL, weighted[k], y->w[k * y->n + u]);
-    sum = op(y, IR_ADD, sum, part);
-  }
+  for (uint32_t k = 0; k < y->s->n; k++) sum = prog_add_product(y->l->p, sum, weighted[k], y->w[k * y->n + u]);
   return sum;
 }
 
@@ -36,8 +33,8 @@ static void orthogonalise_by(Gram *y, uint32_t v, const uint32_t *later, uint32_
     Slot f = op(y, IR_DIV, product(y, weighted, u), d);
     if (!f) continue;
     prog_name(y->l->p, f, lower_numbered(y->l, "L", v, u));
-    for (uint32_t k = 0; k < y->s->n; k++) y->w[k * y->n + u] = lower_minus_product(y->l, y->w[k * y->n + u], f, y->w[k * y->n + v]);
-    y->b[u] = lower_minus_product(y->l, y->b[u], f, y->b[v]);
+    for (uint32_t k = 0; k < y->s->n; k++) y->w[k * y->n + u] = prog_sub_product(y->l->p, y->w[k * y->n + u], f, y->w[k * y->n + v]);
+    y->b[u] = prog_sub_product(y->l->p, y->b[u], f, y->b[v]);
     vec_push(y->l->p->arena, &y->below[v], ((SparseEntry){u, f}));
   }
 }
@@ -56,12 +53,9 @@ void lower_gram_schmidt(Lower *l, Slot *acc) {
   }
   prog_title(l->p, "M q'' = f, M = W^T C W by orthogonal columns of W");
   for (uint32_t k = 0; k < n; k++) orthogonalise_by(&y, order[k], order + k + 1, n - k - 1);
-  for (uint32_t k = n; k-- > 0;) {
-    uint32_t v = order[k];
-    acc[v] = op(&y, IR_DIV, y.b[v], y.pivot[v]);
-    for (uint32_t i = 0; i < y.below[v].n; i++) acc[v] = lower_minus_product(l, acc[v], y.below[v].at[i].value, acc[y.below[v].at[i].col]);
-  }
-  if (!l->factored) return;
-  *l->factored = (FactorRecord){.n = n, .straight = 1, .order = order, .pivot = y.pivot, .below = y.below, .C = ARENA_ARRAY(a, SparseRow, n), .row = ARENA_ARRAY(a, SparseRow, n)};
+  FactorRecord factors = {.n = n, .straight = 1, .order = order, .pivot = y.pivot, .below = y.below, .C = ARENA_ARRAY(a, SparseRow, n),
+                          .row = ARENA_ARRAY(a, SparseRow, n)};
+  for (uint32_t k = n; k-- > 0;) factor_record_backward(l->p, &factors, order[k], y.b, NULL, acc);
+  if (l->factored) *l->factored = factors;
   l->x = acc;
 }

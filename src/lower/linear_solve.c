@@ -1,8 +1,7 @@
 /* M q'' = f, and its solution, as instructions.
  *
  * A positive definite mass matrix is eliminated in straight-line code (eliminate.c, gram_schmidt.c) unless that would be long. Otherwise M falls into
- * blocks of coupled coordinates: one by division, two by Cramer's rule, more by a loop within the band, with partial pivoting
- * where M may be indefinite. Coordinates that a constraint couples are one block, solved with their multipliers. */
+ * blocks of coupled coordinates: one by division, two by Cramer's rule, more by a loop with partial pivoting. Coordinates that a constraint couples are one block, solved with their multipliers. */
 #include "base/union_find.h"
 #include "lower/lower_impl.h"
 
@@ -142,31 +141,14 @@ static void solve_one(Lower *l, const Block *b, Slot *x) {
 static void solve_two(Lower *l, Block *b, Slot *x) {
   Slot m11 = b->M[0], m12 = b->M[2], m22 = b->M[3];
   Slot square = op(l, IR_MUL, m11, m22);
-  Slot det = lower_minus_product(l, square, m12, m12);
+  Slot det = prog_sub_product(l->p, square, m12, m12);
   prog_name(l->p, det, "det_M");
   b->divisor = det;
   lower_pivot(l, det, 0);
   Slot top1 = op(l, IR_MUL, b->f[0], m22), top2 = op(l, IR_MUL, m11, b->f[1]);
-  Slot n1 = lower_minus_product(l, top1, m12, b->f[1]), n2 = lower_minus_product(l, top2, m12, b->f[0]);
+  Slot n1 = prog_sub_product(l->p, top1, m12, b->f[1]), n2 = prog_sub_product(l->p, top2, m12, b->f[0]);
   x[0] = op(l, IR_DIV, n1, det);
   x[1] = op(l, IR_DIV, n2, det);
-}
-
-/* Lists the nonzero elements of the matrix. */
-static void list_filled(Arena *a, Solve *k) {
-  uint32_t *filled = ARENA_ARRAY(a, uint32_t, solve_elements(k) + 1);
-  for (uint32_t j = 0; j < solve_elements(k); j++)
-    if (k->matrix[j]) filled[k->nfilled++] = j;
-  k->filled = filled;
-}
-
-/* Half-bandwidth of a lower triangle M[n*n]: the largest i - j of a nonzero element. */
-static uint32_t band_width(uint32_t n, const Slot *M) {
-  uint32_t widest = 0;
-  for (uint32_t i = 0; i < n; i++)
-    for (uint32_t j = 0; j < i; j++)
-      if (M[(size_t)i*n + j] && i - j > widest) widest = i - j;
-  return widest;
 }
 
 /* Solves the block by a loop of the runtime: x[n], then the m multipliers. */
@@ -178,11 +160,7 @@ static void solve_loop(Lower *l, const Block *b, int coarse, Slot *x) {
     for (size_t j = 0; j < n; j++) full[i * n + j] = i >= j ? b->M[i * n + j] : b->M[j * n + i];
   for (size_t k = 0; k < m * n; k++) full[n * n + k] = b->A[k];
   for (size_t i = 0; i < n + m; i++) rhs[i] = i < n ? b->f[i] : b->g[i - n];
-  int definite = !m && !l->factored && (l->e->definite_mass || l->e->definite_by_values);
-  for (size_t i = 0; definite && i < n; i++)
-    for (size_t j = 0; j < i; j++) full[i * n + j] = 0; /* the loop reads the upper triangle only */
-  Solve k = {.n = b->n, .m = b->m, .band = band_width(b->n, b->M), .coarse = coarse, .definite = definite, .matrix = full, .rhs = rhs};
-  if (m) list_filled(a, &k);
+  Solve k = {.n = b->n, .m = b->m, .coarse = coarse, .matrix = full, .rhs = rhs};
   prog_solve(l->p, k, x);
 }
 
@@ -211,19 +189,15 @@ static int is_empty(const Block *b) {
   return 1;
 }
 
-/* Records blocks for factor_record_solve; those factored by a loop get a place each, so that their factors survive. */
+/* Records blocks for factor_record_solve. */
 static void keep_factors(Lower *l, const Block *blocks, uint32_t n, Slot *x) {
   FactorRecord *f = l->factored;
-  uint32_t place = 0, loop = 0;
   *f = (FactorRecord){.n = l->e->n};
   for (uint32_t k = 0; k < n; k++) {
     const Block *b = &blocks[k];
     if (is_empty(b)) continue; /* the solution of an empty block is 0 to all orders */
-    FactorBlock kept = {.n = b->n, .at = b->at, .M = b->M, .divisor = b->n == 2 ? b->divisor : b->M[0], .place = place};
+    FactorBlock kept = {.n = b->n, .at = b->at, .M = b->M, .divisor = b->n == 2 ? b->divisor : b->M[0]};
     vec_push(l->p->arena, &f->blocks, kept);
-    if (b->n < 3) continue;
-    l->p->solves.at[loop++].place = place;
-    place += factor_record_size(b->n);
   }
   l->x = x;
 }
@@ -274,7 +248,6 @@ void lower_solution(Lower *l, Slot *acc) {
   push_entries(l, &roots, &k->A);
   for (uint32_t i = 0; i < e->n; i++) vec_push(l->p->arena, &roots, s->f[i]);
   for (uint32_t i = 0; i < k->n; i++) vec_push(l->p->arena, &roots, k->demand[i]);
-  lower_find_denominator(l, roots.at, roots.n);
   prog_title(l->p, k->n ? "mass matrix M, forces f, constraints A q'' = g" : "mass matrix M and forces f");
   lower_roots(l, roots.at, roots.n);
   l->multipliers = ARENA_ARRAY(l->p->arena, Slot, k->n + 1);
@@ -301,7 +274,7 @@ void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, Slot 
   solve_blocks(l, &sides, d, multipliers);
   for (uint32_t i = 0; i < e->n; i++) force[i] = 0;
   for (uint32_t k = 0; k < A->n && A->at[k].row < nrows; k++) {
-    Slot part = op(l, IR_MUL, lower_slot(l, A->at[k].e), multipliers[A->at[k].row]), *sum = &force[A->at[k].col];
-    *sum = op(l, IR_ADD, *sum, part);
+    Slot *sum = &force[A->at[k].col];
+    *sum = prog_add_product(l->p, *sum, lower_slot(l, A->at[k].e), multipliers[A->at[k].row]);
   }
 }

@@ -106,9 +106,8 @@ static Slot lower_prod(Lower *l, Expr e) {
 static Slot scaled(Lower *l, Slot t, Num c) {
   c = num_abs(c);
   if (num_is_one(c)) return t;
-  int64_t more = l->p->folds_constants ? 1 : lower_denominator_scale(l, c);
-  int dyadic = more == 1 && (l->p->folds_constants || !num_is_exact(c) || (c.den & (c.den - 1)) == 0);
-  Slot up = number(l, dyadic ? c : num_int(c.num * more)), down = dyadic ? 0 : number(l, num_int(c.den * more));
+  int dyadic = l->p->folds_constants || !num_is_exact(c) || (c.den & (c.den - 1)) == 0;
+  Slot up = number(l, dyadic ? c : num_int(c.num)), down = dyadic ? 0 : number(l, num_int(c.den));
   const Ins *i = &l->p->ins.at[t];
   const Ins *top = &l->p->ins.at[i->a];
   if (i->op == IR_DIV && top->op == IR_CONST && num_is_one(top->number)) {
@@ -362,7 +361,6 @@ IrSystem lower_system(const Eqns *e) {
 void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
   const Model *m = l->e->m;
   int needed = 0;
-  lower_find_denominator(l, roots, n);
   for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_MULTIPLIER);
   if (needed) {
     Slot *acc = ARENA_ARRAY(m->arena, Slot, l->e->n + 1);
@@ -567,9 +565,6 @@ Prog *lower_param(const Eqns *e, uint32_t i) {
 Prog *lower_start(const Eqns *e) {
   Lower l = lower_new(e);
   const Scene *sc = &e->m->scene;
-  VEC(Expr) values = {0};
-  for (uint32_t i = 0; i < sc->starts.n; i++) vec_push(e->m->arena, &values, sc->starts.at[i].value);
-  lower_find_denominator(&l, values.at, values.n);
   for (uint32_t i = 0; i < sc->starts.n; i++) lower_roots(&l, &sc->starts.at[i].value, 1);
   for (uint32_t i = 0; i < sc->starts.n; i++) store_target(&l, sc->starts.at[i].target, sc->starts.at[i].value);
   return prog_tidy(l.p);

@@ -1,4 +1,4 @@
-/* Shared by the files that lower Eqns: lower*.c (expressions, one program each), linear_solve.c, eliminate.c, gram_schmidt.c (the linear system), common_denominator.c. */
+/* Shared by the files that lower Eqns: lower*.c (expressions, one program each), linear_solve.c, eliminate.c, gram_schmidt.c (the linear system). */
 #ifndef LAGC_LOWER_LOWER_IMPL_H
 #define LAGC_LOWER_LOWER_IMPL_H
 
@@ -11,8 +11,6 @@ typedef struct {
   Prog *p;
   ExprMap slots;   /* node -> slot + 1 */
   ExprMap circular; /* u -> 1 where sin u or cos u occurs among the roots */
-  int64_t denominator; /* common denominator of graded coefficients; 0: none. See lower_find_denominator */
-  ExprMap term_count;   /* coefficient, as a node -> number of terms with it */
   int direct;       /* no addition theorem for sin(a - b): a series of its own is cheaper */
   FactorRecord *factored; /* receives the factors of the linear system, and x its solution [n + ndefs]; NULL: not recorded */
   Slot *x;
@@ -21,12 +19,6 @@ typedef struct {
 } Lower;
 
 Lower lower_new(const Eqns *e);
-
-/* common_denominator.c. Finds the common denominator of coefficients that are graded along a family, as masses m*(1 + i/N) are. Before lower_roots. */
-void lower_find_denominator(Lower *l, const Expr *roots, uint32_t n);
-
-/* Factor that brings a coefficient to the common denominator; 1 where it is not graded. */
-int64_t lower_denominator_scale(Lower *l, Num c);
 
 /* Lowers the roots and all nodes below them; lower_slot then gives their slots. */
 void lower_roots(Lower *l, const Expr *roots, uint32_t n);
@@ -52,9 +44,6 @@ void lower_gram_schmidt(Lower *l, Slot *acc);
 
 /* Names "M12", "f1" by numbers of coordinates, from 1 (j UINT32_MAX: i alone); the stem alone when there is one coordinate. */
 Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j);
-
-/* x - a*b, with structural zeros skipped. */
-Slot lower_minus_product(Lower *l, Slot x, Slot a, Slot b);
 
 /* Check that d is positive, or (positive 0) not zero; none where d is a number that passes. */
 void lower_pivot(Lower *l, Slot d, int positive);

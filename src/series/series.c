@@ -47,10 +47,13 @@ Slot series_per_order(SeriesBuilder *m, Slot x) {
   return series_op(m, IR_MUL, x, r);
 }
 
-Slot series_over(SeriesBuilder *m, Slot x, Slot divisor) {
+/* 1/divisor, a slot of `first`, in `next`. */
+static Slot inverse_of(SeriesBuilder *m, Slot divisor) {
   Slot one = prog_num(m->first, num_int(1)), inverse = prog_op(m->first, IR_DIV, one, divisor);
-  return series_op(m, IR_MUL, x, series_constant(m, inverse));
+  return series_constant(m, inverse);
 }
+
+Slot series_over(SeriesBuilder *m, Slot x, Slot divisor) { return series_op(m, IR_MUL, x, inverse_of(m, divisor)); }
 
 /* --- sums over the orders below --- */
 
@@ -211,14 +214,10 @@ static void open_unknowns(ModelSeries *w) {
   for (uint32_t v = 0; v < total; v++) w->u[v] = series_open(m, w->zero[sys->x[v]]);
   for (uint32_t v = total; v-- > sys->nq;) {
     Slot sum = 0;
-    for (uint32_t k = 0; k < w->H[v].n; k++) {
-      Slot part = prog_op(m->first, IR_MUL, m->values.at[w->H[v].at[k].value].zero, m->values.at[w->u[w->H[v].at[k].other]].zero);
-      sum = prog_op(m->first, IR_ADD, sum, part);
-    }
-    for (uint32_t k = 0; k < w->column[v].n; k++) {
-      Slot part = prog_op(m->first, IR_MUL, m->values.at[w->column[v].at[k].value].zero, m->values.at[w->lambda[w->column[v].at[k].other]].zero);
-      sum = prog_op(m->first, IR_ADD, sum, part);
-    }
+    for (uint32_t k = 0; k < w->H[v].n; k++)
+      sum = prog_add_product(m->first, sum, m->values.at[w->H[v].at[k].value].zero, m->values.at[w->u[w->H[v].at[k].other]].zero);
+    for (uint32_t k = 0; k < w->column[v].n; k++)
+      sum = prog_add_product(m->first, sum, m->values.at[w->column[v].at[k].value].zero, m->values.at[w->lambda[w->column[v].at[k].other]].zero);
     w->lambda[v] = series_open(m, sum);
   }
 }
@@ -241,10 +240,8 @@ static Slot lower_terms(ModelSeries *w, const EntryList *list, const Val *x) {
 static Slot top_terms(ModelSeries *w, const EntryList *list, const Val *x) {
   SeriesBuilder *m = &w->m;
   Slot sum = 0;
-  for (uint32_t k = 0; k < list->n; k++) {
-    Slot part = series_op(m, IR_MUL, series_zero(m, list->at[k].value), m->values.at[x[list->at[k].other]].coef);
-    sum = series_op(m, IR_ADD, sum, part);
-  }
+  for (uint32_t k = 0; k < list->n; k++)
+    sum = prog_add_product(m->next, sum, series_zero(m, list->at[k].value), m->values.at[x[list->at[k].other]].coef);
   return sum;
 }
 
@@ -282,11 +279,6 @@ static const SparseRow *seen_rows(ModelSeries *w, const SparseRow *rows, uint32_
   return to;
 }
 
-static Slot seen_inverse(ModelSeries *w, Slot divisor) {
-  Slot one = prog_num(w->m.first, num_int(1)), inverse = prog_op(w->m.first, IR_DIV, one, w->zero[divisor]);
-  return series_constant(&w->m, inverse);
-}
-
 static FactorRecord factors_in_next(ModelSeries *w) {
   const FactorRecord *f = w->sys->factored;
   uint32_t total = f->n + f->ndefs;
@@ -294,17 +286,16 @@ static FactorRecord factors_in_next(ModelSeries *w) {
   FactorRecord seen = {.n = f->n, .ndefs = f->ndefs, .straight = f->straight, .order = f->order, .inverse = inverse};
   if (f->straight) {
     seen.pivot = ARENA_ARRAY(w->m.arena, Slot, f->n + 1);
-    for (uint32_t v = 0; v < f->n; v++) inverse[v] = seen_inverse(w, f->pivot[v]);
+    for (uint32_t v = 0; v < f->n; v++) inverse[v] = inverse_of(&w->m, w->zero[f->pivot[v]]);
     seen.below = seen_rows(w, f->below, f->n);
     seen.C = seen_rows(w, f->C, total);
     seen.row = seen_rows(w, f->row, total);
   }
   for (uint32_t k = 0; k < f->blocks.n; k++) {
     FactorBlock b = f->blocks.at[k];
-    if (b.n < 3) inverse[k] = seen_inverse(w, b.divisor);
-    if (b.n == 2) b.M = seen_slots(w, b.M, 4);
+    if (b.n < 3) inverse[k] = inverse_of(&w->m, w->zero[b.divisor]);
+    if (b.n >= 2) b.M = seen_slots(w, b.M, b.n * b.n);
     vec_push(w->m.arena, &seen.blocks, b);
-    if (b.n > 2) w->out->room += factor_record_size(b.n);
   }
   return seen;
 }
@@ -331,10 +322,7 @@ static void solve_by_inverse(ModelSeries *w, const Slot *b, Slot *x) {
   }
   for (uint32_t i = 0; i < n; i++) {
     x[i] = 0;
-    for (uint32_t j = 0; j < n; j++) {
-      Slot part = series_op(m, IR_MUL, series_constant(m, inverse[i][j]), b[j]);
-      x[i] = series_op(m, IR_ADD, x[i], part);
-    }
+    for (uint32_t j = 0; j < n; j++) x[i] = prog_add_product(m->next, x[i], series_constant(m, inverse[i][j]), b[j]);
   }
 }
 
@@ -432,5 +420,6 @@ Series *series_new(const IrSystem *sys, const char **why) {
   out->columns = (3 * sys->nq + 2 * sys->nz + (out->uses_time ? 1 : 0) + 3) / 4 * 4;
   out->first = first;
   out->next = next;
+  out->room = prog_work_size(prog_work_size(first) > prog_work_size(next) ? first : next);
   return out;
 }

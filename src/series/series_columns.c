@@ -23,8 +23,10 @@ static Need find_needed(SeriesBuilder *m) {
   const Prog *p = m->next;
   Need n = {.m = m, .slot = ARENA_ARRAY(m->arena, unsigned char, p->ins.n), .pair = ARENA_ARRAY(m->arena, unsigned char, m->pairs.n + 1)};
   for (uint32_t k = 0; k < p->stores.n; k++) need(&n, p->stores.at[k].slot);
-  for (uint32_t k = 0; k < p->solves.n; k++)
-    for (uint32_t i = 0; i < p->solves.at[k].n; i++) need(&n, p->solves.at[k].rhs[i]);
+  for (uint32_t k = 0; k < p->solves.n; k++) {
+    for (uint32_t i = 0; i < solve_unknowns(&p->solves.at[k]); i++) need(&n, p->solves.at[k].rhs[i]);
+    for (uint32_t i = 0; i < solve_elements(&p->solves.at[k]); i++) need(&n, p->solves.at[k].matrix[i]);
+  }
   while (n.open.n) {
     const Ins *i = &p->ins.at[n.open.at[--n.open.n]];
     need(&n, i->a);

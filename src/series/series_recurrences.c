@@ -123,19 +123,13 @@ static void sine_and_cosine(SeriesBuilder *m, Val u, int circular, Val *sine, Va
   *cosine = c;
 }
 
-static Val circular(SeriesBuilder *m, Val u, int wants_sine) {
-  Val s = m->values.at[u].sine, c = m->values.at[u].cosine;
-  if (!s) sine_and_cosine(m, u, 1, &s, &c);
-  m->values.at[u].sine = s;
-  m->values.at[u].cosine = c;
-  return wants_sine ? s : c;
-}
-
-static Val hyperbolic(SeriesBuilder *m, Val u, int wants_sine) {
-  Val s = m->values.at[u].sinh, c = m->values.at[u].cosh;
-  if (!s) sine_and_cosine(m, u, 0, &s, &c);
-  m->values.at[u].sinh = s;
-  m->values.at[u].cosh = c;
+/* sin u or cos u; sinh u or cosh u. Recorded in u, so that each is made once. */
+static Val circular(SeriesBuilder *m, Val u, int wants_sine, int is_circular) {
+  Val s = is_circular ? m->values.at[u].sine : m->values.at[u].sinh, c = is_circular ? m->values.at[u].cosine : m->values.at[u].cosh;
+  if (!s) sine_and_cosine(m, u, is_circular, &s, &c);
+  Value *x = &m->values.at[u];
+  *(is_circular ? &x->sine : &x->sinh) = s;
+  *(is_circular ? &x->cosine : &x->cosh) = c;
   return wants_sine ? s : c;
 }
 
@@ -201,10 +195,10 @@ static Val refuse(SeriesBuilder *m, const char *what) {
 }
 
 static Val function(SeriesBuilder *m, const char *name, Slot at_zero, Val u) {
-  if (strcmp(name, "sin") == 0) return circular(m, u, 1);
-  if (strcmp(name, "cos") == 0) return circular(m, u, 0);
-  if (strcmp(name, "sinh") == 0) return hyperbolic(m, u, 1);
-  if (strcmp(name, "cosh") == 0) return hyperbolic(m, u, 0);
+  if (strcmp(name, "sin") == 0) return circular(m, u, 1, 1);
+  if (strcmp(name, "cos") == 0) return circular(m, u, 0, 1);
+  if (strcmp(name, "sinh") == 0) return circular(m, u, 1, 0);
+  if (strcmp(name, "cosh") == 0) return circular(m, u, 0, 0);
   if (strcmp(name, "tan") == 0) return tangent(m, at_zero, u, 1);
   if (strcmp(name, "tanh") == 0) return tangent(m, at_zero, u, 0);
   if (strcmp(name, "exp") == 0) return exponential(m, at_zero, u);
@@ -250,7 +244,7 @@ Val series_instruction(SeriesBuilder *m, const Ins *i, Slot at_zero, Val u, Val 
     case IR_TABLE: return refuse(m, "a table");
     case IR_LT: case IR_LE: case IR_EQ: case IR_NOT: case IR_AND: case IR_OR: return refuse(m, "if");
     case IR_SELECT: return choice(m, at_zero, i->a, v, w);
-    case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_INVERT: case IR_NEST: case IR_TITLE: break;
+    case IR_CONST: case IR_PI: case IR_LOAD: case IR_PIVOT: case IR_SOLVE: case IR_SOLVED: case IR_NEST: case IR_TITLE: break;
   }
   return 0;
 }
