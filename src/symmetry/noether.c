@@ -7,7 +7,6 @@
 #include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "mech/discontinuity.h"
-#include "symmetry/term_magnitude.h"
 #include "mech/states.h"
 #include "sym/diff.h"
 #include "sym/integrate.h"
@@ -318,6 +317,47 @@ static Expr charge_of(const ProofWork *w, Expr F) {
 static Expr while_closed(const ProofWork *w, const Contact *c, Expr x) {
   Expr one = expr_int(w->g, 1);
   return c ? expr_replace(w->g, x, &c->closed, &one, 1) : x;
+}
+
+static Expr size_of_sum(ExprGraph *g, const Expr *size, Expr x) {
+  uint32_t n = expr_pairs(g, x, EX_SUM);
+  Expr *terms = ARENA_ARRAY(expr_arena(g), Expr, n);
+  for (uint32_t i = 0; i < n; i++) {
+    Num c;
+    Expr term = expr_pair(g, x, EX_SUM, i, &c);
+    terms[i] = expr_scale(g, num_sign(c) < 0 ? num_neg(c) : c, size[term]);
+  }
+  return expr_add_n(g, terms, n);
+}
+
+static Expr size_of_product(ExprGraph *g, const Expr *size, Expr x) {
+  uint32_t n = expr_pairs(g, x, EX_PROD);
+  Expr *factors = ARENA_ARRAY(expr_arena(g), Expr, n);
+  for (uint32_t i = 0; i < n; i++) {
+    Num power;
+    Expr base = expr_pair(g, x, EX_PROD, i, &power);
+    int whole = num_is_int(power) && num_sign(power) > 0;
+    if (whole) base = size[base];
+    Expr factor = expr_pow_num(g, base, power);
+    factors[i] = whole ? factor : expr_fn(g, EX_ABS, factor);
+  }
+  return expr_mul_n(g, factors, n);
+}
+
+/* Sum of the absolute values of the terms of x, as if products of sums were multiplied out: |a|*(|x| + |z|) for a*(x - z). Denominators,
+ * roots and functions count as single terms; definitions are expanded. */
+static Expr term_magnitude(ExprGraph *g, Expr x) {
+  Expr *size = ARENA_ARRAY(expr_arena(g), Expr, (size_t)expr_count(g) + 1);
+  ExprList l = expr_topo(g, &x, 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr e = l.at[i];
+    ExprOp op = expr_op(g, e);
+    size[e] = op == EX_SUM ? size_of_sum(g, size, e)
+            : op == EX_PROD ? size_of_product(g, size, e)
+            : op == EX_DEF ? size[expr_arg(g, e, 0)]
+            : expr_fn(g, EX_ABS, e);
+  }
+  return size[x];
 }
 
 static Expr scale_of(const ProofWork *w, Expr F) {

@@ -2,7 +2,7 @@
 #ifndef LAGC_SYMMETRY_SYMMETRY_NAMES_H
 #define LAGC_SYMMETRY_SYMMETRY_NAMES_H
 
-#include "symmetry/found_symmetry.h"
+#include "symmetry/find_symmetries.h"
 #include "symmetry/generator_table.h"
 
 /* A row of a table with recognised coefficients: those of the generator by = (xi, tau). */
