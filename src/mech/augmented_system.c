@@ -22,7 +22,7 @@ typedef struct {
 /* Finds the definitions that contain velocities; writes them and L in q', stand-ins and expressions without velocities. */
 static void cut_definitions(Augmentation *l) {
   const Eqns *e = l->e;
-  Expr lagrangian = e->differentiated_lagrangian;
+  Expr lagrangian = e->m->lagrangian;
   ExprList all = expr_topo(l->g, &lagrangian, 1);
   VEC(Expr) defs = {0};
   for (uint32_t i = 0; i < all.n; i++)

@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "mech/lagrange.h"
-#include "symmetry/symmetry_names.h"
 #include "sym/diff.h"
 #include "sym/normal_form.h"
 #include "sym/print.h"
@@ -320,6 +319,17 @@ static FoundSymmetries search(Eqns *e) {
   SymmetrySearch s = {.e = e, .g = e->g, .out = &out};
   normal_with_scratch(e->g, search_work, &s);
   return out;
+}
+
+/* Whether energy, three momenta, three angular momenta and three boosts are among them. */
+static int has_galilean_charges(const FoundSymmetries *all) {
+  uint32_t seen[SYMMETRY_SCALING + 1] = {0};
+  for (uint32_t k = 0; k < all->all.n; k++) {
+    const FoundSymmetry *s = &all->all.at[k];
+    if (s->kind == SYMMETRY_ENERGY) seen[s->kind] = 7;
+    else if (s->of_all) seen[s->kind] |= 1u << s->axis;
+  }
+  return seen[SYMMETRY_ENERGY] && seen[SYMMETRY_MOMENTUM] == 7 && seen[SYMMETRY_ROTATION] == 7 && seen[SYMMETRY_BOOST] == 7;
 }
 
 FoundSymmetries noether_find(Eqns *e) {

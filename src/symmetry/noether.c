@@ -31,8 +31,6 @@ typedef struct {
   const Constraint *product; /* a constraint whose states were sought, but perhaps not on each of its factors; or NULL */
 } ProofWork;
 
-static SymId velocity(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate; }
-
 static Expr node(const ProofWork *w, SymId s) { return expr_symbol(w->g, s)->node; }
 
 static Expr *no_seed(const ProofWork *w) { return ARENA_ARRAY(w->m->arena, Expr, expr_symbol_count(w->g) + 1); }
@@ -62,18 +60,14 @@ static ProofWork begin(const Eqns *e, const Generator *by) {
   Arena *a = e->m->arena;
   ProofWork w = {.e = e, .m = e->m, .g = e->g, .n = eqns_coordinates(e)};
   Expr zero = expr_int(w.g, 0), *xi = ARENA_ARRAY(a, Expr, w.n + 1);
-  w.q = ARENA_ARRAY(a, SymId, w.n + 1);
-  w.v = ARENA_ARRAY(a, SymId, w.n + 1);
+  w.q = eqns_symbols(e, 0);
+  w.v = eqns_symbols(e, 1);
   w.Dxi = ARENA_ARRAY(a, Expr, w.n + 1);
   w.L = e->m->lagrangian;
   w.p = eqns_momenta(e);
   w.xi = xi;
   w.tau = by->tau ? by->tau : zero;
-  for (uint32_t i = 0; i < w.n; i++) {
-    w.q[i] = eqns_coordinate(e, i);
-    w.v[i] = velocity(e, i);
-    xi[i] = by->xi && by->xi[i] ? by->xi[i] : zero;
-  }
+  for (uint32_t i = 0; i < w.n; i++) xi[i] = by->xi && by->xi[i] ? by->xi[i] : zero;
   for (uint32_t i = 0; i < w.n; i++) w.Dxi[i] = total(&w, xi[i]);
   w.Dtau = total(&w, w.tau);
   return w;
@@ -179,7 +173,7 @@ static int vanishes_by_value(const ProofWork *w, Expr x) {
 /* Whether base^power is a factor that contains coordinates and may be 0. */
 static int may_vanish(const ProofWork *w, Expr base, Num power) {
   ExprSign sign = expr_sign(w->g, base);
-  return num_sign(power) > 0 && sign != SIGN_POSITIVE && sign != SIGN_NEGATIVE && (expr_kinds(w->g, base) & 1u << SYM_COORD);
+  return num_sign(power) > 0 && !sign_is_strict(sign) && (expr_kinds(w->g, base) & 1u << SYM_COORD);
 }
 
 /* The first holonomic constraint, contacts left out, that is a product of factors two of which may be 0: random states may miss one of these

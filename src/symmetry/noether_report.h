@@ -37,7 +37,7 @@ void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with);
 typedef VEC(Expr) Conditions;
 Conditions noether_conditions(const NoetherReport *r, uint32_t k);
 
-/* Whether found symmetry k has the same charge with the effect on; compared at random states, symbols matched by name. */
+/* Whether no state shows that found symmetry k has another charge with the effect on; symbols are matched by name. */
 int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t k);
 
 /* Coordinates that L does not contain. */

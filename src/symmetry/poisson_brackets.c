@@ -306,15 +306,10 @@ static const char *reason_against(const Eqns *e, uint32_t r) {
 Algebra brackets_find(Eqns *e, const FoundSymmetries *of) {
   Algebra out = {.n = of->all.n, .why_not = reason_against(e, of->all.n)};
   BracketFit w = {.e = e, .g = e->g, .of = of, .n = eqns_coordinates(e), .r = of->all.n, .pairs = of->all.n * (of->all.n - 1) / 2, .out = &out};
-  SymId *q = ARENA_ARRAY(e->m->arena, SymId, 2 * (size_t)w.n + 1), *v = q + w.n;
   if (out.why_not || of->all.n < 2) return out;
   if (e->n && !e->mass_known) eqns_derive_mass(e);
-  for (uint32_t i = 0; i < w.n; i++) {
-    q[i] = eqns_coordinate(e, i);
-    v[i] = e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate;
-  }
-  w.q = q;
-  w.v = v;
+  w.q = eqns_symbols(e, 0);
+  w.v = eqns_symbols(e, 1);
   normal_with_scratch(e->g, compute_brackets, &w);
   return out;
 }

@@ -39,7 +39,4 @@ void orient_generator(const CoordinateNames *e, GeneratorRow *row);
 /* Sets kind, name, axis and of_all of a found symmetry from its row. */
 void name_symmetry(const CoordinateNames *e, const GeneratorRow *row, FoundSymmetry *to);
 
-/* Whether energy, three momenta, three angular momenta and three boosts are among them. */
-int has_galilean_charges(const FoundSymmetries *all);
-
 #endif
