@@ -308,13 +308,12 @@ static int use_velocities(Prover *p, const Claim *c) {
 /* Cases u > 0, u < 0 and u = 0, or those of a factor of u; -1: no symbol can be replaced. */
 static int use_sides(Prover *p, const Claim *c, Expr u) {
   ExprGraph *g = p->g;
-  int above = expr_sign(g, u) == SIGN_UNKNOWN ? holds_where(p, c, u, 1) : -1;
-  if (above >= 0) return above && holds_where(p, c, u, -1) && holds_where(p, c, u, 0);
-  for (uint32_t i = 0; expr_op(g, u) == EX_PROD && i < expr_pairs(g, u, EX_PROD) && above < 0; i++) {
+  uint32_t factors = expr_op(g, u) == EX_PROD ? expr_pairs(g, u, EX_PROD) : 0;
+  for (uint32_t i = 0; i <= factors; i++) {
     Num power;
-    Expr factor = expr_pair(g, u, EX_PROD, i, &power);
-    above = expr_sign(g, factor) == SIGN_UNKNOWN ? holds_where(p, c, factor, 1) : -1;
-    if (above >= 0) return above && holds_where(p, c, factor, -1) && holds_where(p, c, factor, 0);
+    Expr x = i ? expr_pair(g, u, EX_PROD, i - 1, &power) : u;
+    int above = expr_sign(g, x) == SIGN_UNKNOWN ? holds_where(p, c, x, 1) : -1;
+    if (above >= 0) return above && holds_where(p, c, x, -1) && holds_where(p, c, x, 0);
   }
   return -1;
 }

@@ -154,20 +154,16 @@ static int find_difference(CounterexampleSearch *s, int quick) {
   }
   s->states = 0;
   s->digits = FULL_DIGITS;
-  s->ordinary = 1;
-  for (uint32_t seed = 1; seed <= (quick ? QUICK : RANDOM); seed++) {
-    random_state(s, seed);
-    if (differs(s)) return 1;
-  }
-  if (quick) return 0;
-  s->ordinary = 0;
-  for (uint32_t seed = 1; seed <= WHOLE; seed++) {
-    whole_state(s, seed);
-    if (differs(s)) return 1;
-  }
-  for (uint32_t seed = 1; seed <= FAR; seed++) {
-    far_state(s, seed);
-    if (differs(s)) return 1;
+  static const struct {
+    void (*draw)(CounterexampleSearch *s, uint32_t seed);
+    uint32_t count;
+  } kinds[] = {{random_state, RANDOM}, {whole_state, WHOLE}, {far_state, FAR}};
+  for (int k = 0; k < (quick ? 1 : 3); k++) {
+    s->ordinary = k == 0;
+    for (uint32_t seed = 1; seed <= (quick ? QUICK : kinds[k].count); seed++) {
+      kinds[k].draw(s, seed);
+      if (differs(s)) return 1;
+    }
   }
   return 0;
 }

@@ -167,7 +167,7 @@ int state_error_bounds_at(StateErrorBounds *w, StateSolver *solver, const long d
   for (uint32_t i = 0; i < e->constraints.n; i++) w->symbols[e->constraints.of[i]->multiplier] = 0;
   if (e->constraints.n) {
     states_at(solver, w->symbols);
-    states_rank(solver, UINT32_MAX, w->counts);
+    states_rank(solver, UINT32_MAX, w->counts, NULL);
     if (!bound_motion(w, 0, errors) || !bound_motion(w, 1, errors)) return 0;
   }
   bound_run(w->tape, w->symbols, errors);

@@ -1,7 +1,35 @@
 /* Access to the equations. */
 #include "mech/eqns.h"
 
+#include <stdlib.h>
+
 #include "sym/simplify.h"
+
+typedef struct {
+  MassEntry x;
+  uint32_t order;
+} Placed;
+
+static int by_place(const void *a, const void *b) {
+  const Placed *p = a, *q = b;
+  if (p->x.row != q->x.row) return p->x.row < q->x.row ? -1 : 1;
+  if (p->x.col != q->x.col) return p->x.col < q->x.col ? -1 : 1;
+  return (p->order > q->order) - (p->order < q->order);
+}
+
+void entries_collect(ExprGraph *g, Entries *t, Expr (*rule)(ExprGraph *, Expr)) {
+  uint32_t n = t->n;
+  Placed *all = ARENA_ARRAY(expr_arena(g), Placed, n + 1);
+  for (uint32_t i = 0; i < n; i++) all[i] = (Placed){t->at[i], i};
+  qsort(all, n, sizeof *all, by_place);
+  t->n = 0;
+  for (uint32_t i = 0; i < n;) {
+    MassEntry sum = all[i++].x;
+    for (; i < n && all[i].x.row == sum.row && all[i].x.col == sum.col; i++) sum.e = expr_add(g, sum.e, all[i].x.e);
+    if (rule) sum.e = rule(g, sum.e);
+    if (!expr_is_zero(g, sum.e)) t->at[t->n++] = sum;
+  }
+}
 
 Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
   uint32_t row = i > j ? i : j, col = i > j ? j : i, lo = 0, hi = e->mass.n;

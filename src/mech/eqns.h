@@ -24,6 +24,9 @@ typedef struct {
 
 typedef VEC(MassEntry) Entries;
 
+/* Sorts entries by row and column, sums those at one place in their order, applies `rule` (or NULL) to the sums, and drops zeros. */
+void entries_collect(ExprGraph *g, Entries *t, Expr (*rule)(ExprGraph *, Expr));
+
 /* M q'' = f as the program solves it. Variables 0 .. n-1 are the accelerations; variable n + k is the rate of
  * definition k, which contains velocities: C_k times the variables before it (mech/augmented_system.h). Without definitions H = M. */
 typedef struct {

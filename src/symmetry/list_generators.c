@@ -46,13 +46,9 @@ static Expr coefficient(SymmetrySearch *s, FamilyTables *t, uint32_t row, size_t
   size_t at = (size_t)row * t->at[0].blocks * t->at[0].shown + place;
   long double *x = ARENA_ARRAY(s->scratch, long double, noether_choices(s));
   Expr rate = t->family->rate;
-  Num c;
   for (uint32_t i = 0; i < CHOICE_MOVED; i++) x[i] = t->at[i].at[at];
-  if (x[CHOICE_FIRST] == 0 && x[CHOICE_SECOND] == 0) return expr_int(s->g, 0);
-  if (recognise_same(x, &c)) return expr_num(s->g, c);
-  Expr ratio = recognise_ratio(&s->choices, x);
-  if (!ratio) ratio = recognise_with_rates(&s->choices, x, &rate, rate != 0);
-  if (ratio || !moved) return ratio;
+  Expr known = recognise_by_two(&s->choices, x, &rate, rate != 0);
+  if (known || !moved) return known;
   for (uint32_t i = CHOICE_MOVED; i < noether_choices(s); i++) x[i] = t->at[i].at[at];
   return recognise_monomial(&s->choices, x);
 }

@@ -36,12 +36,12 @@ static int is_pushed(const Eqns *e, uint32_t i) {
   return !expr_is_zero(e->g, e->Q[i]);
 }
 
-void show_cyclic(const Eqns *e, StrBuf *out) {
+void show_cyclic(const Eqns *e, const char *before, StrBuf *out) {
   Indices all = noether_cyclic(e);
   for (uint32_t k = 0; k < all.n; k++) {
     Name x = e->m->coords.at[all.at[k]].name;
     int pushed = is_pushed(e, all.at[k]), jumps = discontinuities_of(e, eqns_momenta(e)[all.at[k]]).n > 0;
-    sb_printf(out, "cyclic coordinate: %s; L does not contain it, and p_%s is %s%s\n", x, x, pushed ? "changed by forces and constraints alone" : "conserved",
+    sb_printf(out, "%scyclic coordinate: %s; L does not contain it, and p_%s is %s%s\n", before, x, x, pushed ? "changed by forces and constraints alone" : "conserved",
               jumps ? " between jumps" : "");
   }
 }

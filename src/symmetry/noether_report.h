@@ -43,8 +43,8 @@ int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t
 /* Coordinates that L does not contain. */
 Indices noether_cyclic(const Eqns *e);
 
-/* Appends "cyclic coordinate: x; L does not contain it, and p_x is conserved", if there is one. */
-void show_cyclic(const Eqns *e, StrBuf *out);
+/* Appends "cyclic coordinate: x; L does not contain it, and p_x is conserved" for each one, after `before`. */
+void show_cyclic(const Eqns *e, const char *before, StrBuf *out);
 
 /* The report as text or LaTeX, and as one JSON object in which formulas are text. */
 void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out);

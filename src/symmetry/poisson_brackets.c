@@ -203,17 +203,9 @@ static Expr symbolic(const BracketFit *w, uint32_t a, uint32_t b) {
  * recognised. */
 static Expr recognise(const BracketFit *w, long double *const *fits, size_t place) {
   long double *x = ARENA_ARRAY(w->scratch, long double, 2 + w->choices.n);
-  int zero = 1;
-  Num c;
-  for (uint32_t k = 0; k < 2 + w->choices.n; k++) {
-    x[k] = fits[k][place];
-    zero = zero && x[k] == 0;
-    if (isnan(x[k])) return 0;
-  }
-  if (zero) return expr_int(w->g, 0);
-  if (recognise_same(x, &c)) return expr_num(w->g, c);
-  Expr known = recognise_ratio(&w->choices, x);
-  if (!known) known = recognise_with_rates(&w->choices, x, w->rates.at, w->rates.n);
+  for (uint32_t k = 0; k < 2 + w->choices.n; k++)
+    if (isnan(x[k] = fits[k][place])) return 0;
+  Expr known = recognise_by_two(&w->choices, x, w->rates.at, w->rates.n);
   if (!known) known = recognise_linear(&w->choices, x);
   return known ? known : recognise_monomial(&w->choices, x);
 }
