@@ -43,7 +43,6 @@ typedef struct {
   int rank;
 } Factor;
 
-/* Whether e contains symbols other than parameters and constants. */
 /* Position of a factor in a product: numbers and sums of parameters, parameters, coordinates, functions, velocities:
  * (m1 + m2)*g*l*sin(th)*th'. */
 static int rank_of(ExprGraph *g, Expr e) {
@@ -199,14 +198,8 @@ static void arguments(Printer *p, Expr e) {
   else close_paren(p);
 }
 
-/* A call; in LaTeX by the name of the function there, or upright. */
-static void call(Printer *p, Expr e) {
-  ExprOp op = expr_op(p->g, e);
-  const char *name = expr_op_text(op);
-  int known = (op >= EX_SIN && op <= EX_LOG) || op == EX_MIN || op == EX_MAX, arc = op == EX_ASIN || op == EX_ACOS || op == EX_ATAN;
-  if (!latex(p)) text(p, name);
-  else if (op == EX_LOG) text(p, "\\ln");
-  else text(p, arena_printf(p->g->arena, known ? "\\%s%s" : "\\operatorname{%s%s}", arc ? "arc" : "", arc ? name + 1 : name));
+static void call(Printer *p, Expr e, const char *name, const char *latex_name) {
+  text(p, by_style(p, name, latex_name));
   arguments(p, e);
 }
 
@@ -260,8 +253,25 @@ static void expand(Printer *p, Expr e) {
       node(p, expr_arg(g, e, 1), latex(p) ? PREC_OR : PREC_ATOM);
       if (latex(p)) text(p, "}");
       return;
-    case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH: case EX_TANH: case EX_EXP:
-    case EX_LOG: case EX_MIN: case EX_MAX: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_ATAN2: case EX_HYPOT: case EX_SELECT: call(p, e); return;
+    case EX_SIN: call(p, e, "sin", "\\sin"); return;
+    case EX_COS: call(p, e, "cos", "\\cos"); return;
+    case EX_TAN: call(p, e, "tan", "\\tan"); return;
+    case EX_ASIN: call(p, e, "asin", "\\arcsin"); return;
+    case EX_ACOS: call(p, e, "acos", "\\arccos"); return;
+    case EX_ATAN: call(p, e, "atan", "\\arctan"); return;
+    case EX_SINH: call(p, e, "sinh", "\\sinh"); return;
+    case EX_COSH: call(p, e, "cosh", "\\cosh"); return;
+    case EX_TANH: call(p, e, "tanh", "\\tanh"); return;
+    case EX_EXP: call(p, e, "exp", "\\exp"); return;
+    case EX_LOG: call(p, e, "log", "\\ln"); return;
+    case EX_MIN: call(p, e, "min", "\\min"); return;
+    case EX_MAX: call(p, e, "max", "\\max"); return;
+    case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_ATAN2: case EX_HYPOT: case EX_SELECT: {
+      const char *name = expr_op_text(op);
+      const char *upright = arena_printf(g->arena, "\\operatorname{%s}", name);
+      call(p, e, name, upright);
+      return;
+    }
     case EX_LT: infix(p, e, " < ", PREC_CMP); return;
     case EX_LE: infix(p, e, by_style(p, " <= ", " \\le "), PREC_CMP); return;
     case EX_EQ: infix(p, e, by_style(p, " == ", " = "), PREC_CMP); return;
