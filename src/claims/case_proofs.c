@@ -70,15 +70,12 @@ Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs) {
 
 /* --- signs --- */
 
-static int is_nonneg(ExprSign s) { return s == SIGN_POSITIVE || s == SIGN_NONNEGATIVE; }
-static int is_nonpos(ExprSign s) { return s == SIGN_NEGATIVE || s == SIGN_NONPOSITIVE; }
-
 /* Value of a comparison, min or max of a and b from the sign of b - a; 0: undecided. */
 static Expr fold_comparison(ExprGraph *g, ExprOp op, Expr a, Expr b) {
   Expr gap = expr_sub(g, b, a), yes = expr_int(g, 1), no = expr_int(g, 0);
   ExprSign s = expr_sign(g, gap);
-  int same = expr_is_zero(g, gap), nonneg = same || is_nonneg(s), nonpos = same || is_nonpos(s);
-  int strict = s == SIGN_POSITIVE || s == SIGN_NEGATIVE;
+  int same = expr_is_zero(g, gap), nonneg = same || sign_is_nonnegative(s), nonpos = same || sign_is_nonpositive(s);
+  int strict = sign_is_strict(s);
   switch (op) {
     case EX_LT: return nonneg && strict ? yes : nonpos ? no : 0;
     case EX_LE: return nonneg ? yes : nonpos && strict ? no : 0;
@@ -197,11 +194,6 @@ static int linear_in(ExprGraph *g, Expr u, SymId s, Linear *out) {
   return !expr_contains_sym(g, out->A, s);
 }
 
-static int has_sign(const ExprGraph *g, Expr A) {
-  ExprSign sign = expr_sign(g, A);
-  return sign == SIGN_POSITIVE || sign == SIGN_NEGATIVE || (expr_is_num(g, A) && !expr_is_zero(g, A));
-}
-
 /* The value of the symbol where u is `value`. */
 static Expr solution(ExprGraph *g, const Linear *l, Expr value) {
   Expr rest = expr_sub(g, value, l->B);
@@ -215,7 +207,7 @@ static int solve_for_symbol(ExprGraph *g, Expr u, Expr value, SymId *s, Expr *is
   int best = 0;
   for (uint32_t i = 0; i < l.n && best < 3; i++) {
     Linear one;
-    if (expr_op(g, l.at[i]) != EX_SYM || !is_free(expr_sym_of(g, l.at[i])) || !linear_in(g, u, expr_sym_id(g, l.at[i]), &one) || !has_sign(g, one.A)) continue;
+    if (expr_op(g, l.at[i]) != EX_SYM || !is_free(expr_sym_of(g, l.at[i])) || !linear_in(g, u, expr_sym_id(g, l.at[i]), &one) || !expr_is_nonzero(g, one.A)) continue;
     Expr found = solution(g, &one, value);
     ExprSign sign = expr_sym_of(g, l.at[i])->sign;
     int rank = sign == SIGN_UNKNOWN ? 3 : expr_sign(g, found) == sign ? 2 : 1;
@@ -269,9 +261,9 @@ static int use_square(Prover *p, const Claim *c, Expr constraint) {
       if ((sign != SIGN_UNKNOWN) != with_sign) continue;
       Expr slope = expr_diff(g, constraint, s), twice = expr_diff(g, slope, s), A = expr_scale(g, num_ratio(1, 2), twice);
       Expr square = expr_pow_num(g, l.at[i], num_int(2)), part = expr_mul(g, A, square), B = expr_sub(g, constraint, part);
-      if (!has_sign(g, A) || expr_contains_sym(g, A, s) || expr_contains_sym(g, B, s)) continue;
+      if (!expr_is_nonzero(g, A) || expr_contains_sym(g, A, s) || expr_contains_sym(g, B, s)) continue;
       Expr minus = expr_neg(g, B), root = expr_sqrt(g, expr_div(g, minus, A)), other = expr_neg(g, root);
-      return (is_nonpos(sign) || holds_with(p, c, s, root)) && (is_nonneg(sign) || holds_with(p, c, s, other));
+      return (sign_is_nonpositive(sign) || holds_with(p, c, s, root)) && (sign_is_nonnegative(sign) || holds_with(p, c, s, other));
     }
   return -1;
 }
@@ -301,7 +293,7 @@ static int use_velocities(Prover *p, const Claim *c) {
       for (uint32_t j = 0; j < c->e->n; j++) {
         SymId v = p->m->coords.at[j].v;
         Linear l;
-        if (!linear_in(g, r, v, &l) || expr_is_zero(g, l.A) || has_sign(g, l.A) != sure) continue;
+        if (!linear_in(g, r, v, &l) || expr_is_zero(g, l.A) || expr_is_nonzero(g, l.A) != sure) continue;
         if (!holds_with(p, c, v, solution(g, &l, expr_int(g, 0)))) return 0;
         if (sure) return 1;
         some = 1;
@@ -316,13 +308,12 @@ static int use_velocities(Prover *p, const Claim *c) {
 /* Cases u > 0, u < 0 and u = 0, or those of a factor of u; -1: no symbol can be replaced. */
 static int use_sides(Prover *p, const Claim *c, Expr u) {
   ExprGraph *g = p->g;
-  int above = expr_sign(g, u) == SIGN_UNKNOWN ? holds_where(p, c, u, 1) : -1;
-  if (above >= 0) return above && holds_where(p, c, u, -1) && holds_where(p, c, u, 0);
-  for (uint32_t i = 0; expr_op(g, u) == EX_PROD && i < expr_pairs(g, u, EX_PROD) && above < 0; i++) {
+  uint32_t factors = expr_op(g, u) == EX_PROD ? expr_pairs(g, u, EX_PROD) : 0;
+  for (uint32_t i = 0; i <= factors; i++) {
     Num power;
-    Expr factor = expr_pair(g, u, EX_PROD, i, &power);
-    above = expr_sign(g, factor) == SIGN_UNKNOWN ? holds_where(p, c, factor, 1) : -1;
-    if (above >= 0) return above && holds_where(p, c, factor, -1) && holds_where(p, c, factor, 0);
+    Expr x = i ? expr_pair(g, u, EX_PROD, i - 1, &power) : u;
+    int above = expr_sign(g, x) == SIGN_UNKNOWN ? holds_where(p, c, x, 1) : -1;
+    if (above >= 0) return above && holds_where(p, c, x, -1) && holds_where(p, c, x, 0);
   }
   return -1;
 }

@@ -90,13 +90,11 @@ static int differs(CounterexampleSearch *s) {
 
 /* --- states to look at --- */
 
-static int is_negative(const Symbol *sym) { return sym->sign == SIGN_NEGATIVE || sym->sign == SIGN_NONPOSITIVE; }
-
 static void other_params(CounterexampleSearch *s) {
   const Model *m = s->m;
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Symbol *sym = expr_symbol(s->g, m->params.at[i].sym);
-    s->symbols[m->params.at[i].sym] = (is_negative(sym) ? -1 : 1) * (Real)(i % 5 + 2);
+    s->symbols[m->params.at[i].sym] = (sign_is_nonpositive(sym->sign) ? -1 : 1) * (Real)(i % 5 + 2);
   }
 }
 
@@ -139,9 +137,9 @@ static void whole_state(CounterexampleSearch *s, uint32_t seed) {
   for (uint32_t i = 0; i < s->free.n; i++) {
     const Symbol *sym = expr_symbol(s->g, s->free.at[i].sym);
     Real part = (fabsl(sample_symbol(s->g, s->free.at[i].sym, seed + 5000)) - 0.3L) / 1.7L, x = seed % 2 ? floorl(13 * part) / 2 - 3 : floorl(7 * part) - 3;
-    int may_vanish = sym->sign != SIGN_POSITIVE && sym->sign != SIGN_NEGATIVE;
-    if (sym->sign != SIGN_UNKNOWN) x = (is_negative(sym) ? -1 : 1) * fabsl(x);
-    s->symbols[s->free.at[i].sym] = x == 0 && !may_vanish ? (is_negative(sym) ? -1 : 1) : x;
+    int may_vanish = !sign_is_strict(sym->sign);
+    if (sym->sign != SIGN_UNKNOWN) x = (sign_is_nonpositive(sym->sign) ? -1 : 1) * fabsl(x);
+    s->symbols[s->free.at[i].sym] = x == 0 && !may_vanish ? (sign_is_nonpositive(sym->sign) ? -1 : 1) : x;
   }
 }
 
@@ -156,20 +154,16 @@ static int find_difference(CounterexampleSearch *s, int quick) {
   }
   s->states = 0;
   s->digits = FULL_DIGITS;
-  s->ordinary = 1;
-  for (uint32_t seed = 1; seed <= (quick ? QUICK : RANDOM); seed++) {
-    random_state(s, seed);
-    if (differs(s)) return 1;
-  }
-  if (quick) return 0;
-  s->ordinary = 0;
-  for (uint32_t seed = 1; seed <= WHOLE; seed++) {
-    whole_state(s, seed);
-    if (differs(s)) return 1;
-  }
-  for (uint32_t seed = 1; seed <= FAR; seed++) {
-    far_state(s, seed);
-    if (differs(s)) return 1;
+  static const struct {
+    void (*draw)(CounterexampleSearch *s, uint32_t seed);
+    uint32_t count;
+  } kinds[] = {{random_state, RANDOM}, {whole_state, WHOLE}, {far_state, FAR}};
+  for (int k = 0; k < (quick ? 1 : 3); k++) {
+    s->ordinary = k == 0;
+    for (uint32_t seed = 1; seed <= (quick ? QUICK : kinds[k].count); seed++) {
+      kinds[k].draw(s, seed);
+      if (differs(s)) return 1;
+    }
   }
   return 0;
 }
@@ -232,11 +226,6 @@ static const char *difference_text(CounterexampleSearch *s) {
 
 /* --- the symbols of a state --- */
 
-static int is_solved_for(const Symbol *s, const void *data) {
-  (void)data;
-  return s->kind == SYM_ACC || s->kind == SYM_MULTIPLIER;
-}
-
 static int in_equations(const Eqns *e, SymId sym) {
   for (uint32_t i = 0; i < e->mass.n; i++)
     if (expr_contains_sym(e->g, e->mass.at[i].e, sym)) return 1;
@@ -286,7 +275,7 @@ static void gather_free(CounterexampleSearch *s) {
   vec_push(a, &s->free, ((FreeSymbol){m->time, si, 0, is_in_sides(s, m->time)}));
   for (uint32_t i = 0; i < m->inputs.n; i++)
     if (!model_is_contact_switch(m, m->inputs.at[i].sym)) vec_push(a, &s->free, ((FreeSymbol){m->inputs.at[i].sym, &m->inputs.at[i].unit, 0, 1}));
-  int moves = expr_contains(s->g, s->left, is_solved_for, NULL) || expr_contains(s->g, s->right, is_solved_for, NULL); /* then M and f matter */
+  int moves = ((expr_kinds(s->g, s->left) | expr_kinds(s->g, s->right)) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0; /* then M and f matter */
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];
     if (s->e->definitions && s->e->definitions[p->sym]) continue;

@@ -28,13 +28,9 @@ Expr edit_node(const SiteList *l, int side, AstId node) { return *node_at(l, sid
 Expr edit_side(const SiteList *l, int k) { return *node_at(l, k, root_of(l->x, k)); }
 
 ExprOp edit_function(const AstExpr *x) {
-  static const struct {
-    const char *name;
-    ExprOp op;
-  } functions[] = {{"sin", EX_SIN}, {"cos", EX_COS}, {"tan", EX_TAN}, {"sinh", EX_SINH}, {"cosh", EX_COSH}, {"tanh", EX_TANH},
-                   {"exp", EX_EXP}, {"log", EX_LOG}, {"asin", EX_ASIN}, {"acos", EX_ACOS}, {"atan", EX_ATAN}};
+  static const ExprOp functions[] = {EX_SIN, EX_COS, EX_TAN, EX_SINH, EX_COSH, EX_TANH, EX_EXP, EX_LOG, EX_ASIN, EX_ACOS, EX_ATAN};
   for (size_t k = 0; k < sizeof functions / sizeof *functions && x->kind == AST_CALL && x->args; k++)
-    if (strcmp(x->name, functions[k].name) == 0) return functions[k].op;
+    if (strcmp(x->name, expr_op_text(functions[k])) == 0) return functions[k];
   return EX_NUM;
 }
 

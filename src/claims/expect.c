@@ -82,11 +82,6 @@ static void report_unknown(const Eqns *e, const Expect *x, const ExpectResult *r
 
 /* --- parameters that follow from others, and contacts --- */
 
-static int is_param(const Symbol *s, const void *data) {
-  (void)data;
-  return s->kind == SYM_PARAM;
-}
-
 /* Substitutions for parameters that are given by others (param I = m*l^2 follows m and l), and for contacts: open and without force, but for
  * number `closed` (-1: none). NULL: there are none. */
 static const Expr *parameter_substitutions(const Model *m, int closed) {
@@ -94,7 +89,7 @@ static const Expr *parameter_substitutions(const Model *m, int closed) {
   int some = 0;
   for (uint32_t i = 0; i < m->params.n; i++) {
     const Param *p = &m->params.at[i];
-    if (!p->value || !expr_contains(m->g, p->value, is_param, NULL)) continue;
+    if (!p->value || !(expr_kinds(m->g, p->value) & 1u << SYM_PARAM)) continue;
     with[p->sym] = expr_substitute(m->g, p->value, with, expr_symbol_count(m->g) + 1, "");
     some = 1;
   }

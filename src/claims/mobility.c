@@ -16,7 +16,7 @@
 /* Whether the rank is the same without constraint k: its multiplier is then not unique. */
 static int is_dispensable(StateSolver *s, const Eqns *e, uint32_t k, uint32_t rank) {
   unsigned char *without = ARENA_ARRAY(e->m->arena, unsigned char, e->constraints.n);
-  return states_rank(s, k, without) == rank;
+  return states_rank(s, k, without, NULL) == rank;
 }
 
 static const char *kind_of(const Eqns *e, uint32_t k) {
@@ -48,30 +48,17 @@ static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, 
 
 /* --- singular starts: constraints dependent here but not a hundredth away, as for bars in one line --- */
 
-/* Rank of the constraints at the state evaluated last. held[n]: squared length of each coordinate direction's projection on the rows of A. */
-static uint32_t rank_of(const Eqns *e, StateSolver *s, long double *held) {
-  const long double independent = 6e-6L; /* as states_rank */
-  uint32_t n = e->n, at = 0;
-  RowSpan span = row_span(e->m->arena, n);
-  for (uint32_t j = 0; j < n; j++) held[j] = 0;
-  for (uint32_t k = 0; k < e->constraints.n; k++) {
-    const SparseVector *row = states_row(s, k, &at);
-    if (!(row_span_add(&span, row->at, row->n, independent) > independent)) continue;
-    for (uint32_t j = 0; j < n; j++) held[j] += span.left[j] * span.left[j];
-  }
-  return span.rank;
-}
-
 /* The larger rank of the constraints: at a state that obeys them, or at one that is a hundredth away and obeys them, too. loose[n]: the
  * constraints determine this coordinate's velocity near the state but not at it, where the rank is smaller. symbols: values by symbol. */
 static uint32_t nearby_rank(const Eqns *e, StateSolver *s, const long double *symbols, long double *loose) {
   Arena *arena = e->m->arena;
   uint32_t n = e->n, all = expr_symbol_count(e->g) + 1;
   long double *held = ARENA_ARRAY(arena, long double, n + 1), *held_beside = ARENA_ARRAY(arena, long double, n + 1), *there = ARENA_ARRAY(arena, long double, all);
+  unsigned char *counts = ARENA_ARRAY(arena, unsigned char, e->constraints.n);
   states_at(s, symbols);
-  uint32_t here = rank_of(e, s, held), rank = here;
+  uint32_t here = states_rank(s, UINT32_MAX, counts, held), rank = here;
   for (uint32_t i = 0; i < all; i++) there[i] = symbols[i];
-  if (n > 1 && start_beside(e, s, there)) rank = rank_of(e, s, held_beside);
+  if (n > 1 && start_beside(e, s, there)) rank = states_rank(s, UINT32_MAX, counts, held_beside);
   for (uint32_t i = 0; i < n; i++) loose[i] = 0;
   if (rank <= here) return here;
   lag_loose_directions((int)n, held, held_beside, loose);
@@ -240,7 +227,7 @@ int mobility_show(const Eqns *e, StrBuf *out) {
   }
   states_at(s, symbols);
   unsigned char *counts = ARENA_ARRAY(e->m->arena, unsigned char, all->n);
-  uint32_t rank = states_rank(s, UINT32_MAX, counts), free = e->n - rank;
+  uint32_t rank = states_rank(s, UINT32_MAX, counts, NULL), free = e->n - rank;
   uint32_t held = all->n - e->m->contacts.n;
   if (rank < held && !check_agreement(e, s, symbols, counts)) return 0;
   if (!check_inertia(e, s, symbols) || (e->m->scene.starts.n && !check_contacts(e, symbols))) return 0;

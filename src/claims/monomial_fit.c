@@ -103,16 +103,10 @@ static int exponents(const Features *f, const long double *values, int *e) {
   return 1;
 }
 
-static int is_motion(const Symbol *s, const void *data) {
-  (void)data;
-  return s->kind == SYM_VEL || s->kind == SYM_ACC || s->kind == SYM_RATE;
-}
-
 /* Whether feature k may stand in a denominator. */
 static int may_divide(const Features *f, uint32_t k) {
-  ExprOp op = expr_op(f->g, f->feature[k]);
-  int velocity = op == EX_SYM && expr_sym_of(f->g, f->feature[k])->kind == SYM_VEL;
-  return velocity || !expr_contains(f->g, f->feature[k], is_motion, NULL);
+  const unsigned motion = 1u << SYM_VEL | 1u << SYM_ACC | 1u << SYM_RATE, kinds = expr_kinds(f->g, f->feature[k]);
+  return (expr_op(f->g, f->feature[k]) == EX_SYM && kinds == 1u << SYM_VEL) || !(kinds & motion);
 }
 
 /* The monomial of these exponents; e = 0 where a feature may not stand in the denominator. */

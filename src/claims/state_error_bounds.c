@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "base/dense.h"
+#include "base/union_find.h"
 #include "sym/prove.h"
 
 typedef long double Real;
@@ -16,19 +17,13 @@ struct StateErrorBounds {
   const Eqns *e;
   BoundTape *tape;       /* roots: M, f, A, c, r, demand */
   uint32_t width;        /* n + constraints */
-  uint32_t *block;       /* [width] block of each unknown; different blocks are not coupled */
+  uint32_t *block;       /* [width] union-find of coupled unknowns */
   uint32_t *in;          /* [width] the unknowns of the current block */
   unsigned char *counts; /* counts[k]: constraint k is independent of those before it */
   Real *symbols;         /* with multipliers 0, as f is without them */
   Real *K, *dK;          /* [width^2] the current system, and bounds of its entries' errors */
   Real *part, *inverse;  /* a block of K, and its inverse */
 };
-
-static void join(uint32_t *block, uint32_t n, uint32_t a, uint32_t b) {
-  uint32_t from = block[a], to = block[b];
-  for (uint32_t i = 0; i < n && from != to; i++)
-    if (block[i] == from) block[i] = to;
-}
 
 StateErrorBounds *state_error_bounds_new(const Eqns *e) {
   Arena *a = e->m->arena;
@@ -43,7 +38,7 @@ StateErrorBounds *state_error_bounds_new(const Eqns *e) {
   for (uint32_t i = 0; i < k->n; i++) vec_push(a, &roots, k->demand[i]);
   *w = (StateErrorBounds){.e = e, .tape = bound_tape(e->g, roots.at, roots.n), .width = e->n + k->n};
   size_t n = w->width;
-  w->block = ARENA_ARRAY(a, uint32_t, n + 1);
+  w->block = union_find_new(a, w->width);
   w->in = ARENA_ARRAY(a, uint32_t, n + 1);
   w->counts = ARENA_ARRAY(a, unsigned char, n + 1);
   w->symbols = ARENA_ARRAY(a, Real, expr_symbol_count(e->g) + 1);
@@ -52,9 +47,8 @@ StateErrorBounds *state_error_bounds_new(const Eqns *e) {
   size_t most = n < COUPLED_MOST ? n : COUPLED_MOST;
   w->part = ARENA_ARRAY(a, Real, most * most + 1);
   w->inverse = ARENA_ARRAY(a, Real, most * most + 1);
-  for (uint32_t i = 0; i < n; i++) w->block[i] = i;
-  for (uint32_t i = 0; i < e->mass.n; i++) join(w->block, w->width, e->mass.at[i].row, e->mass.at[i].col);
-  for (uint32_t i = 0; i < k->A.n; i++) join(w->block, w->width, e->n + k->A.at[i].row, k->A.at[i].col);
+  for (uint32_t i = 0; i < e->mass.n; i++) union_find_join(w->block, e->mass.at[i].row, e->mass.at[i].col);
+  for (uint32_t i = 0; i < k->A.n; i++) union_find_join(w->block, e->n + k->A.at[i].row, k->A.at[i].col);
   return w;
 }
 
@@ -91,7 +85,7 @@ static int bound_unknowns(StateErrorBounds *w, const Real *off, Real *out) {
   for (uint32_t b = 0; b < width; b++) {
     uint32_t n = 0;
     for (uint32_t i = 0; i < width; i++)
-      if (w->block[i] == b) w->in[n++] = i;
+      if (union_find_root(w->block, i) == b) w->in[n++] = i;
     for (uint32_t i = 0; i < n && n > COUPLED_MOST; i++) out[w->in[i]] = INFINITY;
     if (!n || n > COUPLED_MOST) continue;
     for (uint32_t i = 0; i < n; i++)
@@ -173,7 +167,7 @@ int state_error_bounds_at(StateErrorBounds *w, StateSolver *solver, const long d
   for (uint32_t i = 0; i < e->constraints.n; i++) w->symbols[e->constraints.of[i]->multiplier] = 0;
   if (e->constraints.n) {
     states_at(solver, w->symbols);
-    states_rank(solver, UINT32_MAX, w->counts);
+    states_rank(solver, UINT32_MAX, w->counts, NULL);
     if (!bound_motion(w, 0, errors) || !bound_motion(w, 1, errors)) return 0;
   }
   bound_run(w->tape, w->symbols, errors);

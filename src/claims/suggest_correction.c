@@ -71,11 +71,10 @@ static int find_states(EditSearch *md) {
 /* --- the needed value --- */
 
 /* Left minus right side at a state, with `value` at the site whose tape this is. */
-static long double residual_with(EditSearch *md, EvalTape *tape, uint32_t state, long double value, int same_state) {
+static long double residual_with(EditSearch *md, EvalTape *tape, uint32_t state, long double value) {
   long double out[2], *symbols = md->state[state];
   symbols[md->stand_in] = value;
-  if (same_state) eval_rerun(tape, symbols, md->stand_in, out);
-  else eval_run(tape, symbols, out);
+  eval_run(tape, symbols, out);
   return out[0] - out[1];
 }
 
@@ -93,11 +92,11 @@ static long double needed_value(EditSearch *md, EvalTape *tape, uint32_t state, 
   enum { STEPS = 12 };
   long double step = 0.1L * fabsl(written) + 0.01L;
   long double x[3] = {written, written + step, written - step}, f[3];
-  for (int i = 0; i < 3; i++) f[i] = residual_with(md, tape, state, x[i], i > 0);
+  for (int i = 0; i < 3; i++) f[i] = residual_with(md, tape, state, x[i]);
   for (int k = 0; k < STEPS; k++) {
     long double next = next_guess(x, f);
     if (!isfinite(next)) return NAN;
-    long double r = residual_with(md, tape, state, next, 1);
+    long double r = residual_with(md, tape, state, next);
     if (fabsl(r) <= 1e-11L * fabsl(md->residual[state])) return next;
     for (int i = 0; i < 2; i++) x[i] = x[i + 1], f[i] = f[i + 1];
     x[2] = next, f[2] = r;

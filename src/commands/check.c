@@ -62,7 +62,7 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
     if (!e) continue;
     if (!out->n) {
       show_facts(e, out);
-      show_cyclic(e, out);
+      show_cyclic(e, "", out);
     }
     collect_units(e->m, &found);
     discontinuity_warn(e);

@@ -6,7 +6,6 @@
 #define LAGC_LOWER_LOWER_H
 
 #include "ir/prog.h"
-#include "mech/event_derivatives.h"
 #include "mech/linearise.h"
 #include "series/series.h"
 #include "ir/unit.h"

@@ -23,11 +23,6 @@ static void set(const SkewSystem *s, uint32_t i, uint32_t j, Expr e) {
 
 /* --- elimination --- */
 
-static int has_sign(const SkewSystem *s, Expr e) {
-  ExprSign sign = expr_sign(s->g, e);
-  return (expr_is_num(s->g, e) && !expr_is_zero(s->g, e)) || sign == SIGN_POSITIVE || sign == SIGN_NEGATIVE;
-}
-
 /* Whether e is nonzero wherever it has a value, as 1/(x*y). */
 static int is_nonzero(const SkewSystem *s, Expr e) {
   Num k;
@@ -35,9 +30,9 @@ static int is_nonzero(const SkewSystem *s, Expr e) {
   int safe = 1;
   for (uint32_t i = 0; i < expr_pairs(s->g, e, EX_PROD) && safe; i++) {
     Expr base = expr_pair(s->g, e, EX_PROD, i, &k);
-    safe = num_sign(k) < 0 || has_sign(s, base);
+    safe = num_sign(k) < 0 || expr_is_nonzero(s->g, base);
   }
-  return safe || has_sign(s, e);
+  return safe || expr_is_nonzero(s->g, e);
 }
 
 static void count(SkewSystem *s) {

@@ -1,8 +1,6 @@
 /* H and C by differentiating L and each definition with symbols in the place of definitions; adjoints lambda by a backward sweep. */
 #include "mech/augmented_system.h"
 
-#include <stdlib.h>
-
 #include "sym/diff.h"
 
 typedef struct {
@@ -22,7 +20,7 @@ typedef struct {
 /* Finds the definitions that contain velocities; writes them and L in q', stand-ins and expressions without velocities. */
 static void cut_definitions(Augmentation *l) {
   const Eqns *e = l->e;
-  Expr lagrangian = e->differentiated_lagrangian;
+  Expr lagrangian = e->m->lagrangian;
   ExprList all = expr_topo(l->g, &lagrangian, 1);
   VEC(Expr) defs = {0};
   for (uint32_t i = 0; i < all.n; i++)
@@ -76,24 +74,6 @@ static Expr *multipliers(Augmentation *l) {
   return lambda;
 }
 
-static int by_place(const void *a, const void *b) {
-  const MassEntry *x = a, *y = b;
-  if (x->row != y->row) return x->row < y->row ? -1 : 1;
-  return (x->col > y->col) - (x->col < y->col);
-}
-
-/* Sorts entries, sums those at one place, and drops zeros. */
-static void merge(Augmentation *l, Entries *t) {
-  if (t->n) qsort(t->at, t->n, sizeof *t->at, by_place);
-  uint32_t kept = 0;
-  for (uint32_t i = 0; i < t->n;) {
-    MassEntry sum = t->at[i++];
-    for (; i < t->n && by_place(&t->at[i], &sum) == 0; i++) sum.e = expr_add(l->g, sum.e, t->at[i].e);
-    if (!expr_is_zero(l->g, sum.e)) t->at[kept++] = sum;
-  }
-  t->n = kept;
-}
-
 /* Lower triangle of H = d2L/du2 + sum lambda_m d2W_m/du2. Definitions linear in u, the usual case, need no lambda. */
 static void second_derivatives(Augmentation *l, Entries *H) {
   Expr *lambda = NULL;
@@ -108,7 +88,7 @@ static void second_derivatives(Augmentation *l, Entries *H) {
         vec_push(l->arena, H, ((MassEntry){d->index, row.at[k].index, x}));
       }
     }
-  merge(l, H);
+  entries_collect(l->g, H, NULL);
 }
 
 LinearSystem augmented_system(const Eqns *e) {

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/dense.h"
 #include "base/sparse_solve.h"
 #include "numeric/magnitudes.h"
 
@@ -105,16 +106,10 @@ static int terms(const lag_level *w, long double *size) {
   return 0;
 }
 
-static long double largest(const long double *x, uint32_t n) {
-  long double most = 0;
-  for (uint32_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
-  return most;
-}
-
 /* f->mass := M scaled to a largest entry of `size` (0: not scaled); the unit matrix if M is 0. */
 static void find_mass(Finder *f, long double size) {
   Arena *arena = f->e->m->arena;
-  long double most = largest(f->at.mass, f->e->mass.n);
+  long double most = dense_largest(f->at.mass, f->e->mass.n);
   f->mass.n = 0;
   if (most > 0) states_put_mass(f->e, f->at.mass, &f->mass);
   for (uint32_t k = 0; k < f->mass.n && size > 0; k++) f->mass.at[k].value = f->mass.at[k].value / most * size;
@@ -145,7 +140,7 @@ static void put_constraints(Finder *f, const lag_level *w) {
 static int direction(const lag_level *w, long double pull, long double *d) {
   Finder *f = evaluate(w, w->x);
   uint32_t nf = (uint32_t)w->nfree, rows = (uint32_t)w->rows;
-  long double size = largest(f->at.A, (uint32_t)w->entries); /* M as large as A, which changes no direction */
+  long double size = dense_largest(f->at.A, (size_t)w->entries); /* M as large as A, which changes no direction */
   find_mass(f, size > 0 ? size : 1);
   memset(f->place, 0, f->e->n * sizeof *f->place);
   for (uint32_t i = 0; i < nf; i++) f->place[w->free[i]] = i + 1, f->b[i] = 0;
@@ -283,4 +278,45 @@ int start_beside(const Eqns *e, StateSolver *solver, long double *symbols) {
   int found = lag_state_beside(&w);
   evaluate(&w, w.x);
   return found;
+}
+
+/* --- messages for starts that are refused --- */
+
+const char *start_residual_text(const Eqns *e, const StartResult *r) {
+  const Model *m = e->m;
+  Dim dim = e->constraints.of[r->constraint]->dim;
+  int rate = r->velocities && r->constraint < e->constraints.nholonomic;
+  const char *unit = dim_text(m->dims, dim); /* "1", "?" where units are not known */
+  int bare = *unit == '1' || *unit == '?';
+  if (!isfinite(r->residual)) return "";
+  return arena_printf(m->arena, "; it is off by %.3Lg%s%s%s%s", fabsl(r->residual), bare ? "" : " [", bare ? "" : unit, bare ? "" : "]",
+                      rate ? " in its rate" : r->velocities ? " in its velocities" : "");
+}
+
+void start_report(const Eqns *e, const StartResult *r) {
+  const Model *m = e->m;
+  const Constraint *k = e->constraints.of[r->constraint];
+  const char *scene = m->scene.name, *off = start_residual_text(e, r);
+  switch (r->kind) {
+    case LAG_START_FOUND: return;
+    case LAG_START_NO_VALUE:
+      diag_error(m->diags, k->span, "scene %s: the constraint `%s` has no value at the start", scene, k->name);
+      diag_help(m->diags, "start where it has one");
+      return;
+    case LAG_START_BROKEN:
+      diag_error(m->diags, k->span, "scene %s: the start contradicts the constraint `%s`%s", scene, k->name, off);
+      diag_help(m->diags, "without `exactly` the nearest start is taken");
+      return;
+    case LAG_START_FLAT:
+      diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` vanish where it holds, so that no force can hold it", scene, k->name);
+      diag_help(m->diags, "write a constraint whose derivatives do not vanish: x = 0 in place of x^2 = 0");
+      return;
+    case LAG_START_STEEP:
+      diag_error(m->diags, k->span, "scene %s: the derivatives of the constraint `%s` have no value where it holds", scene, k->name);
+      diag_help(m->diags, "write a constraint whose derivatives have values: x = 1 in place of sqrt(x - 1) = 0");
+      return;
+    case LAG_START_NONE:
+      diag_error(m->diags, k->span, "scene %s: no state near its start obeys the constraint `%s`%s", scene, k->name, off);
+      diag_help(m->diags, "start nearer to a state that obeys it; where its derivatives vanish no direction leads there");
+  }
 }

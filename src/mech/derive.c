@@ -34,10 +34,8 @@ static Expr shorten(const Eqns *e, Expr x) { return e->mass_known && e->n <= SHO
 static const Expr *plain_momenta(const Eqns *e) {
   const Model *m = e->m;
   if (!m->across) return e->p;
-  SymId *v = ARENA_ARRAY(m->arena, SymId, e->n + 1);
   Expr *p = ARENA_ARRAY(m->arena, Expr, e->n + 1);
-  for (uint32_t i = 0; i < e->n; i++) v[i] = m->coords.at[i].v;
-  expr_gradient(e->g, m->lagrangian, v, e->n, p);
+  expr_gradient(e->g, m->lagrangian, eqns_symbols(e, 1), e->n, p);
   return p;
 }
 
@@ -136,7 +134,7 @@ static int dissipation_is_passive(const Eqns *e) {
   for (uint32_t i = 0; i < expr_pairs(g, R, EX_SUM); i++) {
     Num c;
     ExprSign sign = expr_sign(g, expr_pair(g, R, EX_SUM, i, &c));
-    if (num_sign(c) <= 0 || (sign != SIGN_POSITIVE && sign != SIGN_NONNEGATIVE)) return 0;
+    if (num_sign(c) <= 0 || !sign_is_nonnegative(sign)) return 0;
   }
   if (!expr_is_zero(g, eqns_at_rest(e, R))) return 0;
   ExprPartials d = expr_gradient_sparse(g, R, SYM_VEL, e->n);

@@ -1,7 +1,35 @@
 /* Access to the equations. */
 #include "mech/eqns.h"
 
+#include <stdlib.h>
+
 #include "sym/simplify.h"
+
+typedef struct {
+  MassEntry x;
+  uint32_t order;
+} Placed;
+
+static int by_place(const void *a, const void *b) {
+  const Placed *p = a, *q = b;
+  if (p->x.row != q->x.row) return p->x.row < q->x.row ? -1 : 1;
+  if (p->x.col != q->x.col) return p->x.col < q->x.col ? -1 : 1;
+  return (p->order > q->order) - (p->order < q->order);
+}
+
+void entries_collect(ExprGraph *g, Entries *t, Expr (*rule)(ExprGraph *, Expr)) {
+  uint32_t n = t->n;
+  Placed *all = ARENA_ARRAY(expr_arena(g), Placed, n + 1);
+  for (uint32_t i = 0; i < n; i++) all[i] = (Placed){t->at[i], i};
+  qsort(all, n, sizeof *all, by_place);
+  t->n = 0;
+  for (uint32_t i = 0; i < n;) {
+    MassEntry sum = all[i++].x;
+    for (; i < n && all[i].x.row == sum.row && all[i].x.col == sum.col; i++) sum.e = expr_add(g, sum.e, all[i].x.e);
+    if (rule) sum.e = rule(g, sum.e);
+    if (!expr_is_zero(g, sum.e)) t->at[t->n++] = sum;
+  }
+}
 
 Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
   uint32_t row = i > j ? i : j, col = i > j ? j : i, lo = 0, hi = e->mass.n;
@@ -18,6 +46,13 @@ Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
 uint32_t eqns_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
 
 SymId eqns_coordinate(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].q : e->m->states.at[e->first.at[i]].z; }
+
+SymId *eqns_symbols(const Eqns *e, int velocities) {
+  uint32_t n = eqns_coordinates(e);
+  SymId *s = ARENA_ARRAY(e->m->arena, SymId, n + 1);
+  for (uint32_t i = 0; i < n; i++) s[i] = !velocities ? eqns_coordinate(e, i) : e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate;
+  return s;
+}
 
 const Expr *eqns_momenta(const Eqns *e) { return e->first.n ? e->first.theta : e->m->across ? e->momenta : e->p; }
 

@@ -24,6 +24,9 @@ typedef struct {
 
 typedef VEC(MassEntry) Entries;
 
+/* Sorts entries by row and column, sums those at one place in their order, applies `rule` (or NULL) to the sums, and drops zeros. */
+void entries_collect(ExprGraph *g, Entries *t, Expr (*rule)(ExprGraph *, Expr));
+
 /* M q'' = f as the program solves it. Variables 0 .. n-1 are the accelerations; variable n + k is the rate of
  * definition k, which contains velocities: C_k times the variables before it (mech/augmented_system.h). Without definitions H = M. */
 typedef struct {
@@ -75,7 +78,6 @@ typedef struct {
   ExprGraph *g;
   FirstOrder first;
   uint32_t n;            /* number of coordinates with accelerations */
-  Expr differentiated_lagrangian;           /* L as differentiated, with long sums of velocities as definitions (mech/velocity_sums.h) */
   const Expr *p;         /* [n] momenta, as differentiated */
   const Expr *dLdq;      /* [n] as differentiated */
   const Expr *momenta;   /* [n] momenta in short forms, to show */
@@ -106,6 +108,9 @@ typedef struct {
 /* Coordinates, those of a Lagrangian of first order included: how many, and their symbols. */
 uint32_t eqns_coordinates(const Eqns *e);
 SymId eqns_coordinate(const Eqns *e, uint32_t i);
+
+/* The symbols of all coordinates, or of their velocities (rates). */
+SymId *eqns_symbols(const Eqns *e, int velocities);
 
 /* Momenta of L as the user wrote it: without the term that makes the mass matrix of rotations regular. */
 const Expr *eqns_momenta(const Eqns *e);

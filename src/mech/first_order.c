@@ -3,7 +3,6 @@
 #include "mech/first_order.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/dense.h"
 #include "base/union_find.h"
@@ -13,12 +12,6 @@
 #include "sym/eval.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
-
-/* A term of an entry of the form. */
-typedef struct {
-  uint32_t row, col, order;
-  Expr e;
-} Part;
 
 /* State of the derivation. */
 typedef struct {
@@ -32,7 +25,6 @@ typedef struct {
   Expr *still;     /* by symbol: substitution of 0 for all rates */
   Expr *rhs;
   VEC(Expr) divisors;
-  VEC(Part) parts;
 } FirstOrderBuilder;
 
 static unsigned bit(SymKind kind) { return 1u << kind; }
@@ -83,7 +75,7 @@ static int differentiate(FirstOrderBuilder *w) {
 }
 
 static void add_part(FirstOrderBuilder *w, uint32_t row, uint32_t col, Expr e) {
-  vec_push(w->arena, &w->parts, ((Part){row, col, w->parts.n, e}));
+  vec_push(w->arena, &w->to->form, ((MassEntry){row, col, e}));
 }
 
 /* omega_ij += dtheta_j/dq_i - dtheta_i/dq_j. */
@@ -129,25 +121,11 @@ static int add_forces(FirstOrderBuilder *w) {
   return 1;
 }
 
-static int by_place(const void *a, const void *b) {
-  const Part *x = a, *y = b;
-  if (x->row != y->row) return x->row < y->row ? -1 : 1;
-  if (x->col != y->col) return x->col < y->col ? -1 : 1;
-  return (x->order > y->order) - (x->order < y->order);
-}
-
 /* Sums the parts of each entry of the form; nonzero entries, in short forms. */
 static void collect(FirstOrderBuilder *w) {
   unsigned kinds = 0;
-  if (w->parts.n) qsort(w->parts.at, w->parts.n, sizeof *w->parts.at, by_place);
-  for (uint32_t k = 0; k < w->parts.n;) {
-    Part x = w->parts.at[k];
-    for (k++; k < w->parts.n && w->parts.at[k].row == x.row && w->parts.at[k].col == x.col; k++) x.e = expr_add(w->g, x.e, w->parts.at[k].e);
-    x.e = simplify(w->g, x.e);
-    if (expr_is_zero(w->g, x.e)) continue;
-    kinds |= expr_kinds(w->g, x.e);
-    vec_push(w->arena, &w->to->form, ((MassEntry){x.row, x.col, x.e}));
-  }
+  entries_collect(w->g, &w->to->form, simplify);
+  for (uint32_t k = 0; k < w->to->form.n; k++) kinds |= expr_kinds(w->g, w->to->form.at[k].e);
   w->to->constant = !(kinds & (bit(SYM_STATE) | bit(SYM_TIME)));
 }
 

@@ -61,13 +61,6 @@ static Forms make_forms(const Eqns *e) {
 
 /* --- by value --- */
 
-static void values(const Forms *f, const Expr *from, size_t n, const long double *symbols, long double *to) {
-  for (size_t i = 0; i < n; i++) {
-    to[i] = 0;
-    if (from[i]) expr_eval(f->g, &from[i], 1, symbols, &to[i]);
-  }
-}
-
 /* Orthonormal basis[w * w]: first the span of the forms, then the directions that all forms allow. Returns the first row of the latter. */
 static uint32_t allowed(const Forms *f, const long double *form, long double *basis) {
   const long double independent = 1e-9L;
@@ -89,7 +82,7 @@ static int vanishes(const Forms *f, uint32_t i, const long double *symbols, cons
   const long double nothing = 1e-9L;
   uint32_t w = f->w;
   long double *d = ARENA_ARRAY(f->e->m->arena, long double, (size_t)w * w);
-  values(f, f->d + (size_t)i * w * w, (size_t)w * w, symbols, d);
+  expr_eval(f->g, f->d + (size_t)i * w * w, w * w, symbols, d);
   for (uint32_t a = first; a < w; a++)
     for (uint32_t b = first; b < a; b++) {
       long double sum = 0, size = 0;
@@ -114,7 +107,7 @@ static int looks_integrable(const Forms *f, StateSolver *solver) {
   for (uint32_t seed = 1; seed <= TRIES && seen < ENOUGH; seed++) {
     sample_state(f->g, seed, symbols);
     if (!states_project(solver, symbols)) continue;
-    values(f, f->form, (size_t)f->m * f->w, symbols, form);
+    expr_eval(f->g, f->form, f->m * f->w, symbols, form);
     uint32_t first = allowed(f, form, basis);
     for (uint32_t i = f->e->constraints.nholonomic; i < f->m; i++)
       if (!vanishes(f, i, symbols, basis, first)) return 0;

@@ -137,15 +137,10 @@ Hamilton hamilton_derive(Eqns *e) {
   LegendreTransform w = {.e = e, .g = e->g, .arena = a, .n = e->n};
   size_t n = e->n, nn = n * n;
   if (!e->mass_known) eqns_derive_mass(e);
-  w.q = ARENA_ARRAY(a, SymId, n + 1), w.v = ARENA_ARRAY(a, SymId, n + 1), w.p = ARENA_ARRAY(a, SymId, n + 1);
+  w.q = eqns_symbols(e, 0), w.v = eqns_symbols(e, 1), w.p = ARENA_ARRAY(a, SymId, n + 1);
   w.a = ARENA_ARRAY(a, Expr, n + 1), w.rate = ARENA_ARRAY(a, Expr, n + 1), w.force = ARENA_ARRAY(a, Expr, n + 1);
   w.inverse = ARENA_ARRAY(a, Expr, nn + 1);
-  for (uint32_t i = 0; i < e->n; i++) {
-    const Coord *c = &e->m->coords.at[i];
-    w.q[i] = c->q;
-    w.v[i] = c->v;
-    w.p[i] = expr_declare(e->g, SYM_LOCAL, i, arena_printf(a, "p_%s", c->name), SIGN_UNKNOWN);
-  }
+  for (uint32_t i = 0; i < e->n; i++) w.p[i] = expr_declare(e->g, SYM_LOCAL, i, arena_printf(a, "p_%s", e->m->coords.at[i].name), SIGN_UNKNOWN);
   Hamilton open = {.p = w.p, .why_not = is_quadratic(e) ? NULL : "L is not quadratic in velocities"};
   if (e->m->across) open.why_not = "the components of a rotation are not independent";
   if (!open.why_not) open.why_not = invert(&w);

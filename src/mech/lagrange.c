@@ -10,19 +10,12 @@
 #include "mech/elimination_order.h"
 #include "mech/kinetic_squares.h"
 #include "mech/states.h"
-#include "mech/velocity_sums.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
 
 /* --- derivatives of L --- */
-
-static SymId *coordinate_symbols(const Model *m, int velocities) {
-  SymId *s = ARENA_ARRAY(m->arena, SymId, m->coords.n + 1);
-  for (uint32_t i = 0; i < m->coords.n; i++) s[i] = velocities ? m->coords.at[i].v : m->coords.at[i].q;
-  return s;
-}
 
 /* The direction (q', z', 1) in (q, z, t) of d/dt without its part in q'', which is M q'' on the left-hand side. */
 static Expr *explicit_direction(const Eqns *e) {
@@ -67,13 +60,13 @@ static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
 }
 
 /* L plus the regularising terms of Model.across, for rotations and constraints. */
-static Expr regularised_lagrangian(const Eqns *e) { return e->m->across ? expr_add(e->g, e->differentiated_lagrangian, e->m->across) : e->differentiated_lagrangian; }
+static Expr regularised_lagrangian(const Eqns *e) { return e->m->across ? expr_add(e->g, e->m->lagrangian, e->m->across) : e->m->lagrangian; }
 
 /* Fills p, dLdq and Q; returns the forces f as differentiated. */
 static Expr *differentiate(Eqns *e) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
-  SymId *q = coordinate_symbols(e->m, 0), *v = coordinate_symbols(e->m, 1);
+  SymId *q = eqns_symbols(e, 0), *v = eqns_symbols(e, 1);
   Expr *p = ARENA_ARRAY(m->arena, Expr, e->n), *dLdq = ARENA_ARRAY(m->arena, Expr, e->n);
   Expr *convective = ARENA_ARRAY(m->arena, Expr, e->n), *f = ARENA_ARRAY(m->arena, Expr, e->n);
   Expr l = regularised_lagrangian(e);
@@ -207,7 +200,6 @@ static int is_definite(Eqns *e, const LinearSystem *s) {
 /* The augmented system is used only where its pivots are known to be positive. */
 void lagrange_momenta_and_forces(Eqns *e) {
   uint64_t dense_ops, lifted_ops;
-  e->differentiated_lagrangian = define_velocity_sums(e->g, e->m->lagrangian, e->n);
   const Expr *f = differentiate(e);
   LinearSystem lifted = augmented_system(e);
   lifted.f = f;

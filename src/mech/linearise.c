@@ -41,19 +41,26 @@ static Expr *inertia_of_momenta(const Eqns *e) {
 
 /* --- their derivatives --- */
 
-static PartialList differentiate(const Eqns *e, const Expr *inertia) {
+/* Derivatives of x by the components of y = (q, q', z), columns ascending. */
+static ExprPartials by_state(const Eqns *e, Expr x) {
   const Model *m = e->m;
-  PartialList found = {0};
   const struct {
     SymKind kind;
     uint32_t n, first; /* first column */
   } blocks[] = {{SYM_COORD, e->n, 0}, {SYM_VEL, e->n, e->n}, {SYM_STATE, m->states.n, 2 * e->n}};
-  for (uint32_t i = 0; i < e->n + m->states.n; i++) {
-    Expr r = i < e->n ? expr_sub(e->g, e->f[i], inertia[i]) : e->flow[i - e->n];
-    for (int b = 0; b < 3; b++) {
-      ExprPartials d = expr_gradient_sparse(e->g, r, blocks[b].kind, blocks[b].n);
-      for (uint32_t k = 0; k < d.n; k++) vec_push(m->arena, &found, ((Partial){i, blocks[b].first + d.at[k].index, d.at[k].e}));
-    }
+  VEC(ExprPartial) all = {0};
+  for (int b = 0; b < 3; b++) {
+    ExprPartials d = expr_gradient_sparse(e->g, x, blocks[b].kind, blocks[b].n);
+    for (uint32_t k = 0; k < d.n; k++) vec_push(m->arena, &all, ((ExprPartial){blocks[b].first + d.at[k].index, d.at[k].e}));
+  }
+  return (ExprPartials){all.at, all.n};
+}
+
+static PartialList differentiate(const Eqns *e, const Expr *inertia) {
+  PartialList found = {0};
+  for (uint32_t i = 0; i < e->n + e->m->states.n; i++) {
+    ExprPartials d = by_state(e, i < e->n ? expr_sub(e->g, e->f[i], inertia[i]) : e->flow[i - e->n]);
+    for (uint32_t k = 0; k < d.n; k++) vec_push(e->m->arena, &found, ((Partial){i, d.at[k].index, d.at[k].e}));
   }
   return found;
 }
@@ -90,4 +97,43 @@ Partials eqns_linearise(Eqns *e) {
     try_form(e, &raw, NULL, &best, &ops);
   }
   return (Partials){best.at, best.n};
+}
+
+/* --- events and their actions, for saltation matrices (runtime/core/tangent.c) --- */
+
+typedef VEC(EventPartial) EventPartialList;
+
+static void add_event(const Eqns *e, EventPartialList *to, uint32_t event, int row, uint32_t col, Expr value) {
+  value = simplify_shallow(e->g, value);
+  if (!expr_is_zero(e->g, value) || row == (int)col) vec_push(e->m->arena, to, ((EventPartial){event, row, col, value}));
+}
+
+/* Derivatives of one value by the state, then by the time. */
+static void differentiate_event(const Eqns *e, Expr value, uint32_t event, int row, EventPartialList *to) {
+  ExprPartials d = by_state(e, value);
+  int own = 0;
+  for (uint32_t k = 0; k < d.n; k++) {
+    own |= row == (int)d.at[k].index;
+    add_event(e, to, event, row, d.at[k].index, d.at[k].e);
+  }
+  if (row >= 0 && !own) add_event(e, to, event, row, (uint32_t)row, expr_int(e->g, 0));
+  add_event(e, to, event, row, 2 * e->n + e->m->states.n, expr_diff(e->g, value, e->m->time));
+}
+
+EventPartials eqns_event_derivatives(const Eqns *e) {
+  const Model *m = e->m;
+  EventPartialList found = {0};
+  for (uint32_t k = 0; k < m->events.n; k++) {
+    const Event *ev = &m->events.at[k];
+    unsigned kinds = expr_kinds(e->g, ev->g);
+    for (uint32_t i = 0; i < ev->actions.n; i++) kinds |= expr_kinds(e->g, ev->actions.at[i].value);
+    if (!ev->actions.n || kinds & 1u << SYM_INPUT) continue;
+    differentiate_event(e, ev->g, k, -1, &found);
+    for (uint32_t i = 0; i < ev->actions.n; i++) {
+      const Symbol *s = expr_symbol(e->g, ev->actions.at[i].target);
+      uint32_t first = s->kind == SYM_COORD ? 0 : s->kind == SYM_VEL ? e->n : 2 * e->n;
+      differentiate_event(e, ev->actions.at[i].value, k, (int)(first + s->index), &found);
+    }
+  }
+  return (EventPartials){found.at, found.n};
 }

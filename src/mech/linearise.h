@@ -1,4 +1,4 @@
-/* Eqns -> the linearisation of the equations of motion. */
+/* Eqns -> the linearisation of the equations of motion, and the derivatives of events. */
 #ifndef LAGC_MECH_LINEARISE_H
 #define LAGC_MECH_LINEARISE_H
 
@@ -19,5 +19,22 @@ typedef struct {
  *   r_i = f_i - sum_j M_ij q_j''   (i < n),   r_(n + k) = flow_k
  * at fixed q'', row by row, columns ascending. The Jacobian of the accelerations is dq''/dy = M^-1 dr/dy. Entries contain the symbols q''. */
 Partials eqns_linearise(Eqns *e);
+
+/* Derivative of an event: of its function g (row < 0) or of the value that an action assigns to component `row` of [q|v|z], by component `col` of
+ * the state, or by time (col = 2 n + states). Of g the nonzero ones; of a value also that by its own component, so that each assigned row is there.
+ * Events that depend on inputs have none, since the compiler does not know the inputs' values. */
+typedef struct {
+  uint32_t event;
+  int row;
+  uint32_t col;
+  Expr e;
+} EventPartial;
+
+typedef struct {
+  const EventPartial *at;
+  uint32_t n;
+} EventPartials;
+
+EventPartials eqns_event_derivatives(const Eqns *e);
 
 #endif

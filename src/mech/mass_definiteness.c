@@ -1,26 +1,10 @@
-/* Positive definiteness from L = sum of terms: signs of the terms first, then squares against products of velocities (Gershgorin). */
+/* Positive definiteness from L = sum of terms: signs of the terms, and squares against products of velocities (Gershgorin). */
 #include "mech/mass_definiteness.h"
 
 #include "mech/degree.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
 #include "sym/print.h"
-
-static int is_nonnegative(const Eqns *e, Expr x) {
-  ExprSign sign = expr_sign(e->g, x);
-  return sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE;
-}
-
-/* Each moving term of L by itself is nonnegative or linear in velocities. */
-static int terms_are_nonnegative(const Eqns *e, Expr l) {
-  for (uint32_t i = 0; i < expr_pairs(e->g, l, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(e->g, l, EX_SUM, i, &c);
-    int positive = num_sign(c) > 0 && is_nonnegative(e, term);
-    if (has_velocities(e->g, term) && !positive && !is_linear_in_velocities(e->g, term, e->n)) return 0;
-  }
-  return 1;
-}
 
 /* --- products of velocities --- */
 
@@ -69,7 +53,7 @@ static int add_quadratic_term(SquareBounds *q, Expr factor, Num c, Expr term) {
       power[n++] = p;
     }
   }
-  if (!is_nonnegative(e, factor)) return 0;
+  if (!sign_is_nonnegative(expr_sign(g, factor))) return 0;
   if (n == 2) {
     if (!num_is_one(power[0]) || !num_is_one(power[1])) return 0;
     Num half = num_mul(num_abs(c), num_ratio(-1, 2));
@@ -86,7 +70,7 @@ static int add_quadratic_term(SquareBounds *q, Expr factor, Num c, Expr term) {
     vec_push(e->m->arena, &q->open, ((Part){c, factor, op == EX_DEF ? expr_arg(g, moving[0], 0) : moving[0]}));
     return 1;
   }
-  return num_sign(c) > 0 && is_nonnegative(e, term);
+  return num_sign(c) > 0 && sign_is_nonnegative(expr_sign(g, term));
 }
 
 static int add_term(SquareBounds *q, Expr factor, Num c, Expr term) {
@@ -118,7 +102,7 @@ int mass_is_definite(const Eqns *e, const LinearSystem *s, Expr lagrangian) {
     if (has_velocities(e->g, s->H.at[i].e)) return 0;
   for (uint32_t i = 0; i < s->C.n; i++)
     if (has_velocities(e->g, s->C.at[i].e)) return 0;
-  return terms_are_nonnegative(e, lagrangian) || squares_dominate(e, lagrangian);
+  return squares_dominate(e, lagrangian);
 }
 
 int mass_is_definite_by_values(const Eqns *e, const LinearSystem *s, Expr lagrangian) {

@@ -171,13 +171,15 @@ const SparseVector *states_row(StateSolver *s, uint32_t k, uint32_t *at) {
   return &s->row;
 }
 
-uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts) {
+uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts, long double *held) {
   const long double independent = 6e-6L; /* a double's eps^(1/3), as in runtime/constraints/consistent_start.c: singular places are found to eps^(1/2) */
-  uint32_t at = 0;
-  RowSpan span = row_span(s->e->m->arena, s->e->n);
+  uint32_t at = 0, n = s->e->n;
+  RowSpan span = row_span(s->e->m->arena, n);
+  for (uint32_t j = 0; held && j < n; j++) held[j] = 0;
   for (uint32_t k = 0; k < s->e->constraints.n; k++) {
     const SparseVector *row = states_row(s, k, &at);
     counts[k] = k != without && row_span_add(&span, row->at, row->n, independent) > independent;
+    for (uint32_t j = 0; held && counts[k] && j < n; j++) held[j] += span.left[j] * span.left[j];
   }
   return span.rank;
 }

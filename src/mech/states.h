@@ -41,8 +41,8 @@ const int *states_column_scale(StateSolver *s);
 const SparseVector *states_row(StateSolver *s, uint32_t k, uint32_t *at);
 
 /* Rank of the constraints at the state evaluated last, leaving out constraint `without` (UINT32_MAX: none). counts[k]: constraint k is
- * independent of those before it. */
-uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts);
+ * independent of those before it. held[n], or NULL: squared length of each coordinate direction's projection on the rows of A. */
+uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts, long double *held);
 
 /* x with flows and the energy's formula put in for z' and the energy symbol; q'' stays. */
 Expr states_substitute(const Eqns *e, Expr x);

@@ -137,9 +137,7 @@ static void constraints(Text *t) {
   const Constraints *k = &e->constraints;
   Expr zero = expr_int(t->g, 0);
   if (!k->n) return;
-  text_heading(t, "constraints");
-  for (uint32_t i = 0; i < k->n; i++) text_equation(t, i < k->nholonomic ? k->c[i] : k->r[i], zero, i + 1 == k->n);
-  text_end(t);
+  text_constraints(t);
   Expr *rows = ARENA_ARRAY(e->m->arena, Expr, k->n);
   for (uint32_t i = 0; i < k->n; i++) rows[i] = zero;
   for (uint32_t i = 0; i < k->A.n; i++) add_product(t, &rows[k->A.at[i].row], shown(t, k->A.at[i].e), expr_symbol(t->g, e->m->coords.at[k->A.at[i].col].a)->node);

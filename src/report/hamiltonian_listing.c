@@ -38,14 +38,8 @@ static void motion(Text *t, const Hamilton *h, Exprs *roots) {
 
 static void constraints(Text *t, Exprs *roots) {
   const Constraints *k = &t->e->constraints;
-  if (!k->n) return;
-  text_heading(t, "constraints");
-  for (uint32_t i = 0; i < k->n; i++) {
-    Expr c = i < k->nholonomic ? k->c[i] : k->r[i];
-    text_equation(t, c, expr_int(t->g, 0), i + 1 == k->n);
-    keep(t, roots, c);
-  }
-  text_end(t);
+  text_constraints(t);
+  for (uint32_t i = 0; i < k->n; i++) keep(t, roots, i < k->nholonomic ? k->c[i] : k->r[i]);
 }
 
 /* The heading of M; momenta are M q' + a only while M contains no velocities. */

@@ -26,21 +26,18 @@ void text_expr(Text *t, Expr e) {
   text_put(t, ")", ")}");
 }
 
-void text_equation(Text *t, Expr left, Expr right, int last) {
-  text_put(t, "  ", "  ");
-  text_expr(t, left);
+/* "  left = right", left a name or, where that is NULL, an expression. */
+static void equation(Text *t, const char *name, Expr left, Expr right, int last) {
+  sb_puts(t->out, "  ");
+  if (name) sb_puts(t->out, name);
+  else text_expr(t, left);
   text_put(t, " = ", " &= ");
   text_expr(t, right);
   text_put(t, "\n", last ? "\n" : " \\\\\n");
 }
 
-void text_named(Text *t, const char *text, const char *in_latex, Expr right, int last) {
-  text_put(t, "  ", "  ");
-  text_put(t, text, in_latex);
-  text_put(t, " = ", " &= ");
-  text_expr(t, right);
-  text_put(t, "\n", last ? "\n" : " \\\\\n");
-}
+void text_equation(Text *t, Expr left, Expr right, int last) { equation(t, NULL, left, right, last); }
+void text_named(Text *t, const char *text, const char *in_latex, Expr right, int last) { equation(t, text_latex(t) ? in_latex : text, 0, right, last); }
 
 const char *text_latex_name(Text *t, Name name) {
   StrBuf b = strbuf(t->e->m->arena);
@@ -64,6 +61,14 @@ void text_title(Text *t) {
   sb_printf(t->out, text_latex(t) ? "%% %s: %s\n%% scene %s" : "%s: %s\nscene %s", m->name, m->doc, m->scene.name);
   for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(t->out, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
   sb_putc(t->out, '\n');
+}
+
+void text_constraints(Text *t) {
+  const Constraints *k = &t->e->constraints;
+  if (!k->n) return;
+  text_heading(t, "constraints");
+  for (uint32_t i = 0; i < k->n; i++) text_equation(t, i < k->nholonomic ? k->c[i] : k->r[i], expr_int(t->g, 0), i + 1 == k->n);
+  text_end(t);
 }
 
 void text_momenta(Text *t) {

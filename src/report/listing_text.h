@@ -21,6 +21,9 @@ void text_title(Text *t);
 /* The block of momenta. */
 void text_momenta(Text *t);
 
+/* The block of constraints, if there are some. */
+void text_constraints(Text *t);
+
 /* For each declared symmetry: F if there is one, the charge, and its balance if it is not conserved. */
 void text_charges(Text *t);
 

@@ -249,21 +249,12 @@ static void effect(Page *p, const EffectVerdict *v) {
 
 /* --- the page --- */
 
-static void cyclic(Page *p) {
-  StrBuf b = strbuf(p->text.e->m->arena);
-  const char *at;
-  show_cyclic(p->text.e, &b);
-  if (!b.n) return;
-  sb_putc(p->text.out, '\n');
-  for (const char *line = sb_text(&b); (at = strchr(line, '\n')) != NULL; line = at + 1)
-    say(p, arena_strndup(p->text.e->m->arena, line, (size_t)(at - line)));
-}
-
 void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out) {
   Page p = {.text = {.e = r->e, .g = r->e->g, .style = style, .out = out}, .r = r, .Q = free_letter(r->e)};
   text_title(&p.text);
   text_charges(&p.text);
-  cyclic(&p);
+  if (r->cyclic.n) sb_putc(out, '\n');
+  show_cyclic(r->e, text_latex(&p.text) ? "% " : "", out);
   symmetries(&p);
   scaling(&p);
   algebra(&p);

@@ -1,7 +1,6 @@
 /* Derivatives of graph nodes: partial derivatives by argument, a forward sweep (tangents) and a reverse sweep (adjoints). */
 #include "sym/diff.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/strbuf.h"
@@ -116,15 +115,12 @@ static Expr partial(ExprGraph *g, Expr e, uint32_t i) {
 
 /* Makes a sum or a long product a definition named after the definition it belongs to, so that the derivative of a
  * chain of lets stays as long as the chain. */
-static Expr name_long_expr(ExprGraph *g, const char *before, Name name, const char *after, Expr body) {
+static Expr name_long_expr(ExprGraph *g, Name name, Expr body) {
   enum { LONG_PRODUCT = 8 };
   Num c;
   int sum = expr_pairs(g, body, EX_SUM) > 1;
   if (!sum && expr_pairs(g, expr_pair(g, body, EX_SUM, 0, &c), EX_PROD) < LONG_PRODUCT) return body;
-  char room[64];
-  int n = snprintf(room, sizeof room, "%s%s%s", before, name, after);
-  const char *text = n < (int)sizeof room ? room : arena_printf(g->arena, "%s%s%s", before, name, after);
-  Name full = intern(g->names, text);
+  Name full = intern(g->names, arena_printf(g->arena, "d_%s", name));
   return expr_def_unique(g, full, body);
 }
 
@@ -240,7 +236,7 @@ static Adjoints sweep(ExprGraph *g, Expr e, const Wanted *w, ExprList *l) {
     if (expr_op(g, x) == EX_SYM || !expr_map_get(live, x)) continue;
     Expr bar = adjoint_of(&a, x);
     if (bar == g->zero) continue;
-    if (expr_op(g, x) == EX_DEF) bar = name_long_expr(g, "d_", expr_def_name(g, x), "", bar);
+    if (expr_op(g, x) == EX_DEF) bar = name_long_expr(g, expr_def_name(g, x), bar);
     for (uint32_t i = 0; i < inputs(g, x); i++) {
       if (!expr_map_get(live, input(g, x, i))) continue;
       Expr p = partial(g, x, i);

@@ -37,8 +37,6 @@ struct EvalTape {
   VEC(Num) number;
   int round_to_double;     /* factors and partial products are rounded to double */
   uint32_t *root; /* step of each root; UINT32_MAX for root 0 */
-  SymId changed;  /* the symbol for which is_dependent[] was computed */
-  uint8_t *is_dependent; /* whether a step depends on that symbol */
 };
 
 static long double pairs_value(const EvalTape *t, const TapeStep *o) {
@@ -123,7 +121,6 @@ EvalTape *eval_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
   vec_push(a, &t->number, num_int(0));
   t->step = ARENA_ARRAY(a, TapeStep, l.n + 1);
   t->value = ARENA_ARRAY(a, long double, l.n + 1);
-  t->is_dependent = ARENA_ARRAY(a, uint8_t, l.n + 1);
   t->root = ARENA_ARRAY(a, uint32_t, n + 1);
   for (uint32_t i = 0; i < l.n; i++) {
     t->step[i] = compile_step(t, g, a, l.at[i], &place);
@@ -149,22 +146,6 @@ void eval_run_double(EvalTape *t, long double (*symbol)(SymId s, const void *dat
     t->value[i] = (double)(o->op == EX_SYM ? symbol(o->symbol, data) : step_value(t, o, NULL));
   }
   t->round_to_double = 0;
-  read_roots(t, out);
-}
-
-static void mark_dependents(EvalTape *t, SymId changed) {
-  for (uint32_t i = 0; i < t->n; i++) {
-    const TapeStep *o = &t->step[i];
-    t->is_dependent[i] = o->op == EX_SYM && o->symbol == changed;
-    for (uint32_t k = o->first; k < o->first + o->n; k++) t->is_dependent[i] |= t->is_dependent[t->arg.at[k]];
-  }
-  t->changed = changed;
-}
-
-void eval_rerun(EvalTape *t, const long double *symbols, SymId changed, long double *out) {
-  if (t->changed != changed) mark_dependents(t, changed);
-  for (uint32_t i = 0; i < t->n; i++)
-    if (t->is_dependent[i]) t->value[i] = step_value(t, &t->step[i], symbols);
   read_roots(t, out);
 }
 

@@ -15,7 +15,4 @@ void eval_run(EvalTape *t, const long double *symbols, long double *out);
 /* eval_run with every value rounded to double, so that an overflow of doubles gives infinity; symbol(s, data) gives the symbols. */
 void eval_run_double(EvalTape *t, long double (*symbol)(SymId s, const void *data), const void *data, long double *out);
 
-/* Incremental eval_run after a change of one symbol: recomputes the nodes that depend on it. */
-void eval_rerun(EvalTape *t, const long double *symbols, SymId changed, long double *out);
-
 #endif

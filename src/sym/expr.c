@@ -158,6 +158,7 @@ int expr_is_num(const ExprGraph *g, Expr e) { return g->nodes.at[e].op == EX_NUM
 unsigned expr_kinds(const ExprGraph *g, Expr e) { return g->nodes.at[e].kinds; }
 int expr_is_constant(const ExprGraph *g, Expr e) { return (expr_kinds(g, e) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) == 0; }
 int expr_is_zero(const ExprGraph *g, Expr e) { return e == g->zero; }
+int expr_is_nonzero(const ExprGraph *g, Expr e) { return sign_is_strict(expr_sign(g, e)) || (expr_is_num(g, e) && e != g->zero); }
 const char *expr_op_text(ExprOp op) { return op_texts[op]; }
 
 int expr_is_bool(const ExprGraph *g, Expr e) {
@@ -181,9 +182,6 @@ Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number) {
 
 /* --- signs --- */
 
-static int is_nonneg(ExprSign s) { return s == SIGN_POSITIVE || s == SIGN_NONNEGATIVE; }
-static int is_nonpos(ExprSign s) { return s == SIGN_NEGATIVE || s == SIGN_NONPOSITIVE; }
-
 static ExprSign flip(ExprSign s) {
   switch (s) {
     case SIGN_POSITIVE: return SIGN_NEGATIVE;
@@ -202,9 +200,9 @@ static ExprSign sum_sign(const ExprGraph *g, const Expr *args, uint32_t n) {
     Num c = expr_number(g, args[i + 1]);
     if (!num_sign_is_sure(c)) return SIGN_UNKNOWN;
     if (num_sign(c) < 0) s = flip(s);
-    all_nonneg &= is_nonneg(s);
-    all_nonpos &= is_nonpos(s);
-    strict |= s == SIGN_POSITIVE || s == SIGN_NEGATIVE;
+    all_nonneg &= sign_is_nonnegative(s);
+    all_nonpos &= sign_is_nonpositive(s);
+    strict |= sign_is_strict(s);
   }
   if (all_nonneg) return strict ? SIGN_POSITIVE : SIGN_NONNEGATIVE;
   if (all_nonpos) return strict ? SIGN_NEGATIVE : SIGN_NONPOSITIVE;
@@ -226,8 +224,8 @@ static ExprSign prod_sign(const ExprGraph *g, const Expr *args, uint32_t n) {
   for (uint32_t i = 0; i < n; i += 2) {
     ExprSign s = factor_sign(expr_sign(g, args[i]), expr_number(g, args[i + 1]));
     if (s == SIGN_UNKNOWN) return SIGN_UNKNOWN;
-    negative ^= is_nonpos(s);
-    strict &= s == SIGN_POSITIVE || s == SIGN_NEGATIVE;
+    negative ^= sign_is_nonpositive(s);
+    strict &= sign_is_strict(s);
   }
   ExprSign s = strict ? SIGN_POSITIVE : SIGN_NONNEGATIVE;
   return negative ? flip(s) : s;

@@ -50,6 +50,10 @@ typedef enum {
 /* Sign of a value, as declared or inferred. */
 typedef enum { SIGN_UNKNOWN, SIGN_POSITIVE, SIGN_NONNEGATIVE, SIGN_NEGATIVE, SIGN_NONPOSITIVE } ExprSign;
 
+static inline int sign_is_nonnegative(ExprSign s) { return s == SIGN_POSITIVE || s == SIGN_NONNEGATIVE; }
+static inline int sign_is_nonpositive(ExprSign s) { return s == SIGN_NEGATIVE || s == SIGN_NONPOSITIVE; }
+static inline int sign_is_strict(ExprSign s) { return s == SIGN_POSITIVE || s == SIGN_NEGATIVE; }
+
 typedef uint32_t SymId;
 
 typedef struct {
@@ -107,6 +111,7 @@ const Symbol *expr_sym_of(const ExprGraph *g, Expr e); /* of a SYM */
 SymId expr_sym_id(const ExprGraph *g, Expr e);         /* of a SYM */
 Name expr_def_name(const ExprGraph *g, Expr e);        /* of a DEF; its body is argument 0 */
 ExprSign expr_sign(const ExprGraph *g, Expr e);
+int expr_is_nonzero(const ExprGraph *g, Expr e); /* a number or an expression of strict sign that is not 0 */
 int expr_is_num(const ExprGraph *g, Expr e);
 unsigned expr_kinds(const ExprGraph *g, Expr e); /* kinds of the symbols in e, as bits 1 << SymKind */
 int expr_is_constant(const ExprGraph *g, Expr e); /* made of numbers, parameters and constants alone */

@@ -172,21 +172,17 @@ static int cancel_equal(FracField *f, Frac *a) {
   return 0;
 }
 
+/* Cancels a numerator against a factor of the other fraction's denominator. */
+static void cancel_across(FracField *f, Poly *num, DenId *den) {
+  Frac over = {.num = *num, .den = *den};
+  if (!*den || num->n < 2 || !cancel_equal(f, &over)) return;
+  *num = over.num;
+  *den = over.den;
+}
+
 Frac frac_mul(FracField *f, Frac a, Frac b) {
-  if (a.den && b.num.n > 1) {
-    Frac over = {.num = b.num, .den = a.den};
-    if (cancel_equal(f, &over)) {
-      b.num = over.num;
-      a.den = over.den;
-    }
-  }
-  if (b.den && a.num.n > 1) {
-    Frac over = {.num = a.num, .den = b.den};
-    if (cancel_equal(f, &over)) {
-      a.num = over.num;
-      b.den = over.den;
-    }
-  }
+  cancel_across(f, &b.num, &a.den);
+  cancel_across(f, &a.num, &b.den);
   Poly num = poly_mul(f->ring, a.num, b.num);
   DenId den = den_mul(f, a.den, b.den);
   return normal_zero((Frac){.num = num, .den = den});

@@ -21,8 +21,8 @@ typedef struct {
   ExprGraph *g;
   Arena *arena;
   uint32_t nsymbols;
-  VEC(SymId) symbols; /* symbols of the current source and its terms */
-  uint32_t nterms;    /* number of terms of x that may jump with the source */
+  VEC(SymId) symbols; /* symbols of all sources and of these terms */
+  uint32_t nterms;    /* number of terms of x that contain sources */
   EvalTape *tape;     /* tape of these terms */
   Real *term;         /* their values */
   Real *base, *direction;   /* current line base + s*direction */
@@ -36,23 +36,13 @@ typedef struct {
 /* Candidate: a node that may jump where `side` is 0. */
 typedef struct {
   Expr node, side;
-  uint64_t symbols_hash; /* hash of the symbols in side: sources that jump at one place have equal hashes */
 } Source;
 
 typedef VEC(Source) Sources;
 
-/* FNV-1a hash of the symbols in side, in graph order. */
-static uint64_t hash_symbols(const Search *s, Expr side) {
-  uint64_t hash = 0xcbf29ce484222325u;
-  ExprList l = expr_topo(s->g, &side, 1);
-  for (uint32_t i = 0; i < l.n; i++)
-    if (expr_op(s->g, l.at[i]) == EX_SYM) hash = (hash ^ expr_sym_id(s->g, l.at[i])) * 0x100000001b3u;
-  return hash;
-}
-
 static void add(const Search *s, Sources *to, Expr node, Expr side) {
   if (!(expr_kinds(s->g, side) & varying_kinds) || to->n == MAX_CANDIDATES) return;
-  vec_push(s->arena, to, ((Source){node, side, hash_symbols(s, side)}));
+  vec_push(s->arena, to, ((Source){node, side}));
 }
 
 /* Whether op can turn a pole into a finite jump: atan(1/x), x/abs(x). */
@@ -93,51 +83,25 @@ static Sources sources_of(const Search *s, Expr x) {
   return all;
 }
 
-/* A term of x, and the symbol hashes of its sources. */
-typedef struct {
-  Expr term;
-  VEC(uint64_t) symbols_hash;
-} Part;
-
-typedef VEC(Part) Parts;
-
-/* Terms of x that contain sources; other terms would only add rounding. */
-static Parts parts_of(const Search *s, const Sources *all, Expr x) {
+/* Selects the terms of x that contain sources, and their symbols; other terms would only add rounding. */
+static void select_terms(Search *s, const Sources *all, Expr x) {
   ExprGraph *g = s->g;
   ExprMap nodes = expr_map(s->arena);
-  Parts parts = {0};
-  for (uint32_t i = 0; i < all->n; i++) expr_map_set(&nodes, all->at[i].node, i + 1);
+  VEC(Expr) roots = {0};
+  for (uint32_t i = 0; i < all->n; i++) expr_map_set(&nodes, all->at[i].node, 1);
   for (uint32_t i = 0; i < expr_pairs(g, x, EX_SUM); i++) {
     Num c;
-    Part part = {.term = expr_pair(g, x, EX_SUM, i, &c)};
-    ExprList l = expr_topo(g, &part.term, 1);
-    for (uint32_t k = 0; k < l.n; k++) {
-      uint32_t source = expr_map_get(&nodes, l.at[k]);
-      if (source) vec_push(s->arena, &part.symbols_hash, all->at[source - 1].symbols_hash);
-    }
-    if (!part.symbols_hash.n) continue;
-    part.term = expr_scale(g, c, part.term);
-    vec_push(s->arena, &parts, part);
-  }
-  return parts;
-}
-
-/* Selects the terms that may jump with the source, and their symbols. */
-static void select_terms(Search *s, const Parts *parts, const Source *from) {
-  ExprGraph *g = s->g;
-  VEC(Expr) roots = {0};
-  for (uint32_t i = 0; i < parts->n; i++) {
-    const Part *part = &parts->at[i];
+    Expr term = expr_pair(g, x, EX_SUM, i, &c);
+    ExprList l = expr_topo(g, &term, 1);
     uint32_t k = 0;
-    while (k < part->symbols_hash.n && part->symbols_hash.at[k] != from->symbols_hash) k++;
-    if (k < part->symbols_hash.n) vec_push(s->arena, &roots, part->term);
+    while (k < l.n && !expr_map_get(&nodes, l.at[k])) k++;
+    if (k < l.n) vec_push(s->arena, &roots, expr_scale(g, c, term));
   }
   s->nterms = roots.n;
   s->tape = eval_tape(g, roots.at, roots.n);
   s->term = ARENA_ARRAY(s->arena, Real, roots.n + 1);
-  vec_push(s->arena, &roots, from->side);
+  for (uint32_t i = 0; i < all->n; i++) vec_push(s->arena, &roots, all->at[i].side);
   ExprList l = expr_topo(g, roots.at, roots.n);
-  s->symbols.n = 0;
   for (uint32_t i = 0; i < l.n; i++)
     if (expr_op(g, l.at[i]) == EX_SYM) vec_push(s->arena, &s->symbols, expr_sym_id(g, l.at[i]));
 }
@@ -163,7 +127,7 @@ static int set_state(Search *s, Real where) {
     SymId k = s->symbols.at[i];
     ExprSign sign = expr_symbol(s->g, k)->sign;
     Real x = s->at[k] = s->base[k] + where * s->direction[k];
-    if (((sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE) && x < 0) || ((sign == SIGN_NEGATIVE || sign == SIGN_NONPOSITIVE) && x > 0)) return 0;
+    if ((sign_is_nonnegative(sign) && x < 0) || (sign_is_nonpositive(sign) && x > 0)) return 0;
   }
   return 1;
 }
@@ -242,10 +206,9 @@ static Real jump_at(Search *s, Real where) {
   return is;
 }
 
-static void try_source(Search *s, const Parts *parts, const Source *from) {
+static void try_source(Search *s, const Source *from) {
   EvalTape *side = eval_tape(s->g, &from->side, 1);
   uint32_t places = 0;
-  select_terms(s, parts, from);
   for (uint32_t seed = 1; seed <= LINES && places < PLACES; seed++) {
     Real where;
     draw_line(s, seed);
@@ -268,10 +231,10 @@ ExprJumps expr_jumps(ExprGraph *g, Expr x) {
   if (!(expr_kinds(g, x) & varying_kinds)) return (ExprJumps){0};
   Sources all = sources_of(&s, x);
   if (!all.n) return (ExprJumps){0};
-  Parts parts = parts_of(&s, &all, x);
+  select_terms(&s, &all, x);
   s.base = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
   s.direction = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
   s.at = ARENA_ARRAY(s.arena, Real, s.nsymbols + 1);
-  for (uint32_t i = 0; i < all.n; i++) try_source(&s, &parts, &all.at[i]);
+  for (uint32_t i = 0; i < all.n; i++) try_source(&s, &all.at[i]);
   return (ExprJumps){s.found.at, s.found.n};
 }

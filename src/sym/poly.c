@@ -300,16 +300,6 @@ Poly poly_mul(PolyRing *r, Poly a, Poly b) {
 }
 
 Poly poly_pow(PolyRing *r, Poly a, uint32_t n) {
-  if (a.n == 1 && n > 1) {
-    Poly power = poly_num(r, num_int(1));
-    int exact;
-    Num c = num_pow(a.at[0].c, num_int(n), &exact);
-    if (n > 1u << 20) poly_fail(r, POLY_TOO_LARGE);
-    if (!exact) demand_exact(r, c);
-    if (r->status != POLY_OK) return poly_zero();
-    MonoId m = mono_pow(r, a.at[0].mono, (int32_t)n);
-    return poly_mul_mono(r, power, c, m);
-  }
   Poly power = poly_num(r, num_int(1));
   while (n && r->status == POLY_OK) {
     if (n & 1) power = poly_mul(r, power, a);

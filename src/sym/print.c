@@ -43,7 +43,6 @@ typedef struct {
   int rank;
 } Factor;
 
-/* Whether e contains symbols other than parameters and constants. */
 /* Position of a factor in a product: numbers and sums of parameters, parameters, coordinates, functions, velocities:
  * (m1 + m2)*g*l*sin(th)*th'. */
 static int rank_of(ExprGraph *g, Expr e) {

@@ -26,18 +26,10 @@ typedef VEC(Piece) Pieces;
 
 /* --- parameters --- */
 
-static int is_param(const Symbol *s, const void *data) {
-  (void)data;
-  return s->kind == SYM_PARAM || s->kind == SYM_CONST;
-}
-
-static int is_not_param(const Symbol *s, const void *data) { return !is_param(s, data); }
-
 /* Whether generator x is made of parameters only. */
-static int gen_is_param(Normal *n, GenId x) {
+static int gen_is_param(const Normal *n, GenId x) {
   GenInfo info = n->gens.at[x];
-  if (info.kind == GEN_SYMBOL) return is_param(expr_sym_of(n->g, info.expr), NULL);
-  return info.kind == GEN_ROOT && !expr_contains(n->g, info.expr, is_not_param, NULL);
+  return (info.kind == GEN_SYMBOL || info.kind == GEN_ROOT) && expr_is_constant(n->g, info.expr);
 }
 
 static int gen_is_circular(const Normal *n, GenId x) {

@@ -220,28 +220,15 @@ Expr expr_expand_defs(ExprGraph *g, Expr e) {
 /* --- counting --- */
 
 double expr_tree_size(ExprGraph *g, Expr e, uint32_t *distinct) {
-  VEC(Expr) found = {0};
-  expr_map_clear(&g->seen);
-  expr_map_set(&g->seen, e, 1);
-  vec_push(g->arena, &found, e);
-  for (uint32_t k = 0; k < found.n; k++)
-    for (uint32_t i = 0; i < (expr_op(g, found.at[k]) == EX_DEF ? 0 : expr_nargs(g, found.at[k])); i++) {
-      Expr a = expr_arg(g, found.at[k], i);
-      if (expr_map_get(&g->seen, a)) continue;
-      expr_map_set(&g->seen, a, 1);
-      vec_push(g->arena, &found, a);
-    }
-  sort_ids(g, found.at, found.n);
-  double *size = ARENA_ARRAY(g->arena, double, found.n);
-  for (uint32_t k = 0; k < found.n; k++) {
-    expr_map_set(&g->seen, found.at[k], k + 1);
+  ExprList l = expr_topo_shallow(g, &e, 1);
+  double *size = ARENA_ARRAY(g->arena, double, l.n);
+  for (uint32_t k = 0; k < l.n; k++) {
+    expr_map_set(&g->seen, l.at[k], k + 1);
     size[k] = 1;
-    if (expr_op(g, found.at[k]) == EX_DEF) continue;
-    for (uint32_t i = 0; i < expr_nargs(g, found.at[k]); i++)
-      size[k] += size[expr_map_get(&g->seen, expr_arg(g, found.at[k], i)) - 1];
+    for (uint32_t i = 0; expr_op(g, l.at[k]) != EX_DEF && i < expr_nargs(g, l.at[k]); i++) size[k] += size[expr_map_get(&g->seen, expr_arg(g, l.at[k], i)) - 1];
   }
-  *distinct = found.n;
-  return size[found.n - 1];
+  *distinct = l.n;
+  return size[l.n - 1];
 }
 
 /* Operations of b^e: repeated squaring for integers, one square root for halves, 20 for other powers. */

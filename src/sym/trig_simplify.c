@@ -236,16 +236,11 @@ static Spectrum spectrum_of(Normal *n, Poly p) {
     GenId z = poly_new_gen(r);
     normal_set_gen_info(n, z, (GenInfo){.kind = GEN_SYMBOL});
   }
-  Poly *part = ARENA_ARRAY(n->arena, Poly, 2 * p.n + 1);
+  Poly *even = ARENA_ARRAY(n->arena, Poly, p.n + 1), *odd = ARENA_ARRAY(n->arena, Poly, p.n + 1);
   for (uint32_t i = 0; i < p.n; i++) {
     int parity;
     Poly one = term_in_exponentials(n, &s, p.at[i], &parity);
-    part[2 * i + (uint32_t)parity] = one; /* the part of the other parity stays 0 */
-  }
-  Poly *even = ARENA_ARRAY(n->arena, Poly, p.n + 1), *odd = ARENA_ARRAY(n->arena, Poly, p.n + 1);
-  for (uint32_t i = 0; i < p.n; i++) {
-    even[i] = part[2 * i];
-    odd[i] = part[2 * i + 1];
+    *(parity ? &odd[i] : &even[i]) = one; /* the part of the other parity stays 0 */
   }
   Poly cosines = poly_sum(r, even, NULL, p.n), sines = poly_sum(r, odd, NULL, p.n);
   push_lines(n, &s, cosines, 0);

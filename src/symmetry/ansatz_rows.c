@@ -53,13 +53,8 @@ Ansatz *ansatz_new(Arena *a, const Eqns *e) {
   s->e = e;
   s->symbols = expr_symbol_count(e->g) + 1;
   s->n = eqns_coordinates(e);
-  SymId *q = ARENA_ARRAY(a, SymId, s->n + 1), *v = ARENA_ARRAY(a, SymId, s->n + 1);
-  for (uint32_t i = 0; i < s->n; i++) {
-    q[i] = eqns_coordinate(e, i);
-    v[i] = e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate;
-  }
-  s->q = q;
-  s->v = v;
+  s->q = eqns_symbols(e, 0);
+  s->v = eqns_symbols(e, 1);
   s->degree = s->n <= CUBIC_MOST ? 3 : s->n <= WHOLE_MOST ? 2 : 1;
   s->has_tau = !(kinds & (1u << SYM_INPUT | (e->n ? 1u << SYM_STATE : 0)));
   s->has_time = (kinds & 1u << SYM_TIME) != 0;
@@ -129,7 +124,7 @@ static void draw(RowSource *r, long double spread) {
     const Symbol *x = expr_symbol(g, s);
     if (x->kind == SYM_PARAM || x->kind == SYM_CONST) continue;
     long double value = next_value(r) * (x->kind == SYM_TIME ? 4 : x->kind == SYM_COORD ? spread : 1);
-    r->symbols[s] = x->sign == SIGN_POSITIVE || x->sign == SIGN_NONNEGATIVE ? fabsl(value) : value;
+    r->symbols[s] = sign_is_nonnegative(x->sign) ? fabsl(value) : value;
   }
 }
 

@@ -37,7 +37,8 @@ static Charge energy_of(const Eqns *e) {
   return c;
 }
 
-void charges_derive(Eqns *e) {
+/* Fills e->charges: the energy first, then those of declared symmetries in order. None without a Lagrangian. */
+static void charges_derive(Eqns *e) {
   const Model *m = e->m;
   Charge *all = ARENA_ARRAY(m->arena, Charge, m->symmetries.n + 1);
   if (!e->energy) return;

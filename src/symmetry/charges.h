@@ -13,9 +13,6 @@ struct Charge {
   Expr value, scale; /* in the form that programs compute */
 };
 
-/* Fills e->charges: the energy first, then those of declared symmetries in order. None without a Lagrangian. */
-void charges_derive(Eqns *e);
-
 /* Model -> Eqns, complete: the equations of motion, their charges, and outputs that name the energy or a charge. NULL, with the reason in the
  * model's diagnostics, as eqns_derive, or when a declared symmetry does not hold. */
 Eqns *equations_of(const Model *m);

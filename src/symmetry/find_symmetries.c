@@ -5,8 +5,6 @@
 #include <math.h>
 
 #include "mech/lagrange.h"
-#include "symmetry/usual_symmetries.h"
-#include "symmetry/symmetry_names.h"
 #include "sym/diff.h"
 #include "sym/normal_form.h"
 #include "sym/print.h"
@@ -242,10 +240,7 @@ static const char *functions_text(SymmetrySearch *s, const TimeList *times, uint
 
 static void search_listed(SymmetrySearch *s) {
   Family f = {.kind = TIME_LISTED, .times = time_list(s)};
-  FamilyTables t = {.family = &f, .at = ARENA_ARRAY(s->scratch, GeneratorTable, 1)};
-  t.at[0] = generator_table_at(s, &f, CHOICE_FIRST);
-  s->out->searched = t.at[0].shown != 0;
-  if (s->out->searched) noether_add_family(s, &f);
+  s->out->searched = noether_add_family(s, &f);
   s->out->ansatz = arena_printf(s->e->m->arena, "xi affine in the coordinates%s, tau, with coefficients in t: %s; F a polynomial of degree %u in the coordinates, "
                                 "with those%s%s, and any function of t alone",
                                 ansatz_is_restricted(s->ansatz) ? " (turns and stretches of one vector only)" : "", functions_text(s, &f.times, 0, f.times.n),
@@ -324,6 +319,17 @@ static FoundSymmetries search(Eqns *e) {
   SymmetrySearch s = {.e = e, .g = e->g, .out = &out};
   normal_with_scratch(e->g, search_work, &s);
   return out;
+}
+
+/* Whether energy, three momenta, three angular momenta and three boosts are among them. */
+static int has_galilean_charges(const FoundSymmetries *all) {
+  uint32_t seen[SYMMETRY_SCALING + 1] = {0};
+  for (uint32_t k = 0; k < all->all.n; k++) {
+    const FoundSymmetry *s = &all->all.at[k];
+    if (s->kind == SYMMETRY_ENERGY) seen[s->kind] = 7;
+    else if (s->of_all) seen[s->kind] |= 1u << s->axis;
+  }
+  return seen[SYMMETRY_ENERGY] && seen[SYMMETRY_MOMENTUM] == 7 && seen[SYMMETRY_ROTATION] == 7 && seen[SYMMETRY_BOOST] == 7;
 }
 
 FoundSymmetries noether_find(Eqns *e) {

@@ -24,28 +24,19 @@ typedef struct {
   FoundSymmetries *out;
 } SymmetrySearch;
 
-/* The tables of a family, one a choice of parameter values; those at CHOICE_MOVED and above are made when needed (moved). changes: how rows were
- * shortened. */
-typedef struct {
-  const Family *family;
-  GeneratorTable *at;
-  int moved;
-  VEC(RowChange) changes;
-} FamilyTables;
-
 /* Solution space at a choice of parameter values; computed once. */
 const SolutionSpace *noether_space_at(SymmetrySearch *s, uint32_t choice);
 
 /* Number of choices of parameter values. */
 uint32_t noether_choices(const SymmetrySearch *s);
 
-/* Coefficients of a row of the table at the first choice as expressions, c[blocks*shown]; the row may be shortened. 0: one is not recognised. */
-int noether_recognise(SymmetrySearch *s, FamilyTables *t, uint32_t row, Expr *c);
+/* Lists the proved generators of a family, and counts the others. 0: its equations could not be solved reliably. */
+int noether_add_family(SymmetrySearch *s, const Family *f);
 
-/* The table of a family at a choice of parameter values; no rows where the equations could not be solved reliably. */
-GeneratorTable generator_table_at(SymmetrySearch *s, const Family *f, uint32_t choice);
+/* Whether the model has more coordinates than the search for all symmetries takes: a hundred. */
+int too_large_to_search(const Eqns *e);
 
-/* Lists the proved generators of a family, and counts the others. */
-void noether_add_family(SymmetrySearch *s, const Family *f);
+/* Tries the energy, momenta of cyclic coordinates, and translations, boosts and rotations of all coordinates of a kind. */
+void try_usual_symmetries(Eqns *e, FoundSymmetries *out);
 
 #endif

@@ -7,7 +7,6 @@
 #include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "mech/discontinuity.h"
-#include "symmetry/term_magnitude.h"
 #include "mech/states.h"
 #include "sym/diff.h"
 #include "sym/integrate.h"
@@ -31,8 +30,6 @@ typedef struct {
   int by_value;
   const Constraint *product; /* a constraint whose states were sought, but perhaps not on each of its factors; or NULL */
 } ProofWork;
-
-static SymId velocity(const Eqns *e, uint32_t i) { return e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate; }
 
 static Expr node(const ProofWork *w, SymId s) { return expr_symbol(w->g, s)->node; }
 
@@ -63,18 +60,14 @@ static ProofWork begin(const Eqns *e, const Generator *by) {
   Arena *a = e->m->arena;
   ProofWork w = {.e = e, .m = e->m, .g = e->g, .n = eqns_coordinates(e)};
   Expr zero = expr_int(w.g, 0), *xi = ARENA_ARRAY(a, Expr, w.n + 1);
-  w.q = ARENA_ARRAY(a, SymId, w.n + 1);
-  w.v = ARENA_ARRAY(a, SymId, w.n + 1);
+  w.q = eqns_symbols(e, 0);
+  w.v = eqns_symbols(e, 1);
   w.Dxi = ARENA_ARRAY(a, Expr, w.n + 1);
   w.L = e->m->lagrangian;
   w.p = eqns_momenta(e);
   w.xi = xi;
   w.tau = by->tau ? by->tau : zero;
-  for (uint32_t i = 0; i < w.n; i++) {
-    w.q[i] = eqns_coordinate(e, i);
-    w.v[i] = velocity(e, i);
-    xi[i] = by->xi && by->xi[i] ? by->xi[i] : zero;
-  }
+  for (uint32_t i = 0; i < w.n; i++) xi[i] = by->xi && by->xi[i] ? by->xi[i] : zero;
   for (uint32_t i = 0; i < w.n; i++) w.Dxi[i] = total(&w, xi[i]);
   w.Dtau = total(&w, w.tau);
   return w;
@@ -180,7 +173,7 @@ static int vanishes_by_value(const ProofWork *w, Expr x) {
 /* Whether base^power is a factor that contains coordinates and may be 0. */
 static int may_vanish(const ProofWork *w, Expr base, Num power) {
   ExprSign sign = expr_sign(w->g, base);
-  return num_sign(power) > 0 && sign != SIGN_POSITIVE && sign != SIGN_NEGATIVE && (expr_kinds(w->g, base) & 1u << SYM_COORD);
+  return num_sign(power) > 0 && !sign_is_strict(sign) && (expr_kinds(w->g, base) & 1u << SYM_COORD);
 }
 
 /* The first holonomic constraint, contacts left out, that is a product of factors two of which may be 0: random states may miss one of these
@@ -318,6 +311,47 @@ static Expr charge_of(const ProofWork *w, Expr F) {
 static Expr while_closed(const ProofWork *w, const Contact *c, Expr x) {
   Expr one = expr_int(w->g, 1);
   return c ? expr_replace(w->g, x, &c->closed, &one, 1) : x;
+}
+
+static Expr size_of_sum(ExprGraph *g, const Expr *size, Expr x) {
+  uint32_t n = expr_pairs(g, x, EX_SUM);
+  Expr *terms = ARENA_ARRAY(expr_arena(g), Expr, n);
+  for (uint32_t i = 0; i < n; i++) {
+    Num c;
+    Expr term = expr_pair(g, x, EX_SUM, i, &c);
+    terms[i] = expr_scale(g, num_sign(c) < 0 ? num_neg(c) : c, size[term]);
+  }
+  return expr_add_n(g, terms, n);
+}
+
+static Expr size_of_product(ExprGraph *g, const Expr *size, Expr x) {
+  uint32_t n = expr_pairs(g, x, EX_PROD);
+  Expr *factors = ARENA_ARRAY(expr_arena(g), Expr, n);
+  for (uint32_t i = 0; i < n; i++) {
+    Num power;
+    Expr base = expr_pair(g, x, EX_PROD, i, &power);
+    int whole = num_is_int(power) && num_sign(power) > 0;
+    if (whole) base = size[base];
+    Expr factor = expr_pow_num(g, base, power);
+    factors[i] = whole ? factor : expr_fn(g, EX_ABS, factor);
+  }
+  return expr_mul_n(g, factors, n);
+}
+
+/* Sum of the absolute values of the terms of x, as if products of sums were multiplied out: |a|*(|x| + |z|) for a*(x - z). Denominators,
+ * roots and functions count as single terms; definitions are expanded. */
+static Expr term_magnitude(ExprGraph *g, Expr x) {
+  Expr *size = ARENA_ARRAY(expr_arena(g), Expr, (size_t)expr_count(g) + 1);
+  ExprList l = expr_topo(g, &x, 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr e = l.at[i];
+    ExprOp op = expr_op(g, e);
+    size[e] = op == EX_SUM ? size_of_sum(g, size, e)
+            : op == EX_PROD ? size_of_product(g, size, e)
+            : op == EX_DEF ? size[expr_arg(g, e, 0)]
+            : expr_fn(g, EX_ABS, e);
+  }
+  return size[x];
 }
 
 static Expr scale_of(const ProofWork *w, Expr F) {

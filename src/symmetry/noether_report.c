@@ -36,12 +36,12 @@ static int is_pushed(const Eqns *e, uint32_t i) {
   return !expr_is_zero(e->g, e->Q[i]);
 }
 
-void show_cyclic(const Eqns *e, StrBuf *out) {
+void show_cyclic(const Eqns *e, const char *before, StrBuf *out) {
   Indices all = noether_cyclic(e);
   for (uint32_t k = 0; k < all.n; k++) {
     Name x = e->m->coords.at[all.at[k]].name;
     int pushed = is_pushed(e, all.at[k]), jumps = discontinuities_of(e, eqns_momenta(e)[all.at[k]]).n > 0;
-    sb_printf(out, "cyclic coordinate: %s; L does not contain it, and p_%s is %s%s\n", x, x, pushed ? "changed by forces and constraints alone" : "conserved",
+    sb_printf(out, "%scyclic coordinate: %s; L does not contain it, and p_%s is %s%s\n", before, x, x, pushed ? "changed by forces and constraints alone" : "conserved",
               jumps ? " between jumps" : "");
   }
 }
@@ -78,8 +78,7 @@ static Expr symbol_in(const Eqns *to, const Symbol *s) {
   return 0;
 }
 
-/* Node x in the graph of another model, arguments by `map`: a symbol, number, sum, product or function of one argument. 0: it is another node, or
- * a symbol is missing. */
+/* Node x in the graph of another model, arguments by `map`, definitions expanded. 0: a symbol is missing. */
 static Expr node_in(const Eqns *to, const ExprGraph *g, Expr x, const ExprMap *map) {
   ExprGraph *other = to->g;
   ExprOp op = expr_op(g, x);
@@ -96,8 +95,12 @@ static Expr node_in(const Eqns *to, const ExprGraph *g, Expr x, const ExprMap *m
     }
     return all;
   }
-  Expr argument = expr_nargs(g, x) == 1 ? expr_map_get(map, expr_arg(g, x, 0)) : 0;
-  return !argument ? 0 : op == EX_DEF ? argument : expr_fn(other, op, argument);
+  Expr arg[3] = {0};
+  for (uint32_t i = 0; i < expr_nargs(g, x); i++)
+    if (!(arg[i] = expr_map_get(map, expr_arg(g, x, i)))) return 0;
+  if (op == EX_DEF) return arg[0];
+  return op == EX_SELECT ? expr_select(other, arg[0], arg[1], arg[2]) : op == EX_POW ? expr_pow(other, arg[0], arg[1])
+         : arg[1] ? expr_fn2(other, op, arg[0], arg[1]) : expr_fn(other, op, arg[0]);
 }
 
 static Expr in_graph(const Eqns *to, ExprGraph *g, Expr x) {
@@ -135,28 +138,14 @@ void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with) {
 }
 
 int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t k) {
-  enum { STATES = 3 };
-  const long double near = 1e-12L; /* rounding of long doubles of size 1 */
-  const Eqns *with = v->e, *e = r->e;
-  long double *there = ARENA_ARRAY(with->m->arena, long double, expr_symbol_count(with->g) + 1), *here = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
-  for (uint32_t seed = 1; seed <= STATES; seed++) {
-    long double bound, one, other;
-    sample_state(with->g, seed, there);
-    for (SymId s = 1; s <= expr_symbol_count(e->g); s++) {
-      Expr same = symbol_in(with, expr_symbol(e->g, s));
-      if (same) here[s] = there[expr_sym_id(with->g, same)];
-    }
-    one = value_with_bound(e->g, r->found.all.at[k].is.charge, here, NULL, &bound);
-    other = value_with_bound(with->g, v->is[k].charge, there, NULL, &bound);
-    if (fabsl(one - other) > near * (1 + fabsl(one))) return 0;
-  }
-  return 1;
+  Expr before = in_graph(v->e, r->e->g, r->found.all.at[k].is.charge);
+  return before && prove_zero(v->e->g, expr_sub(v->e->g, before, v->is[k].charge), NULL) != PROVED_NONZERO;
 }
 
 static void add_condition(const Eqns *e, Conditions *to, Expr base) {
   ExprSign sign = expr_sign(e->g, base);
   int constant = expr_is_constant(e->g, base);
-  if (!constant || sign == SIGN_POSITIVE || sign == SIGN_NONNEGATIVE) return;
+  if (!constant || sign_is_nonnegative(sign)) return;
   for (uint32_t i = 0; i < to->n; i++)
     if (to->at[i] == base) return;
   vec_push(e->m->arena, to, base);

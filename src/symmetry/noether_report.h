@@ -37,14 +37,14 @@ void noether_report_effect(NoetherReport *r, Name effect, const Eqns *with);
 typedef VEC(Expr) Conditions;
 Conditions noether_conditions(const NoetherReport *r, uint32_t k);
 
-/* Whether found symmetry k has the same charge with the effect on; compared at random states, symbols matched by name. */
+/* Whether no state shows that found symmetry k has another charge with the effect on; symbols are matched by name. */
 int noether_same_charge(const NoetherReport *r, const EffectVerdict *v, uint32_t k);
 
 /* Coordinates that L does not contain. */
 Indices noether_cyclic(const Eqns *e);
 
-/* Appends "cyclic coordinate: x; L does not contain it, and p_x is conserved", if there is one. */
-void show_cyclic(const Eqns *e, StrBuf *out);
+/* Appends "cyclic coordinate: x; L does not contain it, and p_x is conserved" for each one, after `before`. */
+void show_cyclic(const Eqns *e, const char *before, StrBuf *out);
 
 /* The report as text or LaTeX, and as one JSON object in which formulas are text. */
 void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out);

@@ -58,7 +58,8 @@ int recognise_rational(long double x, Num *out) {
   return fraction_of(x, 1e-12L * fmaxl(fabsl(x), 1), 1e10L, out) || fraction_of(x, LONG_TOLERANCE(1e-17L) * fabsl(x), 1e14L, out);
 }
 
-int recognise_same(const long double *value, Num *out) {
+/* Whether the value is the same rational at the first two choices. */
+static int recognise_same(const long double *value, Num *out) {
   return fabsl(value[CHOICE_FIRST] - value[CHOICE_SECOND]) < 1e-9L * fabsl(value[CHOICE_FIRST]) && recognise_rational(value[CHOICE_FIRST], out);
 }
 
@@ -68,7 +69,8 @@ static Expr parameter(const Choices *c, uint32_t k, Num power) {
   return expr_pow_num(c->e->g, expr_symbol(c->e->g, c->param[k])->node, power);
 }
 
-Expr recognise_ratio(const Choices *c, const long double *value) {
+/* A rational times p or 1/p of one parameter, or times a ratio or product of two; 0: none. */
+static Expr recognise_ratio(const Choices *c, const long double *value) {
   ExprGraph *g = c->e->g;
   for (uint32_t i = 0; i < c->n; i++)
     for (uint32_t k = 0; k <= i; k++)
@@ -98,8 +100,11 @@ static Expr rate_multiple(const Choices *c, const long double *value, Expr rate,
   return 0;
 }
 
-Expr recognise_with_rates(const Choices *c, const long double *value, const Expr *rate, uint32_t n) {
-  Expr found = 0;
+Expr recognise_by_two(const Choices *c, const long double *value, const Expr *rate, uint32_t n) {
+  Num number;
+  if (value[CHOICE_FIRST] == 0 && value[CHOICE_SECOND] == 0) return expr_int(c->e->g, 0);
+  if (recognise_same(value, &number)) return expr_num(c->e->g, number);
+  Expr found = recognise_ratio(c, value);
   for (int ratio = 0; ratio < 2; ratio++)
     for (uint32_t k = 0; k < n && !found; k++) found = rate_multiple(c, value, rate[k], ratio);
   return found;

@@ -21,20 +21,15 @@ Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt);
 /* x as a rational p/q that is short against the digits of x; 0: it is none. */
 int recognise_rational(long double x, Num *out);
 
-/* Whether the value is the same rational at the first two choices. */
-int recognise_same(const long double *value, Num *out);
-
-/* A rational times p or 1/p of one parameter, or times a ratio or product of two, from the first two choices alone; 0: none. */
-Expr recognise_ratio(const Choices *c, const long double *value);
+/* From the first two choices alone: 0, a rational, a rational times p or 1/p of one parameter or times a ratio or product of two, or a rational or
+ * such a product times rate^e for one of n rates, expressions of parameters, e = -2, -1, 1 or 2; 0: none. */
+Expr recognise_by_two(const Choices *c, const long double *value, const Expr *rate, uint32_t n);
 
 /* A sum of parameters times small fractions, plus a fraction (m1 + m2), from value[2 + n]; 0: none takes these values. */
 Expr recognise_linear(const Choices *c, const long double *value);
 
 /* Such a sum over a parameter, or over none: (k + 2 c)/m. */
 Expr recognise_quotient(const Choices *c, const long double *value);
-
-/* A rational, or else a result of recognise_ratio, times rate^e for one of n rates, expressions of parameters, e = -2, -1, 1 or 2; 0: none. */
-Expr recognise_with_rates(const Choices *c, const long double *value, const Expr *rate, uint32_t n);
 
 /* The monomial with these values at all 2 + n choices; 0: none. */
 Expr recognise_monomial(const Choices *c, const long double *value);

@@ -203,17 +203,9 @@ static Expr symbolic(const BracketFit *w, uint32_t a, uint32_t b) {
  * recognised. */
 static Expr recognise(const BracketFit *w, long double *const *fits, size_t place) {
   long double *x = ARENA_ARRAY(w->scratch, long double, 2 + w->choices.n);
-  int zero = 1;
-  Num c;
-  for (uint32_t k = 0; k < 2 + w->choices.n; k++) {
-    x[k] = fits[k][place];
-    zero = zero && x[k] == 0;
-    if (isnan(x[k])) return 0;
-  }
-  if (zero) return expr_int(w->g, 0);
-  if (recognise_same(x, &c)) return expr_num(w->g, c);
-  Expr known = recognise_ratio(&w->choices, x);
-  if (!known) known = recognise_with_rates(&w->choices, x, w->rates.at, w->rates.n);
+  for (uint32_t k = 0; k < 2 + w->choices.n; k++)
+    if (isnan(x[k] = fits[k][place])) return 0;
+  Expr known = recognise_by_two(&w->choices, x, w->rates.at, w->rates.n);
   if (!known) known = recognise_linear(&w->choices, x);
   return known ? known : recognise_monomial(&w->choices, x);
 }
@@ -306,15 +298,10 @@ static const char *reason_against(const Eqns *e, uint32_t r) {
 Algebra brackets_find(Eqns *e, const FoundSymmetries *of) {
   Algebra out = {.n = of->all.n, .why_not = reason_against(e, of->all.n)};
   BracketFit w = {.e = e, .g = e->g, .of = of, .n = eqns_coordinates(e), .r = of->all.n, .pairs = of->all.n * (of->all.n - 1) / 2, .out = &out};
-  SymId *q = ARENA_ARRAY(e->m->arena, SymId, 2 * (size_t)w.n + 1), *v = q + w.n;
   if (out.why_not || of->all.n < 2) return out;
   if (e->n && !e->mass_known) eqns_derive_mass(e);
-  for (uint32_t i = 0; i < w.n; i++) {
-    q[i] = eqns_coordinate(e, i);
-    v[i] = e->n ? e->m->coords.at[i].v : e->m->states.at[e->first.at[i]].rate;
-  }
-  w.q = q;
-  w.v = v;
+  w.q = eqns_symbols(e, 0);
+  w.v = eqns_symbols(e, 1);
   normal_with_scratch(e->g, compute_brackets, &w);
   return out;
 }

@@ -202,21 +202,6 @@ static uint32_t bodies_with(const CoordinateNames *e, uint32_t axis) {
   return n;
 }
 
-/* Whether the linear part turns two directions, mixing the bodies: xi_x = -S y, xi_y = S x. */
-static int mixes_bodies(const CoordinateNames *e, const GeneratorRow *r) {
-  for (uint32_t j = 0; j < r->ansatz->xi.n; j++) {
-    if (expr_is_zero(e->g, r->c[1 + j])) continue;
-    uint32_t i = r->ansatz->xi.at[j].i, k = r->ansatz->xi.at[j].k - 1, a = name_axis(e, i), b = name_axis(e, k), found = 0;
-    if (a == AXIS_NONE || b == AXIS_NONE || a == b) return 0;
-    for (uint32_t other = 0; other < e->n && !found; other++)
-      for (uint32_t last = 0; last < e->n && !found; last++)
-        found = name_same_body(e->name[i], e->name[other]) && name_axis(e, other) == b && name_same_body(e->name[k], e->name[last]) &&
-                name_axis(e, last) == a && entry(e, r, 0, other, last + 1) == expr_neg(e->g, r->c[1 + j]);
-    if (!found) return 0;
-  }
-  return 1;
-}
-
 /* Whether xi is a multiple of n q (a turn in space) or q n (about the body's own axis): q the quaternion that begins at coordinate w, n its unit
  * vector `axis`. */
 static int turns_rotation(const CoordinateNames *e, const GeneratorRow *r, uint32_t w, uint32_t axis, int own) {
@@ -253,42 +238,12 @@ static int name_turn(const CoordinateNames *e, const GeneratorRow *r, FoundSymme
   return 0;
 }
 
-/* Whether the linear part of block m is antisymmetric. */
-static int block_turns(const CoordinateNames *e, const GeneratorRow *r, uint32_t m) {
+/* Whether the linear part of block 0 is antisymmetric. */
+static int block_turns(const CoordinateNames *e, const GeneratorRow *r) {
   for (uint32_t i = 0; i < e->n; i++)
     for (uint32_t j = 0; j <= i; j++)
-      if (entry(e, r, m, i, j + 1) != expr_neg(e->g, entry(e, r, m, j, i + 1))) return 0;
+      if (entry(e, r, 0, i, j + 1) != expr_neg(e->g, entry(e, r, 0, j, i + 1))) return 0;
   return 1;
-}
-
-/* Whether any block shifts a coordinate that the linear part of block 0 leaves fixed. */
-static int shifts_beside(const CoordinateNames *e, const GeneratorRow *r) {
-  for (uint32_t i = 0; i < e->n; i++) {
-    int shifted = 0, alone = 1;
-    for (uint32_t m = 0; m < r->blocks; m++) shifted = shifted || !expr_is_zero(e->g, entry(e, r, m, i, 0));
-    for (uint32_t j = 0; j < e->n && shifted && alone; j++) alone = expr_is_zero(e->g, entry(e, r, 0, i, j + 1));
-    if (shifted && alone) return 1;
-  }
-  return 0;
-}
-
-/* Name of a linear part in block 0 with shifts in one block or several. */
-static const char *affine_name(const CoordinateNames *e, const GeneratorRow *r, Parts p) {
-  if (!block_turns(e, r, 0)) return "affine map of the coordinates";
-  if (shifts_beside(e, r)) return "screw: a rotation and a translation at once";
-  return p.shift > 1 ? "rotation about a point that moves" : "rotation about another point";
-}
-
-/* Whether the linear part has entries off the diagonal. */
-static int mixes(const CoordinateNames *e, const GeneratorRow *r) {
-  for (uint32_t j = 0; j < r->ansatz->xi.n; j++)
-    if (r->ansatz->xi.at[j].k && r->ansatz->xi.at[j].k != r->ansatz->xi.at[j].i + 1 && !expr_is_zero(e->g, r->c[1 + j])) return 1;
-  return 0;
-}
-
-static const char *scaling_name(const CoordinateNames *e, const GeneratorRow *r, Parts p) {
-  if (mixes(e, r)) return p.shift ? "scaling with an affine map of the coordinates" : "scaling with a linear map of the coordinates";
-  return p.shift > 1 ? "scaling about a point that moves" : p.shift ? "scaling about another point" : "scaling";
 }
 
 static void name_linear(const CoordinateNames *e, const GeneratorRow *r, FoundSymmetry *to) {
@@ -302,14 +257,7 @@ static void name_linear(const CoordinateNames *e, const GeneratorRow *r, FoundSy
     to->of_all = all;
     const char *whole = all && bodies > 1 ? "total angular momentum" : "angular momentum";
     to->name = space || axis != 2 ? arena_printf(e->arena, "%s about %s", whole, axis_text(axis)) : whole;
-  } else if (mixes_bodies(e, r)) to->name = "angular momentum of a part of the motion";
-  else to->name = block_turns(e, r, 0) ? "rotation among coordinates" : "linear map of the coordinates";
-}
-
-static int stretches(const CoordinateNames *e, const GeneratorRow *r) {
-  for (uint32_t i = 0; i < e->n; i++)
-    if (!expr_is_zero(e->g, entry(e, r, 0, i, i + 1))) return 1;
-  return 0;
+  } else to->name = block_turns(e, r) ? "rotation among coordinates" : "linear map of the coordinates";
 }
 
 void name_symmetry(const CoordinateNames *e, const GeneratorRow *r, FoundSymmetry *to) {
@@ -325,26 +273,13 @@ void name_symmetry(const CoordinateNames *e, const GeneratorRow *r, FoundSymmetr
   } else if (is_energy(p)) {
     to->kind = SYMMETRY_ENERGY;
     to->name = "energy";
-  } else if (p.tau == 1) to->name = stretches(e, r) ? "energy in a frame that stretches" : "energy in a moving frame";
+  } else if (p.tau == 1) to->name = "energy in a moving frame";
   else if (!p.tau && !p.linear && p.shift == 1) name_shift(e, r, to);
   else if (!p.tau && !p.linear && p.shift == 2) name_boost(e, r, to);
   else if (!p.tau && !p.shift && p.linear == 1) name_linear(e, r, to);
-  else if (p.tau == 2 && p.linear == 1) {
+  else if (p.tau == 2 && (p.linear == 1 || p.linear == 3)) {
     to->kind = SYMMETRY_SCALING;
-    to->name = scaling_name(e, r, p);
-  } else if (p.tau == 2 && p.linear == 3 && block_turns(e, r, 1)) {
-    to->kind = SYMMETRY_SCALING;
-    to->name = "scaling in a frame that turns";
+    to->name = "scaling";
   } else if (p.tau & 4) to->name = "expansion";
-  else if (!p.tau && p.linear == 1) to->name = affine_name(e, r, p);
-}
-
-int has_galilean_charges(const FoundSymmetries *all) {
-  uint32_t seen[SYMMETRY_SCALING + 1] = {0};
-  for (uint32_t k = 0; k < all->all.n; k++) {
-    const FoundSymmetry *s = &all->all.at[k];
-    if (s->kind == SYMMETRY_ENERGY) seen[s->kind] = 7;
-    else if (s->of_all) seen[s->kind] |= 1u << s->axis;
-  }
-  return seen[SYMMETRY_ENERGY] && seen[SYMMETRY_MOMENTUM] == 7 && seen[SYMMETRY_ROTATION] == 7 && seen[SYMMETRY_BOOST] == 7;
+  else if (!p.tau && p.linear == 1) to->name = block_turns(e, r) ? "rotation and translation at once" : "affine map of the coordinates";
 }

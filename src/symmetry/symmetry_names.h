@@ -2,7 +2,7 @@
 #ifndef LAGC_SYMMETRY_SYMMETRY_NAMES_H
 #define LAGC_SYMMETRY_SYMMETRY_NAMES_H
 
-#include "symmetry/found_symmetry.h"
+#include "symmetry/find_symmetries.h"
 #include "symmetry/generator_table.h"
 
 /* A row of a table with recognised coefficients: those of the generator by = (xi, tau). */
@@ -38,8 +38,5 @@ void orient_generator(const CoordinateNames *e, GeneratorRow *row);
 
 /* Sets kind, name, axis and of_all of a found symmetry from its row. */
 void name_symmetry(const CoordinateNames *e, const GeneratorRow *row, FoundSymmetry *to);
-
-/* Whether energy, three momenta, three angular momenta and three boosts are among them. */
-int has_galilean_charges(const FoundSymmetries *all);
 
 #endif

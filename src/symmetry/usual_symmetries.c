@@ -1,5 +1,5 @@
 /* Builds usual generators, proves each by noether_prove, and lists the proved ones. */
-#include "symmetry/usual_symmetries.h"
+#include "symmetry/find_symmetries_impl.h"
 
 #include "mech/lagrange.h"
 #include "symmetry/symmetry_names.h"

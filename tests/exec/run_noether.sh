@@ -134,7 +134,7 @@ let tip = R*(0, 0, 1)
 kinetic = A/2*(w.x^2 + w.y^2) + C/2*w.z^2
 potential = g*tip.z
 END
-check "a screw is no rotation" says "^Q2: screw: a rotation and a translation at once" noether "$TMP/screw.lag"
+check "a screw is no rotation" says "^Q2: rotation and translation at once" noether "$TMP/screw.lag"
 check "turns in space and of the body's own, together" says "^Q3: turns about z in space and about the body's own: the difference of the angular momenta" noether "$TMP/top.lag"
 printf "model m\ncoord x\nlagrangian = x'^4/4 + x'^2/2 - x^2/2\n" >"$TMP/quartic.lag"
 check "a mass matrix with velocities is dp/dq', not p over q'" says "^mass matrix: M = dp/dq'" derive "$TMP/quartic.lag" --hamiltonian

@@ -122,53 +122,6 @@ static void test_textbook(void **state) {
   check_textbook(CHAIN ENERGIES, 9);
 }
 
-/* --- sums without lets --- */
-
-/* The same chain, each position written out as a sum over the links before it. */
-#define EXPANDED                                                                                                               \
-  "model m\nconst N = %d\ncoord th[N]\nparam m = 1.3 > 0, l = 0.7 > 0, g = 9.81 > 0\n"                                        \
-  "kinetic = sum(i in 1..N, m/2*(sum(j in 1..i, l*cos(th[j])*th[j]')^2 + sum(j in 1..i, l*sin(th[j])*th[j]')^2))\n"              \
-  "potential = -sum(i in 1..N, m*g*sum(j in 1..i, l*cos(th[j])))\n"
-
-static void test_expanded(void **state) {
-  (void)state;
-  check_textbook(EXPANDED, 30);
-  Arena *arena = arena_new(NULL);
-  uint32_t few = check(arena_printf(arena, EXPANDED, 30), 1), many = check(arena_printf(arena, EXPANDED, 60), 1);
-  assert_true(many < 2.2*few);
-  arena_free(arena);
-}
-
-/* M = diag(m_i) + c w w^T: x'' = (f_i - c w_i s)/m_i with s = sum w f/m / (1 + c sum w^2/m) (J. Sherman, W. J. Morrison, Ann. Math. Statist. 21
- * (1950) 124, DOI 10.1214/aoms/1177729893). */
-static void test_rank_one(void **state) {
-  (void)state;
-  enum { N = 200 };
-  Arena *arena = arena_new(NULL);
-  Eqns *e = equations(arena, arena_printf(arena, "model m\nconst N = %d\ncoord x[N]\nparam c = 0.3 > 0\n"
-                                                 "kinetic = sum(i in 1..N, (1 + i/N)/2*x[i]'^2) + c/2*sum(i in 1..N, (1 + i/100)*x[i]')^2\n"
-                                                 "potential = sum(i in 1..N, x[i]^4/4)\n", N), NULL);
-  assert_non_null(e);
-  assert_false(e->mass_known);
-  Prog *p = lower_accel(e, 0);
-  assert_true(ops_total(prog_count(p)) < 20*N);
-  const Real *v = random_point(e), c = 0.3L;
-  Real *got = ARENA_ARRAY(arena, Real, N), top = 0, under = 1, size = 0;
-  assert_int_equal(run_prog(e, p, v, got, NULL), 0);
-  for (int i = 0; i < N; i++) {
-    Real m = 1 + (i + 1)/(Real)N, x = v[e->m->coords.at[i].q];
-    Real by = 1 + (i + 1)/100.0L;
-    top -= by*x*x*x/m;
-    under += c*by*by/m;
-    size = fmaxl(size, fabsl(x*x*x/m));
-  }
-  for (int i = 0; i < N; i++) {
-    Real m = 1 + (i + 1)/(Real)N, x = v[e->m->coords.at[i].q], want = (-x*x*x - c*(1 + (i + 1)/100.0L)*top/under)/m;
-    assert_true(fabsl(got[i] - want) <= N*1e-16L*size); /* N eliminations of 64 bits, one after the other */
-  }
-  arena_free(arena);
-}
-
 /* A model text for a length. */
 typedef const char *(*Writer)(Arena *a, int n);
 
@@ -338,7 +291,7 @@ static void test_long(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_textbook), cmocka_unit_test(test_expanded), cmocka_unit_test(test_rank_one), cmocka_unit_test(test_chains), cmocka_unit_test(test_net),
+    cmocka_unit_test(test_textbook), cmocka_unit_test(test_chains), cmocka_unit_test(test_net),
     cmocka_unit_test(test_short_ones_stay_dense), cmocka_unit_test(test_indefinite), cmocka_unit_test(test_undeclared_signs), cmocka_unit_test(test_consistent_mass), cmocka_unit_test(test_long),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
