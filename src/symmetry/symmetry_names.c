@@ -202,6 +202,21 @@ static uint32_t bodies_with(const CoordinateNames *e, uint32_t axis) {
   return n;
 }
 
+/* Whether the linear part turns two directions, mixing the bodies: xi_x = -S y, xi_y = S x. */
+static int mixes_bodies(const CoordinateNames *e, const GeneratorRow *r) {
+  for (uint32_t j = 0; j < r->ansatz->xi.n; j++) {
+    if (expr_is_zero(e->g, r->c[1 + j])) continue;
+    uint32_t i = r->ansatz->xi.at[j].i, k = r->ansatz->xi.at[j].k - 1, a = name_axis(e, i), b = name_axis(e, k), found = 0;
+    if (a == AXIS_NONE || b == AXIS_NONE || a == b) return 0;
+    for (uint32_t other = 0; other < e->n && !found; other++)
+      for (uint32_t last = 0; last < e->n && !found; last++)
+        found = name_same_body(e->name[i], e->name[other]) && name_axis(e, other) == b && name_same_body(e->name[k], e->name[last]) &&
+                name_axis(e, last) == a && entry(e, r, 0, other, last + 1) == expr_neg(e->g, r->c[1 + j]);
+    if (!found) return 0;
+  }
+  return 1;
+}
+
 /* Whether xi is a multiple of n q (a turn in space) or q n (about the body's own axis): q the quaternion that begins at coordinate w, n its unit
  * vector `axis`. */
 static int turns_rotation(const CoordinateNames *e, const GeneratorRow *r, uint32_t w, uint32_t axis, int own) {
@@ -257,7 +272,8 @@ static void name_linear(const CoordinateNames *e, const GeneratorRow *r, FoundSy
     to->of_all = all;
     const char *whole = all && bodies > 1 ? "total angular momentum" : "angular momentum";
     to->name = space || axis != 2 ? arena_printf(e->arena, "%s about %s", whole, axis_text(axis)) : whole;
-  } else to->name = block_turns(e, r) ? "rotation among coordinates" : "linear map of the coordinates";
+  } else if (mixes_bodies(e, r)) to->name = "angular momentum of a part of the motion";
+  else to->name = block_turns(e, r) ? "rotation among coordinates" : "linear map of the coordinates";
 }
 
 void name_symmetry(const CoordinateNames *e, const GeneratorRow *r, FoundSymmetry *to) {
