@@ -120,7 +120,7 @@ static int give_member(const Assign *s, const int64_t *at, AstId id, Value v) {
   Span span = ast_expr(b->ast, id)->span;
   if (!v.e) return 0;
   if (v.n != s->parts) {
-    diag_error(b->diags, span, "`%s` is %s, and %s is given here", member_name(b, s->e->name, at, s->e->ndims), shape_text(b, s->parts),
+    diag_error(b->diags, span, "`%s` is %s, and %s is given here", member_name(b->ast, s->e->name, at, s->e->ndims), shape_text(b, s->parts),
                shape_text(b, v.n));
     return 0;
   }

@@ -238,7 +238,7 @@ void finish_observe(Builder *b, uint32_t index, Value v) {
     diag_error(b->diags, span, "`%s` is declared in [%s], and this is %s", o.name, o.unit.text, in_dim(b, v.dim));
     explain_dims(b, v.dim, o.unit.dim);
   }
-  b->observes.at[index].value.unit = o.unit.text;
+  b->state[ENT_OBSERVE].at[index].value.unit = o.unit.text;
   Name stem = o.name;
   for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
     o.value = v.at[k];
@@ -275,7 +275,7 @@ static void apply_unused_lets(Builder *b) {
   for (uint32_t i = 0; i < b->lets.n; i++) {
     if (b->lets.at[i].stmt == wrong) continue;
     resolve_let(b, i);
-    if (!b->lets.at[i].value.e) wrong = b->lets.at[i].stmt;
+    if (!b->state[ENT_LET].at[i].value.e) wrong = b->lets.at[i].stmt;
   }
 }
 
@@ -365,7 +365,6 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   m->g = b->g;
   m->written = expr_map(a);
   m->dims = b->dims;
-  m->builder = b;
   m->time = declare_symbol(b, SYM_TIME, 0, intern(ast->names, "t"), SIGN_UNKNOWN, dim_base(b->dims, DIM_TIME));
   m->pi = declare_symbol(b, SYM_CONST, 0, intern(ast->names, "pi"), SIGN_POSITIVE, DIM_NONE);
   m->energy_sym = declare_symbol(b, SYM_LOCAL, 0, intern(ast->names, "energy"), SIGN_UNKNOWN, DIM_ANY);
@@ -450,6 +449,14 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   return b;
 }
 
+static const Declarations *declarations_of(const Builder *b) {
+  Declarations *d = ARENA_NEW(b->arena, Declarations);
+  *d = (Declarations){
+      .ast = b->ast, .diags = b->diags, .dims = b->dims, .scope = b->scope, .members = b->members, .constraints = b->constraints, .rotations = b->rotations,
+      .active = b->active, .lets = b->lets, .functions = b->functions, .observes = b->observes, .constants = b->constants};
+  return d;
+}
+
 Model *model_build(Ast *ast, const ModelChoice *choice) {
   Builder *b = build(ast, choice, 0);
   if (!ast->diags->errors && is_first_order(b->m)) {
@@ -461,6 +468,8 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   fill_inferred_units(b);
   if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
+  command_values(b, choice->values, choice->nvalues);
+  b->m->declared = declarations_of(b);
   return ast->diags->errors ? NULL : b->m;
 }
 

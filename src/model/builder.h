@@ -1,10 +1,10 @@
-/* State of model_build, shared by the files of this folder; jets/ reads its scopes and declarations. */
+/* State of model_build, shared by the files of this folder. */
 #ifndef LAGC_BUILDER_H
 #define LAGC_BUILDER_H
 
+#include "model/declarations.h"
 #include "model/file_index.h"
 #include "model/model.h"
-#include "model/scope.h"
 
 typedef enum { TODO, DOING, DONE } Progress;
 
@@ -21,7 +21,6 @@ typedef enum {
 } Context;
 
 /* Value of an expression: a number, a vector of 2 or 3 components of one dimension, or a rotation (unit quaternion w, x, y, z). */
-enum { ROTATION = 4 };
 typedef struct {
   union {
     Expr e; /* the number, or component 0; 0: error, already reported */
@@ -36,24 +35,11 @@ typedef struct {
   Expr domain;   /* condition under which the text has a real value; 0: wherever the nodes have, or unknown (Builder.domains) */
 } Value;
 
-/* Current value of an index variable of `for`, `sum`, or a definition with an index. */
+/* Evaluation of a let, an observable or a function, when first needed. */
 typedef struct {
-  Name name;
-  int64_t at;
-} IndexVar;
-
-typedef VEC(IndexVar) IndexVars;
-
-/* A let, an observable (or one member of a family of them), evaluated when first needed; or a function. */
-typedef struct {
-  const AstStmt *stmt;
-  Name name, effect;
   Progress progress;
-  Value value; /* e is 0 after an error */
-  IndexVar index[2]; /* indices of a family member; name NULL: a number in the text */
-  const IndexVar *around; /* observables only: indices of the enclosing `for` */
-  uint32_t naround;
-} Definition;
+  Value value; /* e is 0 after an error; unused for a function: see Instance */
+} Evaluated;
 
 /* Instance of a user function for given argument shapes. Its body is evaluated once, with symbols as arguments and unknown
  * dimensions; each call substitutes its own. */
@@ -70,23 +56,11 @@ typedef struct {
   uint32_t errors;        /* error count before the evaluation */
 } Instance;
 
-typedef struct {
-  Name name, effect;
-  Value value; /* made of numbers and pi */
-  AstId given; /* expression of the file, or of -D; a bare number is in `unit` */
-  Unit unit;
-} Constant;
-
 /* A name declared without a unit, and the unknown that stands for its dimension. */
 typedef struct {
   Name name;
   Dim dim;
 } Undeclared;
-
-typedef struct {
-  const AstStmt *stmt;
-  Name effect;
-} Active;
 
 /* Start value of an angular velocity, `start omega(R) = (a, b, c)`. */
 typedef struct {
@@ -102,10 +76,9 @@ struct Builder {
   Arena *arena;
   ExprGraph *g;
   Model *m;
-  Scope scope, members;
+  Scope scope, members, constraints;
   Scope outputs; /* the scene's outputs by label; index into Scene.outputs */
-  Scope constraints; /* constraints by name; index of the first component in Model.constraints */
-  VEC(uint32_t) rotations; /* index of each rotation's first coordinate, w */
+  Rotations rotations;
   VEC(SpinStart) spins; /* start values of angular velocities */
   Scope *named; /* names of events, constraints and expectations; NULL: none yet */
   IndexVars index; /* indices of the `for` around the current statement */
@@ -119,10 +92,12 @@ struct Builder {
   ExprMap rates; /* time derivatives of definition nodes, memoised */
   EntKind needed_kind; /* kind and index of the definition that an evaluation waits for */
   uint32_t needed;
-  VEC(Active) active; /* statements that the scene uses */
-  VEC(Definition) lets, functions, observes; /* observes[i] belongs to Model.observes[i] */
+  Actives active;
+  Definitions lets, functions, observes;
+  VEC(Evaluated) state[ENT_BUILTIN]; /* [ENT_LET].at[i]: evaluation of lets[i]; so for ENT_FUNCTION and ENT_OBSERVE */
   VEC(Instance *) instances;
-  VEC(Constant) constants;
+  Constants constants;
+  VEC(Value) constant_values; /* made of numbers and pi */
   Dims *dims;
   VEC(Dim) dim_of; /* [SymId] */
   Dim energy;      /* dimension of L */
@@ -154,20 +129,11 @@ Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *un
 Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t primes, Span span, Context where);
 int index_in_range(Builder *b, const Entity *e, const int64_t *at, Span span);
 
-/* Offset of a member from the family's first scalar, in the model's array. */
-uint32_t member_offset(const Entity *e, const int64_t *at);
-
 /* Advances at[] to the next member, row by row; 0 after the last. */
 int next_member(const Entity *e, int64_t *at);
 
 /* Component k of u x v in space; for vectors of a plane component 2. */
 Expr cross_component(ExprGraph *g, const Expr *u, const Expr *v, int k);
-
-/* Name of a family member: "th[2]", "u[2,1]". */
-Name member_name(Builder *b, Name name, const int64_t *at, uint32_t ndims);
-
-/* Entity of member `at` of a family of lets or observables, or NULL. */
-const Entity *find_member(const Builder *b, const Entity *e, const int64_t *at);
 
 /* Evaluates an index or the end of a range to an integer; 0, reported, when the value is not an integer constant. */
 int resolve_whole(Builder *b, AstId id, Name effect, int64_t *out);
@@ -192,9 +158,6 @@ void report_many_indices(Builder *b, Span span);
 
 /* domain.c: conjunction of two conditions, each 0 where it always holds. */
 Expr domain_and(const Builder *b, Expr p, Expr q);
-
-/* Letter of component k of a value of n components: xyz, or wxyz for a rotation. */
-static inline char component_letter(uint32_t n, uint32_t k) { return "wxyz"[k + (n != ROTATION)]; }
 
 /* Shape for messages: "a number", "a vector of 3 components", "a rotation". */
 const char *shape_text(const Builder *b, uint32_t n);
@@ -321,10 +284,16 @@ double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what);
 /* resolve_number, with *digits as in base/decimal_literal.h, or NULL. */
 double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits);
 
+/* command_value.c: evaluates ModelChoice.values. */
+void command_values(Builder *b, CommandValue *values, uint32_t n);
+
 /* Value of a formula of numbers and pi. */
 long double constant_value(const Builder *b, Expr e);
 /* Decimal digits of a number times pi^-1, pi^0 or pi^1; NULL for other expressions. */
 const char *expression_digits(Builder *b, Expr e);
+
+/* Records a let, a function or an observable, without a value. */
+void add_definition(Builder *b, EntKind kind, Definition d);
 
 /* Evaluates a let or an observable, unless it has a value already. */
 void resolve_let(Builder *b, uint32_t index);

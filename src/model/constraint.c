@@ -55,7 +55,7 @@ static int sides_agree(Builder *b, const AstStmt *st, const Value *l, const Valu
 void add_constraint(Builder *b, const AstStmt *st, Name effect) {
   IndexRange r = {0};
   if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
-  Name name = member_name(b, st->name, r.lo, r.n);
+  Name name = member_name(b->ast, st->name, r.lo, r.n);
   check_name_is_new(b, "constraint", name, effect, st->name_span);
   Value left = resolve(b, st->lhs, IN_DYNAMICS, effect), right = resolve(b, st->rhs, IN_DYNAMICS, effect);
   if (!left.e || !right.e || !sides_agree(b, st, &left, &right)) return;
@@ -119,7 +119,7 @@ void add_contact(Builder *b, const AstStmt *st, Name effect) {
   Model *m = b->m;
   IndexRange r = {0};
   if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
-  Name name = member_name(b, st->name, r.lo, r.n);
+  Name name = member_name(b->ast, st->name, r.lo, r.n);
   check_name_is_new(b, "constraint", name, effect, st->name_span);
   Value gap = resolve(b, st->lhs, IN_DYNAMICS, effect), e = resolve(b, st->rhs, IN_DYNAMICS, effect);
   if (!gap.e || !e.e || !check_contact(b, st, name, &gap, &e)) return;
@@ -147,7 +147,7 @@ static Name named_constraint(Eval *ev, AstId id, Name *effect) {
   }
   if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME) *effect = ast_expr(b->ast, x->a)->name;
   else if (x->kind != AST_NAME) return NULL;
-  return member_name(b, x->name, at, n < 2 ? n : 2);
+  return member_name(b->ast, x->name, at, n < 2 ? n : 2);
 }
 
 static Value report_unknown(Builder *b, Span span, Name name) {

@@ -160,5 +160,6 @@ void declare_const(Builder *b, const AstStmt *st, Name effect) {
     v.unit = unit.text;
   }
   if (!v.e) v = (Value){.e = expr_int(b->g, 1), .dim = DIM_ANY}; /* reported */
-  vec_push(b->arena, &b->constants, ((Constant){st->name, effect, v, d ? d->expr : st->rhs, unit}));
+  vec_push(b->arena, &b->constants, ((Constant){st->name, effect, d ? d->expr : st->rhs, unit}));
+  vec_push(b->arena, &b->constant_values, v);
 }

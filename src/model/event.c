@@ -100,7 +100,7 @@ void add_event(Builder *b, const AstStmt *st, Name effect) {
   Event ev = {.name = st->name, .span = st->span, .direction = st->direction};
   IndexRange r = {0};
   if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
-  ev.name = member_name(b, st->name, r.lo, r.n);
+  ev.name = member_name(b->ast, st->name, r.lo, r.n);
   check_name_is_new(b, "event", ev.name, effect, st->name_span);
   check_set_once(b, st);
   Value g = resolve(b, st->lhs, IN_DYNAMICS, effect);

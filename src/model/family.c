@@ -1,6 +1,4 @@
 /* Families (indexed declarations): index ranges, offsets and names of members, and `for` loops over statements. */
-#include <stdio.h>
-
 #include "model/builder.h"
 
 uint32_t member_offset(const Entity *e, const int64_t *at) {
@@ -22,18 +20,14 @@ int next_member(const Entity *e, int64_t *at) {
   return range_next(&r, at);
 }
 
-Name member_name(Builder *b, Name name, const int64_t *at, uint32_t ndims) {
+Name member_name(const Ast *ast, Name name, const int64_t *at, uint32_t ndims) {
   if (ndims == 0) return name;
-  if (ndims == 1) return intern_printf(b, "%s[%lld]", name, (long long)at[0]);
-  return intern_printf(b, "%s[%lld,%lld]", name, (long long)at[0], (long long)at[1]);
+  const char *second = ndims == 2 ? arena_printf(ast->arena, ",%lld", (long long)at[1]) : "";
+  return intern(ast->names, arena_printf(ast->arena, "%s[%lld%s]", name, (long long)at[0], second));
 }
 
-const Entity *find_member(const Builder *b, const Entity *e, const int64_t *at) {
-  char text[512];
-  int n = e->ndims == 1 ? snprintf(text, sizeof text, "%s[%lld]", e->name, (long long)at[0])
-                        : snprintf(text, sizeof text, "%s[%lld,%lld]", e->name, (long long)at[0], (long long)at[1]);
-  if (n < 0 || (size_t)n >= sizeof text) return NULL;
-  return scope_own(&b->members, intern(b->ast->names, text), e->effect);
+const Entity *find_member(const Ast *ast, const Scope *members, const Entity *e, const int64_t *at) {
+  return scope_own(members, member_name(ast, e->name, at, e->ndims), e->effect);
 }
 
 int range_fits(Builder *b, int64_t from, int64_t to, Span span) {

@@ -232,7 +232,7 @@ typedef struct {
   ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
   SymId energy_sym; /* placeholder for the energy p q' - L in outputs and expects, which mech replaces */
   Unit energy_unit;
-  struct Builder *builder; /* for the self-check */
+  const struct Declarations *declared; /* names and definitions of the text (declarations.h), for the self-check */
 } Model;
 
 /* Name of built-in function i; NULL past the end. */
@@ -275,6 +275,13 @@ typedef struct {
   Name name;
 } Section;
 
+/* A value `name=value` of the command line for a simulator, and what it is in the declared unit of its name. */
+typedef struct {
+  AstId target, value; /* target 0: a time */
+  double number;
+  const char *digits;  /* as in base/decimal_literal.h, or NULL */
+} CommandValue;
+
 /* Arguments of model_build: scene, effects, and definitions from the command line. */
 typedef struct {
   const char *scene; /* NULL: the first */
@@ -288,6 +295,8 @@ typedef struct {
   uint32_t nextra_outputs;
   const CommandInput *given; /* values that override the scene's */
   uint32_t ngiven;
+  CommandValue *values; /* model_build evaluates them; an error is reported when a run cannot set a target, or a value does not fit it */
+  uint32_t nvalues;
   Section section;
   const char *fix; /* parameters to compile in as numbers, with the scene's values: "g,drag.c", "all"; NULL: none */
   int unfixed;     /* set by callers that ignore the command line's --fix */
@@ -301,10 +310,6 @@ Model *model_build(Ast *ast, const ModelChoice *choice);
 
 /* Source text of a span on one line, without comments, its middle left out where it is long. */
 const char *short_text(const Ast *ast, Span s);
-
-/* Converts a value from the command line for `target` (0: a time) into a number in the target's declared unit, *digits as
- * in base/decimal_literal.h or NULL. 0, reported, when a run cannot set the target, or the value does not fit it. */
-int model_command_value(const Model *m, AstId target, AstId value, double *out, const char **digits);
 
 /* Whether a symbol is the input that says whether a contact is closed. */
 static inline int model_is_contact_switch(const Model *m, SymId sym) {

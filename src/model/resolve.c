@@ -248,16 +248,22 @@ static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   return ev;
 }
 
-/* Definition of a let, an observable, or the function of an instance. */
-static Definition *definition(Builder *b, EntKind kind, uint32_t index) {
-  if (kind == ENT_FUNCTION) return &b->functions.at[b->instances.at[index]->function];
-  return kind == ENT_LET ? &b->lets.at[index] : &b->observes.at[index];
+static Definitions *definitions(Builder *b, EntKind kind) { return kind == ENT_FUNCTION ? &b->functions : kind == ENT_LET ? &b->lets : &b->observes; }
+
+void add_definition(Builder *b, EntKind kind, Definition d) {
+  Definitions *list = definitions(b, kind);
+  vec_push(b->arena, list, d);
+  vec_push(b->arena, &b->state[kind], (Evaluated){0});
 }
 
+/* Index of the let, the observable, or the function of the instance, that an evaluation is for. */
+static uint32_t definition_index(const Builder *b, EntKind kind, uint32_t index) { return kind == ENT_FUNCTION ? b->instances.at[index]->function : index; }
+
 static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
-  Definition *d = definition(b, kind, index);
+  uint32_t place = definition_index(b, kind, index);
+  const Definition *d = &definitions(b, kind)->at[place];
   Eval *ev = begin(b, d->stmt->rhs, kind == ENT_OBSERVE ? IN_OBSERVE : IN_DYNAMICS, d->effect);
-  d->progress = DOING;
+  b->state[kind].at[place].progress = DOING;
   ev->kind = kind;
   ev->definition = index;
   ev->in_statement = 0;
@@ -272,12 +278,12 @@ static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
 }
 
 /* Wraps the value of a let in a definition node, one per component: `r.x`. */
-static void finish_let(Builder *b, Definition *d, Value v) {
+static Value let_value(Builder *b, const Definition *d, Value v) {
   for (uint32_t k = 0; v.e && k < component_count(&v); k++) {
     Name name = v.n ? intern_printf(b, "%s.%c", d->name, component_letter(v.n, k)) : d->name;
     v.at[k] = expr_def(b->g, name, v.at[k]);
   }
-  d->value = v;
+  return v;
 }
 
 /* Internal error: an expression failed without a message. */
@@ -288,7 +294,9 @@ static void report_missing_message(Builder *b, AstId id) {
 
 static void finish_definition(Eval *ev) {
   Builder *b = ev->b;
-  Definition *d = definition(b, ev->kind, ev->definition);
+  uint32_t place = definition_index(b, ev->kind, ev->definition);
+  const Definition *d = &definitions(b, ev->kind)->at[place];
+  Evaluated *state = &b->state[ev->kind].at[place];
   Value v = *value_of(ev, ev->root);
   if (!v.e) report_missing_message(b, ev->root);
   if (ev->kind == ENT_OBSERVE && v.bare && d->stmt->unit.n) {
@@ -297,15 +305,10 @@ static void finish_definition(Eval *ev) {
     v.dim = own.dim;
   }
   v.bare = v.point = 0;
-  d->progress = DONE;
-  if (ev->kind == ENT_LET) {
-    finish_let(b, d, v);
-  } else if (ev->kind == ENT_OBSERVE) {
-    d->value = v;
-    finish_observe(b, ev->definition, v);
-  } else {
-    finish_instance(b, b->instances.at[ev->definition], v);
-  }
+  state->progress = DONE;
+  state->value = ev->kind == ENT_LET ? let_value(b, d, v) : v;
+  if (ev->kind == ENT_OBSERVE) finish_observe(b, place, v);
+  if (ev->kind == ENT_FUNCTION) finish_instance(b, b->instances.at[ev->definition], v);
 }
 
 static void run_all(Builder *b, EvalStack *stack) {
@@ -331,11 +334,11 @@ static void resolve_definition(Builder *b, EntKind kind, uint32_t index) {
 }
 
 void resolve_let(Builder *b, uint32_t index) {
-  if (b->lets.at[index].progress == TODO) resolve_definition(b, ENT_LET, index);
+  if (b->state[ENT_LET].at[index].progress == TODO) resolve_definition(b, ENT_LET, index);
 }
 
 void resolve_observe(Builder *b, uint32_t index) {
-  if (b->observes.at[index].progress == TODO) resolve_definition(b, ENT_OBSERVE, index);
+  if (b->state[ENT_OBSERVE].at[index].progress == TODO) resolve_definition(b, ENT_OBSERVE, index);
 }
 
 Value resolve_nodes(Builder *b, AstId id, Context where, Name effect, Expr *nodes) {

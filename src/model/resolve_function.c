@@ -149,6 +149,6 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
   }
   uint32_t place = find_instance(b, e->index, nargs, shapes, x->span);
   if (b->instances.at[place]->done) return call_instance(ev, x, b->instances.at[place]);
-  suspend_for(ev, ENT_FUNCTION, place, f->progress, x->name, x->span);
+  suspend_for(ev, ENT_FUNCTION, place, b->state[ENT_FUNCTION].at[e->index].progress, x->name, x->span);
   return FAILED;
 }

@@ -34,7 +34,7 @@ void suspend_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name
 }
 
 static Value defined_value(Eval *ev, const Entity *e, Span span) {
-  const Definition *d = e->kind == ENT_LET ? &ev->b->lets.at[e->index] : &ev->b->observes.at[e->index];
+  const Evaluated *d = &ev->b->state[e->kind].at[e->index];
   if (d->progress == DONE) return d->value;
   suspend_for(ev, e->kind, e->index, d->progress, e->name, span);
   return FAILED;
@@ -89,7 +89,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
       v.unit = entity_unit(b, e)->text;
       return v;
     }
-    case ENT_CONST: return b->constants.at[e->index].value;
+    case ENT_CONST: return b->constant_values.at[e->index];
     case ENT_SYMMETRY: {
       const Symmetry *y = &b->m->symmetries.at[e->index];
       Value v = a_value(expr_symbol(b->g, y->charge)->node, y->unit.dim, 0);
@@ -108,7 +108,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
 
 Value whole_value(Eval *ev, const Entity *e, Span span) {
   if (!e->ndims || e->kind == ENT_NONE) return entity_value(ev, e, NULL, span);
-  Name one = member_name(ev->b, e->name, e->lo, e->ndims);
+  Name one = member_name(ev->b->ast, e->name, e->lo, e->ndims);
   diag_error(ev->b->diags, span, "`%s` is a family: say which member", e->name);
   diag_help(ev->b->diags, "the first is `%s`; `sum(i in ..., ...)` adds over all", one);
   return FAILED;
@@ -207,7 +207,7 @@ static int in_range(const Entity *e, const int64_t *at) {
 static void report_range(Builder *b, const Entity *e, const int64_t *at, Span span, const char *where) {
   StrBuf s = strbuf(b->arena);
   for (int k = 0; k < e->ndims; k++) sb_printf(&s, "%s%lld..%lld", k ? ", " : "", (long long)e->lo[k], (long long)e->hi[k]);
-  diag_error(b->diags, span, "`%s` is out of range%s", member_name(b, e->name, at, e->ndims), where);
+  diag_error(b->diags, span, "`%s` is out of range%s", member_name(b->ast, e->name, at, e->ndims), where);
   if (in_range(e, at)) diag_help(b->diags, "`%s` is defined in %s, but not for this member", e->name, sb_text(&s));
   else diag_help(b->diags, "the members are `%s[%s]`", e->name, sb_text(&s));
 }
@@ -239,7 +239,7 @@ static Value indexed_value(Eval *ev, const Entity *e, const AstExpr *x, int mome
   }
   const Entity *member = e;
   int listed = e->kind == ENT_LET || e->kind == ENT_OBSERVE;
-  if (in_range(e, at) && listed) member = find_member(b, e, at);
+  if (in_range(e, at) && listed) member = find_member(b->ast, &b->members, e, at);
   if (!in_range(e, at) || !member) {
     report_range(b, e, at, x->span, indices_text(ev));
     return FAILED;
@@ -303,7 +303,7 @@ Value member_value(Eval *ev, const AstExpr *x) {
 Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t primes, Span span, Context where) {
   Eval ev = {.b = b, .where = where, .in_statement = 1};
   const Entity *member = e;
-  if (e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE)) member = find_member(b, e, at);
+  if (e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE)) member = find_member(b->ast, &b->members, e, at);
   if (!member) return FAILED;
   if (member->kind == ENT_LET) resolve_let(b, member->index);
   if (member->kind == ENT_OBSERVE) resolve_observe(b, member->index);
