@@ -82,6 +82,12 @@ typedef struct {
   const char *does;
 } OptionRow;
 
+/* Parses argv. Returns 0 on a mistake, with the message and advice in *error. */
+int options_read(Arena *a, int argc, char **argv, Options *o, const char **error);
+
+/* Whether simulators compute with more digits than a double has. */
+int options_more_digits(const Options *o);
+
 /* Row i of each table; NULL past the end. */
 const CommandRow *command_row(size_t i);
 const OptionRow *option_row(size_t i);

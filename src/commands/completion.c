@@ -10,14 +10,13 @@
 
 #include "base/method_table.h"
 #include "base/words.h"
-#include "commands/options.h"
+#include "commands/command_table.h"
 #include "commands/commands.h"
 #include "commands/complete_bash.h" /* static const char *const complete_bash[]: generated from the scripts */
 #include "commands/complete_fish.h"
 #include "commands/complete_zsh.h"
-#include "commands/help.h"
 #include "model/model.h"
-#include "commands/settings.h"
+#include "commands/run_request.h"
 #include "syntax/parse.h"
 
 /* The command line before the cursor, parsed. */

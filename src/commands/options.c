@@ -1,9 +1,8 @@
 /* Parses the command line by the tables of command_table.c; mistakes are answered with the nearest word or the right command. */
-#include "commands/options.h"
+#include "commands/command_table.h"
 
 #include <string.h>
 
-#include "base/suggest.h"
 #include "base/words.h"
 #include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 

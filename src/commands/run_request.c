@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "commands/command_table.h"
-#include "commands/settings.h"
 #include "syntax/parse.h"
 
 typedef struct {

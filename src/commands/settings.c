@@ -1,5 +1,5 @@
 /* Values on the command line: parses -D, compiles in inputs and starts of rotations, converts units and formulas to plain numbers. */
-#include "commands/settings.h"
+#include "commands/run_request.h"
 
 #include <string.h>
 

@@ -18,7 +18,7 @@ typedef struct {
 } UnitCheck;
 
 typedef struct {
-  VEC(Expr) lagrangian, kinetic, potential, dissipation;
+  VEC(Expr) terms[4]; /* of L, T, V and dissipation, in the order of their kinds of statement */
   Span base[3]; /* the model's own statements of L, T, V */
   Span first;   /* the first nonzero energy */
   int failed;   /* an energy has no value: the dimension of L is unknown */
@@ -87,24 +87,20 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   } else {
     check_energy_unit(b, st, &v, en);
   }
-  switch (st->kind) {
-    case STMT_LAGRANGIAN: vec_push(b->arena, &en->lagrangian, v.e); return;
-    case STMT_KINETIC: vec_push(b->arena, &en->kinetic, v.e); return;
-    case STMT_POTENTIAL: vec_push(b->arena, &en->potential, v.e); return;
-    case STMT_DISSIPATION: vec_push(b->arena, &en->dissipation, v.e); return;
-    default: return; /* the caller passes these four */
-  }
+  vec_push(b->arena, &en->terms[st->kind - STMT_LAGRANGIAN], v.e);
+}
+
+static Expr sum_of_terms(Builder *b, const Energies *en, AstStmtKind kind) {
+  return expr_add_n(b->g, en->terms[kind - STMT_LAGRANGIAN].at, en->terms[kind - STMT_LAGRANGIAN].n);
 }
 
 static void finish_energies(Builder *b, const Energies *en) {
   Model *m = b->m;
   check_units_of_forces(b, en);
-  Expr l = expr_add_n(b->g, en->lagrangian.at, en->lagrangian.n);
-  Expr kinetic = expr_add_n(b->g, en->kinetic.at, en->kinetic.n);
-  Expr potential = expr_add_n(b->g, en->potential.at, en->potential.n);
-  if (en->dissipation.n) m->dissipation = expr_add_n(b->g, en->dissipation.at, en->dissipation.n);
-  if (!en->lagrangian.n && !en->kinetic.n && !en->potential.n) return;
-  if (!en->lagrangian.n) {
+  Expr l = sum_of_terms(b, en, STMT_LAGRANGIAN), kinetic = sum_of_terms(b, en, STMT_KINETIC), potential = sum_of_terms(b, en, STMT_POTENTIAL);
+  if (en->terms[3].n) m->dissipation = sum_of_terms(b, en, STMT_DISSIPATION);
+  if (!en->terms[0].n && !en->terms[1].n && !en->terms[2].n) return;
+  if (!en->terms[0].n) {
     m->kinetic = kinetic;
     m->potential = potential;
   }

@@ -141,9 +141,7 @@ int resolve_whole(Builder *b, AstId id, Name effect, int64_t *out);
 /* 1 if a range has at most RANGE_MAX members; 0, reported, if not. */
 int range_fits(Builder *b, int64_t from, int64_t to, Span span);
 
-/* Evaluates the ends of a range of at most RANGE_MAX members; 0, reported, on error. */
 enum { RANGE_MAX = 1000000 };
-int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, int64_t *to);
 
 /* Index list, `[2]` or `[i in 1..N, 3]`, as ranges; lo == hi for a single number. */
 typedef struct {
@@ -279,10 +277,9 @@ void declare_param(Builder *b, const AstStmt *st, Name effect);
 void declare_const(Builder *b, const AstStmt *st, Name effect);
 SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSign sign, Dim dim);
 
-/* Value of a constant expression (span, step, tolerance) in `unit`; NAN after an error. `what` names it in messages. */
-double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what);
-/* resolve_number, with *digits as in base/decimal_literal.h, or NULL. */
-double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits);
+/* Value of a constant expression (span, step, tolerance) in `unit`; NAN after an error. `what` names it in messages. *digits (or NULL) as in
+ * base/decimal_literal.h. */
+double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits);
 
 /* command_value.c: evaluates ModelChoice.values. */
 void command_values(Builder *b, CommandValue *values, uint32_t n);
@@ -315,9 +312,8 @@ void check_sign(Builder *b, const Param *p, Span span);
 /* Warns of parameters whose value, computed from others, contradicts their declared sign: a run refuses them. */
 void warn_signs(Builder *b);
 
-/* name_hints.c: adds a hint to the message about an unknown name, or an unknown `effect.name`. */
+/* name_hints.c: adds a hint to the message about an unknown name. */
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare);
-void advise_unknown_member(Builder *b, Name effect, Name name);
 /* Adds the equivalent of a function known from other languages or books; 0: the name is not known. */
 int advise_unknown_function(Builder *b, Name name);
 #define FOREIGN_CHOICES "piecewise where ifelse iif cases select cond"

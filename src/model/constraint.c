@@ -1,6 +1,6 @@
 /* Constraints and contacts: each becomes c = 0 in the model, left side minus right side, with a multiplier that outputs can name.
  * A contact is closed*gap = 0 plus two events: impact (the gap falls to 0) and release (the multiplier does). */
-#include "base/suggest.h"
+#include "base/words.h"
 #include "model/resolve_impl.h"
 
 /* Dimension of lambda: lambda c is an energy; for velocity constraints a power. */

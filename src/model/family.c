@@ -36,7 +36,8 @@ int range_fits(Builder *b, int64_t from, int64_t to, Span span) {
   return 0;
 }
 
-int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, int64_t *to) {
+/* Evaluates the ends of a range; 0, reported, on error. */
+static int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, int64_t *to) {
   if (!resolve_whole(b, lo, effect, from) || !resolve_whole(b, hi, effect, to)) return 0;
   return range_fits(b, *from, *to, span_join(ast_expr(b->ast, lo)->span, ast_expr(b->ast, hi)->span));
 }

@@ -2,11 +2,12 @@
 #ifndef LAGC_FILE_INDEX_H
 #define LAGC_FILE_INDEX_H
 
+#include "model/scope.h"
 #include "syntax/ast.h"
 
 typedef struct FileIndex {
-  uint32_t nslots;
-  const AstStmt **slots;                   /* [nslots, a power of 2] hash table of scenes and effects, the first of each name */
+  Scope scenes, effects;                   /* the first of each name: index into `named` */
+  VEC(const AstStmt *) named;
   const AstStmt *model, *scene, *effect;   /* the first named statement of each kind, or NULL */
   VEC(const AstStmt *) common;             /* all statements but scenes, in the file's order */
   VEC(const AstStmt *) repeated;           /* scenes and effects whose name was declared before */

@@ -1,6 +1,6 @@
 /* --fix: parameters that are compiled in as numbers. Marks them, evaluates them with the scene's values, numbers the others. */
 #include "model/builder.h"
-#include "base/suggest.h"
+#include "base/words.h"
 #include "sym/eval.h"
 
 /* --- which parameters --- */

@@ -45,7 +45,7 @@ void set_monitor(Builder *b, const AstStmt *st) {
   const AstExpr *x = ast_expr(b->ast, st->lhs);
   Unit none = unit_si(DIM_NONE, "1");
   int charge = charge_named(b, x);
-  Monitor mon = {.output = -1 - charge, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
+  Monitor mon = {.output = -1 - charge, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit", NULL)};
   mon.name = intern(b->ast->names, ast_text(b, st->lhs));
   mon.absolute = x->kind == AST_CALL && strcmp(x->name, "error") == 0;
   if (mon.limit <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a monitor's limit must be positive");

@@ -158,16 +158,12 @@ static int is_infinite(Num n) { return !isfinite(num_value(n)); }
 /* Refuses values that contain a number beyond the range of doubles, or one that rounding has destroyed. */
 static Value usable_value(Eval *ev, const AstExpr *x, Value v) {
   for (uint32_t k = 0; v.e && k < component_count(&v); k++) {
-    if (has_number(ev->b->g, v.at[k], is_infinite)) {
-      diag_error(ev->b->diags, x->span, "a number here is not finite");
-      diag_help(ev->b->diags, "numbers reach up to 1.8e308");
-      return FAILED;
-    }
-    if (has_number(ev->b->g, v.at[k], num_is_imprecise)) {
-      diag_error(ev->b->diags, x->span, "rounding leaves fewer than six digits of a number here");
-      diag_help(ev->b->diags, "write its result as one number: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
-      return FAILED;
-    }
+    int infinite = has_number(ev->b->g, v.at[k], is_infinite);
+    if (!infinite && !has_number(ev->b->g, v.at[k], num_is_imprecise)) continue;
+    diag_error(ev->b->diags, x->span, infinite ? "a number here is not finite" : "rounding leaves fewer than six digits of a number here");
+    diag_help(ev->b->diags, infinite ? "numbers reach up to 1.8e308" :
+              "write its result as one number: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
+    return FAILED;
   }
   return v;
 }
@@ -414,13 +410,8 @@ const char *expression_digits(Builder *b, Expr e) {
   return NULL;
 }
 
-double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what) {
-  const char *digits;
-  return resolve_digits(b, id, unit, what, &digits);
-}
-
-double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits) {
-  *digits = NULL;
+double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits) {
+  if (digits) *digits = NULL;
   Expr e = resolve_in(b, id, IN_CONST, NULL, unit);
   if (!e) return NAN;
   long double x = constant_value(b, e);
@@ -428,6 +419,6 @@ double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, 
     diag_error(b->diags, ast_expr(b->ast, id)->span, "%s is not a finite number", what);
     return NAN;
   }
-  *digits = expression_digits(b, e);
+  if (digits) *digits = expression_digits(b, e);
   return (double)x;
 }

@@ -93,10 +93,10 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e);
 /* The user function that x calls, or NULL. */
 const Entity *own_function(const Eval *ev, const AstExpr *x);
 
-/* rotation.c: product p q (rotation by q, then by p); vector v rotated by q; rotation coordinate as a value. */
+/* rotation.c: product p q (rotation by q, then by p); vector v rotated by q; rotation coordinate (rates: its rates) as a value. */
 Value rotation_product(Builder *b, const Value *p, const Value *q);
 Value rotation_turn(Builder *b, const Value *q, const Value *v);
-Value rotation_coordinate(const Builder *b, uint32_t coord);
+Value rotation_at(const Builder *b, uint32_t coord, int rates);
 
 /* Values of omega(R), turn(axis, angle), transpose(R). */
 Value omega_value(Eval *ev, const AstExpr *x);

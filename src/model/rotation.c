@@ -182,7 +182,7 @@ Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why) 
 
 /* --- the coordinate --- */
 
-static Value rotation_at(const Builder *b, uint32_t coord, int rates) {
+Value rotation_at(const Builder *b, uint32_t coord, int rates) {
   Value q = {.n = ROTATION, .dim = DIM_NONE};
   for (uint32_t k = 0; k < ROTATION; k++) {
     const Coord *c = &b->m->coords.at[coord + k];
@@ -190,8 +190,6 @@ static Value rotation_at(const Builder *b, uint32_t coord, int rates) {
   }
   return q;
 }
-
-Value rotation_coordinate(const Builder *b, uint32_t coord) { return rotation_at(b, coord, 0); }
 
 static Expr dot4(ExprGraph *g, const Value *p, const Value *q) {
   Expr pairs[8];

@@ -211,7 +211,7 @@ static Unit no_unit(void) { return unit_si(DIM_NONE, "1"); }
 static void set_every(Builder *b, const AstStmt *st) {
   Unit s = seconds(b);
   if (st->rhs) {
-    double every = resolve_number(b, st->rhs, &s, "the output interval");
+    double every = resolve_number(b, st->rhs, &s, "the output interval", NULL);
     if (every <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the output interval must be positive");
     b->m->scene.every = every;
   }
@@ -226,7 +226,7 @@ static void set_output(Builder *b, const AstStmt *st) {
 static void set_span(Builder *b, const AstStmt *st) {
   Unit s = seconds(b);
   Scene *sc = &b->m->scene;
-  sc->t1 = resolve_digits(b, st->rhs, &s, "the span", &sc->t1_digits);
+  sc->t1 = resolve_number(b, st->rhs, &s, "the span", &sc->t1_digits);
   sc->has_span = 1;
   if (sc->t1 == 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the span is empty");
 }
@@ -234,7 +234,7 @@ static void set_span(Builder *b, const AstStmt *st) {
 static void set_tolerance(Builder *b, const AstStmt *st) {
   Unit none = no_unit();
   uint32_t before = b->diags->errors;
-  b->m->scene.tolerance = resolve_number(b, st->rhs, &none, "the tolerance");
+  b->m->scene.tolerance = resolve_number(b, st->rhs, &none, "the tolerance", NULL);
   if (b->diags->errors > before || (b->m->scene.tolerance > 0 && b->m->scene.tolerance < 1)) return;
   diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the tolerance must be positive and below 1");
   diag_help(b->diags, "it is the relative error of a step: `tolerance 1e-9`");

@@ -149,29 +149,22 @@ static const char *probe_flag(Arena *a, const char *cc, const char *optimise, co
 /* Compiles and links with the flags that the simulator reports as LAG_BUILD: no contraction (same bits with and without fused multiply-add),
  * no vector stores, and the flag of the probe. */
 static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
-  Words argv = process_words(a, t->cc);
   const char *safe = probe_flag(a, t->cc, t->optimise, dir, error);
   if (!safe) return 0;
   char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc, t->optimise, *safe ? " " : "", safe);
   for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
     if (*c == '"' || *c == '\\') *c = ' ';
-  const char *fixed[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, build, "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
-  for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) vec_push(a, &argv, arena_strdup(a, fixed[i]));
-  for (const char *const *f = t->flags; *f; f++) vec_push(a, &argv, arena_strdup(a, *f));
-  if (*safe) vec_push(a, &argv, arena_strdup(a, safe));
-  for (size_t i = 0; i < n; i++) vec_push(a, &argv, arena_printf(a, "%s/%s", dir, texts[i].name));
-  vec_push(a, &argv, arena_printf(a, "-L%s", t->lib));
-  if (t->gsl) vec_push(a, &argv, arena_strdup(a, "-llag_gsl"));
-  vec_push(a, &argv, arena_printf(a, "-l%s", t->library));
-  if (t->gsl) {
-    vec_push(a, &argv, arena_strdup(a, "-lgsl"));
-    vec_push(a, &argv, arena_strdup(a, "-lgslcblas"));
-  }
-  if (t->needs) vec_push(a, &argv, arena_strdup(a, t->needs));
-  vec_push(a, &argv, arena_strdup(a, "-lm"));
-  vec_push(a, &argv, NULL);
+  const char *first[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, build, "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
+  const char *last[] = {arena_printf(a, "-L%s", t->lib), t->gsl ? "-llag_gsl" : "", arena_printf(a, "-l%s", t->library), t->gsl ? "-lgsl" : "",
+                        t->gsl ? "-lgslcblas" : "", t->needs ? t->needs : "", "-lm", NULL};
+  VEC(const char *) words = {0};
+  for (size_t i = 0; i < sizeof first / sizeof *first; i++) vec_push(a, &words, first[i]);
+  for (const char *const *f = t->flags; *f; f++) vec_push(a, &words, *f);
+  vec_push(a, &words, safe);
+  for (size_t i = 0; i < n; i++) vec_push(a, &words, arena_printf(a, "%s/%s", dir, texts[i].name));
+  for (size_t i = 0; i < sizeof last / sizeof *last; i++) vec_push(a, &words, last[i]);
   char *said = NULL;
-  int status = process_run(a, argv.at[0], argv.at, &said);
+  int status = run_compiler(a, t->cc, words.at, &said);
   if (status == 0) return 1;
   if (status == 127) *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
   else if (t->needs && said && strstr(said, "quadmath"))
