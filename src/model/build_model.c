@@ -316,8 +316,7 @@ static void check_whole(Builder *b) {
   Model *m = b->m;
   if (b->diags->errors) return; /* a missing part may be one that was refused */
   if (!m->coords.n && !m->states.n) {
-    diag_error(b->diags, m->span, "the model has no coordinates and no states");
-    diag_help(b->diags, "declare a coordinate: `coord x [m]`");
+    diag_error(b->diags, m->span, "the model has no coordinates and no states" HELP "declare a coordinate: `coord x [m]`");
   }
   if (m->coords.n && !m->lagrangian) {
     diag_error(b->diags, m->coords.at[0].span, "there are coordinates but no Lagrangian");

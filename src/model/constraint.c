@@ -36,10 +36,8 @@ void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span) {
 
 /* Shapes and dimensions of both sides; 0, reported, if they differ. The hint gives a bare number its unit. */
 static int sides_agree(Builder *b, const AstStmt *st, const Value *l, const Value *r) {
-  if (l->n != r->n) {
-    diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, l->n), shape_text(b, r->n));
-    return 0;
-  }
+  if (l->n != r->n)
+    return diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, l->n), shape_text(b, r->n));
   if (l->n == ROTATION) {
     refuse_rotation(b, st->span, ast_text(b, st->lhs), TURN_EQUATION);
     return 0;
@@ -95,10 +93,8 @@ static uint32_t add_switched_event(Builder *b, const Contact *c, const char *suf
 
 static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *gap, const Value *e) {
   Span span = ast_expr(b->ast, st->lhs)->span, bounce = ast_expr(b->ast, st->rhs)->span;
-  if (gap->n || e->n) {
-    diag_error(b->diags, gap->n ? span : bounce, "this is %s, but a number is needed here", shape_text(b, gap->n ? gap->n : e->n));
-    return 0;
-  }
+  if (gap->n || e->n)
+    return diag_error(b->diags, gap->n ? span : bounce, "this is %s, but a number is needed here", shape_text(b, gap->n ? gap->n : e->n));
   unsigned kinds = expr_kinds(b->g, gap->e);
   if (is_refused(b, gap->e, "contact", name, span)) return 0;
   if (kinds & 1u << SYM_VEL || !(kinds & 1u << SYM_COORD)) {
@@ -107,10 +103,8 @@ static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *
     return 0;
   }
   double value = expr_is_num(b->g, e->e) ? num_value(expr_number(b->g, e->e)) : 0.5;
-  if (!expr_is_constant(b->g, e->e) || value < 0 || value > 1) {
-    diag_error(b->diags, bounce, "a coefficient of restitution is a number from 0 to 1, or made of parameters");
-    return 0;
-  }
+  if (!expr_is_constant(b->g, e->e) || value < 0 || value > 1)
+    return diag_error(b->diags, bounce, "a coefficient of restitution is a number from 0 to 1, or made of parameters");
   return dims_agree(b, e, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, bounce) ? 1 :
          (diag_error(b->diags, bounce, "a coefficient of restitution is a pure number, and this is %s", in_dim(b, e->dim)), 0);
 }
@@ -165,22 +159,16 @@ static Value report_unknown(Builder *b, Span span, Name name) {
 Value multiplier_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   if (!arity_is(ev, x, 1)) return FAILED;
-  if (ev->where < IN_OBSERVE) {
-    diag_error(b->diags, x->span, "multipliers follow from the equations of motion, and cannot stand in them");
-    diag_help(b->diags, "`lambda(NAME)` may stand in `observe`, `output` and `expect`");
-    return FAILED;
-  }
+  if (ev->where < IN_OBSERVE)
+    return refuse(b, x->span, "multipliers follow from the equations of motion, and cannot stand in them" HELP
+                  "`lambda(NAME)` may stand in `observe`, `output` and `expect`");
   Span span = ast_expr(b->ast, x->args)->span;
   uint32_t errors = b->diags->errors;
   Name effect = ev->effect, name = named_constraint(ev, x->args, &effect);
   int ambiguous = 0;
   const Entity *e = name ? scope_find(&b->constraints, name, effect, &ambiguous) : NULL;
   if (!e) return b->diags->errors > errors ? FAILED : report_unknown(b, span, name);
-  if (ambiguous) {
-    diag_error(b->diags, span, "more than one effect in use has a constraint `%s`", name);
-    diag_help(b->diags, "say which: `lambda(%s.%s)`", e->effect, name);
-    return FAILED;
-  }
+  if (ambiguous) return refuse(b, span, "more than one effect in use has a constraint `%s`" HELP "say which: `lambda(%s.%s)`", name, e->effect, name);
   if (e->index >= b->m->constraints.n) return FAILED; /* refused */
   Value v = {.n = e->parts};
   for (uint32_t k = 0; k < component_count(&v); k++) v.at[k] = expr_symbol(b->g, b->m->constraints.at[e->index + k].multiplier)->node;

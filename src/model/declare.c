@@ -75,14 +75,8 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
       return 0;
     }
     if (!resolve_whole(b, i, effect, &n)) return 0;
-    if (n < 1) {
-      diag_error(b->diags, span, "a family has at least one member, and this is %lld", (long long)n);
-      return 0;
-    }
-    if (n > FAMILY_MAX || (all *= (uint64_t)n) > FAMILY_MAX) {
-      diag_error(b->diags, span, "a family has at most %d members", FAMILY_MAX);
-      return 0;
-    }
+    if (n < 1) return diag_error(b->diags, span, "a family has at least one member, and this is %lld", (long long)n);
+    if (n > FAMILY_MAX || (all *= (uint64_t)n) > FAMILY_MAX) return diag_error(b->diags, span, "a family has at most %d members", FAMILY_MAX);
     e->lo[e->ndims] = 1;
     e->hi[e->ndims++] = n;
   }
@@ -122,8 +116,7 @@ static void report_rotation(Builder *b, const AstStmt *st) {
     diag_error(b->diags, st->unit.span, "a rotation has no unit: its four numbers are those of a unit quaternion");
     diag_help(b->diags, "write `coord %s: rotation`", st->name);
   } else {
-    diag_error(b->diags, st->name_span, "a rotation is not an angle, and cannot be `periodic`");
-    diag_help(b->diags, "write `coord %s: rotation`", st->name);
+    diag_error(b->diags, st->name_span, "a rotation is not an angle, and cannot be `periodic`" HELP "write `coord %s: rotation`", st->name);
   }
 }
 
@@ -248,8 +241,7 @@ static int declare_member(Builder *b, const AstStmt *st, uint32_t family, const 
 
 static int fits_family(Builder *b, const AstStmt *st, const IndexRange *r) {
   if (range_count(r) <= FAMILY_MAX) return 1;
-  diag_error(b->diags, st->name_span, "a family has at most %d members", FAMILY_MAX);
-  return 0;
+  return diag_error(b->diags, st->name_span, "a family has at most %d members", FAMILY_MAX);
 }
 
 /* `let x[0] = 0`, `let x[i in 1..N] = x[i-1] + ...` */
@@ -284,8 +276,7 @@ static void declare_let(Builder *b, const AstStmt *st, Name effect) {
 static void check_function(Builder *b, const AstStmt *st) {
   for (size_t i = 0; function_name(i); i++)
     if (strcmp(function_name(i), st->name) == 0) {
-      diag_error(b->diags, st->name_span, "`%s` is a function of the language", st->name);
-      diag_help(b->diags, "choose another name");
+      diag_error(b->diags, st->name_span, "`%s` is a function of the language" HELP "choose another name", st->name);
     }
   for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next)
     for (AstId k = st->args; k != i; k = ast_expr(b->ast, k)->next)

@@ -32,8 +32,7 @@ const Entity *find_member(const Ast *ast, const Scope *members, const Entity *e,
 
 int range_fits(Builder *b, int64_t from, int64_t to, Span span) {
   if (to < from || (uint64_t)to - (uint64_t)from < RANGE_MAX) return 1;
-  diag_error(b->diags, span, "a range has at most %d members", RANGE_MAX);
-  return 0;
+  return diag_error(b->diags, span, "a range has at most %d members", RANGE_MAX);
 }
 
 /* Evaluates the ends of a range; 0, reported, on error. */
@@ -43,8 +42,7 @@ static int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *f
 }
 
 void report_many_indices(Builder *b, Span span) {
-  diag_error(b->diags, span, "a family has one index, or two");
-  diag_help(b->diags, "combine two indices into one: `u[(i - 1)*K + j]`, in a family of N*K");
+  diag_error(b->diags, span, "a family has one index, or two" HELP "combine two indices into one: `u[(i - 1)*K + j]`, in a family of N*K");
 }
 
 int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out) {

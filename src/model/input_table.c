@@ -276,9 +276,8 @@ static int find_table_file(Table *t, const char *path) {
     t->file = *file;
     return 1;
   }
-  diag_error(b->diags, ast_expr(b->ast, t->id)->span, "cannot read `%s`: %s", path, error);
-  diag_help(b->diags, "the path is relative to the file that names it");
-  return 0;
+  return diag_error(b->diags, ast_expr(b->ast, t->id)->span, "cannot read `%s`: %s" HELP "the path is relative to the file that names it", path,
+                    error);
 }
 
 /* Warns of overshoot by more than half the range of values: a cubic overshoots where rows are sparse near a steep rise.

@@ -37,13 +37,11 @@ static void unknown_option(Builder *b, const MethodInfo *m, const AstExpr *name)
 
 static void check_value(Builder *b, const MethodOption *o, const Option *given, Span span) {
   if (given->text && !o->choices) {
-    diag_error(b->diags, span, "the option `%s` is a number", o->name);
-    diag_help(b->diags, "write `%s = 0.01`", o->name);
+    diag_error(b->diags, span, "the option `%s` is a number" HELP "write `%s = 0.01`", o->name, o->name);
   } else if (given->text) {
     for (const char *const *c = o->choices; *c; c++)
       if (strcmp(*c, given->text) == 0) return;
-    diag_error(b->diags, span, "the option `%s` cannot be `%s`", o->name, given->text);
-    diag_help(b->diags, "it is one of %s", listed(b, o->choices));
+    diag_error(b->diags, span, "the option `%s` cannot be `%s`" HELP "it is one of %s", o->name, given->text, listed(b, o->choices));
   } else if (!(given->value >= o->min && given->value <= o->max)) {
     diag_error(b->diags, span, "the option `%s` cannot be %.6g", o->name, given->value);
     if (o->choices) diag_help(b->diags, "it is one of %s", listed(b, o->choices));

@@ -22,8 +22,7 @@ static void monitor_exact(Builder *b, Monitor mon, Span span) {
     add_monitor(b, mon);
   }
   if (sc->exacts.n) return;
-  diag_error(b->diags, span, "the scene has no closed form to compare with");
-  diag_help(b->diags, "`exact q = ...` gives one");
+  diag_error(b->diags, span, "the scene has no closed form to compare with" HELP "`exact q = ...` gives one");
 }
 
 /* Charge named by x: 0 the energy, k + 1 the charge of symmetry k; -1: none. */

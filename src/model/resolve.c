@@ -389,11 +389,8 @@ Value values_in(Builder *b, Value v, Span span, const Unit *unit) {
 }
 
 Expr value_in(Builder *b, Value v, Span span, const Unit *unit) {
-  if (v.e && v.n) {
-    diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, v.n));
-    return 0;
-  }
-  return values_in(b, v, span, unit).e;
+  if (!v.e || !v.n) return values_in(b, v, span, unit).e;
+  return refuse(b, span, "this is %s, but a number is needed here", shape_text(b, v.n)).e;
 }
 
 Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *unit) {

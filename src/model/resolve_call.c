@@ -49,11 +49,9 @@ static Value call_if(Eval *ev, const AstExpr *x) {
   AstId yes = ast_expr(b->ast, x->args)->next, no = ast_expr(b->ast, yes)->next;
   const Value *c = value_of(ev, x->args), *v = value_of(ev, yes), *w = value_of(ev, no);
   if (!c->e) return FAILED;
-  if (!c->condition) {
-    diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` is not a condition", ast_short(b, x->args));
-    diag_help(b->diags, "`if(condition, a, b)` takes a condition first, such as `x > 0`");
-    return FAILED;
-  }
+  if (!c->condition)
+    return refuse(b, ast_expr(b->ast, x->args)->span, "`%s` is not a condition" HELP "`if(condition, a, b)` takes a condition first, such as `x > 0`",
+                  ast_short(b, x->args));
   if (expr_is_num(b->g, c->e)) return expr_is_zero(b->g, c->e) ? *w : *v;
   if (!v->e || !w->e || !same_shape(ev, x->span, yes, no)) return FAILED;
   if (!operands_agree(ev, x->span, yes, no)) return FAILED;
@@ -77,8 +75,7 @@ static int two_vectors(Eval *ev, const AstExpr *x, const Value **v, const Value 
     return 0;
   }
   if ((*v)->n) return 1;
-  diag_error(b->diags, x->span, "`%s` takes vectors, and these are numbers", x->name);
-  return 0;
+  return diag_error(b->diags, x->span, "`%s` takes vectors, and these are numbers", x->name);
 }
 
 static Expr dot(ExprGraph *g, const Value *v, const Value *w) {
@@ -114,11 +111,7 @@ static Value call_norm(Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->args);
   if (!v->e) return FAILED;
   if (v->n == ROTATION) return refuse_rotation(b, ast_expr(b->ast, x->args)->span, ast_short(b, x->args), TURN_NUMBER);
-  if (!v->n) {
-    diag_error(b->diags, x->span, "`norm` takes a vector, and `%s` is a number", ast_short(b, x->args));
-    diag_help(b->diags, "`abs(x)` is the size of a number");
-    return FAILED;
-  }
+  if (!v->n) return refuse(b, x->span, "`norm` takes a vector, and `%s` is a number" HELP "`abs(x)` is the size of a number", ast_short(b, x->args));
   Expr square = dot(b->g, v, v);
   return a_value(expr_sqrt(b->g, square), v->dim, v->bare);
 }
@@ -147,15 +140,10 @@ static Value call_d(Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->args), *w = value_of(ev, by);
   if (!v->e || !w->e) return FAILED;
   if (v->n == ROTATION) return refuse_rotation(b, ast_expr(b->ast, x->args)->span, ast_short(b, x->args), TURN_NUMBER);
-  if (w->n) {
-    diag_error(b->diags, ast_expr(b->ast, by)->span, "`%s` is %s: differentiate by its components", ast_short(b, by), shape_text(b, w->n));
-    return FAILED;
-  }
+  if (w->n) return refuse(b, ast_expr(b->ast, by)->span, "`%s` is %s: differentiate by its components", ast_short(b, by), shape_text(b, w->n));
   SymKind kind = expr_op(b->g, w->e) == EX_SYM ? expr_sym_of(b->g, w->e)->kind : SYM_CONST;
-  if (kind == SYM_CONST || w->e == expr_symbol(b->g, b->m->energy_sym)->node) {
-    diag_error(b->diags, ast_expr(b->ast, by)->span, "`d(expr, name)` differentiates by a coordinate, a velocity, a parameter or t");
-    return FAILED;
-  }
+  if (kind == SYM_CONST || w->e == expr_symbol(b->g, b->m->energy_sym)->node)
+    return refuse(b, ast_expr(b->ast, by)->span, "`d(expr, name)` differentiates by a coordinate, a velocity, a parameter or t");
   Value r = {.dim = dim_div(b->dims, v->dim, w->dim), .n = v->n};
   for (uint32_t k = 0; k < component_count(v); k++) {
     if (kind != SYM_LOCAL && expr_contains(b->g, v->at[k], is_local, NULL)) {

@@ -44,6 +44,9 @@ static const Value FAILED = {0};
 /* A scalar value that is not a condition. */
 static inline Value a_value(Expr e, Dim dim, int bare) { return (Value){.e = e, .dim = dim, .bare = bare}; }
 
+/* Reports an error, as diag_error does; returns FAILED. */
+Value refuse(Builder *b, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+
 /* Number of components. */
 static inline uint32_t component_count(const Value *v) { return v->n ? v->n : 1; }
 

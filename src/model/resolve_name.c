@@ -9,8 +9,7 @@ const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const 
     diag_error(b->diags, span, "unknown name `%s`", name);
     advise_unknown_name(b, name, span, effect, declare);
   } else if (ambiguous) {
-    diag_error(b->diags, span, "`%s` is declared by more than one effect in use", name);
-    diag_help(b->diags, "say which: `%s.%s`", e->effect, name);
+    diag_error(b->diags, span, "`%s` is declared by more than one effect in use" HELP "say which: `%s.%s`", name, e->effect, name);
     return NULL;
   }
   return e;
@@ -75,11 +74,8 @@ static SymId symbol_of(const Model *m, EntKind kind, uint32_t index) {
 static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span span) {
   Builder *b = ev->b;
   if (e->kind == ENT_NONE) return FAILED;
-  if (least_context(e->kind) > ev->where) {
-    diag_error(b->diags, span, "`%s` is %s and may not be used here", e->name, ent_kind_text(e->kind));
-    diag_help(b->diags, "%s", place_text(ev->where));
-    return FAILED;
-  }
+  if (least_context(e->kind) > ev->where)
+    return refuse(b, span, "`%s` is %s and may not be used here" HELP "%s", e->name, ent_kind_text(e->kind), place_text(ev->where));
   switch (e->kind) {
     case ENT_COORD: case ENT_STATE: case ENT_PARAM: case ENT_INPUT: {
       Value v = {.n = e->parts};
@@ -98,8 +94,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
     }
     case ENT_LET: case ENT_OBSERVE: return defined_value(ev, e, span);
     case ENT_FUNCTION:
-      diag_error(b->diags, span, "`%s` is a function", e->name);
-      diag_help(b->diags, "give it its arguments: `%s(...)`", e->name);
+      diag_error(b->diags, span, "`%s` is a function" HELP "give it its arguments: `%s(...)`", e->name, e->name);
       return FAILED;
     case ENT_NONE: case ENT_BUILTIN: break;
   }
@@ -109,9 +104,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
 Value whole_value(Eval *ev, const Entity *e, Span span) {
   if (!e->ndims || e->kind == ENT_NONE) return entity_value(ev, e, NULL, span);
   Name one = member_name(ev->b->ast, e->name, e->lo, e->ndims);
-  diag_error(ev->b->diags, span, "`%s` is a family: say which member", e->name);
-  diag_help(ev->b->diags, "the first is `%s`; `sum(i in ..., ...)` adds over all", one);
-  return FAILED;
+  return refuse(ev->b, span, "`%s` is a family: say which member" HELP "the first is `%s`; `sum(i in ..., ...)` adds over all", e->name, one);
 }
 
 /* lagrangian, energy, T, V in outputs and claims, unless the model declares the name; 0: not one of them. */
@@ -172,9 +165,7 @@ Value name_value(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "pi") == 0) return a_value(expr_symbol(b->g, b->m->pi)->node, DIM_NONE, 1);
   if (strcmp(x->name, "t") == 0) {
     if (ev->where >= IN_INPUT) return a_value(expr_symbol(b->g, b->m->time)->node, b->dim_of.at[b->m->time], 0);
-    diag_error(b->diags, x->span, "the time `t` may not be used here");
-    diag_help(b->diags, "%s", place_text(ev->where));
-    return FAILED;
+    return refuse(b, x->span, "the time `t` may not be used here" HELP "%s", place_text(ev->where));
   }
   int ambiguous;
   Value v;
@@ -233,10 +224,7 @@ static Value indexed_value(Eval *ev, const Entity *e, const AstExpr *x, int mome
                    ast_text(b, x->args));
     return FAILED;
   }
-  if (n != e->ndims) {
-    diag_error(b->diags, x->span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", n);
-    return FAILED;
-  }
+  if (n != e->ndims) return refuse(b, x->span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", n);
   const Entity *member = e;
   int listed = e->kind == ENT_LET || e->kind == ENT_OBSERVE;
   if (in_range(e, at) && listed) member = find_member(b->ast, &b->members, e, at);

@@ -137,15 +137,12 @@ Value turn_value(Eval *ev, const AstExpr *x) {
   if (!n->e || !a->e) return FAILED;
   if (n->n != 3 || a->n) {
     AstId wrong = n->n != 3 ? x->args : angle;
-    diag_error(b->diags, ast_expr(b->ast, wrong)->span, "`%s` is %s, and `turn` takes an axis and an angle", ast_short(b, wrong), shape_text(b, n->n != 3 ? n->n : a->n));
-    diag_help(b->diags, "`turn((0, 0, 1), 90 [deg])` turns about the third axis");
-    return FAILED;
+    return refuse(b, ast_expr(b->ast, wrong)->span, "`%s` is %s, and `turn` takes an axis and an angle" HELP
+                  "`turn((0, 0, 1), 90 [deg])` turns about the third axis", ast_short(b, wrong), shape_text(b, n->n != 3 ? n->n : a->n));
   }
-  if (is_zero(b, n)) {
-    diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` has no direction to turn about", ast_short(b, x->args));
-    diag_help(b->diags, "the identity is `turn((0, 0, 1), 0)`, the start of a rotation without a `start`");
-    return FAILED;
-  }
+  if (is_zero(b, n))
+    return refuse(b, ast_expr(b->ast, x->args)->span, "`%s` has no direction to turn about" HELP
+                  "the identity is `turn((0, 0, 1), 0)`, the start of a rotation without a `start`", ast_short(b, x->args));
   if (!need_pure(ev, angle, "`turn`")) return FAILED;
   Expr half = expr_scale(g, num_ratio(1, 2), a->e), s = expr_fn(g, EX_SIN, half), square[3];
   for (int k = 0; k < 3; k++) square[k] = expr_pow_num(g, n->at[k], num_int(2));
@@ -175,9 +172,7 @@ static const struct {
 };
 
 Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why) {
-  diag_error(b->diags, span, "`%s` is a rotation: %s", text, mistakes[why].refusal);
-  diag_help(b->diags, "%s", mistakes[why].way);
-  return FAILED;
+  return refuse(b, span, "`%s` is a rotation: %s" HELP "%s", text, mistakes[why].refusal, mistakes[why].way);
 }
 
 /* --- the coordinate --- */

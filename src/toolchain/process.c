@@ -57,8 +57,7 @@ int process_to_stdin(const char *path, char *const *argv) {
     execv(path, argv);
     _exit(127);
   }
-  int status = -1;
-  if (pid > 0 && waitpid(pid, &status, 0) == pid) status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  int status = pid > 0 ? wait_for(pid) : -1;
   if (status == 0 && (lseek(fileno(out), 0, SEEK_SET) != 0 || dup2(fileno(out), 0) != 0)) status = -1;
   if (out) fclose(out);
   return status;
