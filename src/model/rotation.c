@@ -75,22 +75,18 @@ void rotation_spin(Builder *b, const Value *q, const Value *rates, Expr *w) {
   for (int k = 0; k < 3; k++) w[k] = expr_scale(b->g, num_int(2), product.at[k + 1]);
 }
 
-/* Product q (0, w) with a pure quaternion. */
-static Value times_vector(Builder *b, const Value *q, const Expr *w) {
-  Value pure = {.n = ROTATION, .at = {expr_int(b->g, 0), w[0], w[1], w[2]}};
-  return rotation_product(b, q, &pure);
-}
-
-Value rotation_rates(Builder *b, const Value *q, const Expr *w) {
-  Value r = times_vector(b, q, w);
-  for (int k = 0; k < ROTATION; k++) r.at[k] = expr_scale(b->g, num_ratio(1, 2), r.at[k]);
+/* scale q (0, w): product with a pure quaternion. */
+static Value times_vector(Builder *b, Num scale, const Value *q, const Expr *w) {
+  Value pure = {.n = ROTATION, .at = {expr_int(b->g, 0), w[0], w[1], w[2]}}, r = rotation_product(b, q, &pure);
+  for (int k = 0; k < ROTATION; k++) r.at[k] = expr_scale(b->g, scale, r.at[k]);
   return r;
 }
 
+Value rotation_rates(Builder *b, const Value *q, const Expr *w) { return times_vector(b, num_ratio(1, 2), q, w); }
+
 /* Generalised force 2 q (0, torque): its product with q' is the power torque.omega. */
 Value torque_force(Builder *b, const Value *q, const Value *torque) {
-  Value r = times_vector(b, q, torque->at);
-  for (int k = 0; k < ROTATION; k++) r.at[k] = expr_scale(b->g, num_int(2), r.at[k]);
+  Value r = times_vector(b, num_int(2), q, torque->at);
   r.dim = torque->dim;
   return r;
 }

@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/vec.h"
+
 static char *read_fd(Arena *a, int fd) {
   StrBuf b = strbuf(a);
   char buffer[4096];
@@ -86,11 +88,4 @@ void last_state_listen(Arena *a, void (*tell)(void *data, const double *number, 
   close(end[0]);
   if (pid < 0) close(end[1]);
   else setenv("LAG_LAST_STATE", arena_printf(a, "%d", end[1]), 1);
-}
-
-Words process_words(Arena *a, const char *cc) {
-  Words words = {0};
-  char *text = arena_strdup(a, cc);
-  for (char *w = strtok(text, " "); w; w = strtok(NULL, " ")) vec_push(a, &words, w);
-  return words;
 }

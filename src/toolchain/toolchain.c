@@ -102,9 +102,10 @@ int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const cha
 
 enum { N_LINES = sizeof probe_text / sizeof *probe_text, WRONG = 1 };
 
-/* Runs the compiler with the words `more` after those of cc; returns its exit status. */
+/* Runs the compiler with the words `more` after those of cc, which may hold options; returns its exit status. */
 static int run_compiler(Arena *a, const char *cc, const char *const *more, char **said) {
-  Words argv = process_words(a, cc);
+  VEC(char *) argv = {0};
+  for (char *w = strtok(arena_strdup(a, cc), " "); w; w = strtok(NULL, " ")) vec_push(a, &argv, w);
   for (; *more; more++)
     if (**more) vec_push(a, &argv, arena_strdup(a, *more));
   vec_push(a, &argv, NULL);
