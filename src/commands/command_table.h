@@ -5,8 +5,7 @@
 
 #include <stddef.h>
 
-#include "base/define.h"
-#include "base/vec.h"
+#include "model/model.h"
 
 typedef enum {
   CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_NOETHER, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_LYAPUNOV, CMD_COST, CMD_EFFECTS, CMD_METHODS, CMD_CACHE, CMD_BUILD, CMD_HEADER, CMD_EMIT,

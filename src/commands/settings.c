@@ -83,10 +83,8 @@ int settings_compiled(Ast *ast, Options *o, GivenList *given, const char **error
   for (uint32_t i = 0; i < o->rest.n; i++) {
     const char *arg = o->rest.at[i], *eq = arg[0] != '-' ? strchr(arg, '=') : NULL;
     const char *name = eq ? arena_strndup(ast->arena, arg, (size_t)(eq - arg)) : "";
-    if (eq && find_declared(ast, STMT_CONST, name) && !find_declared(ast, STMT_PARAM, name)) {
-      *error = arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg);
-      return 0;
-    }
+    if (eq && find_declared(ast, STMT_CONST, name) && !find_declared(ast, STMT_PARAM, name))
+      return fail_with(error, arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg));
     int formula = eq && eq[1] && !is_number(eq + 1) && find_declared(ast, STMT_INPUT, name);
     if (formula || (eq && eq[1] && starts_rotation(ast, name))) ok &= take_setting(ast, arg, given);
     else o->rest.at[kept++] = arg;

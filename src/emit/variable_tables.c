@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "base/decimal_literal.h"
+#include "base/num.h"
 #include "emit/cfunction.h"
 #include "emit/cwriter.h"
 

@@ -455,7 +455,9 @@ static const Declarations *declarations_of(const Builder *b) {
 Model *model_build(Ast *ast, const ModelChoice *choice) {
   Builder *b = build(ast, choice, 0);
   if (!ast->diags->errors && is_first_order(b->m)) {
-    if (b->m->constraints.n) not_yet(b, b->m->constraints.at[0].span, "constraints and contacts where L is linear in the velocities");
+    if (b->m->constraints.n)
+      diag_error(b->diags, b->m->constraints.at[0].span, "not yet: constraints and contacts where L is linear in the velocities" HELP
+                 "lagc understands the syntax but cannot give it meaning in this version");
     else b = build(ast, choice, 1);
   }
   add_section(b, &choice->section);

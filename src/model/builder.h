@@ -3,8 +3,22 @@
 #define LAGC_BUILDER_H
 
 #include "model/declarations.h"
-#include "model/file_index.h"
 #include "model/model.h"
+
+/* Index of a file's statements by name, made once (file_index.c): a file may have thousands of scenes, each compiled by itself. */
+typedef struct FileIndex {
+  Scope scenes, effects;                   /* the first of each name: index into `named` */
+  VEC(const AstStmt *) named;
+  const AstStmt *model, *scene, *effect;   /* the first named statement of each kind, or NULL */
+  VEC(const AstStmt *) common;             /* all statements but scenes, in the file's order */
+  VEC(const AstStmt *) repeated;           /* scenes and effects whose name was declared before */
+  int is_sound, clashes;                   /* names and effects were checked and are right; effects_check found an error */
+} FileIndex;
+
+FileIndex *file_index(Ast *ast);
+
+/* The statement of a scene or effect by name (NULL: the first); the model statement; or NULL. */
+const AstStmt *find_named(Ast *ast, AstStmtKind kind, const char *name);
 
 typedef enum { TODO, DOING, DONE } Progress;
 
@@ -278,7 +292,7 @@ void declare_const(Builder *b, const AstStmt *st, Name effect);
 SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSign sign, Dim dim);
 
 /* Value of a constant expression (span, step, tolerance) in `unit`; NAN after an error. `what` names it in messages. *digits (or NULL) as in
- * base/decimal_literal.h. */
+ * base/num.h. */
 double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits);
 
 /* command_value.c: evaluates ModelChoice.values. */
@@ -324,9 +338,6 @@ const AstStmt *declared_in_use(const Builder *b, Name name, Name effect);
 /* The first effect that declares a name, in use or not, or NULL; whether a given effect (NULL: no) declares it. */
 const AstStmt *declaring_effect(const Builder *b, Name name);
 int effect_declares(const AstStmt *effect, Name name);
-
-/* Reports "not yet: what". */
-void not_yet(Builder *b, Span span, const char *what);
 
 /* Source text of an expression (of a span) on one line, without comments; ast_short leaves out the middle of a long one. */
 const char *ast_text(const Builder *b, AstId id);

@@ -9,20 +9,16 @@ static Dim multiplier_dim(Builder *b, Dim dim, int holonomic) {
   return dim_div(b->dims, energy, dim);
 }
 
-/* Reports constraints that contain states or inputs; 1 if refused. */
-static int is_refused(Builder *b, Expr c, const char *what, Name name, Span span) {
+/* 1 for a constraint without states and inputs; 0, reported, for others. */
+static int can_be_held(Builder *b, Expr c, const char *what, Name name, Span span) {
   unsigned kinds = expr_kinds(b->g, c);
-  if (kinds & 1u << SYM_STATE) {
-    diag_error(b->diags, span, "the %s `%s` contains a state: constraints hold between coordinates", what, name);
-    diag_help(b->diags, "declare the constrained quantity as a coordinate");
-    return 1;
-  }
-  if (kinds & 1u << SYM_INPUT) {
-    diag_error(b->diags, span, "the %s `%s` contains an input, whose derivatives would be needed", what, name);
-    diag_help(b->diags, "write the input as a formula of t, inside the constraint");
-    return 1;
-  }
-  return 0;
+  if (kinds & 1u << SYM_STATE)
+    return diag_error(b->diags, span, "the %s `%s` contains a state: constraints hold between coordinates" HELP "declare the constrained quantity as a coordinate",
+                      what, name);
+  if (kinds & 1u << SYM_INPUT)
+    return diag_error(b->diags, span, "the %s `%s` contains an input, whose derivatives would be needed" HELP
+                      "write the input as a formula of t, inside the constraint", what, name);
+  return 1;
 }
 
 void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span) {
@@ -62,7 +58,7 @@ void add_constraint(Builder *b, const AstStmt *st, Name effect) {
   scope_add(&b->constraints, (Entity){.index = b->m->constraints.n, .name = name, .effect = effect, .span = st->name_span, .parts = (uint8_t)left.n});
   for (uint32_t k = 0; k < component_count(&left); k++) {
     Expr c = expr_sub(b->g, left.at[k], right.at[k]);
-    if (is_refused(b, c, "constraint", name, st->span)) return;
+    if (!can_be_held(b, c, "constraint", name, st->span)) return;
     add_scalar_constraint(b, left.n ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name, c, dim, st->span);
   }
 }
@@ -96,17 +92,15 @@ static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *
   if (gap->n || e->n)
     return diag_error(b->diags, gap->n ? span : bounce, "this is %s, but a number is needed here", shape_text(b, gap->n ? gap->n : e->n));
   unsigned kinds = expr_kinds(b->g, gap->e);
-  if (is_refused(b, gap->e, "contact", name, span)) return 0;
-  if (kinds & 1u << SYM_VEL || !(kinds & 1u << SYM_COORD)) {
-    diag_error(b->diags, span, kinds & 1u << SYM_VEL ? "the gap of the contact `%s` contains a velocity" : "the gap of the contact `%s` contains no coordinate", name);
-    diag_help(b->diags, "a gap is a distance between positions: `contact floor: y >= 0, restitution = 0.8`");
-    return 0;
-  }
+  if (!can_be_held(b, gap->e, "contact", name, span)) return 0;
+  if (kinds & 1u << SYM_VEL || !(kinds & 1u << SYM_COORD))
+    return diag_error(b->diags, span, "the gap of the contact `%s` contains %s" HELP
+                      "a gap is a distance between positions: `contact floor: y >= 0, restitution = 0.8`", name, kinds & 1u << SYM_VEL ? "a velocity" : "no coordinate");
   double value = expr_is_num(b->g, e->e) ? num_value(expr_number(b->g, e->e)) : 0.5;
   if (!expr_is_constant(b->g, e->e) || value < 0 || value > 1)
     return diag_error(b->diags, bounce, "a coefficient of restitution is a number from 0 to 1, or made of parameters");
-  return dims_agree(b, e, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, bounce) ? 1 :
-         (diag_error(b->diags, bounce, "a coefficient of restitution is a pure number, and this is %s", in_dim(b, e->dim)), 0);
+  return dims_agree(b, e, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, bounce) ||
+         diag_error(b->diags, bounce, "a coefficient of restitution is a pure number, and this is %s", in_dim(b, e->dim));
 }
 
 void add_contact(Builder *b, const AstStmt *st, Name effect) {

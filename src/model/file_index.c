@@ -1,5 +1,5 @@
-/* Index of a file's scenes and effects. Contract: file_index.h. */
-#include "model/file_index.h"
+/* Index of a file's scenes and effects. Contract: builder.h. */
+#include "model/builder.h"
 
 static void add(Ast *ast, FileIndex *x, const AstStmt *s) {
   const AstStmt **first = s->kind == STMT_MODEL ? &x->model : s->kind == STMT_SCENE ? &x->scene : s->kind == STMT_EFFECT ? &x->effect : NULL;

@@ -6,7 +6,6 @@
 #ifndef LAGC_MODEL_H
 #define LAGC_MODEL_H
 
-#include "base/define.h"
 #include "base/spline.h"
 #include "model/units.h"
 #include "sym/expr.h"
@@ -182,7 +181,7 @@ typedef struct {
   VEC(Start) starts;
   Span exactly; /* the first `start exactly`; empty: none */
   double t0, t1;
-  const char *t1_digits; /* t1 as decimal digits beyond double precision (base/decimal_literal.h), or NULL */
+  const char *t1_digits; /* t1 as decimal digits beyond double precision (base/num.h), or NULL */
   int has_span;
   Name method; /* or NULL */
   Span method_span;
@@ -279,8 +278,14 @@ typedef struct {
 typedef struct {
   AstId target, value; /* target 0: a time */
   double number;
-  const char *digits;  /* as in base/decimal_literal.h, or NULL */
+  const char *digits;  /* as in base/num.h, or NULL */
 } CommandValue;
+
+/* A constant given by -D NAME=VALUE. */
+typedef struct {
+  const char *name, *value;
+  AstId expr; /* the value; 0: not parsed yet, or a mistake */
+} Define;
 
 /* Arguments of model_build: scene, effects, and definitions from the command line. */
 typedef struct {

@@ -6,7 +6,6 @@
  * definitions use the C stack. */
 #include <math.h>
 
-#include "base/decimal_literal.h"
 #include "base/words.h"
 #include "model/resolve_impl.h"
 #include "sym/eval.h"
@@ -88,13 +87,11 @@ static Value node_value(Eval *ev, AstId id) {
     case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE: case AST_NOT: case AST_AND: case AST_OR:
     case AST_TUPLE: return operator_value(ev, id);
     case AST_LIST:
-      diag_error(b->diags, x->span, "a list gives the members of a family their values, and stands alone");
-      diag_help(b->diags, "`param m[3] = {1, 3, 1/2}`, `start th = {0.1, 0.2}`; a vector is written `(a, b, c)`");
-      return FAILED;
+      return refuse(b, x->span, "a list gives the members of a family their values, and stands alone" HELP
+                    "`param m[3] = {1, 3, 1/2}`, `start th = {0.1, 0.2}`; a vector is written `(a, b, c)`");
     case AST_STRING:
-      diag_error(b->diags, x->span, "a quoted text is not a value here");
-      diag_help(b->diags, "a table from a file gives an input its values: `input u = \"file.csv\"`, or `u = \"file.csv\"` in a scene");
-      return FAILED;
+      return refuse(b, x->span, "a quoted text is not a value here" HELP
+                    "a table from a file gives an input its values: `input u = \"file.csv\"`, or `u = \"file.csv\"` in a scene");
     case AST_BIND: case AST_ERROR: return FAILED;
   }
   return FAILED;
@@ -160,10 +157,9 @@ static Value usable_value(Eval *ev, const AstExpr *x, Value v) {
   for (uint32_t k = 0; v.e && k < component_count(&v); k++) {
     int infinite = has_number(ev->b->g, v.at[k], is_infinite);
     if (!infinite && !has_number(ev->b->g, v.at[k], num_is_imprecise)) continue;
-    diag_error(ev->b->diags, x->span, infinite ? "a number here is not finite" : "rounding leaves fewer than six digits of a number here");
-    diag_help(ev->b->diags, infinite ? "numbers reach up to 1.8e308" :
-              "write its result as one number: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
-    return FAILED;
+    return refuse(ev->b, x->span, infinite ? "a number here is not finite" HELP "numbers reach up to 1.8e308" :
+                  "rounding leaves fewer than six digits of a number here" HELP
+                  "write its result as one number: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
   }
   return v;
 }

@@ -94,8 +94,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
     }
     case ENT_LET: case ENT_OBSERVE: return defined_value(ev, e, span);
     case ENT_FUNCTION:
-      diag_error(b->diags, span, "`%s` is a function" HELP "give it its arguments: `%s(...)`", e->name, e->name);
-      return FAILED;
+      return refuse(b, span, "`%s` is a function" HELP "give it its arguments: `%s(...)`", e->name, e->name);
     case ENT_NONE: case ENT_BUILTIN: break;
   }
   return FAILED;

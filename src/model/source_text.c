@@ -19,10 +19,6 @@ Value refuse(Builder *b, Span span, const char *fmt, ...) {
   return FAILED;
 }
 
-void not_yet(Builder *b, Span span, const char *what) {
-  diag_error(b->diags, span, "not yet: %s" HELP "lagc understands the syntax but cannot give it meaning in this version", what);
-}
-
 /* Text of a span on one line, without comments. */
 static const char *one_line(const Ast *ast, Span s) {
   Place p = source_place(ast->sources, s.begin);

@@ -149,7 +149,7 @@ typedef struct {
   Diags *diags;
   VEC(AstExpr) exprs;        /* exprs.at[0] is unused */
   AstStmt *first, *last;     /* the file's statements, includes already spliced in */
-  struct FileIndex *index;   /* statements by name: model/file_index.h; NULL: not yet made */
+  struct FileIndex *index;   /* statements by name (model/file_index.c); NULL: not yet made */
 } Ast;
 
 Ast *ast_new(Arena *a, Interner *names, Sources *sources, Diags *diags);

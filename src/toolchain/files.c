@@ -25,10 +25,7 @@ static int close_outfile(Outfile *o, int ok, const char **error) {
 int file_write(const char *path, const char *text, size_t n, const char **error) {
   Outfile o;
   errno = 0;
-  if (lag_outfile_open(&o, path) != 0) {
-    *error = strerror(errno);
-    return 0;
-  }
+  if (lag_outfile_open(&o, path) != 0) return fail_with(error, strerror(errno));
   return close_outfile(&o, fwrite(text, 1, n, o.f) == n && fflush(o.f) == 0, error);
 }
 

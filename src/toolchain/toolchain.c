@@ -59,23 +59,14 @@ int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, cons
   static const char *const none[] = {NULL};
   *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc", .optimise = optimisation(), .library = "lag", .flags = none};
   int found = 0;
-  if (!t->optimise) {
-    *error = arena_printf(a, "LAGC_OPTIMISE is %s; it takes -O0, -O1, -O2 or -O3", getenv("LAGC_OPTIMISE"));
-    return 0;
-  }
+  if (!t->optimise) return fail_with(error, arena_printf(a, "LAGC_OPTIMISE is %s; it takes -O0, -O1, -O2 or -O3", getenv("LAGC_OPTIMISE")));
   if (home && home[0]) {
     found = try_place(a, arena_printf(a, "%s/lib", home), arena_printf(a, "%s/include", home), t);
-    if (!found) {
-      *error = arena_printf(a, "LAG_HOME is %s, where lib/liblag.a and include/lag.h are not found", home);
-      return 0;
-    }
+    if (!found) return fail_with(error, arena_printf(a, "LAG_HOME is %s, where lib/liblag.a and include/lag.h are not found", home));
   }
   found = found || try_place(a, own, arena_printf(a, "%s/../runtime/include", own), t);
   found = found || try_place(a, installed(a, own, LAGC_LIBDIR), installed(a, own, LAGC_INCLUDEDIR), t);
-  if (!found) {
-    *error = arena_printf(a, "the runtime (liblag.a and lag.h) is not found beside %s; run `make`, or set LAG_HOME", own);
-    return 0;
-  }
+  if (!found) return fail_with(error, arena_printf(a, "the runtime (liblag.a and lag.h) is not found beside %s; run `make`, or set LAG_HOME", own));
   t->gsl = want_gsl && file_exists(arena_printf(a, "%s/liblag_gsl.a", t->lib));
   return 1;
 }
@@ -93,9 +84,8 @@ int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const cha
   t->gsl = 0;
   t->include = arena_printf(a, "%s/lag-%s", t->lib, precision);
   if (file_exists(arena_printf(a, "%s/lib%s.a", t->lib, t->library))) return 1;
-  *error = arena_printf(a, "--precision %s: %s/lib%s.a is not there: this lagc was built without it%s", precision, t->lib, t->library,
-                        quad ? ", as where the C compiler has no libquadmath" : "");
-  return 0;
+  return fail_with(error, arena_printf(a, "--precision %s: %s/lib%s.a is not there: this lagc was built without it%s", precision, t->lib, t->library,
+                                       quad ? ", as where the C compiler has no libquadmath" : ""));
 }
 
 /* --- the probe for compilers that store wrong numbers --- */
@@ -187,14 +177,8 @@ static int compile_with_tmpdir(Arena *a, const Toolchain *t, const char *dir, co
 /* Compiles in a new build folder, which stays only on success: f->path/simulator. */
 static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
   const char *base = cache_folder(a);
-  if (!base) {
-    *error = "there is no folder to build in that only you can write: set XDG_CACHE_HOME to one";
-    return 0;
-  }
-  if (!build_folder_make(a, base, f)) {
-    *error = arena_printf(a, "cannot write in %s: %s", base, strerror(errno));
-    return 0;
-  }
+  if (!base) return fail_with(error, "there is no folder to build in that only you can write: set XDG_CACHE_HOME to one");
+  if (!build_folder_make(a, base, f)) return fail_with(error, arena_printf(a, "cannot write in %s: %s", base, strerror(errno)));
   int ok = 1;
   for (size_t i = 0; i < n && ok; i++) {
     const char *why;
@@ -214,10 +198,7 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
   struct stat st;
   BuildFolder f;
   const char *why;
-  if (stat(output, &st) == 0 && !S_ISREG(st.st_mode)) {
-    *error = arena_printf(a, "cannot write %s: it is not an ordinary file", output);
-    return 0;
-  }
+  if (stat(output, &st) == 0 && !S_ISREG(st.st_mode)) return fail_with(error, arena_printf(a, "cannot write %s: it is not an ordinary file", output));
   if (!build(a, t, texts, n, &f, error)) return 0;
   int ok = file_install(output, arena_printf(a, "%s/simulator", f.path), &why);
   if (!ok) *error = arena_printf(a, "cannot write %s: %s", output, why);
