@@ -390,7 +390,6 @@ void rotation_spin(Builder *b, const Value *q, const Value *rates, Expr *w);
 /* First coordinate (R.w) of the rotation in a target `omega(R)`; -1: the target is not a call; -2: error, reported. */
 int spin_target(Builder *b, AstId place, Name effect);
 
-
 /* Generalised force along the four quaternion coordinates of a torque in the body frame. */
 Value torque_force(Builder *b, const Value *q, const Value *torque);
 
