@@ -26,19 +26,40 @@ uint32_t dense_solve(Arena *arena, uint32_t n, const long double *a, long double
   return rank;
 }
 
-long double dense_gram_schmidt(uint32_t n, long double *row, const long double *before, uint32_t rank) {
-  long double was = 0, left = 0;
-  for (uint32_t j = 0; j < n; j++) was += row[j] * row[j];
-  for (size_t k = 0; k < 2 * (size_t)rank; k++) {
-    const long double *q = before + k % rank * n;
-    long double along = 0;
-    for (uint32_t j = 0; j < n; j++) along += q[j] * row[j];
-    for (uint32_t j = 0; j < n && along != 0; j++) row[j] -= along * q[j];
+/* Orthonormal rows; row k has its nonzeros in column[begin[k]] .. column[begin[k + 1] - 1]. */
+typedef struct {
+  const long double *at;
+  uint32_t n, width, *begin, *column; /* NULL: all columns */
+} Basis;
+
+/* Subtracts from the row its projection onto row k of the basis. */
+static void subtract_projection(const Basis *b, uint32_t k, long double *row) {
+  const long double *q = b->at + (size_t)k * b->width;
+  uint32_t from = b->begin ? b->begin[k] : 0, to = b->begin ? b->begin[k + 1] : b->width;
+  const uint32_t *column = b->column;
+  long double along = 0;
+  for (uint32_t x = from; x < to; x++) {
+    uint32_t j = column ? column[x] : x;
+    along += q[j] * row[j];
   }
-  for (uint32_t j = 0; j < n; j++) left += row[j] * row[j];
+  for (uint32_t x = from; x < to && along != 0; x++) {
+    uint32_t j = column ? column[x] : x;
+    row[j] -= along * q[j];
+  }
+}
+
+static long double gram_schmidt(const Basis *b, long double *row) {
+  long double was = 0, left = 0;
+  for (uint32_t j = 0; j < b->width; j++) was += row[j] * row[j];
+  for (uint32_t k = 0; k < 2 * b->n; k++) subtract_projection(b, k % b->n, row);
+  for (uint32_t j = 0; j < b->width; j++) left += row[j] * row[j];
   left = sqrtl(left);
-  for (uint32_t j = 0; j < n && left > 0; j++) row[j] /= left;
+  for (uint32_t j = 0; j < b->width && left > 0; j++) row[j] /= left;
   return was > 0 ? left / sqrtl(was) : 0;
+}
+
+long double dense_gram_schmidt(uint32_t n, long double *row, const long double *before, uint32_t rank) {
+  return gram_schmidt(&(Basis){.at = before, .n = rank, .width = n}, row);
 }
 
 /* --- kernels --- */
@@ -164,13 +185,25 @@ uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long dou
   return rank;
 }
 
+/* Appends the row behind the basis to it: records its nonzeros. */
+static void append_to_basis(Basis *b) {
+  uint32_t next = b->begin[b->n];
+  for (uint32_t j = 0; j < b->width; j++)
+    if (b->at[(size_t)b->n * b->width + j] != 0) b->column[next++] = j;
+  b->begin[++b->n] = next;
+}
+
 DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
-  DenseRows o = {.width = columns, .at = ARENA_ARRAY(a, long double, (size_t)from->n * columns + 1)};
+  size_t all = (size_t)from->n * columns;
+  DenseRows o = {.width = columns, .at = ARENA_ARRAY(a, long double, all + 1)};
+  Basis basis = {.at = o.at, .width = columns, .begin = ARENA_ARRAY(a, uint32_t, from->n + 1), .column = ARENA_ARRAY(a, uint32_t, all + 1)};
   for (uint32_t k = 0; k < from->n; k++) {
-    long double *row = o.at + (size_t)o.n * columns;
+    long double *row = o.at + (size_t)basis.n * columns, length = 0;
     memcpy(row, from->at + (size_t)k * from->width, columns * sizeof *row);
-    o.n += dense_gram_schmidt(columns, row, o.at, o.n) > 1e-9L; /* else the next row takes its place */
+    for (uint32_t j = 0; j < columns; j++) length += row[j] * row[j];
+    if (length > 0 && gram_schmidt(&basis, row) > 1e-9L) append_to_basis(&basis); /* else the next row takes its place */
   }
+  o.n = basis.n;
   return o;
 }
 

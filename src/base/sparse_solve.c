@@ -121,22 +121,43 @@ typedef struct {
   uint32_t *count; /* [n] elements of the column in remaining rows */
   uint32_t *taken; /* [rank] eliminated rows, in order */
   unsigned char *is_taken;
-  long double *most;  /* [n] largest element of each remaining row */
+  uint32_t *first, *next, *before; /* remaining rows in doubly linked lists, one for each length: 1 + row, 0: none */
+  long double *most;  /* [2 n] tournament tree: largest element of row i at n + i, of nodes 2 k and 2 k + 1 at k */
   uint32_t *place;    /* [n] scratch: 1 + index of the column in the current row */
 } Elimination;
 
-static long double largest_of(const Row *r) {
+static void update_largest(Elimination *x, uint32_t i, const Row *r) {
+  size_t k = x->n + (size_t)i;
   long double most = 0;
-  for (uint32_t j = 0; j < r->n; j++) most = fmaxl(most, fabsl(r->at[j].value));
-  return most;
+  for (uint32_t j = 0; j < r->n; j++)
+    if (fabsl(r->at[j].value) > most) most = fabsl(r->at[j].value);
+  for (x->most[k] = most; k > 1; k /= 2) {
+    long double one = x->most[k], other = x->most[k ^ 1];
+    x->most[k / 2] = one > other ? one : other;
+  }
+}
+
+static void list_row(Elimination *x, uint32_t i) {
+  uint32_t *first = &x->first[x->rows[i].n];
+  x->next[i] = *first;
+  x->before[i] = 0;
+  if (*first) x->before[*first - 1] = i + 1;
+  *first = i + 1;
+}
+
+static void unlist_row(Elimination *x, uint32_t i) {
+  if (x->before[i]) x->next[x->before[i] - 1] = x->next[i];
+  else x->first[x->rows[i].n] = x->next[i];
+  if (x->next[i]) x->before[x->next[i] - 1] = x->before[i];
 }
 
 static Elimination elimination_new(Arena *arena, const Matrix *m, const int *by_row, const int *by_column) {
   uint32_t n = m->n;
   Elimination x = {.arena = arena, .n = n, .rows = ARENA_ARRAY(arena, Row, n + 1), .columns = ARENA_ARRAY(arena, Lines, n + 1),
                    .count = ARENA_ARRAY(arena, uint32_t, n + 1), .taken = ARENA_ARRAY(arena, uint32_t, n + 1),
-                   .is_taken = ARENA_ARRAY(arena, unsigned char, n + 1), .most = ARENA_ARRAY(arena, long double, n + 1),
-                   .place = ARENA_ARRAY(arena, uint32_t, n + 1)};
+                   .is_taken = ARENA_ARRAY(arena, unsigned char, n + 1), .first = ARENA_ARRAY(arena, uint32_t, n + 1),
+                   .next = ARENA_ARRAY(arena, uint32_t, n + 1), .before = ARENA_ARRAY(arena, uint32_t, n + 1),
+                   .most = ARENA_ARRAY(arena, long double, 2 * (size_t)n + 2), .place = ARENA_ARRAY(arena, uint32_t, n + 1)};
   for (uint32_t i = n; i-- > 0;) {
     for (uint32_t k = m->from[i]; k < m->from[i + 1]; k++) {
       uint32_t col = m->at[k].col;
@@ -144,23 +165,17 @@ static Elimination elimination_new(Arena *arena, const Matrix *m, const int *by_
       vec_push(arena, &x.columns[col], i);
       x.count[col]++;
     }
-    x.most[i] = largest_of(&x.rows[i]);
+    list_row(&x, i);
+    update_largest(&x, i, &x.rows[i]);
   }
   return x;
 }
 
-static long double largest_left(const Elimination *x) {
-  long double largest = 0;
-  for (uint32_t i = 0; i < x->n; i++) largest = x->is_taken[i] ? largest : fmaxl(largest, x->most[i]);
-  return largest;
-}
-
-/* The first of the shortest remaining rows with an element of at least `least`, which some row has. */
+/* The first of the shortest rows with an element of at least `least`, which some row has. */
 static uint32_t shortest_row(const Elimination *x, long double least) {
-  uint32_t best = UINT32_MAX;
-  for (uint32_t i = 0; i < x->n; i++)
-    if (!x->is_taken[i] && x->most[i] >= least && (best == UINT32_MAX || x->rows[i].n < x->rows[best].n)) best = i;
-  return best;
+  for (uint32_t length = 1;; length++)
+    for (uint32_t i = x->first[length]; i; i = x->next[i - 1])
+      if (x->most[x->n + (size_t)i - 1] >= least) return i - 1;
 }
 
 /* Moves the pivot to the front of the row: of its elements of at least `least`, the one in the shortest column. */
@@ -175,10 +190,13 @@ static void bring_pivot(const Elimination *x, Row *r, long double least) {
 
 /* Chooses the next pivot row, with a pivot of at least a tenth of the largest element. Returns 0 where no element is above `least`. */
 static int choose_pivot_row(Elimination *x, long double least, uint32_t *row) {
-  long double largest = largest_left(x);
+  static const Row none;
+  long double largest = x->n ? x->most[1] : 0;
   if (!(largest > least)) return 0;
   uint32_t i = *row = shortest_row(x, largest / 10);
   bring_pivot(x, &x->rows[i], largest / 10);
+  unlist_row(x, i);
+  update_largest(x, i, &none);
   x->is_taken[i] = 1;
   x->taken[x->rank++] = i;
   for (uint32_t k = 0; k < x->rows[i].n; k++) x->count[x->rows[i].at[k].col]--;
@@ -188,6 +206,7 @@ static int choose_pivot_row(Elimination *x, long double least, uint32_t *row) {
 /* Subtracts the multiple of the pivot row that eliminates the pivot's column from row i, and returns the multiple. */
 static long double subtract_pivot_row(Elimination *x, const Row *pivot, uint32_t i) {
   Row *r = &x->rows[i];
+  unlist_row(x, i);
   for (uint32_t k = 0; k < r->n; k++) x->place[r->at[k].col] = k + 1;
   uint32_t out = x->place[pivot->at[0].col] - 1;
   long double f = r->at[out].value / pivot->at[0].value;
@@ -203,7 +222,8 @@ static long double subtract_pivot_row(Elimination *x, const Row *pivot, uint32_t
   }
   for (uint32_t k = 0; k < r->n; k++) x->place[r->at[k].col] = 0;
   r->at[out] = r->at[--r->n];
-  x->most[i] = largest_of(r);
+  list_row(x, i);
+  update_largest(x, i, r);
   return f;
 }
 
@@ -247,7 +267,7 @@ uint32_t sparse_solve(Arena *arena, uint32_t n, const SparseElements *a, long do
   Elimination e = elimination_new(arena, &m, by_row, by_column);
   long double *x = ARENA_ARRAY(arena, long double, n + 1);
   for (uint32_t i = 0; b && i < n; i++) b[i] = ldexpl(b[i], by_row[i]);
-  eliminate(&e, b, tolerance * largest_left(&e));
+  eliminate(&e, b, tolerance * e.most[1]);
   if (b) substitute_back(&e, b, x);
   for (uint32_t i = 0; b && i < n; i++) b[i] = ldexpl(x[i], by_column[i]);
   if (null && e.rank < n) {
