@@ -46,6 +46,12 @@ char *arena_strndup(Arena *a, const char *s, size_t n);
 char *arena_printf(Arena *a, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 char *arena_vprintf(Arena *a, const char *fmt, va_list ap) __attribute__((format(printf, 2, 0)));
 
+/* Gives the reason of a failure; returns 0. */
+static inline int fail_with(const char **error, const char *why) {
+  *error = why;
+  return 0;
+}
+
 /* Installs the handler that allocation failure jumps to (with value 1); returns the one before. */
 jmp_buf *arena_guard(Arena *a, jmp_buf *handler);
 

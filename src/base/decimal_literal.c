@@ -1,5 +1,5 @@
 /* Decimal literals by long multiplication and long division, digit by digit, from 1, pi or 1/pi. */
-#include "base/decimal_literal.h"
+#include "base/num.h"
 
 #include <string.h>
 

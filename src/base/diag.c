@@ -21,31 +21,35 @@ static Diag *find(const Diags *d, const Diag *one) {
   return NULL;
 }
 
-static Diag *add(Diags *d, Severity severity, Span span, const char *fmt, va_list ap) {
-  Diag one = {.severity = severity, .span = span, .message = arena_vprintf(d->arena, fmt, ap)};
+static int add(Diags *d, Severity severity, Span span, const char *fmt, va_list ap) {
+  char *text = arena_vprintf(d->arena, fmt, ap), *help = strchr(text, HELP[0]);
+  if (help) *help++ = '\0';
+  Diag one = {.severity = severity, .span = span, .message = text, .help = help};
   if (severity == DIAG_ERROR) d->errors++;
   Diag *known = span.end ? find(d, &one) : NULL;
   d->latest = known ? (uint32_t)(known - d->list.at) : d->list.n > DIAG_MAX ? DIAG_MAX : d->list.n;
-  if (known) return known;
+  if (known && help) known->help = help;
+  if (known) return 0;
   if (d->list.n > DIAG_MAX) { /* messages that are not shown share the last slot */
     d->unshown++;
     d->list.at[DIAG_MAX] = one;
   } else {
     vec_push(d->arena, &d->list, one);
   }
-  return &d->list.at[d->list.n - 1];
+  return 0;
 }
 
-#define ADD(severity)                                 \
-  va_list ap;                                         \
-  va_start(ap, fmt);                                  \
-  Diag *one = add(d, (severity), span, fmt, ap);      \
-  va_end(ap);                                         \
-  return one
+#define ADD(severity)                        \
+  va_list ap;                                \
+  va_start(ap, fmt);                         \
+  add(d, (severity), span, fmt, ap);         \
+  va_end(ap);                                \
+  return 0
 
-Diag *diag_error(Diags *d, Span span, const char *fmt, ...) { ADD(DIAG_ERROR); }
-Diag *diag_warning(Diags *d, Span span, const char *fmt, ...) { ADD(DIAG_WARNING); }
-Diag *diag_note(Diags *d, Span span, const char *fmt, ...) { ADD(DIAG_NOTE); }
+int diag_error(Diags *d, Span span, const char *fmt, ...) { ADD(DIAG_ERROR); }
+int diag_warning(Diags *d, Span span, const char *fmt, ...) { ADD(DIAG_WARNING); }
+int diag_note(Diags *d, Span span, const char *fmt, ...) { ADD(DIAG_NOTE); }
+int diag_verror(Diags *d, Span span, const char *fmt, va_list ap) { return add(d, DIAG_ERROR, span, fmt, ap); }
 
 void diag_help(Diags *d, const char *fmt, ...) {
   va_list ap;

@@ -36,12 +36,17 @@ enum { DIAG_MAX = 100 }; /* messages shown; the rest are counted in one line */
 
 Diags *diags_new(Arena *a, const Sources *sources);
 
-/* Records a message about a span and returns it; a repetition of a recorded message is dropped. */
-Diag *diag_error(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
-Diag *diag_warning(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+/* Separates a message from the way out that it offers: "unknown name `%s`" HELP "did you mean `%s`?". */
+#define HELP "\x1F"
+
+/* Records a message about a span, with its way out, if the text has one; a repetition of a recorded message is dropped. Returns 0. */
+int diag_error(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+int diag_warning(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 
 /* A message that is neither error nor warning: verdicts of `lagc check`. */
-Diag *diag_note(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+int diag_note(Diags *d, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+
+int diag_verror(Diags *d, Span span, const char *fmt, va_list ap) __attribute__((format(printf, 3, 0)));
 
 /* Adds a way out, or a second place, to the message recorded last. */
 void diag_help(Diags *d, const char *fmt, ...) __attribute__((format(printf, 2, 3)));

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/suggest.h"
+#include "base/words.h"
 #include "base/vec.h"
 
 static const MethodInfo methods[] = {

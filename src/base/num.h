@@ -64,4 +64,8 @@ void num_format_double(char *out, double x);
 /* Reads a finite decimal number; 0: the text is none, as inf, nan and 0x1p3, which strtod reads. */
 int num_parse_double(const char *text, double *x);
 
+/* decimal_literal.c: x*pi^pi_power as a decimal literal, exact where it has at most 40 digits, else cut after 40. NULL where x is no exact
+ * rational, its denominator is above 10^18, or pi_power is not -1, 0 or 1. */
+const char *decimal_literal(Arena *a, Num x, int pi_power);
+
 #endif

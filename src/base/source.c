@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/strbuf.h"
+
 Sources *sources_new(Arena *a) {
   Sources *s = ARENA_NEW(a, Sources);
   s->arena = a;
@@ -26,27 +28,6 @@ const Source *source_add(Sources *s, const char *path, const char *text, size_t 
   return &s->files.at[s->files.n - 1];
 }
 
-/* The bytes of a stream, at most max + 1 of them. */
-static char *read_all(Arena *a, FILE *f, size_t max, size_t *len) {
-  size_t n = 0, cap = 16 * 1024;
-  char *text = arena_alloc(a, cap);
-  for (;;) {
-    size_t got = fread(text + n, 1, cap - n - 1, f);
-    if (got == 0) break;
-    n += got;
-    if (n > max) break;
-    if (n + 1 == cap) {
-      char *bigger = arena_alloc(a, cap * 2);
-      memcpy(bigger, text, n);
-      text = bigger;
-      cap *= 2;
-    }
-  }
-  text[n] = '\0';
-  *len = n;
-  return text;
-}
-
 static const Source *read_file(Sources *s, FILE *f, const char *path, const char **error) {
   /* Reading may run out of memory; the file must be closed before the failure goes on. */
   jmp_buf here;
@@ -56,8 +37,11 @@ static const Source *read_file(Sources *s, FILE *f, const char *path, const char
     arena_guard(s->arena, before);
     arena_fail(s->arena);
   }
-  size_t len = 0;
-  char *text = read_all(s->arena, f, SOURCE_MAX_BYTES, &len);
+  StrBuf all = strbuf(s->arena);
+  char block[16 * 1024];
+  for (size_t got; all.n <= SOURCE_MAX_BYTES && (got = fread(block, 1, sizeof block, f)) > 0;) sb_putn(&all, block, got);
+  const char *text = sb_text(&all);
+  size_t len = all.n;
   arena_guard(s->arena, before);
   int failed = ferror(f);
   fclose(f);

@@ -1,8 +1,8 @@
-/* Lists of words, in one string and separated by spaces. */
+/* Lists of words, in one string and separated by spaces; and the known word nearest to a mistyped one. */
 #ifndef LAGC_WORDS_H
 #define LAGC_WORDS_H
 
-#include "base/arena.h"
+#include "base/intern.h"
 
 /* Whether `word`, of n bytes or up to its NUL, is one of `words`. */
 int has_word_n(const char *words, const char *word, size_t n);
@@ -13,5 +13,9 @@ const char *word_at(Arena *a, const char *words, size_t i);
 
 /* Ending of a noun after the number n. */
 static inline const char *plural(unsigned long n) { return n == 1 ? "" : "s"; }
+
+/* The candidate closest to `wrong` in edit distance (insert, delete, replace, swap neighbours), or NULL when none is close: at most a third of the
+ * length, at least one edit. For "did you mean". */
+Name suggest(const char *wrong, const Name *candidates, size_t n);
 
 #endif

@@ -5,8 +5,7 @@
 
 #include <stddef.h>
 
-#include "base/define.h"
-#include "base/vec.h"
+#include "model/model.h"
 
 typedef enum {
   CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_NOETHER, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_LYAPUNOV, CMD_COST, CMD_EFFECTS, CMD_METHODS, CMD_CACHE, CMD_BUILD, CMD_HEADER, CMD_EMIT,
@@ -81,6 +80,12 @@ typedef struct {
   size_t field;      /* otherwise: offset in Options of an int, const char * or list */
   const char *does;
 } OptionRow;
+
+/* Parses argv. Returns 0 on a mistake, with the message and advice in *error. */
+int options_read(Arena *a, int argc, char **argv, Options *o, const char **error);
+
+/* Whether simulators compute with more digits than a double has. */
+int options_more_digits(const Options *o);
 
 /* Row i of each table; NULL past the end. */
 const CommandRow *command_row(size_t i);

@@ -21,6 +21,10 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out);
  * NULL. Returns 0, with the reasons in c->diags: a wrong model, a false symmetry, no Lagrangian. */
 int noether_print(Compiler *c, const char *scene, const char *format, StrBuf *out);
 
+/* Topics of `lagc help`, each once, except functions, units and options. */
+typedef VEC(Name) Topics;
+void help_topics(Arena *a, Topics *out);
+
 /* These read no model. */
 int command_help(Compiler *c);
 int command_methods(Compiler *c);

@@ -4,9 +4,8 @@
 #ifndef LAGC_COMMANDS_COMPILER_H
 #define LAGC_COMMANDS_COMPILER_H
 
-#include "commands/options.h"
+#include "commands/command_table.h"
 #include "commands/run_request.h"
-#include "commands/settings.h"
 #include "ir/unit.h"
 #include "mech/eqns.h"
 
@@ -41,6 +40,9 @@ int compiler_write(Compiler *c, const char *path, const StrBuf *text);
 
 /* Reads c->o.file into c->ast. Returns a STATUS. */
 int compiler_read(Compiler *c);
+
+/* required_derivatives.c: flags WANT_... (ir/unit.h) that the methods of e's scene, of --method and of the state of --resume need, and --with. */
+unsigned derivatives_required(const Eqns *e, const Options *o);
 
 /* Equations of a choice of scene and effects; NULL with the reasons in c->diags. */
 Eqns *compiler_derive(Compiler *c, const ModelChoice *choice);

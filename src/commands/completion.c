@@ -10,14 +10,13 @@
 
 #include "base/method_table.h"
 #include "base/words.h"
-#include "commands/options.h"
+#include "commands/command_table.h"
 #include "commands/commands.h"
 #include "commands/complete_bash.h" /* static const char *const complete_bash[]: generated from the scripts */
 #include "commands/complete_fish.h"
 #include "commands/complete_zsh.h"
-#include "commands/help.h"
 #include "model/model.h"
-#include "commands/settings.h"
+#include "commands/run_request.h"
 #include "syntax/parse.h"
 
 /* The command line before the cursor, parsed. */
@@ -86,23 +85,11 @@ static void offer_settings(CommandLine *l) {
   for (uint32_t i = 0; i < m->inputs.n; i++) offer_setting(l, m->inputs.at[i].name, "input, held constant", &m->inputs.at[i].unit);
 }
 
-static const char *quantity(AstStmtKind kind) {
-  switch (kind) {
-    case STMT_COORD: return "coordinate";
-    case STMT_PARAM: return "parameter";
-    case STMT_CONST: return "constant";
-    case STMT_INPUT: return "input";
-    case STMT_STATE: return "state";
-    case STMT_LET: return "let";
-    case STMT_OBSERVE: return "observable";
-    default: return NULL;
-  }
-}
-
 static void offer_names(CommandLine *l, const AstStmt *list) {
+  static const char *const quantity[STMT_STOP + 1] = {[STMT_COORD] = "coordinate", [STMT_PARAM] = "parameter", [STMT_CONST] = "constant", [STMT_INPUT] = "input",
+                                                      [STMT_STATE] = "state", [STMT_LET] = "let", [STMT_OBSERVE] = "observable"};
   for (const AstStmt *s = list; s; s = s->next) {
-    const char *what = quantity(s->kind);
-    if (s->name && what) offer(l, s->dims ? arena_printf(l->arena, "%s[", s->name) : s->name, what);
+    if (s->name && quantity[s->kind]) offer(l, s->dims ? arena_printf(l->arena, "%s[", s->name) : s->name, quantity[s->kind]);
     if (s->name && s->kind == STMT_FUNCTION) offer(l, arena_printf(l->arena, "%s(", s->name), "function of the model");
   }
 }

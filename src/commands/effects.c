@@ -5,12 +5,12 @@
  * out together with those that require it, and added together with what it requires. */
 #include "commands/commands.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "commands/required_derivatives.h"
 #include "commands/simulator.h"
 #include "ir/hoist.h"
 #include "lower/lower.h"
@@ -220,25 +220,6 @@ static void add_subsets(const EffectStudy *s, uint32_t k, EffectSets *sets) {
     set = (set - 1) & s->used; /* the next smaller subset */
     if (count(set) == k && meets_requirements(s, set)) vec_push(s->arena, sets, set);
   }
-}
-
-/* Next sets to run for --accuracy, the scene's own first; .n is 0 once s->least is known. measured[before->n] belongs to the sets run before; NULL at
- * first. All sets of 0, 1, 2, ... effects that contain their requirements, until one meets the accuracy. */
-static EffectSets next_sets(EffectStudy *s, const EffectSets *before, const EffectMeasurement *measured) {
-  EffectSets sets = {0};
-  uint32_t k = 0, all = count(s->used);
-  int ops = 1 << 30;
-  if (!before) s->least = s->used;
-  if (before) {
-    for (uint32_t i = 1; i < before->n; i++) keep_if_better(s, before->at[i], &measured[i], &ops);
-    s->tried += before->n - 1;
-    if (s->least != s->used) return sets;
-    k = count(before->at[1]) + 1;
-  }
-  vec_push(s->arena, &sets, s->used);
-  for (; k < all && sets.n == 1; k++) add_subsets(s, k, &sets);
-  if (sets.n == 1) sets.n = 0;
-  return sets;
 }
 
 /* --- the `use` statement --- */
@@ -493,7 +474,7 @@ static int run_variants(Compiler *c, EffectStudy *s, const EffectSets *sets, con
   return status;
 }
 
-/* --accuracy: searches the smallest set of effects. */
+/* --accuracy: runs all sets of 0, 1, 2, ... effects that contain their requirements, beside the scene's own, until one meets the accuracy. */
 static int find_least(Compiler *c, EffectStudy *s) {
   EffectMeasurement *measured = NULL;
   if (!num_parse_double(c->o.accuracy, &s->accuracy) || !(s->accuracy > 0)) return usage_error(arena_printf(c->arena, "--accuracy %s: a difference that does not matter, relative and positive; for example 1e-6", c->o.accuracy));
@@ -501,10 +482,16 @@ static int find_least(Compiler *c, EffectStudy *s) {
     fprintf(stderr, "lagc: --accuracy %g: the error of integration, %.2g, is not well below it; add --tol with a smaller number, or --step\n", s->accuracy, s->error);
     return STATUS_RUN;
   }
-  for (EffectSets sets = next_sets(s, NULL, NULL); sets.n;) {
-    int status = run_variants(c, s, &sets, "runs", &measured);
-    if (status != STATUS_OK) return status;
-    sets = next_sets(s, &sets, measured);
+  s->least = s->used;
+  for (uint32_t k = 0, all = count(s->used); k < all && s->least == s->used; k++) {
+    EffectSets sets = {0};
+    int ops = INT_MAX, status;
+    vec_push(c->arena, &sets, s->used);
+    add_subsets(s, k, &sets);
+    if (sets.n == 1) continue;
+    if ((status = run_variants(c, s, &sets, "runs", &measured)) != STATUS_OK) return status;
+    for (uint32_t i = 1; i < sets.n; i++) keep_if_better(s, sets.at[i], &measured[i], &ops);
+    s->tried += sets.n - 1;
   }
   return STATUS_OK;
 }

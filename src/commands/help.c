@@ -1,17 +1,15 @@
-/* Help pages, put together from the tables of commands and options, the chapters of the reference, and the table of units. */
-#include "commands/help.h"
+/* `lagc help`: pages on a command, a chapter or a word of the reference, a function, a unit, an option; put together from the tables of commands and
+ * options, the chapters of grammar/LANGUAGE.md, and the table of units. */
+#include "commands/commands.h"
 
 #include <ctype.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/method_table.h"
-#include "base/suggest.h"
 #include "base/words.h"
-#include "commands/command_table.h"
-#include "commands/commands.h"
 #include "commands/language.h" /* static const char *const language[]: generated from grammar/LANGUAGE.md */
-#include "commands/options.h"
+#include "commands/command_table.h"
 #include "commands/terminal_page.h"
 #include "model/model.h"
 #include "syntax/parse.h"
@@ -168,23 +166,12 @@ static int put_named_options(StrBuf *out, const char *topic, int before) {
 
 /* ---- units ---- */
 
-static const char *name_of_unit(uint32_t i) {
-  int prefixes;
-  return unit_name(i, &prefixes);
-}
-
-static int takes_prefixes(uint32_t i) {
-  int prefixes = 0;
-  unit_name(i, &prefixes);
-  return prefixes;
-}
-
 static int put_unit(StrBuf *out, const char *name, int before) {
-  for (uint32_t i = 0; name_of_unit(i); i++) {
-    if (strcmp(name_of_unit(i), name) != 0) continue;
+  for (uint32_t i = 0; unit_name(i); i++) {
+    if (strcmp(unit_name(i), name) != 0) continue;
     const char *is = unit_meaning(i, out->arena);
     sb_printf(out, "%sunit:\n  [%s]%s%s%s\n", before ? "\n" : "", name, is ? " = " : "", is ? is : " of the SI, a base unit",
-              takes_prefixes(i) ? "; takes the SI prefixes" : "");
+              unit_takes_prefixes(i) ? "; takes the SI prefixes" : "");
     return 1;
   }
   if (!unit_exists(name)) return 0;
@@ -197,10 +184,10 @@ static void put_units(StrBuf *out) {
   enum { COLUMNS = 2, WIDE = 38 };
   VEC(const char *) cells = {0};
   int plain = 0;
-  for (uint32_t i = 1; name_of_unit(i); i++) { /* the first is 1 */
-    const char *is = unit_meaning(i, out->arena), *mark = takes_prefixes(i) ? "" : "*";
+  for (uint32_t i = 1; unit_name(i); i++) { /* the first is 1 */
+    const char *is = unit_meaning(i, out->arena), *mark = unit_takes_prefixes(i) ? "" : "*";
     plain |= *mark;
-    vec_push(out->arena, &cells, arena_printf(out->arena, "%s%s%s%s", name_of_unit(i), mark, is ? " = " : "", is ? is : ""));
+    vec_push(out->arena, &cells, arena_printf(out->arena, "%s%s%s%s", unit_name(i), mark, is ? " = " : "", is ? is : ""));
   }
   uint32_t rows = (cells.n + COLUMNS - 1) / COLUMNS;
   sb_puts(out, "\nThe table\n---------\n");
@@ -270,7 +257,8 @@ static Name nearest(Arena *a, const char *topic) {
   return suggest(topic, known.at, known.n);
 }
 
-int help_print(StrBuf *out, const char *topic, Name *near) {
+/* Appends help on a topic (NULL: the list of topics). Returns 0 for an unknown topic; then *near is the nearest known one, or NULL. */
+static int print_help(StrBuf *out, const char *topic, Name *near) {
   *near = NULL;
   if (!topic) {
     put_overview(out);
@@ -323,7 +311,7 @@ int command_help(Compiler *c) {
   const char *topic = c->o.topic;
   Name near;
   if (topic && strcmp(topic, "methods") == 0) return help_methods(c, NULL);
-  if (help_print(&out, topic, &near)) return compiler_write(c, NULL, &out);
+  if (print_help(&out, topic, &near)) return compiler_write(c, NULL, &out);
   if (method_find(topic, strlen(topic))) return help_methods(c, topic);
   if (!near) near = method_suggest(c->arena, topic);
   return usage_error(near ? arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near)

@@ -12,10 +12,7 @@ static PrintStyle style_of(const char *format) { return format && strcmp(format,
 int noether_print(Compiler *c, const char *scene, const char *format, StrBuf *out) {
   Eqns *e = compiler_derive_compared(c, &(ModelChoice){.scene = scene, .bare = !scene});
   if (!e) return 0;
-  if (!e->m->lagrangian) {
-    diag_error(e->m->diags, e->m->span, "no symmetries to look for: the model has no Lagrangian");
-    return 0;
-  }
+  if (!e->m->lagrangian) return diag_error(e->m->diags, e->m->span, "no symmetries to look for: the model has no Lagrangian");
   if (!scene && !charges_judge(e, NULL)) return 0;
   NoetherReport *r = noether_report(e);
   for (uint32_t i = 0; i < e->m->all_effects.n && !scene; i++) {

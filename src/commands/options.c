@@ -1,9 +1,8 @@
 /* Parses the command line by the tables of command_table.c; mistakes are answered with the nearest word or the right command. */
-#include "commands/options.h"
+#include "commands/command_table.h"
 
 #include <string.h>
 
-#include "base/suggest.h"
 #include "base/words.h"
 #include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
@@ -27,10 +26,7 @@ static const char *unknown_command(Arena *a, const char *word) {
 
 static int add_define(Arena *a, Options *o, const char *text, const char **error) {
   const char *eq = strchr(text, '=');
-  if (!eq || eq == text || !eq[1]) {
-    *error = "-D takes CONST=VALUE, for example -D N=50";
-    return 0;
-  }
+  if (!eq || eq == text || !eq[1]) return fail_with(error, "-D takes CONST=VALUE, for example -D N=50");
   Define d = {.name = arena_strndup(a, text, (size_t)(eq - text)), .value = eq + 1};
   vec_push(a, &o->defines, d);
   return 1;
@@ -77,8 +73,8 @@ static int check_kind(Arena *a, Command c, const OptionRow *row, const char *pat
                    : has_word_n(suffixes, "svg", 3) ? "SVG" : has_word_n(suffixes, "html", 4) ? "HTML" : has_word_n(suffixes, "h", 1) ? "a C header"
                    : has_word_n(suffixes, "tex", 3) ? "LaTeX" : has_word_n(suffixes, "json", 4) ? "JSON" : "C";
   int stem = (int)(other - path) - !*suffixes;
-  *error = arena_printf(a, "%s %s: %s writes %s%s; write %s %.*s%.*s", name, path, writer, kind, way, name, stem, path, (int)strcspn(suffixes, " "), suffixes);
-  return 0;
+  return fail_with(error, arena_printf(a, "%s %s: %s writes %s%s; write %s %.*s%.*s", name, path, writer, kind, way, name, stem, path,
+                                       (int)strcspn(suffixes, " "), suffixes));
 }
 
 /* derive and noether: takes the format from the name of the output file, or compares it with --format. */
@@ -142,16 +138,10 @@ static const char *unknown_option(Arena *a, const Options *o, const char *word) 
 
 static int read_option(Arena *a, int argc, char **argv, int *i, Options *o, const OptionRow *row, const char *value, const char **error) {
   const char *arg = argv[*i];
-  if (row->takes == TAKES_NOTHING && value) {
-    *error = arena_printf(a, "%s takes no value", row->name);
-    return 0;
-  }
+  if (row->takes == TAKES_NOTHING && value) return fail_with(error, arena_printf(a, "%s takes no value", row->name));
   if (row->passed) vec_push(a, &o->rest, arg);
   if (row->takes != TAKES_NOTHING && !value) {
-    if (*i + 1 >= argc) {
-      *error = arena_printf(a, "%s needs a value: %s %s", arg, arg, row->value);
-      return 0;
-    }
+    if (*i + 1 >= argc) return fail_with(error, arena_printf(a, "%s needs a value: %s %s", arg, arg, row->value));
     value = argv[++*i];
     if (row->passed) vec_push(a, &o->rest, value);
   }
@@ -175,10 +165,7 @@ static int read_word(Arena *a, const char *arg, Options *o, const char **error) 
     vec_push(a, &o->rest, arg);
     return 1;
   }
-  if (o->scene) {
-    *error = arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command));
-    return 0;
-  }
+  if (o->scene) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
   o->scene = arg;
   return 1;
 }
@@ -208,31 +195,22 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
 /* Commands that read no model take at most one word. */
 static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char **error) {
   const char *arg = argc > 2 ? argv[2] : NULL;
-  if (argc > 3) {
-    *error = arena_printf(a, "one word too many: `%s`; usage: %s", argv[3], usage(a, o->command));
-    return 0;
-  }
+  if (argc > 3) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", argv[3], usage(a, o->command)));
   o->topic = arg;
   if (arg && (strcmp(arg, "--help") == 0 || strcmp(arg, "-h") == 0)) {
     o->topic = o->command == CMD_HELP ? NULL : command_find(o->command)->name;
     o->command = CMD_HELP;
     return 1;
   }
-  if (o->command == CMD_METHODS && arg) {
-    *error = arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command));
-    return 0;
-  }
+  if (o->command == CMD_METHODS && arg) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
   if (o->command == CMD_CACHE && arg) {
     const char *value;
     const OptionRow *row = option_find(o->command, arg, &value);
     if (row) return read_option(a, argc, argv, &(int){2}, o, row, value, error);
-    *error = unknown_option(a, o, arg);
-    return 0;
+    return fail_with(error, unknown_option(a, o, arg));
   }
-  if (o->command == CMD_COMPLETION && (!arg || !has_word("bash zsh fish", arg))) {
-    *error = "which shell? write `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`";
-    return 0;
-  }
+  if (o->command == CMD_COMPLETION && (!arg || !has_word("bash zsh fish", arg)))
+    return fail_with(error, "which shell? write `lagc completion bash`, `lagc completion zsh` or `lagc completion fish`");
   return 1;
 }
 
@@ -243,13 +221,9 @@ int options_read(Arena *a, int argc, char **argv, Options *o, const char **error
   *error = NULL;
   for (int i = 1; i < argc && o->command != CMD_COMPLETE; i++)
     if (strpbrk(argv[i], "\n\t")) { /* messages show a word on one line */
-      *error = arena_printf(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i);
-      return 0;
+      return fail_with(error, arena_printf(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i));
     }
-  if (!o->command) {
-    *error = unknown_command(a, argv[1]);
-    return 0;
-  }
+  if (!o->command) return fail_with(error, unknown_command(a, argv[1]));
   if (o->command == CMD_COMPLETE) {
     for (int i = 2; i < argc; i++) vec_push(a, &o->rest, argv[i]);
     return 1;

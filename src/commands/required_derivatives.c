@@ -1,5 +1,5 @@
 /* Required derivatives: maps the methods of a scene and of the command line to flags WANT_... */
-#include "commands/required_derivatives.h"
+#include "commands/compiler.h"
 
 #include <stdio.h>
 #include <stdlib.h>

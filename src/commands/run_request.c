@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "commands/command_table.h"
-#include "commands/settings.h"
 #include "syntax/parse.h"
 
 typedef struct {
@@ -69,10 +68,9 @@ static int prepare_section(RequestBuilder *k, const char **error) {
   if (!text) return 1;
   text = text_trimmed(k->arena, text, strlen(text));
   int direction = section_direction(text, &n);
-  if (direction < 0) {
-    *error = arena_printf(k->arena, "--section %s: a direction is missing; write --section '%s rising', falling or crossing (both)", text, text);
-    return 0;
-  }
+  if (direction < 0)
+    return fail_with(error, arena_printf(k->arena, "--section %s: a direction is missing; write --section '%s rising', falling or crossing (both)",
+                                         text, text));
   const Source *source = source_add(k->ast->sources, "--section", text, n);
   k->p->section = (Section){source ? parse_expression(k->ast, source) : 0, (AstDirection)direction, intern(k->ast->names, text)};
   if (!k->p->section.expr) return 0;
@@ -147,21 +145,14 @@ static int points_split(Arena *a, const char *text, PointTexts *points, const ch
     s += strspn(s, "; \t\r\n");
     if (!*s) break;
     const char *comma, *end = point_end(s, &comma);
-    if (!comma || *end == ',') {
-      *error = arena_printf(a, "\"%s\": each point is x,y, for example 'x1,y1 x2,y2'", text);
-      return 0;
-    }
+    if (!comma || *end == ',') return fail_with(error, arena_printf(a, "\"%s\": each point is x,y, for example 'x1,y1 x2,y2'", text));
     PointText p = {text_trimmed(a, s, (size_t)(comma - s)), text_trimmed(a, comma + 1, (size_t)(end - comma - 1))};
-    if (!p.x[0] || !p.y[0]) {
-      *error = arena_printf(a, "\"%s\": a point lacks x or y", text);
-      return 0;
-    }
+    if (!p.x[0] || !p.y[0]) return fail_with(error, arena_printf(a, "\"%s\": a point lacks x or y", text));
     vec_push(a, points, p);
     s = end;
   }
   if (points->n) return 1;
-  *error = "no point is given; write for example 'x1,y1 x2,y2'";
-  return 0;
+  return fail_with(error, "no point is given; write for example 'x1,y1 x2,y2'");
 }
 
 /* --- animate --- */

@@ -5,7 +5,7 @@
 #ifndef LAGC_COMMANDS_RUN_REQUEST_H
 #define LAGC_COMMANDS_RUN_REQUEST_H
 
-#include "commands/options.h"
+#include "commands/command_table.h"
 #include "model/model.h"
 
 typedef struct {
@@ -15,6 +15,23 @@ typedef struct {
   VEC(char *) argv; /* the simulator's, NULL-terminated */
   const char *note; /* points that were chosen for the user, or NULL */
 } RunRequest;
+
+/* --- settings.c: values on the command line. A simulator takes plain numbers in declared units; so inputs with a formula or a table, and starts of
+ * rotations, are compiled in, and values with units or formulas become numbers. Each returns 0 on a mistake, which is in ast->diags or *error. --- */
+
+/* Parses the values of constants, -D. */
+int settings_defines(Ast *ast, Define *defines, uint32_t n);
+
+typedef VEC(CommandInput) GivenList;
+
+/* Moves inputs with a formula or a table, and starts of rotations, from o->rest to *given. */
+int settings_compiled(Ast *ast, Options *o, GivenList *given, const char **error);
+
+/* Replaces values with a unit (`th=90[deg]`, `--until 2[min]`) and formulas (`th=pi/3`) in o->rest by numbers. */
+int settings_units(Ast *ast, const Options *o);
+
+/* A text on one line, without white space at its ends and with single spaces inside. */
+const char *text_trimmed(Arena *a, const char *text, size_t n);
 
 /* Returns 0 on a mistake, which *error or ast->diags describes. */
 int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **error);

@@ -1,5 +1,5 @@
 /* Values on the command line: parses -D, compiles in inputs and starts of rotations, converts units and formulas to plain numbers. */
-#include "commands/settings.h"
+#include "commands/run_request.h"
 
 #include <string.h>
 
@@ -83,10 +83,8 @@ int settings_compiled(Ast *ast, Options *o, GivenList *given, const char **error
   for (uint32_t i = 0; i < o->rest.n; i++) {
     const char *arg = o->rest.at[i], *eq = arg[0] != '-' ? strchr(arg, '=') : NULL;
     const char *name = eq ? arena_strndup(ast->arena, arg, (size_t)(eq - arg)) : "";
-    if (eq && find_declared(ast, STMT_CONST, name) && !find_declared(ast, STMT_PARAM, name)) {
-      *error = arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg);
-      return 0;
-    }
+    if (eq && find_declared(ast, STMT_CONST, name) && !find_declared(ast, STMT_PARAM, name))
+      return fail_with(error, arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg));
     int formula = eq && eq[1] && !is_number(eq + 1) && find_declared(ast, STMT_INPUT, name);
     if (formula || (eq && eq[1] && starts_rotation(ast, name))) ok &= take_setting(ast, arg, given);
     else o->rest.at[kept++] = arg;
@@ -97,11 +95,17 @@ int settings_compiled(Ast *ast, Options *o, GivenList *given, const char **error
 
 /* --- values with units --- */
 
+/* A word of the command line, and the place in it of a value that is to become a plain number. */
+typedef struct {
+  const char **word, *before; /* the new word is `before` and the number */
+} ValuePlace;
+
 typedef struct {
   const Options *o;
   Ast *ast;
   Arena *arena;
-  Model *model; /* built for the first value that needs it */
+  VEC(ValuePlace) places;
+  VEC(CommandValue) values; /* of the places */
 } Converter;
 
 /* Whether the value has a unit or is a formula of numbers; all else goes to the simulator as it stands. */
@@ -111,34 +115,20 @@ static int needs_conversion(const char *value) {
   return strchr(value, '[') || strspn(value, "+-*/^.0123456789eE() pi") == n;
 }
 
-/* The value as a plain number in the declared unit of `name` (NULL: a time [s]); NULL after a mistake. */
-static const char *converted_value(Converter *c, const char *name, const char *value) {
-  enum { ROOM = 32 };
-  if (!c->model) {
-    ModelChoice choice = {.scene = c->o->scene, .defines = c->o->defines.at, .ndefines = c->o->defines.n};
-    c->model = model_build(c->ast, &choice);
-  }
-  if (!c->model) return NULL;
-  AstId target = name ? parse_setting(c->ast, "command line", name) : 0, id = parse_setting(c->ast, "command line", value);
-  double x;
-  const char *digits;
-  if ((name && !target) || !id || !model_command_value(c->model, target, id, &x, &digits)) return NULL;
-  if (options_more_digits(c->o) && digits) return digits;
-  if (options_more_digits(c->o)) {
-    diag_error(c->ast->diags, ast_expr(c->ast, id)->span, "--precision %s needs more digits of this value than lagc computes", c->o->precision);
-    diag_help(c->ast->diags, "lagc has all digits of fractions and of multiples of pi; write other values as decimals");
-    return NULL;
-  }
-  char *text = arena_alloc(c->arena, ROOM);
-  num_format_double(text, x);
-  return text;
+/* Notes that `value`, of `name` (NULL: a time), is to become a number in the word. Returns 0 where it cannot be read. */
+static int convert_later(Converter *c, const char *name, const char *value, const char **word, const char *before) {
+  CommandValue v = {.target = name ? parse_setting(c->ast, "command line", name) : 0};
+  v.value = parse_setting(c->ast, "command line", value);
+  vec_push(c->arena, &c->places, ((ValuePlace){word, before}));
+  vec_push(c->arena, &c->values, v);
+  return (!name || v.target) && v.value;
 }
 
 /* Converts name=value, with spaces around both removed. */
 static int convert_setting(Converter *c, const char **arg) {
   const char *eq = strchr(*arg, '=');
   const char *name = text_trimmed(c->arena, *arg, (size_t)(eq - *arg)), *value = text_trimmed(c->arena, eq + 1, strlen(eq + 1));
-  if (needs_conversion(value) && !(value = converted_value(c, name, value))) return 0;
+  if (needs_conversion(value)) return convert_later(c, name, value, arg, arena_printf(c->arena, "%s=", name));
   *arg = arena_printf(c->arena, "%s=%s", name, value);
   return 1;
 }
@@ -153,9 +143,34 @@ static int convert_time(Converter *c, uint32_t *i) {
     int joined = at[*i][n] == '=';
     if (!joined && *i + 1 == c->o->rest.n) return 1;
     const char *value = joined ? at[*i] + n + 1 : at[++*i];
-    if (!needs_conversion(value)) return 1;
-    if (!(value = converted_value(c, NULL, value))) return 0;
-    at[*i] = joined ? arena_printf(c->arena, "%s=%s", options[k], value) : value;
+    return !needs_conversion(value) || convert_later(c, NULL, value, &at[*i], joined ? arena_printf(c->arena, "%s=", options[k]) : "");
+  }
+  return 1;
+}
+
+/* The value as text, with all its digits where the precision asks for them; NULL after a mistake. */
+static const char *number_text(Converter *c, const CommandValue *v) {
+  enum { ROOM = 32 };
+  if (options_more_digits(c->o) && v->digits) return v->digits;
+  if (options_more_digits(c->o)) {
+    diag_error(c->ast->diags, ast_expr(c->ast, v->value)->span, "--precision %s needs more digits of this value than lagc computes", c->o->precision);
+    diag_help(c->ast->diags, "lagc has all digits of fractions and of multiples of pi; write other values as decimals");
+    return NULL;
+  }
+  char *text = arena_alloc(c->arena, ROOM);
+  num_format_double(text, v->number);
+  return text;
+}
+
+/* Evaluates the values in the scene, and writes them into their words. */
+static int convert_all(Converter *c) {
+  ModelChoice choice = {.scene = c->o->scene, .defines = c->o->defines.at, .ndefines = c->o->defines.n, .values = c->values.at, .nvalues = c->values.n};
+  if (!c->values.n) return 1;
+  if (!model_build(c->ast, &choice)) return 0;
+  for (uint32_t i = 0; i < c->values.n; i++) {
+    const char *text = number_text(c, &c->values.at[i]);
+    if (!text) return 0;
+    *c->places.at[i].word = arena_printf(c->arena, "%s%s", c->places.at[i].before, text);
   }
   return 1;
 }
@@ -173,5 +188,5 @@ int settings_units(Ast *ast, const Options *o) {
     ok &= convert_time(&c, &i);
     if (i == at && option_takes_next(o->command, word)) i++;
   }
-  return ok;
+  return ok && convert_all(&c);
 }

@@ -4,8 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "commands/required_derivatives.h"
-#include "commands/settings.h"
 #include "emit/cnames.h"
 #include "emit/emit_model.h"
 #include "ir/hoist.h"

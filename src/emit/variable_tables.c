@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "base/decimal_literal.h"
+#include "base/num.h"
 
 /* LAG_10(f, 12) is f(120) ... f(129): numbers are pasted from their digits. */
 enum { LARGEST_BLOCK = 10000, MOST_IN_GROUP = 16, FEWEST_GROUPS = 32 };

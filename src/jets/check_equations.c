@@ -118,7 +118,7 @@ static CheckVerdict check_direction(Check *c, const char *name, Span span, const
 
 /* Projects displacements of rotations orthogonal to q, so that |q| stays 1. */
 static void keep_rotations(Check *c) {
-  const Builder *b = c->m->builder;
+  const Declarations *b = c->m->declared;
   for (uint32_t i = 0; i < b->rotations.n; i++) {
     Real *d = c->c + b->rotations.at[i], *q = c->q + b->rotations.at[i], along = 0;
     for (int k = 0; k < 4; k++) along += d[k] * q[k];

@@ -70,7 +70,7 @@ static Real random_near(Check *c, Real start) {
 
 /* Normalises quaternions, and makes their rates orthogonal to them. */
 static void project_rotations(Check *c) {
-  const Builder *b = c->m->builder;
+  const Declarations *b = c->m->declared;
   for (uint32_t i = 0; i < b->rotations.n && !c->m->first_order; i++) {
     Real *q = c->q + b->rotations.at[i], *v = c->v + b->rotations.at[i], square = 0, along = 0;
     for (int k = 0; k < 4; k++) square += q[k] * q[k];

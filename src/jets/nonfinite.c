@@ -42,7 +42,7 @@ static void note_expression(Check *c, const Tape *t, const Jet *at, Ref r) {
   char operands[80];
   Diags *d = c->m->diags;
   snprintf(operands, sizeof operands, format, x, y);
-  diag_note(d, ast_expr(c->m->builder->ast, i->at)->span, "the run ends here, where %s no finite value%s", of, operands);
+  diag_note(d, ast_expr(c->m->ast, i->at)->span, "the run ends here, where %s no finite value%s", of, operands);
   diag_help(d, "at %s", check_state_text(c));
 }
 

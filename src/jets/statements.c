@@ -31,7 +31,7 @@ static void visit(Walk *w, const AstStmt *st, Name effect, Visit *fn) {
 }
 
 static void walk(Walk *w, Visit *fn) {
-  const Builder *b = w->text->b;
+  const Declarations *b = w->text->b;
   for (uint32_t i = 0; i < b->active.n; i++) visit(w, b->active.at[i].stmt, b->active.at[i].effect, fn);
 }
 

@@ -194,7 +194,7 @@ int text_range(TextEval *t, AstId lo, AstId hi, Name effect, const IndexVars *ar
 
 TextEval *text_new(const Model *m, Arena *a) {
   TextEval *t = ARENA_NEW(a, TextEval);
-  const Builder *b = m->builder;
+  const Declarations *b = m->declared;
   *t = (TextEval){.m = m, .b = b, .arena = a, .tape = tape_new(a)};
   t->lets = ARENA_ARRAY(a, TextValue, b->lets.n + 1);
   t->observes = ARENA_ARRAY(a, TextValue, b->observes.n + 1);

@@ -6,7 +6,8 @@
 #define LAGC_JETS_TEXT_EVAL_H
 
 #include "jets/tape.h"
-#include "model/builder.h"
+#include "model/declarations.h"
+#include "model/model.h"
 
 /* Value of an expression: a number (n = 0), a vector of n = 2 or 3 components, or a rotation, n = ROTATION, times `scale` (0: none).
  * at[0] = 0: not evaluated here; TextEval.why has the reason. */
@@ -20,10 +21,10 @@ typedef struct TextEval TextEval;
 
 struct TextEval {
   const Model *m;
-  const Builder *b;
+  const Declarations *b;
   Arena *arena;
   Tape *tape;
-  TextValue *lets, *observes, *constants; /* values, indexed as in Builder; at[0] = 0: not evaluated yet */
+  TextValue *lets, *observes, *constants; /* values, indexed as in Declarations; at[0] = 0: not evaluated yet */
   const char *why;                      /* first construct that could not be evaluated; the caller resets it to NULL */
   Ref lagrangian, kinetic, potential;   /* energies for `lagrangian`, `T`, `V`, `energy`, `p_x` in outputs: set by the caller if `needs_energies` */
   const int64_t *member;                /* indices for a family named without any, in outputs; NULL: such a family has no value */

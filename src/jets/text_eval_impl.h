@@ -12,7 +12,7 @@ typedef struct {
   uint64_t terms;
 } TextLoop;
 
-/* A definition: kind, and index in the builder; ENT_NONE: an expression that is no definition. */
+/* A definition: kind, and index in Declarations; ENT_NONE: an expression that is no definition. */
 typedef struct {
   EntKind kind;
   uint32_t index;

@@ -177,7 +177,7 @@ static TextValue entity(TextEval *t, Frame *f, const Entity *e, const int64_t *a
 static TextValue named(TextEval *t, Frame *f, const Entity *e, const int64_t *at) {
   const int64_t *which = e->ndims ? at ? at : t->member : NULL;
   if (e->ndims && !which) return NOTHING;
-  const Entity *member = e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE) ? find_member(t->b, e, which) : e;
+  const Entity *member = e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE) ? find_member(t->b->ast, &t->b->members, e, which) : e;
   return member ? entity(t, f, member, which) : NOTHING;
 }
 
@@ -302,7 +302,7 @@ static TextValue multiplier(TextEval *t, const Frame *f, AstId id) {
     x = ast_expr(ast, x->a);
   }
   if (x->kind == AST_MEMBER) effect = ast_expr(ast, x->a)->name;
-  const Entity *e = scope_find(&t->b->constraints, member_name((Builder *)t->m->builder, x->name, at, n), effect, &ambiguous);
+  const Entity *e = scope_find(&t->b->constraints, member_name(t->b->ast, x->name, at, n), effect, &ambiguous);
   TextValue r = {.n = e ? e->parts : 0};
   for (uint32_t k = 0; e && k < text_components(&r); k++) r.at[k] = tape_input(t->tape, INPUT_MULTIPLIER, e->index + k);
   return r;

@@ -55,8 +55,7 @@ uint64_t range_count(const IndexRange *r) {
 
 static int report_count(Builder *b, const AstExpr *list, const char *what, const char *wanted) {
   uint32_t n = ast_list_length(b->ast, list->args);
-  diag_error(b->diags, list->span, "%s has %u element%s, and %s", what, n, plural(n), wanted);
-  return 0;
+  return diag_error(b->diags, list->span, "%s has %u element%s, and %s", what, n, plural(n), wanted);
 }
 
 /* Elements of a list of rows; each row is a list, with or without a unit of its own. */
@@ -79,10 +78,8 @@ int list_elements(Builder *b, const AstExpr *list, const AstUnit *behind, const 
   const AstUnit *own;
   const AstExpr *row = list_behind(b, list->args, &own);
   if (row && r->n == 2) return row_elements(b, list, behind, r, name, out);
-  if (row) {
-    diag_error(b->diags, row->span, "a list in a list gives a row of a family with two indices, and `%s` has %s", name, r->n ? "one" : "none");
-    return 0;
-  }
+  if (row)
+    return diag_error(b->diags, row->span, "a list in a list gives a row of a family with two indices, and `%s` has %s", name, r->n ? "one" : "none");
   if (!r->n) {
     report_count(b, list, "the list", arena_printf(b->arena, "`%s` is no family", name));
     diag_help(b->diags, "a list gives a family its members; a vector is written `(a, b)`");
@@ -119,11 +116,9 @@ static int give_member(const Assign *s, const int64_t *at, AstId id, Value v) {
   Builder *b = s->b;
   Span span = ast_expr(b->ast, id)->span;
   if (!v.e) return 0;
-  if (v.n != s->parts) {
-    diag_error(b->diags, span, "`%s` is %s, and %s is given here", member_name(b, s->e->name, at, s->e->ndims), shape_text(b, s->parts),
-               shape_text(b, v.n));
-    return 0;
-  }
+  if (v.n != s->parts)
+    return diag_error(b->diags, span, "`%s` is %s, and %s is given here", member_name(b->ast, s->e->name, at, s->e->ndims), shape_text(b, s->parts),
+                      shape_text(b, v.n));
   uint32_t first = s->e->index + member_offset(s->e, at) + (s->p->part < 0 ? 0 : (uint32_t)component_index(s->e->parts, s->p->part));
   v = values_in(b, v, span, s->assigner->unit(b, first, s->assigner->data));
   for (uint32_t k = 0; v.e && k < (v.n ? v.n : 1); k++) s->assigner->give(b, first + k, v.at[k], span, s->assigner->data);
@@ -144,16 +139,11 @@ static int read_ranges(Builder *b, const Target *p, const Entity *e, AstId lhs, 
   Span span = ast_expr(b->ast, lhs)->span;
   *r = entity_range(e);
   if (!p->indices) return 1;
-  if (!e->ndims) {
-    diag_error(b->diags, span, "`%s` is %s without index", e->name, ent_kind_text(e->kind));
-    diag_help(b->diags, "a family is declared with its size: `%s[3]`", e->name);
-    return 0;
-  }
+  if (!e->ndims)
+    return diag_error(b->diags, span, "`%s` is %s without index" HELP "a family is declared with its size: `%s[3]`", e->name, ent_kind_text(e->kind),
+                      e->name);
   if (!resolve_indices(b, p->indices, NULL, r)) return 0;
-  if (r->n != e->ndims) {
-    diag_error(b->diags, span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", r->n);
-    return 0;
-  }
+  if (r->n != e->ndims) return diag_error(b->diags, span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", r->n);
   int empty = 0;
   for (uint32_t k = 0; k < r->n; k++) empty |= r->hi[k] < r->lo[k];
   return empty || (index_in_range(b, e, r->lo, span) && index_in_range(b, e, r->hi, span));

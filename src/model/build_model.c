@@ -18,7 +18,7 @@ typedef struct {
 } UnitCheck;
 
 typedef struct {
-  VEC(Expr) lagrangian, kinetic, potential, dissipation;
+  VEC(Expr) terms[4]; /* of L, T, V and dissipation, in the order of their kinds of statement */
   Span base[3]; /* the model's own statements of L, T, V */
   Span first;   /* the first nonzero energy */
   int failed;   /* an energy has no value: the dimension of L is unknown */
@@ -87,24 +87,20 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
   } else {
     check_energy_unit(b, st, &v, en);
   }
-  switch (st->kind) {
-    case STMT_LAGRANGIAN: vec_push(b->arena, &en->lagrangian, v.e); return;
-    case STMT_KINETIC: vec_push(b->arena, &en->kinetic, v.e); return;
-    case STMT_POTENTIAL: vec_push(b->arena, &en->potential, v.e); return;
-    case STMT_DISSIPATION: vec_push(b->arena, &en->dissipation, v.e); return;
-    default: return; /* the caller passes these four */
-  }
+  vec_push(b->arena, &en->terms[st->kind - STMT_LAGRANGIAN], v.e);
+}
+
+static Expr sum_of_terms(Builder *b, const Energies *en, AstStmtKind kind) {
+  return expr_add_n(b->g, en->terms[kind - STMT_LAGRANGIAN].at, en->terms[kind - STMT_LAGRANGIAN].n);
 }
 
 static void finish_energies(Builder *b, const Energies *en) {
   Model *m = b->m;
   check_units_of_forces(b, en);
-  Expr l = expr_add_n(b->g, en->lagrangian.at, en->lagrangian.n);
-  Expr kinetic = expr_add_n(b->g, en->kinetic.at, en->kinetic.n);
-  Expr potential = expr_add_n(b->g, en->potential.at, en->potential.n);
-  if (en->dissipation.n) m->dissipation = expr_add_n(b->g, en->dissipation.at, en->dissipation.n);
-  if (!en->lagrangian.n && !en->kinetic.n && !en->potential.n) return;
-  if (!en->lagrangian.n) {
+  Expr l = sum_of_terms(b, en, STMT_LAGRANGIAN), kinetic = sum_of_terms(b, en, STMT_KINETIC), potential = sum_of_terms(b, en, STMT_POTENTIAL);
+  if (en->terms[3].n) m->dissipation = sum_of_terms(b, en, STMT_DISSIPATION);
+  if (!en->terms[0].n && !en->terms[1].n && !en->terms[2].n) return;
+  if (!en->terms[0].n) {
     m->kinetic = kinetic;
     m->potential = potential;
   }
@@ -238,7 +234,7 @@ void finish_observe(Builder *b, uint32_t index, Value v) {
     diag_error(b->diags, span, "`%s` is declared in [%s], and this is %s", o.name, o.unit.text, in_dim(b, v.dim));
     explain_dims(b, v.dim, o.unit.dim);
   }
-  b->observes.at[index].value.unit = o.unit.text;
+  b->state[ENT_OBSERVE].at[index].value.unit = o.unit.text;
   Name stem = o.name;
   for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
     o.value = v.at[k];
@@ -275,7 +271,7 @@ static void apply_unused_lets(Builder *b) {
   for (uint32_t i = 0; i < b->lets.n; i++) {
     if (b->lets.at[i].stmt == wrong) continue;
     resolve_let(b, i);
-    if (!b->lets.at[i].value.e) wrong = b->lets.at[i].stmt;
+    if (!b->state[ENT_LET].at[i].value.e) wrong = b->lets.at[i].stmt;
   }
 }
 
@@ -320,8 +316,7 @@ static void check_whole(Builder *b) {
   Model *m = b->m;
   if (b->diags->errors) return; /* a missing part may be one that was refused */
   if (!m->coords.n && !m->states.n) {
-    diag_error(b->diags, m->span, "the model has no coordinates and no states");
-    diag_help(b->diags, "declare a coordinate: `coord x [m]`");
+    diag_error(b->diags, m->span, "the model has no coordinates and no states" HELP "declare a coordinate: `coord x [m]`");
   }
   if (m->coords.n && !m->lagrangian) {
     diag_error(b->diags, m->coords.at[0].span, "there are coordinates but no Lagrangian");
@@ -365,7 +360,6 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   m->g = b->g;
   m->written = expr_map(a);
   m->dims = b->dims;
-  m->builder = b;
   m->time = declare_symbol(b, SYM_TIME, 0, intern(ast->names, "t"), SIGN_UNKNOWN, dim_base(b->dims, DIM_TIME));
   m->pi = declare_symbol(b, SYM_CONST, 0, intern(ast->names, "pi"), SIGN_POSITIVE, DIM_NONE);
   m->energy_sym = declare_symbol(b, SYM_LOCAL, 0, intern(ast->names, "energy"), SIGN_UNKNOWN, DIM_ANY);
@@ -450,10 +444,20 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   return b;
 }
 
+static const Declarations *declarations_of(const Builder *b) {
+  Declarations *d = ARENA_NEW(b->arena, Declarations);
+  *d = (Declarations){
+      .ast = b->ast, .diags = b->diags, .dims = b->dims, .scope = b->scope, .members = b->members, .constraints = b->constraints, .rotations = b->rotations,
+      .active = b->active, .lets = b->lets, .functions = b->functions, .observes = b->observes, .constants = b->constants};
+  return d;
+}
+
 Model *model_build(Ast *ast, const ModelChoice *choice) {
   Builder *b = build(ast, choice, 0);
   if (!ast->diags->errors && is_first_order(b->m)) {
-    if (b->m->constraints.n) not_yet(b, b->m->constraints.at[0].span, "constraints and contacts where L is linear in the velocities");
+    if (b->m->constraints.n)
+      diag_error(b->diags, b->m->constraints.at[0].span, "not yet: constraints and contacts where L is linear in the velocities" HELP
+                 "lagc understands the syntax but cannot give it meaning in this version");
     else b = build(ast, choice, 1);
   }
   add_section(b, &choice->section);
@@ -461,6 +465,8 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   fill_inferred_units(b);
   if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
+  command_values(b, choice->values, choice->nvalues);
+  b->m->declared = declarations_of(b);
   return ast->diags->errors ? NULL : b->m;
 }
 

@@ -1,10 +1,24 @@
-/* State of model_build, shared by the files of this folder; jets/ reads its scopes and declarations. */
+/* State of model_build, shared by the files of this folder. */
 #ifndef LAGC_BUILDER_H
 #define LAGC_BUILDER_H
 
-#include "model/file_index.h"
+#include "model/declarations.h"
 #include "model/model.h"
-#include "model/scope.h"
+
+/* Index of a file's statements by name, made once (file_index.c): a file may have thousands of scenes, each compiled by itself. */
+typedef struct FileIndex {
+  Scope scenes, effects;                   /* the first of each name: index into `named` */
+  VEC(const AstStmt *) named;
+  const AstStmt *model, *scene, *effect;   /* the first named statement of each kind, or NULL */
+  VEC(const AstStmt *) common;             /* all statements but scenes, in the file's order */
+  VEC(const AstStmt *) repeated;           /* scenes and effects whose name was declared before */
+  int is_sound, clashes;                   /* names and effects were checked and are right; effects_check found an error */
+} FileIndex;
+
+FileIndex *file_index(Ast *ast);
+
+/* The statement of a scene or effect by name (NULL: the first); the model statement; or NULL. */
+const AstStmt *find_named(Ast *ast, AstStmtKind kind, const char *name);
 
 typedef enum { TODO, DOING, DONE } Progress;
 
@@ -21,7 +35,6 @@ typedef enum {
 } Context;
 
 /* Value of an expression: a number, a vector of 2 or 3 components of one dimension, or a rotation (unit quaternion w, x, y, z). */
-enum { ROTATION = 4 };
 typedef struct {
   union {
     Expr e; /* the number, or component 0; 0: error, already reported */
@@ -36,24 +49,11 @@ typedef struct {
   Expr domain;   /* condition under which the text has a real value; 0: wherever the nodes have, or unknown (Builder.domains) */
 } Value;
 
-/* Current value of an index variable of `for`, `sum`, or a definition with an index. */
+/* Evaluation of a let, an observable or a function, when first needed. */
 typedef struct {
-  Name name;
-  int64_t at;
-} IndexVar;
-
-typedef VEC(IndexVar) IndexVars;
-
-/* A let, an observable (or one member of a family of them), evaluated when first needed; or a function. */
-typedef struct {
-  const AstStmt *stmt;
-  Name name, effect;
   Progress progress;
-  Value value; /* e is 0 after an error */
-  IndexVar index[2]; /* indices of a family member; name NULL: a number in the text */
-  const IndexVar *around; /* observables only: indices of the enclosing `for` */
-  uint32_t naround;
-} Definition;
+  Value value; /* e is 0 after an error; unused for a function: see Instance */
+} Evaluated;
 
 /* Instance of a user function for given argument shapes. Its body is evaluated once, with symbols as arguments and unknown
  * dimensions; each call substitutes its own. */
@@ -70,23 +70,11 @@ typedef struct {
   uint32_t errors;        /* error count before the evaluation */
 } Instance;
 
-typedef struct {
-  Name name, effect;
-  Value value; /* made of numbers and pi */
-  AstId given; /* expression of the file, or of -D; a bare number is in `unit` */
-  Unit unit;
-} Constant;
-
 /* A name declared without a unit, and the unknown that stands for its dimension. */
 typedef struct {
   Name name;
   Dim dim;
 } Undeclared;
-
-typedef struct {
-  const AstStmt *stmt;
-  Name effect;
-} Active;
 
 /* Start value of an angular velocity, `start omega(R) = (a, b, c)`. */
 typedef struct {
@@ -102,10 +90,9 @@ struct Builder {
   Arena *arena;
   ExprGraph *g;
   Model *m;
-  Scope scope, members;
+  Scope scope, members, constraints;
   Scope outputs; /* the scene's outputs by label; index into Scene.outputs */
-  Scope constraints; /* constraints by name; index of the first component in Model.constraints */
-  VEC(uint32_t) rotations; /* index of each rotation's first coordinate, w */
+  Rotations rotations;
   VEC(SpinStart) spins; /* start values of angular velocities */
   Scope *named; /* names of events, constraints and expectations; NULL: none yet */
   IndexVars index; /* indices of the `for` around the current statement */
@@ -119,10 +106,12 @@ struct Builder {
   ExprMap rates; /* time derivatives of definition nodes, memoised */
   EntKind needed_kind; /* kind and index of the definition that an evaluation waits for */
   uint32_t needed;
-  VEC(Active) active; /* statements that the scene uses */
-  VEC(Definition) lets, functions, observes; /* observes[i] belongs to Model.observes[i] */
+  Actives active;
+  Definitions lets, functions, observes;
+  VEC(Evaluated) state[ENT_BUILTIN]; /* [ENT_LET].at[i]: evaluation of lets[i]; so for ENT_FUNCTION and ENT_OBSERVE */
   VEC(Instance *) instances;
-  VEC(Constant) constants;
+  Constants constants;
+  VEC(Value) constant_values; /* made of numbers and pi */
   Dims *dims;
   VEC(Dim) dim_of; /* [SymId] */
   Dim energy;      /* dimension of L */
@@ -154,20 +143,11 @@ Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *un
 Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t primes, Span span, Context where);
 int index_in_range(Builder *b, const Entity *e, const int64_t *at, Span span);
 
-/* Offset of a member from the family's first scalar, in the model's array. */
-uint32_t member_offset(const Entity *e, const int64_t *at);
-
 /* Advances at[] to the next member, row by row; 0 after the last. */
 int next_member(const Entity *e, int64_t *at);
 
 /* Component k of u x v in space; for vectors of a plane component 2. */
 Expr cross_component(ExprGraph *g, const Expr *u, const Expr *v, int k);
-
-/* Name of a family member: "th[2]", "u[2,1]". */
-Name member_name(Builder *b, Name name, const int64_t *at, uint32_t ndims);
-
-/* Entity of member `at` of a family of lets or observables, or NULL. */
-const Entity *find_member(const Builder *b, const Entity *e, const int64_t *at);
 
 /* Evaluates an index or the end of a range to an integer; 0, reported, when the value is not an integer constant. */
 int resolve_whole(Builder *b, AstId id, Name effect, int64_t *out);
@@ -175,9 +155,7 @@ int resolve_whole(Builder *b, AstId id, Name effect, int64_t *out);
 /* 1 if a range has at most RANGE_MAX members; 0, reported, if not. */
 int range_fits(Builder *b, int64_t from, int64_t to, Span span);
 
-/* Evaluates the ends of a range of at most RANGE_MAX members; 0, reported, on error. */
 enum { RANGE_MAX = 1000000 };
-int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, int64_t *to);
 
 /* Index list, `[2]` or `[i in 1..N, 3]`, as ranges; lo == hi for a single number. */
 typedef struct {
@@ -192,9 +170,6 @@ void report_many_indices(Builder *b, Span span);
 
 /* domain.c: conjunction of two conditions, each 0 where it always holds. */
 Expr domain_and(const Builder *b, Expr p, Expr q);
-
-/* Letter of component k of a value of n components: xyz, or wxyz for a rotation. */
-static inline char component_letter(uint32_t n, uint32_t k) { return "wxyz"[k + (n != ROTATION)]; }
 
 /* Shape for messages: "a number", "a vector of 3 components", "a rotation". */
 const char *shape_text(const Builder *b, uint32_t n);
@@ -316,15 +291,20 @@ void declare_param(Builder *b, const AstStmt *st, Name effect);
 void declare_const(Builder *b, const AstStmt *st, Name effect);
 SymId declare_symbol(Builder *b, SymKind kind, uint32_t index, Name name, ExprSign sign, Dim dim);
 
-/* Value of a constant expression (span, step, tolerance) in `unit`; NAN after an error. `what` names it in messages. */
-double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what);
-/* resolve_number, with *digits as in base/decimal_literal.h, or NULL. */
-double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits);
+/* Value of a constant expression (span, step, tolerance) in `unit`; NAN after an error. `what` names it in messages. *digits (or NULL) as in
+ * base/num.h. */
+double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits);
+
+/* command_value.c: evaluates ModelChoice.values. */
+void command_values(Builder *b, CommandValue *values, uint32_t n);
 
 /* Value of a formula of numbers and pi. */
 long double constant_value(const Builder *b, Expr e);
 /* Decimal digits of a number times pi^-1, pi^0 or pi^1; NULL for other expressions. */
 const char *expression_digits(Builder *b, Expr e);
+
+/* Records a let, a function or an observable, without a value. */
+void add_definition(Builder *b, EntKind kind, Definition d);
 
 /* Evaluates a let or an observable, unless it has a value already. */
 void resolve_let(Builder *b, uint32_t index);
@@ -346,9 +326,8 @@ void check_sign(Builder *b, const Param *p, Span span);
 /* Warns of parameters whose value, computed from others, contradicts their declared sign: a run refuses them. */
 void warn_signs(Builder *b);
 
-/* name_hints.c: adds a hint to the message about an unknown name, or an unknown `effect.name`. */
+/* name_hints.c: adds a hint to the message about an unknown name. */
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare);
-void advise_unknown_member(Builder *b, Name effect, Name name);
 /* Adds the equivalent of a function known from other languages or books; 0: the name is not known. */
 int advise_unknown_function(Builder *b, Name name);
 #define FOREIGN_CHOICES "piecewise where ifelse iif cases select cond"
@@ -359,9 +338,6 @@ const AstStmt *declared_in_use(const Builder *b, Name name, Name effect);
 /* The first effect that declares a name, in use or not, or NULL; whether a given effect (NULL: no) declares it. */
 const AstStmt *declaring_effect(const Builder *b, Name name);
 int effect_declares(const AstStmt *effect, Name name);
-
-/* Reports "not yet: what". */
-void not_yet(Builder *b, Span span, const char *what);
 
 /* Source text of an expression (of a span) on one line, without comments; ast_short leaves out the middle of a long one. */
 const char *ast_text(const Builder *b, AstId id);
@@ -413,7 +389,6 @@ void rotation_spin(Builder *b, const Value *q, const Value *rates, Expr *w);
 
 /* First coordinate (R.w) of the rotation in a target `omega(R)`; -1: the target is not a call; -2: error, reported. */
 int spin_target(Builder *b, AstId place, Name effect);
-
 
 /* Generalised force along the four quaternion coordinates of a torque in the body frame. */
 Value torque_force(Builder *b, const Value *q, const Value *torque);

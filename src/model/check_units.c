@@ -89,9 +89,9 @@ int refuse_point(Eval *ev, AstId operand, const char *why) {
   Expr e = value_of(ev, operand)->e;
   StrBuf kelvin = strbuf(b->arena);
   if (expr_is_num(b->g, e)) num_print(&kelvin, num_double(num_value(expr_number(b->g, e))));
-  diag_error(b->diags, x->span, "`%s` is a temperature on a scale with an offset, and %s", ast_short(b, operand), why);
-  diag_help(b->diags, "for a difference write `%s [K]`, for the temperature itself `%s [K]`", number, kelvin.n ? sb_text(&kelvin) : "...");
-  return 0;
+  return diag_error(b->diags, x->span, "`%s` is a temperature on a scale with an offset, and %s" HELP
+                    "for a difference write `%s [K]`, for the temperature itself `%s [K]`", ast_short(b, operand), why, number,
+                    kelvin.n ? sb_text(&kelvin) : "...");
 }
 
 int point_fits(Eval *ev, const AstExpr *x, AstId operand) {

@@ -31,23 +31,24 @@ static double in_declared(Builder *b, Expr x, const Unit *u, const char **digits
   return (double)constant_value(b, e);
 }
 
-int model_command_value(const Model *m, AstId target, AstId value, double *out, const char **digits) {
-  Builder *b = m->builder;
+static void command_value(Builder *b, CommandValue *of) {
   Unit unit = unit_si(dim_base(b->dims, DIM_TIME), "s");
-  if (target) {
-    Value of = resolve(b, target, IN_OBSERVE, NULL);
-    if (!of.e) return 0;
-    if (of.n || !setting_unit(b, of.e, &unit)) {
-      diag_error(b->diags, ast_expr(b->ast, target)->span, "a run cannot set `%s`", ast_short(b, target));
-      if (of.n) diag_help(b->diags, "it is %s: set its components, `%s.x=...`", shape_text(b, of.n), ast_text(b, target));
+  if (of->target) {
+    Value target = resolve(b, of->target, IN_OBSERVE, NULL);
+    if (!target.e) return;
+    if (target.n || !setting_unit(b, target.e, &unit)) {
+      diag_error(b->diags, ast_expr(b->ast, of->target)->span, "a run cannot set `%s`", ast_short(b, of->target));
+      if (target.n) diag_help(b->diags, "it is %s: set its components, `%s.x=...`", shape_text(b, target.n), ast_text(b, of->target));
       else diag_help(b->diags, "parameters, inputs, and the starts of coordinates, velocities and states are set so");
-      return 0;
+      return;
     }
   }
-  Expr e = resolve_in(b, value, IN_CONST, NULL, &unit);
-  if (!e) return 0;
-  *out = in_declared(b, e, &unit, digits);
-  if (isfinite(*out)) return 1;
-  diag_error(b->diags, ast_expr(b->ast, value)->span, "this is not a finite number");
-  return 0;
+  Expr e = resolve_in(b, of->value, IN_CONST, NULL, &unit);
+  if (!e) return;
+  of->number = in_declared(b, e, &unit, &of->digits);
+  if (!isfinite(of->number)) diag_error(b->diags, ast_expr(b->ast, of->value)->span, "this is not a finite number");
+}
+
+void command_values(Builder *b, CommandValue *values, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++) command_value(b, &values[i]);
 }

@@ -1,6 +1,6 @@
 /* Constraints and contacts: each becomes c = 0 in the model, left side minus right side, with a multiplier that outputs can name.
  * A contact is closed*gap = 0 plus two events: impact (the gap falls to 0) and release (the multiplier does). */
-#include "base/suggest.h"
+#include "base/words.h"
 #include "model/resolve_impl.h"
 
 /* Dimension of lambda: lambda c is an energy; for velocity constraints a power. */
@@ -9,20 +9,16 @@ static Dim multiplier_dim(Builder *b, Dim dim, int holonomic) {
   return dim_div(b->dims, energy, dim);
 }
 
-/* Reports constraints that contain states or inputs; 1 if refused. */
-static int is_refused(Builder *b, Expr c, const char *what, Name name, Span span) {
+/* 1 for a constraint without states and inputs; 0, reported, for others. */
+static int can_be_held(Builder *b, Expr c, const char *what, Name name, Span span) {
   unsigned kinds = expr_kinds(b->g, c);
-  if (kinds & 1u << SYM_STATE) {
-    diag_error(b->diags, span, "the %s `%s` contains a state: constraints hold between coordinates", what, name);
-    diag_help(b->diags, "declare the constrained quantity as a coordinate");
-    return 1;
-  }
-  if (kinds & 1u << SYM_INPUT) {
-    diag_error(b->diags, span, "the %s `%s` contains an input, whose derivatives would be needed", what, name);
-    diag_help(b->diags, "write the input as a formula of t, inside the constraint");
-    return 1;
-  }
-  return 0;
+  if (kinds & 1u << SYM_STATE)
+    return diag_error(b->diags, span, "the %s `%s` contains a state: constraints hold between coordinates" HELP "declare the constrained quantity as a coordinate",
+                      what, name);
+  if (kinds & 1u << SYM_INPUT)
+    return diag_error(b->diags, span, "the %s `%s` contains an input, whose derivatives would be needed" HELP
+                      "write the input as a formula of t, inside the constraint", what, name);
+  return 1;
 }
 
 void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span) {
@@ -36,10 +32,8 @@ void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span) {
 
 /* Shapes and dimensions of both sides; 0, reported, if they differ. The hint gives a bare number its unit. */
 static int sides_agree(Builder *b, const AstStmt *st, const Value *l, const Value *r) {
-  if (l->n != r->n) {
-    diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, l->n), shape_text(b, r->n));
-    return 0;
-  }
+  if (l->n != r->n)
+    return diag_error(b->diags, st->span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, l->n), shape_text(b, r->n));
   if (l->n == ROTATION) {
     refuse_rotation(b, st->span, ast_text(b, st->lhs), TURN_EQUATION);
     return 0;
@@ -55,7 +49,7 @@ static int sides_agree(Builder *b, const AstStmt *st, const Value *l, const Valu
 void add_constraint(Builder *b, const AstStmt *st, Name effect) {
   IndexRange r = {0};
   if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
-  Name name = member_name(b, st->name, r.lo, r.n);
+  Name name = member_name(b->ast, st->name, r.lo, r.n);
   check_name_is_new(b, "constraint", name, effect, st->name_span);
   Value left = resolve(b, st->lhs, IN_DYNAMICS, effect), right = resolve(b, st->rhs, IN_DYNAMICS, effect);
   if (!left.e || !right.e || !sides_agree(b, st, &left, &right)) return;
@@ -64,7 +58,7 @@ void add_constraint(Builder *b, const AstStmt *st, Name effect) {
   scope_add(&b->constraints, (Entity){.index = b->m->constraints.n, .name = name, .effect = effect, .span = st->name_span, .parts = (uint8_t)left.n});
   for (uint32_t k = 0; k < component_count(&left); k++) {
     Expr c = expr_sub(b->g, left.at[k], right.at[k]);
-    if (is_refused(b, c, "constraint", name, st->span)) return;
+    if (!can_be_held(b, c, "constraint", name, st->span)) return;
     add_scalar_constraint(b, left.n ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name, c, dim, st->span);
   }
 }
@@ -95,31 +89,25 @@ static uint32_t add_switched_event(Builder *b, const Contact *c, const char *suf
 
 static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *gap, const Value *e) {
   Span span = ast_expr(b->ast, st->lhs)->span, bounce = ast_expr(b->ast, st->rhs)->span;
-  if (gap->n || e->n) {
-    diag_error(b->diags, gap->n ? span : bounce, "this is %s, but a number is needed here", shape_text(b, gap->n ? gap->n : e->n));
-    return 0;
-  }
+  if (gap->n || e->n)
+    return diag_error(b->diags, gap->n ? span : bounce, "this is %s, but a number is needed here", shape_text(b, gap->n ? gap->n : e->n));
   unsigned kinds = expr_kinds(b->g, gap->e);
-  if (is_refused(b, gap->e, "contact", name, span)) return 0;
-  if (kinds & 1u << SYM_VEL || !(kinds & 1u << SYM_COORD)) {
-    diag_error(b->diags, span, kinds & 1u << SYM_VEL ? "the gap of the contact `%s` contains a velocity" : "the gap of the contact `%s` contains no coordinate", name);
-    diag_help(b->diags, "a gap is a distance between positions: `contact floor: y >= 0, restitution = 0.8`");
-    return 0;
-  }
+  if (!can_be_held(b, gap->e, "contact", name, span)) return 0;
+  if (kinds & 1u << SYM_VEL || !(kinds & 1u << SYM_COORD))
+    return diag_error(b->diags, span, "the gap of the contact `%s` contains %s" HELP
+                      "a gap is a distance between positions: `contact floor: y >= 0, restitution = 0.8`", name, kinds & 1u << SYM_VEL ? "a velocity" : "no coordinate");
   double value = expr_is_num(b->g, e->e) ? num_value(expr_number(b->g, e->e)) : 0.5;
-  if (!expr_is_constant(b->g, e->e) || value < 0 || value > 1) {
-    diag_error(b->diags, bounce, "a coefficient of restitution is a number from 0 to 1, or made of parameters");
-    return 0;
-  }
-  return dims_agree(b, e, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, bounce) ? 1 :
-         (diag_error(b->diags, bounce, "a coefficient of restitution is a pure number, and this is %s", in_dim(b, e->dim)), 0);
+  if (!expr_is_constant(b->g, e->e) || value < 0 || value > 1)
+    return diag_error(b->diags, bounce, "a coefficient of restitution is a number from 0 to 1, or made of parameters");
+  return dims_agree(b, e, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, bounce) ||
+         diag_error(b->diags, bounce, "a coefficient of restitution is a pure number, and this is %s", in_dim(b, e->dim));
 }
 
 void add_contact(Builder *b, const AstStmt *st, Name effect) {
   Model *m = b->m;
   IndexRange r = {0};
   if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
-  Name name = member_name(b, st->name, r.lo, r.n);
+  Name name = member_name(b->ast, st->name, r.lo, r.n);
   check_name_is_new(b, "constraint", name, effect, st->name_span);
   Value gap = resolve(b, st->lhs, IN_DYNAMICS, effect), e = resolve(b, st->rhs, IN_DYNAMICS, effect);
   if (!gap.e || !e.e || !check_contact(b, st, name, &gap, &e)) return;
@@ -147,7 +135,7 @@ static Name named_constraint(Eval *ev, AstId id, Name *effect) {
   }
   if (x->kind == AST_MEMBER && ast_expr(b->ast, x->a)->kind == AST_NAME) *effect = ast_expr(b->ast, x->a)->name;
   else if (x->kind != AST_NAME) return NULL;
-  return member_name(b, x->name, at, n < 2 ? n : 2);
+  return member_name(b->ast, x->name, at, n < 2 ? n : 2);
 }
 
 static Value report_unknown(Builder *b, Span span, Name name) {
@@ -165,22 +153,16 @@ static Value report_unknown(Builder *b, Span span, Name name) {
 Value multiplier_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   if (!arity_is(ev, x, 1)) return FAILED;
-  if (ev->where < IN_OBSERVE) {
-    diag_error(b->diags, x->span, "multipliers follow from the equations of motion, and cannot stand in them");
-    diag_help(b->diags, "`lambda(NAME)` may stand in `observe`, `output` and `expect`");
-    return FAILED;
-  }
+  if (ev->where < IN_OBSERVE)
+    return refuse(b, x->span, "multipliers follow from the equations of motion, and cannot stand in them" HELP
+                  "`lambda(NAME)` may stand in `observe`, `output` and `expect`");
   Span span = ast_expr(b->ast, x->args)->span;
   uint32_t errors = b->diags->errors;
   Name effect = ev->effect, name = named_constraint(ev, x->args, &effect);
   int ambiguous = 0;
   const Entity *e = name ? scope_find(&b->constraints, name, effect, &ambiguous) : NULL;
   if (!e) return b->diags->errors > errors ? FAILED : report_unknown(b, span, name);
-  if (ambiguous) {
-    diag_error(b->diags, span, "more than one effect in use has a constraint `%s`", name);
-    diag_help(b->diags, "say which: `lambda(%s.%s)`", e->effect, name);
-    return FAILED;
-  }
+  if (ambiguous) return refuse(b, span, "more than one effect in use has a constraint `%s`" HELP "say which: `lambda(%s.%s)`", name, e->effect, name);
   if (e->index >= b->m->constraints.n) return FAILED; /* refused */
   Value v = {.n = e->parts};
   for (uint32_t k = 0; k < component_count(&v); k++) v.at[k] = expr_symbol(b->g, b->m->constraints.at[e->index + k].multiplier)->node;

@@ -75,14 +75,8 @@ static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
       return 0;
     }
     if (!resolve_whole(b, i, effect, &n)) return 0;
-    if (n < 1) {
-      diag_error(b->diags, span, "a family has at least one member, and this is %lld", (long long)n);
-      return 0;
-    }
-    if (n > FAMILY_MAX || (all *= (uint64_t)n) > FAMILY_MAX) {
-      diag_error(b->diags, span, "a family has at most %d members", FAMILY_MAX);
-      return 0;
-    }
+    if (n < 1) return diag_error(b->diags, span, "a family has at least one member, and this is %lld", (long long)n);
+    if (n > FAMILY_MAX || (all *= (uint64_t)n) > FAMILY_MAX) return diag_error(b->diags, span, "a family has at most %d members", FAMILY_MAX);
     e->lo[e->ndims] = 1;
     e->hi[e->ndims++] = n;
   }
@@ -102,7 +96,7 @@ static int declare_family(Builder *b, const AstStmt *st, Name effect, EntKind ki
 }
 
 Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k) {
-  Name name = member_name(b, stem, at, e->ndims);
+  Name name = member_name(b->ast, stem, at, e->ndims);
   return e->parts ? intern_printf(b, "%s.%c", name, component_letter(e->parts, k)) : name;
 }
 
@@ -122,8 +116,7 @@ static void report_rotation(Builder *b, const AstStmt *st) {
     diag_error(b->diags, st->unit.span, "a rotation has no unit: its four numbers are those of a unit quaternion");
     diag_help(b->diags, "write `coord %s: rotation`", st->name);
   } else {
-    diag_error(b->diags, st->name_span, "a rotation is not an angle, and cannot be `periodic`");
-    diag_help(b->diags, "write `coord %s: rotation`", st->name);
+    diag_error(b->diags, st->name_span, "a rotation is not an angle, and cannot be `periodic`" HELP "write `coord %s: rotation`", st->name);
   }
 }
 
@@ -194,7 +187,7 @@ static void declare_motion(Builder *b, const AstStmt *st, Name effect) {
   Name stem = plain_name(b, st, effect);
   do {
     for (uint32_t k = 0; k < (e.parts ? e.parts : 1u); k++) (is_state ? add_state : add_coord)(b, st, scalar_name(b, &e, stem, at, k), unit);
-    if (parts == ROTATION && !is_state) constrain_rotation(b, member_name(b, stem, at, e.ndims), e.index + member_offset(&e, at), st->name_span);
+    if (parts == ROTATION && !is_state) constrain_rotation(b, member_name(b->ast, stem, at, e.ndims), e.index + member_offset(&e, at), st->name_span);
   } while (next_member(&e, at));
 }
 
@@ -231,7 +224,7 @@ static uint32_t family_of(Builder *b, const AstStmt *st, Name effect, EntKind ki
 /* Declares one member of a family and widens the family's index range to contain it. */
 static int declare_member(Builder *b, const AstStmt *st, uint32_t family, const int64_t *at, uint32_t index, Name *name) {
   Entity *f = &b->scope.all.at[family - 1];
-  *name = member_name(b, f->name, at, f->ndims);
+  *name = member_name(b->ast, f->name, at, f->ndims);
   const Entity *old = scope_own(&b->members, *name, f->effect);
   if (old) {
     diag_error(b->diags, st->name_span, "`%s` is declared twice", *name);
@@ -248,8 +241,7 @@ static int declare_member(Builder *b, const AstStmt *st, uint32_t family, const 
 
 static int fits_family(Builder *b, const AstStmt *st, const IndexRange *r) {
   if (range_count(r) <= FAMILY_MAX) return 1;
-  diag_error(b->diags, st->name_span, "a family has at most %d members", FAMILY_MAX);
-  return 0;
+  return diag_error(b->diags, st->name_span, "a family has at most %d members", FAMILY_MAX);
 }
 
 /* `let x[0] = 0`, `let x[i in 1..N] = x[i-1] + ...` */
@@ -266,7 +258,7 @@ static void declare_let_family(Builder *b, const AstStmt *st, Name effect) {
       int64_t at[2] = {i, j};
       if (!declare_member(b, st, family, at, b->lets.n, &d.name)) return;
       for (uint32_t k = 0; k < r.n; k++) d.index[k] = (IndexVar){r.name[k], at[k]};
-      vec_push(b->arena, &b->lets, d);
+      add_definition(b, ENT_LET, d);
     }
 }
 
@@ -277,15 +269,14 @@ static void declare_let(Builder *b, const AstStmt *st, Name effect) {
     return;
   }
   if (!declare_name(b, st, effect, ENT_LET, b->lets.n)) return;
-  vec_push(b->arena, &b->lets, ((Definition){.stmt = st, .name = st->name, .effect = effect}));
+  add_definition(b, ENT_LET, (Definition){.stmt = st, .name = st->name, .effect = effect});
 }
 
 /* Reports functions called like built-in ones, and arguments of equal names. */
 static void check_function(Builder *b, const AstStmt *st) {
   for (size_t i = 0; function_name(i); i++)
     if (strcmp(function_name(i), st->name) == 0) {
-      diag_error(b->diags, st->name_span, "`%s` is a function of the language", st->name);
-      diag_help(b->diags, "choose another name");
+      diag_error(b->diags, st->name_span, "`%s` is a function of the language" HELP "choose another name", st->name);
     }
   for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next)
     for (AstId k = st->args; k != i; k = ast_expr(b->ast, k)->next)
@@ -296,7 +287,7 @@ static void check_function(Builder *b, const AstStmt *st) {
 static void declare_function(Builder *b, const AstStmt *st, Name effect) {
   check_function(b, st);
   if (!declare_name(b, st, effect, ENT_FUNCTION, b->functions.n)) return;
-  vec_push(b->arena, &b->functions, ((Definition){.stmt = st, .name = st->name, .effect = effect}));
+  add_definition(b, ENT_FUNCTION, (Definition){.stmt = st, .name = st->name, .effect = effect});
 }
 
 static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
@@ -313,8 +304,7 @@ static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
   vec_push(b->arena, &m->observes, o);
   IndexVar *around = ARENA_ARRAY(b->arena, IndexVar, b->index.n + 1);
   if (b->index.n) memcpy(around, b->index.at, b->index.n * sizeof *around);
-  Definition d = {.stmt = st, .name = o.name, .effect = effect, .around = around, .naround = b->index.n};
-  vec_push(b->arena, &b->observes, d);
+  add_definition(b, ENT_OBSERVE, (Definition){.stmt = st, .name = o.name, .effect = effect, .around = around, .naround = b->index.n});
 }
 
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {

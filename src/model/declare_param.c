@@ -140,8 +140,7 @@ static const Define *defined(const Builder *b, Name name) {
 static Value defined_value(Builder *b, const Define *d, const Value *v, Name effect) {
   Value given = resolve(b, d->expr, IN_CONST, effect);
   if (!given.e || !v->e || given.n == v->n) return given;
-  diag_error(b->diags, ast_expr(b->ast, d->expr)->span, "`%s` is %s, and %s is given here", d->name, shape_text(b, v->n), shape_text(b, given.n));
-  return (Value){0};
+  return refuse(b, ast_expr(b->ast, d->expr)->span, "`%s` is %s, and %s is given here", d->name, shape_text(b, v->n), shape_text(b, given.n));
 }
 
 /* A bare number of -D is in the unit of the constant's value in the file. */
@@ -160,5 +159,6 @@ void declare_const(Builder *b, const AstStmt *st, Name effect) {
     v.unit = unit.text;
   }
   if (!v.e) v = (Value){.e = expr_int(b->g, 1), .dim = DIM_ANY}; /* reported */
-  vec_push(b->arena, &b->constants, ((Constant){st->name, effect, v, d ? d->expr : st->rhs, unit}));
+  vec_push(b->arena, &b->constants, ((Constant){st->name, effect, d ? d->expr : st->rhs, unit}));
+  vec_push(b->arena, &b->constant_values, v);
 }

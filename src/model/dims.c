@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/id_table.h"
 #include "base/vec.h"
 
@@ -30,8 +31,6 @@ typedef struct {
   const char *text;
 } Spelling;
 
-enum { CACHED = 1024 };
-
 struct Dims {
   Arena *arena;
   VEC(DimVector) forms; /* 0 is DIM_ANY */
@@ -40,17 +39,11 @@ struct Dims {
   VEC(Spelling) spellings;
   uint32_t time;        /* incremented when an unknown is solved */
   IdTable table;        /* of `forms` */
-  struct {
-    Dim a, b, product;
-  } cache[CACHED];
 };
 
 static uint32_t hash_parts(const DimPower *p, uint32_t n) {
-  uint32_t h = 2166136261u;
-  for (uint32_t i = 0; i < n; i++) {
-    uint64_t x = (uint64_t)p[i].e.num * 0x9E3779B97F4A7C15u + (uint64_t)p[i].e.den * 31 + p[i].key;
-    h = (h ^ (uint32_t)(x >> 32) ^ (uint32_t)x) * 16777619u;
-  }
+  uint32_t h = n;
+  for (uint32_t i = 0; i < n; i++) h = hash_mix(hash_mix(hash_mix(h, p[i].key), (uint32_t)p[i].e.num), (uint32_t)p[i].e.den);
   return h;
 }
 
@@ -118,12 +111,7 @@ static Dim combine(Dims *d, Dim a, Dim b, Num e) {
 Dim dim_mul(Dims *d, Dim a, Dim b) {
   if (a == DIM_NONE) return b;
   if (b == DIM_NONE) return a;
-  uint32_t slot = (a * 31 + b) % CACHED;
-  if (d->cache[slot].a == a && d->cache[slot].b == b) return d->cache[slot].product;
-  Dim product = combine(d, a, b, num_int(1));
-  d->cache[slot].a = a;
-  d->cache[slot].b = b;
-  return d->cache[slot].product = product;
+  return combine(d, a, b, num_int(1));
 }
 
 Dim dim_div(Dims *d, Dim a, Dim b) {
@@ -145,16 +133,17 @@ static const DimPower *solved_part(const Dims *d, Dim a) {
   return NULL;
 }
 
+/* a with `is` in place of the unknown whose power in it is p. */
+static Dim put_for_unknown(Dims *d, Dim a, DimPower p, Dim is) {
+  Dim without = combine(d, a, of_key(d, p.key), num_neg(p.e));
+  return combine(d, without, is, p.e);
+}
+
 /* Terminates: the solution of an unknown contains older unknowns only (the pivot is the newest one). */
 Dim dim_resolved(Dims *d, Dim a) {
   if (d->forms.at[a].found && d->forms.at[a].found_when == d->time) return d->forms.at[a].found;
   Dim r = a;
-  for (const DimPower *p = solved_part(d, r); p; p = solved_part(d, r)) {
-    uint32_t key = p->key;
-    Num e = p->e;
-    Dim without = combine(d, r, of_key(d, key), num_neg(e));
-    r = combine(d, without, d->unknowns.at[key - DIM_BASES].is, e);
-  }
+  for (const DimPower *p = solved_part(d, r); p; p = solved_part(d, r)) r = put_for_unknown(d, r, *p, d->unknowns.at[p->key - DIM_BASES].is);
   d->forms.at[a].found = r;
   d->forms.at[a].found_when = d->time;
   return r;
@@ -200,10 +189,8 @@ static const DimPower *part_between(const Dims *d, Dim a, uint32_t first, uint32
 Dim dim_replace(Dims *d, Dim a, uint32_t first, uint32_t n, const Dim *with) {
   Dim r = a;
   for (const DimPower *p = part_between(d, r, first, n); p; p = part_between(d, r, first, n)) {
-    uint32_t key = p->key, u = key - DIM_BASES;
-    Num e = p->e;
-    Dim without = combine(d, r, of_key(d, key), num_neg(e));
-    r = combine(d, without, d->unknowns.at[u].is ? d->unknowns.at[u].is : with[u - first], e);
+    uint32_t u = p->key - DIM_BASES;
+    r = put_for_unknown(d, r, *p, d->unknowns.at[u].is ? d->unknowns.at[u].is : with[u - first]);
   }
   return r;
 }
@@ -270,6 +257,21 @@ static const char *key_name(const Dims *d, uint32_t key) {
   return name ? arena_printf(d->arena, "unit(%s)", name) : "?";
 }
 
+/* Product of powers, kg before m, each divisor behind a `/`. */
+const char *dim_product_text(Dims *d, Dim a) {
+  StrBuf b = strbuf(d->arena);
+  const DimVector f = d->forms.at[a];
+  for (int sign = 1; sign >= -1; sign -= 2)
+    for (uint32_t i = 0; i < f.n; i++) {
+      DimPower p = part_in_order(&f, i);
+      if (num_sign(p.e) != sign) continue;
+      if (sign < 0) sb_puts(&b, b.n ? "/" : "1/");
+      else if (b.n) sb_putc(&b, '*');
+      put_power(&b, key_name(d, p.key), sign < 0 ? num_neg(p.e) : p.e);
+    }
+  return sb_text(&b);
+}
+
 const char *dim_text(Dims *d, Dim a) {
   if (a == DIM_ANY) return "?";
   a = dim_resolved(d, a);
@@ -278,20 +280,5 @@ const char *dim_text(Dims *d, Dim a) {
   if (name) return name;
   for (uint32_t i = 0; i < d->spellings.n; i++)
     if (d->spellings.at[i].dim == a) return d->spellings.at[i].text;
-  StrBuf b = strbuf(d->arena);
-  const DimVector f = d->forms.at[a];
-  for (uint32_t i = 0; i < f.n; i++) {
-    DimPower p = part_in_order(&f, i);
-    if (num_sign(p.e) < 0) continue;
-    if (b.n) sb_putc(&b, '*');
-    put_power(&b, key_name(d, p.key), p.e);
-  }
-  if (!b.n) sb_putc(&b, '1');
-  for (uint32_t i = 0; i < f.n; i++) {
-    DimPower p = part_in_order(&f, i);
-    if (num_sign(p.e) > 0) continue;
-    sb_putc(&b, '/');
-    put_power(&b, key_name(d, p.key), num_neg(p.e));
-  }
-  return sb_text(&b);
+  return dim_product_text(d, a);
 }

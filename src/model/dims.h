@@ -70,6 +70,9 @@ void dim_spell(Dims *d, Dim a, const char *text);
 /* Name of an unsolved unknown in a dimension; NULL when there is none, or it has no name. */
 Name dim_open_name(Dims *d, Dim a);
 
+/* The dimension as a product of powers of base units, "kg*m/s^2"; "" if dimensionless. */
+const char *dim_product_text(Dims *d, Dim a);
+
 /* Text of a dimension: "J", the author's spelling, "m/s^2"; "1" if dimensionless; "m*unit(k)" with an unknown. */
 const char *dim_text(Dims *d, Dim a);
 

@@ -1,7 +1,7 @@
 /* Effects: lists for commands, the graph of `requires` and `excludes` with its checks, and the set in use. Contract: effect.h. */
 #include "model/effect.h"
 
-#include "base/suggest.h"
+#include "base/words.h"
 #include "model/builder.h"
 
 #define NONE UINT32_MAX

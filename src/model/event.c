@@ -24,7 +24,7 @@ static Expr set_value(const Builder *b, const Event *ev, SymId target) {
 
 /* Adds actions for quaternion rates such that the rotation, as the event leaves it, has angular velocity w. */
 static void push_spin(Builder *b, Event *ev, uint32_t coord, const Expr *w) {
-  Value q = rotation_coordinate(b, coord);
+  Value q = rotation_at(b, coord, 0);
   for (uint32_t k = 0; k < ROTATION; k++) q.at[k] = set_value(b, ev, b->m->coords.at[coord + k].q);
   Value rates = rotation_rates(b, &q, w);
   for (uint32_t k = 0; k < ROTATION; k++) push_action(b, ev, b->m->coords.at[coord + k].v, rates.at[k]);
@@ -39,9 +39,8 @@ static int sets_spin(Builder *b, const AstStmt *event, uint32_t coord, Name effe
 
 /* An event that sets a rotation but not its omega keeps the angular velocity in the body frame. */
 static void keep_spin(Builder *b, Event *ev, uint32_t coord) {
-  Value q = rotation_coordinate(b, coord), rates = q;
+  Value q = rotation_at(b, coord, 0), rates = rotation_at(b, coord, 1);
   Expr w[3];
-  for (uint32_t k = 0; k < ROTATION; k++) rates.at[k] = expr_symbol(b->g, b->m->coords.at[coord + k].v)->node;
   rotation_spin(b, &q, &rates, w);
   push_spin(b, ev, coord, w);
 }
@@ -76,9 +75,7 @@ static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
     report_shapes(b, st->span, target.n, v.n);
     return;
   }
-  for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
-    push_action(b, ev, expr_sym_id(b->g, target.at[k]), v.at[k]);
-  }
+  for (uint32_t k = 0; k < component_count(&v); k++) push_action(b, ev, expr_sym_id(b->g, target.at[k]), v.at[k]);
 }
 
 /* Angular velocities are set last, as their rates depend on the rotations after the event. */
@@ -100,7 +97,7 @@ void add_event(Builder *b, const AstStmt *st, Name effect) {
   Event ev = {.name = st->name, .span = st->span, .direction = st->direction};
   IndexRange r = {0};
   if (st->dims && !resolve_indices(b, st->dims, effect, &r)) return;
-  ev.name = member_name(b, st->name, r.lo, r.n);
+  ev.name = member_name(b->ast, st->name, r.lo, r.n);
   check_name_is_new(b, "event", ev.name, effect, st->name_span);
   check_set_once(b, st);
   Value g = resolve(b, st->lhs, IN_DYNAMICS, effect);

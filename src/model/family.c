@@ -1,6 +1,4 @@
 /* Families (indexed declarations): index ranges, offsets and names of members, and `for` loops over statements. */
-#include <stdio.h>
-
 #include "model/builder.h"
 
 uint32_t member_offset(const Entity *e, const int64_t *at) {
@@ -22,34 +20,29 @@ int next_member(const Entity *e, int64_t *at) {
   return range_next(&r, at);
 }
 
-Name member_name(Builder *b, Name name, const int64_t *at, uint32_t ndims) {
+Name member_name(const Ast *ast, Name name, const int64_t *at, uint32_t ndims) {
   if (ndims == 0) return name;
-  if (ndims == 1) return intern_printf(b, "%s[%lld]", name, (long long)at[0]);
-  return intern_printf(b, "%s[%lld,%lld]", name, (long long)at[0], (long long)at[1]);
+  const char *second = ndims == 2 ? arena_printf(ast->arena, ",%lld", (long long)at[1]) : "";
+  return intern(ast->names, arena_printf(ast->arena, "%s[%lld%s]", name, (long long)at[0], second));
 }
 
-const Entity *find_member(const Builder *b, const Entity *e, const int64_t *at) {
-  char text[512];
-  int n = e->ndims == 1 ? snprintf(text, sizeof text, "%s[%lld]", e->name, (long long)at[0])
-                        : snprintf(text, sizeof text, "%s[%lld,%lld]", e->name, (long long)at[0], (long long)at[1]);
-  if (n < 0 || (size_t)n >= sizeof text) return NULL;
-  return scope_own(&b->members, intern(b->ast->names, text), e->effect);
+const Entity *find_member(const Ast *ast, const Scope *members, const Entity *e, const int64_t *at) {
+  return scope_own(members, member_name(ast, e->name, at, e->ndims), e->effect);
 }
 
 int range_fits(Builder *b, int64_t from, int64_t to, Span span) {
   if (to < from || (uint64_t)to - (uint64_t)from < RANGE_MAX) return 1;
-  diag_error(b->diags, span, "a range has at most %d members", RANGE_MAX);
-  return 0;
+  return diag_error(b->diags, span, "a range has at most %d members", RANGE_MAX);
 }
 
-int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, int64_t *to) {
+/* Evaluates the ends of a range; 0, reported, on error. */
+static int resolve_range(Builder *b, AstId lo, AstId hi, Name effect, int64_t *from, int64_t *to) {
   if (!resolve_whole(b, lo, effect, from) || !resolve_whole(b, hi, effect, to)) return 0;
   return range_fits(b, *from, *to, span_join(ast_expr(b->ast, lo)->span, ast_expr(b->ast, hi)->span));
 }
 
 void report_many_indices(Builder *b, Span span) {
-  diag_error(b->diags, span, "a family has one index, or two");
-  diag_help(b->diags, "combine two indices into one: `u[(i - 1)*K + j]`, in a family of N*K");
+  diag_error(b->diags, span, "a family has one index, or two" HELP "combine two indices into one: `u[(i - 1)*K + j]`, in a family of N*K");
 }
 
 int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out) {

@@ -1,6 +1,6 @@
 /* --fix: parameters that are compiled in as numbers. Marks them, evaluates them with the scene's values, numbers the others. */
 #include "model/builder.h"
-#include "base/suggest.h"
+#include "base/words.h"
 #include "sym/eval.h"
 
 /* --- which parameters --- */
@@ -20,8 +20,7 @@ static const Entity *find_param(Builder *b, const char *word, int *off) {
   }
   if (e && !ambiguous && e->kind == ENT_PARAM) return e;
   if (ambiguous) {
-    diag_error(b->diags, (Span){0}, "--fix %s: more than one effect in use declares it", word);
-    diag_help(b->diags, "say which: --fix %s.%s", e->effect, name);
+    diag_error(b->diags, (Span){0}, "--fix %s: more than one effect in use declares it" HELP "say which: --fix %s.%s", word, e->effect, name);
   } else if (e) {
     diag_error(b->diags, (Span){0}, "--fix %s: this is %s; only parameters can be fixed", word, ent_kind_text(e->kind));
     if (e->kind == ENT_CONST) diag_help(b->diags, "constants are set when compiling: -D %s=...", word);

@@ -14,6 +14,11 @@
 
 enum { TABLE_ROWS_MAX = 100000, TABLE_MISTAKES_MAX = 5 };
 
+/* Part of the file: offsets into its text. */
+typedef struct {
+  uint32_t begin, end;
+} Piece;
+
 typedef struct {
   Builder *b;
   Source file;
@@ -21,6 +26,7 @@ typedef struct {
   const Input *in;
   Name stem;         /* the input's name without its effect */
   char separator;    /* ' ': any number of blanks */
+  VEC(Piece) fields; /* of the current line, without blanks and quotes */
   uint32_t time, value; /* columns, from 0 */
   int begun;         /* the head or the first row was read */
   int wrong_head;    /* error in the head: rows are not read */
@@ -29,11 +35,6 @@ typedef struct {
   int jumped;        /* the previous row was the second one with its time */
   VEC(double) numbers; /* time, value in SI, row by row */
 } Table;
-
-/* Part of the file: offsets into its text. */
-typedef struct {
-  uint32_t begin, end;
-} Piece;
 
 static Span span_of(const Table *t, Piece p) { return (Span){t->file.base + p.begin, t->file.base + p.end}; }
 
@@ -56,32 +57,19 @@ static Piece unquoted(const Table *t, Piece p) {
   return p;
 }
 
-/* End of the field that begins at `at`. */
-static uint32_t field_end(const Table *t, uint32_t at, uint32_t end) {
-  int quoted = 0;
-  for (; at < end; at++) {
-    char c = t->file.text[at];
-    if (c == '"') quoted = !quoted;
-    if (!quoted && (t->separator == ' ' ? is_blank(c) : c == t->separator)) break;
+/* Splits a line into t->fields. */
+static void split(Table *t, Piece line) {
+  const char *s = t->file.text;
+  t->fields.n = 0;
+  for (uint32_t at = line.begin, end; at <= line.end; at = end + 1) {
+    int quoted = 0;
+    for (end = at; end < line.end; end++) {
+      if (s[end] == '"') quoted = !quoted;
+      if (!quoted && (t->separator == ' ' ? is_blank(s[end]) : s[end] == t->separator)) break;
+    }
+    vec_push(t->b->arena, &t->fields, unquoted(t, (Piece){at, end}));
+    while (t->separator == ' ' && end + 1 < line.end && is_blank(s[end + 1])) end++;
   }
-  return at;
-}
-
-/* Field at *at, without blanks and quotes; advances *at to the next field. 0: it was the last. */
-static int next_field(const Table *t, Piece line, uint32_t *at, Piece *field) {
-  uint32_t end = field_end(t, *at, line.end);
-  *field = unquoted(t, (Piece){*at, end});
-  while (t->separator == ' ' && end + 1 < line.end && is_blank(t->file.text[end + 1])) end++;
-  *at = end + 1;
-  return end < line.end;
-}
-
-/* Number of fields of a line; *field is field `which`. */
-static uint32_t fields(const Table *t, Piece line, uint32_t which, Piece *field) {
-  Piece any;
-  uint32_t n = 0, at = line.begin;
-  for (int more = 1; more; n++) more = next_field(t, line, &at, n == which ? field : &any);
-  return n;
 }
 
 static char find_separator(const Table *t, Piece line) {
@@ -110,15 +98,11 @@ static int is_called(const Table *t, Piece field, const char *name, Piece *unit)
   return strlen(name) == stem.end - stem.begin && memcmp(s + stem.begin, name, stem.end - stem.begin) == 0;
 }
 
-/* First column called `name`, from column `from` on, and its field; `none` if there is none. */
-static uint32_t find_column(const Table *t, Piece line, uint32_t from, const char *name, uint32_t none, Piece *field) {
+/* First column called `name`, from column `from` on; `none` if there is none. */
+static uint32_t find_column(const Table *t, uint32_t from, const char *name, uint32_t none) {
   Piece unit;
-  uint32_t at = line.begin;
-  int more = 1;
-  for (uint32_t i = 0; more; i++) {
-    more = next_field(t, line, &at, field);
-    if (i >= from && is_called(t, *field, name, &unit)) return i;
-  }
+  for (uint32_t i = from; i < t->fields.n; i++)
+    if (is_called(t, t->fields.at[i], name, &unit)) return i;
   return none;
 }
 
@@ -138,9 +122,8 @@ static int same_unit(const Table *t, const Unit *x, const Unit *y, Span why) {
 }
 
 /* Reports a unit in the head other than the input's (want), or seconds (want NULL); spelling does not matter. */
-static void check_unit(Table *t, Piece line, uint32_t column, const Unit *want, const char *whose) {
-  Piece field, unit;
-  fields(t, line, column, &field);
+static void check_unit(Table *t, Piece field, const Unit *want, const char *whose) {
+  Piece unit;
   is_called(t, field, "", &unit);
   const char *text = text_of(t, trimmed(t, unit)), *wanted = want ? want->text : "s";
   if (!*text || strcmp(text, wanted) == 0) return;
@@ -155,29 +138,22 @@ static void check_unit(Table *t, Piece line, uint32_t column, const Unit *want, 
   }
 }
 
-/* Reports a second column of the same name. */
-static void check_once(Table *t, Piece line, uint32_t column, const char *name) {
-  Piece field;
-  if (find_column(t, line, column + 1, name, UINT32_MAX, &field) == UINT32_MAX) return;
-  mistake(t, field, arena_printf(t->b->arena, "two columns are called `%s`", name));
-  diag_help(t->b->diags, "give one of them another name");
-}
-
 static void read_head(Table *t, Piece line) {
-  Piece field, any;
-  uint32_t n = fields(t, line, 0, &field);
-  t->time = find_column(t, line, 0, "t", find_column(t, line, 0, "time", 0, &any), &any);
-  t->value = find_column(t, line, 0, t->stem, n > 2 ? n : 1 - t->time, &any);
-  const char *whose = arena_printf(t->b->arena, "`%s`", t->stem);
-  if (n < 2) mistake(t, field, "a table has two columns: time and value");
+  uint32_t n = t->fields.n, again;
+  t->time = find_column(t, 0, "t", find_column(t, 0, "time", 0));
+  t->value = find_column(t, 0, t->stem, n > 2 ? n : 1 - t->time);
+  if (n < 2) mistake(t, t->fields.at[0], "a table has two columns: time and value");
   else if (t->value == n) {
     mistake(t, line, arena_printf(t->b->arena, "none of these %u columns is called `%s`", n, t->stem));
     diag_help(t->b->diags, "give the column of the values that name");
-  } else if (t->value == t->time) mistake(t, field, "the column of the time is also that of the value");
+  } else if (t->value == t->time) mistake(t, t->fields.at[0], "the column of the time is also that of the value");
   else {
-    check_unit(t, line, t->time, NULL, "the time");
-    check_unit(t, line, t->value, &t->in->unit, whose);
-    check_once(t, line, t->value, t->stem);
+    check_unit(t, t->fields.at[t->time], NULL, "the time");
+    check_unit(t, t->fields.at[t->value], &t->in->unit, arena_printf(t->b->arena, "`%s`", t->stem));
+    if ((again = find_column(t, t->value + 1, t->stem, n)) < n) {
+      mistake(t, t->fields.at[again], arena_printf(t->b->arena, "two columns are called `%s`", t->stem));
+      diag_help(t->b->diags, "give one of them another name");
+    }
   }
   t->wrong_head = t->mistakes > 0;
 }
@@ -186,12 +162,13 @@ static void read_head(Table *t, Piece line) {
 
 static int read_number(Table *t, Piece line, uint32_t column, const char *what, double *x, Piece *field) {
   Builder *b = t->b;
-  uint32_t n = fields(t, line, column, field);
+  uint32_t n = t->fields.n;
   if (n <= column) {
     mistake(t, line, arena_printf(b->arena, "the %s is in column %u, but this row has %u", what, column + 1, n));
     diag_help(b->diags, "a row is `time, value`; a comment begins with `#`");
     return 0;
   }
+  *field = t->fields.at[column];
   if (number(t, *field, x)) return 1;
   if (field->begin == field->end) mistake(t, (Piece){field->begin, field->begin + 1}, arena_printf(b->arena, "the %s is missing", what));
   else mistake(t, *field, arena_printf(b->arena, "the %s is not a number", what));
@@ -229,19 +206,14 @@ static void read_row(Table *t, Piece line) {
 }
 
 static void read_line(Table *t, Piece line) {
-  Piece first;
   double x;
   line = trimmed(t, line);
   if (line.begin == line.end || t->file.text[line.begin] == '#') return;
-  int head = 0;
-  if (!t->begun) {
-    t->begun = 1;
-    t->separator = find_separator(t, line);
-    t->value = 1;
-    fields(t, line, 0, &first);
-    head = !number(t, first, &x);
-  }
-  if (head) read_head(t, line);
+  int first = !t->begun;
+  t->begun = 1;
+  if (first) t->separator = find_separator(t, line);
+  split(t, line);
+  if (first && !number(t, t->fields.at[0], &x)) read_head(t, line);
   else read_row(t, line);
 }
 
@@ -276,9 +248,8 @@ static int find_table_file(Table *t, const char *path) {
     t->file = *file;
     return 1;
   }
-  diag_error(b->diags, ast_expr(b->ast, t->id)->span, "cannot read `%s`: %s", path, error);
-  diag_help(b->diags, "the path is relative to the file that names it");
-  return 0;
+  return diag_error(b->diags, ast_expr(b->ast, t->id)->span, "cannot read `%s`: %s" HELP "the path is relative to the file that names it", path,
+                    error);
 }
 
 /* Warns of overshoot by more than half the range of values: a cubic overshoots where rows are sparse near a steep rise.
@@ -340,7 +311,7 @@ static const Spline *fit(Table *t) {
 }
 
 static const Spline *read_table(Builder *b, const Input *in, Name stem, AstId id) {
-  Table t = {.b = b, .id = id, .in = in, .stem = stem};
+  Table t = {.b = b, .id = id, .in = in, .stem = stem, .value = 1};
   const AstExpr *x = ast_expr(b->ast, id);
   Place from = source_place(b->ast->sources, x->span.begin);
   if (!find_table_file(&t, path_relative_to(b->arena, from.file ? from.file->path : "", x->name))) return NULL;

@@ -3,18 +3,13 @@
 #include <string.h>
 
 #include "base/method_table.h"
-#include "base/suggest.h"
+#include "base/words.h"
 #include "model/builder.h"
 
-static const char *list_options(const Builder *b, const MethodInfo *m) {
+/* "`a`, `b`": the words up to NULL. */
+static const char *listed(const Builder *b, const char *const *words) {
   StrBuf list = strbuf(b->arena);
-  for (const MethodOption *o = m->options; o->name; o++) sb_printf(&list, "%s`%s`", o == m->options ? "" : ", ", o->name);
-  return sb_text(&list);
-}
-
-static const char *list_choices(const Builder *b, const MethodOption *o) {
-  StrBuf list = strbuf(b->arena);
-  for (const char *const *c = o->choices; *c; c++) sb_printf(&list, "%s`%s`", c == o->choices ? "" : ", ", *c);
+  for (const char *const *w = words; *w; w++) sb_printf(&list, "%s`%s`", w == words ? "" : ", ", *w);
   return sb_text(&list);
 }
 
@@ -33,24 +28,23 @@ static void unknown_option(Builder *b, const MethodInfo *m, const AstExpr *name)
   VEC(Name) names = {0};
   for (const MethodOption *o = m->options; o->name; o++) vec_push(b->arena, &names, o->name);
   Name near = suggest(name->name, names.at, names.n);
+  vec_push(b->arena, &names, NULL);
   diag_error(b->diags, name->span, "the method `%s` has no option `%s`", m->name, name->name);
   if (near) diag_help(b->diags, "did you mean `%s`? `lagc methods` lists the options", near);
-  else if (names.n) diag_help(b->diags, "its options: %s; `lagc methods` explains them", list_options(b, m));
+  else if (names.at[0]) diag_help(b->diags, "its options: %s; `lagc methods` explains them", listed(b, names.at));
   else diag_help(b->diags, "it has no options");
 }
 
 static void check_value(Builder *b, const MethodOption *o, const Option *given, Span span) {
   if (given->text && !o->choices) {
-    diag_error(b->diags, span, "the option `%s` is a number", o->name);
-    diag_help(b->diags, "write `%s = 0.01`", o->name);
+    diag_error(b->diags, span, "the option `%s` is a number" HELP "write `%s = 0.01`", o->name, o->name);
   } else if (given->text) {
     for (const char *const *c = o->choices; *c; c++)
       if (strcmp(*c, given->text) == 0) return;
-    diag_error(b->diags, span, "the option `%s` cannot be `%s`", o->name, given->text);
-    diag_help(b->diags, "it is one of %s", list_choices(b, o));
+    diag_error(b->diags, span, "the option `%s` cannot be `%s`" HELP "it is one of %s", o->name, given->text, listed(b, o->choices));
   } else if (!(given->value >= o->min && given->value <= o->max)) {
     diag_error(b->diags, span, "the option `%s` cannot be %.6g", o->name, given->value);
-    if (o->choices) diag_help(b->diags, "it is one of %s", list_choices(b, o));
+    if (o->choices) diag_help(b->diags, "it is one of %s", listed(b, o->choices));
     else if (o->max < 1e300) diag_help(b->diags, "it is a number from %g to %g", o->min, o->max);
     else diag_help(b->diags, "it is at least %g", o->min);
   }
@@ -64,7 +58,7 @@ static void read_method_option(Builder *b, const MethodInfo *m, const AstStmt *s
     return;
   }
   Option opt = {.name = l->name, .text = r->kind == AST_NAME ? r->name : NULL};
-  if (!opt.text) opt.value = resolve_number(b, st->rhs, &unit, "an option");
+  if (!opt.text) opt.value = resolve_number(b, st->rhs, &unit, "an option", NULL);
   const MethodOption *o = m ? method_option(m, l->name) : NULL;
   if (o) check_value(b, o, &opt, r->span);
   else if (m) unknown_option(b, m, l);

@@ -6,7 +6,6 @@
 #ifndef LAGC_MODEL_H
 #define LAGC_MODEL_H
 
-#include "base/define.h"
 #include "base/spline.h"
 #include "model/units.h"
 #include "sym/expr.h"
@@ -182,7 +181,7 @@ typedef struct {
   VEC(Start) starts;
   Span exactly; /* the first `start exactly`; empty: none */
   double t0, t1;
-  const char *t1_digits; /* t1 as decimal digits beyond double precision (base/decimal_literal.h), or NULL */
+  const char *t1_digits; /* t1 as decimal digits beyond double precision (base/num.h), or NULL */
   int has_span;
   Name method; /* or NULL */
   Span method_span;
@@ -232,7 +231,7 @@ typedef struct {
   ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
   SymId energy_sym; /* placeholder for the energy p q' - L in outputs and expects, which mech replaces */
   Unit energy_unit;
-  struct Builder *builder; /* for the self-check */
+  const struct Declarations *declared; /* names and definitions of the text (declarations.h), for the self-check */
 } Model;
 
 /* Name of built-in function i; NULL past the end. */
@@ -275,6 +274,19 @@ typedef struct {
   Name name;
 } Section;
 
+/* A value `name=value` of the command line for a simulator, and what it is in the declared unit of its name. */
+typedef struct {
+  AstId target, value; /* target 0: a time */
+  double number;
+  const char *digits;  /* as in base/num.h, or NULL */
+} CommandValue;
+
+/* A constant given by -D NAME=VALUE. */
+typedef struct {
+  const char *name, *value;
+  AstId expr; /* the value; 0: not parsed yet, or a mistake */
+} Define;
+
 /* Arguments of model_build: scene, effects, and definitions from the command line. */
 typedef struct {
   const char *scene; /* NULL: the first */
@@ -288,6 +300,8 @@ typedef struct {
   uint32_t nextra_outputs;
   const CommandInput *given; /* values that override the scene's */
   uint32_t ngiven;
+  CommandValue *values; /* model_build evaluates them; an error is reported when a run cannot set a target, or a value does not fit it */
+  uint32_t nvalues;
   Section section;
   const char *fix; /* parameters to compile in as numbers, with the scene's values: "g,drag.c", "all"; NULL: none */
   int unfixed;     /* set by callers that ignore the command line's --fix */
@@ -301,10 +315,6 @@ Model *model_build(Ast *ast, const ModelChoice *choice);
 
 /* Source text of a span on one line, without comments, its middle left out where it is long. */
 const char *short_text(const Ast *ast, Span s);
-
-/* Converts a value from the command line for `target` (0: a time) into a number in the target's declared unit, *digits as
- * in base/decimal_literal.h or NULL. 0, reported, when a run cannot set the target, or the value does not fit it. */
-int model_command_value(const Model *m, AstId target, AstId value, double *out, const char **digits);
 
 /* Whether a symbol is the input that says whether a contact is closed. */
 static inline int model_is_contact_switch(const Model *m, SymId sym) {

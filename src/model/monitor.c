@@ -22,8 +22,7 @@ static void monitor_exact(Builder *b, Monitor mon, Span span) {
     add_monitor(b, mon);
   }
   if (sc->exacts.n) return;
-  diag_error(b->diags, span, "the scene has no closed form to compare with");
-  diag_help(b->diags, "`exact q = ...` gives one");
+  diag_error(b->diags, span, "the scene has no closed form to compare with" HELP "`exact q = ...` gives one");
 }
 
 /* Charge named by x: 0 the energy, k + 1 the charge of symmetry k; -1: none. */
@@ -45,7 +44,7 @@ void set_monitor(Builder *b, const AstStmt *st) {
   const AstExpr *x = ast_expr(b->ast, st->lhs);
   Unit none = unit_si(DIM_NONE, "1");
   int charge = charge_named(b, x);
-  Monitor mon = {.output = -1 - charge, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit")};
+  Monitor mon = {.output = -1 - charge, .limit = resolve_number(b, st->rhs, &none, "a monitor's limit", NULL)};
   mon.name = intern(b->ast->names, ast_text(b, st->lhs));
   mon.absolute = x->kind == AST_CALL && strcmp(x->name, "error") == 0;
   if (mon.limit <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "a monitor's limit must be positive");

@@ -1,20 +1,9 @@
 /* Hints for unknown names: declarations out of reach, habits from paper (xdot, p_x, wt), functions of other languages, nearest names. */
-#include "base/suggest.h"
 #include "base/words.h"
 #include "model/builder.h"
 
 static int declares(const AstStmt *st, Name name) {
-  switch (st->kind) {
-    case STMT_COORD: case STMT_PARAM: case STMT_CONST: case STMT_INPUT: case STMT_STATE: case STMT_LET:
-    case STMT_FUNCTION: case STMT_OBSERVE: return st->name == name;
-    case STMT_MODEL: case STMT_INCLUDE: case STMT_LAGRANGIAN: case STMT_KINETIC: case STMT_POTENTIAL:
-    case STMT_DISSIPATION: case STMT_FORCE: case STMT_FLOW: case STMT_CONSTRAINT: case STMT_SYMMETRY:
-    case STMT_MAP: case STMT_EXPECT: case STMT_EVENT: case STMT_CONTACT: case STMT_FOR: case STMT_EFFECT:
-    case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE: case STMT_START: case STMT_EXACT: case STMT_SET:
-    case STMT_USE: case STMT_SPAN: case STMT_METHOD: case STMT_TOLERANCE: case STMT_OUTPUT: case STMT_MONITOR:
-    case STMT_LIKE: case STMT_STOP: return 0;
-  }
-  return 0;
+  return st->name == name && ((st->kind >= STMT_COORD && st->kind <= STMT_FUNCTION) || st->kind == STMT_OBSERVE);
 }
 
 const AstStmt *declared_in_use(const Builder *b, Name name, Name effect) {
@@ -221,7 +210,8 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
   else diag_help(b->diags, "declare it: `param %s = 1`, `coord %s` or `let %s = ...`", name, name, name);
 }
 
-void advise_unknown_member(Builder *b, Name effect, Name name) {
+void report_no_member(Builder *b, Span span, Name effect, Name name) {
+  diag_error(b->diags, span, "no effect in use declares `%s.%s`", effect, name);
   const AstStmt *e = NULL;
   VEC(Name) effects = {0};
   for (const AstStmt *s = b->ast->first; s; s = s->next)
@@ -261,9 +251,4 @@ void warn_unit_is_constant(Builder *b, const AstUnit *u) {
   if (!e || e->kind != ENT_CONST) return;
   diag_warning(b->diags, u->span, "`[%s]` is a unit here, not the constant `%s`", u->text, e->name);
   diag_help(b->diags, "an index touches its name: `x[%s]`", e->name);
-}
-
-void report_no_member(Builder *b, Span span, Name effect, Name name) {
-  diag_error(b->diags, span, "no effect in use declares `%s.%s`", effect, name);
-  advise_unknown_member(b, effect, name);
 }

@@ -86,13 +86,13 @@ static void add_family(Builder *b, AstId id, const Target *p, const Entity *e) {
   int64_t at[2] = {e->lo[0], e->lo[1]};
   const char *stem = ast_text(b, p->stem);
   do {
-    const Entity *member = e->kind == ENT_LET || e->kind == ENT_OBSERVE ? find_member(b, e, at) : e;
+    const Entity *member = e->kind == ENT_LET || e->kind == ENT_OBSERVE ? find_member(b->ast, &b->members, e, at) : e;
     if (!member) continue;
     Value v = resolve_member(b, e, at, p->primes, span, IN_OUTPUT);
     if (!v.e) return;
     int place = component_index(v.n, p->part);
     if (place >= 0) v = (Value){.e = v.at[place], .dim = v.dim};
-    Name name = member_name(b, stem, at, e->ndims);
+    Name name = member_name(b->ast, stem, at, e->ndims);
     if (p->part >= 0) name = label_of(b, name, p->part, 0);
     add_value(b, name, p->primes, member, span, &v, (OutputText){.id = id, .member = {at[0], at[1]}, .is_member = 1});
   } while (next_member(e, at));
@@ -146,8 +146,8 @@ int add_outputs(Builder *b, AstId id) {
   if (e && p.indices) { /* label from the index's value, not from how it is written */
     IndexRange r;
     if (!resolve_indices(b, p.indices, NULL, &r)) return -1;
-    if (e->kind == ENT_LET || e->kind == ENT_OBSERVE) shown = find_member(b, e, r.lo);
-    Name name = member_name(b, ast_text(b, p.stem), r.lo, r.n);
+    if (e->kind == ENT_LET || e->kind == ENT_OBSERVE) shown = find_member(b->ast, &b->members, e, r.lo);
+    Name name = member_name(b->ast, ast_text(b, p.stem), r.lo, r.n);
     if (p.part >= 0) name = label_of(b, name, p.part, 0);
     return add_value(b, name, p.primes, shown, span, &v, from);
   }

@@ -4,8 +4,7 @@
 void check_names_once(Builder *b, const FileIndex *file) {
   const AstStmt *none = find_named(b->ast, STMT_EFFECT, "none");
   if (none) {
-    diag_error(b->diags, none->name_span, "an effect cannot be called `none`: `use none` turns all off");
-    diag_help(b->diags, "choose another name");
+    diag_error(b->diags, none->name_span, "an effect cannot be called `none`: `use none` turns all off" HELP "choose another name");
   }
   for (uint32_t i = 0; i < file->repeated.n; i++) {
     const AstStmt *s = file->repeated.at[i];
@@ -53,8 +52,7 @@ static void check_setting(Builder *b, Scope *said, const AstStmt *st, const char
   const Entity *old = key ? scope_own(said, key, NULL) : NULL;
   if (key && !old) scope_add(said, (Entity){.name = key, .span = st->span});
   if (!old) return;
-  diag_error(b->diags, st->span, "`%s` is given twice: the second would win", key);
-  diag_help(b->diags, "leave out one of them");
+  diag_error(b->diags, st->span, "`%s` is given twice: the second would win" HELP "leave out one of them", key);
   diag_also(b->diags, old->span, "first given here");
 }
 

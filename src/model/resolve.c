@@ -6,7 +6,6 @@
  * definitions use the C stack. */
 #include <math.h>
 
-#include "base/decimal_literal.h"
 #include "base/words.h"
 #include "model/resolve_impl.h"
 #include "sym/eval.h"
@@ -88,13 +87,11 @@ static Value node_value(Eval *ev, AstId id) {
     case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE: case AST_NOT: case AST_AND: case AST_OR:
     case AST_TUPLE: return operator_value(ev, id);
     case AST_LIST:
-      diag_error(b->diags, x->span, "a list gives the members of a family their values, and stands alone");
-      diag_help(b->diags, "`param m[3] = {1, 3, 1/2}`, `start th = {0.1, 0.2}`; a vector is written `(a, b, c)`");
-      return FAILED;
+      return refuse(b, x->span, "a list gives the members of a family their values, and stands alone" HELP
+                    "`param m[3] = {1, 3, 1/2}`, `start th = {0.1, 0.2}`; a vector is written `(a, b, c)`");
     case AST_STRING:
-      diag_error(b->diags, x->span, "a quoted text is not a value here");
-      diag_help(b->diags, "a table from a file gives an input its values: `input u = \"file.csv\"`, or `u = \"file.csv\"` in a scene");
-      return FAILED;
+      return refuse(b, x->span, "a quoted text is not a value here" HELP
+                    "a table from a file gives an input its values: `input u = \"file.csv\"`, or `u = \"file.csv\"` in a scene");
     case AST_BIND: case AST_ERROR: return FAILED;
   }
   return FAILED;
@@ -158,16 +155,11 @@ static int is_infinite(Num n) { return !isfinite(num_value(n)); }
 /* Refuses values that contain a number beyond the range of doubles, or one that rounding has destroyed. */
 static Value usable_value(Eval *ev, const AstExpr *x, Value v) {
   for (uint32_t k = 0; v.e && k < component_count(&v); k++) {
-    if (has_number(ev->b->g, v.at[k], is_infinite)) {
-      diag_error(ev->b->diags, x->span, "a number here is not finite");
-      diag_help(ev->b->diags, "numbers reach up to 1.8e308");
-      return FAILED;
-    }
-    if (has_number(ev->b->g, v.at[k], num_is_imprecise)) {
-      diag_error(ev->b->diags, x->span, "rounding leaves fewer than six digits of a number here");
-      diag_help(ev->b->diags, "write its result as one number: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
-      return FAILED;
-    }
+    int infinite = has_number(ev->b->g, v.at[k], is_infinite);
+    if (!infinite && !has_number(ev->b->g, v.at[k], num_is_imprecise)) continue;
+    return refuse(ev->b, x->span, infinite ? "a number here is not finite" HELP "numbers reach up to 1.8e308" :
+                  "rounding leaves fewer than six digits of a number here" HELP
+                  "write its result as one number: numbers are exact as fractions of whole numbers up to 9.2e18, others have 16 digits");
   }
   return v;
 }
@@ -248,16 +240,22 @@ static Eval *begin(Builder *b, AstId id, Context where, Name effect) {
   return ev;
 }
 
-/* Definition of a let, an observable, or the function of an instance. */
-static Definition *definition(Builder *b, EntKind kind, uint32_t index) {
-  if (kind == ENT_FUNCTION) return &b->functions.at[b->instances.at[index]->function];
-  return kind == ENT_LET ? &b->lets.at[index] : &b->observes.at[index];
+static Definitions *definitions(Builder *b, EntKind kind) { return kind == ENT_FUNCTION ? &b->functions : kind == ENT_LET ? &b->lets : &b->observes; }
+
+void add_definition(Builder *b, EntKind kind, Definition d) {
+  Definitions *list = definitions(b, kind);
+  vec_push(b->arena, list, d);
+  vec_push(b->arena, &b->state[kind], (Evaluated){0});
 }
 
+/* Index of the let, the observable, or the function of the instance, that an evaluation is for. */
+static uint32_t definition_index(const Builder *b, EntKind kind, uint32_t index) { return kind == ENT_FUNCTION ? b->instances.at[index]->function : index; }
+
 static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
-  Definition *d = definition(b, kind, index);
+  uint32_t place = definition_index(b, kind, index);
+  const Definition *d = &definitions(b, kind)->at[place];
   Eval *ev = begin(b, d->stmt->rhs, kind == ENT_OBSERVE ? IN_OBSERVE : IN_DYNAMICS, d->effect);
-  d->progress = DOING;
+  b->state[kind].at[place].progress = DOING;
   ev->kind = kind;
   ev->definition = index;
   ev->in_statement = 0;
@@ -272,12 +270,12 @@ static Eval *begin_definition(Builder *b, EntKind kind, uint32_t index) {
 }
 
 /* Wraps the value of a let in a definition node, one per component: `r.x`. */
-static void finish_let(Builder *b, Definition *d, Value v) {
+static Value let_value(Builder *b, const Definition *d, Value v) {
   for (uint32_t k = 0; v.e && k < component_count(&v); k++) {
     Name name = v.n ? intern_printf(b, "%s.%c", d->name, component_letter(v.n, k)) : d->name;
     v.at[k] = expr_def(b->g, name, v.at[k]);
   }
-  d->value = v;
+  return v;
 }
 
 /* Internal error: an expression failed without a message. */
@@ -288,7 +286,9 @@ static void report_missing_message(Builder *b, AstId id) {
 
 static void finish_definition(Eval *ev) {
   Builder *b = ev->b;
-  Definition *d = definition(b, ev->kind, ev->definition);
+  uint32_t place = definition_index(b, ev->kind, ev->definition);
+  const Definition *d = &definitions(b, ev->kind)->at[place];
+  Evaluated *state = &b->state[ev->kind].at[place];
   Value v = *value_of(ev, ev->root);
   if (!v.e) report_missing_message(b, ev->root);
   if (ev->kind == ENT_OBSERVE && v.bare && d->stmt->unit.n) {
@@ -297,15 +297,10 @@ static void finish_definition(Eval *ev) {
     v.dim = own.dim;
   }
   v.bare = v.point = 0;
-  d->progress = DONE;
-  if (ev->kind == ENT_LET) {
-    finish_let(b, d, v);
-  } else if (ev->kind == ENT_OBSERVE) {
-    d->value = v;
-    finish_observe(b, ev->definition, v);
-  } else {
-    finish_instance(b, b->instances.at[ev->definition], v);
-  }
+  state->progress = DONE;
+  state->value = ev->kind == ENT_LET ? let_value(b, d, v) : v;
+  if (ev->kind == ENT_OBSERVE) finish_observe(b, place, v);
+  if (ev->kind == ENT_FUNCTION) finish_instance(b, b->instances.at[ev->definition], v);
 }
 
 static void run_all(Builder *b, EvalStack *stack) {
@@ -331,11 +326,11 @@ static void resolve_definition(Builder *b, EntKind kind, uint32_t index) {
 }
 
 void resolve_let(Builder *b, uint32_t index) {
-  if (b->lets.at[index].progress == TODO) resolve_definition(b, ENT_LET, index);
+  if (b->state[ENT_LET].at[index].progress == TODO) resolve_definition(b, ENT_LET, index);
 }
 
 void resolve_observe(Builder *b, uint32_t index) {
-  if (b->observes.at[index].progress == TODO) resolve_definition(b, ENT_OBSERVE, index);
+  if (b->state[ENT_OBSERVE].at[index].progress == TODO) resolve_definition(b, ENT_OBSERVE, index);
 }
 
 Value resolve_nodes(Builder *b, AstId id, Context where, Name effect, Expr *nodes) {
@@ -390,11 +385,8 @@ Value values_in(Builder *b, Value v, Span span, const Unit *unit) {
 }
 
 Expr value_in(Builder *b, Value v, Span span, const Unit *unit) {
-  if (v.e && v.n) {
-    diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, v.n));
-    return 0;
-  }
-  return values_in(b, v, span, unit).e;
+  if (!v.e || !v.n) return values_in(b, v, span, unit).e;
+  return refuse(b, span, "this is %s, but a number is needed here", shape_text(b, v.n)).e;
 }
 
 Expr resolve_in(Builder *b, AstId id, Context where, Name effect, const Unit *unit) {
@@ -411,13 +403,8 @@ const char *expression_digits(Builder *b, Expr e) {
   return NULL;
 }
 
-double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what) {
-  const char *digits;
-  return resolve_digits(b, id, unit, what, &digits);
-}
-
-double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits) {
-  *digits = NULL;
+double resolve_number(Builder *b, AstId id, const Unit *unit, const char *what, const char **digits) {
+  if (digits) *digits = NULL;
   Expr e = resolve_in(b, id, IN_CONST, NULL, unit);
   if (!e) return NAN;
   long double x = constant_value(b, e);
@@ -425,6 +412,6 @@ double resolve_digits(Builder *b, AstId id, const Unit *unit, const char *what, 
     diag_error(b->diags, ast_expr(b->ast, id)->span, "%s is not a finite number", what);
     return NAN;
   }
-  *digits = expression_digits(b, e);
+  if (digits) *digits = expression_digits(b, e);
   return (double)x;
 }

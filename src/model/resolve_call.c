@@ -1,17 +1,8 @@
 /* Function calls: built-in functions of numbers and vectors, if, d(expr, name); others are dispatched to resolve_function.c
  * (user functions), rotation.c, constraint.c (lambda) and resolve_exact.c. */
-#include "base/suggest.h"
+#include "base/words.h"
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
-
-static const struct {
-  const char *name;
-  ExprOp op;
-} unary_functions[] = {
-  {"sin", EX_SIN}, {"cos", EX_COS}, {"tan", EX_TAN}, {"asin", EX_ASIN}, {"acos", EX_ACOS}, {"atan", EX_ATAN},
-  {"sinh", EX_SINH}, {"cosh", EX_COSH}, {"tanh", EX_TANH}, {"exp", EX_EXP}, {"log", EX_LOG}, {"cbrt", EX_CBRT},
-  {"abs", EX_ABS}, {"sign", EX_SIGN},
-}, binary_functions[] = {{"atan2", EX_ATAN2}, {"hypot", EX_HYPOT}, {"min", EX_MIN}, {"max", EX_MAX}};
 
 const Entity *own_function(const Eval *ev, const AstExpr *x) {
   int ambiguous;
@@ -58,11 +49,9 @@ static Value call_if(Eval *ev, const AstExpr *x) {
   AstId yes = ast_expr(b->ast, x->args)->next, no = ast_expr(b->ast, yes)->next;
   const Value *c = value_of(ev, x->args), *v = value_of(ev, yes), *w = value_of(ev, no);
   if (!c->e) return FAILED;
-  if (!c->condition) {
-    diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` is not a condition", ast_short(b, x->args));
-    diag_help(b->diags, "`if(condition, a, b)` takes a condition first, such as `x > 0`");
-    return FAILED;
-  }
+  if (!c->condition)
+    return refuse(b, ast_expr(b->ast, x->args)->span, "`%s` is not a condition" HELP "`if(condition, a, b)` takes a condition first, such as `x > 0`",
+                  ast_short(b, x->args));
   if (expr_is_num(b->g, c->e)) return expr_is_zero(b->g, c->e) ? *w : *v;
   if (!v->e || !w->e || !same_shape(ev, x->span, yes, no)) return FAILED;
   if (!operands_agree(ev, x->span, yes, no)) return FAILED;
@@ -86,8 +75,7 @@ static int two_vectors(Eval *ev, const AstExpr *x, const Value **v, const Value 
     return 0;
   }
   if ((*v)->n) return 1;
-  diag_error(b->diags, x->span, "`%s` takes vectors, and these are numbers", x->name);
-  return 0;
+  return diag_error(b->diags, x->span, "`%s` takes vectors, and these are numbers", x->name);
 }
 
 static Expr dot(ExprGraph *g, const Value *v, const Value *w) {
@@ -123,11 +111,7 @@ static Value call_norm(Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->args);
   if (!v->e) return FAILED;
   if (v->n == ROTATION) return refuse_rotation(b, ast_expr(b->ast, x->args)->span, ast_short(b, x->args), TURN_NUMBER);
-  if (!v->n) {
-    diag_error(b->diags, x->span, "`norm` takes a vector, and `%s` is a number", ast_short(b, x->args));
-    diag_help(b->diags, "`abs(x)` is the size of a number");
-    return FAILED;
-  }
+  if (!v->n) return refuse(b, x->span, "`norm` takes a vector, and `%s` is a number" HELP "`abs(x)` is the size of a number", ast_short(b, x->args));
   Expr square = dot(b->g, v, v);
   return a_value(expr_sqrt(b->g, square), v->dim, v->bare);
 }
@@ -156,22 +140,15 @@ static Value call_d(Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->args), *w = value_of(ev, by);
   if (!v->e || !w->e) return FAILED;
   if (v->n == ROTATION) return refuse_rotation(b, ast_expr(b->ast, x->args)->span, ast_short(b, x->args), TURN_NUMBER);
-  if (w->n) {
-    diag_error(b->diags, ast_expr(b->ast, by)->span, "`%s` is %s: differentiate by its components", ast_short(b, by), shape_text(b, w->n));
-    return FAILED;
-  }
+  if (w->n) return refuse(b, ast_expr(b->ast, by)->span, "`%s` is %s: differentiate by its components", ast_short(b, by), shape_text(b, w->n));
   SymKind kind = expr_op(b->g, w->e) == EX_SYM ? expr_sym_of(b->g, w->e)->kind : SYM_CONST;
-  if (kind == SYM_CONST || w->e == expr_symbol(b->g, b->m->energy_sym)->node) {
-    diag_error(b->diags, ast_expr(b->ast, by)->span, "`d(expr, name)` differentiates by a coordinate, a velocity, a parameter or t");
-    return FAILED;
-  }
+  if (kind == SYM_CONST || w->e == expr_symbol(b->g, b->m->energy_sym)->node)
+    return refuse(b, ast_expr(b->ast, by)->span, "`d(expr, name)` differentiates by a coordinate, a velocity, a parameter or t");
   Value r = {.dim = dim_div(b->dims, v->dim, w->dim), .n = v->n};
   for (uint32_t k = 0; k < component_count(v); k++) {
-    if (kind != SYM_LOCAL && expr_contains(b->g, v->at[k], is_local, NULL)) {
-      not_yet(b, x->span, "a partial derivative of the energy, or of the arguments of a function");
-      diag_help(b->diags, "differentiate `T` and `V`, or `lagrangian`; of a function, its value: `d(f(x), x)`");
-      return FAILED;
-    }
+    if (kind != SYM_LOCAL && expr_contains(b->g, v->at[k], is_local, NULL))
+      return refuse(b, x->span, "not yet: a partial derivative of the energy, or of the arguments of a function" HELP
+                    "differentiate `T` and `V`, or `lagrangian`; of a function, its value: `d(f(x), x)`");
     r.at[k] = expr_diff(b->g, v->at[k], expr_sym_id(b->g, w->e));
   }
   warn_no_rate(ev, x, &r);
@@ -190,29 +167,30 @@ static Value call_pow(Eval *ev, const AstExpr *x) {
 
 static const struct {
   const char *name;
-  Value (*value)(Eval *ev, const AstExpr *x);
+  Value (*value)(Eval *ev, const AstExpr *x); /* NULL: the operation `op` of one number, or of two */
+  ExprOp op;
   int takes_vectors; /* vectors or rotations */
-} other_functions[] = {
-  {"sqrt", call_sqrt, 0}, {"pow", call_pow, 0}, {"if", call_if, 1}, {"d", call_d, 1}, {"dot", call_dot, 1}, {"cross", call_cross, 1}, {"norm", call_norm, 1},
-  {"lambda", multiplier_value, 1}, {"omega", omega_value, 1}, {"turn", turn_value, 1}, {"transpose", transpose_value, 1},
+} functions[] = {
+  {"sin", NULL, EX_SIN, 0}, {"cos", NULL, EX_COS, 0}, {"tan", NULL, EX_TAN, 0}, {"asin", NULL, EX_ASIN, 0}, {"acos", NULL, EX_ACOS, 0}, {"atan", NULL, EX_ATAN, 0},
+  {"sinh", NULL, EX_SINH, 0}, {"cosh", NULL, EX_COSH, 0}, {"tanh", NULL, EX_TANH, 0}, {"exp", NULL, EX_EXP, 0}, {"log", NULL, EX_LOG, 0}, {"cbrt", NULL, EX_CBRT, 0},
+  {"abs", NULL, EX_ABS, 0}, {"sign", NULL, EX_SIGN, 0},
+  {"atan2", NULL, EX_ATAN2, 0}, {"hypot", NULL, EX_HYPOT, 0}, {"min", NULL, EX_MIN, 0}, {"max", NULL, EX_MAX, 0},
+  {"sqrt", call_sqrt, 0, 0}, {"pow", call_pow, 0, 0}, {"if", call_if, 0, 1}, {"d", call_d, 0, 1}, {"dot", call_dot, 0, 1}, {"cross", call_cross, 0, 1},
+  {"norm", call_norm, 0, 1}, {"lambda", multiplier_value, 0, 1}, {"omega", omega_value, 0, 1}, {"turn", turn_value, 0, 1}, {"transpose", transpose_value, 0, 1},
 };
 
-enum {
-  UNARY = sizeof unary_functions / sizeof *unary_functions,
-  BINARY = sizeof binary_functions / sizeof *binary_functions,
-  OTHERS = sizeof other_functions / sizeof *other_functions
-};
+const char *function_name(size_t i) { return i < sizeof functions / sizeof *functions ? functions[i].name : NULL; }
 
-const char *function_name(size_t i) {
-  if (i < UNARY) return unary_functions[i].name;
-  if (i < UNARY + BINARY) return binary_functions[i - UNARY].name;
-  return i < UNARY + BINARY + OTHERS ? other_functions[i - UNARY - BINARY].name : NULL;
+/* Index of a built-in function; -1: none. */
+static int find_function(const char *name) {
+  for (size_t i = 0; function_name(i); i++)
+    if (strcmp(name, functions[i].name) == 0) return (int)i;
+  return -1;
 }
 
 int call_takes_vectors(const Eval *ev, const AstExpr *x) {
-  for (size_t i = 0; i < OTHERS; i++)
-    if (strcmp(x->name, other_functions[i].name) == 0) return other_functions[i].takes_vectors || own_function(ev, x);
-  return strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0 || own_function(ev, x);
+  int i = find_function(x->name);
+  return (i >= 0 && functions[i].takes_vectors) || strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0 || own_function(ev, x);
 }
 
 /* The coordinate, state or let in `th(0)`, which the parser takes for a call; or NULL. */
@@ -263,11 +241,8 @@ Value call_value(Eval *ev, const AstExpr *x) {
     return ev->waiting ? FAILED : start_value(ev, v, x->span, value_of(ev, x->args));
   }
   if (call_is_exact(ev, x->name)) return exact_value(ev, x);
-  for (size_t i = 0; i < UNARY; i++)
-    if (strcmp(x->name, unary_functions[i].name) == 0) return call_unary(ev, x, unary_functions[i].op);
-  for (size_t i = 0; i < BINARY; i++)
-    if (strcmp(x->name, binary_functions[i].name) == 0) return call_binary(ev, x, binary_functions[i].op);
-  for (size_t i = 0; i < OTHERS; i++)
-    if (strcmp(x->name, other_functions[i].name) == 0) return other_functions[i].value(ev, x);
-  return unknown_function(ev, x);
+  int i = find_function(x->name);
+  if (i < 0) return unknown_function(ev, x);
+  if (functions[i].value) return functions[i].value(ev, x);
+  return (functions[i].op >= EX_ATAN2 ? call_binary : call_unary)(ev, x, functions[i].op);
 }

@@ -44,10 +44,7 @@ Value start_value(Eval *ev, Value v, Span span, const Value *when) {
     report_start(b, span);
     return FAILED;
   }
-  if (when->n || !expr_is_zero(b->g, when->e)) {
-    diag_error(b->diags, span, "only the start value is known here: `x(0)`");
-    return FAILED;
-  }
+  if (when->n || !expr_is_zero(b->g, when->e)) return refuse(b, span, "only the start value is known here: `x(0)`");
   start_symbols(b);
   for (uint32_t k = 0; k < component_count(&v); k++) v.at[k] = expr_substitute(b->g, v.at[k], b->at_start, b->nbefore, "_0");
   v.bare = 0;
@@ -108,10 +105,7 @@ int call_is_exact(const Eval *ev, Name name) {
 Value exact_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   AstId arg = x->args;
-  if (!arg || ast_expr(b->ast, arg)->next) {
-    diag_error(b->diags, x->span, "`%s` takes one argument", x->name);
-    return FAILED;
-  }
+  if (!arg || ast_expr(b->ast, arg)->next) return refuse(b, x->span, "`%s` takes one argument", x->name);
   Value v = *value_of(ev, arg);
   int error = strcmp(x->name, "error") == 0;
   for (uint32_t k = 0; v.e && k < component_count(&v); k++) {

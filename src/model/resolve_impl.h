@@ -44,6 +44,9 @@ static const Value FAILED = {0};
 /* A scalar value that is not a condition. */
 static inline Value a_value(Expr e, Dim dim, int bare) { return (Value){.e = e, .dim = dim, .bare = bare}; }
 
+/* Reports an error, as diag_error does; returns FAILED. */
+Value refuse(Builder *b, Span span, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+
 /* Number of components. */
 static inline uint32_t component_count(const Value *v) { return v->n ? v->n : 1; }
 
@@ -93,10 +96,10 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e);
 /* The user function that x calls, or NULL. */
 const Entity *own_function(const Eval *ev, const AstExpr *x);
 
-/* rotation.c: product p q (rotation by q, then by p); vector v rotated by q; rotation coordinate as a value. */
+/* rotation.c: product p q (rotation by q, then by p); vector v rotated by q; rotation coordinate (rates: its rates) as a value. */
 Value rotation_product(Builder *b, const Value *p, const Value *q);
 Value rotation_turn(Builder *b, const Value *q, const Value *v);
-Value rotation_coordinate(const Builder *b, uint32_t coord);
+Value rotation_at(const Builder *b, uint32_t coord, int rates);
 
 /* Values of omega(R), turn(axis, angle), transpose(R). */
 Value omega_value(Eval *ev, const AstExpr *x);

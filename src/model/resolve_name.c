@@ -9,8 +9,7 @@ const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const 
     diag_error(b->diags, span, "unknown name `%s`", name);
     advise_unknown_name(b, name, span, effect, declare);
   } else if (ambiguous) {
-    diag_error(b->diags, span, "`%s` is declared by more than one effect in use", name);
-    diag_help(b->diags, "say which: `%s.%s`", e->effect, name);
+    diag_error(b->diags, span, "`%s` is declared by more than one effect in use" HELP "say which: `%s.%s`", name, e->effect, name);
     return NULL;
   }
   return e;
@@ -34,7 +33,7 @@ void suspend_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name
 }
 
 static Value defined_value(Eval *ev, const Entity *e, Span span) {
-  const Definition *d = e->kind == ENT_LET ? &ev->b->lets.at[e->index] : &ev->b->observes.at[e->index];
+  const Evaluated *d = &ev->b->state[e->kind].at[e->index];
   if (d->progress == DONE) return d->value;
   suspend_for(ev, e->kind, e->index, d->progress, e->name, span);
   return FAILED;
@@ -75,11 +74,8 @@ static SymId symbol_of(const Model *m, EntKind kind, uint32_t index) {
 static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span span) {
   Builder *b = ev->b;
   if (e->kind == ENT_NONE) return FAILED;
-  if (least_context(e->kind) > ev->where) {
-    diag_error(b->diags, span, "`%s` is %s and may not be used here", e->name, ent_kind_text(e->kind));
-    diag_help(b->diags, "%s", place_text(ev->where));
-    return FAILED;
-  }
+  if (least_context(e->kind) > ev->where)
+    return refuse(b, span, "`%s` is %s and may not be used here" HELP "%s", e->name, ent_kind_text(e->kind), place_text(ev->where));
   switch (e->kind) {
     case ENT_COORD: case ENT_STATE: case ENT_PARAM: case ENT_INPUT: {
       Value v = {.n = e->parts};
@@ -89,7 +85,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
       v.unit = entity_unit(b, e)->text;
       return v;
     }
-    case ENT_CONST: return b->constants.at[e->index].value;
+    case ENT_CONST: return b->constant_values.at[e->index];
     case ENT_SYMMETRY: {
       const Symmetry *y = &b->m->symmetries.at[e->index];
       Value v = a_value(expr_symbol(b->g, y->charge)->node, y->unit.dim, 0);
@@ -98,9 +94,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
     }
     case ENT_LET: case ENT_OBSERVE: return defined_value(ev, e, span);
     case ENT_FUNCTION:
-      diag_error(b->diags, span, "`%s` is a function", e->name);
-      diag_help(b->diags, "give it its arguments: `%s(...)`", e->name);
-      return FAILED;
+      return refuse(b, span, "`%s` is a function" HELP "give it its arguments: `%s(...)`", e->name, e->name);
     case ENT_NONE: case ENT_BUILTIN: break;
   }
   return FAILED;
@@ -108,10 +102,8 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
 
 Value whole_value(Eval *ev, const Entity *e, Span span) {
   if (!e->ndims || e->kind == ENT_NONE) return entity_value(ev, e, NULL, span);
-  Name one = member_name(ev->b, e->name, e->lo, e->ndims);
-  diag_error(ev->b->diags, span, "`%s` is a family: say which member", e->name);
-  diag_help(ev->b->diags, "the first is `%s`; `sum(i in ..., ...)` adds over all", one);
-  return FAILED;
+  Name one = member_name(ev->b->ast, e->name, e->lo, e->ndims);
+  return refuse(ev->b, span, "`%s` is a family: say which member" HELP "the first is `%s`; `sum(i in ..., ...)` adds over all", e->name, one);
 }
 
 /* lagrangian, energy, T, V in outputs and claims, unless the model declares the name; 0: not one of them. */
@@ -172,9 +164,7 @@ Value name_value(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "pi") == 0) return a_value(expr_symbol(b->g, b->m->pi)->node, DIM_NONE, 1);
   if (strcmp(x->name, "t") == 0) {
     if (ev->where >= IN_INPUT) return a_value(expr_symbol(b->g, b->m->time)->node, b->dim_of.at[b->m->time], 0);
-    diag_error(b->diags, x->span, "the time `t` may not be used here");
-    diag_help(b->diags, "%s", place_text(ev->where));
-    return FAILED;
+    return refuse(b, x->span, "the time `t` may not be used here" HELP "%s", place_text(ev->where));
   }
   int ambiguous;
   Value v;
@@ -207,7 +197,7 @@ static int in_range(const Entity *e, const int64_t *at) {
 static void report_range(Builder *b, const Entity *e, const int64_t *at, Span span, const char *where) {
   StrBuf s = strbuf(b->arena);
   for (int k = 0; k < e->ndims; k++) sb_printf(&s, "%s%lld..%lld", k ? ", " : "", (long long)e->lo[k], (long long)e->hi[k]);
-  diag_error(b->diags, span, "`%s` is out of range%s", member_name(b, e->name, at, e->ndims), where);
+  diag_error(b->diags, span, "`%s` is out of range%s", member_name(b->ast, e->name, at, e->ndims), where);
   if (in_range(e, at)) diag_help(b->diags, "`%s` is defined in %s, but not for this member", e->name, sb_text(&s));
   else diag_help(b->diags, "the members are `%s[%s]`", e->name, sb_text(&s));
 }
@@ -233,13 +223,10 @@ static Value indexed_value(Eval *ev, const Entity *e, const AstExpr *x, int mome
                    ast_text(b, x->args));
     return FAILED;
   }
-  if (n != e->ndims) {
-    diag_error(b->diags, x->span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", n);
-    return FAILED;
-  }
+  if (n != e->ndims) return refuse(b, x->span, "`%s` has %s, here it has %u", e->name, e->ndims == 1 ? "one index" : "two indices", n);
   const Entity *member = e;
   int listed = e->kind == ENT_LET || e->kind == ENT_OBSERVE;
-  if (in_range(e, at) && listed) member = find_member(b, e, at);
+  if (in_range(e, at) && listed) member = find_member(b->ast, &b->members, e, at);
   if (!in_range(e, at) || !member) {
     report_range(b, e, at, x->span, indices_text(ev));
     return FAILED;
@@ -303,7 +290,7 @@ Value member_value(Eval *ev, const AstExpr *x) {
 Value resolve_member(Builder *b, const Entity *e, const int64_t *at, uint32_t primes, Span span, Context where) {
   Eval ev = {.b = b, .where = where, .in_statement = 1};
   const Entity *member = e;
-  if (e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE)) member = find_member(b, e, at);
+  if (e->ndims && (e->kind == ENT_LET || e->kind == ENT_OBSERVE)) member = find_member(b->ast, &b->members, e, at);
   if (!member) return FAILED;
   if (member->kind == ENT_LET) resolve_let(b, member->index);
   if (member->kind == ENT_OBSERVE) resolve_observe(b, member->index);

@@ -12,9 +12,8 @@ int same_shape(Eval *ev, Span span, AstId x, AstId y) {
   Builder *b = ev->b;
   const Value *v = value_of(ev, x), *w = value_of(ev, y);
   if (v->n == w->n) return 1;
-  diag_error(b->diags, span, "shapes do not match: `%s` is %s, `%s` is %s", ast_short(b, x), shape_text(b, v->n), ast_short(b, y),
-             shape_text(b, w->n));
-  return 0;
+  return diag_error(b->diags, span, "shapes do not match: `%s` is %s, `%s` is %s", ast_short(b, x), shape_text(b, v->n), ast_short(b, y),
+                    shape_text(b, w->n));
 }
 
 /* --- chains of two operators --- */
@@ -126,10 +125,7 @@ static int factor_fits(Eval *ev, uint32_t i, const Value *r) {
     diag_help(b->diags, "write `dot(a, b)`, `cross(a, b)` or `norm(a)`");
     return 0;
   }
-  if (o.inverted && expr_is_zero(b->g, v->e)) {
-    diag_error(b->diags, span, "division by zero");
-    return 0;
-  }
+  if (o.inverted && expr_is_zero(b->g, v->e)) return diag_error(b->diags, span, "division by zero");
   return 1;
 }
 
@@ -213,10 +209,7 @@ Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id) {
   if (!base->e || !e->e || !need_pure(ev, exp_id, "an exponent")) return FAILED;
   if (expr_is_num(b->g, e->e)) {
     Num n = expr_number(b->g, e->e);
-    if (num_sign(n) < 0 && expr_is_zero(b->g, base->e)) {
-      diag_error(b->diags, x->span, "division by zero");
-      return FAILED;
-    }
+    if (num_sign(n) < 0 && expr_is_zero(b->g, base->e)) return refuse(b, x->span, "division by zero");
     return a_value(expr_pow_num(b->g, base->e, n), dim_pow(b->dims, base->dim, n), base->bare && e->bare);
   }
   if (!need_pure(ev, base_id, "the base of a power whose exponent is not a number")) return FAILED;
@@ -246,9 +239,8 @@ static Value compare_value(Eval *ev, const AstExpr *x) {
 
 static int need_condition(Eval *ev, AstId id) {
   if (value_of(ev, id)->condition) return 1;
-  diag_error(ev->b->diags, ast_expr(ev->b->ast, id)->span, "`%s` is not a condition", ast_short(ev->b, id));
-  diag_help(ev->b->diags, "`and`, `or` and `not` join comparisons, such as `x > 0`");
-  return 0;
+  return diag_error(ev->b->diags, ast_expr(ev->b->ast, id)->span, "`%s` is not a condition" HELP
+                    "`and`, `or` and `not` join comparisons, such as `x > 0`", ast_short(ev->b, id));
 }
 
 static Value logic_value(Eval *ev, const AstExpr *x) {
@@ -269,10 +261,7 @@ static Value tuple_value(Eval *ev, const AstExpr *x) {
   for (AstId i = x->args; i; i = ast_expr(b->ast, i)->next) {
     const Value *v = value_of(ev, i);
     if (!v->e) return FAILED;
-    if (r.n == 3) {
-      diag_error(b->diags, x->span, "a vector has two or three components");
-      return FAILED;
-    }
+    if (r.n == 3) return refuse(b, x->span, "a vector has two or three components");
     r.at[r.n++] = v->e;
     r.bare &= v->bare;
     if (measure && !operands_agree(ev, ast_expr(b->ast, i)->span, measure, i)) return FAILED;
@@ -310,11 +299,9 @@ Value operator_value(Eval *ev, AstId id) {
 int whole_number(Builder *b, const Value *v, AstId id, int64_t *out) {
   if (!v->e) return 0;
   Num n = expr_is_num(b->g, v->e) ? expr_number(b->g, v->e) : num_ratio(1, 2);
-  if (v->n || !num_is_exact(n) || n.den != 1 || !dim_equate(b->dims, v->dim, DIM_NONE, ast_expr(b->ast, id)->span)) {
-    diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is not a whole number known at compile time", ast_short(b, id));
-    diag_help(b->diags, "indices and ranges are made of numbers, constants (`const N = 3`) and indices");
-    return 0;
-  }
+  if (v->n || !num_is_exact(n) || n.den != 1 || !dim_equate(b->dims, v->dim, DIM_NONE, ast_expr(b->ast, id)->span))
+    return diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is not a whole number known at compile time" HELP
+                      "indices and ranges are made of numbers, constants (`const N = 3`) and indices", ast_short(b, id));
   *out = n.num;
   return 1;
 }

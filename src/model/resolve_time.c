@@ -48,45 +48,28 @@ static unsigned kinds_in(Builder *b, const Value *v) {
 
 Value time_derivative(Builder *b, Value of, Span span, Context where) {
   unsigned kinds = kinds_in(b, &of), second = 1u << SYM_ACC | 1u << SYM_RATE;
-  if (kinds & 1u << SYM_INPUT && where == IN_OUTPUT && b->m->scene.exacts.n) {
-    diag_error(b->diags, span, "inputs and closed forms have no time derivative");
-    diag_help(b->diags, "a velocity has a closed form of its own: `exact x' = ...`, and then `error(x')`");
-    return FAILED;
-  }
-  if (kinds & 1u << SYM_INPUT) {
-    diag_error(b->diags, span, "an input has no time derivative");
-    diag_help(b->diags, "declare the derivative as an input of its own");
-    return FAILED;
-  }
-  if (kinds & second && !(kinds & 1u << SYM_ACC)) {
-    diag_error(b->diags, span, b->m->first_order ? "L is linear in the velocities: they follow from the coordinates, and there is no second derivative"
-                                                 : "a state has a rate, and no second one");
-    diag_help(b->diags, b->m->first_order ? "write the derivative of the right side of its equation of motion" : "write the derivative of the right side of its flow");
-    return FAILED;
-  }
-  if (kinds & second) {
-    diag_error(b->diags, span, "third derivatives do not occur in mechanics");
-    return FAILED;
-  }
-  if (kinds & 1u << SYM_LOCAL && has_no_rate(b, &of)) {
-    not_yet(b, span, "a time derivative of the energy or a charge, or a third one of a function's argument");
-    diag_help(b->diags, "the energy changes by the power of forces: `force x = F` adds the power `F*x'`");
-    return FAILED;
-  }
+  if (kinds & 1u << SYM_INPUT && where == IN_OUTPUT && b->m->scene.exacts.n)
+    return refuse(b, span, "inputs and closed forms have no time derivative" HELP
+                  "a velocity has a closed form of its own: `exact x' = ...`, and then `error(x')`");
+  if (kinds & 1u << SYM_INPUT) return refuse(b, span, "an input has no time derivative" HELP "declare the derivative as an input of its own");
+  if (kinds & second && !(kinds & 1u << SYM_ACC))
+    return refuse(b, span, b->m->first_order ? "L is linear in the velocities: they follow from the coordinates, and there is no second derivative" HELP
+                                               "write the derivative of the right side of its equation of motion"
+                                             : "a state has a rate, and no second one" HELP "write the derivative of the right side of its flow");
+  if (kinds & second) return refuse(b, span, "third derivatives do not occur in mechanics");
+  if (kinds & 1u << SYM_LOCAL && has_no_rate(b, &of))
+    return refuse(b, span, "not yet: a time derivative of the energy or a charge, or a third one of a function's argument" HELP
+                  "the energy changes by the power of forces: `force x = F` adds the power `F*x'`");
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
   const Expr *seed = time_seeds(b);
   expr_tangent(b->g, of.at, component_count(&of), seed, b->nseeds + 1, "'", &b->rates, r.at);
   if (b->m->first_order) return r; /* rates are velocities; rates of true states were refused in the first build */
-  if (where < IN_OBSERVE && kinds_in(b, &r) & second && !(kinds_in(b, &r) & 1u << SYM_ACC)) {
-    diag_error(b->diags, span, "the rate of a state may stand only in `expect`, `observe` and `output`");
-    diag_help(b->diags, "write the right side of its flow; a `let` may stand for both");
-    return FAILED;
-  }
-  if (where < IN_OBSERVE && kinds_in(b, &r) & second) {
-    diag_error(b->diags, span, "a second derivative may stand only in `expect` and `observe`");
-    diag_help(b->diags, "L and forces are functions of q, q' and t; accelerations follow from them");
-    return FAILED;
-  }
+  if (where < IN_OBSERVE && kinds_in(b, &r) & second && !(kinds_in(b, &r) & 1u << SYM_ACC))
+    return refuse(b, span, "the rate of a state may stand only in `expect`, `observe` and `output`" HELP
+                  "write the right side of its flow; a `let` may stand for both");
+  if (where < IN_OBSERVE && kinds_in(b, &r) & second)
+    return refuse(b, span, "a second derivative may stand only in `expect` and `observe`" HELP
+                  "L and forces are functions of q, q' and t; accelerations follow from them");
   return r;
 }
 

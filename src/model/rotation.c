@@ -75,22 +75,18 @@ void rotation_spin(Builder *b, const Value *q, const Value *rates, Expr *w) {
   for (int k = 0; k < 3; k++) w[k] = expr_scale(b->g, num_int(2), product.at[k + 1]);
 }
 
-/* Product q (0, w) with a pure quaternion. */
-static Value times_vector(Builder *b, const Value *q, const Expr *w) {
-  Value pure = {.n = ROTATION, .at = {expr_int(b->g, 0), w[0], w[1], w[2]}};
-  return rotation_product(b, q, &pure);
-}
-
-Value rotation_rates(Builder *b, const Value *q, const Expr *w) {
-  Value r = times_vector(b, q, w);
-  for (int k = 0; k < ROTATION; k++) r.at[k] = expr_scale(b->g, num_ratio(1, 2), r.at[k]);
+/* scale q (0, w): product with a pure quaternion. */
+static Value times_vector(Builder *b, Num scale, const Value *q, const Expr *w) {
+  Value pure = {.n = ROTATION, .at = {expr_int(b->g, 0), w[0], w[1], w[2]}}, r = rotation_product(b, q, &pure);
+  for (int k = 0; k < ROTATION; k++) r.at[k] = expr_scale(b->g, scale, r.at[k]);
   return r;
 }
 
+Value rotation_rates(Builder *b, const Value *q, const Expr *w) { return times_vector(b, num_ratio(1, 2), q, w); }
+
 /* Generalised force 2 q (0, torque): its product with q' is the power torque.omega. */
 Value torque_force(Builder *b, const Value *q, const Value *torque) {
-  Value r = times_vector(b, q, torque->at);
-  for (int k = 0; k < ROTATION; k++) r.at[k] = expr_scale(b->g, num_int(2), r.at[k]);
+  Value r = times_vector(b, num_int(2), q, torque->at);
   r.dim = torque->dim;
   return r;
 }
@@ -137,15 +133,12 @@ Value turn_value(Eval *ev, const AstExpr *x) {
   if (!n->e || !a->e) return FAILED;
   if (n->n != 3 || a->n) {
     AstId wrong = n->n != 3 ? x->args : angle;
-    diag_error(b->diags, ast_expr(b->ast, wrong)->span, "`%s` is %s, and `turn` takes an axis and an angle", ast_short(b, wrong), shape_text(b, n->n != 3 ? n->n : a->n));
-    diag_help(b->diags, "`turn((0, 0, 1), 90 [deg])` turns about the third axis");
-    return FAILED;
+    return refuse(b, ast_expr(b->ast, wrong)->span, "`%s` is %s, and `turn` takes an axis and an angle" HELP
+                  "`turn((0, 0, 1), 90 [deg])` turns about the third axis", ast_short(b, wrong), shape_text(b, n->n != 3 ? n->n : a->n));
   }
-  if (is_zero(b, n)) {
-    diag_error(b->diags, ast_expr(b->ast, x->args)->span, "`%s` has no direction to turn about", ast_short(b, x->args));
-    diag_help(b->diags, "the identity is `turn((0, 0, 1), 0)`, the start of a rotation without a `start`");
-    return FAILED;
-  }
+  if (is_zero(b, n))
+    return refuse(b, ast_expr(b->ast, x->args)->span, "`%s` has no direction to turn about" HELP
+                  "the identity is `turn((0, 0, 1), 0)`, the start of a rotation without a `start`", ast_short(b, x->args));
   if (!need_pure(ev, angle, "`turn`")) return FAILED;
   Expr half = expr_scale(g, num_ratio(1, 2), a->e), s = expr_fn(g, EX_SIN, half), square[3];
   for (int k = 0; k < 3; k++) square[k] = expr_pow_num(g, n->at[k], num_int(2));
@@ -175,14 +168,12 @@ static const struct {
 };
 
 Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why) {
-  diag_error(b->diags, span, "`%s` is a rotation: %s", text, mistakes[why].refusal);
-  diag_help(b->diags, "%s", mistakes[why].way);
-  return FAILED;
+  return refuse(b, span, "`%s` is a rotation: %s" HELP "%s", text, mistakes[why].refusal, mistakes[why].way);
 }
 
 /* --- the coordinate --- */
 
-static Value rotation_at(const Builder *b, uint32_t coord, int rates) {
+Value rotation_at(const Builder *b, uint32_t coord, int rates) {
   Value q = {.n = ROTATION, .dim = DIM_NONE};
   for (uint32_t k = 0; k < ROTATION; k++) {
     const Coord *c = &b->m->coords.at[coord + k];
@@ -190,8 +181,6 @@ static Value rotation_at(const Builder *b, uint32_t coord, int rates) {
   }
   return q;
 }
-
-Value rotation_coordinate(const Builder *b, uint32_t coord) { return rotation_at(b, coord, 0); }
 
 static Expr dot4(ExprGraph *g, const Value *p, const Value *q) {
   Expr pairs[8];

@@ -29,8 +29,7 @@ static const AstStmt **scene_chain(Builder *b, const AstStmt *scene) {
   for (const AstStmt *s = scene; s;) {
     for (uint32_t i = 0; i < chain.n; i++)
       if (chain.at[i] == s) {
-        diag_error(b->diags, s->name_span, "the scene `%s` inherits from itself", s->name);
-        diag_help(b->diags, "`like` must not lead back to the scene");
+        diag_error(b->diags, s->name_span, "the scene `%s` inherits from itself" HELP "`like` must not lead back to the scene", s->name);
         s = NULL;
         break;
       }
@@ -63,8 +62,7 @@ static void read_model_name(Builder *b, const FileIndex *file) {
   const AstStmt *m = file->model;
   if (!m) {
     Span start = b->ast->first ? b->ast->first->span : (Span){0};
-    diag_error(b->diags, start, "the file does not name its model");
-    diag_help(b->diags, "begin with `model NAME \"what it is\"`");
+    diag_error(b->diags, start, "the file does not name its model" HELP "begin with `model NAME \"what it is\"`");
     b->m->name = intern(b->ast->names, "model");
     return;
   }
@@ -159,8 +157,7 @@ static int advise_statement(Builder *b, const AstStmt *st) {
   if (l->kind != AST_NAME || declared_in_use(b, l->name, NULL)) return 0;
   for (size_t i = 0; i < sizeof words / sizeof *words; i++)
     if (strcmp(l->name, words[i]) == 0) {
-      diag_error(b->diags, st->span, "`%s` takes no `=`", words[i]);
-      diag_help(b->diags, "write `%s %s`", words[i], ast_short(b, st->rhs));
+      diag_error(b->diags, st->span, "`%s` takes no `=`" HELP "write `%s %s`", words[i], words[i], ast_short(b, st->rhs));
       return 1;
     }
   return 0;
@@ -211,7 +208,7 @@ static Unit no_unit(void) { return unit_si(DIM_NONE, "1"); }
 static void set_every(Builder *b, const AstStmt *st) {
   Unit s = seconds(b);
   if (st->rhs) {
-    double every = resolve_number(b, st->rhs, &s, "the output interval");
+    double every = resolve_number(b, st->rhs, &s, "the output interval", NULL);
     if (every <= 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the output interval must be positive");
     b->m->scene.every = every;
   }
@@ -226,7 +223,7 @@ static void set_output(Builder *b, const AstStmt *st) {
 static void set_span(Builder *b, const AstStmt *st) {
   Unit s = seconds(b);
   Scene *sc = &b->m->scene;
-  sc->t1 = resolve_digits(b, st->rhs, &s, "the span", &sc->t1_digits);
+  sc->t1 = resolve_number(b, st->rhs, &s, "the span", &sc->t1_digits);
   sc->has_span = 1;
   if (sc->t1 == 0) diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the span is empty");
 }
@@ -234,7 +231,7 @@ static void set_span(Builder *b, const AstStmt *st) {
 static void set_tolerance(Builder *b, const AstStmt *st) {
   Unit none = no_unit();
   uint32_t before = b->diags->errors;
-  b->m->scene.tolerance = resolve_number(b, st->rhs, &none, "the tolerance");
+  b->m->scene.tolerance = resolve_number(b, st->rhs, &none, "the tolerance", NULL);
   if (b->diags->errors > before || (b->m->scene.tolerance > 0 && b->m->scene.tolerance < 1)) return;
   diag_error(b->diags, ast_expr(b->ast, st->rhs)->span, "the tolerance must be positive and below 1");
   diag_help(b->diags, "it is the relative error of a step: `tolerance 1e-9`");

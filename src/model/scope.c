@@ -1,49 +1,39 @@
-/* Symbol table: a chained hash table over interned names, newest entity first. Contract: scope.h. */
+/* Symbol table: a hash table over interned names. Contract: scope.h. */
 #include "model/scope.h"
 
 /* Names are interned, so the address is hashed. */
-static uint32_t *bucket(const Scope *s, Name name) { return &s->heads[(((uintptr_t)name >> 4) * 0x9e3779b97f4a7c15u >> 32) & (s->nheads - 1)]; }
+static uint32_t hash_of(Name name) { return (uint32_t)(((uintptr_t)name >> 4) * 0x9e3779b97f4a7c15u >> 32); }
 
-static const Entity *next_of(const Scope *s, uint32_t i, Name name) {
-  while (i && s->all.at[i - 1].name != name) i = s->all.at[i - 1].next;
-  return i ? &s->all.at[i - 1] : NULL;
+/* The newest entity called `name`, of `effect` unless any; *n: the number of such entities. */
+static const Entity *newest(const Scope *s, Name name, Name effect, int any, uint32_t *n) {
+  const Entity *found = NULL;
+  uint32_t hash = hash_of(name), at = idtable_start(&s->table, hash), id;
+  for (*n = 0; idtable_next(&s->table, hash, &at, &id);) {
+    const Entity *e = &s->all.at[id];
+    if (e->name != name || (!any && e->effect != effect)) continue;
+    ++*n;
+    if (!found || e > found) found = e;
+  }
+  return found;
 }
 
-static const Entity *newest(const Scope *s, Name name) { return s->nheads ? next_of(s, *bucket(s, name), name) : NULL; }
-
-static void link_entity(Scope *s, uint32_t i) {
-  uint32_t *head = bucket(s, s->all.at[i].name);
-  s->all.at[i].next = *head;
-  *head = i + 1;
-}
-
-/* Doubles the table, so that buckets are at least as many as entities. */
-static void make_buckets(Scope *s) {
-  s->nheads = s->nheads ? 2 * s->nheads : 8;
-  s->heads = ARENA_ARRAY(s->arena, uint32_t, s->nheads);
-  for (uint32_t i = 0; i < s->all.n; i++) link_entity(s, i);
-}
-
-const Entity *scope_own(const Scope *s, Name name, Name effect) {
-  const Entity *e = newest(s, name);
-  while (e && e->effect != effect) e = next_of(s, e->next, name);
-  return e;
-}
+const Entity *scope_own(const Scope *s, Name name, Name effect) { return newest(s, name, effect, 0, &(uint32_t){0}); }
 
 const Entity *scope_find(const Scope *s, Name name, Name effect, int *ambiguous) {
+  uint32_t n;
   *ambiguous = 0;
   const Entity *own = effect ? scope_own(s, name, effect) : NULL;
   if (!own) own = scope_own(s, name, NULL);
   if (own) return own;
-  const Entity *found = newest(s, name);
-  if (found && next_of(s, found->next, name)) *ambiguous = 1;
+  const Entity *found = newest(s, name, NULL, 1, &n);
+  *ambiguous = n > 1;
   return found;
 }
 
 void scope_add(Scope *s, Entity e) {
-  if (s->all.n == s->nheads) make_buckets(s);
+  s->table.arena = s->arena;
+  idtable_add(&s->table, hash_of(e.name), s->all.n);
   vec_push(s->arena, &s->all, e);
-  link_entity(s, s->all.n - 1);
 }
 
 const char *ent_kind_text(EntKind kind) {

@@ -3,8 +3,9 @@
 #ifndef LAGC_SCOPE_H
 #define LAGC_SCOPE_H
 
-#include "base/source.h"
+#include "base/id_table.h"
 #include "base/intern.h"
+#include "base/source.h"
 
 /* Families: the entity of `th[N]` has index ranges; its members are adjacent in the model's array, row by row, the
  * components of a vector together. Members of lets and observables are entities of their own, in a second scope
@@ -24,13 +25,12 @@ typedef struct {
   uint8_t ndims;     /* number of indices: 0, 1 or 2 */
   uint8_t parts;     /* number of components: 2 or 3 for vectors, 4 for rotations, else 0 */
   int64_t lo[2], hi[2]; /* range of each index */
-  uint32_t next; /* hash chain: index + 1 of the next older entity; 0: end */
 } Entity;
 
 typedef struct {
   Arena *arena;
   VEC(Entity) all;
-  uint32_t *heads, nheads; /* hash buckets: index + 1 of the newest entity; nheads is a power of 2, or 0 */
+  IdTable table; /* of `all` */
 } Scope;
 
 /* The entity that `effect` (NULL: the model itself) declares as `name`, or NULL. */

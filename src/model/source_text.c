@@ -1,7 +1,7 @@
 /* Source text of expressions for messages, and interned names made by the compiler. */
 #include <stdarg.h>
 
-#include "model/builder.h"
+#include "model/resolve_impl.h"
 
 Name intern_printf(Builder *b, const char *fmt, ...) {
   va_list ap;
@@ -11,9 +11,12 @@ Name intern_printf(Builder *b, const char *fmt, ...) {
   return intern(b->ast->names, s);
 }
 
-void not_yet(Builder *b, Span span, const char *what) {
-  diag_error(b->diags, span, "not yet: %s", what);
-  diag_help(b->diags, "lagc understands the syntax but cannot give it meaning in this version");
+Value refuse(Builder *b, Span span, const char *fmt, ...) {
+  va_list ap;
+  va_start(ap, fmt);
+  diag_verror(b->diags, span, fmt, ap);
+  va_end(ap);
+  return FAILED;
 }
 
 /* Text of a span on one line, without comments. */

@@ -197,8 +197,7 @@ static void complete_spin_start(Builder *b, const SpinStart *s) {
   for (uint32_t k = 0; k < ROTATION; k++) {
     const Coord *c = &b->m->coords.at[s->coord + k];
     if (starts(b, c->v)) {
-      diag_error(b->diags, s->span, "the angular velocity is given twice: by `omega`, and by `%s'`", c->name);
-      diag_help(b->diags, "leave out one of them");
+      diag_error(b->diags, s->span, "the angular velocity is given twice: by `omega`, and by `%s'`" HELP "leave out one of them", c->name);
       return;
     }
     give_start(b, s->coord + k, rates.at[k], s->span, &of);

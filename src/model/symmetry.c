@@ -19,8 +19,7 @@ static Name parameter_name(Builder *b, const AstStmt *st, Name effect) {
   int ambiguous;
   const Entity *other = scope_find(&b->scope, s->name, effect, &ambiguous);
   if (s->next) {
-    diag_error(b->diags, ast_expr(b->ast, s->next)->span, "a symmetry has one parameter");
-    diag_help(b->diags, "write two symmetries: each has a charge of its own");
+    diag_error(b->diags, ast_expr(b->ast, s->next)->span, "a symmetry has one parameter" HELP "write two symmetries: each has a charge of its own");
     return NULL;
   }
   if (!other) return s->name;
@@ -75,9 +74,8 @@ static int is_of_points(const Mapping *p, Expr to, Span span) {
     if (s && s->kind == SYM_STATE && !m->states.at[s->index].coordinate) what = "states";
   }
   if (!what) return 1;
-  diag_error(b->diags, span, "a symmetry cannot depend on %s", what);
-  diag_help(b->diags, "it maps coordinates and t to functions of coordinates, t and parameters; velocities follow");
-  return 0;
+  return diag_error(b->diags, span, "a symmetry cannot depend on %s" HELP
+                    "it maps coordinates and t to functions of coordinates, t and parameters; velocities follow", what);
 }
 
 /* Name of the rotation that a coordinate belongs to, or NULL. */
@@ -100,12 +98,10 @@ static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span
   Verdict v = prove_zero(b->g, left, NULL);
   if (v == PROVED_ZERO) return 1;
   Name turned = rotation_of(b, target);
-  if (turned) {
-    diag_error(b->diags, span, "at %s = 0 the symmetry `%s` turns `%s`", s, p->of->name, turned);
-    diag_help(b->diags, "write by how much %s turns it: about an axis of space by `%s -> turn((0, 0, 1), %s)*%s`, about its own by `%s -> %s*turn((0, 0, 1), %s)`", s, turned, s, turned,
-              turned, turned, s);
-    return 0;
-  }
+  if (turned)
+    return diag_error(b->diags, span, "at %s = 0 the symmetry `%s` turns `%s`" HELP
+                      "write by how much %s turns it: about an axis of space by `%s -> turn((0, 0, 1), %s)*%s`, about its own by `%s -> %s*turn((0, 0, 1), %s)`",
+                      s, p->of->name, turned, s, turned, s, turned, turned, turned, s);
   StrBuf text = strbuf(b->arena);
   expr_print(b->g, simplify(b->g, start), PRINT_TEXT, &text);
   if (v == PROVED_NONZERO) diag_error(b->diags, span, "at %s = 0 the symmetry `%s` maps `%s` to `%s`, not to itself", s, p->of->name, name, sb_text(&text));
@@ -229,8 +225,7 @@ static void check_moves(Builder *b, const Symmetry *y) {
     some |= y->moves.at[i].rate && !expr_is_zero(b->g, y->moves.at[i].rate);
   }
   if (some || !good || !y->moves.n) return;
-  diag_error(b->diags, y->span, "the symmetry `%s` moves nothing, to first order in its parameter", y->name);
-  diag_help(b->diags, "its charge would be 0");
+  diag_error(b->diags, y->span, "the symmetry `%s` moves nothing, to first order in its parameter" HELP "its charge would be 0", y->name);
 }
 
 void add_symmetry(Builder *b, const AstStmt *st, Name effect) {

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/suggest.h"
+#include "base/words.h"
 
 #define PI 3.14159265358979323846
 
@@ -254,35 +254,14 @@ int unit_measures(const AstUnit *u) {
   return 0;
 }
 
-const char *unit_name(uint32_t i, int *takes_prefixes) {
-  if (i >= N_UNITS) return NULL;
-  *takes_prefixes = table[i].prefixes;
-  return table[i].name;
-}
-
+const char *unit_name(uint32_t i) { return i < N_UNITS ? table[i].name : NULL; }
+int unit_takes_prefixes(uint32_t i) { return table[i].prefixes; }
 const char *unit_prefix(uint32_t i) { return i < sizeof prefixes / sizeof *prefixes ? prefixes[i].name : NULL; }
-
-/* Product of SI base units, "kg*m/s^2"; "" for a pure number. */
-static const char *base_text(const UnitRow *row, Arena *a) {
-  static const struct {
-    const char *name;
-    DimBase base;
-  } order[DIM_BASES] = {{"kg", DIM_MASS}, {"m", DIM_LENGTH}, {"s", DIM_TIME}, {"A", DIM_CURRENT},
-                        {"K", DIM_TEMPERATURE}, {"mol", DIM_AMOUNT}, {"cd", DIM_LUMINOUS}};
-  StrBuf b = strbuf(a);
-  for (int sign = 1; sign >= -1; sign -= 2)
-    for (int i = 0; i < DIM_BASES; i++) {
-      int e = sign * row->e[order[i].base];
-      if (e <= 0) continue;
-      sb_printf(&b, "%s%s", sign < 0 ? (b.n ? "/" : "1/") : b.n ? "*" : "", order[i].name);
-      if (e > 1) sb_printf(&b, "^%d", e);
-    }
-  return sb_text(&b);
-}
 
 const char *unit_meaning(uint32_t i, Arena *a) {
   const UnitRow *row = &table[i];
-  const char *base = base_text(row, a);
+  Dims *dims = dims_new(a);
+  const char *base = dim_product_text(dims, row_dim(dims, row));
   if (strcmp(base, row->name) == 0) return NULL;
   if (strcmp(row->name, "deg") == 0) return "pi/180";
   if (row->pi_power) return arena_printf(a, "%s%s%s%s", row->factor, row->pi_power < 0 ? "/pi" : "*pi", *base ? " " : "", base);

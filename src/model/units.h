@@ -29,8 +29,9 @@ int unit_measures(const AstUnit *u);
 /* 1 if `name` is a unit, with or without an SI prefix. */
 int unit_exists(const char *name);
 
-/* Table of units: name i, and whether SI prefixes are allowed; NULL past the end. Table of prefixes. */
-const char *unit_name(uint32_t i, int *takes_prefixes);
+/* Table of units: name i, NULL past the end; whether SI prefixes are allowed. Table of prefixes. */
+const char *unit_name(uint32_t i);
+int unit_takes_prefixes(uint32_t i);
 const char *unit_prefix(uint32_t i);
 
 /* Value of unit i in SI base units, for readers: "kg*m/s^2", "60 s", "pi/180"; NULL for a base unit. */

@@ -81,7 +81,7 @@ typedef enum {
   /* declarations */
   STMT_MODEL,       /* name, doc */
   STMT_INCLUDE,     /* doc = the path */
-  STMT_COORD,       /* name, dims, type (vec2, vec3, rotation or NULL), unit, periodic */
+  STMT_COORD,       /* from here to STMT_FUNCTION: declarations of names. name, dims, type (vec2, vec3, rotation or NULL), unit, periodic */
   STMT_PARAM,       /* name, dims, type (vec2, vec3 or NULL), unit (of the name, or its value), rhs, sign */
   STMT_CONST,       /* name, unit, rhs */
   STMT_INPUT,       /* name, unit, rhs */
@@ -149,7 +149,7 @@ typedef struct {
   Diags *diags;
   VEC(AstExpr) exprs;        /* exprs.at[0] is unused */
   AstStmt *first, *last;     /* the file's statements, includes already spliced in */
-  struct FileIndex *index;   /* statements by name: model/file_index.h; NULL: not yet made */
+  struct FileIndex *index;   /* statements by name (model/file_index.c); NULL: not yet made */
 } Ast;
 
 Ast *ast_new(Arena *a, Interner *names, Sources *sources, Diags *diags);

@@ -44,9 +44,7 @@ AstId ast_name(Ast *ast, Ident name) {
 void check_declared(Ast *ast, Ident name) {
   int is_t = strcmp(name.name, "t") == 0;
   if (!is_t && strcmp(name.name, "pi") != 0) return;
-  diag_error(ast->diags, name.span, "`%s` is %s, and cannot be declared", name.name,
-             is_t ? "the time" : "the number pi");
-  diag_help(ast->diags, "choose another name");
+  diag_error(ast->diags, name.span, "`%s` is %s, and cannot be declared" HELP "choose another name", name.name, is_t ? "the time" : "the number pi");
 }
 
 AstId ast_declared(Ast *ast, Ident name) {
@@ -100,11 +98,9 @@ AstId ast_binary(Ast *ast, AstKind kind, Span span, Span op, AstId a, AstId b) {
 static void check_indexed(Ast *ast, Span span, AstId a) {
   AstKind kind = ast_expr(ast, a)->kind;
   if (kind == AST_PRIME) {
-    diag_error(ast->diags, span, "the index stands after the prime");
-    diag_help(ast->diags, "write the prime last: `x[i]'`; a unit stands apart: `x' [m/s]`");
+    diag_error(ast->diags, span, "the index stands after the prime" HELP "write the prime last: `x[i]'`; a unit stands apart: `x' [m/s]`");
   } else if (kind != AST_NAME && kind != AST_MEMBER && kind != AST_INDEX) {
-    diag_error(ast->diags, span, "only a name has an index");
-    diag_help(ast->diags, "a unit stands apart from the `)` before it: `(a, b) [m]`");
+    diag_error(ast->diags, span, "only a name has an index" HELP "a unit stands apart from the `)` before it: `(a, b) [m]`");
   }
 }
 

@@ -1,7 +1,7 @@
 /* Ast -> a listing, one node a line, children indented by two columns, for people and golden tests.
  * It shows everything that later passes can see, except spans.
  *
- * Must hold: no recursion; past DUMP_DEEP levels the indentation stops and the level is printed. */
+ * Must hold: no recursion on expressions; past DUMP_DEEP levels the indentation stops and the level is printed. */
 #include "syntax/parse.h"
 
 enum { DUMP_DEEP = 24 };
@@ -102,16 +102,6 @@ static void drain(Dump *d) {
   }
 }
 
-static void dump_expr(Dump *d, AstId id, uint32_t level, const char *role) {
-  push(d, id, level, role);
-  drain(d);
-}
-
-static void dump_list(Dump *d, AstId first, uint32_t level, const char *role) {
-  push_list(d, first, level, role);
-  drain(d);
-}
-
 static void dump_head(Dump *d, const AstStmt *s) {
   static const char *const signs[] = {"", " > 0", " >= 0", " < 0", " <= 0"};
   static const char *const ways[] = {" crossing", " rising", " falling"};
@@ -127,34 +117,21 @@ static void dump_head(Dump *d, const AstStmt *s) {
   sb_putc(d->out, '\n');
 }
 
-static void dump_stmt(Dump *d, const AstStmt *s, uint32_t level) {
-  indent(d, level);
-  dump_head(d, s);
-  dump_list(d, s->dims, level + 1, "of ");
-  dump_list(d, s->args, level + 1, "arg ");
-  dump_expr(d, s->lhs, level + 1, "");
-  dump_expr(d, s->rhs, level + 1, "= ");
-}
-
-/* Bodies are nested at most FILTER_BLOCKS deep, but a stack costs no more than recursion. */
-static void dump_all(Dump *d, const AstStmt *first) {
-  VEC(const AstStmt *) after = {0}; /* where to go on after each open body */
-  for (const AstStmt *s = first; s || after.n;) {
-    if (!s) {
-      s = after.at[--after.n];
-      continue;
-    }
-    dump_stmt(d, s, after.n);
-    if (s->body) {
-      vec_push(d->ast->arena, &after, s->next);
-      s = s->body;
-    } else {
-      s = s->next;
-    }
+/* Recursion is bounded by the parser's limit on nested blocks. */
+static void dump_all(Dump *d, const AstStmt *first, uint32_t level) {
+  for (const AstStmt *s = first; s; s = s->next) {
+    indent(d, level);
+    dump_head(d, s);
+    push(d, s->rhs, level + 1, "= ");
+    push(d, s->lhs, level + 1, "");
+    push_list(d, s->args, level + 1, "arg ");
+    push_list(d, s->dims, level + 1, "of ");
+    drain(d);
+    dump_all(d, s->body, level + 1);
   }
 }
 
 void ast_dump(const Ast *ast, StrBuf *out) {
   Dump d = {.ast = ast, .out = out};
-  dump_all(&d, ast->first);
+  dump_all(&d, ast->first, 0);
 }

@@ -4,7 +4,7 @@
  * Must hold: type is vec2, vec3, rotation or NULL; `t` and `pi` are never declared silently. */
 #include "syntax/ast_build.h"
 
-#include "base/suggest.h"
+#include "base/words.h"
 
 StmtList stmts_one(AstStmt *s) { return (StmtList){s, s}; }
 

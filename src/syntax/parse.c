@@ -97,8 +97,7 @@ static void report_cycle(const Includes *in, const AstStmt *s, uint32_t from, ui
   for (uint32_t i = from; i != to; i = file_of(in, in->files.at[i].asked_by->span.begin))
     sb_printf(&chain, ", which `%s` includes", in->files.at[i].path);
   sb_printf(&chain, ", which `%s` includes", in->files.at[to].path);
-  diag_error(in->ast->diags, s->name_span, "this file includes itself");
-  diag_help(in->ast->diags, "%s", sb_text(&chain));
+  diag_error(in->ast->diags, s->name_span, "this file includes itself" HELP "%s", sb_text(&chain));
 }
 
 /* Whether `path` was included before; a cycle is reported. */

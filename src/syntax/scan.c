@@ -163,22 +163,21 @@ int scan_name(Scan *s, Token *t, const char *text, int n) {
 
 /* ---- numbers, texts, brackets ---- */
 
-/* Bytes of the longest number that text begins with. */
-static uint32_t number_length(const char *text, uint32_t n) {
-  uint32_t k = 0;
-  while (k < n && text[k] >= '0' && text[k] <= '9') k++;
-  if (k < n && text[k] == '.') k++;
-  while (k < n && text[k] >= '0' && text[k] <= '9') k++;
-  if (k == n || (text[k] != 'e' && text[k] != 'E')) return k;
-  uint32_t e = k + 1;
-  if (e < n && (text[e] == '+' || text[e] == '-')) e++;
-  if (e == n || text[e] < '0' || text[e] > '9') return k;
-  while (e < n && text[e] >= '0' && text[e] <= '9') e++;
-  return e;
+/* Bytes of the longest number that text, NUL-terminated, begins with. */
+static uint32_t number_length(const char *text) {
+  static const char digits[] = "0123456789";
+  size_t k = strspn(text, digits);
+  k += text[k] == '.';
+  k += strspn(text + k, digits);
+  if (text[k] != 'e' && text[k] != 'E') return (uint32_t)k;
+  size_t e = k + 1;
+  e += text[e] == '+' || text[e] == '-';
+  size_t more = strspn(text + e, digits);
+  return (uint32_t)(more ? e + more : k);
 }
 
 int scan_number(Scan *s, Token *t, const char *text, int n) {
-  uint32_t digits = number_length(text, (uint32_t)n), len = 1;
+  uint32_t digits = number_length(text), len = 1;
   if (digits < (uint32_t)n) {
     uint32_t code = utf8_decode(text + digits, &len);
     if (code < 0x80 || is_letter(code)) {

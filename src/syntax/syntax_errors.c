@@ -5,7 +5,7 @@
  * are grouped into words for a physicist, such as `an expression`. */
 #include <string.h>
 
-#include "base/suggest.h"
+#include "base/words.h"
 #include "syntax/parse_state.h"
 
 /* ---- found and expected tokens ---- */

@@ -18,10 +18,6 @@ typedef struct {
   const char *text;
   uint32_t n, at, begin;
   VEC(AstUnitFactor) factors;
-  struct {
-    uint32_t first; /* factors inside the group start here */
-    int divide;     /* the group stands under a `/` */
-  } groups[UNIT_DEPTH];
   uint32_t depth;
 } Unit;
 
@@ -151,39 +147,26 @@ static int parse_factor(Unit *u, int divide) {
   return raise(u, first, divide);
 }
 
-static int open_group(Unit *u, int divide) {
-  if (u->depth == UNIT_DEPTH) return unit_bad(u, u->at, 1, "the parentheses of this unit are nested too deep (16)", NULL);
-  u->groups[u->depth].first = u->factors.n;
-  u->groups[u->depth++].divide = divide;
-  return 1;
-}
-
-static int close_group(Unit *u) {
-  if (!u->depth) return unit_bad(u, u->at - 1, 1, "this `)` closes nothing", NULL);
-  u->depth--;
-  return raise(u, u->groups[u->depth].first, u->groups[u->depth].divide);
-}
-
+/* Factors up to the end of the unit, or of its group. Recursion is bounded by UNIT_DEPTH. */
 static int parse_factors(Unit *u) {
-  for (;;) {
-    int divide = 0;
-    if (u->factors.n && u->at < u->n) {
-      divide = accept_sign(u, "/");
-      if (!divide && !accept_sign(u, "*") && !accept_sign(u, "\xC2\xB7")) accept_sign(u, "\xE2\x8B\x85");
-    }
-    while (accept_sign(u, "(")) {
-      if (!open_group(u, divide)) return 0;
-      divide = 0;
+  for (uint32_t first = u->factors.n;;) {
+    uint32_t from = u->factors.n;
+    int divide = from > first && accept_sign(u, "/");
+    if (from > first && !divide && !accept_sign(u, "*") && !accept_sign(u, "\xC2\xB7")) accept_sign(u, "\xE2\x8B\x85");
+    if (accept_sign(u, "(")) {
+      if (u->depth++ == UNIT_DEPTH) return unit_bad(u, u->at, 1, "the parentheses of this unit are nested too deep (16)", NULL);
+      if (!parse_factors(u)) return 0;
+      if (!accept_sign(u, ")")) return unit_bad(u, u->n, 1, "a `)` is missing in this unit", NULL);
+      u->depth--;
+      if (!raise(u, from, divide)) return 0;
+    } else {
+      skip_spaces(u);
+      if (!parse_factor(u, divide)) return 0;
     }
     skip_spaces(u);
-    if (!parse_factor(u, divide)) return 0;
-    while (accept_sign(u, ")"))
-      if (!close_group(u)) return 0;
-    skip_spaces(u);
-    if (u->at >= u->n) break;
+    if (u->at >= u->n || (u->depth && u->text[u->at] == ')')) return 1;
+    if (accept_sign(u, ")")) return unit_bad(u, u->at - 1, 1, "this `)` closes nothing", NULL);
   }
-  if (u->depth) return unit_bad(u, u->n, 1, "a `)` is missing in this unit", NULL);
-  return 1;
 }
 
 int unit_parse(Scan *s, Token *t, const char *text, uint32_t n, uint32_t begin) {

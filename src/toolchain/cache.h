@@ -6,8 +6,19 @@
 
 /* The cache's folder, made if need be; NULL: no folder that only the user can write. */
 const char *cache_folder(Arena *a);
-/* Removes the folders of killed builds. Called before the first build of a command. */
+/* Removes the folders of killed builds, by their locks. Called before the first build of a command. */
 void cache_remove_stale_builds(Arena *a);
+
+/* A folder for one build, with a lock that its process holds until it ends, across exec. */
+typedef struct {
+  const char *path;
+  int lock;
+} BuildFolder;
+
+/* Makes a build folder in the folder `base`. Returns 0, with errno, on failure. */
+int build_folder_make(Arena *a, const char *base, BuildFolder *f);
+/* Removes the folder and its files. */
+void build_folder_remove(BuildFolder *f);
 
 /* Whether the simulator is there, whole and the user's own; otherwise it is built anew. Marks the entry as used. */
 int cache_has(const char *path);

@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/vec.h"
+
 static char *read_fd(Arena *a, int fd) {
   StrBuf b = strbuf(a);
   char buffer[4096];
@@ -57,8 +59,7 @@ int process_to_stdin(const char *path, char *const *argv) {
     execv(path, argv);
     _exit(127);
   }
-  int status = -1;
-  if (pid > 0 && waitpid(pid, &status, 0) == pid) status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  int status = pid > 0 ? wait_for(pid) : -1;
   if (status == 0 && (lseek(fileno(out), 0, SEEK_SET) != 0 || dup2(fileno(out), 0) != 0)) status = -1;
   if (out) fclose(out);
   return status;
@@ -87,11 +88,4 @@ void last_state_listen(Arena *a, void (*tell)(void *data, const double *number, 
   close(end[0]);
   if (pid < 0) close(end[1]);
   else setenv("LAG_LAST_STATE", arena_printf(a, "%d", end[1]), 1);
-}
-
-Words process_words(Arena *a, const char *cc) {
-  Words words = {0};
-  char *text = arena_strdup(a, cc);
-  for (char *w = strtok(text, " "); w; w = strtok(NULL, " ")) vec_push(a, &words, w);
-  return words;
 }

@@ -2,12 +2,9 @@
 #ifndef LAGC_TOOLCHAIN_PROCESS_H
 #define LAGC_TOOLCHAIN_PROCESS_H
 
-#include "base/strbuf.h"
-#include "base/vec.h"
+#include <stdint.h>
 
-/* A command as words: CC may hold options, as make has it. */
-typedef VEC(char *) Words;
-Words process_words(Arena *a, const char *cc);
+#include "base/strbuf.h"
 
 /* Runs the program at `path`; *said gets its standard output and error. Returns its exit status, or -1. */
 int process_run(Arena *a, const char *path, char *const *argv, char **said);

@@ -59,23 +59,14 @@ int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, cons
   static const char *const none[] = {NULL};
   *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc", .optimise = optimisation(), .library = "lag", .flags = none};
   int found = 0;
-  if (!t->optimise) {
-    *error = arena_printf(a, "LAGC_OPTIMISE is %s; it takes -O0, -O1, -O2 or -O3", getenv("LAGC_OPTIMISE"));
-    return 0;
-  }
+  if (!t->optimise) return fail_with(error, arena_printf(a, "LAGC_OPTIMISE is %s; it takes -O0, -O1, -O2 or -O3", getenv("LAGC_OPTIMISE")));
   if (home && home[0]) {
     found = try_place(a, arena_printf(a, "%s/lib", home), arena_printf(a, "%s/include", home), t);
-    if (!found) {
-      *error = arena_printf(a, "LAG_HOME is %s, where lib/liblag.a and include/lag.h are not found", home);
-      return 0;
-    }
+    if (!found) return fail_with(error, arena_printf(a, "LAG_HOME is %s, where lib/liblag.a and include/lag.h are not found", home));
   }
   found = found || try_place(a, own, arena_printf(a, "%s/../runtime/include", own), t);
   found = found || try_place(a, installed(a, own, LAGC_LIBDIR), installed(a, own, LAGC_INCLUDEDIR), t);
-  if (!found) {
-    *error = arena_printf(a, "the runtime (liblag.a and lag.h) is not found beside %s; run `make`, or set LAG_HOME", own);
-    return 0;
-  }
+  if (!found) return fail_with(error, arena_printf(a, "the runtime (liblag.a and lag.h) is not found beside %s; run `make`, or set LAG_HOME", own));
   t->gsl = want_gsl && file_exists(arena_printf(a, "%s/liblag_gsl.a", t->lib));
   return 1;
 }
@@ -93,18 +84,18 @@ int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const cha
   t->gsl = 0;
   t->include = arena_printf(a, "%s/lag-%s", t->lib, precision);
   if (file_exists(arena_printf(a, "%s/lib%s.a", t->lib, t->library))) return 1;
-  *error = arena_printf(a, "--precision %s: %s/lib%s.a is not there: this lagc was built without it%s", precision, t->lib, t->library,
-                        quad ? ", as where the C compiler has no libquadmath" : "");
-  return 0;
+  return fail_with(error, arena_printf(a, "--precision %s: %s/lib%s.a is not there: this lagc was built without it%s", precision, t->lib, t->library,
+                                       quad ? ", as where the C compiler has no libquadmath" : ""));
 }
 
 /* --- the probe for compilers that store wrong numbers --- */
 
 enum { N_LINES = sizeof probe_text / sizeof *probe_text, WRONG = 1 };
 
-/* Runs the compiler with the words `more` after those of cc; returns its exit status. */
+/* Runs the compiler with the words `more` after those of cc, which may hold options; returns its exit status. */
 static int run_compiler(Arena *a, const char *cc, const char *const *more, char **said) {
-  Words argv = process_words(a, cc);
+  VEC(char *) argv = {0};
+  for (char *w = strtok(arena_strdup(a, cc), " "); w; w = strtok(NULL, " ")) vec_push(a, &argv, w);
   for (; *more; more++)
     if (**more) vec_push(a, &argv, arena_strdup(a, *more));
   vec_push(a, &argv, NULL);
@@ -149,29 +140,22 @@ static const char *probe_flag(Arena *a, const char *cc, const char *optimise, co
 /* Compiles and links with the flags that the simulator reports as LAG_BUILD: no contraction (same bits with and without fused multiply-add),
  * no vector stores, and the flag of the probe. */
 static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
-  Words argv = process_words(a, t->cc);
   const char *safe = probe_flag(a, t->cc, t->optimise, dir, error);
   if (!safe) return 0;
   char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc, t->optimise, *safe ? " " : "", safe);
   for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
     if (*c == '"' || *c == '\\') *c = ' ';
-  const char *fixed[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, build, "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
-  for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) vec_push(a, &argv, arena_strdup(a, fixed[i]));
-  for (const char *const *f = t->flags; *f; f++) vec_push(a, &argv, arena_strdup(a, *f));
-  if (*safe) vec_push(a, &argv, arena_strdup(a, safe));
-  for (size_t i = 0; i < n; i++) vec_push(a, &argv, arena_printf(a, "%s/%s", dir, texts[i].name));
-  vec_push(a, &argv, arena_printf(a, "-L%s", t->lib));
-  if (t->gsl) vec_push(a, &argv, arena_strdup(a, "-llag_gsl"));
-  vec_push(a, &argv, arena_printf(a, "-l%s", t->library));
-  if (t->gsl) {
-    vec_push(a, &argv, arena_strdup(a, "-lgsl"));
-    vec_push(a, &argv, arena_strdup(a, "-lgslcblas"));
-  }
-  if (t->needs) vec_push(a, &argv, arena_strdup(a, t->needs));
-  vec_push(a, &argv, arena_strdup(a, "-lm"));
-  vec_push(a, &argv, NULL);
+  const char *first[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, build, "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
+  const char *last[] = {arena_printf(a, "-L%s", t->lib), t->gsl ? "-llag_gsl" : "", arena_printf(a, "-l%s", t->library), t->gsl ? "-lgsl" : "",
+                        t->gsl ? "-lgslcblas" : "", t->needs ? t->needs : "", "-lm", NULL};
+  VEC(const char *) words = {0};
+  for (size_t i = 0; i < sizeof first / sizeof *first; i++) vec_push(a, &words, first[i]);
+  for (const char *const *f = t->flags; *f; f++) vec_push(a, &words, *f);
+  vec_push(a, &words, safe);
+  for (size_t i = 0; i < n; i++) vec_push(a, &words, arena_printf(a, "%s/%s", dir, texts[i].name));
+  for (size_t i = 0; i < sizeof last / sizeof *last; i++) vec_push(a, &words, last[i]);
   char *said = NULL;
-  int status = process_run(a, argv.at[0], argv.at, &said);
+  int status = run_compiler(a, t->cc, words.at, &said);
   if (status == 0) return 1;
   if (status == 127) *error = arena_printf(a, "the C compiler `%s` cannot be run; install one (gcc or clang), or set CC", t->cc);
   else if (t->needs && said && strstr(said, "quadmath"))
@@ -193,14 +177,8 @@ static int compile_with_tmpdir(Arena *a, const Toolchain *t, const char *dir, co
 /* Compiles in a new build folder, which stays only on success: f->path/simulator. */
 static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
   const char *base = cache_folder(a);
-  if (!base) {
-    *error = "there is no folder to build in that only you can write: set XDG_CACHE_HOME to one";
-    return 0;
-  }
-  if (!build_folder_make(a, base, f)) {
-    *error = arena_printf(a, "cannot write in %s: %s", base, strerror(errno));
-    return 0;
-  }
+  if (!base) return fail_with(error, "there is no folder to build in that only you can write: set XDG_CACHE_HOME to one");
+  if (!build_folder_make(a, base, f)) return fail_with(error, arena_printf(a, "cannot write in %s: %s", base, strerror(errno)));
   int ok = 1;
   for (size_t i = 0; i < n && ok; i++) {
     const char *why;
@@ -220,10 +198,7 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
   struct stat st;
   BuildFolder f;
   const char *why;
-  if (stat(output, &st) == 0 && !S_ISREG(st.st_mode)) {
-    *error = arena_printf(a, "cannot write %s: it is not an ordinary file", output);
-    return 0;
-  }
+  if (stat(output, &st) == 0 && !S_ISREG(st.st_mode)) return fail_with(error, arena_printf(a, "cannot write %s: it is not an ordinary file", output));
   if (!build(a, t, texts, n, &f, error)) return 0;
   int ok = file_install(output, arena_printf(a, "%s/simulator", f.path), &why);
   if (!ok) *error = arena_printf(a, "cannot write %s: %s", output, why);

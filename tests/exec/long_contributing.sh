@@ -31,7 +31,7 @@ before src/sym/diff.c '    case EX_SINH: return' <<'END'
 END
 behind src/sym/print.c 'case EX_ATAN: call' '    case EX_ASINH: call(p, e, "asinh", "\\operatorname{arsinh}"); return;'
 for f in canonicalize expr normal_form rounding_bounds traverse; do edit "src/sym/$f.c" "$alike"; done
-edit src/model/resolve_call.c 's/{"atan", EX_ATAN},/{"atan", EX_ATAN}, {"asinh", EX_ASINH},/'
+edit src/model/resolve_call.c 's/{"atan", NULL, EX_ATAN, 0},/{"atan", NULL, EX_ATAN, 0}, {"asinh", NULL, EX_ASINH, 0},/'
 edit src/lower/lower.c "$alike"
 edit src/ir/eval.c 's/{"atan", atanl},/{"atan", atanl}, {"asinh", asinhl},/'
 before src/series/series_recurrences.c '/* u u + v v. */' <<'END'

@@ -17,15 +17,11 @@ static void dump_options(const CommandRow *c) {
 }
 
 int main(void) {
-  int prefixes;
   for (int k = TOK_MODEL; k <= TOK_STOP; k++) printf("statement %s\n", token_word((TokKind)k));
   for (int k = TOK_PERIODIC; k <= TOK_EVERY; k++) printf("slot %s\n", token_word((TokKind)k));
   for (int k = TOK_SUM; k <= TOK_PRODUCT; k++) printf("function %s\n", token_word((TokKind)k));
   for (size_t i = 0; function_name(i); i++) printf("function %s\n", function_name(i));
-  for (uint32_t i = 1; unit_name(i, &prefixes); i++) {
-    const char *name = unit_name(i, &prefixes);
-    printf("%s %s\n", prefixes ? "prefixed" : "unit", name);
-  }
+  for (uint32_t i = 1; unit_name(i); i++) printf("%s %s\n", unit_takes_prefixes(i) ? "prefixed" : "unit", unit_name(i));
   for (size_t i = 0; command_row(i); i++) {
     if (!command_row(i)->help) continue;
     printf("command %s\n", command_row(i)->name);

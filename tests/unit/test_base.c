@@ -14,7 +14,7 @@
 #include "base/intern.h"
 #include "base/method_table.h"
 #include "base/num.h"
-#include "base/suggest.h"
+#include "base/words.h"
 #include "base/vec.h"
 
 __extension__ typedef __int128 Wide;

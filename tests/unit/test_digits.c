@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "base/decimal_literal.h"
+#include "base/num.h"
 
 static const struct {
   int64_t n, d;
