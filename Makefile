@@ -394,7 +394,7 @@ coverage:
 	$(SETUP) test
 	$(COVERAGE_MAKE) build-coverage
 	@find $(COVERAGE) -name '*.gcda' -delete
-	@ln -sfn . $(COVERAGE)/san
+	@ln -sfn . $(COVERAGE)/san && ln -sfn "$(CURDIR)/runtime" $(COVERAGE)/../runtime # lagc finds its headers in ../runtime
 	@printf '#!/bin/sh\nexec %s "$$@" -O0 --coverage\n' '$(CC)' >$(COVERAGE)/cc && chmod +x $(COVERAGE)/cc
 	-$(COVERAGE_MAKE) MODEL_CC='$(CURDIR)/$(COVERAGE)/cc' COVERAGE=yes run-coverage
 	@sh tests/coverage/lib_report.sh $(COVERAGE)
