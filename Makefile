@@ -3,7 +3,7 @@
 # ---- settings: make NAME=value ----------------------------------------------------------------------
 .DEFAULT_GOAL := all
 CC      ?= cc
-CFLAGS  ?= -O2 -g
+CFLAGS  ?= -O2
 CPPFLAGS ?=
 LDFLAGS ?=
 RANLIB  ?=
@@ -241,10 +241,12 @@ gallery: all
 	@sed -n 's|^<!-- drawn by: build/lagc \(.*\) -->$$|$(BUILD)/lagc \1 --quiet|p' models/README.md | sh -e
 
 # ---- tests: tests/run.sh says what a suite is -------------------------------------------------------
-# Four builds: as users get it; in $(BUILD)/san with the address and undefined-behaviour sanitizers; the compiler alone in $(BUILD)/zero
-# with these and -O0, which leaves out no load; and, where clang is installed, by clang. Unit tests, their helpers and fuzz targets
-# are linked with the second, which is a third faster at -O1.
+# Two builds for `make test`: as users get it, less the precisions; and in $(BUILD)/san with the address and undefined-behaviour sanitizers,
+# which unit tests, their helpers and fuzz targets link. gcc compiles sanitized code at -Og in 60 % of the time of -O1 or of -O0.
+# `make test-long` has more: long and quad precision, the compiler alone in $(BUILD)/zero with sanitizers at -O0, which leaves out no load,
+# and, where clang is installed, everything by clang.
 SAN_BUILD := $(BUILD)/san
+SAN_OPT   := -Og -g1
 SAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 BIN       := $(BUILD)/test/bin
 CLANG     ?= $(shell command -v clang 2>/dev/null)
@@ -256,13 +258,16 @@ TEST_BIN  := $(UNIT_SRC:tests/unit/%.c=$(BIN)/%) $(FUZZ_SRC:tests/fuzz/%.c=$(BIN
 # Where T names unit tests only, nothing else is built.
 ONLY      := $(if $(filter-out unit/%,$(T)),,$(wildcard $(T:%=tests/%*.c)))
 
-RUN_TESTS = @LAGC='$(BUILD)/lagc' LAGC_SAN='$(BUILD)/zero/lagc' SAN_FLAGS='$(SAN_FLAGS)' LAGC_CLANG='$(if $(CLANG),$(BUILD)/clang/lagc)' \
+RUN_TESTS = @LAGC='$(BUILD)/lagc' LAGC_SAN='$(SAN_BUILD)/lagc' SAN_FLAGS='$(SAN_FLAGS)' LAGC_CLANG= PRECISIONS= $(MORE_BUILDS) \
             LIBLAG='$(LIBLAG)' LIBS='$(GSL_LIBS) -lm' INC='runtime/include' BIN='$(BIN)' BUILD='$(BUILD)' \
-            CC='$(CC)' CLANG='$(CLANG)' CXX='$(CXX_FOUND)' GSL='$(GSL)' MAKE='$(MAKE)' sh tests/run.sh
+            CC='$(or $(MODEL_CC),$(CC))' CLANG='$(CLANG)' CXX='$(CXX_FOUND)' GSL='$(GSL)' MAKE='$(MAKE)' sh tests/run.sh
+
+# A job pool for all builds.
+BUILD_TESTS = $(QUIET) build-tests
 
 test:
 	$(SETUP) test
-	@$(MAKE) --no-print-directory build-tests
+	$(BUILD_TESTS)
 	$(RUN_TESTS) $(T)
 # Unit and golden suites, without sanitizers: one build, of the compiler and of the runtime for doubles.
 QUICK_BIN := $(BUILD)/test/quick
@@ -273,15 +278,16 @@ check-quick: BIN   := $(QUICK_BIN)
 check-quick: CLANG :=
 check-quick:
 	$(SETUP) test
-	$(QUIET) BIN=$(QUICK_BIN) SAN_BUILD=$(BUILD) SAN_FLAGS= TEST_OPT=-O0 PRECISIONS= $(BUILD)/lagc $(LIBLAG) $(UNIT_SRC:tests/unit/%.c=$(QUICK_BIN)/%)
+	$(QUIET) BIN=$(QUICK_BIN) SAN_BUILD=$(BUILD) SAN_FLAGS= PRECISIONS= $(BUILD)/lagc $(LIBLAG) $(UNIT_SRC:tests/unit/%.c=$(QUICK_BIN)/%)
 	$(RUN_TESTS) $(or $(T),$(QUICK))
+test-long: MORE_BUILDS = PRECISIONS='$(PRECISIONS)' LAGC_SAN='$(BUILD)/zero/lagc' LAGC_CLANG='$(if $(CLANG),$(BUILD)/clang/lagc)'
 test-long:
 	$(SETUP) test
-	@$(MAKE) --no-print-directory build-tests
+	$(BUILD_TESTS) build-more
 	$(RUN_TESTS) --long $(T)
 bless:
 	$(SETUP) test
-	@$(MAKE) --no-print-directory build-tests
+	$(BUILD_TESTS)
 	$(RUN_TESTS) --bless $(T)
 # A row a case of tests/hard: error, residual, steps, time.
 hard:
@@ -293,26 +299,33 @@ bench:
 	$(QUIET) all
 	$(RUN_TESTS) --bench $(T)
 
-SAN_MAKE = $(QUIET) BUILD=$(SAN_BUILD) PRECISIONS= CFLAGS='-O1 -g' SAN='$(SAN_FLAGS)'
+SAN_MAKE = $(QUIET) BUILD=$(SAN_BUILD) PRECISIONS= CFLAGS='$(SAN_OPT)' SAN='$(SAN_FLAGS)'
 SAN_LAGC := $(SAN_BUILD)/liblagc.a
 SAN_RT   := $(if $(GSL),$(SAN_BUILD)/liblag_gsl.a) $(SAN_BUILD)/liblag.a
 
-build-tests:
+# The largest build starts first.
 ifneq ($(ONLY),)
-	$(SAN_MAKE) $(SAN_LAGC) $(SAN_RT)
+build-tests: build-san
 	$(QUIET) $(ONLY:tests/unit/%.c=$(BIN)/%)
 else
-	@echo 'building $(BUILD)/lagc, twice more with sanitizers$(if $(CLANG), and with clang), and the tests'
-	$(QUIET) all
-	$(SAN_MAKE) $(SAN_LAGC) $(SAN_RT)
-	$(QUIET) BUILD=$(BUILD)/zero RT_BUILD=$(SAN_BUILD) PRECISIONS= CFLAGS='-O0 -g' SAN='$(SAN_FLAGS)' $(BUILD)/zero/lagc
-	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang PRECISIONS= CC='$(CLANG)' all)
+build-tests: build-san build-plain
 	$(QUIET) $(TEST_BIN)
 endif
+build-san:
+	@echo 'building $(SAN_BUILD) with sanitizers'
+	$(SAN_MAKE) $(if $(ONLY),,$(SAN_BUILD)/lagc) $(SAN_LAGC) $(SAN_RT)
+build-plain:
+	@echo 'building $(BUILD)/lagc'
+	$(QUIET) PRECISIONS= all
+build-more: build-san build-plain
+	@echo 'building $(BUILD)/zero with sanitizers at -O0$(if $(CLANG), and $(BUILD)/clang by clang)'
+	$(QUIET) all
+	$(QUIET) BUILD=$(BUILD)/zero RT_BUILD=$(SAN_BUILD) PRECISIONS= CFLAGS='-O0 -g1' SAN='$(SAN_FLAGS)' $(BUILD)/zero/lagc
+	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang PRECISIONS= CC='$(CLANG)' all)
 
-# Optimisation of the test programs themselves; check-quick compiles them at -O0, in half the time.
-TEST_OPT ?= -O1
-TEST_CC = $(CC) -std=c11 -Wall -Wextra $(CPPFLAGS_ALL) $(TEST_OPT) -g $(SAN_FLAGS) -MMD -MP -MF $@.d -o $@ $<
+# Test programs themselves: -O1 would take ten times as long to compile.
+TEST_OPT ?= -O0 -g1
+TEST_CC = $(CC) -std=c11 -Wall -Wextra $(CPPFLAGS_ALL) $(TEST_OPT) $(SAN_FLAGS) -MMD -MP -MF $@.d -o $@ $<
 # tests/unit/test_rt_*: of the runtime. The rest of tests/unit: of the compiler.
 $(BIN)/test_rt_%: tests/unit/test_rt_%.c $(SAN_RT)
 	@mkdir -p $(@D)
@@ -372,6 +385,22 @@ fuzz-coverage:
 	done
 	@for f in $(patsubst src/%.c,%,$(wildcard src/emit/*.c src/ir/*.c src/mech/*.c)); do gcov -n $(COV)/obj/src/$$f.gcda 2>/dev/null; done | \
 	  awk -F "['%:]" '/^File .src\/.*\.c/ { f = $$2 } /^Lines executed/ && f { printf "%5.1f %%  %s\n", $$2, f; f = "" }'
+
+# The share of lines that the suites of `make test` reach. Simulators count, too: MODEL_CC links them with gcov.
+COVERAGE := $(BUILD)/coverage
+COVERAGE_MAKE = $(QUIET) BUILD=$(COVERAGE) SAN_BUILD=$(COVERAGE) PRECISIONS= CLANG= CFLAGS='-O0 -include tests/coverage/counted.h' \
+                SAN=--coverage SAN_FLAGS=--coverage TEST_OPT=-O0
+coverage:
+	$(SETUP) test
+	$(COVERAGE_MAKE) build-coverage
+	@find $(COVERAGE) -name '*.gcda' -delete
+	@ln -sfn . $(COVERAGE)/san && ln -sfn "$(CURDIR)/runtime" $(COVERAGE)/../runtime # lagc finds its headers in ../runtime
+	@printf '#!/bin/sh\nexec %s "$$@" -O0 --coverage\n' '$(CC)' >$(COVERAGE)/cc && chmod +x $(COVERAGE)/cc
+	-$(COVERAGE_MAKE) MODEL_CC='$(CURDIR)/$(COVERAGE)/cc' COVERAGE=yes run-coverage
+	@sh tests/coverage/lib_report.sh $(COVERAGE)
+build-coverage: all $(TEST_BIN)
+run-coverage:
+	$(RUN_TESTS) $(T)
 
 # One-token changes of the sources, one at a time: which ones does no suite see? tests/mutants/mutants.py
 N    ?= 100
@@ -436,6 +465,7 @@ help:
 	@echo 'make bless        rewrites the expectations of golden tests: look at the diff before you commit it'
 	@echo 'make fuzz         looks for inputs that break the compiler; SECONDS=60, T=fuzz_parse'
 	@echo 'make fuzz-coverage  the share of lines of src/ir, src/mech and src/emit that its inputs reach'
+	@echo 'make coverage     the share of lines of each folder that the suites of make test reach, by gcov; T= as above'
 	@echo 'make mutants      plants one-token changes and prints those that no suite sees; N=100 SEED=1 JOBS=2 ONLY_IN=src/ir/'
 	@echo 'make gallery      draws the pictures of models/README.md'
 	@echo 'make install      PREFIX=/usr/local LIBDIR=PREFIX/lib INCLUDEDIR=PREFIX/include DESTDIR='
@@ -450,4 +480,4 @@ ifneq ($(BUILDS),)
 endif
 
 FORCE:
-.PHONY: FORCE all demo run-demo gallery test check-quick test-long bless hard bench build-tests fuzz fuzz-coverage mutants install uninstall clean help
+.PHONY: FORCE all demo run-demo gallery test check-quick test-long bless hard bench build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall clean help

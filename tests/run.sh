@@ -7,7 +7,8 @@
 #   tests/unit/test_NAME.c         built into $BIN/test_NAME (cmocka)            suite unit/test_NAME
 #   tests/fuzz/fuzz_NAME.c         replays tests/fuzz/corpus/NAME                suite fuzz/fuzz_NAME
 #   tests/FOLDER/NAME.sh           run from the top of the source tree by sh     suite FOLDER/NAME
-#   tests/FOLDER/long_NAME.sh      the same, in `make test-long`, which also runs, with SLOW=1, each NAME.sh that has a `slow` check (tests/tap.sh)
+#   tests/FOLDER/long_NAME.sh      the same, in `make test-long`, which also runs, with SLOW=1, each NAME.sh that has a `slow` check
+#                                     (tests/tap.sh) and each test_NAME.c that asks slow() (tests/unit/slow.h)
 #   tests/bench/NAME.sh            run by `make bench`; its output is shown, and written to tests/bench/RESULTS.md
 #   tests/FOLDER/lib_NAME.sh       no suite: functions that scripts share
 # --bless runs the scripts that know BLESS with BLESS=1: they rewrite their expectations.
@@ -17,7 +18,8 @@
 # runs into the time limit, or has fewer or more results than its plan says, counts one failure more.
 #
 # Environment of scripts (paths relative to the top; empty: not available):
-#   LAGC, LAGC_SAN, LAGC_CLANG     the compiler; built with -O0 under the sanitizers of SAN_FLAGS; built by clang
+#   LAGC, LAGC_SAN, LAGC_CLANG     the compiler; built under the sanitizers of SAN_FLAGS, in `make test-long` with -O0; built by clang, in `make test-long`
+#   PRECISIONS                     libraries of other precisions: none in `make test`
 #   LIBLAG, INC, LIBS              the runtime's libraries, its headers, libraries to link after them
 #   BIN, BUILD, TMP                built test programs; the build folder; a folder of the suite's own, empty
 #   CC, CLANG, CXX, GSL, MAKE      GSL is `yes` or empty
@@ -26,7 +28,7 @@
 # Every suite leaves its output in $BUILD/test/log. The last line is `N passed, N failed`.
 cd "$(dirname "$0")/.." || exit 2
 unset MAKEFLAGS MFLAGS MAKELEVEL
-export LAGC LAGC_SAN SAN_FLAGS LAGC_CLANG LIBLAG LIBS INC BIN BUILD CC CLANG CXX GSL MAKE
+export LAGC LAGC_SAN SAN_FLAGS LAGC_CLANG PRECISIONS LIBLAG LIBS INC BIN BUILD CC CLANG CXX GSL MAKE
 export CMOCKA_MESSAGE_OUTPUT=TAP
 export UBSAN_OPTIONS="print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}"
 : "${BUILD:=build}" "${BIN:=$BUILD/test/bin}" "${JOBS:=$(nproc 2>/dev/null || echo 2)}"
@@ -94,7 +96,7 @@ found() {
       case $f in *.sh) ;; *) continue ;; esac
       grep -q BLESS "$f" || continue
     elif [ "$is" != "$kind" ]; then
-      [ "$kind $is" = 'long test' ] && [ "${f%.sh}" != "$f" ] && grep -q 'SLOW\|^ *slow ' "$f" || continue
+      [ "$kind $is" = 'long test' ] && grep -q 'SLOW\|^ *slow \|\<slow(' "$f" || continue
     fi
     [ $# = 0 ] && echo "$name"
     for prefix; do

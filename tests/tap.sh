@@ -20,7 +20,8 @@ check() {
   fi
 }
 
-# slow CHECK...: a check that `make test` leaves to `make test-long`. There, suites that have one run again, with SLOW=1.
+# slow CHECK...: a check that `make test` leaves to `make test-long`. There, suites that have one run again, with SLOW=1. Where its words run
+# a command, `"$(...)"`, write `[ -z "${SLOW:-}" ] || CHECK...`: the shell expands them first.
 slow() { [ -z "${SLOW:-}" ] || "$@"; }
 
 # is NAME EXPECTED GOT

@@ -2,16 +2,19 @@
 # make install: installed files, a user's program through pkg-config, and lagc outside the source tree.
 # make uninstall: nothing is left.
 . tests/tap.sh
+[ -z "${COVERAGE:-}" ] || skip_all "make install would build without gcov"
 unset LAGC_OPTIMISE # as users build
 
 prefix=$TMP/usr
-install_it() { "$MAKE" BUILD="$BUILD" install PREFIX="$prefix"; }
+: "${PRECISIONS=long quad}"
+# PRECISIONS: none in `make test`, as it builds none.
+install_it() { "$MAKE" BUILD="$BUILD" PRECISIONS="$PRECISIONS" install PREFIX="$prefix"; }
 check "make install" install_it
 
 more_files=
 [ -z "$GSL" ] || more_files='lib/liblag_gsl.a lib/pkgconfig/liblag_gsl.pc'
-for p in long quad; do
-  [ ! -f "$BUILD/liblag_$p.a" ] || more_files="$more_files lib/liblag_$p.a lib/lag-$p/lag.h lib/lag-$p/lag_model.h"
+for p in $PRECISIONS; do
+  more_files="$more_files lib/liblag_$p.a lib/lag-$p/lag.h lib/lag-$p/lag_model.h"
 done
 models=$(cd models && ls -d -- *.lag *.csv 2>/dev/null)
 want=$(for f in bin/lagc include/lag.h include/lag_kkt.h include/lag_math.h include/lag_model.h include/lag_sincos.h lib/liblag.a lib/pkgconfig/liblag.pc $more_files \
@@ -24,7 +27,7 @@ files() { (cd "$1" && find . ! -type d | sed 's|^\./||' | LC_ALL=C sort); }
 is "what is installed" "$(printf '%s\n' "$want" | LC_ALL=C sort)" "$(files "$prefix")"
 
 staged() {
-  "$MAKE" BUILD="$BUILD" install PREFIX=/opt/lagc DESTDIR="$TMP/stage" &&
+  "$MAKE" BUILD="$BUILD" PRECISIONS="$PRECISIONS" install PREFIX=/opt/lagc DESTDIR="$TMP/stage" &&
     [ "$(files "$TMP/stage/opt/lagc")" = "$(files "$prefix")" ] &&
     grep -x 'prefix=/opt/lagc' "$TMP/stage/opt/lagc/lib/pkgconfig/liblag.pc"
 }
@@ -89,8 +92,7 @@ no_gsl() { "$away/sim" --until 0.1 && ! "$away/sim" --until 0.1 --method gsl-rk8
 check "a simulator without GSL runs, and has no gsl-* methods" no_gsl
 
 precise() { lagc_away run "$prefix/share/lagc/models/kepler.lag" --until 0.1 --precision "$1"; }
-check "long doubles" precise long
-if [ -f "$BUILD/liblag_quad.a" ]; then check "quadruple precision" precise quad; else skip "quadruple precision" "no libquadmath"; fi
+for p in $PRECISIONS; do slow check "precision: $p" precise "$p"; done
 
 # lagc from a tree that was moved, and with LAG_HOME of another tree.
 moved() { mv "$prefix" "$TMP/moved" && (cd "$away" && "$TMP/moved/bin/lagc" run "$TMP/moved/share/lagc/models/double_pendulum.lag" --until 0.1); }

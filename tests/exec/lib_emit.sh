@@ -1,5 +1,6 @@
 # shellcheck shell=sh
-# What run_emit.sh and long_emit.sh share: every model emitted once, to $TMP/c and $TMP/h, and ways to compile and to evaluate it.
+# What run_emit.sh and long_emit.sh share: every model emitted, to $TMP/c, $TMP/h and $TMP/more, and ways to compile and to evaluate it.
+# plain=no: only headers and $TMP/more, whose files hold the functions of those of $TMP/c and others.
 : "${LAGC:=build/lagc}" "${BUILD:=build}" "${INC:=runtime/include}" "${CC:=cc}"
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 export TMP
@@ -18,7 +19,7 @@ emit_all() { # emit_all LAGC FOLDER
   mkdir -p "$2"
   for m in $models; do
     n=$(name_of "$m")
-    "$1" emit "$m" -o "$2/$n.c" || return 1
+    [ "${plain:-}" = no ] || "$1" emit "$m" -o "$2/$n.c" || return 1
     "$1" header "$m" -o "$2/$n.h" || return 1
   done
 }
@@ -29,7 +30,7 @@ emit_more() {
   mkdir -p "$TMP/more"
   for m in $models; do "$LAGC" emit "$m" --method gauss -o "$TMP/more/$(name_of "$m").c" || return 1; done
   for f in "$TMP"/more/*.c; do grep -q 'nq = 0' "$f" || grep -q 'static int second' "$f" || return 1; done
-  ! grep -q 'static int second' "$TMP/c/double_pendulum.c"
+  "$LAGC" emit models/double_pendulum.lag -o "$TMP/c/double_pendulum.c" && ! grep -q 'static int second' "$TMP/c/double_pendulum.c"
 }
 check "lagc emit --method, all models" emit_more
 
@@ -76,10 +77,10 @@ runs() { # COMPILER STANDARD REAL OPTIONS...: the body in one file, its use in a
 # ---- evaluate: one text for every LAG_REAL
 {
   echo '#include "lag_model.h"'
-  for m in $models; do sed -n 's/^const lag_scene \(.*\) = {/extern const lag_scene \1;/p' "$TMP/c/$(name_of "$m").c"; done
+  for m in $models; do sed -n 's/^const lag_scene \(.*\) = {/extern const lag_scene \1;/p' "$TMP/more/$(name_of "$m").c"; done
   echo 'extern const lag_scene *const all_scenes[];'
   echo 'const lag_scene *const all_scenes[] = {'
-  for m in $models; do sed -n 's/^const lag_scene \(.*\) = {/  \&\1,/p' "$TMP/c/$(name_of "$m").c"; done
+  for m in $models; do sed -n 's/^const lag_scene \(.*\) = {/  \&\1,/p' "$TMP/more/$(name_of "$m").c"; done
   echo '  0};'
 } >"$TMP/c/scenes.c"
 evaluate() { # NAME COMPILER OPTIONS...: values of the models' functions, to NAME.txt

@@ -58,8 +58,8 @@ check "and in the JSON report" says '"rank": 2, "redundant": \["sum"\]' $models/
 # ---- RATTLE: digits of the algorithm in 60-digit arithmetic (tests/unit/test_rt_constraints.c)
 check "verlet is RATTLE" ends 1e-11 x=0.2692700072386528 y=-0.9630647243055349 "x'=-4.185581063924644" "y'=-1.170275906630961" -- \
   $models/rod.lag drop --method verlet --step 0.01
-check "in long double, too" says 'constraint residual: [0-9.]*e-19, of rates [0-9.]*e-1[89]' $models/rod.lag drop --method verlet --step 0.01 --precision long
-check "dop853 in long double" says 'constraint residual: [0-9.]*e-19, of rates [0-9.]*e-1[89]' $models/rod.lag drop --method dop853 --tol 1e-15 --precision long
+slow check "in long double, too" says 'constraint residual: [0-9.]*e-19, of rates [0-9.]*e-1[89]' $models/rod.lag drop --method verlet --step 0.01 --precision long
+slow check "dop853 in long double" says 'constraint residual: [0-9.]*e-19, of rates [0-9.]*e-1[89]' $models/rod.lag drop --method dop853 --tol 1e-15 --precision long
 
 # ---- through positions where all bars lie in one line: b stays 0, the cranks are one pendulum
 for m in rk45 dop853 "variational --step 1e-3" "variational --step 1.1e-2" "verlet4 --step 1e-2"; do

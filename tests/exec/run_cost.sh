@@ -5,6 +5,7 @@
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 export TMP
 . tests/tap.sh
+. tests/exec/lib_precision.sh
 unset LAGC_OPTIMISE # with --longest, the runs that a sweep reaches depend on the speed of the simulator
 
 # cost ARGS...: rows of `method knob error seconds front cheapest order`
@@ -74,14 +75,14 @@ text() { "$LAGC" cost "$@" >"$TMP/text" 2>"$TMP/err"; }
 check "as a table" text models/pendulum.lag --until 2 --methods rk45,verlet --target 1e-6 --longest 0.01
 says() { check "it says: $1" grep -q -e "$1" "$TMP/text"; }
 says '^reference: taylor'
-if [ -e "$BUILD/liblag_quad.a" ]; then says 'taylor, 34 digits, itself uncertain by [0-9.]*e-3'; else skip "a reference of 34 digits" "no libquadmath"; fi
-if [ -e "$BUILD/liblag_quad.a" ]; then
+if ! has_precision quad; then
+  slow skip "a reference of 34 digits" "no libquadmath"
+else
+  says 'taylor, 34 digits, itself uncertain by [0-9.]*e-3'
   # A model with constraints has no Taylor series, and each digit of dop853 takes steps in software: as many as errors of doubles are
   # judged by, at most 1e-19, and no more.
   "$LAGC" cost tests/exec/models/rod.lag --until 2 --methods rk4 --longest 0.001 >"$TMP/rod"
   check "with constraints, enough digits" awk '/uncertain by/ { x = $NF; exit } END { print x; exit !(x > 1e-24 && x < 1e-19) }' "$TMP/rod"
-else
-  skip "a reference with constraints" "no libquadmath"
 fi
 says '^cheapest setting for an error of 1e-06: --method '
 # The method that it names reaches the stated error, by the pendulum's closed form (checked in models/pendulum.facts).
@@ -128,7 +129,7 @@ precise_reference() {
   errors() { awk '/step=/ { sub(/^\*/, ""); print $1, $2 }' "$1" | head -4; }
   grep -q '^reference: taylor, 34 digits' "$TMP/out" && [ "$(errors "$TMP/out")" = "$(errors "$TMP/other")" ]
 }
-if [ -f "${BUILD:-build}/liblag_quad.a" ]; then check "a reference of 34 digits" precise_reference; else skip "a reference of 34 digits" "no libquadmath"; fi
+if has_precision quad; then check "a reference from the start of the command" precise_reference; fi
 own_reference() { "$TMP/sim" --reference >"$TMP/reference" && "$TMP/sim" --cost --against "$TMP/reference" --methods rk45 >"$TMP/out" && grep -q 'rk45(tol=1e-10)' "$TMP/out"; }
 check "one simulator's reference serves another" own_reference
 check "--math libm" "$LAGC" cost models/pendulum.lag --math libm --methods verlet4 --quiet

@@ -13,7 +13,7 @@ mkdir -p "$dir/cut"
 
 # OUT FOLDER MODEL SCENE: emitted C and header of a scene. Headers of scenes with impossible starts are refused.
 emitted() {
-  (cd "$2" && { "$LAGC" header "$3" "$4" || echo "no header"; } && "$LAGC" emit "$3" "$4" --method variational &&
+  (cd "$2" && { slow "$LAGC" header "$3" "$4" || echo "no header"; } && "$LAGC" emit "$3" "$4" --method variational &&
     slow "$LAGC" emit "$3" "$4" && slow "$LAGC" emit "$3" "$4" --method radau) >"$1" 2>"$1.err" || { cat "$1.err"; return 1; }
 }
 

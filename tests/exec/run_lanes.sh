@@ -90,7 +90,7 @@ check "lagc header" sh -c "'$LAGC' header models/double_pendulum.lag -o '$TMP/sw
 embedded() { # COMPILER LANES OPTIONS...
   c=$1 n=$2
   shift 2
-  $c -std=gnu11 -O2 -Wall -Wextra -Werror -Wno-psabi -I"$TMP" -DLANES="$n" "$@" tests/exec/embed_lanes.c -lm -o "$TMP/embedded" && "$TMP/embedded"
+  $c -std=gnu11 "${LAGC_OPTIMISE:--O2}" -Wall -Wextra -Werror -Wno-psabi -I"$TMP" -DLANES="$n" "$@" tests/exec/embed_lanes.c -lm -o "$TMP/embedded" && "$TMP/embedded"
 }
 for c in "$CC" ${SLOW:+$clang}; do
   check "an embedded header, 4 lanes, $(basename "$c")" embedded "$c" 4 $four
@@ -100,7 +100,7 @@ check "4 lanes without AVX" embedded "$CC" 4
 check "8 lanes with the C library's functions" embedded "$CC" 8 -DSWING_LIBM -DONE_LIBM
 if [ -n "${CXX:-}" ]; then
   printf '#define SWING_LANES 4\n#define SWING_IMPLEMENTATION\n#include "swing.h"\n' >"$TMP/swing.cpp"
-  check "an embedded header over lanes is C++" $CXX -std=gnu++17 -O1 -Wall -Wextra -Wno-psabi -c "$TMP/swing.cpp" -o "$TMP/swing.o"
+  check "an embedded header over lanes is C++" $CXX -std=gnu++17 "${LAGC_OPTIMISE:--O1}" -Wall -Wextra -Wno-psabi -c "$TMP/swing.cpp" -o "$TMP/swing.o"
 else
   skip "an embedded header over lanes is C++" "there is no C++ compiler"
 fi

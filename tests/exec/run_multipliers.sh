@@ -50,7 +50,7 @@ agrees() { # TOLERANCE OPTIONS...
 # Rounding: 21 coordinates, 12 constraints, numbers of the order of 10.
 check "accelerations and multipliers of closed forms" agrees 1e-13
 # awk has doubles, and so has the start's text
-check "the same with 34 digits" agrees 1e-15 --precision quad
+slow check "the same with 34 digits" agrees 1e-15 --precision quad
 check "lagc check counts freedoms and names what is redundant" sh -c '"$1" check "$2" | grep -q "10 degrees of freedom; 12 constraints, of rank 11"' sh "$LAGC" $model
 redundant() { "$LAGC" check $model | grep 'follows from' | sed 's/^ *constraint \([^ ]*\).*/\1/'; }
 is "what follows from others" again "$(redundant)"

@@ -188,8 +188,8 @@ run "$TMP/short.lag" --until 0.30000000000000004
 is "JSON: all digits that count" 0.30000000000000004 "$(number t_end)"
 sed 's/^scene.*/event end: t - 0.5 [s] rising { stop }\n&/' "$TMP/spring.lag" >"$TMP/stop.lag"
 check "text: 0.5" ends 0 "^stopped by an event at t = 0.5 s" "$TMP/stop.lag" --method rk4 --step 0.1
-run "$TMP/short.lag" --precision quad
-is "JSON with 34 digits: 0.1" 0.1 "$(number t_end)"
+slow run "$TMP/short.lag" --precision quad
+slow is "JSON with 34 digits: 0.1" 0.1 "$(number t_end)"
 
 # ---- an energy that fades by the method alone: rk4 multiplies it by 1 - z^6/72 + z^8/576 = 0.886 each step, z = 1.5
 printf 'model fades\ncoord x\nlagrangian = x'"'"'^2/2 - x^2/2\nscene s { start x = 1; span 1000; method rk4(step=1.5) }\n' >"$TMP/fades.lag"

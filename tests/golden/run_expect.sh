@@ -44,6 +44,6 @@ if [ -n "$LAGC_CLANG" ]; then
   }
   check "built by clang: the same messages" same
 else
-  skip "built by clang: the same messages" "no clang"
+  slow skip "built by clang: the same messages" "no clang"
 fi
 tap_end

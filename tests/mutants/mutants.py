@@ -64,7 +64,7 @@ def environment(build, cc="cc", more=None):
     gsl = os.path.exists(os.path.join(TREE, build, "liblag_gsl.a"))
     e = dict(os.environ, LAGC=build + "/lagc", LAGC_SAN=build + "/san/lagc" if build == "build" else build + "/lagc", SAN_FLAGS=SAN, LAGC_CLANG="", BIN=build + "/test/bin", BUILD=build, CC=cc, CLANG="",
              LIBLAG=" ".join(build + "/" + f for f in ["liblag.a"] + ["liblag_gsl.a"] * gsl), LIBS="-lgsl -lgslcblas -lm" if gsl else "-lm", INC="runtime/include",
-             CXX="c++", GSL="yes" if gsl else "", MAKE="make", CMOCKA_MESSAGE_OUTPUT="TAP")
+             PRECISIONS="", CXX="c++", GSL="yes" if gsl else "", MAKE="make", CMOCKA_MESSAGE_OUTPUT="TAP")
     for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "LAG_HOME"):
         e.pop(name, None)
     e.update(more or {})
@@ -90,18 +90,6 @@ def run_suite(suite, build, env, limit):
     return status or (1 if re.search("^not ok", log, re.M) else 0), time.time() - begin
 
 
-# Processes that become others, or end without exit(), count what they reached first.
-COUNTED = """void __gcov_dump(void);
-void _exit(int);
-int __gcov_execv(const char *, char *const *);
-int __gcov_execvp(const char *, char *const *);
-static inline void counted_exit(int status) { __gcov_dump(); _exit(status); }
-#define execv __gcov_execv
-#define execvp __gcov_execvp
-#define _exit counted_exit
-"""
-
-
 class Map:
     """Which suites reach a line, and how long they take."""
 
@@ -119,9 +107,7 @@ class Map:
             return
         bins = " ".join("cov/test/bin/" + os.path.basename(f)[:-2] for d in ("unit", "fuzz") for f in sorted(os.listdir(TREE + "/tests/" + d)) if f.endswith(".c") and f != "driver.c")
         os.makedirs(self.folder, exist_ok=True)
-        counted = os.path.join(self.folder, "counted.h")
-        with open(counted, "w") as f:
-            f.write(COUNTED)
+        counted = os.path.join(TREE, "tests", "coverage", "counted.h")
         flags = "BUILD=cov SAN_BUILD=cov PRECISIONS= CLANG= CFLAGS='-O0 -include %s' SAN=--coverage SAN_FLAGS=--coverage" % counted
         made = sh("make -s -j2 %s all %s" % (flags, bins))
         make_home("cov")
@@ -191,7 +177,7 @@ class Builds:
         """Builds unit tests and fuzz targets."""
         bins = " ".join("build/test/bin/" + n.split("/")[1] for n in names)
         gsl = "build/san/liblag_gsl.a" if "GSL=yes" in self.settings else ""
-        return sh("make -s -j2 %s BUILD=build/san CFLAGS='-O1 -g' SAN='%s' build/san/lagc build/san/liblag.a %s && make -s -j2 %s %s" % (self.settings, SAN, gsl, self.settings, bins))
+        return sh("make -s -j2 %s BUILD=build/san CFLAGS='-Og -g1' SAN='%s' build/san/lagc build/san/liblag.a %s && make -s -j2 %s %s" % (self.settings, SAN, gsl, self.settings, bins))
 
     def plain(self):
         return sh("make -s -j2 " + self.settings + " all build/test/bin/mutate build/test/bin/dump_words build/test/bin/dump_syntax build/test/bin/cut_effects")

@@ -15,6 +15,7 @@
 #include "emit/cwriter.h"
 #include "lower/lower.h"
 #include "mech/lagrange.h"
+#include "slow.h"
 #include "sym/eval.h"
 #include "symmetry/charges.h"
 #include "syntax/parse.h"
@@ -146,7 +147,7 @@ static void check_scene(Ast *ast, const char *path, const char *scene) {
   const char *wrong = prog_verify(accel);
   if (wrong) fail_msg("%s: %s", where, wrong);
   uint64_t seed = 3;
-  for (int i = 0; i < 10; i++) check_state(e, accel, where, random_symbols(e, &seed));
+  for (int i = 0; i < slow(10, 3); i++) check_state(e, accel, where, random_symbols(e, &seed));
 }
 
 static int check_file(const char *path) {

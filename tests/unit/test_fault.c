@@ -1,4 +1,4 @@
-/* Memory runs out, once at each allocation of a compilation from text to C: every time the way ends
+/* Memory runs out, once at each allocation (in `make test` at every third) of a compilation from text to C: every time the way ends
  * in the arena's guard, with all memory given back. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,6 +15,7 @@
 #include "emit/emit_model.h"
 #include "lower/lower.h"
 #include "report/equation_listing.h"
+#include "slow.h"
 #include "symmetry/charges.h"
 #include "syntax/parse.h"
 
@@ -107,14 +108,14 @@ static int with_budget(const char *lag, int errors, long n, size_t chunk, size_t
 static void test_each_allocation(void **state) {
   (void)state;
   long n = 0;
-  while (!with_budget(good, 0, n, 2048, 0)) n++;
+  while (!with_budget(good, 0, n, 2048, 0)) n += slow(1, 3);
   assert_true(n > 200); /* or the chunks are too large to say anything */
 }
 
 static void test_each_allocation_of_errors(void **state) {
   (void)state;
   long n = 0;
-  while (!with_budget(bad, 1, n, 256, 0)) n++;
+  while (!with_budget(bad, 1, n, 256, 0)) n += slow(1, 3);
   assert_true(n > 100);
 }
 

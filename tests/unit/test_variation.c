@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "compile_text.h"
+#include "slow.h"
 #include "emit/emit_model.h"
 #include "symmetry/charges.h"
 
@@ -153,7 +154,7 @@ static void check_scene(Ast *ast, const char *path, const char *scene) {
   c.where = arena_printf(arena, "%s, scene %s", path, scene);
   assert_null(prog_verify(c.variation));
   assert_null(prog_verify(c.second));
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < slow(4, 2); i++) {
     c.v = state_of(e);
     check_state(&c);
   }
