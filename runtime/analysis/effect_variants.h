@@ -1,7 +1,6 @@
 /* Comparison of a scene with variants that have other sets of effects. Enters: simulations at their start; leaves: difference of each motion
  * from the scene's, difference of accelerations, time of a call of the right-hand side. */
-#ifndef LAG_ANALYSIS_EFFECT_VARIANTS_H
-#define LAG_ANALYSIS_EFFECT_VARIANTS_H
+#pragma once
 
 #include "analysis/work_precision.h"
 
@@ -38,5 +37,3 @@ int lag_variant_weight(const Variant *along, const Variant *with, const Variant 
 /* v[i].time := the shortest mean time of a call in many rounds, in each of which every variant that has run takes its turn, at states of its own
  * run. */
 int lag_variants_time(Variant *v, int n);
-
-#endif

@@ -1,6 +1,5 @@
 /* Equilibria: q' = 0 and every force balanced. Enters: a simulation before its first step; leaves: the state where it would stay. */
-#ifndef LAG_ANALYSIS_EQUILIBRIUM_H
-#define LAG_ANALYSIS_EQUILIBRIUM_H
+#pragma once
 
 #include "analysis/memory_pool.h"
 #include "core/core.h"
@@ -51,5 +50,3 @@ typedef int lag_values(Equilibrium *r, const double *x, double *out);
  * values. With more than 32 parameters and unknowns several are perturbed at once. Perturbations without values are skipped. scratch[count + np +
  * nderived + n]. 0, or the status of `values` at x. */
 int lag_perturbation_noise(Equilibrium *r, lag_values *values, const double *x, size_t count, double *base, double *noise, double *scratch);
-
-#endif

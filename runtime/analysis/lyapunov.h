@@ -1,8 +1,7 @@
 /* Lyapunov exponents of a run with a tangent: k vectors are carried along and made orthonormal again after each step; the logarithms of their
  * growth are summed. G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, Meccanica 15 (1980) 9, DOI 10.1007/BF02128236; I. Shimada, T.
  * Nagashima, Prog. Theor. Phys. 61 (1979) 1605, DOI 10.1143/PTP.61.1605. */
-#ifndef LAG_ANALYSIS_LYAPUNOV_H
-#define LAG_ANALYSIS_LYAPUNOV_H
+#pragma once
 
 #include "analysis/memory_pool.h"
 #include "lag.h"
@@ -65,5 +64,3 @@ double lag_lyapunov_entropy(const Lyapunov *l, double *error);
 /* Lyapunov dimension of the attractor by J.L. Kaplan and J.A. Yorke (1979, DOI 10.1007/BFb0064319), from all n exponents; those within three
  * errors of 0 count as 0. NaN where not all are known, or volumes are not known to shrink. */
 double lag_lyapunov_dimension(const Lyapunov *l, double *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Memory pool of one analysis: blocks are allocated one by one, failure is checked once, all are freed at once. */
-#ifndef LAG_ANALYSIS_MEMORY_POOL_H
-#define LAG_ANALYSIS_MEMORY_POOL_H
+#pragma once
 
 #include <stdlib.h>
 
@@ -28,5 +27,3 @@ static inline void lag_pool_free(Pool *p) {
     p->last = before;
   }
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Modes of small motion about an equilibrium: frequencies, shapes, damping, and the stability that follows. Enters: a state of rest; leaves: its
  * modes and a verdict. */
-#ifndef LAG_ANALYSIS_MODES_H
-#define LAG_ANALYSIS_MODES_H
+#pragma once
 
 #include "analysis/equilibrium.h"
 
@@ -43,5 +42,3 @@ typedef struct Modes {
  * converge. Call lag_modes_free in every case. */
 int lag_modes_find(Modes *modes, Equilibrium *rest, const lag_algebra *algebra);
 void lag_modes_free(Modes *modes);
-
-#endif

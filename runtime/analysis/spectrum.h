@@ -1,7 +1,6 @@
 /* Eigenvalues and eigenvectors of a real matrix; zeros and multiple eigenvalues are told from rounding: a free motion is an exact 0, not a pair
  * of 1e-8. */
-#ifndef LAG_ANALYSIS_SPECTRUM_H
-#define LAG_ANALYSIS_SPECTRUM_H
+#pragma once
 
 #include "analysis/memory_pool.h"
 #include "lag.h"
@@ -20,5 +19,3 @@ typedef struct Spectrum {
 /* Spectrum of A[n * n], whose entries have errors up to noise[n * n] >= 0, at least those of rounding. Both are destroyed. Memory is the
  * pool's. LAG_OK, LAG_ENOMEM, LAG_EMETHOD. */
 int lag_spectrum(Spectrum *s, Pool *pool, const lag_algebra *algebra, int n, double *A, double *noise);
-
-#endif

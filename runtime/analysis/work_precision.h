@@ -1,7 +1,6 @@
 /* Work-precision measurement: a scene run with many settings of many methods. Enters: a function that makes the simulation, and a reference
  * motion; leaves: errors, processor times, observed orders. */
-#ifndef LAG_ANALYSIS_WORK_PRECISION_H
-#define LAG_ANALYSIS_WORK_PRECISION_H
+#pragma once
 
 #include "lag.h"
 
@@ -69,5 +68,3 @@ void lag_pareto_front(CostMethod *m, int n);
 
 /* The method of the fastest run with an error of at most `target`, and *run; NULL: there is none. */
 const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run);
-
-#endif

@@ -1,7 +1,6 @@
 /* Shared by the files of app/, the main program of a simulator: the command line, and the state of a run. Functions that return 0 or
  * EXIT_USAGE have printed a message in the second case. */
-#ifndef LAG_APP_APP_H
-#define LAG_APP_APP_H
+#pragma once
 
 #include <signal.h>
 #include <time.h>
@@ -186,5 +185,3 @@ void lag_report_json(App *app, FILE *f);
 void lag_report_json_head(const App *app, Json *j);
 /* s[n] := method with the options that differ from their defaults, "rk45(tol=1e-09)". */
 void lag_report_method(const App *app, char *s, size_t n);
-
-#endif

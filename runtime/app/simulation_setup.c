@@ -1,6 +1,5 @@
-/* Sets up the simulation: scene, method, tolerance, values. Enters: Args; leaves: app->scene and app->sim. Holds: the
- * command line overrides the scene; scenes, methods and effects missing in this build are refused with the command that
- * builds them. */
+/* Sets up the simulation: scene, method, tolerance, values. Enters: Args; leaves: app->scene and app->sim. Holds: the command line overrides the
+ * scene; scenes, methods and effects missing in this build are refused with the command that builds them. */
 #include <errno.h>
 #include <float.h>
 #include <math.h>

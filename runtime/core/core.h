@@ -3,8 +3,7 @@
  *
  * A run is a chain of method steps [step_t0, step_t1]. Within a step the run moves from `t` to `limit`: the next event, or the end of the step.
  * The times that the caller asks for do not change the steps. */
-#ifndef LAG_CORE_CORE_H
-#define LAG_CORE_CORE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -196,11 +195,10 @@ void lag_reset_rate_history(lag_sim *sim);
 void lag_release_integrals(lag_sim *sim);
 int lag_hold_integrals(lag_sim *sim, double t, const double *y);
 
-/* contact.c. of: the contact to which the event belongs, or NULL. open: opens all contacts, before the state is replaced.
- * settle: applies impacts to y and closes the contacts that rest. event: the contact event that led there, or -1; ends: its series of impacts
- * has ended; who: name of the event that set y, which must not lie inside a contact, or NULL.
- * begin: contacts at the start. arm: signs of contact events in `now`, where their functions are g[nev]; those that touch have none.
- * Failures have their message. */
+/* contact.c. of: the contact to which the event belongs, or NULL. open: opens all contacts, before the state is replaced. settle: applies impacts to
+ * y and closes the contacts that rest. event: the contact event that led there, or -1; ends: its series of impacts has ended; who: name of the event
+ * that set y, which must not lie inside a contact, or NULL. begin: contacts at the start. arm: signs of contact events in `now`, where their
+ * functions are g[nev]; those that touch have none. Failures have their message. */
 const lag_contact *lag_contact_of(const lag_model *m, int event);
 int lag_contact_is_closed(const lag_sim *sim, const lag_contact *contact);
 void lag_contact_open(lag_sim *sim);
@@ -264,5 +262,3 @@ void lag_try_nearest(lag_nearest *near, const char *known);
 
 /* For app/: the output grid that is saved with the run: row_origin, row_every, row_next. */
 double *lag_sim_output_grid(lag_sim *sim);
-
-#endif

@@ -1,9 +1,8 @@
-/* Event location: where g changes its sign along the dense output of a step. Enters: a step, and the signs of g just after run->from; leaves:
- * the time of its first event.
- * A part of the step is resolved when the polynomial of degree 8 through nine values of g has no zero there, or is monotonic; otherwise it is
- * halved. So crossings are found one by one, however short the time between them. Chebyshev coefficients bound the error of the polynomial: J.P.
- * Boyd, Chebyshev and Fourier Spectral Methods, 2nd ed. (2001), ch. 2.12; the subdivision is J.P. Boyd, J. Eng. Math. 56 (2006) 203, DOI
- * 10.1007/s10665-006-9087-5. */
+/* Event location: where g changes its sign along the dense output of a step. Enters: a step, and the signs of g just after run->from; leaves: the
+ * time of its first event. A part of the step is resolved when the polynomial of degree 8 through nine values of g has no zero there, or is
+ * monotonic; otherwise it is halved. So crossings are found one by one, however short the time between them. Chebyshev coefficients bound the error
+ * of the polynomial: J.P. Boyd, Chebyshev and Fourier Spectral Methods, 2nd ed. (2001), ch. 2.12; the subdivision is J.P. Boyd, J. Eng. Math. 56
+ * (2006) 203, DOI 10.1007/s10665-006-9087-5. */
 #include <float.h>
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 /* Inline parts of the right-hand side, called so often, for so few numbers, that a function call would take as long as the work: for rhs.c and
  * for methods with many stages; and the compensated sum of all steps. */
-#ifndef LAG_CORE_RHS_H
-#define LAG_CORE_RHS_H
+#pragma once
 
 #include <math.h>
 
@@ -53,5 +52,3 @@ LAG_ALWAYS_INLINE int lag_rhs_inline(lag_problem *pb, int nq, double t, const do
   lag_copy(nq, y + nq, dy);
   return m->accel(t, y, y + nq, y + 2 * nq, pb->p, pb->u, dy + nq, dy + 2 * nq, pb->work);
 }
-
-#endif

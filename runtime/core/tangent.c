@@ -1,6 +1,5 @@
-/* The tangent of a run: small changes of the state, carried along the motion. Enters: Y at one time; leaves: Y at a later time. Holds: the run
- * itself is the same, bit by bit, with a tangent or without: steps are differentiated after they were made, and the counts of the run exclude
- * that cost.
+/* The tangent of a run: small changes of the state, carried along the motion. Enters: Y at one time; leaves: Y at a later time. Holds: the run itself
+ * is the same, bit by bit, with a tangent or without: steps are differentiated after they were made, and the counts of the run exclude that cost.
  *
  * An event changes the state from y to y+ = R(t, y) where g(t, y) = 0; its time moves with y. With the rates f and f+ before and after it, small
  * changes are multiplied by the saltation matrix

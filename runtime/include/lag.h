@@ -3,9 +3,8 @@
  * It takes a scene (lag_model.h), emitted by lagc, and computes its trajectory. A simulation is one opaque object; a method of integration is a const
  * descriptor, and a new method is a new file.
  *
- * Conventions, everywhere below: values are in SI units unless "declared unit" is said; arrays are
- * dense; y = [q[nq] | v[nq] | z[nz]] has n = 2 nq + nz elements; the library never keeps a pointer
- * into an array of the caller, and arrays passed to one call do not overlap. No function here is
+ * Conventions, everywhere below: values are in SI units unless "declared unit" is said; arrays are dense; y = [q[nq] | v[nq] | z[nz]] has n = 2 nq +
+ * nz elements; the library never keeps a pointer into an array of the caller, and arrays passed to one call do not overlap. No function here is
  * thread-safe on one object; different objects are independent. Nothing is printed, nothing exits.
  *
  * Return values: LAG_OK is 0; > 0 is a planned stop; < 0 is a failure, and lag_sim_message() then says
@@ -176,8 +175,7 @@ int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holono
 
 /* text := the line of a constraint, " (line 7)", or "" where the emitted C does not say. Returns text. */
 const char *lag_line_text(const lag_constraint *c, char text[32]);
-/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; for a residual of NaN "is not met". holonomic: a residual of c, else of
- * r. */
+/* pb->detail := "constraint rod (line 7) is off by 0.01 m" and `words`; for a residual of NaN "is not met". holonomic: a residual of c, else of r. */
 void lag_report_residual(lag_problem *pb, int k, int holonomic, double residual, const char *words);
 
 /* The step [s] of a method with equal steps: the option, or where that is 0 a 10000th of the scene's span. */
@@ -245,9 +243,8 @@ typedef struct lag_method {
   /* Prepares work (zeroed). opt[noptions] are the values of the options. < 0: see pb->detail. */
   int (*init)(void *work, lag_problem *pb, const double *opt);
 
-  /* One accepted step from (*t, y[n]), of the method's own size in direction pb->dir, never past t_stop
-   * for a STEPS_TO method (others ignore t_stop). 0: *t, y are the new state. < 0: unchanged.
-   * Does not allocate. */
+  /* One accepted step from (*t, y[n]), of the method's own size in direction pb->dir, never past t_stop for a STEPS_TO method (others ignore t_stop).
+   * 0: *t, y are the new state. < 0: unchanged. Does not allocate. */
   int (*step)(void *work, lag_problem *pb, double *t, double *y, double t_stop);
 
   /* y[n] at t within the last step. May call the model; the next step does not depend on whether it was called. */
@@ -377,9 +374,8 @@ int lag_sim_balance(lag_sim *sim);
 /* Whether the method's dense output is accurate enough for balances; otherwise they are not integrated. */
 int lag_method_balances(const lag_method *method);
 
-/* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on
- * t: the state at t is evaluated on the dense output (STEPS_TO methods: reached exactly), so runs that are
- * split differently agree bit by bit. An event at exactly t happens in the next call.
+/* Integrates to time t, before or after t0, but always in one direction. The steps do not depend on t: the state at t is evaluated on the dense
+ * output (STEPS_TO methods: reached exactly), so runs that are split differently agree bit by bit. An event at exactly t happens in the next call.
  * LAG_OK: the state is at t. LAG_STOPPED, LAG_INTERRUPTED: at lag_sim_time(). < 0: failure. */
 int lag_sim_advance(lag_sim *sim, double t);
 
@@ -420,13 +416,12 @@ int lag_sim_outputs(lag_sim *sim, double *out);
 int lag_sim_outputs_at(lag_sim *sim, double t, double *y, double *out);
 
 /* The tangent of the flow: Y[n * k], row-major; each column is a small change of the state, carried along exactly, as the derivative of what the
- * method computes. It begins at Y here, NULL (k = n): the identity, so that it becomes dy(t)/dy(0); k = 0: ends the tangent. Call it before the
- * first advance, after the method is set; later at ends of steps only, as in the hook of lag_sim_on_step. Needs the model's linearisation, or
- * the derivatives that an implicit method needs itself.
- * LAG_EMETHOD: method or model have no such derivatives; the message names a method that has. At an event that changes the state the tangent is
- * multiplied by the saltation matrix; the run fails (LAG_EMETHOD) where that does not exist: the event depends on an input, another one changes
- * the state at the same time, or the motion only touches it. A saved state cannot be loaded into a run with a tangent. At a branch of if, abs,
- * sign, min, max the derivative is that of the branch taken. */
+ * method computes. It begins at Y here, NULL (k = n): the identity, so that it becomes dy(t)/dy(0); k = 0: ends the tangent. Call it before the first
+ * advance, after the method is set; later at ends of steps only, as in the hook of lag_sim_on_step. Needs the model's linearisation, or the
+ * derivatives that an implicit method needs itself. LAG_EMETHOD: method or model have no such derivatives; the message names a method that has. At an
+ * event that changes the state the tangent is multiplied by the saltation matrix; the run fails (LAG_EMETHOD) where that does not exist: the event
+ * depends on an input, another one changes the state at the same time, or the motion only touches it. A saved state cannot be loaded into a run with
+ * a tangent. At a branch of if, abs, sign, min, max the derivative is that of the branch taken. */
 int lag_sim_set_tangent(lag_sim *sim, int k, const double *Y);
 /* Y[n * k] at the present time; between the ends of steps, by one shorter step of the method. */
 int lag_sim_tangent(lag_sim *sim, double *Y);
@@ -504,9 +499,8 @@ typedef struct lag_extras {
 extern const lag_algebra lag_gsl_algebra;
 extern const lag_extras lag_gsl;
 
-/* main() of a simulator: see --help, or app/help.c. extras may be NULL.
- * Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 128 and the number of the signal
- * (130: Ctrl-C) when it was interrupted. */
+/* main() of a simulator: see --help, or app/help.c. extras may be NULL. Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 128 and the
+ * number of the signal (130: Ctrl-C) when it was interrupted. */
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras);
 
 #ifdef __cplusplus

@@ -92,10 +92,9 @@ typedef struct lag_jump {
 
 /* The exact linearisation of a model, emitted where a method or command needs it (lagc --with linear).
  *
- * The residuals r[nq + nz] vanish along a motion: r_i = f_i - sum_j M_ij a_j for coordinates i, r_(nq + k) = flow_k - z_k' for states. From
- * their derivatives by y = (q, v, z), at fixed a and z', follow the accelerations' changes, da = M^-1 (dr/dy) dy, and the rates', their rows of
- * dr/dy. At an equilibrium a is 0, and -dr/dq, -dr/dv are the stiffness matrix and the matrix of damping and gyroscopic forces. See
- * lag_jacobian() in lag.h. */
+ * The residuals r[nq + nz] vanish along a motion: r_i = f_i - sum_j M_ij a_j for coordinates i, r_(nq + k) = flow_k - z_k' for states. From their
+ * derivatives by y = (q, v, z), at fixed a and z', follow the accelerations' changes, da = M^-1 (dr/dy) dy, and the rates', their rows of dr/dy. At
+ * an equilibrium a is 0, and -dr/dq, -dr/dv are the stiffness matrix and the matrix of damping and gyroscopic forces. See lag_jacobian() in lag.h. */
 typedef struct lag_linear {
   int ndr;
   const lag_entry *dr;   /* [ndr] row < nq + nz, col < 2 nq + nz; row by row, columns ascending; others are zero */

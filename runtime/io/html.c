@@ -1,6 +1,5 @@
-/* Animation page. Enters: a table and the columns of its points; leaves: one self-contained HTML file (template page.html,
- * turned into C by the Makefile). Holds: a row is a frame; coordinates are integers in units of 1/100000 of the largest
- * extent, finer than any screen. */
+/* Animation page. Enters: a table and the columns of its points; leaves: one self-contained HTML file (template page.html, turned into C by the
+ * Makefile). Holds: a row is a frame; coordinates are integers in units of 1/100000 of the largest extent, finer than any screen. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>

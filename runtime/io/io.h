@@ -1,7 +1,6 @@
 /* Output files of a simulator: tables of rows, pictures, saved states. Holds for all: a file is written as FILE.part-N-M and
  * renamed when complete, so that no half-written FILE is ever seen (outfile.h). Names here are internal to the simulator. */
-#ifndef LAG_IO_IO_H
-#define LAG_IO_IO_H
+#pragma once
 
 #include <stdio.h>
 
@@ -31,9 +30,7 @@ Column lag_state_column(const lag_sim *sim, int i);
 int lag_table_init(Table *t, const lag_sim *sim, int keep);
 void lag_table_free(Table *t);
 int lag_table_add(Table *t, const double *row);
-static inline double lag_table_cell(const Table *t, size_t row, int col) {
-  return t->data[row * (size_t)t->ncols + (size_t)col];
-}
+static inline double lag_table_cell(const Table *t, size_t row, int col) { return t->data[row * (size_t)t->ncols + (size_t)col]; }
 /* Widens [lo, hi] by the finite values of a column. */
 void lag_table_range(const Table *t, int col, double *lo, double *hi);
 /* The longest of year, day and hour of which a span [s] holds two, in seconds; *name: its unit. 0: none. */
@@ -127,5 +124,3 @@ int lag_state_read(const char *path, State *s, const char **why);
 
 /* Writes s with & < > " escaped for XML and HTML, and hidden characters made visible. */
 void lag_write_markup(FILE *f, const char *s);
-
-#endif

@@ -1,7 +1,6 @@
 /* Output files that appear only when complete. This header and its source include nothing of the runtime, because the compiler is built with a
  * copy of both (Makefile). */
-#ifndef LAG_IO_OUTFILE_H
-#define LAG_IO_OUTFILE_H
+#pragma once
 
 #include <stdio.h>
 
@@ -24,5 +23,3 @@ int lag_outfile_close(Outfile *o, int keep);
 int lag_outfile_has_suffix(const char *path, const char *suffixes);
 /* The suffix of the name if it is a known file type that is not in suffixes, as "png" for "svg"; else NULL. */
 const char *lag_outfile_other_type(const char *path, const char *suffixes);
-
-#endif

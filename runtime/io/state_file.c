@@ -1,6 +1,5 @@
-/* Saved states, from which a run continues as if never stopped. Enters: the block of doubles of a simulation; leaves: a
- * text file, or the reverse. Holds: doubles are hexadecimal and read back bit by bit (NaN as some NaN); the last line is a
- * checksum of all lines before it.
+/* Saved states, from which a run continues as if never stopped. Enters: the block of doubles of a simulation; leaves: a text file, or the reverse.
+ * Holds: doubles are hexadecimal and read back bit by bit (NaN as some NaN); the last line is a checksum of all lines before it.
  *
  *   lag-state 1
  *   program NAME / scene NAME / method NAME / tolerance X / options N X... / signature H / t X

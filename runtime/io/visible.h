@@ -1,8 +1,7 @@
 /* Makes hidden characters visible in messages and titles: C0 and C1 controls, DEL, and characters that change the direction of text (Unicode
  * TR36, "bidirectional text spoofing") are shown as <U+202E>, a byte that is not UTF-8 as <9B>. The compiler is built with a copy of this
  * file (Makefile). */
-#ifndef LAG_IO_VISIBLE_H
-#define LAG_IO_VISIBLE_H
+#pragma once
 
 #include <stdio.h>
 #include <string.h>
@@ -50,5 +49,3 @@ static inline void fput_visible(FILE *f, const char *s, const char *keep) {
     }
   }
 }
-
-#endif

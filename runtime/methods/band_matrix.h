@@ -1,6 +1,5 @@
 /* Linear systems with a band matrix, or a full one: L U with partial pivoting. */
-#ifndef LAG_METHODS_BAND_MATRIX_H
-#define LAG_METHODS_BAND_MATRIX_H
+#pragma once
 
 /* An n x n matrix that is zero where |row - column| > band; band = n - 1 is a full matrix. */
 typedef struct lag_band_matrix {
@@ -28,5 +27,3 @@ int lag_band_matrix_factor(lag_band_matrix *m, double *scale);
 
 /* b[n] := m^-1 b. m is factored by lag_band_matrix_factor. */
 void lag_band_matrix_solve(const lag_band_matrix *m, double *b);
-
-#endif

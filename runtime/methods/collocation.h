@@ -1,6 +1,5 @@
 /* Gauss collocation of y' = f(t, y) for models with states only (nq = 0): flows, and Lagrangians linear in all velocities. */
-#ifndef LAG_METHODS_COLLOCATION_H
-#define LAG_METHODS_COLLOCATION_H
+#pragma once
 
 #include "lag.h"
 
@@ -14,5 +13,3 @@ int lag_collocation_step(void *work, lag_problem *pb, double *t, double *y, doub
 void lag_collocation_dense(void *work, lag_problem *pb, double t, double *y);
 size_t lag_collocation_tangent_size(const lag_problem *pb, int k);
 int lag_collocation_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
-
-#endif

@@ -11,8 +11,7 @@
  * where it is 0) by Newton's method from the published values, with the least change: less than 2e-15 in all. */
 #include "methods/composition.h"
 
-/* Kick, then drift. R. de Vogelaere (1956); E. Hairer, C. Lubich, G. Wanner, Acta Numerica 12 (2003) 399,
- * DOI 10.1017/S0962492902000144, eq. 1.3. */
+/* Kick, then drift. R. de Vogelaere (1956); E. Hairer, C. Lubich, G. Wanner, Acta Numerica 12 (2003) 399, DOI 10.1017/S0962492902000144, eq. 1.3. */
 const lag_composition lag_compose_euler = {
     .order = 1,
     .stages = 1,
@@ -29,8 +28,7 @@ const lag_composition lag_compose_verlet = {
     .kick = {0.5},
 };
 
-/* SRKN_6^b of S. Blanes, P.C. Moan, J. Comput. Appl. Math. 142 (2002) 313, DOI 10.1016/S0377-0427(01)00492-7,
- * table 3. */
+/* SRKN_6^b of S. Blanes, P.C. Moan, J. Comput. Appl. Math. 142 (2002) 313, DOI 10.1016/S0377-0427(01)00492-7, table 3. */
 const lag_composition lag_compose_verlet4 = {
     .order = 4,
     .stages = 6,
@@ -52,8 +50,7 @@ const lag_composition lag_compose_verlet6 = {
              -0.0115113874206877560438088500232105381, 0.23666992478693077120340404376640243},
 };
 
-/* B_19 of S. Blanes, F. Casas, A. Escorihuela-Tomas, Appl. Numer. Math. 182 (2022) 14, DOI
- * 10.1016/j.apnum.2022.07.010, arXiv:2202.01541, table 5. */
+/* B_19 of S. Blanes, F. Casas, A. Escorihuela-Tomas, Appl. Numer. Math. 182 (2022) 14, DOI 10.1016/j.apnum.2022.07.010, arXiv:2202.01541, table 5. */
 const lag_composition lag_compose_verlet8 = {
     .order = 8,
     .stages = 19,

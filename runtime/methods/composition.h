@@ -4,8 +4,7 @@
  * adjoint, both implicit. With substeps of lengths a_0, b_0, a_1, b_1, ... and kick_0 = a_0, drift_i = a_i + b_i, kick_i = b_(i-1) + a_i
  * the composition has the order that the splitting has for any two flows: R.I. McLachlan, SIAM J. Sci. Comput. 16 (1995) 151, DOI
  * 10.1137/0916010; Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), III.3.4. */
-#ifndef LAG_METHODS_COMPOSITION_H
-#define LAG_METHODS_COMPOSITION_H
+#pragma once
 
 enum { LAG_MAX_DRIFTS = 19 };
 
@@ -29,5 +28,3 @@ extern const lag_composition lag_compose_any4, lag_compose_any6, lag_compose_any
 
 /* part[2 LAG_MAX_DRIFTS] := lengths of the substeps a_0, b_0, a_1, ...; a last one of length 0 is left out. Returns their number. */
 int lag_composition_substeps(const lag_composition *c, double *part);
-
-#endif

@@ -1,6 +1,5 @@
 /* One step of a discrete Lagrangian: its equations, and Newton's method for them. */
-#ifndef LAG_METHODS_DISCRETE_LAGRANGIAN_H
-#define LAG_METHODS_DISCRETE_LAGRANGIAN_H
+#pragma once
 
 #include <stddef.h>
 
@@ -30,9 +29,8 @@ typedef struct lag_discrete {
 /* Doubles of lag_discrete.work, for rules with up to this number of free velocities. */
 size_t lag_discrete_size(const lag_problem *pb, int free);
 
-/* Newton's method with exact derivatives, until corrections are rounding: larger residuals would have the same sign step after
- * step and add up over a long run. The matrix is refreshed while corrections are large. LAG_OK, or a failure with time and
- * reason in pb; u is then undefined. */
+/* Newton's method with exact derivatives, until corrections are rounding: larger residuals would have the same sign step after step and add up over a
+ * long run. The matrix is refreshed while corrections are large. LAG_OK, or a failure with time and reason in pb; u is then undefined. */
 int lag_discrete_solve(const lag_discrete *d);
 
 /* Product of the second derivatives h[nsecond] of L and of the forces with changes dQ, dV[nq * k] of coordinates and velocities,
@@ -43,5 +41,3 @@ void lag_hessian_times(const lag_problem *pb, const double *h, int k, const doub
  * at its end, and du[free nq * k]. scratch has lag_discrete_tangent_size doubles. */
 size_t lag_discrete_tangent_size(const lag_problem *pb, int free, int k);
 int lag_discrete_tangent(const lag_discrete *d, int k, double *dq, double *dp, double *du, double *scratch);
-
-#endif

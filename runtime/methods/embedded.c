@@ -1,10 +1,8 @@
-/* Embedded explicit Runge-Kutta methods with adaptive steps. Enters: t, y; leaves: the next accepted t, y.
- * Holds: a rejected step leaves t and y unchanged; the last stage of a step is the first of the next; sums over steps
- * are compensated (steps.h).
+/* Embedded explicit Runge-Kutta methods with adaptive steps. Enters: t, y; leaves: the next accepted t, y. Holds: a rejected step leaves t and y
+ * unchanged; the last stage of a step is the first of the next; sums over steps are compensated (steps.h).
  *
- * Source: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI
- * 10.1007/978-3-540-78862-1: II.4 (error norm, PI controller, first step), II.10 (the estimate of order 5 with a
- * correction of order 3).
+ * Source: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI 10.1007/978-3-540-78862-1: II.4 (error
+ * norm, PI controller, first step), II.10 (the estimate of order 5 with a correction of order 3).
  *
  * A step is accepted when err <= 1, with |x|^2 = 1/n sum (x_i / s_i)^2, s_i = atol + tol max(|y_i|, |y1_i|), atol = tol
  * unless the option says otherwise: err = |e| for one estimate, |e|^2 / sqrt(|e|^2 + 0.01 |e3|^2) for two. */
@@ -149,8 +147,7 @@ typedef struct SizeSearch {
 
 enum { SEARCH_TRIES = 8 };
 
-/* Badness of a step with respect to singular positions; above 1 another size should be tried. 0 where the step came near none
- * (w->across = 0). */
+/* Badness of a step with respect to singular positions; above 1 another size should be tried. 0 where the step came near none (w->across = 0). */
 static double singularity_penalty(const Embedded *w, lag_problem *pb, double tb) {
   const double factor = 100;  /* estimates across the constraints are some ten times too small there; squared */
   const double weight = 1e-2; /* weight of the derivative at the end, whose error is rounding/s^2 */

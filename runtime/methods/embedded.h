@@ -1,7 +1,6 @@
 /* Explicit Runge-Kutta methods, shared by rk4, rk45 and dop853: a method is a tableau, the constants of its step control, and its dense output. A
  * tableau whose order_embedded is 0 has no error estimate: all its steps are of equal size. */
-#ifndef LAG_METHODS_EMBEDDED_H
-#define LAG_METHODS_EMBEDDED_H
+#pragma once
 
 #include "lag.h"
 #include "methods/step_control.h"
@@ -45,9 +44,7 @@ extern const lag_method_option lag_embedded_options[LAG_NADAPTIVE_OPTIONS];
 
 /* Rows have even length, so that loops over pairs have no remainder. Small models share one length, known at compile time. */
 enum { EMBEDDED_SMALL = 8 };
-static inline int lag_embedded_row(const lag_problem *pb) {
-  return pb->n <= EMBEDDED_SMALL ? EMBEDDED_SMALL : (pb->n + 1) & ~1;
-}
+static inline int lag_embedded_row(const lag_problem *pb) { return pb->n <= EMBEDDED_SMALL ? EMBEDDED_SMALL : (pb->n + 1) & ~1; }
 
 static inline double *lag_embedded_array(Embedded *w, const lag_problem *pb, int which) { return w->x + which * lag_embedded_row(pb); }
 
@@ -74,5 +71,3 @@ double lag_embedded_error_along(const lag_tableau *tab, int late, Embedded *w, l
   .variant = &pair, .work_size = lag_embedded_work_size, .init = lag_embedded_init, .step = lag_embedded_step, .dense = dense,         \
   .reset = lag_embedded_reset,                                                                                    \
   .tangent_size = lag_embedded_tangent_size, .tangent = lag_embedded_tangent
-
-#endif

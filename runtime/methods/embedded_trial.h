@@ -1,8 +1,7 @@
 /* Stages and error of one trial step, inlined for a constant tableau: rk4.c, rk45.c and dop853.c include this file and expand
  * EMBEDDED_TRIAL. Sums over stages are then unrolled, without zero coefficients.
  * Holds: each component is summed in the same order for every n, so its value does not depend on the other components. */
-#ifndef LAG_METHODS_EMBEDDED_TRIAL_H
-#define LAG_METHODS_EMBEDDED_TRIAL_H
+#pragma once
 
 #include <math.h>
 
@@ -176,5 +175,3 @@ LAG_ALWAYS_INLINE double embedded_trial(const lag_tableau *tab, int late, Embedd
     default: return embedded_trial(&tableau, late, w, pb, embedded_shape(pb), t, tb, dt, rc);             \
     }                                                                                                     \
   }
-
-#endif

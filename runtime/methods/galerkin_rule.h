@@ -7,8 +7,7 @@
  * 10.1017/S096249290100006X, section 2.6; S. Ober-Blobaum, N. Saake, Adv. Comput. Math. 41 (2015) 955, DOI
  * 10.1007/s10444-014-9394-8: degree u with u Gauss points has order 2 u, and is
  * Gauss collocation of Hamilton's equations (Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VI.6.2). */
-#ifndef LAG_METHODS_GALERKIN_RULE_H
-#define LAG_METHODS_GALERKIN_RULE_H
+#pragma once
 
 enum { LAG_RULE_POINTS = 4, LAG_RULE_FREE = 4 };
 
@@ -27,5 +26,3 @@ void lag_rule_gauss(lag_rule *r, int u);
 
 /* One point at the start (c = 0) or the end (c = 1) of the step: symplectic Euler or its adjoint. */
 void lag_rule_euler(lag_rule *r, double c);
-
-#endif

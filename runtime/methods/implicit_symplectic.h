@@ -1,7 +1,6 @@
 /* Implicit symplectic methods for any L, in q and p: a step is a chain of substeps, each the step of one discrete Lagrangian (galerkin_rule.h),
  * solved by Newton's method (discrete_lagrangian.h). */
-#ifndef LAG_METHODS_IMPLICIT_SYMPLECTIC_H
-#define LAG_METHODS_IMPLICIT_SYMPLECTIC_H
+#pragma once
 
 #include "lag.h"
 #include "methods/composition.h"
@@ -74,5 +73,3 @@ int lag_substeps_velocity(const Implicit *w, const ImplicitArrays *a, lag_proble
 
 /* All substeps of a step of a model with constraints, and a->v at its end, tb. */
 int lag_rattle(const Implicit *w, const ImplicitArrays *a, lag_problem *pb, double t, double tb, const double *y, double dt);
-
-#endif

@@ -1,6 +1,5 @@
 /* Newton's method for the equations of an implicit step: size of its corrections, and when to stop. */
-#ifndef LAG_METHODS_NEWTON_H
-#define LAG_METHODS_NEWTON_H
+#pragma once
 
 #include <float.h>
 #include <math.h>
@@ -28,5 +27,3 @@ static inline int lag_newton_has_converged(lag_correction now, lag_correction be
   if (now.part == 0.0 || (next <= DBL_EPSILON / 16 && (fresh || now.part < before.part))) return 1;
   return turn > 0 && now.rounding >= before.rounding / 2 && now.rounding <= 1e-8;
 }
-
-#endif

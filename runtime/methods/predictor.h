@@ -1,6 +1,5 @@
 /* Predictor: extrapolates a vector from its values at equally spaced times, stored as backward differences. */
-#ifndef LAG_METHODS_PREDICTOR_H
-#define LAG_METHODS_PREDICTOR_H
+#pragma once
 
 #include <stddef.h>
 
@@ -15,5 +14,3 @@ void lag_predictor_last(const double *history, int m, double *x);
 
 /* Appends the value x. */
 void lag_predictor_add(double *history, int m, const double *x);
-
-#endif

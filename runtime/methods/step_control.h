@@ -1,6 +1,5 @@
 /* Step size control of adaptive methods: the norm of an error estimate, the first step, and a fast power. */
-#ifndef LAG_METHODS_STEP_CONTROL_H
-#define LAG_METHODS_STEP_CONTROL_H
+#pragma once
 
 #include <math.h>
 #include <stdint.h>
@@ -77,5 +76,3 @@ double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const dou
  * "starting step size": one Euler step measures the second derivative. */
 double lag_first_step(lag_problem *pb, const lag_tolerance *tol, int order, double h_max, double t, const double *y,
                       const double *f0, double *y1, double *f1);
-
-#endif

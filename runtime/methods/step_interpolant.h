@@ -1,6 +1,5 @@
 /* Interpolants of order 6 and 8 within one step of q'' = f(t, q, q'): dense output of symplectic methods. */
-#ifndef LAG_METHODS_STEP_INTERPOLANT_H
-#define LAG_METHODS_STEP_INTERPOLANT_H
+#pragma once
 
 #include "lag.h"
 
@@ -26,5 +25,3 @@ void lag_interpolant_at(const double *path, const lag_problem *pb, const StepEnd
 /* y := cubic Hermite interpolant of q, and v as its derivative, without f: for methods whose q and v agree to O(h) only. With v as the
  * derivative, a body that reaches a surface has a velocity towards it. */
 void lag_interpolant_cubic(int nq, const StepEnds *ends, double s, double *y);
-
-#endif

@@ -1,6 +1,5 @@
 /* Shared by all methods: steps of equal size, the option `step`, and the status of a failed step. */
-#ifndef LAG_METHODS_STEPS_H
-#define LAG_METHODS_STEPS_H
+#pragma once
 
 #include "core/rhs.h"
 
@@ -62,5 +61,3 @@ static inline int lag_step_rhs(lag_problem *pb, double t, const double *y, doubl
   pb->bad_index = lag_not_finite(pb->n, dy);
   return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, t) : LAG_OK;
 }
-
-#endif

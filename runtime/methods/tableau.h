@@ -1,6 +1,5 @@
 /* Butcher tableau of an explicit Runge-Kutta method with an embedded error estimate, as data that a test can check. */
-#ifndef LAG_METHODS_TABLEAU_H
-#define LAG_METHODS_TABLEAU_H
+#pragma once
 
 enum { LAG_MAX_STAGES = 16, LAG_MAX_DENSE = 4 };
 
@@ -16,5 +15,3 @@ typedef struct lag_tableau {
 } lag_tableau;
 
 extern const lag_tableau lag_dopri5_tableau, lag_dop853_tableau;
-
-#endif

@@ -1,6 +1,5 @@
-/* The variational equations Y' = Df Y, solved by the method that integrates y: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary
- * Differential Equations I, 2nd ed. (1993), I.14. Applied to (y, Y) an explicit Runge-Kutta method yields exactly the derivative of
- * its own step. */
+/* The variational equations Y' = Df Y, solved by the method that integrates y: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential
+ * Equations I, 2nd ed. (1993), I.14. Applied to (y, Y) an explicit Runge-Kutta method yields exactly the derivative of its own step. */
 #include "methods/tangent.h"
 
 #include <string.h>
@@ -13,8 +12,7 @@ lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double *
   return w;
 }
 
-/* Scratch: Jacobian, scratch of the linearisation, y and f of a stage, Y of a stage and of the result; f and its derivative for
- * each stage. */
+/* Scratch: Jacobian, scratch of the linearisation, y and f of a stage, Y of a stage and of the result; f and its derivative for each stage. */
 size_t lag_tangent_size(const lag_problem *pb, int stages, int k) {
   size_t n = (size_t)pb->n, block = n * (size_t)k;
   return (size_t)(pb->nq + pb->nz) * n + lag_linear_work(pb->model) + 2 * n + 2 * block + (size_t)stages * (n + block);

@@ -1,7 +1,6 @@
 /* Exact derivatives of steps by their start, from the derivatives that the compiler emits: a step maps k small changes of the state, the
  * columns of Y[n * k] (row-major; row i belongs to component i of y). */
-#ifndef LAG_METHODS_TANGENT_H
-#define LAG_METHODS_TANGENT_H
+#pragma once
 
 #include <float.h>
 #include <math.h>
@@ -59,5 +58,3 @@ static inline double lag_tangent_span(double t0, double t, double dt) {
 static inline void lag_tangent_add(int m, double c, const double *restrict x, double *restrict out) {
   for (int i = 0; i < m; i++) out[i] += c * x[i];
 }
-
-#endif

@@ -1,6 +1,5 @@
-/* taylor: Taylor series of the motion, with steps and an order chosen from the tolerance. Enters: t, y; leaves: the next
- * accepted t, y. Holds: a step takes the series at its start and one evaluation at its end, which is order 0 of the next
- * series; M is factored once a step.
+/* taylor: Taylor series of the motion, with steps and an order chosen from the tolerance. Enters: t, y; leaves: the next accepted t, y. Holds: a step
+ * takes the series at its start and one evaluation at its end, which is order 0 of the next series; M is factored once a step.
  *
  * Source of the recurrences: the compiler's series/series.h. Source of the step size: A. Jorba, M. Zou, Experimental Mathematics
  * 14 (2005) 99, DOI 10.1080/10586458.2005.10128904, section 3: with x_k the coefficient of order k the root test of the

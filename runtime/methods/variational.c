@@ -1,9 +1,8 @@
-/* variational and gauss: variational integrators with one discrete Lagrangian a step, of order 2, 4, 6 or 8. Enters: t, y; leaves:
- * t + h, y one step later. Holds: the map is symplectic in q and dL/dv and symmetric for any L; the momentum of a symmetry that acts
- * on q affinely is conserved to rounding. Forces enter by the discrete Lagrange-d'Alembert principle. Steps: implicit_symplectic.c; tables and
- * their sources: galerkin_rule.h. With u Gauss points a step both methods are the same; variational also takes constraints, and gauss models
- * with states only (nq = 0), such as Lagrangians linear in all velocities, which have no p: it collocates their flow (collocation.c, which says
- * why variational refuses them). */
+/* variational and gauss: variational integrators with one discrete Lagrangian a step, of order 2, 4, 6 or 8. Enters: t, y; leaves: t + h, y one step
+ * later. Holds: the map is symplectic in q and dL/dv and symmetric for any L; the momentum of a symmetry that acts on q affinely is conserved to
+ * rounding. Forces enter by the discrete Lagrange-d'Alembert principle. Steps: implicit_symplectic.c; tables and their sources: galerkin_rule.h. With
+ * u Gauss points a step both methods are the same; variational also takes constraints, and gauss models with states only (nq = 0), such as
+ * Lagrangians linear in all velocities, which have no p: it collocates their flow (collocation.c, which says why variational refuses them). */
 #include "lag.h"
 #include "methods/collocation.h"
 #include "methods/implicit_symplectic.h"

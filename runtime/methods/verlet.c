@@ -168,8 +168,7 @@ static void kick_both(int nq, int k, double h, const double *f, const double *F,
   lag_tangent_add(nq * k, h, F + nq * k, Y + nq * k);
 }
 
-/* Repeats the kicks and drifts of compose with their derivatives: a kick adds the derivative of the force to dv, a drift adds
- * dv to dq. */
+/* Repeats the kicks and drifts of compose with their derivatives: a kick adds the derivative of the force to dv, a drift adds dv to dq. */
 static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   if (!is_explicit(pb)) return lag_implicit_tangent(work, pb, t, k, Y, scratch);
   const lag_composition *c = ((const Member *)pb->variant)->separable;

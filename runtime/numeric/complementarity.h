@@ -1,6 +1,5 @@
 /* The linear complementarity problem: w = q + M z, w >= 0, z >= 0, w_i z_i = 0. */
-#ifndef LAG_NUMERIC_COMPLEMENTARITY_H
-#define LAG_NUMERIC_COMPLEMENTARITY_H
+#pragma once
 
 /* For M[n * n] symmetric and positive semidefinite, as J M^-1 J^T of contacts is. On return in[i] is 1 where z_i may be positive (w_i is 0
  * then); q[i] is z_i where in[i], else w_i; both are >= 0. M is scaled to a diagonal of ones, where it is not 0, and left as pivoted on those
@@ -12,5 +11,3 @@
  * dependent; the number of its steps has no good bound, but contacts that touch at once are few. */
 extern const double lag_lcp_zero_pivot;
 int lag_solve_lcp(int n, double *M, double *q, double *scale, unsigned char *in, int *row);
-
-#endif

@@ -1,7 +1,6 @@
 /* Consistent states: the state nearest to a requested one that obeys constraints c(x) = 0 or A x + b = 0, and why there is none. One text for
  * the start of a run (runtime/constraints) and for the compiler, which evaluates the equations without emitted functions. */
-#ifndef LAG_NUMERIC_CONSISTENT_STATE_H
-#define LAG_NUMERIC_CONSISTENT_STATE_H
+#pragma once
 
 /* Stages, in the order in which components may move: those that nobody set, then also rotations that nobody set, then all. */
 enum { LAG_MOVES_FIRST, LAG_MOVES_SECOND, LAG_MOVES_LAST };
@@ -58,5 +57,3 @@ int lag_state_beside(lag_level *w);
 /* loose[n] := 1 for components that the constraints hold nearby but not here: held and held_beside are the squared projections of their
  * directions on the rows of A at both states. */
 void lag_loose_directions(int n, const double *held, const double *held_beside, double *loose);
-
-#endif

@@ -1,6 +1,5 @@
 /* Gaussian elimination of small dense matrices, row-major. */
-#ifndef LAG_NUMERIC_DENSE_H
-#define LAG_NUMERIC_DENSE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -31,5 +30,3 @@ int lag_solve_dense(size_t n, size_t m, double *A, double *B);
 /* x[n] := A^-1 x by Gauss-Jordan elimination of A[n * n] with complete pivoting, for pivots above `least`; x of the remaining equations holds
  * their residuals. pivot[n] := column of the pivot of each row, -1: none. */
 void lag_gauss_jordan(int n, double *A, double *x, double *pivot, double least);
-
-#endif

@@ -1,6 +1,5 @@
 /* Edit distance of two words. */
-#ifndef LAG_NUMERIC_EDIT_DISTANCE_H
-#define LAG_NUMERIC_EDIT_DISTANCE_H
+#pragma once
 
 #include <ctype.h>
 #include <stddef.h>
@@ -25,5 +24,3 @@ static inline int lag_edit_distance(const char *a, size_t na, const char *b, siz
   }
   return d[na % 3][nb];
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The hash FNV-1a, 64 bits. */
-#ifndef LAG_NUMERIC_FNV1A_H
-#define LAG_NUMERIC_FNV1A_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -12,5 +11,3 @@ static inline uint64_t lag_fnv1a(uint64_t h, const char *s, size_t n) {
   for (size_t i = 0; i < n; i++) h = (h ^ (unsigned char)s[i]) * UINT64_C(0x100000001b3);
   return h;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Magnitudes by which states and residuals of constraints are judged. */
-#ifndef LAG_NUMERIC_MAGNITUDES_H
-#define LAG_NUMERIC_MAGNITUDES_H
+#pragma once
 
 /* Scale of a component from the largest magnitude of its unit: 1 where that is 0, and at least 1 for an angle. periodic: it is an angle, as are
  * those in rad, deg or without a unit. */
@@ -11,5 +10,3 @@ double lag_uneven(int i);
 
 /* Index of the residual that is largest in units of the rounding of its terms; *times: that number of units. -1, -1: n is 0. */
 int lag_worst_residual(int n, const double *residual, const double *terms, double rounding, double *times);
-
-#endif

@@ -1,6 +1,5 @@
 /* Gauss and Radau quadrature, for methods and for integrals along a run. */
-#ifndef LAG_NUMERIC_QUADRATURE_H
-#define LAG_NUMERIC_QUADRATURE_H
+#pragma once
 
 /* Gauss nodes c[n] in (0, 1), ascending, and weights b[n], to the last digits of a double; order 2 n. */
 void lag_gauss_points(int n, double *c, double *b);
@@ -10,5 +9,3 @@ void lag_radau_points(int n, double *c, double *b);
 
 /* Legendre's P_n at x; *below := P_(n-1). */
 double lag_legendre(int n, double x, double *below);
-
-#endif

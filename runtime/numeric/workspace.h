@@ -1,6 +1,5 @@
 /* Work space: one block, cut into parts. */
-#ifndef LAG_NUMERIC_WORKSPACE_H
-#define LAG_NUMERIC_WORKSPACE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -17,5 +16,3 @@ static inline size_t lag_cut(double *block, size_t n, double **const parts[], co
 /* A block of zeros with `n` parts of these sizes, whose places go to `parts`. Give it to free(). NULL: no memory.
  * Under the address sanitizer a gap that must not be touched follows each part. */
 double *lag_workspace(size_t n, double **const parts[], const size_t sizes[]);
-
-#endif

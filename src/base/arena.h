@@ -1,11 +1,9 @@
 /* Arena: the memory of one compilation.
  *
- * Everything a compilation allocates lives in one arena and is freed at once by arena_free.
- * No caller checks for NULL: when memory runs out, or the arena's limit is reached, arena_alloc
- * jumps to the handler that arena_guard installed. Only main, the parser (which must free the
- * parser's own stack first) and tests install handlers. */
-#ifndef LAGC_ARENA_H
-#define LAGC_ARENA_H
+ * Everything a compilation allocates lives in one arena and is freed at once by arena_free. No caller checks for NULL: when memory runs out, or the
+ * arena's limit is reached, arena_alloc jumps to the handler that arena_guard installed. Only main, the parser (which must free the parser's own
+ * stack first) and tests install handlers. */
+#pragma once
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -64,5 +62,3 @@ int arena_hit_limit(const Arena *a);
 
 #define ARENA_NEW(a, T) ((T *)arena_alloc((a), sizeof(T)))
 #define ARENA_ARRAY(a, T, n) ((T *)arena_alloc((a), sizeof(T) * (size_t)(n)))
-
-#endif

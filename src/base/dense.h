@@ -1,6 +1,5 @@
 /* Small dense linear systems in long double: ranks, kernels and bases that the compiler decides numerically. */
-#ifndef LAGC_DENSE_H
-#define LAGC_DENSE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -41,5 +40,3 @@ DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns);
 /* Brings m[rows*columns] to reduced row echelon form and returns the rank; elements not above `tolerance`, and rows past the rank, become 0.
  * pivot[rows] gets the columns of the pivots. */
 uint32_t dense_echelon(uint32_t rows, uint32_t columns, long double *m, long double tolerance, uint32_t *pivot);
-
-#endif

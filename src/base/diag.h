@@ -5,8 +5,7 @@
  *        |                      ^~~
  *        = did you mean `th`?
  */
-#ifndef LAGC_DIAG_H
-#define LAGC_DIAG_H
+#pragma once
 
 #include "base/source.h"
 #include "base/strbuf.h"
@@ -54,5 +53,3 @@ void diag_also(Diags *d, Span span, const char *fmt, ...) __attribute__((format(
 
 /* Appends every message, in order of place, as shown above. */
 void diags_print(const Diags *d, StrBuf *out);
-
-#endif

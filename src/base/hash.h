@@ -1,6 +1,5 @@
 /* Hashes: FNV-1a of bytes (G. Fowler, L. C. Noll, K.-P. Vo), and a mixing step for numbers. */
-#ifndef LAGC_HASH_H
-#define LAGC_HASH_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -18,5 +17,3 @@ static inline uint32_t hash_mix(uint32_t h, uint32_t x) {
   h *= 0x85ebca6bu;
   return h ^ (h >> 15);
 }
-
-#endif

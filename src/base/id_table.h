@@ -1,12 +1,10 @@
-/* IdTable: hash table from content to the id of an entry in the owner's array.
- * Open addressing; the owner compares contents:
+/* IdTable: hash table from content to the id of an entry in the owner's array. Open addressing; the owner compares contents:
  *
  *   uint32_t at = idtable_start(&t, hash), id;
  *   while (idtable_next(&t, hash, &at, &id))
  *     if (things[id] is the one) return id;
  *   idtable_add(&t, hash, new_id); */
-#ifndef LAGC_ID_TABLE_H
-#define LAGC_ID_TABLE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -30,9 +28,7 @@ static inline IdTable idtable(Arena *a, uint32_t n) {
   return t;
 }
 
-static inline uint32_t idtable_start(const IdTable *t, uint32_t hash) {
-  return t->cap ? hash & (t->cap - 1) : 0;
-}
+static inline uint32_t idtable_start(const IdTable *t, uint32_t hash) { return t->cap ? hash & (t->cap - 1) : 0; }
 
 /* Finds the next id with this hash from slot *at on; returns 0 at the end. */
 static inline int idtable_next(const IdTable *t, uint32_t hash, uint32_t *at, uint32_t *id) {
@@ -65,5 +61,3 @@ static inline void idtable_add(IdTable *t, uint32_t hash, uint32_t id) {
   idtable_put(t, (IdSlot){.id1 = id + 1, .hash = hash});
   t->n++;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Names: each distinct spelling is stored once, so names compare by pointer. */
-#ifndef LAGC_INTERN_H
-#define LAGC_INTERN_H
+#pragma once
 
 #include "base/arena.h"
 
@@ -11,5 +10,3 @@ typedef struct Interner Interner;
 Interner *interner_new(Arena *a);
 Name intern(Interner *in, const char *s);
 Name intern_n(Interner *in, const char *s, size_t n);
-
-#endif

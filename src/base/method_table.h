@@ -1,7 +1,6 @@
 /* Table of the methods of integration: their names, options and requirements, for the checks of models and the emission of C.
  * base/method_rows.def is a copy of the runtime's own table, with which tests/golden/run_method_rows.sh compares it: lagc builds without liblag. */
-#ifndef LAGC_BASE_METHOD_TABLE_H
-#define LAGC_BASE_METHOD_TABLE_H
+#pragma once
 
 #include "base/intern.h"
 
@@ -41,5 +40,3 @@ const char *method_suggest(Arena *a, const char *wrong);
 
 /* The option of that name, or NULL. */
 const MethodOption *method_option(const MethodInfo *m, const char *name);
-
-#endif

@@ -5,8 +5,7 @@
  * the true value modulo a prime, which arithmetic carries without rounding; a difference is exactly 0 where value and residue
  * both are. Different numbers pass for equal with probability 1 in 4e18 (Schwartz 1980, DOI 10.1145/322217.322225), and
  * 1 + 1e-20 is not 1. In the same way an integer on which value and residue agree is exact. */
-#ifndef LAGC_NUM_H
-#define LAGC_NUM_H
+#pragma once
 
 #include <stdint.h>
 
@@ -67,5 +66,3 @@ int num_parse_double(const char *text, double *x);
 /* decimal_literal.c: x*pi^pi_power as a decimal literal, exact where it has at most 40 digits, else cut after 40. NULL where x is no exact
  * rational, its denominator is above 10^18, or pi_power is not -1, 0 or 1. */
 const char *decimal_literal(Arena *a, Num x, int pi_power);
-
-#endif

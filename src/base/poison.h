@@ -1,7 +1,6 @@
 /* Poisoned memory, whose use the address sanitizer reports: the gap after each block of an arena, the unused room of a vector. Without the
  * sanitizer these macros do nothing and there is no gap; a gap does not count towards the arena's limit. */
-#ifndef LAGC_POISON_H
-#define LAGC_POISON_H
+#pragma once
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -24,6 +23,4 @@ enum { POISON_GAP = sizeof(max_align_t) };
 #define UNPOISON(p, n) ((void)(p), (void)(n))
 #define MUST_BE_BELOW(i, n) ((void)0)
 enum { POISON_GAP = 0 };
-#endif
-
 #endif

@@ -1,10 +1,8 @@
 /* Sources: the texts of a compilation, and how an offset becomes file, line and column.
  *
- * All texts share one range of offsets (each starts where the one before ended, plus one), so that
- * a Span of two numbers says file and place at once. Offset 0 is never used by a text: a zero Span
- * means "no place". */
-#ifndef LAGC_SOURCE_H
-#define LAGC_SOURCE_H
+ * All texts share one range of offsets (each starts where the one before ended, plus one), so that a Span of two numbers says file and place at once.
+ * Offset 0 is never used by a text: a zero Span means "no place". */
+#pragma once
 
 #include <stdint.h>
 #include <stdio.h>
@@ -52,8 +50,7 @@ const Source *source_add(Sources *s, const char *path, const char *text, size_t 
 
 /* Reads the model, a file or a pipe, into the arena. On failure NULL, with the reason in *error (part of an English sentence). */
 const Source *source_read_model(Sources *s, const char *path, const char **error);
-/* Reads a file that a model names. It must be a regular file: models come from anywhere, and must not make lagc wait for a pipe or touch a
- * device. */
+/* Reads a file that a model names. It must be a regular file: models come from anywhere, and must not make lagc wait for a pipe or touch a device. */
 const Source *source_read(Sources *s, const char *path, const char **error);
 
 /* Opens a regular file for reading, or NULL with *error. */
@@ -64,5 +61,3 @@ Place source_place(const Sources *s, uint32_t offset);
 
 /* `path` as written in the file `from`: relative to its folder, in one spelling for each file. */
 const char *path_relative_to(Arena *a, const char *from, const char *path);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * A row keeps its entries, the diagonal included, in the order of insertion; rows are short
  * where elimination makes sense, so a look-up is a linear search. */
-#ifndef LAGC_BASE_SPARSE_PATTERN_H
-#define LAGC_BASE_SPARSE_PATTERN_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -60,5 +59,3 @@ static inline void sparse_eliminate(Sparse *s, uint32_t i) {
   for (uint32_t k = 0; k < r->n; k++)
     if (r->at[k].col != i) sparse_drop_half(s, r->at[k].col, i);
 }
-
-#endif

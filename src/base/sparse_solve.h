@@ -1,6 +1,5 @@
 /* Sparse linear systems in long double: solutions and ranks that the compiler decides numerically. */
-#ifndef LAGC_SPARSE_SOLVE_H
-#define LAGC_SPARSE_SOLVE_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -30,5 +29,3 @@ uint32_t sparse_solve(Arena *arena, uint32_t n, const SparseElements *a, long do
 /* Whether M, n by n, is regular on the kernel of A, m by n, for a = [M -A^T; A 0]; elements that are not finite count as 0. If not, null[n] is a
  * vector of both kernels, in the equilibrated unknowns. */
 int sparse_is_regular_on_kernel(Arena *arena, uint32_t n, uint32_t m, const SparseElements *a, long double *null);
-
-#endif

@@ -1,11 +1,9 @@
 /* Cubic splines through the rows of a table.
  *
- * One cubic an interval; value, slope and second derivative are continuous. End conditions "not a knot": the first two
- * intervals share one cubic, and so do the last two. So a cubic is reproduced exactly, and the error is of order h^4 up
- * to the ends (natural spline: h^2 there). Two rows give a straight line, three a parabola. C. de Boor, A Practical Guide
- * to Splines (Springer, 1978), chapter IV. */
-#ifndef LAGC_SPLINE_H
-#define LAGC_SPLINE_H
+ * One cubic an interval; value, slope and second derivative are continuous. End conditions "not a knot": the first two intervals share one cubic, and
+ * so do the last two. So a cubic is reproduced exactly, and the error is of order h^4 up to the ends (natural spline: h^2 there). Two rows give a
+ * straight line, three a parabola. C. de Boor, A Practical Guide to Splines (Springer, 1978), chapter IV. */
+#pragma once
 
 #include <stdint.h>
 
@@ -23,5 +21,3 @@ int spline_fit(Arena *a, double (*row)[3], uint32_t n);
 
 /* The value at x, by the formula that emitted code uses. */
 long double spline_at(const Spline *s, long double x);
-
-#endif

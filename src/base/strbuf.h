@@ -1,6 +1,5 @@
 /* StrBuf: growing text in an arena; NUL-terminated once it is not empty. */
-#ifndef LAGC_STRBUF_H
-#define LAGC_STRBUF_H
+#pragma once
 
 #include "base/arena.h"
 
@@ -21,5 +20,3 @@ void sb_visible(StrBuf *b, const char *s, size_t n, const char *keep);
 
 /* The text; "" when it is empty. */
 const char *sb_text(const StrBuf *b);
-
-#endif

@@ -1,6 +1,5 @@
 /* Union-find: disjoint sets of 0 .. n-1, each with its least element as root; paths are halved. */
-#ifndef LAGC_UNION_FIND_H
-#define LAGC_UNION_FIND_H
+#pragma once
 
 #include <stdint.h>
 
@@ -23,5 +22,3 @@ static inline void union_find_join(uint32_t *parent, uint32_t i, uint32_t j) {
   if (a < b) parent[b] = a;
   else parent[a] = b;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* VEC(T): a growable array in an arena. Growing copies, so pointers into a VEC do not outlive a
  * push; the arena keeps the old block until it is freed (at most as much again as the array). */
-#ifndef LAGC_VEC_H
-#define LAGC_VEC_H
+#pragma once
 
 #include <stdint.h>
 #include <string.h>
@@ -33,5 +32,3 @@ static inline void *vec_grow(Arena *a, void *at, uint32_t n, uint32_t *cap, size
 #define vec_push(a, v, x)                                                            \
   ((v)->at = vec_grow((a), (v)->at, (v)->n, &(v)->cap, sizeof *(v)->at), \
    (v)->at[(v)->n++] = (x))
-
-#endif

@@ -1,6 +1,5 @@
 /* Lists of words, in one string and separated by spaces; and the known word nearest to a mistyped one. */
-#ifndef LAGC_WORDS_H
-#define LAGC_WORDS_H
+#pragma once
 
 #include "base/intern.h"
 
@@ -17,5 +16,3 @@ static inline const char *plural(unsigned long n) { return n == 1 ? "" : "s"; }
 /* The candidate closest to `wrong` in edit distance (insert, delete, replace, swap neighbours), or NULL when none is close: at most a third of the
  * length, at least one edit. For "did you mean". */
 Name suggest(const char *wrong, const Name *candidates, size_t n);
-
-#endif

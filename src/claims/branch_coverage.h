@@ -1,6 +1,5 @@
 /* Coverage of switches by the states of a search: agreement says nothing of a side that no state was on. */
-#ifndef LAGC_CLAIMS_BRANCH_COVERAGE_H
-#define LAGC_CLAIMS_BRANCH_COVERAGE_H
+#pragma once
 
 #include "sym/expr.h"
 
@@ -18,5 +17,3 @@ void branch_coverage_note(BranchCoverage *s, const long double *symbols);
 
 /* The first side that no state was on, as "`x > 1000` true"; NULL: all were seen. */
 const char *branch_coverage_missing(const BranchCoverage *s);
-
-#endif

@@ -1,6 +1,5 @@
 /* Proofs of expectations case by case, where one normal form for all states does not decide. */
-#ifndef LAGC_CLAIMS_CASE_PROOFS_H
-#define LAGC_CLAIMS_CASE_PROOFS_H
+#pragma once
 
 #include "mech/eqns.h"
 #include "sym/prove.h"
@@ -21,5 +20,3 @@ CaseSymbols cases_symbols(const Model *m);
 /* Whether the sides are equal at all states where `domain` holds (0: everywhere). The cases: signs that the domain gives; states on the
  * constraints and velocities along them; both sides, and the place itself, of each `abs`, `sign`, `min`, `max` and comparison. */
 int prove_by_cases(const Eqns *e, const CaseSymbols *symbols, Expr lhs, Expr rhs, Expr domain);
-
-#endif

@@ -1,6 +1,5 @@
 /* Refutation of an expectation by value: a state at which both sides are defined and differ. */
-#ifndef LAGC_CLAIMS_COUNTEREXAMPLE_H
-#define LAGC_CLAIMS_COUNTEREXAMPLE_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -14,5 +13,3 @@ typedef struct {
 /* Tries simple states, random ones, states from 1e-6 to 1e12 in size, and whole numbers. The sides differ where the difference exceeds 16 times the
  * bound of all rounding, the state's included. quick: a few simple and random states only. */
 Counterexample counterexample_find(const Eqns *e, const Expect *x, int quick);
-
-#endif

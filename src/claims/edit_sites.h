@@ -1,6 +1,5 @@
 /* Sites: the places of an expectation where an edit may be made, and the role of each in the formula around it. */
-#ifndef LAGC_CLAIMS_EDIT_SITES_H
-#define LAGC_CLAIMS_EDIT_SITES_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -48,5 +47,3 @@ Expr edit_replaced(const SiteList *l, const Site *s, Expr with);
 ExprOp edit_function(const AstExpr *x);
 
 int ast_is_sum(AstKind k);
-
-#endif

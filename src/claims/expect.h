@@ -1,6 +1,5 @@
 /* Expectations: equations that the user wrote, proved or refuted by the equations of motion M q'' = f. */
-#ifndef LAGC_CLAIMS_EXPECT_H
-#define LAGC_CLAIMS_EXPECT_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -32,4 +31,7 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
 /* Appends a line for each expectation and a summary; nothing when there are none. */
 void expects_print(const ExpectResults *r, const Sources *sources, StrBuf *out);
 
-#endif
+/* mobility.c: appends the degrees of freedom and a line for each constraint: its kind, and whether it is redundant. Nothing without constraints.
+ * 0, reported in the model's diagnostics, when no motion is possible from the start that the scene gives: no state near it obeys the
+ * constraints, redundant ones disagree, M is singular on their kernel, or a contact is violated. */
+int mobility_show(const Eqns *e, StrBuf *out);

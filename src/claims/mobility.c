@@ -1,5 +1,5 @@
 /* Mobility report of `lagc check`, by ranks of the scaled constraint matrix at the start; and the checks that a motion is possible there. */
-#include "claims/mobility.h"
+#include "claims/expect.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,6 @@
-/* Logarithms make a monomial a linear combination of its features' logarithms: found by least
- * squares over more states than features, and accepted only with integer coefficients and no
- * remainder. Orthogonalisation by modified Gram-Schmidt, each vector twice (Bjorck 1996, Numerical
- * Methods for Least Squares Problems, section 2.4). */
+/* Logarithms make a monomial a linear combination of its features' logarithms: found by least squares over more states than features, and accepted
+ * only with integer coefficients and no remainder. Orthogonalisation by modified Gram-Schmidt, each vector twice (Bjorck 1996, Numerical Methods for
+ * Least Squares Problems, section 2.4). */
 #include "claims/monomial_fit.h"
 
 #include <float.h>

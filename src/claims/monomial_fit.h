@@ -1,6 +1,5 @@
 /* Recognition of monomials: from the values of a quantity at many states, c * product of features^integers with these values. */
-#ifndef LAGC_CLAIMS_MONOMIAL_FIT_H
-#define LAGC_CLAIMS_MONOMIAL_FIT_H
+#pragma once
 
 #include "mech/eqns.h"
 #include "sym/eval.h"
@@ -23,5 +22,3 @@ typedef struct {
 /* The monomial with these values at the states; e = 0: there is none. Accelerations and sums with velocities are kept out of denominators:
  * solutions of M q'' = f have none such. */
 Monomial features_fit(const Features *f, const long double *values);
-
-#endif

@@ -78,9 +78,8 @@ static long double residual_with(EditSearch *md, EvalTape *tape, uint32_t state,
   return out[0] - out[1];
 }
 
-/* The root of the function x -> (x - r)/(c x + d) through three points: exact where the equation is
- * linear in the place, or a quotient of linear functions of it (Jarratt and Nudds 1965,
- * DOI 10.1093/comjnl/8.1.62). */
+/* The root of the function x -> (x - r)/(c x + d) through three points: exact where the equation is linear in the place, or a quotient of linear
+ * functions of it (Jarratt and Nudds 1965, DOI 10.1093/comjnl/8.1.62). */
 static long double next_guess(const long double *x, const long double *f) {
   long double y0 = x[0] - x[2], y1 = x[1] - x[2];
   long double det = f[0] * y0 * (f[1] - f[2]) - f[1] * y1 * (f[0] - f[2]);

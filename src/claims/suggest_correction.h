@@ -1,6 +1,5 @@
 /* Correction of a false expectation: the single edit that makes it provable, and its place in the text. */
-#ifndef LAGC_CLAIMS_SUGGEST_CORRECTION_H
-#define LAGC_CLAIMS_SUGGEST_CORRECTION_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -11,5 +10,3 @@ typedef struct {
 
 /* Needs an expectation that does not hold. An edit that it returns is proved to correct it. */
 SuggestedEdit suggest_correction(const Eqns *e, const Expect *x);
-
-#endif

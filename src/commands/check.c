@@ -6,7 +6,6 @@
 #include "symmetry/charges.h"
 #include "mech/discontinuity.h"
 #include "claims/expect.h"
-#include "claims/mobility.h"
 #include "symmetry/noether_report.h"
 #include "report/equation_listing.h"
 

@@ -1,7 +1,6 @@
 /* Tables of lagc's commands and options, and the values that a command line gives to them. The parser, `lagc help` and completion read the tables; a
  * test compares the man page and the simulator's own options with them. */
-#ifndef LAGC_COMMANDS_COMMAND_TABLE_H
-#define LAGC_COMMANDS_COMMAND_TABLE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -97,8 +96,7 @@ Command command_named(const char *word);
 /* The row of a command; NULL for CMD_NONE. */
 const CommandRow *command_find(Command c);
 
-/* The option of command c written as `arg` ("--until", "--until=3", "-o", "-DN=3"), or NULL. *value: the value in the
- * same word, or NULL. */
+/* The option of command c written as `arg` ("--until", "--until=3", "-o", "-DN=3"), or NULL. *value: the value in the same word, or NULL. */
 const OptionRow *option_find(Command c, const char *arg, const char **value);
 /* Whether the word is an option whose value is the next word: in `--method rk4(step=0.01)` the second word is no setting. */
 int option_takes_next(Command c, const char *word);
@@ -106,5 +104,3 @@ int option_takes_next(Command c, const char *word);
 /* Whether the command runs a simulator, so that name=value is a setting; whether it reads a model. */
 int command_simulates(Command c);
 int command_reads_model(Command c);
-
-#endif

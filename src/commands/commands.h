@@ -1,6 +1,5 @@
 /* The commands of lagc, one a file. Each returns an exit status; those that compile find the model in c->ast. */
-#ifndef LAGC_COMMANDS_COMMANDS_H
-#define LAGC_COMMANDS_COMMANDS_H
+#pragma once
 
 #include "commands/compiler.h"
 
@@ -30,5 +29,3 @@ int command_help(Compiler *c);
 int command_methods(Compiler *c);
 int command_completion(Compiler *c);
 int command_cache(Compiler *c);
-
-#endif

@@ -8,7 +8,7 @@
 #include "base/method_table.h"
 #include "base/visible.h"
 #include "commands/run_request.h"
-#include "ir/hoist.h"
+#include "ir/unit.h"
 #include "jets/self_check.h"
 #include "lower/lower.h"
 #include "mech/mass_definiteness.h"
@@ -93,9 +93,7 @@ Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice) {
   return e && e->singular_mass && (derivatives_required(e, &c->o) & WANT_VARIATION) ? equations_regularised(e) : e;
 }
 
-IrUnit *compiler_new_unit(Compiler *c, Eqns *e) {
-  return unit_new(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0);
-}
+IrUnit *compiler_new_unit(Compiler *c, Eqns *e) { return unit_new(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0); }
 
 static int agrees(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *told) {
   const char *wrong = unit_verify(u);

@@ -1,8 +1,7 @@
 /* One compilation, and the stages that commands share: text -> Ast -> Model -> Eqns -> IrUnit.
  *
  * Functions that can fail say why: in c->diags, printed by main at the end, or on standard error by usage_error. */
-#ifndef LAGC_COMMANDS_COMPILER_H
-#define LAGC_COMMANDS_COMPILER_H
+#pragma once
 
 #include "commands/command_table.h"
 #include "commands/run_request.h"
@@ -64,5 +63,3 @@ IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists);
 
 /* Whether --method of emit and build is a method; reported if not. For a run the simulator judges. */
 int compiler_knows_method(Compiler *c);
-
-#endif

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "commands/simulator.h"
-#include "ir/hoist.h"
+#include "ir/unit.h"
 #include "lower/lower.h"
 #include "model/effect.h"
 #include "model/model.h"
@@ -283,9 +283,7 @@ static int shared_ops(const EffectStudy *s) {
   return ops;
 }
 
-static const char *number(Arena *a, double x) {
-  return isnan(x) ? "-" : isinf(x) ? "no number" : arena_printf(a, "%.2g", x);
-}
+static const char *number(Arena *a, double x) { return isnan(x) ? "-" : isinf(x) ? "no number" : arena_printf(a, "%.2g", x); }
 
 static const char *percent(Arena *a, double x) { return isfinite(x) ? arena_printf(a, "%.0f %%", 100 * x) : "-"; }
 

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "emit/emit_header.h"
+#include "emit/emit_model.h"
 #include "mech/constrain.h"
 #include "mech/consistent_start.h"
 #include "report/equation_listing.h"

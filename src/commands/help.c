@@ -71,8 +71,7 @@ static int says_first(const char *line, char end, const char *word) {
   return 0;
 }
 
-/* Prints line i if it is a row of a table about the word, or, in a chapter that lists the word, an item of a list about
- * it. Returns 1 when it did. */
+/* Prints line i if it is a row of a table about the word, or, in a chapter that lists the word, an item of a list about it. Returns 1 when it did. */
 static int print_entry(StrBuf *out, const Chapter *c, size_t i, const char *word) {
   const char *line = c->lines[i];
   if (line[0] == '|' && says_first(line + 1, '|', word)) {

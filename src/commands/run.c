@@ -7,7 +7,7 @@
 
 #include "commands/command_table.h"
 #include "commands/simulator.h"
-#include "jets/nonfinite.h"
+#include "jets/self_check.h"
 #include "toolchain/process.h"
 
 enum { LARGE = 1000 }; /* coordinates, beyond which the compiler's memory is not kept during the run */

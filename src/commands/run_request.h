@@ -2,8 +2,7 @@
  *
  * In: the options and the parsed file. Expressions are parsed here; model_build resolves them like any output of a
  * scene, so mistakes in them are reported with their text and a caret. */
-#ifndef LAGC_COMMANDS_RUN_REQUEST_H
-#define LAGC_COMMANDS_RUN_REQUEST_H
+#pragma once
 
 #include "commands/command_table.h"
 #include "model/model.h"
@@ -35,5 +34,3 @@ const char *text_trimmed(Arena *a, const char *text, size_t n);
 
 /* Returns 0 on a mistake, which *error or ast->diags describes. */
 int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **error);
-
-#endif

@@ -6,7 +6,7 @@
 
 #include "emit/cnames.h"
 #include "emit/emit_model.h"
-#include "ir/hoist.h"
+#include "ir/unit.h"
 #include "lower/lower.h"
 #include "mech/discontinuity.h"
 #include "model/model.h"

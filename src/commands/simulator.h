@@ -1,6 +1,5 @@
 /* Simulators: programs of all scenes of a model, as C texts, compiled and linked with the runtime. */
-#ifndef LAGC_COMMANDS_SIMULATOR_H
-#define LAGC_COMMANDS_SIMULATOR_H
+#pragma once
 
 #include "commands/compiler.h"
 #include "toolchain/toolchain.h"
@@ -26,5 +25,3 @@ int simulator_of_units(Compiler *c, const Units *units, const char *output, cons
 
 /* A simulator in quadruple precision, in the cache; NULL where this machine has no such precision. */
 const char *simulator_precise(Compiler *c, const Units *units);
-
-#endif

@@ -1,7 +1,6 @@
 /* Parts common to all emitted files: macros of the scalar type, support functions (linear solver, splines), the C function around the body
  * of a Prog, and (embedded_math.c) sections of runtime/include/lag_math.h and lag_kkt.h. */
-#ifndef LAGC_CFUNCTION_H
-#define LAGC_CFUNCTION_H
+#pragma once
 
 #include "emit/cwriter.h"
 
@@ -51,5 +50,3 @@ const char *math_prefix(const IrUnit *u, const char *lower);
 
 /* Sentence for the head of the file: where its elementary functions come from. */
 const char *math_source_text(const IrUnit *u);
-
-#endif

@@ -7,9 +7,7 @@
 #include "emit/cwriter_impl.h"
 
 static const Loop *loop_at(const Writer *w, uint32_t k) { return &w->rolls.loops.at[k]; }
-static Slot code_of(const Writer *w, const Loop *l, uint32_t turn, uint32_t offset) {
-  return w->rolls.code[l->begin + turn * l->period + offset];
-}
+static Slot code_of(const Writer *w, const Loop *l, uint32_t turn, uint32_t offset) { return w->rolls.code[l->begin + turn * l->period + offset]; }
 
 int cloop_share_turn(const Writer *w, Slot a, Slot b) {
   uint32_t pa = w->rolls.place[a], pb = w->rolls.place[b];
@@ -58,8 +56,7 @@ const char *cloop_index(Arena *a, int64_t first, int64_t by_i, const char *i, in
 /* Text of the index first + step*k. */
 static const char *index_text(const Writer *w, int64_t first, int64_t step) { return cloop_index(w->a, first, step, "k", 0, ""); }
 
-/* The element of the kept array that holds the value at `place` of a loop; if step is not 0, its index advances by `step`
- * iterations per k. */
+/* The element of the kept array that holds the value at `place` of a loop; if step is not 0, its index advances by `step` iterations per k. */
 static CExpr kept_value(const Writer *w, uint32_t place, int64_t step) {
   uint32_t in = w->rolls.loop[place] - 1, offset = loop_offset(loop_at(w, in), place);
   int64_t first = (int64_t)(loop_at(w, in)->kept[offset] - 1) + loop_turn(loop_at(w, in), place);

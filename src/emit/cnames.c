@@ -24,8 +24,7 @@ static const char *const reserved[] = {
   "M_SQRT2", "M_SQRT1_2", "math_errhandling", "near", "far", "unix", "linux",
 };
 
-/* Functions of the C library that a compiler or <math.h> declares: allowed as names of locals, not of objects with
- * external linkage. */
+/* Functions of the C library that a compiler or <math.h> declares: allowed as names of locals, not of objects with external linkage. */
 static const char *const library[] = {
   "abort", "abs", "acosh", "alloca", "asinh", "atanh", "bcmp", "bcopy", "bzero", "calloc", "ceil", "clog", "conj",
   "copysign", "cexp", "cpow", "drem", "erf", "erfc", "exit", "exp2", "exp10", "expm1", "fdim", "ffs", "floor", "fma",

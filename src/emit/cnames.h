@@ -1,6 +1,5 @@
 /* C identifiers for the user's names: th1' is th1_dot, a Greek letter its name (theta), drag.c is drag_c. */
-#ifndef LAGC_CNAMES_H
-#define LAGC_CNAMES_H
+#pragma once
 
 #include "base/id_table.h"
 #include "base/intern.h"
@@ -39,5 +38,3 @@ const char *cname_of_event(const IrUnit *u, uint32_t i);
 
 /* Whether id is a function of the C library, whose name an object with external linkage must not have. */
 int cname_is_library(const char *id);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * Reads only the Prog. Values that are used once and have no name become part of the expression
  * that uses them; all other values are `const` variables, with the user's name if they have one. */
-#ifndef LAGC_CWRITER_H
-#define LAGC_CWRITER_H
+#pragma once
 
 #include "emit/cnames.h"
 #include "ir/prog.h"
@@ -48,5 +47,3 @@ const char *comment_text(Arena *a, const char *s);
 
 /* A number as a C constant of type PREFIX_REAL; exact rationals are exact in every precision. */
 const char *c_number(Arena *a, const char *prefix, Num n);
-
-#endif

@@ -1,6 +1,5 @@
 /* Internals of the writer of function bodies: cwriter.c writes statements, csolve.c linear systems, cloop.c loops, cnest.c nests of loops. */
-#ifndef LAGC_CWRITER_IMPL_H
-#define LAGC_CWRITER_IMPL_H
+#pragma once
 
 #include "emit/cwriter.h"
 #include "ir/roll.h"
@@ -63,8 +62,7 @@ CExpr cwriter_name(Writer *w, const Ins *i);
 /* Writes `const LAG_REAL name = x;`; slot s is spelled by that name from now on. */
 void cwriter_declare(Writer *w, Slot s, CExpr name, CExpr x);
 
-/* Declares a sine and its cosine by one sincos call, named after their instructions, unless done already. Returns 0 if slot s
- * has no pair. */
+/* Declares a sine and its cosine by one sincos call, named after their instructions, unless done already. Returns 0 if slot s has no pair. */
 int cwriter_declare_sincos(Writer *w, Slot s, const Ins *first, const Ins *second);
 
 /* Whether sin and cos of one operand can share a call: both outside of loops, or in the same turn of one loop in all turns. */
@@ -98,5 +96,3 @@ void cnest_write(Writer *w, const Ins *i);
 /* Number of stores from store k on that can be written as one loop (0: none); and that loop. */
 uint32_t cloop_stores(const Writer *w, uint32_t k);
 void cloop_write_stores(Writer *w, uint32_t k, uint32_t n);
-
-#endif

@@ -1,5 +1,5 @@
 /* Emitted header: names with the header's prefix, the head comment with an example of use, and the frame of the file. */
-#include "emit/emit_header.h"
+#include "emit/emit_model.h"
 
 #include <string.h>
 

@@ -1,6 +1,5 @@
 /* Parts of the emitted model file that emit_model.c puts together: Taylor recurrences (emit_taylor.c), tables of variables (variable_tables.c). */
-#ifndef LAGC_EMIT_IMPL_H
-#define LAGC_EMIT_IMPL_H
+#pragma once
 
 #include "emit/cfunction.h"
 #include "ir/unit.h"
@@ -18,5 +17,3 @@ void table_vars(const char *name, const IrVar *v, uint32_t n, Arena *a, StrBuf *
 
 /* Number of a table in the model's precision: digits (or NULL) if longer than the double's text; integers stay plain. */
 const char *table_number(Arena *a, double x, const char *digits);
-
-#endif

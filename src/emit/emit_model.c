@@ -126,9 +126,7 @@ static void accel(const File *f) {
   state_function(f, f->u->accel, "accel", arena_printf(f->a, "%s: %s.", what, op_count_text(f->u->accel, f->a)), NULL, written);
 }
 
-void emit_accel(const IrUnit *u, StrBuf *out) {
-  accel(&(File){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out});
-}
+void emit_accel(const IrUnit *u, StrBuf *out) { accel(&(File){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out}); }
 
 static void emit_variation(const File *f) {
   static const char *const written[] = {"Lq", "Lv", "Q", NULL}, *const derivatives[] = {"h", NULL};

@@ -1,6 +1,5 @@
-/* IrUnit -> C for the runtime: the functions and tables of lag_model.h. */
-#ifndef LAGC_EMIT_MODEL_H
-#define LAGC_EMIT_MODEL_H
+/* IrUnit -> C: for the runtime, the functions and tables of lag_model.h; or one self-contained C99/C++ header for programs that embed the model. */
+#pragma once
 
 #include "base/strbuf.h"
 #include "ir/unit.h"
@@ -18,4 +17,6 @@ void emit_accel(const IrUnit *u, StrBuf *out);
  * units[i] in emit_model. gsl: link the gsl-* methods in. */
 void emit_program(const IrUnit *const *units, const char *const *names, uint32_t n, int gsl, StrBuf *out);
 
-#endif
+/* emit_header.c: appends the header of the unit's first scene. Its names begin with `name`, turned into an identifier, in upper
+ * or lower case. equations: text for the head comment, or NULL. */
+void emit_header(const IrUnit *u, const char *name, const char *equations, StrBuf *out);

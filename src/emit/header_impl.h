@@ -1,6 +1,5 @@
 /* State and parts of an emitted header, shared by emit_header.c (names, head comment), header_declarations.c and header_definitions.c. */
-#ifndef LAGC_HEADER_IMPL_H
-#define LAGC_HEADER_IMPL_H
+#pragma once
 
 #include "emit/cfunction.h"
 #include "ir/unit.h"
@@ -33,5 +32,3 @@ const char *header_wrapped(const Header *h, const char *prototype);
 /* "t, q, v, z, p, u" without arrays that the model lacks: as typed parameters, or as arguments with `from` ("s->")
  * before the members of the state. */
 const char *header_state_args(const Header *h, int typed, const char *from);
-
-#endif

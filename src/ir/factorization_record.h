@@ -1,7 +1,6 @@
 /* The factors of a linear system M q'' = f as slots of the program that made them, to solve it for further right-hand sides. Filled
  * on request by eliminate.c, gram.c and solve.c. */
-#ifndef LAGC_IR_FACTORIZATION_RECORD_H
-#define LAGC_IR_FACTORIZATION_RECORD_H
+#pragma once
 
 #include "base/sparse_pattern.h"
 #include "ir/prog.h"
@@ -33,5 +32,3 @@ void factor_record_solve(Prog *p, const FactorRecord *f, Slot *b, const Slot *s,
 
 /* Computes x[v] from b and the unknowns eliminated after v: the step of back substitution. */
 void factor_record_backward(Prog *p, const FactorRecord *f, uint32_t v, const Slot *b, const Slot *s, Slot *x);
-
-#endif

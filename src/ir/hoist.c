@@ -1,6 +1,6 @@
 /* unit_hoist. For each program: slots that depend on parameters alone are marked, and which of them the rest needs; if moving them saves enough
  * operations, they move to the program `derived`, and the rest loads them as parameters. */
-#include "ir/hoist.h"
+#include "ir/unit.h"
 
 #include "ir/roll.h"
 

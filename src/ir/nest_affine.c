@@ -59,8 +59,7 @@ static uint64_t shape_of(const Indices *g, uint32_t first, uint32_t k, int64_t m
   return h;
 }
 
-/* Sorts pieces by shape, stably; end[]: end of each shape. Returns the number of shapes, or MANY: all pairs of n bodies have
- * n - 1. */
+/* Sorts pieces by shape, stably; end[]: end of each shape. Returns the number of shapes, or MANY: all pairs of n bodies have n - 1. */
 static uint32_t split(Indices *g, uint32_t first, int64_t modulo, uint32_t *end) {
   uint64_t known[MOST_SHAPES];
   uint32_t n = 0, *shape = ARENA_ARRAY(g->a, uint32_t, g->n), *to = ARENA_ARRAY(g->a, uint32_t, g->n), put = 0;

@@ -1,5 +1,4 @@
-/* The body of a nest from a canonical form. The order of sums and products is free here: terms and factors that stay the same in a row
- * come first. */
+/* The body of a nest from a canonical form. The order of sums and products is free here: terms and factors that stay the same in a row come first. */
 #include "ir/nest_impl.h"
 
 /* How often a value changes. */

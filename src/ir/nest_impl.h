@@ -1,7 +1,6 @@
 /* Shared by nest.c (search, and the program with nests), nest_partition.c (hubs and pieces), nest_canonical_form.c (canonical form of a piece),
  * nest_affine.c (indices affine in two counters) and nest_body.c (the body of a nest). */
-#ifndef LAGC_NEST_IMPL_H
-#define LAGC_NEST_IMPL_H
+#pragma once
 
 #include "ir/prog.h"
 
@@ -137,5 +136,3 @@ void nest_affine(Indices all, Fits *fits);
 
 /* The body of a nest; outer[nouter]: slots of the program around it that the body reads. */
 const Prog *nest_body(const Partition *c, const CanonicalForm *t, const Fit *f, const Slot **outer, uint32_t *nouter);
-
-#endif

@@ -215,8 +215,7 @@ static int is_of_one_piece(Partition *c, Slot *parent, Slot sum, Slot user) {
   return 1;
 }
 
-/* Returns hubs to pieces: a shared value whose users are all in one piece, and a sum whose terms and users are. Returns whether there
- * was one. */
+/* Returns hubs to pieces: a shared value whose users are all in one piece, and a sum whose terms and users are. Returns whether there was one. */
 static int return_hubs(Partition *c, Slot *parent) {
   int some = 0;
   const Slot *user = find_users(c, parent);

@@ -1,6 +1,5 @@
 /* The passes over a program: their order, the listing of --dump=passes, and a verification after each. */
-#ifndef LAGC_IR_PASSES_H
-#define LAGC_IR_PASSES_H
+#pragma once
 
 #include "ir/prog.h"
 
@@ -15,5 +14,3 @@ typedef struct {
 /* The program after its passes. A program that a pass leaves malformed is returned with its fault, which prog_verify reports. trace: gets
  * each pass with the program after it; or NULL. */
 Prog *passes_run(Prog *p, const PassPlan *plan, StrBuf *trace);
-
-#endif

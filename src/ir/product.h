@@ -1,6 +1,5 @@
 /* Products in a Prog as lists of factors. */
-#ifndef LAGC_PRODUCT_H
-#define LAGC_PRODUCT_H
+#pragma once
 
 #include "ir/prog.h"
 
@@ -16,5 +15,3 @@ int product_is_part(const Prog *p, const uint32_t *uses, Slot s);
 
 /* The factors of product s in order; parts are replaced by their factors, up to MOST_FACTORS. inside: these parts are marked; or NULL. */
 Product product_of(const Prog *p, const uint32_t *uses, Slot s, unsigned char *inside);
-
-#endif

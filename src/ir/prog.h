@@ -2,8 +2,7 @@
  *
  * Operands have lower numbers than their instruction; every value is computed once. A Prog knows names
  * for its values and carries its own texts, so that nothing after it needs the model. */
-#ifndef LAGC_PROG_H
-#define LAGC_PROG_H
+#pragma once
 
 #include "base/id_table.h"
 #include "base/intern.h"
@@ -44,11 +43,10 @@ typedef enum {
   IR_TITLE   /* text: a comment line above the instructions that follow */
 } IrOp;
 
-/* Arrays that a function reads.
- * Line 1: time, state, parameters, inputs; accelerations (linearisation only); right-hand side g of A d = g (state corrections only).
- * Line 2, Taylor coefficients (series/series.h): flags of inputs that follow their formulas (0: held constant), coefficients x[k], sums over
- * lower coefficients, constants of order 0; the scalars k, 1/k and T/(k + 1).
- * Line 3, nests: accumulated sums, whose loads have the nest as operand a; values that a body reads from the program around its nest. */
+/* Arrays that a function reads. Line 1: time, state, parameters, inputs; accelerations (linearisation only); right-hand side g of A d = g (state
+ * corrections only). Line 2, Taylor coefficients (series/series.h): flags of inputs that follow their formulas (0: held constant), coefficients x[k],
+ * sums over lower coefficients, constants of order 0; the scalars k, 1/k and T/(k + 1). Line 3, nests: accumulated sums, whose loads have the nest as
+ * operand a; values that a body reads from the program around its nest. */
 typedef enum {
   ARR_T, ARR_Q, ARR_V, ARR_Z, ARR_P, ARR_U, ARR_A, ARR_G,
   ARR_FREE, ARR_COEF, ARR_SUMS, ARR_STEP, ARR_ORDER, ARR_PER_ORDER, ARR_UP,
@@ -79,9 +77,8 @@ typedef struct {
   const char *comment;
 } Store;
 
-/* A system that a loop solves: matrix[n*n] row-major (0: zero), rhs[n].
- * m > 0 constraints: M x - A^T l = f, A x = g. A[m*n] follows M, g follows f, l follows x. filled: indices of the nonzero elements of the
- * matrix. coarse: nearly dependent constraints count as dependent (lag_kkt.h). */
+/* A system that a loop solves: matrix[n*n] row-major (0: zero), rhs[n]. m > 0 constraints: M x - A^T l = f, A x = g. A[m*n] follows M, g follows f, l
+ * follows x. filled: indices of the nonzero elements of the matrix. coarse: nearly dependent constraints count as dependent (lag_kkt.h). */
 typedef struct {
   uint32_t n, m;
   int coarse;
@@ -99,9 +96,8 @@ typedef struct {
   int64_t first, by_row, by_turn;
 } IrSubscript;
 
-/* Two loops that accumulate sums: for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1.
- * Sums (ARR_CELL) are 0 before the first nest. A sum that stays the same in all turns of the inner (or only) loop gets their total at once,
- * added up from 0.
+/* Two loops that accumulate sums: for i in 0 .. rows - 1, for j in skew*i .. skew*i + turns + more*i - 1. Sums (ARR_CELL) are 0 before the first
+ * nest. A sum that stays the same in all turns of the inner (or only) loop gets their total at once, added up from 0.
  *
  * The body is a program without nests. The index of its loads and stores is a position in `at` (scalars have none), of loads of
  * ARR_OUTER a position in `outer`. A store to array 0 adds to the sum, a store to array 1 subtracts. */
@@ -158,8 +154,7 @@ Prog *prog_new(Arena *a);
 /* An empty program with room for as many instructions as p has: growing would take twice the memory. */
 Prog *prog_new_like(const Prog *p);
 
-/* Appends an instruction, or returns an equal earlier one; operands of a sum or product match in either order.
- * Simplifies x + 0, 1*x and the like. */
+/* Appends an instruction, or returns an equal earlier one; operands of a sum or product match in either order. Simplifies x + 0, 1*x and the like. */
 Slot prog_ins(Prog *p, Ins i);
 Slot prog_op(Prog *p, IrOp op, Slot a, Slot b);
 Slot prog_add_product(Prog *p, Slot x, Slot a, Slot b); /* x + a*b */
@@ -201,10 +196,9 @@ Prog *prog_tidy(const Prog *p);
  * Needs a tidy program and leaves one; changes rounding. */
 Prog *prog_factor(Prog *p);
 
-/* Common subproducts: m*l*a and m*l*b share m*l. The pair of factors that most products contain becomes a value of its own, again and
- * again (M. Breuer, Generation of optimal code for expressions via factorization, Comm. ACM 12 (1969) 333, doi:10.1145/363011.363153).
- * Time grows as products times pairs, so only for short programs. Needs a tidy program and leaves one with at most as many operations;
- * changes rounding. */
+/* Common subproducts: m*l*a and m*l*b share m*l. The pair of factors that most products contain becomes a value of its own, again and again (M.
+ * Breuer, Generation of optimal code for expressions via factorization, Comm. ACM 12 (1969) 333, doi:10.1145/363011.363153). Time grows as products
+ * times pairs, so only for short programs. Needs a tidy program and leaves one with at most as many operations; changes rounding. */
 Prog *prog_product_cse(Prog *p);
 
 /* Sums over pairs, sites or bodies as nests (nest.c); p itself where there are none, p has fewer than `from` instructions, or it has
@@ -215,9 +209,8 @@ Prog *prog_find_nests(Prog *p, uint32_t from);
  * those of its neighbours. Not for programs with solves. */
 Prog *prog_schedule_by_store(const Prog *p);
 
-/* Schedule by critical path: the longest path of latencies to the end comes first, late values stand where they are needed.
- * calls_first: functions are calls and come first, since values in registers would have to be saved before them. Without titles;
- * programs with solves keep their order. */
+/* Schedule by critical path: the longest path of latencies to the end comes first, late values stand where they are needed. calls_first: functions
+ * are calls and come first, since values in registers would have to be saved before them. Without titles; programs with solves keep their order. */
 Prog *prog_schedule_by_path(const Prog *p, int calls_first);
 
 /* Approximate latency of an operation, in cycles. */
@@ -278,5 +271,3 @@ uint32_t ops_as_int(uint64_t ops);
 /* Evaluates the program in extended precision, with the range of doubles: in[array] are the inputs, out[array][index] the stores.
  * Returns 0, or -1 when a pivot failed. */
 int prog_eval(const Prog *p, const long double *const in[ARR_COUNT], long double *const *out);
-
-#endif

@@ -1,10 +1,8 @@
 /* Loop rolling: finds runs of isomorphic groups of consecutive instructions in a Prog. Names and families are not looked at, so that a
  * chain written out by hand rolls as a family does.
  *
- * The Prog stays as it is; the writer of C uses the loops to write it shorter. Every value is computed by the same
- * operations in the same order. */
-#ifndef LAGC_ROLL_H
-#define LAGC_ROLL_H
+ * The Prog stays as it is; the writer of C uses the loops to write it shorter. Every value is computed by the same operations in the same order. */
+#pragma once
 
 #include "ir/prog.h"
 
@@ -66,5 +64,3 @@ Step roll_step(const Rolls *r, const Loop *l, uint32_t offset, int which);
 /* Numbers of a STEP_NUMBER, unit*(first + r), from those of its first two iterations, x and y. The numerators are exact in binary, so that
  * division by the unit's denominator rounds as the number itself. Returns 0 when the numbers have no such form. */
 int roll_number(const Ins *x, const Ins *y, Num *unit, int64_t *first);
-
-#endif

@@ -1,7 +1,6 @@
 /* IrUnit: a unit of emission: the programs of one set of effects, and the scenes that share
  * them. It carries its own names and units: emit never meets a Model. */
-#ifndef LAGC_IR_UNIT_H
-#define LAGC_IR_UNIT_H
+#pragma once
 
 #include "ir/prog.h"
 
@@ -181,4 +180,7 @@ ProgList unit_programs(const IrUnit *u);
 /* NULL, or what is wrong with one of its programs: an internal error. */
 const char *unit_verify(const IrUnit *u);
 
-#endif
+/* hoist.c: moves values that depend on parameters alone from the programs that a step calls to u->derived, and leaves loads of parameters u->p.n,
+ * u->p.n + 1, ... in their place; a constant mass matrix that is eliminated in straight-line code is factored then, too. Only for emitted models,
+ * whose callers compute derived parameters; call once, after all programs are made. Checks of pivots stay where they are. */
+void unit_hoist(IrUnit *u);

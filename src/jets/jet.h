@@ -6,8 +6,7 @@
  * error, to first order (running error analysis: N.J. Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.3,
  * doi:10.1137/1.9780898718027). Taylor arithmetic: A. Griewank and A. Walther, Evaluating Derivatives, 2008, chapter 13,
  * doi:10.1137/1.9780898717761. Nothing here knows the expression graph. */
-#ifndef LAGC_JET_H
-#define LAGC_JET_H
+#pragma once
 
 typedef long double JetReal;
 
@@ -53,5 +52,3 @@ Bounded bounded_add(Bounded x, Bounded y);
 Bounded bounded_sub(Bounded x, Bounded y);
 Bounded bounded_mul(Bounded x, Bounded y);
 Bounded bounded_div(Bounded x, Bounded y);
-
-#endif

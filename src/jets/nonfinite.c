@@ -1,6 +1,6 @@
 /* Extrapolates the motion from a run's last good state, q + h v + h^2/2 a with h doubling, and evaluates the text's tapes along it until
- * an instruction with finite operands is not finite. Contract: nonfinite.h. */
-#include "jets/nonfinite.h"
+ * an instruction with finite operands is not finite. Contract: self_check.h. */
+#include "jets/self_check.h"
 
 #include <float.h>
 #include <math.h>

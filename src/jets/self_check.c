@@ -9,8 +9,7 @@
  * on the jets' bound leaves 16 for the program's own roundings. */
 static const Real SLACK = 65536;
 
-/* Relative tolerance, as a part of the terms' size: a program may cancel where the text does not. Far from the start
- * cancellation is worse. */
+/* Relative tolerance, as a part of the terms' size: a program may cancel where the text does not. Far from the start cancellation is worse. */
 static const Real NEAR_PART = 1e-9L, FAR_PART = 1e-4L;
 
 enum { STATES_WANTED = 5, STATES_FEW = 3, SHORT_TAPE = 300, ATTEMPTS = 24, ENDLESS_TAPE = 600000 };

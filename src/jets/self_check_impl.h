@@ -1,6 +1,5 @@
 /* State and parts of the self-check, shared by check_*.c, nonfinite.c and self_check.c. */
-#ifndef LAGC_CHECK_IMPL_H
-#define LAGC_CHECK_IMPL_H
+#pragma once
 
 #include "jets/self_check.h"
 #include "jets/statements.h"
@@ -81,5 +80,3 @@ CheckVerdict check_other_values(Check *c);
 
 /* check_motion.c: charges, linearisation, Taylor coefficients, against finite differences. */
 CheckVerdict check_motion(Check *c);
-
-#endif

@@ -52,9 +52,7 @@ static Ref added(Walk *w, Ref sum, TapeOp op, Ref term) {
   return tape_op(t, op, sum, term, 0);
 }
 
-static void push_force(Walk *w, Ref point, Ref f) {
-  vec_push(w->text->arena, &w->dynamics->forces, ((TextForce){.point = {point}, .f = {f}}));
-}
+static void push_force(Walk *w, Ref point, Ref f) { vec_push(w->text->arena, &w->dynamics->forces, ((TextForce){.point = {point}, .f = {f}})); }
 
 static void read_force(Walk *w, const AstStmt *st, Name effect) {
   const Ast *ast = w->text->b->ast;

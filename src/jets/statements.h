@@ -1,6 +1,5 @@
 /* Statements of the text on tapes: energies, forces, flows and constraints (TextDynamics); events, outputs and inputs (TextOutputs). */
-#ifndef LAGC_STATEMENTS_H
-#define LAGC_STATEMENTS_H
+#pragma once
 
 #include "jets/text_eval.h"
 
@@ -37,5 +36,3 @@ typedef struct {
 
 TextDynamics *text_dynamics(const Model *m, Arena *a);
 TextOutputs *text_outputs(const Model *m, const Output *outputs, uint32_t noutputs, Arena *a);
-
-#endif

@@ -1,7 +1,6 @@
 /* Tape: straight-line program of operations on jets, in the order of the text. Nothing is simplified, except that arithmetic of
  * exact numbers is folded, as indices and conditions of families need it. */
-#ifndef LAGC_TAPE_H
-#define LAGC_TAPE_H
+#pragma once
 
 #include "base/arena.h"
 #include "base/num.h"
@@ -80,5 +79,3 @@ void tape_run(const Tape *t, TapeInput *input, void *data, Jet *at, int *unsure)
 Ref tape_first_nonfinite(const Tape *t, TapeInput *input, void *data, int derivatives, Jet *at);
 
 static inline const Jet *tape_value(const Tape *t, const Jet *at, Ref a) { return &at[t->ins.at[a].slot]; }
-
-#endif

@@ -60,9 +60,7 @@ static Ref through_pow(Tape *t, Ref self, Ref a, Ref b, Ref da, Ref db) {
   return db ? sum(t, base, product(t, product(t, self, tape_function(t, "log", a)), db)) : base;
 }
 
-static Ref chosen(Tape *t, Ref condition, Ref da, Ref db) {
-  return da || db ? tape_op(t, TAPE_SELECT, condition, zero(t, da), zero(t, db)) : 0;
-}
+static Ref chosen(Tape *t, Ref condition, Ref da, Ref db) { return da || db ? tape_op(t, TAPE_SELECT, condition, zero(t, da), zero(t, db)) : 0; }
 
 static Ref known(const Partial *p, Ref r, uint32_t level) { return r ? p->of.at[p->place.at[r] - 1].by[level] : 0; }
 

@@ -2,8 +2,7 @@
  *
  * Names are looked up in the model's scopes; all else (indices, units, functions, vectors, rotations, sums) is evaluated from the Ast
  * by independent code, so that it can be compared with model/ and sym/. */
-#ifndef LAGC_JETS_TEXT_EVAL_H
-#define LAGC_JETS_TEXT_EVAL_H
+#pragma once
 
 #include "jets/tape.h"
 #include "model/declarations.h"
@@ -44,5 +43,3 @@ Ref text_component(TextEval *t, const TextValue *v, uint32_t k, const Unit *unit
 int text_range(TextEval *t, AstId lo, AstId hi, Name effect, const IndexVars *around, int64_t *from, int64_t *to);
 
 static inline uint32_t text_components(const TextValue *v) { return v->n ? v->n : 1; }
-
-#endif

@@ -1,6 +1,5 @@
 /* State of an evaluation of an expression of the text, shared by text_eval.c and text_eval_node.c. */
-#ifndef LAGC_JETS_TEXT_EVAL_IMPL_H
-#define LAGC_JETS_TEXT_EVAL_IMPL_H
+#pragma once
 
 #include "jets/text_eval.h"
 
@@ -56,5 +55,3 @@ TextValue text_node(TextEval *t, Frame *f, AstId id);
 
 /* x op y: AST_ADD, AST_SUB, AST_MUL or AST_DIV of numbers, vectors, rotations. */
 TextValue text_pair(TextEval *t, AstKind op, const TextValue *x, const TextValue *y);
-
-#endif

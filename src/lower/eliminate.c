@@ -1,8 +1,7 @@
 /* M q'' = f by elimination without pivoting in straight-line code, in the order of mech/elimination_order.h.
  *
- * A coordinate's step is that of L D L^T without pivoting (Golub & Van Loan, Matrix Computations, 4th
- * ed., algorithm 4.1.2); its pivot is checked. A definition's step puts w' = C u' into the quadratic
- * form u'^T H u'/2 - b^T u' (mech/augmented_system.h). */
+ * A coordinate's step is that of L D L^T without pivoting (Golub & Van Loan, Matrix Computations, 4th ed., algorithm 4.1.2); its pivot is checked. A
+ * definition's step puts w' = C u' into the quadratic form u'^T H u'/2 - b^T u' (mech/augmented_system.h). */
 #include "base/sparse_pattern.h"
 #include "lower/lower_impl.h"
 

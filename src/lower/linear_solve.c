@@ -135,9 +135,8 @@ static void solve_one(Lower *l, const Block *b, Slot *x) {
   x[0] = op(l, IR_DIV, b->f[0], b->M[0]);
 }
 
-/* Cramer's rule for two coordinates whose mass matrix may be indefinite (L = x'*y'). It needs no pivoting,
- * and for 2 x 2 is forward stable (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed.,
- * section 1.10.1). */
+/* Cramer's rule for two coordinates whose mass matrix may be indefinite (L = x'*y'). It needs no pivoting, and for 2 x 2 is forward stable (Higham,
+ * Accuracy and Stability of Numerical Algorithms, 2nd ed., section 1.10.1). */
 static void solve_two(Lower *l, Block *b, Slot *x) {
   Slot m11 = b->M[0], m12 = b->M[2], m22 = b->M[3];
   Slot square = op(l, IR_MUL, m11, m22);

@@ -118,8 +118,7 @@ static Slot scaled(Lower *l, Slot t, Num c) {
   return down ? op(l, IR_DIV, product, down) : product;
 }
 
-/* The common absolute value of all coefficients of a sum, else 1: k*(a - b) costs one
- * multiplication less than k*a - k*b. */
+/* The common absolute value of all coefficients of a sum, else 1: k*(a - b) costs one multiplication less than k*a - k*b. */
 static Num shared_size(const ExprGraph *g, Expr e) {
   Num c, k;
   expr_pair(g, e, EX_SUM, 0, &c);

@@ -2,8 +2,7 @@
  *
  * Each function below makes the program of one emitted function. Output arrays are numbered in the
  * order of that function's declaration in lag_model.h. */
-#ifndef LAGC_LOWER_LOWER_H
-#define LAGC_LOWER_LOWER_H
+#pragma once
 
 #include "ir/prog.h"
 #include "mech/linearise.h"
@@ -49,5 +48,3 @@ void unit_add_scene(IrUnit *u, const Eqns *e);
 
 /* Makes the programs of the WANT_... bits that are still missing. */
 void unit_require(IrUnit *u, Eqns *e, unsigned wants);
-
-#endif

@@ -1,6 +1,5 @@
 /* Shared by the files that lower Eqns: lower*.c (expressions, one program each), linear_solve.c, eliminate.c, gram_schmidt.c (the linear system). */
-#ifndef LAGC_LOWER_LOWER_IMPL_H
-#define LAGC_LOWER_LOWER_IMPL_H
+#pragma once
 
 #include "ir/factorization_record.h"
 #include "lower/lower.h"
@@ -47,5 +46,3 @@ Name lower_numbered(Lower *l, const char *stem, uint32_t i, uint32_t j);
 
 /* Check that d is positive, or (positive 0) not zero; none where d is a number that passes. */
 void lower_pivot(Lower *l, Slot d, int positive);
-
-#endif

@@ -11,12 +11,9 @@
  * substitutes w_k' = C_k u' in the quadratic form. The pivot of q_i'' is positive where M is positive definite, once no
  * remaining definition contains q_i'. Eliminating all pairs first turns H into M. Pairs and coordinates by turns are
  * Featherstone's articulated bodies (Rigid Body Dynamics Algorithms, 2008, section 7.3), for any L. The right-hand side is f. */
-#ifndef LAGC_MECH_AUGMENTED_SYSTEM_H
-#define LAGC_MECH_AUGMENTED_SYSTEM_H
+#pragma once
 
 #include "mech/eqns.h"
 
 /* H and C as differentiated, for the definitions through which L reaches its velocities; ndefs = 0 where there are none. */
 LinearSystem augmented_system(const Eqns *e);
-
-#endif

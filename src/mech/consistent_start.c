@@ -300,8 +300,7 @@ void start_report(const Eqns *e, const StartResult *r) {
   switch (r->kind) {
     case LAG_START_FOUND: return;
     case LAG_START_NO_VALUE:
-      diag_error(m->diags, k->span, "scene %s: the constraint `%s` has no value at the start", scene, k->name);
-      diag_help(m->diags, "start where it has one");
+      diag_error(m->diags, k->span, "scene %s: the constraint `%s` has no value at the start" HELP "start where it has one", scene, k->name);
       return;
     case LAG_START_BROKEN:
       diag_error(m->diags, k->span, "scene %s: the start contradicts the constraint `%s`%s", scene, k->name, off);

@@ -1,6 +1,5 @@
 /* Consistent start of a run: the scene's start values, moved onto the constraints. */
-#ifndef LAGC_MECH_CONSISTENT_START_H
-#define LAGC_MECH_CONSISTENT_START_H
+#pragma once
 
 #include "mech/states.h"
 #include "numeric/consistent_state.h"
@@ -35,5 +34,3 @@ void start_report(const Eqns *e, const StartResult *result);
 
 /* Text of a constraint's residual: "; it is off by 0.1 [m]"; "" if not finite. */
 const char *start_residual_text(const Eqns *e, const StartResult *result);
-
-#endif

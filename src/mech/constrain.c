@@ -1,7 +1,6 @@
-/* Holonomic constraints by index reduction: c = 0 is kept as c, c' and c'' (E. Hairer, G. Wanner, Solving Ordinary Differential Equations
- * II, 2nd ed. (1996), VII.1, DOI 10.1007/978-3-642-05221-7); constraints on velocities by Lagrange-d'Alembert's principle:
- * their forces do no work on virtual displacements, A dq = 0. (Not vakonomic mechanics, which puts lambda c into the action and has other
- * motions.) */
+/* Holonomic constraints by index reduction: c = 0 is kept as c, c' and c'' (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed.
+ * (1996), VII.1, DOI 10.1007/978-3-642-05221-7); constraints on velocities by Lagrange-d'Alembert's principle: their forces do no work on virtual
+ * displacements, A dq = 0. (Not vakonomic mechanics, which puts lambda c into the action and has other motions.) */
 #include "mech/constrain.h"
 
 #include "mech/frobenius.h"
@@ -24,9 +23,8 @@ static int check_linear(const Eqns *e, const Constraint *k, const ExprPartials *
   Diags *d = e->m->diags;
   for (uint32_t i = 0; i < row->n; i++)
     if (expr_kinds(e->g, simplify(e->g, row->at[i].e)) & 1u << SYM_VEL) {
-      diag_error(d, k->span, "the constraint `%s` is not linear in the velocities", k->name);
-      diag_help(d, "Lagrange-d'Alembert's principle holds for A(q, t) q' + b(q, t) = 0");
-      return 0;
+      return diag_error(d, k->span, "the constraint `%s` is not linear in the velocities"
+                        HELP "Lagrange-d'Alembert's principle holds for A(q, t) q' + b(q, t) = 0", k->name);
     }
   return 1;
 }
@@ -35,13 +33,10 @@ static int check_contains(const Eqns *e, const Constraint *k, const ExprPartials
   Diags *d = e->m->diags;
   if (row->n) return 1;
   if (expr_is_zero(e->g, simplify(e->g, k->c))) {
-    diag_error(d, k->span, "the constraint `%s` demands nothing: its sides are the same for all coordinates", k->name);
-    diag_help(d, "leave it out");
-    return 0;
+    return diag_error(d, k->span, "the constraint `%s` demands nothing: its sides are the same for all coordinates" HELP "leave it out", k->name);
   }
-  diag_error(d, k->span, "the constraint `%s` contains no coordinate", k->name);
-  diag_help(d, "a condition on parameters and time alone cannot be met by any force");
-  return 0;
+  return diag_error(d, k->span, "the constraint `%s` contains no coordinate"
+                    HELP "a condition on parameters and time alone cannot be met by any force", k->name);
 }
 
 /* c = 0 and c + 1 = 0 cannot both hold. */

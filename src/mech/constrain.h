@@ -1,6 +1,5 @@
 /* Constraints: the equations and forces that they add to a model's equations of motion. */
-#ifndef LAGC_CONSTRAIN_H
-#define LAGC_CONSTRAIN_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -16,5 +15,3 @@ int constraints_do_no_work(const Eqns *e);
 
 /* Treats all constraints on velocities as r = 0, for emitted headers, which cannot store the values of F at the start. */
 void constraints_keep_none(Eqns *e);
-
-#endif

@@ -1,6 +1,5 @@
 /* Regularisation of a singular mass matrix by the constraints, for discrete Lagrangians. */
-#ifndef LAGC_MECH_CONSTRAINT_REGULARISE_H
-#define LAGC_MECH_CONSTRAINT_REGULARISE_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -8,5 +7,3 @@
  * momenta for velocities. On the constraints the term and its derivatives along admissible motions vanish: neither motion nor multipliers
  * change. The mass matrix gains A^T W A, and is regular where M is regular on the kernel of A. Needs e's mass and constraints. */
 Expr regularising_term(const Eqns *e);
-
-#endif

@@ -1,7 +1,6 @@
 /* The degree of a formula in all velocities together, seen through lets: A/2*w.x^2 is of degree 2 where w.x is linear. By Euler's theorem a part
  * of L of degree d adds (d - 1) times itself to the energy, which so keeps the names that L is written with. */
-#ifndef LAGC_DEGREE_H
-#define LAGC_DEGREE_H
+#pragma once
 
 #include "sym/expr.h"
 
@@ -14,5 +13,3 @@ static inline int has_velocities(const ExprGraph *g, Expr x) { return (expr_kind
 
 /* Whether x is linear in the n velocities, as Coriolis and magnetic terms are: no part of the mass matrix. */
 int is_linear_in_velocities(ExprGraph *g, Expr x, uint32_t n);
-
-#endif

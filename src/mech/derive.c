@@ -211,9 +211,8 @@ int eqns_check_numbers(const Eqns *e) {
     if (!expr_is_num(e->g, l.at[i])) continue;
     Num n = expr_number(e->g, l.at[i]);
     if (!isfinite(num_value(n))) {
-      diag_error(m->diags, span, "a number in the equations of motion is not finite");
-      diag_help(m->diags, "numbers reach up to 1.8e308; measure in other units");
-      return 0;
+      return diag_error(m->diags, span, "a number in the equations of motion is not finite"
+                        HELP "numbers reach up to 1.8e308; measure in other units");
     }
     if (num_is_imprecise(n)) {
       diag_error(m->diags, span, "rounding leaves fewer than six digits of a number in the equations of motion");
@@ -230,9 +229,8 @@ static int check_method(const Eqns *e) {
   const Scene *sc = &e->m->scene;
   const MethodInfo *method = sc->method ? method_find(sc->method, strlen(sc->method)) : NULL;
   if (!method || !(method->flags & METHOD_TAYLOR) || e->smooth) return 1;
-  diag_error(e->m->diags, sc->method_span, "the method `%s` needs a model without if, abs, sign, min, max and tables", method->name);
-  diag_help(e->m->diags, "`dop853` does not");
-  return 0;
+  return diag_error(e->m->diags, sc->method_span, "the method `%s` needs a model without if, abs, sign, min, max and tables"
+                    HELP "`dop853` does not", method->name);
 }
 
 Eqns *eqns_derive(const Model *m) {

@@ -1,6 +1,5 @@
 /* Model -> Eqns. */
-#ifndef LAGC_MECH_DERIVE_H
-#define LAGC_MECH_DERIVE_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -14,5 +13,3 @@ Eqns *eqns_derive_regularised(const Eqns *singular);
 
 /* 0, with the reason in the model's diagnostics, when a number in the equations or outputs is not finite or has lost its digits. */
 int eqns_check_numbers(const Eqns *e);
-
-#endif

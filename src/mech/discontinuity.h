@@ -3,8 +3,7 @@
  * The motion goes through a jump as if there were none. That is right where L jumps at a time, as with a switched force. An impulse is missing
  * where L jumps with coordinates or velocities, or where a momentum jumps. A charge is conserved, or balanced, between jumps only, if the charge
  * itself jumps or its symmetry moves the places where L does. A constraint whose rate jumps has a corner, at which no equation holds. */
-#ifndef LAGC_DISCONTINUITY_H
-#define LAGC_DISCONTINUITY_H
+#pragma once
 
 #include "mech/eqns.h"
 #include "sym/jump.h"
@@ -34,5 +33,3 @@ SwitchingSurfaces switching_surfaces(const Eqns *e);
 
 /* Warns of each place in the text where L, a momentum, a constraint's rate or a force jumps and the equations do not tell what follows. */
 void discontinuity_warn(const Eqns *e);
-
-#endif

@@ -65,9 +65,7 @@ static uint64_t key_of(const Elimination *e, uint32_t v) {
   return 0;
 }
 
-static int ready(const Elimination *e, uint32_t v) {
-  return !e->gone[v] && !e->nusers[v] && (v >= e->n || sparse_get(&e->H, v, v));
-}
+static int ready(const Elimination *e, uint32_t v) { return !e->gone[v] && !e->nusers[v] && (v >= e->n || sparse_get(&e->H, v, v)); }
 
 /* --- a heap --- */
 

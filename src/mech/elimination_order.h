@@ -2,8 +2,7 @@
  *
  * A definition is eliminated after all definitions that contain it; a coordinate after all definitions that contain its velocity, and once its
  * diagonal entry is nonzero. Ties go to the lower number, so that a dense system keeps its order. */
-#ifndef LAGC_MECH_ELIMINATION_ORDER_H
-#define LAGC_MECH_ELIMINATION_ORDER_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -21,5 +20,3 @@ void elimination_order(Arena *a, ExprGraph *g, LinearSystem *s, EliminationRule 
 
 /* Sets s->order and s->ops by the cheapest of the first three rules. */
 void elimination_order_best(Arena *a, ExprGraph *g, LinearSystem *s);
-
-#endif

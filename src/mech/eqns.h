@@ -12,8 +12,7 @@
  *
  * (dp/dq) q' + dp/dt is one forward directional derivative of p. Expressions contain q, q', z, t, parameters and inputs;
  * accelerations and rates occur in expects and outputs only. */
-#ifndef LAGC_EQNS_H
-#define LAGC_EQNS_H
+#pragma once
 
 #include "model/model.h"
 
@@ -120,5 +119,3 @@ Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j);
 
 /* x at q' = 0, simplified. */
 Expr eqns_at_rest(const Eqns *e, Expr x);
-
-#endif

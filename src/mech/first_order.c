@@ -64,9 +64,8 @@ static int differentiate(FirstOrderBuilder *w) {
   w->e->energy = H;
   for (uint32_t i = 0; i < w->n; i++) {
     if (expr_kinds(w->g, theta[i]) & bit(SYM_INPUT)) {
-      diag_error(w->m->diags, w->m->lagrangian_span, "the momentum of `%s` depends on an input, whose derivative would be needed", state_of(w, i)->name);
-      diag_help(w->m->diags, "write the input as a formula of t inside L instead");
-      return 0;
+      return diag_error(w->m->diags, w->m->lagrangian_span, "the momentum of `%s` depends on an input, whose derivative would be needed"
+                        HELP "write the input as a formula of t inside L instead", state_of(w, i)->name);
     }
     Expr changing = expr_diff(w->g, theta[i], w->m->time);
     w->rhs[i] = expr_add(w->g, w->rhs[i], changing);
@@ -74,9 +73,7 @@ static int differentiate(FirstOrderBuilder *w) {
   return 1;
 }
 
-static void add_part(FirstOrderBuilder *w, uint32_t row, uint32_t col, Expr e) {
-  vec_push(w->arena, &w->to->form, ((MassEntry){row, col, e}));
-}
+static void add_part(FirstOrderBuilder *w, uint32_t row, uint32_t col, Expr e) { vec_push(w->arena, &w->to->form, ((MassEntry){row, col, e})); }
 
 /* omega_ij += dtheta_j/dq_i - dtheta_i/dq_j. */
 static int add_form(FirstOrderBuilder *w) {

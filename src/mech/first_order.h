@@ -7,13 +7,10 @@
  * (G. D. Birkhoff, Dynamical Systems (1927), II.10; L. Faddeev, R. Jackiw, Phys. Rev. Lett. 60 (1988) 1692, DOI
  * 10.1103/PhysRevLett.60.1692). There is no mass matrix; the coordinates determine the velocities where the antisymmetric matrix omega is
  * regular. Forces may be linear in velocities, Q = Q0 + B q': then omega + B replaces omega, and Q0 replaces Q. */
-#ifndef LAGC_FIRST_ORDER_H
-#define LAGC_FIRST_ORDER_H
+#pragma once
 
 #include "mech/eqns.h"
 
 /* Fills e->first, e->flow and the energy of a model of first order; in other flows, events and their actions rates are replaced by
  * the flows. 0, reported, when omega is singular at every state or too large, or when a force is not linear in velocities. */
 int first_order_derive(Eqns *e, const Model *m);
-
-#endif

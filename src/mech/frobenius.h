@@ -1,6 +1,5 @@
 /* Integrability of constraints on velocities: could they be stated for positions? */
-#ifndef LAGC_FROBENIUS_H
-#define LAGC_FROBENIUS_H
+#pragma once
 
 #include "mech/states.h"
 
@@ -17,5 +16,3 @@ Integrable frobenius(const Eqns *e, StateSolver *solver);
 
 /* F(q, t) with dF/dt = r, proved, for r = A q' + b of a constraint on velocities, which keeps F constant. 0: none was found. */
 Expr frobenius_leaf(const Eqns *e, Expr r);
-
-#endif

@@ -4,8 +4,7 @@
  * coordinates. Then
  *   H = (p - a) M^-1 (p - a)/2 + V,   q' = dH/dp,   p' = -dH/dq + Q + A^T lambda
  * with Q the generalised forces outside L, and lambda the multipliers of constraints. */
-#ifndef LAGC_HAMILTON_H
-#define LAGC_HAMILTON_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -20,5 +19,3 @@ typedef struct {
 
 /* Needs coordinates with accelerations: for an L of first order the Legendre transformation is singular. May derive e->mass. */
 Hamilton hamilton_derive(Eqns *e);
-
-#endif

@@ -1,8 +1,7 @@
 /* The kinetic part of L where it is a sum of squares of forms that are linear in velocities, sum c_k (W_k q' + w_k)^2/2, so that M = W^T C W.
  *
  * Multiplying M out squares the condition number of W. For a body in Euler angles, at 1e-8 from the pole M is singular to 1e-16, W to 1e-8 only. */
-#ifndef LAGC_MECH_KINETIC_SQUARES_H
-#define LAGC_MECH_KINETIC_SQUARES_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -18,5 +17,3 @@ typedef struct {
 
 /* Tries 0 and quarters of a turn for each of up to 8 coordinates. 0: M is regular at all of them, or is constant or not derived. */
 int mass_pole(const Eqns *e, MassPole *pole);
-
-#endif

@@ -43,8 +43,7 @@ Expr *generalised_forces(const Model *m, SymKind q, SymKind v, uint32_t n) {
   return Q;
 }
 
-/* out[i] = dp[i]/dt without q''. The derivative of a definition without velocities is its full time derivative and named so: I', not
- * I_drift. */
+/* out[i] = dp[i]/dt without q''. The derivative of a definition without velocities is its full time derivative and named so: I', not I_drift. */
 static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
   ExprGraph *g = e->g;
   const Expr *seed = explicit_direction(e);
@@ -138,8 +137,7 @@ static Entries rewritten(const Eqns *e, const Entries *from, Expr (*rule)(ExprGr
   return to;
 }
 
-/* Whether the rule changes a force. Of more than 64 forces a sample is tried: sums over all other bodies are slow to rewrite and
- * look alike. */
+/* Whether the rule changes a force. Of more than 64 forces a sample is tried: sums over all other bodies are slow to rewrite and look alike. */
 static int changes_forces(const Eqns *e, const LinearSystem *s, Expr (*rule)(ExprGraph *, Expr)) {
   enum { MANY = 64, SAMPLE = 16 };
   uint32_t step = e->n > MANY ? e->n / SAMPLE : 1;

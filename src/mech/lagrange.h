@@ -1,6 +1,5 @@
 /* The parts of Lagrange's equations: momenta, mass matrix, forces. */
-#ifndef LAGC_LAGRANGE_H
-#define LAGC_LAGRANGE_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -21,5 +20,3 @@ void eqns_derive_mass(Eqns *e);
 
 /* Q_i = sum over forces of f d(point)/dq_i, minus dR/dq_i', for n coordinates and velocities of these kinds. */
 Expr *generalised_forces(const Model *m, SymKind q, SymKind v, uint32_t n);
-
-#endif

@@ -1,6 +1,5 @@
 /* Eqns -> the linearisation of the equations of motion, and the derivatives of events. */
-#ifndef LAGC_MECH_LINEARISE_H
-#define LAGC_MECH_LINEARISE_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -36,5 +35,3 @@ typedef struct {
 } EventPartials;
 
 EventPartials eqns_event_derivatives(const Eqns *e);
-
-#endif

@@ -1,6 +1,5 @@
 /* Proof that the mass matrix is positive definite where it is regular: then elimination needs no pivoting, in any order. */
-#ifndef LAGC_MECH_MASS_DEFINITENESS_H
-#define LAGC_MECH_MASS_DEFINITENESS_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -13,5 +12,3 @@ int mass_is_definite_by_values(const Eqns *e, const LinearSystem *s, Expr lagran
 
 /* Warns of diagonal entries of M, made of parameters alone, that the scene's values make negative or zero. */
 void mass_warn_nonpositive(const Eqns *e);
-
-#endif

@@ -1,7 +1,6 @@
 /* Numerical states of a model: projection onto the constraints; accelerations, multipliers, rates and energy from the equations of motion;
  * rank of the constraints. A state is an array of values by symbol. */
-#ifndef LAGC_STATES_H
-#define LAGC_STATES_H
+#pragma once
 
 #include "base/row_span.h"
 #include "base/sparse_solve.h"
@@ -46,5 +45,3 @@ uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts, lo
 
 /* x with flows and the energy's formula put in for z' and the energy symbol; q'' stays. */
 Expr states_substitute(const Eqns *e, Expr x);
-
-#endif

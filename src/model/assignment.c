@@ -43,9 +43,7 @@ const AstExpr *list_behind(const Builder *b, AstId id, const AstUnit **unit) {
   return x->kind == AST_LIST ? x : NULL;
 }
 
-static uint64_t count_along(const IndexRange *r, uint32_t k) {
-  return r->hi[k] < r->lo[k] ? 0 : (uint64_t)(r->hi[k] - r->lo[k] + 1);
-}
+static uint64_t count_along(const IndexRange *r, uint32_t k) { return r->hi[k] < r->lo[k] ? 0 : (uint64_t)(r->hi[k] - r->lo[k] + 1); }
 
 uint64_t range_count(const IndexRange *r) {
   uint64_t n = 1;

@@ -1,6 +1,5 @@
 /* State of model_build, shared by the files of this folder. */
-#ifndef LAGC_BUILDER_H
-#define LAGC_BUILDER_H
+#pragma once
 
 #include "model/declarations.h"
 #include "model/model.h"
@@ -313,8 +312,7 @@ void resolve_observe(Builder *b, uint32_t index);
 /* model.c: stores the value of an observable in the model, and checks its unit. */
 void finish_observe(Builder *b, uint32_t index, Value v);
 
-/* Entity of a name; unknown and ambiguous names are reported. `declare` is the kind of declaration to suggest ("state"),
- * or NULL for any. */
+/* Entity of a name; unknown and ambiguous names are reported. `declare` is the kind of declaration to suggest ("state"), or NULL for any. */
 const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const char *declare);
 
 /* Warns when a unit is also the name of a constant: `th [N]` is th in newtons. */
@@ -345,8 +343,7 @@ const char *source_text(const Builder *b, Span s);
 const char *ast_short(const Builder *b, AstId id);
 Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
-/* Unit of a declaration. Without one the dimension is a new unknown, shared by all members of a family and inferred from
- * the equations. */
+/* Unit of a declaration. Without one the dimension is a new unknown, shared by all members of a family and inferred from the equations. */
 Unit declared_unit(Builder *b, const AstStmt *st, Name effect);
 
 /* output.c: declared unit of an entity, or NULL. */
@@ -429,5 +426,3 @@ void scene_build(Builder *b, const ModelChoice *choice);
 
 /* method.c: reads a `method` statement. */
 void scene_method(Builder *b, const AstStmt *st);
-
-#endif

@@ -15,9 +15,7 @@ int dims_agree(Builder *b, const Value *x, const Value *y, Span why) {
 
 const char *shown_unit(const Builder *b, const Value *v) { return v->unit && v->unit[0] ? v->unit : dim_text(b->dims, v->dim); }
 
-const char *in_unit(const Builder *b, const char *unit) {
-  return strcmp(unit, "1") == 0 ? "a pure number" : arena_printf(b->arena, "in [%s]", unit);
-}
+const char *in_unit(const Builder *b, const char *unit) { return strcmp(unit, "1") == 0 ? "a pure number" : arena_printf(b->arena, "in [%s]", unit); }
 
 const char *in_dim(const Builder *b, Dim d) { return in_unit(b, dim_text(b->dims, d)); }
 

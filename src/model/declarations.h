@@ -1,6 +1,5 @@
 /* Declarations: names of a model, and the text of its definitions. The self-check (jets/) evaluates the text from this table, by code of its own. */
-#ifndef LAGC_DECLARATIONS_H
-#define LAGC_DECLARATIONS_H
+#pragma once
 
 #include "model/scope.h"
 #include "model/units.h"
@@ -68,5 +67,3 @@ Name member_name(const Ast *ast, Name name, const int64_t *at, uint32_t ndims);
 
 /* Entity of member `at` of a family of lets or observables, or NULL. members: Declarations.members. */
 const Entity *find_member(const Ast *ast, const Scope *members, const Entity *e, const int64_t *at);
-
-#endif

@@ -1,15 +1,12 @@
 /* Dimensions, and inference of those that the text does not state, from the equations.
  *
- * A Dim is a product of powers of the SI base units and of unknowns, one for each name that was declared
- * without a unit: m^2*k. Written additively it is a sparse vector of rational exponents, and every place
- * where two things must have one dimension (a sum, a comparison, a force against its coordinate) is a linear
- * equation between two such vectors. dim_equate solves them one by one, by elimination (A. Kennedy,
- * "Dimension types", ESOP 1994, doi:10.1007/3-540-57880-3_23, has exponents that are integers; here they are
- * rationals, so that a field's linear algebra is enough).
+ * A Dim is a product of powers of the SI base units and of unknowns, one for each name that was declared without a unit: m^2*k. Written additively it
+ * is a sparse vector of rational exponents, and every place where two things must have one dimension (a sum, a comparison, a force against its
+ * coordinate) is a linear equation between two such vectors. dim_equate solves them one by one, by elimination (A. Kennedy, "Dimension types", ESOP
+ * 1994, doi:10.1007/3-540-57880-3_23, has exponents that are integers; here they are rationals, so that a field's linear algebra is enough).
  *
  * A Dim is an index into a table without duplicates: equal dimensions have equal indices. All memory is the arena's. */
-#ifndef LAGC_DIMS_H
-#define LAGC_DIMS_H
+#pragma once
 
 #include "base/intern.h"
 #include "base/num.h"
@@ -35,8 +32,7 @@ Dim dim_per_second(Dims *d, Dim a);
 Dim dim_unknown(Dims *d, Name name);
 uint32_t dim_unknowns(const Dims *d);
 
-/* Adds the equation a = b. 1: it holds, or it is solved for the newest unknown in it, with `why` as the reason.
- * 0: contradiction, nothing changes. */
+/* Adds the equation a = b. 1: it holds, or it is solved for the newest unknown in it, with `why` as the reason. 0: contradiction, nothing changes. */
 int dim_equate(Dims *d, Dim a, Dim b, Span why);
 
 /* Dimension with all solved unknowns substituted: base units and unsolved unknowns only. */
@@ -75,5 +71,3 @@ const char *dim_product_text(Dims *d, Dim a);
 
 /* Text of a dimension: "J", the author's spelling, "m/s^2"; "1" if dimensionless; "m*unit(k)" with an unknown. */
 const char *dim_text(Dims *d, Dim a);
-
-#endif

@@ -1,6 +1,5 @@
 /* Graph of the file's effects: edges `requires` and `excludes`, reachability, contradictions. */
-#ifndef LAGC_EFFECT_H
-#define LAGC_EFFECT_H
+#pragma once
 
 #include "syntax/ast.h"
 
@@ -24,5 +23,3 @@ void effect_reach(const Ast *ast, const EffectGraph *g, uint32_t effect, int up,
 /* Reports unknown names, cycles of `requires`, and effects that no scene can use because two effects they require exclude
  * each other. 0 if there is a cycle or such an effect. */
 int effects_check(const Ast *ast);
-
-#endif

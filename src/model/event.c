@@ -11,9 +11,7 @@ void report_shapes(Builder *b, Span span, uint32_t left, uint32_t right) {
   diag_error(b->diags, span, "shapes do not match: the left side is %s, the right side is %s", shape_text(b, left), shape_text(b, right));
 }
 
-static void push_action(Builder *b, Event *ev, SymId target, Expr value) {
-  vec_push(b->arena, &ev->actions, ((Action){target, value}));
-}
+static void push_action(Builder *b, Event *ev, SymId target, Expr value) { vec_push(b->arena, &ev->actions, ((Action){target, value})); }
 
 /* Value of `target` after the event: that of its action, or the symbol itself. */
 static Expr set_value(const Builder *b, const Event *ev, SymId target) {

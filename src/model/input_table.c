@@ -1,10 +1,9 @@
 /* Tables: the file of `input u = "file.csv"` becomes a cubic spline (base/spline.h).
  *
- * A row has time in s, and value in the input's unit, separated by commas, semicolons, tabs or, in a table without these, blanks.
- * Blank lines and lines that begin with # are skipped. A first line whose first field is not a number is a head: the time is the column
- * `t` (or `time`), else the first; the value is the column named like the input, or, of two columns, the other one. A head may state
- * units, as lagc's own output does: `t [s],u [N]`; they must be the input's. Without a head, columns 1 and 2 are read. Two rows with
- * the same time are a jump. */
+ * A row has time in s, and value in the input's unit, separated by commas, semicolons, tabs or, in a table without these, blanks. Blank lines and
+ * lines that begin with # are skipped. A first line whose first field is not a number is a head: the time is the column `t` (or `time`), else the
+ * first; the value is the column named like the input, or, of two columns, the other one. A head may state units, as lagc's own output does: `t [s],u
+ * [N]`; they must be the input's. Without a head, columns 1 and 2 are read. Two rows with the same time are a jump. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

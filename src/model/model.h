@@ -1,10 +1,8 @@
 /* Ast -> Model: names resolved, units converted, one scene and its effects applied.
  *
- * Needs a parsed Ast. Statements that the scene does not use are read for the names they declare only, and
- * make no graph node: a model with an effect off is the model with the effect's text deleted.
- * All values of a Model are in SI units. */
-#ifndef LAGC_MODEL_H
-#define LAGC_MODEL_H
+ * Needs a parsed Ast. Statements that the scene does not use are read for the names they declare only, and make no graph node: a model with an effect
+ * off is the model with the effect's text deleted. All values of a Model are in SI units. */
+#pragma once
 
 #include "base/spline.h"
 #include "model/units.h"
@@ -325,5 +323,3 @@ static inline int model_is_contact_switch(const Model *m, SymId sym) {
 
 /* Values by symbol: pi, and 0 for all others. */
 long double *model_constants(const Model *m);
-
-#endif

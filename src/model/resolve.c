@@ -1,9 +1,8 @@
 /* Expressions: Ast -> expression graph, with checks of shapes and dimensions.
  *
- * Ast nodes of an expression are contiguous, children first, so evaluation is one loop over them. The body of a sum is
- * repeated for each value of its index; a branch of an `if` with a known condition is skipped. The whole state is an Eval:
- * an evaluation that needs an unevaluated definition is suspended on an explicit stack, so neither nesting nor chains of
- * definitions use the C stack. */
+ * Ast nodes of an expression are contiguous, children first, so evaluation is one loop over them. The body of a sum is repeated for each value of its
+ * index; a branch of an `if` with a known condition is skipped. The whole state is an Eval: an evaluation that needs an unevaluated definition is
+ * suspended on an explicit stack, so neither nesting nor chains of definitions use the C stack. */
 #include <math.h>
 
 #include "base/words.h"
@@ -12,17 +11,14 @@
 
 /* --- nodes that their parents evaluate --- */
 
-/* Marks a left operand with the same kind of operator: a chain becomes one n-ary sum (or product), so a sum of a
- * million terms costs one sort. */
+/* Marks a left operand with the same kind of operator: a chain becomes one n-ary sum (or product), so a sum of a million terms costs one sort. */
 static void mark_chain(Eval *ev, const AstExpr *x) {
   AstKind left = ast_expr(ev->b->ast, x->a)->kind;
   int additive = x->kind == AST_ADD || x->kind == AST_SUB;
   ev->by_parent[x->a - ev->first] = additive ? left == AST_ADD || left == AST_SUB : left == AST_MUL || left == AST_DIV;
 }
 
-static void guard(Eval *ev, AstId construct, AstId body) {
-  ev->guarded[ast_expr(ev->b->ast, body)->first - ev->first] = construct;
-}
+static void guard(Eval *ev, AstId construct, AstId body) { ev->guarded[ast_expr(ev->b->ast, body)->first - ev->first] = construct; }
 
 static void mark_branches(Eval *ev, AstId id, const AstExpr *x) {
   const Ast *ast = ev->b->ast;

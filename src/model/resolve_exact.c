@@ -1,9 +1,8 @@
 /* Closed forms, `exact th = th(0)*cos(w*t)`, and their outputs `exact(th)`, `error(th)`.
  *
- * A closed form contains t, parameters, inputs and start values. While it is resolved, th(0) is a local symbol, and th
- * itself is refused. Then each local is replaced by its coordinate: in a finished closed form th means th(0). In
- * outputs, exact(th) is a symbol of kind SYM_INPUT numbered after the model's inputs: the runtime evaluates closed forms
- * like inputs. */
+ * A closed form contains t, parameters, inputs and start values. While it is resolved, th(0) is a local symbol, and th itself is refused. Then each
+ * local is replaced by its coordinate: in a finished closed form th means th(0). In outputs, exact(th) is a symbol of kind SYM_INPUT numbered after
+ * the model's inputs: the runtime evaluates closed forms like inputs. */
 #include "model/resolve_impl.h"
 
 /* --- values at the start --- */
@@ -98,9 +97,7 @@ Expr closed_form_error(Builder *b, const Exact *x) {
   return x->periodic ? wrapped(b->g, off) : off;
 }
 
-int call_is_exact(const Eval *ev, Name name) {
-  return ev->where == IN_OUTPUT && (strcmp(name, "exact") == 0 || strcmp(name, "error") == 0);
-}
+int call_is_exact(const Eval *ev, Name name) { return ev->where == IN_OUTPUT && (strcmp(name, "exact") == 0 || strcmp(name, "error") == 0); }
 
 Value exact_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;

@@ -1,6 +1,5 @@
 /* State of an evaluation of an expression (Eval), and the functions that evaluate its nodes; included by this folder only. */
-#ifndef LAGC_RESOLVE_IMPL_H
-#define LAGC_RESOLVE_IMPL_H
+#pragma once
 
 #include "model/builder.h"
 
@@ -152,5 +151,3 @@ int arity_is(Eval *ev, const AstExpr *x, uint32_t want);
 
 /* Value of a function call. */
 Value call_value(Eval *ev, const AstExpr *x);
-
-#endif

@@ -1,6 +1,5 @@
-/* Rotations: a coordinate is a unit quaternion q = (w, x, y, z), which turns vectors of the body frame into space. Coordinates,
- * `turn(axis, angle)`, products and `transpose` have length 1 on the constraint q.q = 1; the formulas assume it: polynomials without
- * poles, never divided by the length.
+/* Rotations: a coordinate is a unit quaternion q = (w, x, y, z), which turns vectors of the body frame into space. Coordinates, `turn(axis, angle)`,
+ * products and `transpose` have length 1 on the constraint q.q = 1; the formulas assume it: polynomials without poles, never divided by the length.
  *
  * Sources: W.R. Hamilton (1843); the rotation of a vector, v + 2 u x (u x v + w v) with q = (w, u), O. Rodrigues, J. Math. Pures Appl. 5 (1840) 380;
  * the rates of q and the angular velocity in the body's frame, A. Cayley, Camb. Math. J. 3 (1843) 224: q' = q (0, omega)/2. */

@@ -167,9 +167,7 @@ typedef struct {
   uint32_t index;
 } ParamLimit;
 
-static int param_from(const Symbol *s, const void *data) {
-  return s->kind == SYM_PARAM && s->index >= ((const ParamLimit *)data)->index;
-}
+static int param_from(const Symbol *s, const void *data) { return s->kind == SYM_PARAM && s->index >= ((const ParamLimit *)data)->index; }
 
 static const Unit *param_unit(Builder *b, uint32_t i, void *data) {
   (void)data;
@@ -199,9 +197,7 @@ static void set_value(Builder *b, const AstStmt *st, Name effect) {
   else give_input(b, e->index, e->name, st->rhs, effect);
 }
 
-static Unit seconds(const Builder *b) {
-  return unit_si(dim_base(b->dims, DIM_TIME), "s");
-}
+static Unit seconds(const Builder *b) { return unit_si(dim_base(b->dims, DIM_TIME), "s"); }
 
 static Unit no_unit(void) { return unit_si(DIM_NONE, "1"); }
 

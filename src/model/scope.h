@@ -1,15 +1,13 @@
 /* Scope: symbol table, from names to declarations. A name belongs to the model or to an effect. Inside an effect
  * its own names hide the model's; elsewhere `drag.c` reaches them, or `c` where only one effect in use declares it. */
-#ifndef LAGC_SCOPE_H
-#define LAGC_SCOPE_H
+#pragma once
 
 #include "base/id_table.h"
 #include "base/intern.h"
 #include "base/source.h"
 
-/* Families: the entity of `th[N]` has index ranges; its members are adjacent in the model's array, row by row, the
- * components of a vector together. Members of lets and observables are entities of their own, in a second scope
- * (Builder.members), as they are declared one by one. */
+/* Families: the entity of `th[N]` has index ranges; its members are adjacent in the model's array, row by row, the components of a vector together.
+ * Members of lets and observables are entities of their own, in a second scope (Builder.members), as they are declared one by one. */
 
 typedef enum {
   ENT_NONE, /* declaration refused: uses are not reported again */
@@ -50,5 +48,3 @@ static inline uint32_t entity_size(const Entity *e) {
 }
 
 const char *ent_kind_text(EntKind kind); /* "a coordinate", ... */
-
-#endif

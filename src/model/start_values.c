@@ -129,9 +129,7 @@ int spin_target(Builder *b, AstId place, Name effect) {
   return -2;
 }
 
-Unit spin_unit(const Builder *b) {
-  return unit_si(dim_per_second(b->dims, DIM_NONE), "rad/s");
-}
+Unit spin_unit(const Builder *b) { return unit_si(dim_per_second(b->dims, DIM_NONE), "rad/s"); }
 
 /* Target of values for omega(R): assign_values numbers them as vectors of 3 components, rotations have 4. */
 typedef struct {

@@ -1,6 +1,5 @@
 /* Units as written, [kg*m/s^2]: dimension and conversion to SI. Table and sources: units.c. */
-#ifndef LAGC_UNITS_H
-#define LAGC_UNITS_H
+#pragma once
 
 #include "model/dims.h"
 #include "syntax/ast.h"
@@ -13,8 +12,7 @@ typedef struct {
   const char *text; /* as written; "" for none */
 } Unit;
 
-/* Converts a unit of the text; unknown names are reported, with the nearest known one.
- * No unit written: DIM_ANY, factor 1. */
+/* Converts a unit of the text; unknown names are reported, with the nearest known one. No unit written: DIM_ANY, factor 1. */
 Unit unit_resolve(const AstUnit *u, Dims *dims, Diags *diags, Arena *a);
 
 /* SI unit of dimension d, written `text`. */
@@ -39,5 +37,3 @@ const char *unit_meaning(uint32_t i, Arena *a);
 
 /* factor * pi^pi_power */
 double unit_factor(const Unit *u);
-
-#endif

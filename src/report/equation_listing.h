@@ -1,6 +1,5 @@
 /* The equations of motion for people: text and LaTeX, in the user's names. */
-#ifndef LAGC_REPORT_EQUATION_LISTING_H
-#define LAGC_REPORT_EQUATION_LISTING_H
+#pragma once
 
 #include "mech/eqns.h"
 #include "sym/print.h"
@@ -17,5 +16,3 @@ void dump_equations(const Eqns *e, StrBuf *out);
 
 /* Appends one line: coordinates, mass matrix, energy. Nothing when there are only states. */
 void show_facts(const Eqns *e, StrBuf *out);
-
-#endif

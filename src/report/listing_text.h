@@ -1,6 +1,5 @@
 /* Writer of listings of equations, as text and as LaTeX. */
-#ifndef LAGC_REPORT_LISTING_TEXT_H
-#define LAGC_REPORT_LISTING_TEXT_H
+#pragma once
 
 #include "mech/eqns.h"
 #include "sym/print.h"
@@ -42,5 +41,3 @@ const char *text_latex_name(Text *t, Name name);
 
 /* The definitions that these expressions need, each before its use. */
 void text_definitions(Text *t, const Expr *roots, uint32_t n);
-
-#endif

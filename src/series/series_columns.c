@@ -1,5 +1,4 @@
-/* series_columns: assigns a column to each sum and an index to each constant that `next` uses; the linear system makes more
- * than it uses. */
+/* series_columns: assigns a column to each sum and an index to each constant that `next` uses; the linear system makes more than it uses. */
 #include "series/series_impl.h"
 
 /* Sums are accumulated in groups that stay in registers: up to 16 numbers, in vectors of 2 or 4. */

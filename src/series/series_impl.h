@@ -1,7 +1,6 @@
 /* Shared by series.c (the two programs, the linear system), series_recurrences.c (a recurrence for each operation) and series_columns.c (columns of sums
  * and constants). */
-#ifndef LAGC_SERIES_SERIES_IMPL_H
-#define LAGC_SERIES_SERIES_IMPL_H
+#pragma once
 
 #include "series/series.h"
 
@@ -66,5 +65,3 @@ Val series_instruction(SeriesBuilder *m, const Ins *i, Slot zero, Val v, Val w, 
 
 /* Assigns columns to the sums, and places to the constants, that the stores of `next` need; stores the factors a[k], b[k] and the constants. */
 void series_columns(SeriesBuilder *m, Series *s);
-
-#endif

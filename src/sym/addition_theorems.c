@@ -66,8 +66,7 @@ static void make_power(Normal *n, uint32_t at) {
   normal_set_gen_info(n, a->cos, (GenInfo){.kind = GEN_POWER, .expr = e, .atom = at});
 }
 
-/* c as a multiple of its atom's unit. A coefficient that needs a finer unit makes new generators and restarts the
- * normal form. */
+/* c as a multiple of its atom's unit. A coefficient that needs a finer unit makes new generators and restarts the normal form. */
 static int32_t multiple_of(Normal *n, uint32_t at, Num c) {
   Atom *a = &n->atoms.at[at];
   Num unit = num_gcd(a->unit, c);
@@ -102,9 +101,7 @@ static Circular add_angles(Normal *n, Circular a, Circular b) {
   return (Circular){.cos = cos, .sin = sin};
 }
 
-static Circular zero_angle(Normal *n) {
-  return (Circular){.cos = frac_num(n->field, num_int(1)), .sin = frac_poly(poly_zero())};
-}
+static Circular zero_angle(Normal *n) { return (Circular){.cos = frac_num(n->field, num_int(1)), .sin = frac_poly(poly_zero())}; }
 
 Circular normal_multiple(Normal *n, uint32_t at, int32_t k) {
   Atom a = n->atoms.at[at];

@@ -434,9 +434,7 @@ static Expr fold_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b) {
   return 0;
 }
 
-static int commutes(ExprOp op) {
-  return op == EX_MIN || op == EX_MAX || op == EX_EQ || op == EX_AND || op == EX_OR || op == EX_HYPOT;
-}
+static int commutes(ExprOp op) { return op == EX_MIN || op == EX_MAX || op == EX_EQ || op == EX_AND || op == EX_OR || op == EX_HYPOT; }
 
 Expr expr_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b) {
   Expr folded = fold_fn2(g, op, a, b);

@@ -16,9 +16,7 @@ static long double power(long double base, Num e) {
   return powl(base, (long double)e.num / (long double)e.den);
 }
 
-static long double number(Num n) {
-  return num_is_exact(n) ? (long double)n.num / (long double)n.den : n.approx;
-}
+static long double number(Num n) { return num_is_exact(n) ? (long double)n.num / (long double)n.den : n.approx; }
 
 /* TapeStep of a tape, for one node: its arguments are t->arg[first ..], indices of earlier steps; coefficients or exponents
  * of a sum or product are t->number[first ..]. */

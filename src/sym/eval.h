@@ -1,6 +1,5 @@
 /* Evaluation of the graph in long double, for checks; simulations run emitted C. */
-#ifndef LAGC_EVAL_H
-#define LAGC_EVAL_H
+#pragma once
 
 #include "sym/expr.h"
 
@@ -14,5 +13,3 @@ void eval_run(EvalTape *t, const long double *symbols, long double *out);
 
 /* eval_run with every value rounded to double, so that an overflow of doubles gives infinity; symbol(s, data) gives the symbols. */
 void eval_run_double(EvalTape *t, long double (*symbol)(SymId s, const void *data), const void *data, long double *out);
-
-#endif

@@ -78,9 +78,7 @@ static Expr make_named(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs
   return add_hashed(g, n, hash);
 }
 
-Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs) {
-  return make_named(g, op, args, nargs, NULL);
-}
+Expr expr_make(ExprGraph *g, ExprOp op, const Expr *args, uint32_t nargs) { return make_named(g, op, args, nargs, NULL); }
 
 /* --- leaves --- */
 
@@ -166,9 +164,7 @@ int expr_is_bool(const ExprGraph *g, Expr e) {
   return op == EX_LT || op == EX_LE || op == EX_EQ || op == EX_NOT || op == EX_AND || op == EX_OR;
 }
 
-uint32_t expr_pairs(const ExprGraph *g, Expr e, ExprOp op) {
-  return expr_op(g, e) == op ? expr_nargs(g, e) / 2 : 1;
-}
+uint32_t expr_pairs(const ExprGraph *g, Expr e, ExprOp op) { return expr_op(g, e) == op ? expr_nargs(g, e) / 2 : 1; }
 
 Expr expr_pair(const ExprGraph *g, Expr e, ExprOp op, uint32_t i, Num *number) {
   MUST_BE_BELOW(i, expr_pairs(g, e, op));

@@ -15,10 +15,8 @@
  * The order of ids is the order of creation; a caller that wants the same text everywhere names
  * intermediate results instead of nesting calls (C fixes no order of argument evaluation).
  *
- * Ownership: all in the arena given to expr_graph. Errors: none; running out of memory jumps to
- * the arena's handler. */
-#ifndef LAGC_EXPR_H
-#define LAGC_EXPR_H
+ * Ownership: all in the arena given to expr_graph. Errors: none; running out of memory jumps to the arena's handler. */
+#pragma once
 
 #include "base/intern.h"
 #include "base/num.h"
@@ -98,8 +96,7 @@ Expr expr_fn(ExprGraph *g, ExprOp op, Expr a);           /* SIN .. SIGN, NOT */
 Expr expr_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b);  /* ATAN2 .. OR */
 Expr expr_select(ExprGraph *g, Expr condition, Expr a, Expr b);
 
-/* Node with e's operation and new arguments, for passes that rewrite bottom-up.
- * args has expr_nargs(g, e) elements in the order of expr_arg. */
+/* Node with e's operation and new arguments, for passes that rewrite bottom-up. args has expr_nargs(g, e) elements in the order of expr_arg. */
 Expr expr_rebuild(ExprGraph *g, Expr e, const Expr *args);
 
 /* --- inspection --- */
@@ -177,5 +174,3 @@ uint32_t expr_ops(ExprGraph *g, const Expr *roots, uint32_t n);
 
 /* Operation count of one root, its definitions already computed. */
 uint32_t expr_ops_shallow(ExprGraph *g, Expr e);
-
-#endif

@@ -1,6 +1,5 @@
 /* Internals of the expression graph, shared by the files of src/sym that make or print nodes. */
-#ifndef LAGC_EXPR_IMPL_H
-#define LAGC_EXPR_IMPL_H
+#pragma once
 
 #include "base/id_table.h"
 #include "sym/expr.h"
@@ -90,5 +89,3 @@ ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const Expr
 
 /* Sets m to 1 for those nodes of l (a result of expr_topo) that contain a symbol for which want() is true. */
 void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s, const void *data), const void *data, ExprMap *m);
-
-#endif

@@ -93,8 +93,7 @@ static Expr divide_by_exp(ExprGraph *g, Expr sum, Expr E, int64_t k) {
   return expr_add_n(g, terms, n);
 }
 
-/* E^j S^-m for E = exp(u) and a sum S with powers of E: S is divided by E, exp(u)/(1 + exp(u)) -> 1/(exp(-u) + 1).
- * Returns 1 when r changed. */
+/* E^j S^-m for E = exp(u) and a sum S with powers of E: S is divided by E, exp(u)/(1 + exp(u)) -> 1/(exp(-u) + 1). Returns 1 when r changed. */
 static int use_exp_quotient(ExprGraph *g, Product *r) {
   for (uint32_t i = 0; i < r->p.n; i++) {
     Expr E = r->p.at[i].node;
@@ -118,8 +117,7 @@ static int use_exp_quotient(ExprGraph *g, Product *r) {
   return 0;
 }
 
-/* Whether a term of T has the factor E = exp(u); if `below`, whether a term of T is divided by a sum that contains
- * E. */
+/* Whether a term of T has the factor E = exp(u); if `below`, whether a term of T is divided by a sum that contains E. */
 static int meets_exp(const ExprGraph *g, Expr T, Expr E, int below) {
   Num c, k;
   for (uint32_t i = 0; i < expr_pairs(g, T, EX_SUM); i++) {

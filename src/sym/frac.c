@@ -113,9 +113,7 @@ Frac frac_add(FracField *f, Frac a, Frac b) {
   return normal_zero((Frac){.num = poly_add(r, x, y), .den = den});
 }
 
-Frac frac_neg(FracField *f, Frac a) {
-  return (Frac){.num = poly_scale(f->ring, num_int(-1), a.num), .den = a.den};
-}
+Frac frac_neg(FracField *f, Frac a) { return (Frac){.num = poly_scale(f->ring, num_int(-1), a.num), .den = a.den}; }
 
 Frac frac_sub(FracField *f, Frac a, Frac b) {
   Frac minus_b = frac_neg(f, b);

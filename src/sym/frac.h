@@ -1,13 +1,10 @@
 /* Rational functions: fractions of polynomials. The denominator stays factored, as a list of (polynomial, exponent):
  * sums over equal denominators stay small, and no greatest common divisor is needed.
  *
- * Must hold: factors are interned polynomials, primitive (integer coefficients without a common
- * factor, the first positive) and without a monomial of generators that may have negative
- * exponents, which the numerator carries. A power of a generator with a relation x^k = R is the
- * factor x, never the expanded power; a factor equal to such an R becomes x^k.
- * Failures are those of the ring (poly.h); dividing by 0 adds POLY_DIVIDED_BY_ZERO. */
-#ifndef LAGC_FRAC_H
-#define LAGC_FRAC_H
+ * Must hold: factors are interned polynomials, primitive (integer coefficients without a common factor, the first positive) and without a monomial of
+ * generators that may have negative exponents, which the numerator carries. A power of a generator with a relation x^k = R is the factor x, never the
+ * expanded power; a factor equal to such an R becomes x^k. Failures are those of the ring (poly.h); dividing by 0 adds POLY_DIVIDED_BY_ZERO. */
+#pragma once
 
 #include "sym/poly.h"
 
@@ -66,5 +63,3 @@ DenId frac_den_of(FracField *f, const DenFactor *at, uint32_t n);
 
 /* a with factors of its denominator divided out of its numerator where that is exact. */
 Frac frac_cancel(FracField *f, Frac a);
-
-#endif

@@ -1,9 +1,7 @@
-/* Antiderivatives for Noether charges: sums of terms
- * c * x^k * exp(a x + ..) * products of sines and cosines of b x + .., with c, a, b free of x.
- * Each term becomes, by addition theorems, a sum of terms x^k exp(u) sin(w) and x^k exp(u) cos(w); these are integrated by parts
- * (I. S. Gradshteyn, I. M. Ryzhik, Table of Integrals, Series, and Products, 7th ed. (2007), 2.66). */
-#ifndef LAGC_INTEGRATE_H
-#define LAGC_INTEGRATE_H
+/* Antiderivatives for Noether charges: sums of terms c * x^k * exp(a x + ..) * products of sines and cosines of b x + .., with c, a, b free of x.
+ * Each term becomes, by addition theorems, a sum of terms x^k exp(u) sin(w) and x^k exp(u) cos(w); these are integrated by parts (I. S. Gradshteyn,
+ * I. M. Ryzhik, Table of Integrals, Series, and Products, 7th ed. (2007), 2.66). */
+#pragma once
 
 #include "sym/expr.h"
 
@@ -15,5 +13,3 @@ Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without);
 /* Potential F with dF/dq_i = a_i for all i, integrated coordinate by coordinate with expr_integrate. F may cover some of the terms only:
  * the caller judges the remainder a_i - dF/dq_i. */
 Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n);
-
-#endif

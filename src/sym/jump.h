@@ -3,8 +3,7 @@
  * Candidates are read off the graph: comparisons, signs, branch cuts of atan2, poles of tan, divisors. A candidate jumps if the difference of
  * the expression between states on both sides stays constant as the states approach each other.
  * abs(x), max(x, y) and if(x > 0, x^2, 0) do not jump; a divergence to infinity is not reported, as no motion passes through it. */
-#ifndef LAGC_JUMP_H
-#define LAGC_JUMP_H
+#pragma once
 
 #include "sym/expr.h"
 
@@ -24,5 +23,3 @@ typedef struct {
 /* Jumps of x as a function of coordinates, velocities, states and time, one per causing node, in graph order. Searched along 64 straight
  * lines through random states and among the first 200 candidates: others may be missed. */
 ExprJumps expr_jumps(ExprGraph *g, Expr x);
-
-#endif

@@ -1,10 +1,9 @@
 /* Normal form: expressions as fractions of polynomials whose generators are symbols, sines and
  * cosines of base angles, exponentials, roots, and opaque functions.
  *
- * Enters: any expressions of a graph; definitions are expanded unless limits.shallow is set. Leaves: fractions over one
- * ring. Equal fractions mean equal expressions wherever all of them are defined; a zero numerator
- * is a proof. The converse holds while `canonical` is 1: then all relations between the generators are known,
- * and a nonzero numerator is a nonzero function.
+ * Enters: any expressions of a graph; definitions are expanded unless limits.shallow is set. Leaves: fractions over one ring. Equal fractions mean
+ * equal expressions wherever all of them are defined; a zero numerator is a proof. The converse holds while `canonical` is 1: then all relations
+ * between the generators are known, and a nonzero numerator is a nonzero function.
  *
  * How the generators are chosen:
  *   - sin u, cos u, tan u: u is a sum of rational multiples of terms; a term divided so that all its
@@ -17,8 +16,7 @@
  *     |u| is the square root of u^2, hypot(u, v) of u^2 + v^2;
  *   - any other operation is opaque: one generator per operation and normal forms of its arguments. So is a number that
  *     is not an exact rational: a proof then holds for any value of the number. */
-#ifndef LAGC_SYM_NORMAL_FORM_H
-#define LAGC_SYM_NORMAL_FORM_H
+#pragma once
 
 #include "sym/expr.h"
 #include "sym/frac.h"
@@ -81,8 +79,7 @@ typedef struct {
 /* New normal-form problem; its memory is in the arena a, which must not be the graph's if it is freed. */
 Normal *normal_new(ExprGraph *g, Arena *a, NormalLimits limits);
 
-/* Normal forms of the roots (a root 0 gives 0), all over the same generators. out is valid only if
- * the result is POLY_OK, and until the next call. */
+/* Normal forms of the roots (a root 0 gives 0), all over the same generators. out is valid only if the result is POLY_OK, and until the next call. */
 PolyStatus normal_run(Normal *n, const Expr *roots, uint32_t count, Frac *out);
 
 /* Records kind and expression of a new generator of the ring. */
@@ -100,5 +97,3 @@ Expr normal_expr(Normal *n, Frac a);
 /* Runs work(scratch, data) with an arena that is freed afterwards, also when memory runs out in it or in the
  * graph's arena; that failure is passed on to the graph's handler. */
 void normal_with_scratch(ExprGraph *g, void (*work)(Arena *scratch, void *data), void *data);
-
-#endif

@@ -1,6 +1,5 @@
 /* Internals of the normal form, for the .c files that build it. */
-#ifndef LAGC_SYM_NORMAL_FORM_IMPL_H
-#define LAGC_SYM_NORMAL_FORM_IMPL_H
+#pragma once
 
 #include "sym/normal_form.h"
 
@@ -37,5 +36,3 @@ int normal_poly_positive(const Normal *n, Poly p);
 
 /* Whether generator x is known to be positive wherever the expression is defined. */
 int normal_gen_positive(const Normal *n, GenId x);
-
-#endif

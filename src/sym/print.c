@@ -43,8 +43,7 @@ typedef struct {
   int rank;
 } Factor;
 
-/* Position of a factor in a product: numbers and sums of parameters, parameters, coordinates, functions, velocities:
- * (m1 + m2)*g*l*sin(th)*th'. */
+/* Position of a factor in a product: numbers and sums of parameters, parameters, coordinates, functions, velocities: (m1 + m2)*g*l*sin(th)*th'. */
 static int rank_of(ExprGraph *g, Expr e) {
   switch (expr_op(g, e)) {
     case EX_NUM: return 0;

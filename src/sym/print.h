@@ -1,6 +1,5 @@
 /* Printing of expressions in textbook notation, as text or LaTeX, with the user's names. */
-#ifndef LAGC_PRINT_H
-#define LAGC_PRINT_H
+#pragma once
 
 #include "base/strbuf.h"
 #include "sym/expr.h"
@@ -12,5 +11,3 @@ void expr_print(ExprGraph *g, Expr e, PrintStyle style, StrBuf *out);
 
 /* Appends a name: text as it is; LaTeX with Greek letters, subscripts and dots. */
 void name_print(Name name, PrintStyle style, StrBuf *out);
-
-#endif

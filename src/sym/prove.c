@@ -189,9 +189,8 @@ static void clear_denominators(Normal *n, uint32_t size, const Frac *M, const Fr
   }
 }
 
-/* Minor of the first rows over the columns in the bit set `set`, by expansion along its last row.
- * Expansion by minors, each computed once, beats elimination on sparse polynomials (Gentleman and
- * Johnson 1976, DOI 10.1145/355694.355696), and needs no division modulo relations. */
+/* Minor of the first rows over the columns in the bit set `set`, by expansion along its last row. Expansion by minors, each computed once, beats
+ * elimination on sparse polynomials (Gentleman and Johnson 1976, DOI 10.1145/355694.355696), and needs no division modulo relations. */
 static Poly minor_of(PolyRing *r, uint32_t columns, const Poly *rows, uint32_t set, const Poly *minors) {
   uint32_t row = (uint32_t)__builtin_popcount(set) - 1;
   Poly parts[MAX_BLOCK + 1];
@@ -233,8 +232,7 @@ static int unknown_gens(Normal *n, const System *s, GenId *gen) {
   return 1;
 }
 
-/* Term t with unknown k replaced by solution[k]/det, times det^degree; degree is at least the term's degree in the
- * unknowns. */
+/* Term t with unknown k replaced by solution[k]/det, times det^degree; degree is at least the term's degree in the unknowns. */
 static Poly substitute_term(Normal *n, const System *s, const GenId *gen, Term t, int32_t degree, Poly det,
                             const Poly *solution) {
   PolyRing *r = n->ring;
@@ -253,8 +251,7 @@ static Poly substitute_term(Normal *n, const System *s, const GenId *gen, Term t
   return poly_mul_mono(r, p, t.c, rest);
 }
 
-/* p with the solution substituted for the unknowns, times a power of det. Returns 0 on a negative power of an
- * unknown. */
+/* p with the solution substituted for the unknowns, times a power of det. Returns 0 on a negative power of an unknown. */
 static int substitute(Normal *n, const System *s, const GenId *gen, Poly p, Poly det, const Poly *solution,
                       Poly *result) {
   int32_t degree = 0;

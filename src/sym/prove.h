@@ -1,6 +1,5 @@
 /* Proofs that expressions vanish, sample states, and values with rounding bounds. */
-#ifndef LAGC_PROVE_H
-#define LAGC_PROVE_H
+#pragma once
 
 #include "sym/normal_form.h"
 
@@ -9,9 +8,8 @@ typedef enum { NOT_DECIDED, PROVED_ZERO, PROVED_NONZERO } Verdict;
 /* Default limits on the cost of a proof: about 0.2 s at most. */
 NormalLimits prove_limits(void);
 
-/* Decides whether e is 0 wherever it is defined; numbers beyond 64 bits are compared by their residues (base/num.h).
- * PROVED_NONZERO: the normal form is unique and not 0, or the value at some state exceeds its rounding bound.
- * limits NULL: prove_limits(). */
+/* Decides whether e is 0 wherever it is defined; numbers beyond 64 bits are compared by their residues (base/num.h). PROVED_NONZERO: the normal form
+ * is unique and not 0, or the value at some state exceeds its rounding bound. limits NULL: prove_limits(). */
 Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits);
 
 /* Decides whether e vanishes when the symbols acc[0..n-1] solve M acc = f (M is n*n, row by row; its entries
@@ -37,9 +35,6 @@ BoundTape *bound_tape(ExprGraph *g, const Expr *roots, uint32_t n);
 void bound_run(BoundTape *t, const long double *symbols, const long double *errors);
 long double bound_value(const BoundTape *t, Expr node, long double *bound);
 
-/* Value of e and a bound of its error, given the errors of the symbols (NULL: none).
- * The bound is infinite where none is known. */
+/* Value of e and a bound of its error, given the errors of the symbols (NULL: none). The bound is infinite where none is known. */
 long double value_with_bound(ExprGraph *g, Expr e, const long double *symbols, const long double *errors,
                         long double *bound);
-
-#endif

@@ -1,6 +1,5 @@
-/* Random sample states, and values with a bound of their rounding error: the running error analysis of Wilkinson (Higham,
- * Accuracy and Stability of Numerical Algorithms, 2002, section 3.3), with first-order bounds for
- * the functions. */
+/* Random sample states, and values with a bound of their rounding error: the running error analysis of Wilkinson (Higham, Accuracy and Stability of
+ * Numerical Algorithms, 2002, section 3.3), with first-order bounds for the functions. */
 #include <float.h>
 #include <math.h>
 

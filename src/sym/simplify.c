@@ -1,8 +1,7 @@
 /* simplify: the normal form of an expression, written as briefly as possible.
  *
- * A numerator is a sum of terms number * parameters * dynamic part * circular functions. For each
- * monomial of the first three, the polynomial in circular functions takes its shortest form; then
- * terms with the same functions of the state are collected, which gives each a polynomial of
+ * A numerator is a sum of terms number * parameters * dynamic part * circular functions. For each monomial of the first three, the polynomial in
+ * circular functions takes its shortest form; then terms with the same functions of the state are collected, which gives each a polynomial of
  * parameters; then functions of the state with the same parameter factor are collected. */
 #include "sym/simplify.h"
 
@@ -32,9 +31,7 @@ static int gen_is_param(const Normal *n, GenId x) {
   return (info.kind == GEN_SYMBOL || info.kind == GEN_ROOT) && expr_is_constant(n->g, info.expr);
 }
 
-static int gen_is_circular(const Normal *n, GenId x) {
-  return n->gens.at[x].kind == GEN_SIN || n->gens.at[x].kind == GEN_COS;
-}
+static int gen_is_circular(const Normal *n, GenId x) { return n->gens.at[x].kind == GEN_SIN || n->gens.at[x].kind == GEN_COS; }
 
 /* Part of a monomial whose generators are circular functions, or (circular 0) parameters or not. */
 static MonoId mono_part(Normal *n, MonoId m, int circular, int param) {
@@ -300,9 +297,7 @@ static void work(Arena *scratch, void *data) {
 
 /* --- range --- */
 
-static int can_overflow(ExprOp op) {
-  return op == EX_EXP || op == EX_SINH || op == EX_COSH || op == EX_TANH || op == EX_POW;
-}
+static int can_overflow(ExprOp op) { return op == EX_EXP || op == EX_SINH || op == EX_COSH || op == EX_TANH || op == EX_POW; }
 
 typedef struct {
   const ExprGraph *g;

@@ -1,5 +1,4 @@
-/* Candidate forms of a trigonometric polynomial: powers of sines and cosines, or its Fourier spectrum by directions; the
- * shortest wins. */
+/* Candidate forms of a trigonometric polynomial: powers of sines and cosines, or its Fourier spectrum by directions; the shortest wins. */
 #include "sym/trig_simplify.h"
 
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 /* Shortest form of a polynomial in sines and cosines. */
-#ifndef LAGC_SYM_TRIG_SIMPLIFY_H
-#define LAGC_SYM_TRIG_SIMPLIFY_H
+#pragma once
 
 #include "sym/normal_form.h"
 
@@ -22,5 +21,3 @@ typedef struct {
  *     cos(u - v), and 1/2 - cos(2u - 2v)/2 is sin(u - v)^2.
  * On a tie the first wins. */
 TrigForm trig_simplify(Normal *n, Poly p);
-
-#endif

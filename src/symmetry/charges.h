@@ -1,6 +1,5 @@
 /* The charges of a model: its energy and those of its declared symmetries, each with its balance. */
-#ifndef LAGC_SYMMETRY_CHARGES_H
-#define LAGC_SYMMETRY_CHARGES_H
+#pragma once
 
 #include "symmetry/noether.h"
 #include "sym/print.h"
@@ -32,5 +31,3 @@ void charges_print(const Eqns *e, Name effect, StrBuf *out);
 
 /* Appends a line for each charge, of the energy too, that is not conserved with the effects and inputs of the scene. */
 void charges_show_broken(const Eqns *e, StrBuf *out);
-
-#endif

@@ -7,8 +7,7 @@
  *   B0 u + B1 u' = 0
  * with numbers B0, B1. The u that solve this at all states and times form the largest space V with B0 V in B1 V; on it u' = A u,
  * so u(t) = exp(A t) u(0): the coefficients may be functions of time of any kind. */
-#ifndef LAGC_SYMMETRY_DETERMINING_EQUATIONS_H
-#define LAGC_SYMMETRY_DETERMINING_EQUATIONS_H
+#pragma once
 
 #include "base/dense.h"
 #include "symmetry/noether.h"
@@ -75,5 +74,3 @@ typedef struct {
 /* Solution space at given values of the parameters. like: the space at other generic values, in which only the coefficients that occur there are
  * searched; or NULL. */
 SolutionSpace solution_space(const Ansatz *a, Arena *scratch, const long double *parameters, const SolutionSpace *like);
-
-#endif

@@ -3,8 +3,7 @@
  * Equations, 2nd ed. (1993), 2.4 and 5.2): random states give linear equations, the space of their solutions is brought to echelon form at two
  * choices of parameters, its entries are recognised as rationals times powers of parameters, and symmetry/noether.h proves each member. Members that
  * are not proved are counted and not listed. */
-#ifndef LAGC_SYMMETRY_FIND_SYMMETRIES_H
-#define LAGC_SYMMETRY_FIND_SYMMETRIES_H
+#pragma once
 
 #include "symmetry/noether.h"
 
@@ -52,5 +51,3 @@ typedef struct {
 } Scaling;
 
 int noether_scaling(const Eqns *e, Scaling *found);
-
-#endif

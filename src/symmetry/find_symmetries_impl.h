@@ -1,6 +1,5 @@
 /* Internals of find_symmetries.c, shared with the files that make generators from tables. */
-#ifndef LAGC_SYMMETRY_FIND_SYMMETRIES_IMPL_H
-#define LAGC_SYMMETRY_FIND_SYMMETRIES_IMPL_H
+#pragma once
 
 #include "symmetry/find_symmetries.h"
 #include "symmetry/number_recognition.h"
@@ -38,5 +37,3 @@ int too_large_to_search(const Eqns *e);
 
 /* Tries the energy, momenta of cyclic coordinates, and translations, boosts and rotations of all coordinates of a kind. */
 void try_usual_symmetries(Eqns *e, FoundSymmetries *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* Tables of generators from the solution space: coefficients of known functions of time, in echelon form. Shared by the files of the search. */
-#ifndef LAGC_SYMMETRY_GENERATOR_TABLE_H
-#define LAGC_SYMMETRY_GENERATOR_TABLE_H
+#pragma once
 
 #include "symmetry/determining_equations.h"
 
@@ -57,5 +56,3 @@ uint32_t table_shorten(Arena *a, GeneratorTable *t, uint32_t row, RowChange *to)
 
 /* Makes a change that was found on another table of this shape. 0: it has no factor here. */
 int table_change(Arena *a, GeneratorTable *t, RowChange c);
-
-#endif

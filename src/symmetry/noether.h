@@ -8,8 +8,7 @@
  * Must hold: a verdict rests on a proof of sym/prove.h or, where by_value says so, on random states; F is checked by differentiation.
  * E. Noether, Nachr. Ges. Wiss. Goettingen (1918) 235, DOI 10.1080/00411457108231446 (translation); gauge terms: E. Bessel-Hagen,
  * Math. Ann. 84 (1921) 258, DOI 10.1007/BF01459410. */
-#ifndef LAGC_SYMMETRY_NOETHER_H
-#define LAGC_SYMMETRY_NOETHER_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -53,5 +52,3 @@ int noether_moves_jumps(const Eqns *e, const Generator *by);
 /* The energy as the charge of t -> t - s, F = 0: charge e->energy, power of forces, moving constraints and explicit time. Whether it is conserved:
  * e->conserves_energy. */
 Noether noether_energy(const Eqns *e);
-
-#endif

@@ -1,6 +1,5 @@
 /* Contents of `lagc noether`: symmetries, charges, their algebra, and the symmetries that effects break. */
-#ifndef LAGC_SYMMETRY_NOETHER_REPORT_H
-#define LAGC_SYMMETRY_NOETHER_REPORT_H
+#pragma once
 
 #include "symmetry/poisson_brackets.h"
 #include "sym/print.h"
@@ -49,5 +48,3 @@ void show_cyclic(const Eqns *e, const char *before, StrBuf *out);
 /* The report as text or LaTeX, and as one JSON object in which formulas are text. */
 void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out);
 void show_noether_json(const NoetherReport *r, StrBuf *out);
-
-#endif

@@ -65,9 +65,7 @@ static int recognise_same(const long double *value, Num *out) {
 
 static long double value_at(const Choices *c, uint32_t choice, uint32_t k) { return c->at[choice][c->param[k]]; }
 
-static Expr parameter(const Choices *c, uint32_t k, Num power) {
-  return expr_pow_num(c->e->g, expr_symbol(c->e->g, c->param[k])->node, power);
-}
+static Expr parameter(const Choices *c, uint32_t k, Num power) { return expr_pow_num(c->e->g, expr_symbol(c->e->g, c->param[k])->node, power); }
 
 /* A rational times p or 1/p of one parameter, or times a ratio or product of two; 0: none. */
 static Expr recognise_ratio(const Choices *c, const long double *value) {

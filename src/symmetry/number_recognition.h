@@ -1,6 +1,5 @@
 /* Recognition of numbers that depend on parameters: c * product of parameters^e, c rational or the root of a rational, e halves of integers. */
-#ifndef LAGC_SYMMETRY_NUMBER_RECOGNITION_H
-#define LAGC_SYMMETRY_NUMBER_RECOGNITION_H
+#pragma once
 
 #include "mech/eqns.h"
 
@@ -36,5 +35,3 @@ Expr recognise_monomial(const Choices *c, const long double *value);
 
 /* The value of an expression of parameters at a choice. */
 long double choice_value(const Choices *c, uint32_t choice, Expr e);
-
-#endif

@@ -199,8 +199,7 @@ static Expr symbolic(const BracketFit *w, uint32_t a, uint32_t b) {
 
 /* --- the brackets --- */
 
-/* A coefficient from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges; 0: not
- * recognised. */
+/* A coefficient from its values at all choices: numbers, ratios and powers of parameters, sums of them, rates of the charges; 0: not recognised. */
 static Expr recognise(const BracketFit *w, long double *const *fits, size_t place) {
   long double *x = ARENA_ARRAY(w->scratch, long double, 2 + w->choices.n);
   for (uint32_t k = 0; k < 2 + w->choices.n; k++)

@@ -6,8 +6,7 @@
  * Symbolically, without an inverse: the charge of (xi, tau), F generates xi - tau q' along the motion, so
  *   dA/dp_i = xi_i - tau q_i',   dA/dq_i at fixed p = sum_k p_k dxi_k/dq_i + tau dL/dq_i - dF/dq_i.
  * The two ways share nothing but the charges. V. I. Arnold, Mathematical Methods of Classical Mechanics, 2nd ed. (1989), 40. */
-#ifndef LAGC_SYMMETRY_POISSON_BRACKETS_H
-#define LAGC_SYMMETRY_POISSON_BRACKETS_H
+#pragma once
 
 #include "symmetry/find_symmetries.h"
 
@@ -29,5 +28,3 @@ typedef struct {
 
 /* All brackets of the charges found; up to 48 charges. */
 Algebra brackets_find(Eqns *e, const FoundSymmetries *of);
-
-#endif

@@ -1,6 +1,5 @@
 /* Names of the symmetries found, as physicists call them: momentum, rotation, boost, scaling. */
-#ifndef LAGC_SYMMETRY_SYMMETRY_NAMES_H
-#define LAGC_SYMMETRY_SYMMETRY_NAMES_H
+#pragma once
 
 #include "symmetry/find_symmetries.h"
 #include "symmetry/generator_table.h"
@@ -38,5 +37,3 @@ void orient_generator(const CoordinateNames *e, GeneratorRow *row);
 
 /* Sets kind, name, axis and of_all of a found symmetry from its row. */
 void name_symmetry(const CoordinateNames *e, const GeneratorRow *row, FoundSymmetry *to);
-
-#endif

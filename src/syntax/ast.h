@@ -1,11 +1,9 @@
 /* Ast: a .lag file as it was written. Names are not resolved, kinds are not checked, nothing is
  * folded: every later pass can still point at the user's own text.
  *
- * Expressions live in one array and are named by AstId; children come before parents, and the
- * nodes of one expression are contiguous (the parser builds bottom-up), so passes are loops.
- * Statements are structs in lists. Id 0 means "absent". */
-#ifndef LAGC_AST_H
-#define LAGC_AST_H
+ * Expressions live in one array and are named by AstId; children come before parents, and the nodes of one expression are contiguous (the parser
+ * builds bottom-up), so passes are loops. Statements are structs in lists. Id 0 means "absent". */
+#pragma once
 
 #include "base/diag.h"
 #include "base/intern.h"
@@ -162,5 +160,3 @@ static inline uint32_t ast_list_length(const Ast *ast, AstId first) {
   for (; first; first = ast_expr(ast, first)->next) n++;
   return n;
 }
-
-#endif

@@ -28,18 +28,14 @@ static AstId append(Ast *ast, AstExpr e) {
   return id;
 }
 
-AstId ast_number(Ast *ast, Span span, Num number) {
-  return append(ast, (AstExpr){.kind = AST_NUM, .span = span, .op_span = span, .number = number});
-}
+AstId ast_number(Ast *ast, Span span, Num number) { return append(ast, (AstExpr){.kind = AST_NUM, .span = span, .op_span = span, .number = number}); }
 
 AstId ast_string(Ast *ast, AstText text) {
   Name name = intern(ast->names, text.text);
   return append(ast, (AstExpr){.kind = AST_STRING, .span = text.span, .op_span = text.span, .name = name});
 }
 
-AstId ast_name(Ast *ast, Ident name) {
-  return append(ast, (AstExpr){.kind = AST_NAME, .span = name.span, .op_span = name.span, .name = name.name});
-}
+AstId ast_name(Ast *ast, Ident name) { return append(ast, (AstExpr){.kind = AST_NAME, .span = name.span, .op_span = name.span, .name = name.name}); }
 
 void check_declared(Ast *ast, Ident name) {
   int is_t = strcmp(name.name, "t") == 0;
@@ -113,9 +109,7 @@ AstId ast_member(Ast *ast, Span span, AstId a, Ident member) {
   return append(ast, (AstExpr){.kind = AST_MEMBER, .span = span, .op_span = member.span, .a = a, .name = member.name});
 }
 
-AstId ast_prime(Ast *ast, Span span, Span op, AstId a) {
-  return append(ast, (AstExpr){.kind = AST_PRIME, .span = span, .op_span = op, .a = a});
-}
+AstId ast_prime(Ast *ast, Span span, Span op, AstId a) { return append(ast, (AstExpr){.kind = AST_PRIME, .span = span, .op_span = op, .a = a}); }
 
 AstId ast_unit(Ast *ast, Span span, AstId a, AstUnit unit) {
   return append(ast, (AstExpr){.kind = AST_UNIT, .span = span, .op_span = unit.span, .a = a, .unit = unit});

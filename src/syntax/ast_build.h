@@ -1,7 +1,6 @@
 /* Builders of the Ast, called by the grammar's actions, one function a rule. Builders never fail: a
  * mistake is reported, and a node that later passes can walk over is returned. */
-#ifndef LAGC_AST_BUILD_H
-#define LAGC_AST_BUILD_H
+#pragma once
 
 #include "syntax/ast.h"
 
@@ -84,5 +83,3 @@ Ident ident_dashed(Ast *ast, Span span, Ident a, Ident b);
 
 /* The sign declared by `> 0`, `>= 0`, ...; a bound other than 0 is reported. */
 AstSign sign_of(Ast *ast, Span span, AstSign sign, Num number);
-
-#endif

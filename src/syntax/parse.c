@@ -44,8 +44,7 @@ static void report_hidden(Ast *ast, const Source *source) {
   }
 }
 
-/* Parses one text. When memory runs out, the stack is freed and the failure passed to the previous
- * guard of the arena. */
+/* Parses one text. When memory runs out, the stack is freed and the failure passed to the previous guard of the arena. */
 static void run(Parse *cx, Ast *ast, const Source *source, TokKind begin) {
   *cx = (Parse){.ast = ast};
   jmp_buf here;

@@ -1,6 +1,5 @@
 /* State of one parse of one text, shared by parse.c, syntax_errors.c and the generated parser. */
-#ifndef LAGC_PARSE_STATE_H
-#define LAGC_PARSE_STATE_H
+#pragma once
 
 #include "syntax/ast_build.h"
 #include "syntax/token_filter.h"
@@ -36,5 +35,3 @@ const char *advice_for_word(const char *word, unsigned where);
 
 /* Advice where the current token cannot follow the previous one; set[n]: expected tokens. NULL: none. */
 const char *advice_for_token(const Parse *cx, const TokKind *set, int n);
-
-#endif

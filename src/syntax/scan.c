@@ -79,8 +79,7 @@ static int is_space(uint32_t code) {
   return code == 0x00A0 || (code >= 0x2000 && code <= 0x200B) || code == 0x202F || code == 0x3000 || code == 0xFEFF;
 }
 
-/* Code points beyond ASCII that may stand in a name: everything but spaces, signs, arrows,
- * operators, box drawings, pictures and private use. */
+/* Code points beyond ASCII that may stand in a name: everything but spaces, signs, arrows, operators, box drawings, pictures and private use. */
 static int is_letter(uint32_t code) {
   if (code < 0x00AA) return 0;
   if (code < 0x00C0) return code == 0x00AA || code == 0x00B5 || code == 0x00BA;

@@ -1,6 +1,5 @@
 /* Scanner: text -> raw tokens, one at a time. The patterns are in grammar/lag.l, their actions here. */
-#ifndef LAGC_SCAN_H
-#define LAGC_SCAN_H
+#pragma once
 
 #include "syntax/token.h"
 
@@ -42,5 +41,3 @@ int unit_parse(Scan *s, Token *t, const char *text, uint32_t n, uint32_t begin);
 
 /* The code point at text (valid UTF-8 of at least one byte); *len is its length in bytes. */
 uint32_t utf8_decode(const char *text, uint32_t *len);
-
-#endif

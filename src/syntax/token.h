@@ -2,8 +2,7 @@
  *
  * One table names them all: lag.y declares the same names (its epilogue maps one to the other, and a
  * token missing there does not compile), the filter reads the flags, messages use the words. */
-#ifndef LAGC_TOKEN_H
-#define LAGC_TOKEN_H
+#pragma once
 
 #include "syntax/ast.h"
 
@@ -147,5 +146,3 @@ static inline int token_is_in(const TokKind *set, int n, TokKind kind) {
 
 /* The statement word spelled `name` that may stand in one of the places `where`, or TOK_IDENT. */
 TokKind token_statement(Name name, unsigned where);
-
-#endif

@@ -34,9 +34,7 @@ Filter *filter_new(Scan *scan, int single) {
   return f;
 }
 
-const OpenBracket *filter_open_bracket(const Filter *f) {
-  return f->brackets.n ? &f->brackets.at[f->brackets.n - 1] : NULL;
-}
+const OpenBracket *filter_open_bracket(const Filter *f) { return f->brackets.n ? &f->brackets.at[f->brackets.n - 1] : NULL; }
 
 /* The raw token after the next k. */
 static const Token *peek_at(Filter *f, uint32_t k) {
@@ -109,9 +107,7 @@ static int at_line_end(Filter *f) {
 
 /* ---- words ---- */
 
-static int sets_a_name(TokKind next) {
-  return next == TOK_ASSIGN || next == TOK_DOT || next == TOK_PRIME || next == TOK_INDEX;
-}
+static int sets_a_name(TokKind next) { return next == TOK_ASSIGN || next == TOK_DOT || next == TOK_PRIME || next == TOK_INDEX; }
 
 /* Classifies the first name of a statement: a statement word, a name being set, or BADWORD. */
 static Token first_name(Filter *f, Token t) {
@@ -198,8 +194,7 @@ static Token open_block(Filter *f, Token t) {
   return brace;
 }
 
-/* A `}` that closes no list ends the statement before it, then the block, then the statement that
- * holds the block. */
+/* A `}` that closes no list ends the statement before it, then the block, then the statement that holds the block. */
 static Token close_block(Filter *f) {
   if (f->inside) return end_statement(f, peek(f)->span, TOK_RBRACE);
   Token t = take_raw_token(f);

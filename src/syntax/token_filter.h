@@ -1,6 +1,5 @@
 /* Token filter: raw tokens -> tokens of the grammar, with statement words, statement ends, and primes of dotted names. */
-#ifndef LAGC_SYNTAX_TOKEN_FILTER_H
-#define LAGC_SYNTAX_TOKEN_FILTER_H
+#pragma once
 
 #include "syntax/scan.h"
 
@@ -44,5 +43,3 @@ Token filter_next(Filter *f);
 
 /* The innermost bracket that is still open in the current statement, or NULL. */
 const OpenBracket *filter_open_bracket(const Filter *f);
-
-#endif

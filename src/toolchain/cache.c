@@ -44,8 +44,7 @@ static int dir_is_safe(const char *path) {
   return safe;
 }
 
-/* Creates the folder at path if needed and removes write permission of others. Returns path; NULL if others can
- * still write there. */
+/* Creates the folder at path if needed and removes write permission of others. Returns path; NULL if others can still write there. */
 static const char *own_folder(Arena *a, const char *path) {
   struct stat st;
   if (!dir_make(a, path)) return NULL;

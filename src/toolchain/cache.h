@@ -1,6 +1,5 @@
 /* Cache of simulators: an entry is named by a hash of its texts, and run only where nobody but the user can have written it. */
-#ifndef LAGC_TOOLCHAIN_CACHE_H
-#define LAGC_TOOLCHAIN_CACHE_H
+#pragma once
 
 #include "base/strbuf.h"
 
@@ -28,5 +27,3 @@ void cache_limit(Arena *a, const char *keep);
 /* lagc cache: prints folder, number, size and limit. lagc cache --clear: removes all entries. */
 void cache_print(Arena *a, StrBuf *out);
 void cache_clear(Arena *a, StrBuf *out);
-
-#endif

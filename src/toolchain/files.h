@@ -1,6 +1,5 @@
 /* Files that appear whole or not at all. */
-#ifndef LAGC_TOOLCHAIN_FILES_H
-#define LAGC_TOOLCHAIN_FILES_H
+#pragma once
 
 #include <stddef.h>
 
@@ -17,5 +16,3 @@ int file_install(const char *path, const char *from, const char **error);
 int file_same(const char *a, const char *b);
 
 int file_exists(const char *path);
-
-#endif

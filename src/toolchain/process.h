@@ -1,6 +1,5 @@
 /* Programs run as child processes. */
-#ifndef LAGC_TOOLCHAIN_PROCESS_H
-#define LAGC_TOOLCHAIN_PROCESS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -17,5 +16,3 @@ int process_to_stdin(const char *path, char *const *argv);
  * want of a finite value. Returns in the process that becomes the simulator, which finds the pipe's descriptor in $LAG_LAST_STATE. The listener calls
  * tell(data, number, n) when n numbers have arrived, and ends with the simulator. If fork or pipe fails, there is no listener. */
 void last_state_listen(Arena *a, void (*tell)(void *data, const double *number, uint32_t n), void *data);
-
-#endif

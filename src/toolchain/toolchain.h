@@ -1,6 +1,5 @@
 /* Toolchain: compiles emitted C with the system's C compiler, and links it with the runtime into a simulator. */
-#ifndef LAGC_TOOLCHAIN_TOOLCHAIN_H
-#define LAGC_TOOLCHAIN_TOOLCHAIN_H
+#pragma once
 
 #include "base/strbuf.h"
 #include "base/vec.h"
@@ -34,5 +33,3 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
 
 /* The path of a simulator of these texts, from the cache or built; NULL, with *error. */
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error);
-
-#endif

@@ -12,7 +12,6 @@
 
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
-#include "emit/emit_header.h"
 #include "emit/emit_model.h"
 #include "report/equation_listing.h"
 #include "lower/lower.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ir/hoist.h"
+#include "ir/unit.h"
 #include "jets/self_check.h"
 #include "lower/lower.h"
 #include "model.h"

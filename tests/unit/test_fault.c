@@ -11,7 +11,6 @@
 
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
-#include "emit/emit_header.h"
 #include "emit/emit_model.h"
 #include "lower/lower.h"
 #include "report/equation_listing.h"
