@@ -1,7 +1,8 @@
 /* Syntax errors in the user's words.
  *
- * In: the unexpected token and the set of expected tokens. Out: one message, with a caret under the unexpected token and, for a known mistake,
- * advice. Names of tokens never appear: expected tokens are grouped into words for a physicist, such as `an expression`. */
+ * In: the unexpected token and the set of expected tokens. Out: one message, with a caret under the
+ * unexpected token and, for a known mistake, advice. Names of tokens never appear: expected tokens
+ * are grouped into words for a physicist, such as `an expression`. */
 #include <string.h>
 
 #include "base/words.h"
@@ -176,5 +177,6 @@ void parse_report(Parse *cx, const TokKind *expected, int n) {
 
 void parse_too_deep(Parse *cx, Span span) {
   cx->reported = 1;
-  diag_error(cx->ast->diags, span, "this is nested too deep (the limit is %d levels)" HELP "split the expression with `let`", PARSE_STACK);
+  diag_error(cx->ast->diags, span, "this is nested too deep (the limit is %d levels)", PARSE_STACK);
+  diag_help(cx->ast->diags, "split the expression with `let`");
 }

@@ -92,7 +92,7 @@ sym/finite_quotients.c|s/expr_neg(g, expr_arg(g, E, 0))/expr_arg(g, E, 0)/
 lower/lower.c|s/IR_ADD : IR_SUB, first, second/IR_SUB : IR_ADD, first, second/
 lower/lower.c|s/wanted > 0 || negative ? IR_ADD : IR_SUB/IR_ADD/
 model/rotation.c|s/num_int(2), turned\[k\]/num_int(1), turned[k]/
-lower/eliminate.c|s/prog_op(l->p, IR_SUB, x, ab)/prog_op(l->p, IR_ADD, x, ab)/
+ir/prog.c|s/prog_op(p, IR_SUB, x, ab)/prog_op(p, IR_ADD, x, ab)/
 ir/reassociate.c|s/x.minus ? prog_op(b->to, IR_SUB, y.slot, x.slot)/0 ? prog_op(b->to, IR_SUB, y.slot, x.slot)/
 model/resolve_time.c|s/seed\[m->time\] = expr_int(b->g, 1)/seed[m->time] = expr_int(b->g, 0)/
 mech/lagrange.c|s/expr_sub(g, dLdq\[i\], convective\[i\])/expr_add(g, dLdq[i], convective[i])/
