@@ -129,7 +129,7 @@ static int error_number(void) { return errno ? errno : EIO; }
 int lag_outfile_close(Outfile *o, int keep) {
   int is_part = o->part[0] != '\0', error = ferror(o->f) ? EIO : 0;
   errno = 0;
-  if (!error && (fflush(o->f) != 0 || (keep == OUTFILE_SYNC && is_part && fsync(fileno(o->f)) != 0))) error = error_number();
+  if (fflush(o->f) != 0 || (keep == OUTFILE_SYNC && is_part && fsync(fileno(o->f)) != 0)) error = error_number(); /* says why, where ferror does not */
   if (o->f != stdout) {
     if (is_part && !error && keep && rename(o->part, o->path) != 0) error = error_number(); /* before the lock is released */
     if (is_part && (error || !keep)) remove(o->part);
