@@ -25,6 +25,7 @@ static double seconds_since(const struct timespec *t) {
 /* After each step: tests for signals, updates the progress line (on a terminal, after 1 s, at most 5 times a second). */
 int lag_app_after_step(void *context, const lag_sim *sim) {
   App *app = context;
+  if (app->watched) lag_error_estimate_note(&app->error, sim);
   if (app->progress >= 0 && seconds_since(&app->shown) >= (app->progress ? 0.2 : 1.0)) {
     double t = lag_sim_time(sim), t0 = app->scene->t0, part = (t - t0) / (app->until - t0);
     fprintf(stderr, "\rt = %.6g s, %.0f %% ", t, 100 * part);
@@ -317,8 +318,10 @@ static int simulate(App *app) {
   note_tables(app);
   lag_sim_on_step(app->sim, lag_app_after_step, app);
   lag_sim_on_event(app->sim, lag_event_note, app);
+  if ((rc = lag_app_error_begin(app)) != 0) return rc;
   lag_app_start_clock(app);
   run(app);
+  lag_app_error_end(app);
   return finish(app);
 }
 
@@ -346,6 +349,7 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
   lag_table_free(&app.table);
   lag_event_log_free(&app);
   lag_sampling_free(&app);
+  lag_error_estimate_free(&app.error);
   free(app.show.cols);
   free(app.drawn.x);
   free(app.row);

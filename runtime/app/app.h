@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <time.h>
 
+#include "analysis/error_estimate.h"
 #include "io/io.h"
 
 enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
@@ -13,6 +14,7 @@ enum { MOST_OPTIONS = 16 };
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
+  const char *accuracy;
   const char *transient, *exponents; /* for --lyapunov */
   const char *target, *longest, *methods, *against; /* for --cost */
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
@@ -49,7 +51,7 @@ typedef struct App {
   lag_extras extras;
   Args args;
   const lag_scene *scene;
-  lag_scene bare;   /* for exponents and costs: the scene without monitors and closed forms, which would end a rough run or take time */
+  lag_scene bare;   /* for exponents, costs and errors: the scene without monitors and closed forms, which would end a rough run or take time */
   lag_sim *sim;
   State state;      /* the saved state of --resume */
   int resumed;      /* 1: the run continues from `state` */
@@ -71,6 +73,9 @@ typedef struct App {
   int written;      /* 1: the file of rows is complete */
   struct timespec begun, shown; /* start of the run; last update of the progress line */
   double wall;      /* wall-clock time of the run [s] */
+  ErrorEstimate error; /* of the run, */
+  int watched;      /* where it is estimated */
+  double asked;     /* --accuracy; 0: none */
   int progress;     /* progress line: 1 shown, 0 not yet, -1 never (no terminal, or --quiet) */
   Table log;        /* event log: its columns, */
   Rows log_rows;    /* its file, */
@@ -155,6 +160,19 @@ int lag_tangent_columns_open(App *app);
 int lag_tangent_columns_row(App *app);
 void lag_report_tangent(App *app, FILE *f);
 void lag_report_tangent_json(App *app, Json *j);
+
+/* error_report.c: the error of the run, by a second run. begin: before the run; 0, or EXIT_USAGE after a message. end: after it. */
+int lag_app_error_begin(App *app);
+void lag_app_error_end(App *app);
+/* A new simulation as lag_app_fresh_sim, of the scene without monitors and closed forms, which would end a rough run early or cost time. */
+lag_sim *lag_app_fresh_bare_sim(App *app);
+/* `to` takes the method and options of `from`, and its tolerance times `times`; set_more_accurate: a setting whose error is small beside the run's. */
+int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times);
+int lag_app_set_more_accurate(const lag_sim *run, lag_sim *other);
+/* accuracy.c: --accuracy: sets method and tolerance or step of app->sim. 0, or EXIT_USAGE after a message. */
+int lag_app_choose_by_accuracy(App *app);
+void lag_report_error(const App *app, FILE *f);
+void lag_report_error_json(const App *app, Json *j);
 
 /* lyapunov.c: --lyapunov. Returns the exit status. */
 int lag_app_lyapunov(App *app);

@@ -59,7 +59,7 @@ enum { MODES = 1, COST = 2, LYAPUNOV = 4, EFFECTS = 8, REFERENCE = 16, RUN = 32,
 
 static const Option options[] = {
     {"method", offsetof(Args, method), 0, RUN | LYAPUNOV | EFFECTS},
-    {"tol", offsetof(Args, tol), 0, RUN | LYAPUNOV | EFFECTS},
+    {"tol", offsetof(Args, tol), 0, RUN | LYAPUNOV | EFFECTS}, {"accuracy", offsetof(Args, accuracy), 0, RUN},
     {"step", offsetof(Args, step), 0, RUN | LYAPUNOV | EFFECTS}, {"until", offsetof(Args, until), 0, ANY & ~MODES},
     {"every", offsetof(Args, every), 0, RUN}, {"svg", offsetof(Args, svg), 0, RUN | COST | LYAPUNOV},
     {"plot-x", offsetof(Args, plot_x), 0, ANY}, {"plot-y", offsetof(Args, plot_y), 0, ANY},
@@ -185,6 +185,8 @@ static int check(const Args *a) {
   if (a->section && a->html) return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
   if (a->tangent && (a->save || a->resume))
     return lag_app_error(a, "--tangent and --%s: a saved state holds no tangent; run it in one piece", a->save ? "save-state" : "resume");
+  if (a->accuracy && (a->tol || a->step || a->resume))
+    return lag_app_error(a, "--accuracy chooses the tolerance or step; leave out --%s", a->tol ? "tol" : a->step ? "step" : "resume");
   if (a->section && a->every)
     return lag_app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
   if (strcmp(LAG_PRECISION, "double") != 0 && a->out && lag_outfile_has_suffix(a->out, "npy")) /* NumPy has no type of 34 digits */

@@ -12,6 +12,8 @@ static const char usage[] =
     "  --until T            run to time T [s]; before the start: backwards\n"
     "  --method NAME        method of integration, NAME or \"NAME(option=value, ...)\"; --method help lists them\n"
     "  --tol X              tolerance, absolute and relative\n"
+    "  --accuracy X         the method and tolerance with which the error at all times is below X, relative\n"
+    "                       to the largest value of its kind and unit\n"
     "  --step H             step [s]; the first one tried where the method chooses its own\n"
     "  -o FILE              rows of output: CSV, or NumPy when FILE ends in .npy; - is standard output\n"
     "  --every DT           time between rows [s]; default: as the scene says, or a 1000th of the span\n"

@@ -266,6 +266,7 @@ void lag_report_text(App *app, FILE *f) {
   final_state(app, f);
   fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
   newton(app, &st, f);
+  lag_report_error(app, f);
   charges(app, f);
   constraints(app, &st, f);
   caveat(app, &st, f);
@@ -342,6 +343,7 @@ void lag_report_json(App *app, FILE *f) {
   lag_json_name(&j, "wall_s");
   fprintf(f, "%.6g", app->wall); /* 6 digits in any precision */
   lag_json_number(&j, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null where energy is not conserved */
+  lag_report_error_json(app, &j);
   lag_charge_stats energy = {.absolute = NAN};
   if (lag_sim_ncharges(app->sim)) lag_sim_charge(app->sim, 0, &energy);
   lag_json_number(&j, "energy_drift_absolute", m->flags & LAG_CONSERVES_ENERGY ? energy.absolute : NAN);

@@ -127,7 +127,7 @@ int lag_app_unknown_method(const App *app, const char *name) {
 
 static int choose_method(App *app) {
   const Args *a = &app->args;
-  Choice c = {.name = app->scene->method};
+  Choice c = {.name = a->accuracy ? NULL : app->scene->method};
   int rc = a->method ? parse_method(a, &c) : 0;
   if (rc) return rc;
   const lag_method *m = c.name ? lag_app_find_method(app, c.name) : NULL;
@@ -281,7 +281,8 @@ lag_sim *lag_app_fresh_sim(App *app) {
 
 int lag_app_choose_method(App *app) {
   int rc = set_tolerance(app);
-  return rc ? rc : choose_method(app);
+  rc = rc ? rc : choose_method(app);
+  return rc || !app->args.accuracy ? rc : lag_app_choose_by_accuracy(app);
 }
 
 int lag_app_set_up_start(App *app) {

@@ -145,6 +145,8 @@ static const OptionRow options[] = {
   {"--method", NULL, "NAME", TAKES_METHOD, "", C(BUILD) | C(EMIT), OWN(method),
    "adds the derivatives that this method needs besides accelerations; those of the scenes' methods are always there"},
   {"--tol", NULL, "X", TAKES_NUMBER, "", STEPS, PASSED, "tolerance, absolute and relative"},
+  {"--accuracy", NULL, "X", TAKES_NUMBER, "", SIMULATE, PASSED,
+   "chooses method and tolerance so that the error of the motion stays below X, relative to the largest value of its kind and unit, and reports the estimate"},
   {"--step", NULL, "H", TAKES_NUMBER, "", STEPS, PASSED, "step [s]; the first step to try if the method chooses its own steps"},
   {"--target", NULL, "X", TAKES_NUMBER, "", C(COST), PASSED, "names the cheapest setting whose error is at most X"},
   {"--methods", NULL, "NAME,NAME", TAKES_TEXT, "", C(COST), PASSED, "only these methods"},

@@ -20,6 +20,7 @@ typedef struct {
   const char *output;      /* -o */
   const char *method;      /* --method; run, plot and animate pass it on as well */
   const char *resume;      /* of run */
+  const char *accurate;    /* run, plot, animate --accuracy */
   const char *tol;         /* run, plot, animate --tol */
   const char *format;      /* derive, noether --format */
   const char *dump;        /* --dump=ast,eqns,passes,prog */

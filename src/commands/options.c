@@ -149,6 +149,7 @@ static int read_option(Arena *a, int argc, char **argv, int *i, Options *o, cons
   if (strcmp(row->name, "--method") == 0) o->method = value; /* passed on, and recorded: its derivatives are compiled in */
   if (strcmp(row->name, "--resume") == 0) o->resume = value;
   if (strcmp(row->name, "--tol") == 0) o->tol = value;
+  if (strcmp(row->name, "--accuracy") == 0 && command_simulates(o->command)) o->accurate = value;
   if (strcmp(row->name, "--tangent") == 0) o->with = "linear";
   return row->passed || set_value(a, o, row, value, error);
 }

@@ -46,9 +46,9 @@ static unsigned required_by_all(const Eqns *e) {
 static unsigned required_by_choice(const Eqns *e, const Options *o) {
   enum { LONG = 40 };
   const double below_taylor = 1e-9; /* as in runtime/app/automatic_method.c */
-  double tol = o->tol ? strtod(o->tol, NULL) : e->m->scene.tolerance;
+  double tol = o->accurate ? 0.1 * below_taylor : o->tol ? strtod(o->tol, NULL) : e->m->scene.tolerance; /* --accuracy tries several tolerances */
   int runs = command_simulates(o->command) || o->command == CMD_BUILD;
-  if (!runs || e->m->scene.method || o->method || e->n + e->m->states.n > LONG) return 0;
+  if (!runs || (e->m->scene.method && !o->accurate) || o->method || e->n + e->m->states.n > LONG) return 0;
   return (tol > 0 && tol < below_taylor ? WANT_TAYLOR : 0u) | (e->conserves_energy && !e->m->states.n ? 0u : WANT_LINEAR);
 }
 

@@ -1,0 +1,84 @@
+/* --accuracy: the setting whose error over the whole run is below a number. Enters: a simulation with its values; leaves: its method and tolerance or
+ * step. Each trial is a run and a second, more accurate one (analysis/error_estimate.h); the setting is refined until the estimated error is half
+ * of what was asked. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "core/core.h"
+
+static const double share = 0.5; /* of the error that was asked: an estimate is right within a factor of 2 or so */
+enum { MOST_TRIALS = 10 };
+static const double most_steps = 2e7; /* of equal size in a trial */
+
+/* Method with tolerance or step of the next trial. */
+static int set_knob(App *app, double knob) {
+  lag_sim *s = app->sim;
+  const lag_method *m = s->method;
+  lag_option opt[MOST_OPTIONS];
+  if (!(lag_equal_step(s) > 0)) {
+    int rc = lag_sim_set_tolerance(s, knob);
+    return rc || app->args.method ? rc : lag_app_choose_automatically(app, NULL, 0);
+  }
+  for (int i = 0; i < m->noptions; i++)
+    opt[i] = (lag_option){.name = m->options[i].name, .value = strcmp(m->options[i].name, "step") == 0 ? knob : s->options[i]};
+  return lag_sim_set_method(s, m, opt, m->noptions);
+}
+
+static int note(void *estimate, const lag_sim *sim) {
+  lag_error_estimate_note(estimate, sim);
+  return 0;
+}
+
+/* *e := the error of a run with the present setting. LAG_OK, or the failure of the run with app->sim's message. */
+static int try_setting(App *app, ErrorEstimate *e) {
+  lag_sim *trial = lag_app_fresh_bare_sim(app), *other = lag_app_fresh_bare_sim(app);
+  int rc = trial && other ? lag_error_estimate_init(e, trial) : LAG_ENOMEM;
+  rc = rc ? rc : lag_app_copy_method(app->sim, trial, 1);
+  if (rc == 0) {
+    lag_sim_on_step(trial, note, e);
+    rc = lag_sim_advance(trial, app->until);
+    if (rc < 0) lag_fail(app->sim, rc, "%s", lag_sim_message(trial));
+  }
+  if (rc >= 0 && lag_app_set_more_accurate(app->sim, other) == LAG_OK) rc = lag_error_estimate_compare(e, other, 0, lag_sim_time(trial));
+  lag_sim_free(trial);
+  lag_sim_free(other);
+  return rc < 0 ? rc : LAG_OK;
+}
+
+static int refuse(const App *app, double asked, double best, double horizon) {
+  char reach[160] = "";
+  if (!isnan(horizon)) snprintf(reach, sizeof reach, ": after t = %.3g s no digit is left in " LAG_PRECISION " precision", horizon);
+  else if (best < HUGE_VAL) snprintf(reach, sizeof reach, ": the smallest error found is %.2g", best);
+  else if (lag_sim_message(app->sim)[0]) snprintf(reach, sizeof reach, ": %.120s", lag_sim_message(app->sim));
+  return lag_app_error(&app->args, "--accuracy %g is not reached to t = %g s%s; end the run earlier (--until)%s", asked, app->until, reach,
+                       strcmp(LAG_PRECISION, "double") == 0 ? ", or write --precision quad" : "");
+}
+
+int lag_app_choose_by_accuracy(App *app) {
+  const Args *a = &app->args;
+  ErrorEstimate e = {0};
+  double asked, best = HUGE_VAL, horizon = NAN;
+  if (!lag_args_number(a, "--accuracy", a->accuracy, "--accuracy 1e-8", &asked)) return EXIT_USAGE;
+  if (!(asked > 0 && asked < 1)) return lag_app_error(a, "--accuracy %s: a relative error between 0 and 1, for example --accuracy 1e-8", a->accuracy);
+  int equal = lag_equal_step(app->sim) > 0;
+  double least = equal ? 0 : 4.5 * DBL_EPSILON, knob = equal ? lag_equal_step(app->sim) : fmax(least, fmin(0.1 * asked, 1e-3)), order = equal ? app->sim->method->order : 1;
+  app->asked = asked;
+  for (int i = 0; i < MOST_TRIALS; i++) {
+    double steps = fabs(app->until - app->scene->t0) / knob;
+    if (equal && steps > most_steps)
+      return lag_app_error(a, "--accuracy %g would take about %.1e steps of %s; leave out --method, and an adaptive method of higher order is chosen", asked, steps, app->sim->method->name);
+    int rc = set_knob(app, knob);
+    if (rc) return app->args.method ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : rc;
+    rc = try_setting(app, &e);
+    double error = rc || !isnan(e.horizon) || isnan(e.largest) ? HUGE_VAL : e.largest;
+    horizon = rc ? NAN : e.horizon;
+    lag_error_estimate_free(&e);
+    best = fmin(best, error);
+    if (error <= share * asked) return 0;
+    if (knob <= least || (equal && best < HUGE_VAL && error > 2 * best)) break;
+    knob = fmax(least, knob * pow(fmax(fmin(0.5 * share * asked / error, 0.5), 1e-3), 1 / order));
+  }
+  return refuse(app, asked, best, horizon);
+}

@@ -1,0 +1,70 @@
+#!/bin/sh
+# The error that a run reports, its horizon, and --accuracy: against closed forms and GSL's rk8pd.
+. tests/tap.sh
+dp=models/double_pendulum.lag
+
+# value KEY: a number of the JSON in $TMP/json
+value() { sed -n "s/.*\"$1\": *\([^,}]*\).*/\1/p" "$TMP/json" | head -n 1; }
+run() { "$LAGC" run "$@" --json >"$TMP/json" 2>"$TMP/err" || { cat "$TMP/err"; return 1; }; }
+# within NAME FACTOR A B: A and B agree within a factor
+within() { check "$1" awk -v f="$2" -v a="$3" -v b="$4" 'BEGIN { print a, b; exit !(a != "" && b != "" && a + 0 > 0 && a <= f*b && b <= f*a) }'; }
+
+# A closed form: the estimate is the largest deviation over all components, relative to the largest value of its kind.
+cat >"$TMP/oscillator.lag" <<'EOF'
+model oscillator
+coord x
+lagrangian = x'^2/2 - x^2/2
+scene run { start x = 1; span 50; exact x = cos(t) }
+EOF
+for how in "--method rk45 --tol 1e-6" "--method dop853 --tol 1e-9" "--method rk4 --step 0.05" "--method verlet --step 0.01"; do
+  # shellcheck disable=SC2086 # a list of words
+  run "$TMP/oscillator.lag" $how
+  within "an oscillator by $how: the error of its closed form" 3 "$(value error)" "$(sed -n 's/.*"largest": *\([^,}]*\).*/\1/p' "$TMP/json" | head -n 1)"
+done
+is "the phase of Verlet's method drifts in proportion to time" '"t"' "$(value error_growth)"
+
+# GSL's rk8pd as an independent integrator: the difference at the end.
+if [ -n "${GSL:-yes}" ] && "$LAGC" run "$dp" --method gsl-rk8pd --tol 1e-13 --json >"$TMP/gsl" 2>/dev/null; then
+  final() { sed 's/.*"final": *{//; s/}.*//' "$1" | tr ',' '\n' | sed 's/[" ]//g; s/:/ /' | grep '^th[12]'; }
+  for how in "--method dop853 --tol 1e-7" "--method rk45 --tol 1e-8" "--method rk4 --step 2e-3" "--method taylor --tol 1e-8"; do
+    # shellcheck disable=SC2086 # a list of words
+    run "$dp" $how
+    final "$TMP/json" >"$TMP/a"
+    final "$TMP/gsl" >"$TMP/b"
+    # angles reach 1.8 rad, rates 10 rad/s in this scene
+    true=$(paste -d ' ' "$TMP/a" "$TMP/b" | awk '{ d = $2 - $4; if (d < 0) d = -d; d /= ($1 ~ /\047/ ? 10 : 1.8); if (d > m) m = d } END { print m }')
+    within "double pendulum by $how: the error against GSL" 10 "$(value error)" "$true"
+  done
+  # Chaos: the time at which rows of two methods part by 0.3 of the size of an angle.
+  for how in "--method dop853 --tol 1e-10" "--method rk45 --tol 1e-9"; do
+    # shellcheck disable=SC2086 # a list of words
+    run "$dp" chaos --until 40 $how -o "$TMP/a.csv" --every 0.05
+    "$LAGC" run "$dp" chaos --until 40 --method gsl-rk8pd --tol 1e-14 -o "$TMP/b.csv" --every 0.05 --quiet
+    parted=$(paste -d , "$TMP/a.csv" "$TMP/b.csv" | awk -F , 'NR > 1 { h = NF/2; for (i = 2; i <= 3; i++) { v = $i < 0 ? -$i : $i; if (v > s) s = v; d = $i - $(i + h); if (d < 0) d = -d; if (d > 0.3*s) { print $1; exit } } }')
+    check "chaos by $how: the horizon is within 20 % of where GSL's motion parts" \
+      awk -v a="$(value horizon)" -v b="$parted" 'BEGIN { print a, b; exit !(a > 0 && a < 1.2*b && a > 0.8*b) }'
+  done
+fi
+check "a horizon is told" says 0 'no digit is left: the motion there' "$LAGC" run "$dp" chaos --until 40
+check "the number asked stands beside the estimate" says 0 '(asked 1e-06)' "$LAGC" run "$dp" --accuracy 1e-6
+check "a run that is saved and continued keeps its bits; what is resumed has no estimate" sh -c '
+  "$0" run models/kepler.lag --until 3 --save-state "$1/s" --quiet && "$0" run models/kepler.lag --until 5 --resume "$1/s" --json >"$1/r" &&
+  grep -q "\"error\": null" "$1/r"' "$LAGC" "$TMP"
+
+# The claim, in different methods: the estimate is below what was asked.
+for how in "1e-4" "1e-8" "1e-12" "1e-6 --method rk4" "1e-5 --method verlet" "1e-8 --method gauss"; do
+  # shellcheck disable=SC2086 # a list of words
+  check "--accuracy $how is kept" run $dp --accuracy $how
+  check "--accuracy $how: the estimate is below it" awk -v e="$(value error)" -v x="${how%% *}" 'BEGIN { print e, x; exit !(e > 0 && e <= x) }'
+done
+
+# Refusals
+check "refused: --accuracy 0" says 2 'a relative error between 0 and 1' "$LAGC" run "$dp" --accuracy 0
+check "refused: --accuracy -1e-3" says 2 'a relative error between 0 and 1' "$LAGC" run "$dp" --accuracy -1e-3
+check "refused: --accuracy good" says 2 'is not a number' "$LAGC" run "$dp" --accuracy good
+check "refused: --accuracy 1e-6 --tol 1e-9" says 2 'chooses the tolerance or step; leave out --tol' "$LAGC" run "$dp" --accuracy 1e-6 --tol 1e-9
+check "refused: --accuracy 1e-6 --step 1e-3" says 2 'chooses the tolerance or step; leave out --step' "$LAGC" run "$dp" --accuracy 1e-6 --step 1e-3
+check "refused: chaos --until 60 --accuracy 1e-6" says 2 'no digit is left' "$LAGC" run "$dp" chaos --until 60 --accuracy 1e-6
+check "refused: --accuracy 1e-17" says 2 'the smallest error found is' "$LAGC" run "$dp" --accuracy 1e-17
+check "refused: --accuracy 1e-14 --method verlet" says 2 'steps of verlet; leave out --method' "$LAGC" run "$dp" --accuracy 1e-14 --method verlet
+tap_end
