@@ -3,13 +3,13 @@
  * motion in proportion to time; a method adds to it once or twice more: hence the laws of growth. */
 #include "analysis/error_estimate.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/line_fit.h"
 
 /* The error at which no digit of a value is left. */
 static const double no_digit = 0.3;
@@ -49,25 +49,6 @@ void lag_error_estimate_note(ErrorEstimate *e, const lag_sim *sim) {
 
 /* ---- The law of growth */
 
-/* Least squares of y = a + b x over n points: *b, and the root of the mean square of the rest. */
-static double fit(int n, const double *x, const double *y, double *b) {
-  double mx = 0, my = 0, xx = 0, xy = 0, rest = 0;
-  for (int i = 0; i < n; i++) {
-    mx += x[i] / n;
-    my += y[i] / n;
-  }
-  for (int i = 0; i < n; i++) {
-    xx += (x[i] - mx) * (x[i] - mx);
-    xy += (x[i] - mx) * (y[i] - my);
-  }
-  *b = xx > 0 ? xy / xx : 0;
-  for (int i = 0; i < n; i++) {
-    double d = y[i] - my - *b * (x[i] - mx);
-    rest += d * d / n;
-  }
-  return sqrt(rest);
-}
-
 /* The law from the envelope of errors below the horizon: log E against t, or against log t. *power: exponent of t. */
 static void find_growth(ErrorEstimate *e, double *power) {
   enum { FEWEST = 8 };
@@ -81,10 +62,12 @@ static void find_growth(ErrorEstimate *e, double *power) {
     lx[n] = log(x[n]);
     y[n++] = log(peak);
   }
-  if (n < FEWEST || e->largest < 500 * DBL_EPSILON) return; /* rounding has no law */
-  double by_power = fit(n, lx, y, power), by_rate = fit(n, x, y, &rate);
-  double grown = y[n - 1] - y[0];
-  if (by_rate < 0.7 * by_power && rate * (x[n - 1] - x[0]) > 6 && grown > 6) {
+  if (n < FEWEST) return;
+  LineFit by_power = lag_line_fit(n, lx, y), by_rate = lag_line_fit(n, x, y);
+  double rest_of_power = by_power.yy - by_power.xy * by_power.xy / by_power.xx, rest_of_rate = by_rate.yy - by_rate.xy * by_rate.xy / by_rate.xx;
+  *power = by_power.xy / by_power.xx;
+  rate = by_rate.xy / by_rate.xx;
+  if (rest_of_rate < 0.5 * rest_of_power && rate * (x[n - 1] - x[0]) > 6 && y[n - 1] - y[0] > 6) {
     e->growth = LAG_ERROR_EXPONENTIAL;
     e->rate = rate;
   } else {
@@ -92,62 +75,46 @@ static void find_growth(ErrorEstimate *e, double *power) {
   }
 }
 
-/* Extends the errors from the last compared time to the end of the run by their law. */
+/* Extends the errors from the last compared time to the end of the run by their law; without one they are not known. */
 static void extrapolate(ErrorEstimate *e, double until, double power) {
-  double t = fabs(e->motion.t[e->compared - 1] - e->t0), rest = fabs(until - e->t0) - t, dir = until < e->t0 ? -1 : 1;
-  if (e->growth == LAG_ERROR_EXPONENTIAL) {
-    double reach = log(no_digit / e->largest) / e->rate;
-    if (reach < rest) e->horizon = e->t0 + dir * (t + reach);
+  double t = fabs(e->motion.t[e->compared - 1] - e->t0), rest = fabs(until - e->t0) - t, dir = until < e->t0 ? -1 : 1, reach = HUGE_VAL;
+  e->continued = 1;
+  if (e->growth == LAG_ERROR_UNKNOWN) {
+    e->largest = NAN;
+  } else if (e->growth == LAG_ERROR_EXPONENTIAL) {
+    reach = log(no_digit / e->largest) / e->rate;
     e->largest *= exp(e->rate * fmin(rest, reach));
-  } else if (e->growth != LAG_ERROR_UNKNOWN && power > 0.4) {
-    double reach = t * (pow(no_digit / e->largest, 1 / power) - 1);
-    if (reach < rest) e->horizon = e->t0 + dir * (t + reach);
+  } else if (power > 0.4) {
+    reach = t * (pow(no_digit / e->largest, 1 / power) - 1);
     e->largest *= pow((t + fmin(rest, reach)) / t, power);
   }
+  if (reach < rest) e->horizon = e->t0 + dir * (t + reach);
 }
 
 /* ---- The comparison */
 
-/* The largest relative difference of row i. */
-static double row_error(const ErrorEstimate *e, int i, const double *other, const double *scale) {
-  const double *y = e->motion.y + (size_t)i * (size_t)e->motion.n;
-  double most = 0;
-  for (int k = 0; k < e->motion.n; k++) {
-    double d = fabs(y[k] - other[k]) / scale[k];
-    most = d <= HUGE_VAL ? fmax(most, d) : HUGE_VAL;
-  }
-  return most;
-}
-
-/* Compares rows until a limit: the end, the horizon, `most` steps, or a failure. */
-static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale, long long most) {
-  lag_stats st = {0};
-  for (e->compared = 0; e->compared < e->motion.rows && (most == 0 || st.steps < most);) {
+/* Compares rows up to the end, the horizon, or where `other` stops. */
+static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
+  for (e->compared = 0; e->compared < e->motion.rows && isnan(e->horizon); e->compared++) {
     int i = e->compared, rc = lag_sim_advance(other, e->motion.t[i]);
-    if (rc) {
-      if (rc < 0) snprintf(e->why, sizeof e->why, "%s", lag_sim_message(other));
-      return rc;
-    }
-    e->error[i] = row_error(e, i, other->now, scale);
-    e->compared++;
+    if (rc < 0) snprintf(e->why, sizeof e->why, "the second run failed: %s", lag_sim_message(other));
+    if (rc) return rc;
+    e->error[i] = lag_cost_row_error(e->motion.n, e->motion.y + (size_t)i * (size_t)e->motion.n, other->now, scale);
     e->largest = fmax(e->largest, e->error[i]);
-    if (e->error[i] >= no_digit) {
-      e->horizon = e->motion.t[i];
-      return LAG_OK;
-    }
-    lag_sim_stats(other, &st);
+    if (e->error[i] >= no_digit) e->horizon = e->motion.t[i];
   }
   return LAG_OK;
 }
 
-int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, long long most, double until) {
+int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
   double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale), power;
   if (!scale) return LAG_ENOMEM;
   lag_cost_scales(&e->motion, other, scale);
-  int rc = compare_rows(e, other, scale, most);
+  int rc = compare_rows(e, other, scale);
   free(scale);
-  if (rc == LAG_ENOMEM || e->compared == 0) return rc == LAG_ENOMEM ? rc : LAG_OK;
+  if (rc == LAG_ENOMEM) return rc;
   find_growth(e, &power);
-  if (isnan(e->horizon) && e->compared < e->motion.rows) extrapolate(e, until, power);
+  if (e->compared && isnan(e->horizon) && e->compared < e->motion.rows) extrapolate(e, until, power);
+  if (isnan(e->largest) && !e->why[0]) snprintf(e->why, sizeof e->why, "a second run reached only t = %.3g s", lag_sim_time(other));
   return LAG_OK;
 }

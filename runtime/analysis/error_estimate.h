@@ -15,7 +15,8 @@ typedef struct ErrorEstimate {
   long long stride, seen; /* each stride-th end of a step is kept; ends of steps seen */
   double t0;
   double error[LAG_ERROR_PLACES]; /* [compared] */
-  int compared;          /* rows that the second run reached */
+  int compared;          /* rows that the second run reached, */
+  int continued;         /* 1: fewer than all; `largest` and `horizon` follow from the law of growth */
   double largest;        /* largest error up to the end of the run, extrapolated where compared < rows; NaN: no estimate */
   double horizon;        /* NaN: beyond the end of the run */
   ErrorGrowth growth;
@@ -31,6 +32,6 @@ void lag_error_estimate_free(ErrorEstimate *e);
 /* Notes the present state of the run: call it at the end of each step. */
 void lag_error_estimate_note(ErrorEstimate *e, const lag_sim *sim);
 
-/* Runs `other`, a simulation of the same scene at its start with a more accurate setting, along the noted motion, in at most `most` steps (0: no
- * limit), and fills in the rest of *e; until: end of the run. LAG_OK, also where `other` fails (e->why), or LAG_ENOMEM. */
-int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, long long most, double until);
+/* Runs `other`, a simulation of the same scene at its start with a more accurate setting, along the noted motion, until it fails or its hook (lag_sim_on_step)
+ * ends it, and fills in the rest of *e; until: end of the run. LAG_OK, also where `other` fails (e->why), or LAG_ENOMEM. */
+int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until);

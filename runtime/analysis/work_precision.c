@@ -69,13 +69,19 @@ void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale
   }
 }
 
-double lag_cost_error(const Samples *a, const Samples *b, const double *scale) {
-  size_t rows = (size_t)(a->rows < b->rows ? a->rows : b->rows), n = (size_t)a->n;
+double lag_cost_row_error(int n, const double *a, const double *b, const double *scale) {
   double most = 0;
-  for (size_t k = 0; k < rows * n; k++) {
-    double d = fabs(a->y[k] - b->y[k]) / scale[k % n];
+  for (int k = 0; k < n; k++) {
+    double d = fabs(a[k] - b[k]) / scale[k];
     most = d <= HUGE_VAL ? fmax(most, d) : HUGE_VAL;
   }
+  return most;
+}
+
+double lag_cost_error(const Samples *a, const Samples *b, const double *scale) {
+  double most = 0;
+  for (int i = 0; i < a->rows && i < b->rows; i++)
+    most = fmax(most, lag_cost_row_error(a->n, a->y + (size_t)i * (size_t)a->n, b->y + (size_t)i * (size_t)a->n, scale));
   return most;
 }
 

@@ -29,7 +29,8 @@ int lag_samples_take(Samples *s, lag_sim *sim);
  * and unit; 1 where all of them are 0. */
 void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale);
 
-/* The largest |a - b| / scale over times and components; HUGE_VAL when one is not finite. */
+/* The largest |a - b| / scale of n components, or over times and components; HUGE_VAL when one is not finite. */
+double lag_cost_row_error(int n, const double *a, const double *b, const double *scale);
 double lag_cost_error(const Samples *a, const Samples *b, const double *scale);
 
 /* One run: knob is its tolerance, or its step where steps are of equal size. */

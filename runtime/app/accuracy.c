@@ -10,40 +10,39 @@
 
 static const double share = 0.5; /* of the error that was asked: an estimate is right within a factor of 2 or so */
 enum { MOST_TRIALS = 10 };
-static const double most_steps = 2e7; /* of equal size in a trial */
 
 /* Method with tolerance or step of the next trial. */
 static int set_knob(App *app, double knob) {
   lag_sim *s = app->sim;
-  const lag_method *m = s->method;
   lag_option opt[MOST_OPTIONS];
   if (!(lag_equal_step(s) > 0)) {
     int rc = lag_sim_set_tolerance(s, knob);
     return rc || app->args.method ? rc : lag_app_choose_automatically(app, NULL, 0);
   }
-  for (int i = 0; i < m->noptions; i++)
-    opt[i] = (lag_option){.name = m->options[i].name, .value = strcmp(m->options[i].name, "step") == 0 ? knob : s->options[i]};
-  return lag_sim_set_method(s, m, opt, m->noptions);
+  lag_app_options(s->method, s->options, 1, opt);
+  for (int i = 0; i < s->method->noptions; i++)
+    if (strcmp(opt[i].name, "step") == 0) opt[i].value = knob;
+  return lag_sim_set_method(s, s->method, opt, s->method->noptions);
 }
 
 static int note(void *estimate, const lag_sim *sim) {
   lag_error_estimate_note(estimate, sim);
-  return 0;
+  return sim->run->steps >= LAG_ACCURACY_STEPS;
 }
 
 /* *e := the error of a run with the present setting. LAG_OK, or the failure of the run with app->sim's message. */
 static int try_setting(App *app, ErrorEstimate *e) {
-  lag_sim *trial = lag_app_fresh_bare_sim(app), *other = lag_app_fresh_bare_sim(app);
-  int rc = trial && other ? lag_error_estimate_init(e, trial) : LAG_ENOMEM;
+  lag_sim *trial = lag_app_fresh_bare_sim(app);
+  int rc = trial ? lag_error_estimate_init(e, trial) : LAG_ENOMEM;
   rc = rc ? rc : lag_app_copy_method(app->sim, trial, 1);
   if (rc == 0) {
     lag_sim_on_step(trial, note, e);
     rc = lag_sim_advance(trial, app->until);
     if (rc < 0) lag_fail(app->sim, rc, "%s", lag_sim_message(trial));
+    if (rc == LAG_INTERRUPTED) rc = lag_fail(app->sim, LAG_ESTEP, "%s would take more than %g steps", app->sim->method->name, LAG_ACCURACY_STEPS);
   }
-  if (rc >= 0 && lag_app_set_more_accurate(app->sim, other) == LAG_OK) rc = lag_error_estimate_compare(e, other, 0, lag_sim_time(trial));
+  if (rc >= 0) rc = lag_app_compare_errors(app, e, trial, LAG_ACCURACY_STEPS);
   lag_sim_free(trial);
-  lag_sim_free(other);
   return rc < 0 ? rc : LAG_OK;
 }
 
@@ -67,12 +66,12 @@ int lag_app_choose_by_accuracy(App *app) {
   app->asked = asked;
   for (int i = 0; i < MOST_TRIALS; i++) {
     double steps = fabs(app->until - app->scene->t0) / knob;
-    if (equal && steps > most_steps)
+    if (equal && steps > LAG_ACCURACY_STEPS)
       return lag_app_error(a, "--accuracy %g would take about %.1e steps of %s; leave out --method, and an adaptive method of higher order is chosen", asked, steps, app->sim->method->name);
     int rc = set_knob(app, knob);
     if (rc) return app->args.method ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : rc;
     rc = try_setting(app, &e);
-    double error = rc || !isnan(e.horizon) || isnan(e.largest) ? HUGE_VAL : e.largest;
+    double error = rc || !isnan(e.horizon) || isnan(e.largest) || e.continued ? HUGE_VAL : e.largest;
     horizon = rc ? NAN : e.horizon;
     lag_error_estimate_free(&e);
     best = fmin(best, error);

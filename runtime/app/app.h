@@ -76,6 +76,7 @@ typedef struct App {
   ErrorEstimate error; /* of the run, */
   int watched;      /* where it is estimated */
   double asked;     /* --accuracy; 0: none */
+  double second_most; /* most steps of the second run */
   int progress;     /* progress line: 1 shown, 0 not yet, -1 never (no terminal, or --quiet) */
   Table log;        /* event log: its columns, */
   Rows log_rows;    /* its file, */
@@ -107,6 +108,10 @@ int lag_app_has_word(const char *words, const char *word, size_t n);
 int lag_app_set_value(App *app, const char *text);
 /* Another simulation of app->scene with the values of the command line. NULL: no memory, or a message. */
 lag_sim *lag_app_fresh_sim(App *app);
+/* The same of the scene without monitors and closed forms, which would end a rough run early or cost time. */
+lag_sim *lag_app_fresh_bare_sim(App *app);
+/* opt[noptions] := options of the method with these values; one called step: times `times`. */
+void lag_app_options(const lag_method *m, const double *values, double times, lag_option *opt);
 /* Sets tolerance and method of a new app->sim. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_method(App *app);
 /* Method i of this program; NULL past the last. */
@@ -164,11 +169,12 @@ void lag_report_tangent_json(App *app, Json *j);
 /* error_report.c: the error of the run, by a second run. begin: before the run; 0, or EXIT_USAGE after a message. end: after it. */
 int lag_app_error_begin(App *app);
 void lag_app_error_end(App *app);
-/* A new simulation as lag_app_fresh_sim, of the scene without monitors and closed forms, which would end a rough run early or cost time. */
-lag_sim *lag_app_fresh_bare_sim(App *app);
-/* `to` takes the method and options of `from`, and its tolerance times `times`; set_more_accurate: a setting whose error is small beside the run's. */
+/* `to` takes the method and options of `from`, and its tolerance times `times`. LAG_OK, or a refusal. */
 int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times);
-int lag_app_set_more_accurate(const lag_sim *run, lag_sim *other);
+/* Compares the motion noted in *e, of `run`, with a more accurate run of at most `most` steps. LAG_OK, also where that fails (e->why), or LAG_ENOMEM. */
+int lag_app_compare_errors(App *app, ErrorEstimate *e, const lag_sim *run, double most);
+/* Steps of a run that --accuracy tries, at most. */
+#define LAG_ACCURACY_STEPS 2e7
 /* accuracy.c: --accuracy: sets method and tolerance or step of app->sim. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_by_accuracy(App *app);
 void lag_report_error(const App *app, FILE *f);

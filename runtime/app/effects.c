@@ -61,15 +61,6 @@ static void copy_start(const lag_sim *first, lag_sim *sim) {
   }
 }
 
-/* k->options := the method options of the first scene, with the step multiplied by `shorter`. */
-static void copy_options(Trial *k, double shorter) {
-  const double *value = lag_sim_options(k->v[0].sim);
-  for (int i = 0; i < k->method->noptions; i++) {
-    k->options[i] = (lag_option){.name = k->method->options[i].name, .value = value[i]};
-    if (strcmp(k->options[i].name, "step") == 0) k->options[i].value = value[i] * shorter;
-  }
-}
-
 /* Sets the method of the first scene, or an automatic one where the variant refuses that. */
 static int set_method(Trial *k, lag_sim *sim, double tol) {
   if (lag_sim_set_method(sim, k->method, k->options, k->method->noptions) == LAG_OK && lag_sim_set_tolerance(sim, tol) == LAG_OK) return 0;
@@ -112,7 +103,7 @@ static int prepare_first(Trial *k) {
 
 static int prepare_others(Trial *k) {
   int rc = 0;
-  copy_options(k, 1);
+  lag_app_options(k->method, lag_sim_options(k->v[0].sim), 1, k->options);
   for (int i = 1; i < k->nscenes && rc == 0; i++) {
     rc = make(k, i);
     if (rc == 0) copy_start(k->v[0].sim, k->app->sim);
@@ -131,7 +122,7 @@ static int measure_error(Trial *k) {
   const double least = 1e-15;
   double error = 0, tol = k->tol > 10 * least ? fmax(k->tol / 100, least) : 10 * k->tol;
   int rc = make(k, 0);
-  copy_options(k, 0.5);
+  lag_app_options(k->method, lag_sim_options(k->v[0].sim), 0.5, k->options);
   rc = rc ? rc : set_method(k, app->sim, tol);
   adopt_simulation(k, &k->finer);
   if (rc == 0 && lag_variant_run(&k->finer, k->t0, k->t1) < 0) {

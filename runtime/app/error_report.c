@@ -14,62 +14,71 @@ int lag_app_error_begin(App *app) {
   return app->watched && lag_error_estimate_init(&app->error, app->sim) ? lag_app_error(a, "out of memory") : 0;
 }
 
-/* `to` takes the method and options of `from`, and its tolerance times `times`. LAG_OK, or a refusal. */
 int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times) {
-  const lag_method *m = from->method;
   lag_option opt[MOST_OPTIONS];
-  for (int i = 0; i < m->noptions; i++) opt[i] = (lag_option){.name = m->options[i].name, .value = from->options[i]};
-  int rc = lag_sim_set_method(to, m, opt, m->noptions);
+  lag_app_options(from->method, from->options, 1, opt);
+  int rc = lag_sim_set_method(to, from->method, opt, from->method->noptions);
   return rc ? rc : lag_sim_set_tolerance(to, fmax(times * from->tol, 4.5 * DBL_EPSILON));
 }
 
-int lag_app_set_more_accurate(const lag_sim *run, lag_sim *other) {
+/* Ends the second run after a number of steps, or on Ctrl-C. */
+static int enough(void *app, const lag_sim *other) { return other->run->steps >= ((App *)app)->second_most || lag_app_interrupted() != EXIT_SIGNAL; }
+
+/* A setting whose error is small beside the run's. */
+static int set_more_accurate(const lag_sim *run, lag_sim *other) {
   if (!(lag_equal_step(run) > 0)) /* near the smallest tolerance a run with a larger one shows an error that is too large, not 0 */
     return lag_app_copy_method(run, other, run->tol * tighter >= 4.5 * DBL_EPSILON ? tighter : 3);
   int rc = lag_sim_set_method(other, &lag_dop853, NULL, 0);
   return rc ? rc : lag_sim_set_tolerance(other, pow(DBL_EPSILON, 0.75));
 }
 
-lag_sim *lag_app_fresh_bare_sim(App *app) {
-  const lag_scene *own = app->scene;
-  app->bare = *own;
-  app->bare.nmonitors = app->bare.nexact = 0;
-  app->scene = &app->bare;
-  lag_sim *sim = lag_app_fresh_sim(app);
-  app->scene = own;
-  return sim;
+int lag_app_compare_errors(App *app, ErrorEstimate *e, const lag_sim *run, double most) {
+  lag_sim *other = lag_app_fresh_bare_sim(app);
+  int rc = other ? set_more_accurate(run, other) : LAG_ENOMEM;
+  app->second_most = most;
+  if (rc == LAG_OK) {
+    lag_sim_on_step(other, enough, app);
+    rc = lag_error_estimate_compare(e, other, lag_sim_time(run));
+  } else if (other) {
+    snprintf(e->why, sizeof e->why, "%s", lag_sim_message(other));
+  }
+  lag_sim_free(other);
+  return rc == LAG_ENOMEM ? rc : LAG_OK;
 }
 
 void lag_app_error_end(App *app) {
-  enum { STEPS_TIMES_SIZE = 20000, PART = 15 };
+  const double part = 1. / 15, steps_times_size = 20000, fewest = 24; /* fewer show no law of growth */
+  const lag_sim *run = app->sim;
   if (!app->watched || app->status < 0 || app->status == LAG_INTERRUPTED) return;
-  lag_sim *other = lag_app_fresh_bare_sim(app);
-  double most = app->asked > 0 ? 0 : fmax(app->sim->run->steps / PART, STEPS_TIMES_SIZE / (app->sim->pb.n + 1));
-  int rc = other ? lag_app_set_more_accurate(app->sim, other) : LAG_ENOMEM;
-  if (rc == LAG_OK) rc = lag_error_estimate_compare(&app->error, other, (long long)most, lag_sim_time(app->sim));
-  if (rc == LAG_ENOMEM) app->status = rc;
-  lag_sim_free(other);
+  double most = app->asked > 0 ? LAG_ACCURACY_STEPS : fmax(fmax(part * run->run->steps, steps_times_size / run->pb.n), fewest);
+  if (lag_app_compare_errors(app, &app->error, run, most)) app->status = LAG_ENOMEM;
 }
 
 static const char *const growth[] = {"", "bounded", "t", "t^2", "exponential"};
 static const char *const growth_text[] = {"", ", does not grow", ", grows as t", ", grows as t^2", ", grows exponentially"};
 
+/* Rounding has no law that is worth telling. */
+static ErrorGrowth growth_of(const ErrorEstimate *e) { return e->largest < 500 * DBL_EPSILON ? LAG_ERROR_UNKNOWN : e->growth; }
+
 void lag_report_error(const App *app, FILE *f) {
   const ErrorEstimate *e = &app->error;
-  if (app->watched && isnan(e->largest) && e->why[0]) fprintf(f, "the error is not known: the second run failed: %s\n", e->why);
+  char from[96] = "";
+  if (app->watched && isnan(e->largest) && e->why[0]) fprintf(f, "the error is not known: %s\n", e->why);
   if (!app->watched || isnan(e->largest)) return;
+  if (e->continued) snprintf(from, sizeof from, " (continued from t = %.3g s)", (double)e->motion.t[e->compared - 1]);
   if (!isnan(e->horizon)) {
-    fprintf(f, "after t = %.3g s no digit is left: the motion there is the integrator's; averages may still hold\n", e->horizon);
+    fprintf(f, "after t = %.3g s no digit is left%s: the motion there is the integrator's; averages may still hold\n", e->horizon, from);
   } else {
     fprintf(f, "error about %.1g", e->largest);
     if (app->asked > 0) fprintf(f, " (asked %g)", app->asked);
-    fprintf(f, "%s\n", growth_text[e->growth]);
+    fprintf(f, "%s%s\n", growth_text[growth_of(e)], from);
   }
 }
 
 void lag_report_error_json(const App *app, Json *j) {
   const ErrorEstimate *e = &app->error;
   lag_json_number(j, "error", app->watched ? e->largest : NAN);
-  lag_json_string(j, "error_growth", app->watched && e->growth ? growth[e->growth] : NULL);
+  lag_json_string(j, "error_growth", app->watched && growth_of(e) ? growth[growth_of(e)] : NULL);
+  lag_json_number(j, "error_seen_to", app->watched && e->compared ? e->motion.t[e->compared - 1] : NAN);
   lag_json_number(j, "horizon", app->watched ? e->horizon : NAN);
 }

@@ -20,6 +20,13 @@ static int no_scene(const App *app, const char *name) {
   return EXIT_USAGE;
 }
 
+/* app->bare := the scene without monitors and closed forms. */
+static const lag_scene *bare_scene(App *app, const lag_scene *scene) {
+  app->bare = *scene;
+  app->bare.nmonitors = app->bare.nexact = 0;
+  return &app->bare;
+}
+
 static int choose_scene(App *app) {
   const lag_program *p = app->program;
   const char *name = app->resumed ? app->state.scene : app->args.scene;
@@ -28,11 +35,7 @@ static int choose_scene(App *app) {
   for (int i = 0; i < p->nscenes; i++)
     if (!name || strcmp(p->scenes[i]->name, name) == 0) {
       app->scene = p->scenes[i];
-      if (app->args.lyapunov || app->args.cost || app->args.reference) {
-        app->bare = *app->scene;
-        app->bare.nmonitors = app->bare.nexact = 0;
-        app->scene = &app->bare;
-      }
+      if (app->args.lyapunov || app->args.cost || app->args.reference) app->scene = bare_scene(app, app->scene);
       return 0;
     }
   return name ? no_scene(app, name) : lag_app_error(&app->args, "this program has no scenes");
@@ -193,7 +196,7 @@ static int restore_method(App *app) {
   const lag_method *m = lag_app_find_method(app, st->method);
   lag_option opt[MOST_OPTIONS];
   if (!m || m->noptions != st->noptions) return lag_app_error(a, "%s was saved with method %s, which is not in this build", a->resume, st->method);
-  for (int i = 0; i < m->noptions; i++) opt[i] = (lag_option){.name = m->options[i].name, .value = st->options[i]};
+  lag_app_options(m, st->options, 1, opt);
   if (lag_sim_set_method(app->sim, m, opt, m->noptions) || lag_sim_set_tolerance(app->sim, st->tol))
     return lag_app_error(a, "%s: %s", a->resume, lag_sim_message(app->sim));
   if (st->signature != lag_sim_signature(app->sim) || st->n != lag_sim_save_size(app->sim))
@@ -267,6 +270,19 @@ static int set_values(App *app) {
   int rc = 0;
   for (int i = 0; i < a->nsets && rc == 0; i++) rc = lag_app_set_value(app, a->sets[i]);
   return rc;
+}
+
+void lag_app_options(const lag_method *m, const double *values, double times, lag_option *opt) {
+  for (int i = 0; i < m->noptions; i++)
+    opt[i] = (lag_option){.name = m->options[i].name, .value = strcmp(m->options[i].name, "step") == 0 ? times * values[i] : values[i]};
+}
+
+lag_sim *lag_app_fresh_bare_sim(App *app) {
+  const lag_scene *own = app->scene;
+  app->scene = bare_scene(app, own);
+  lag_sim *sim = lag_app_fresh_sim(app);
+  app->scene = own;
+  return sim;
 }
 
 lag_sim *lag_app_fresh_sim(App *app) {

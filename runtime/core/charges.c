@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/line_fit.h"
 #include "core/rhs.h"
 #include "numeric/quadrature.h"
 
@@ -269,22 +270,13 @@ static int trend_of(const Charge *c, double steps, double *slope, double *error)
   const int fewest = 16;
   const double explained = 0.8; /* a line explains at most 6/pi^2 = 0.61 of a sine whose period is the run */
   int n = (int)c->bins;
-  double t = 0, d = 0, tt = 0, td = 0, dd = 0;
   *slope = *error = NAN;
   if (n < fewest || !isfinite(c->peak)) return LAG_TREND_UNKNOWN;
-  for (int i = 0; i < n; i++) {
-    t += c->t[i] / n;
-    d += c->d[i] / n;
-  }
-  for (int i = 0; i < n; i++) {
-    tt += (c->t[i] - t) * (c->t[i] - t);
-    td += (c->t[i] - t) * (c->d[i] - d);
-    dd += (c->d[i] - d) * (c->d[i] - d);
-  }
-  *slope = td / tt;
-  *error = sqrt(fmax(dd - td * *slope, 0) / (n - 2) / tt);
+  LineFit f = lag_line_fit(n, c->t, c->d);
+  *slope = f.xy / f.xx;
+  *error = sqrt(fmax(f.yy - f.xy * *slope, 0) / (n - 2) / f.xx);
   if (c->peak <= 16 * DBL_EPSILON * c->scale * sqrt(steps)) return LAG_TREND_ROUNDING;
-  return td * td >= explained * tt * dd ? LAG_TREND_GROWS : LAG_TREND_OSCILLATES;
+  return f.xy * f.xy >= explained * f.xx * f.yy ? LAG_TREND_GROWS : LAG_TREND_OSCILLATES;
 }
 
 void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st) {

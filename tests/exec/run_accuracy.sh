@@ -22,6 +22,10 @@ for how in "--method rk45 --tol 1e-6" "--method dop853 --tol 1e-9" "--method rk4
   within "an oscillator by $how: the error of its closed form" 3 "$(value error)" "$(sed -n 's/.*"largest": *\([^,}]*\).*/\1/p' "$TMP/json" | head -n 1)"
 done
 is "the phase of Verlet's method drifts in proportion to time" '"t"' "$(value error_growth)"
+run "$TMP/oscillator.lag" --method rk4 --step 0.05
+is "Runge-Kutta's, too: an error of the frequency" '"t"' "$(value error_growth)"
+run "$dp" chaos --until 12
+is "chaos: neighbours part exponentially" '"exponential"' "$(value error_growth)"
 
 # GSL's rk8pd as an independent integrator: the difference at the end.
 if [ -n "${GSL:-yes}" ] && "$LAGC" run "$dp" --method gsl-rk8pd --tol 1e-13 --json >"$TMP/gsl" 2>/dev/null; then
@@ -50,6 +54,47 @@ check "the number asked stands beside the estimate" says 0 '(asked 1e-06)' "$LAG
 check "a run that is saved and continued keeps its bits; what is resumed has no estimate" sh -c '
   "$0" run models/kepler.lag --until 3 --save-state "$1/s" --quiet && "$0" run models/kepler.lag --until 5 --resume "$1/s" --json >"$1/r" &&
   grep -q "\"error\": null" "$1/r"' "$LAGC" "$TMP"
+
+# A second run that is short beside the run: its law of growth is continued, and the report says so; a law that is not found leaves no number.
+cat >"$TMP/pendulum.lag" <<'EOF'
+model spring_pendulum
+coord r, th
+let x = r*sin(th)
+let y = -r*cos(th)
+kinetic = (x'^2 + y'^2)/4
+potential = 20*(r - 1)^2 + 4.905*y
+scene run { start r = 1.2, th = 1; span 2000; tolerance 1e-9 }
+EOF
+if [ -n "${GSL:-yes}" ] && "$LAGC" run "$TMP/pendulum.lag" --method gsl-rk8pd --tol 1e-13 --json >"$TMP/gsl" 2>/dev/null; then
+  run "$TMP/pendulum.lag"
+  ends() { sed 's/.*"final": *{//; s/}.*//' "$1" | tr ',' '\n' | sed 's/[" ]//g; s/:/ /' | grep '^r\|^th'; }
+  ends "$TMP/json" >"$TMP/a"
+  ends "$TMP/gsl" >"$TMP/b"
+  # largest values in this run: r 1.4, th 1.1 rad, r' 3.6, th' 5
+  true=$(paste -d ' ' "$TMP/a" "$TMP/b" | awk 'BEGIN { s["r"] = 1.4; s["th"] = 1.1; s["r\047"] = 3.6; s["th\047"] = 5 }
+    { d = $2 - $4; if (d < 0) d = -d; d /= s[$1]; if (d > m) m = d } END { print m }')
+  within "a long run: the error continued, against GSL" 10 "$(value error)" "$true"
+  check "the second run was short" awk -v t="$(value error_seen_to)" 'BEGIN { print t; exit !(t > 20 && t < 500) }'
+fi
+check "the report says from where the law is continued" says 0 '(continued from t = ' "$LAGC" run "$TMP/pendulum.lag"
+cat >"$TMP/stiff.lag" <<'EOF'
+model stiff
+coord x, y
+lagrangian = (x'^2 + y'^2)/2 - x^2/2 - 0.5e8*(y - x)^2
+scene run { start x = 1, y = 1; span 100; method gauss(step = 0.01, stages = 2) }
+EOF
+check "a second run that creeps is left, and no number is told" says 0 'the error is not known: a second run reached only' "$LAGC" run "$TMP/stiff.lag"
+sed 's/0.5e8/0.5e7/' "$TMP/stiff.lag" >"$TMP/stiff2.lag"
+check "nor where a few rows were reached, which show no law" says 0 'the error is not known: a second run reached only' "$LAGC" run "$TMP/stiff2.lag"
+run models/bouncing_ball.lag
+check "impacts, which two runs have at times that differ by rounding, are no error" awk -v e="$(value error)" 'BEGIN { print e; exit !(e != "" && e < 1e-12) }'
+cat >"$TMP/nothing.lag" <<'EOF'
+model nothing
+state z
+flow z' = 0
+scene run { start z = 0; span 10 }
+EOF
+check "a motion that stands still" says 0 'error about 0' "$LAGC" run "$TMP/nothing.lag"
 
 # The claim, in different methods: the estimate is below what was asked.
 for how in "1e-4" "1e-8" "1e-12" "1e-6 --method rk4" "1e-5 --method verlet" "1e-8 --method gauss"; do
