@@ -395,8 +395,8 @@ coverage:
 	$(COVERAGE_MAKE) build-coverage
 	@find $(COVERAGE) -name '*.gcda' -delete
 	@ln -sfn . $(COVERAGE)/san && ln -sfn "$(CURDIR)/runtime" $(COVERAGE)/../runtime # lagc finds its headers in ../runtime
-	@printf '#!/bin/sh\nexec %s "$$@" -O0 --coverage\n' '$(CC)' >$(COVERAGE)/cc && chmod +x $(COVERAGE)/cc
-	-$(COVERAGE_MAKE) MODEL_CC='$(CURDIR)/$(COVERAGE)/cc' COVERAGE=yes run-coverage
+	@printf '#!/bin/sh\nexec %s "$$@" -O0 --coverage\n' '$(CC)' >$(COVERAGE)/counted-cc && chmod +x $(COVERAGE)/counted-cc
+	-$(COVERAGE_MAKE) MODEL_CC='$(CURDIR)/$(COVERAGE)/counted-cc' COVERAGE=yes run-coverage
 	@sh tests/coverage/lib_report.sh $(COVERAGE)
 build-coverage: all $(TEST_BIN)
 run-coverage:

@@ -7,7 +7,7 @@
 #   tests/unit/test_NAME.c         built into $BIN/test_NAME (cmocka)            suite unit/test_NAME
 #   tests/fuzz/fuzz_NAME.c         replays tests/fuzz/corpus/NAME                suite fuzz/fuzz_NAME
 #   tests/FOLDER/NAME.sh           run from the top of the source tree by sh     suite FOLDER/NAME
-#   tests/FOLDER/long_NAME.sh      the same, in `make test-long`, which also runs, with SLOW=1, each NAME.sh that has a `slow` check
+#   tests/FOLDER/long_NAME.sh      the same, in `make test-long`, which also runs, with SLOW=1, each NAME.sh that has a `slow` check or `one_of`
 #                                     (tests/tap.sh) and each test_NAME.c that asks slow() (tests/unit/slow.h)
 #   tests/bench/NAME.sh            run by `make bench`; its output is shown, and written to tests/bench/RESULTS.md
 #   tests/FOLDER/lib_NAME.sh       no suite: functions that scripts share
@@ -96,7 +96,7 @@ found() {
       case $f in *.sh) ;; *) continue ;; esac
       grep -q BLESS "$f" || continue
     elif [ "$is" != "$kind" ]; then
-      [ "$kind $is" = 'long test' ] && grep -q 'SLOW\|^ *slow \|\<slow(' "$f" || continue
+      [ "$kind $is" = 'long test' ] && grep -q 'SLOW\|^ *slow \|\<one_of \|\<slow(' "$f" || continue
     fi
     [ $# = 0 ] && echo "$name"
     for prefix; do

@@ -77,7 +77,9 @@ int lag_app_choose_by_accuracy(App *app) {
     best = fmin(best, error);
     if (error <= share * asked) return 0;
     if (knob <= least || (equal && best < HUGE_VAL && error > 2 * best)) break;
-    knob = fmax(least, knob * pow(fmax(fmin(0.5 * share * asked / error, 0.5), 1e-3), 1 / order));
+    double wanted = 0.5 * share * asked / error, step_factor = pow(fmax(fmin(wanted, 0.5), 1e-3), 1 / order);
+    if (equal && error < HUGE_VAL && steps > 10 * LAG_ACCURACY_STEPS * pow(wanted, 1 / order)) step_factor = pow(wanted, 1 / order); /* refused at once */
+    knob = fmax(least, knob * step_factor);
   }
   return refuse(app, asked, best, horizon);
 }

@@ -45,9 +45,10 @@ for model in rhomb parallelogram; do
   done
   for method in rk4 verlet4 verlet6 verlet8 variational symplectic_euler; do
     for step in 0.02 0.013 0.0271; do
+      one_of 5 || continue
       check "$model, $method, $step" passes_or_says $model 1e-7 --method $method --step $step
     done
-    near "$model, $method, steps that end elsewhere" 1e-7 0 "$(ends $model --method $method --step 0.03)"
+    one_of 5 && near "$model, $method, steps that end elsewhere" 1e-7 0 "$(ends $model --method $method --step 0.03)"
   done
   check "$model, a step that ends there says so" says_so $model --method rk4 --step 0.01
   near "$model, verlet" 1e-2 0 "$(ends $model --method verlet --step 0.03)" # Verlet's halves turn by step^2 each time

@@ -209,7 +209,7 @@ header() {
   "$LAGC" header "$TMP/m/chain_120.lag" -o "$TMP/chain.h" && printf '#define CHAIN_IMPLEMENTATION\n#include "chain.h"\nint main(void) { return 0; }\n' >"$TMP/header.c" &&
     grep -q 'for (int k' "$TMP/chain.h" && "$CC" -std=c11 $strict -I"$TMP" -c "$TMP/header.c" -o "$TMP/header.o"
 }
-check "a header of a long chain" header
+slow check "a header of a long chain" header
 
 # ---- values
 ids=

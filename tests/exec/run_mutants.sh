@@ -21,6 +21,6 @@ mutants() {
   check "caret on the edit in $1 of $2: nine of ten" [ "$(($1 * 10))" -ge "$(($2 * 9))" ]
 }
 
-mutants double_pendulum 299 1
+slow mutants double_pendulum 299 1
 mutants cart_pendulum 68 4
 tap_end

@@ -43,10 +43,10 @@ scaled() {
 
 # Tolerances 1e-12 and 1e-13 of the scenes, times the growth of errors along the motion.
 until=3
-for c in touch roll_x roll_y; do check "rattleback, $c" scaled rattleback stubborn 1e-9 $c; done
-for c in along across; do check "slider_crank, $c" scaled slider_crank spun 1e-10 $c; done
-for c in roll_x roll_y; do check "turntable, $c" scaled turntable circle 1e-10 $c; done
-for c in floor left right; do check "room, $c" scaled room bounce 1e-9 $c; done
+for c in touch roll_x roll_y; do one_of 4 && check "rattleback, $c" scaled rattleback stubborn 1e-9 $c; done
+for c in along across; do one_of 4 && check "slider_crank, $c" scaled slider_crank spun 1e-10 $c; done
+for c in roll_x roll_y; do one_of 4 && check "turntable, $c" scaled turntable circle 1e-10 $c; done
+for c in floor left right; do one_of 4 && check "room, $c" scaled room bounce 1e-9 $c; done
 
 # Hand-written models, in which a constraint has the factor F and a coordinate the factor S.
 until=2
@@ -66,7 +66,7 @@ run='span 2
   method dop853
   tolerance 1e-12
   output'
-check "a free particle on a circle" written circle 1e-9 "model circle \"a bead\"
+slow check "a free particle on a circle" written circle 1e-9 "model circle \"a bead\"
 coord x [m], y
 param s = S [1/m] > 0, g = 1 [1/s^2], w = 1 [1/s]
 kinetic = ((s*x')^2 + y'^2)/2
@@ -90,7 +90,7 @@ observe outy = y2
 scene run { start x1 = 1/s, y1 = 0, x2 = 1, y2 = 1
   $run outx, outy
 }"
-check "a coordinate without inertia" written light 1e-9 "model light \"a slider without mass\"
+slow check "a coordinate without inertia" written light 1e-9 "model light \"a slider without mass\"
 coord x, y, u [m]
 param s = S [1/m] > 0, g = 1 [1/s^2], w = 1 [1/s]
 kinetic = (x'^2 + y'^2)/2
@@ -113,7 +113,7 @@ observe outy = y
 scene run { start x' = 0.5*w/s, a' = 1, a = 0.3
   $run outx, outy
 }"
-check "inertia that cancels with a constraint's, seen by sign alone" written sign 1e-9 "model sign \"indefinite\"
+slow check "inertia that cancels with a constraint's, seen by sign alone" written sign 1e-9 "model sign \"indefinite\"
 coord x [m], y
 param s = S [1/m] > 0, g = 1 [1/s^2], w = 1 [1/s]
 kinetic = (y'^2 - 4*(s*x')^2)/2

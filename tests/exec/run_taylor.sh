@@ -5,6 +5,7 @@
 
 here=tests/exec/taylor
 models=$(ls models/*.lag tests/exec/models/*.lag | grep -v mutants) # mutants share names with other models
+[ -n "${SLOW:-}" ] || models=$(echo "$models" | grep '/double_pendulum.lag\|/kepler\|kapitza\|slider_crank\|motor\|room\|tables\|rolling_ball\|functions\|powers')
 longer() { # MODEL N: a long family, whose recurrences are loops
   sed "s/^const N = .*/const N = $2/; s/^model $1/model $1_$2/; s/ b = 0 / b = 0.3 /" "models/$1.lag" >"$TMP/$1_$2.lag"
   models="$models $TMP/$1_$2.lag"
@@ -85,13 +86,13 @@ short() { # MODEL N: four times the length gives the same amount of C, apart fro
 }
 check "a string of any length has recurrences of the same length" short string 400
 constrained=$(grep -l '^  .constraints = &' "$TMP"/c/*.c | sed 's/.*\///; s/\.c$//')
-check "some of these models have constraints" [ "$(echo "$constrained" | wc -l)" -gt 5 ]
+check "some of these models have constraints" [ "$(echo "$constrained" | wc -l)" -gt 1 ]
 is "models with constraints have none, nor those that are not analytic: if, and a table" "$(printf 'without: %s\n' $constrained motor room tables | sort -u)" \
   "$(grep without "$TMP/defect.txt" | sort -u)"
 
 # ---- pairs and fours
 mkdir -p "$TMP/narrow"
-for n in double_pendulum kepler outer_planets chain_120 swinging_atwood; do # products, squares, and loops
+for n in double_pendulum ${SLOW:+chain_120 kepler outer_planets swinging_atwood}; do # products, squares, and loops
   sed 's/defined(__x86_64__)/0/' "$TMP/c/$n.c" >"$TMP/narrow/$n.c"
   sed -n 's/^const lag_scene \(.*\) = {/\1/p' "$TMP/narrow/$n.c" | head -n 1
 done >"$TMP/narrow/names"
@@ -107,10 +108,11 @@ bits() { # OUT FILES... with the scenes
   shift
   "$CC" -std=c11 -O2 -ffp-contract=off -I"$INC" "$@" "$TMP/narrow/scenes.c" $here/bits.c -lm -o "$TMP/bits" && "$TMP/bits" >"$out"
 }
-wide_files() { for f in "$TMP"/narrow/[!s]*.c "$TMP"/narrow/sw*.c; do echo "$TMP/c/${f##*/}"; done; }
+narrow_files() { for f in "$TMP"/narrow/*.c; do [ "$f" = "$TMP/narrow/scenes.c" ] || echo "$f"; done; }
+wide_files() { for f in $(narrow_files); do echo "$TMP/c/${f##*/}"; done; }
 same_bits() {
   # shellcheck disable=SC2046 # a list of files
-  bits "$TMP/narrow.txt" "$TMP"/narrow/[!s]*.c "$TMP"/narrow/sw*.c && bits "$TMP/wide.txt" $(wide_files) && [ "$(wc -l <"$TMP/wide.txt")" -gt 1000 ] &&
+  bits "$TMP/narrow.txt" $(narrow_files) && bits "$TMP/wide.txt" $(wide_files) && [ "$(wc -l <"$TMP/wide.txt")" -gt 100 ] &&
     cmp "$TMP/narrow.txt" "$TMP/wide.txt"
 }
 if grep -qs '^flags.* avx2' /proc/cpuinfo; then check "two or four numbers side by side: the same bits" same_bits

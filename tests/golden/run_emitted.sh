@@ -25,7 +25,7 @@ write() { # MODEL KIND COMMAND...: a line of emitted.txt
 # `make test` has those of every program; the others are made of the same parts.
 all=${SLOW:-}${BLESS:-}
 for m in models/*.lag; do
-  for words in "emit --method taylor" "emit --method variational --with linear" header ${all:+emit "emit --method radau" "emit --fix all" "derive --format c"}; do
+  for words in "emit --method taylor" header ${all:+emit "emit --method variational --with linear" "emit --method radau" "emit --fix all" "derive --format c"}; do
     # shellcheck disable=SC2086 # some words
     write "$m" c $words
   done

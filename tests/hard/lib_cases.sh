@@ -1,6 +1,7 @@
 # shellcheck shell=sh
 # The cases as C, and a program that runs them: for the suites of this folder.
 hard=tests/hard
+cases= # their names; empty: all
 models=$hard/cases # their folder
 
 # emit_one NAME SCENE SUFFIX OPTIONS...: several programs of one model need different names.
@@ -18,6 +19,7 @@ emit_cases() {
   awk '!seen[$1, $2]++ { print $1, $2 }' $hard/expected.txt >"$TMP/pairs"
   while read -r id scene; do
     name=$(printf %s "$id" | tr '.-' '__')
+    case " $cases " in '  ' | *" $id "*) ;; *) continue ;; esac
     [ -f "$models/$name.lag" ] || continue
     # shellcheck disable=SC2086 # options
     emit_one "$name" "$scene" '' --method taylor $emit_more || return 1
@@ -43,4 +45,5 @@ compile_cases() {
 }
 
 # hard_runs TIER [CASE | METHOD ...]: by the program that compile_cases made.
-hard_runs() { "$TMP/hard" $hard/cases.json $hard/expected.txt $hard/runs.txt "$@"; }
+# shellcheck disable=SC2086 # a list of words
+hard_runs() { "$TMP/hard" $hard/cases.json $hard/expected.txt $hard/runs.txt "$@" $cases; }

@@ -147,7 +147,7 @@ static void test_nets(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
   const uint32_t small = (uint32_t)slow(20, 16), large = (uint32_t)slow(40, 24);
-  for (size_t k = 0; k < sizeof nets / sizeof *nets; k++) {
+  for (size_t k = 0; k < sizeof nets / sizeof *nets; k += (size_t)slow(1, 3)) {
     static const char text[] = "model m\nconst N = %d\ncoord u[N,N]\nparam m = 1.2 > 0, k = 1, b = 0.3\n"
                                "kinetic = sum(i in 1..N, sum(j in 1..N, m/2*u[i,j]'^2))\n%s";
     uint32_t few = check_model(arena_printf(a, text, small, nets[k]), 8), many = check_model(arena_printf(a, text, large, nets[k]), 8);
@@ -211,7 +211,7 @@ static Prog *random_pairs(Arena *a, uint32_t n, Real holes) {
 static void test_random(void **state) {
   (void)state;
   static const Real holes[] = {0, 0, 0.01L, 0.05L, 0.3L};
-  uint32_t nested = 0, trials = (uint32_t)slow(60, 30);
+  uint32_t nested = 0, trials = (uint32_t)slow(60, 10);
   for (uint32_t trial = 0; trial < trials; trial++) {
     Arena *a = arena_new(NULL);
     uint32_t n = 10 + trial % 23;

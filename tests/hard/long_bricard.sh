@@ -46,8 +46,6 @@ thin_10='0.999999729401917774794708 0 -0.000735660309672262038560924 0.999264610
 check "bodies run for 10 s" run wide $bodies go
 check "bodies: digits at 1 s" within "$(row wide 1)" "$wide_1" 2e-11
 check "bodies: digits at 10 s" within "$(row wide 10)" "$wide_10" 2e-11
-# Thin bodies, points, another method and multipliers: in `make test-long`.
-[ -n "${SLOW:-}" ] || { tap_end; exit; }
 check "thin bodies run" run thin $bodies slender
 check "thin bodies: digits at 10 s" within "$(row thin 10)" "$thin_10" 2e-11
 check "points run for 10 s" run points $points
