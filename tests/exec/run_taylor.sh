@@ -112,7 +112,7 @@ narrow_files() { for f in "$TMP"/narrow/*.c; do [ "$f" = "$TMP/narrow/scenes.c" 
 wide_files() { for f in $(narrow_files); do echo "$TMP/c/${f##*/}"; done; }
 same_bits() {
   # shellcheck disable=SC2046 # a list of files
-  bits "$TMP/narrow.txt" $(narrow_files) && bits "$TMP/wide.txt" $(wide_files) && [ "$(wc -l <"$TMP/wide.txt")" -gt 100 ] &&
+  bits "$TMP/narrow.txt" $(narrow_files) && bits "$TMP/wide.txt" $(wide_files) && [ "$(wc -l <"$TMP/wide.txt")" -gt 40 ] &&
     cmp "$TMP/narrow.txt" "$TMP/wide.txt"
 }
 if grep -qs '^flags.* avx2' /proc/cpuinfo; then check "two or four numbers side by side: the same bits" same_bits
