@@ -2,7 +2,6 @@
  * 10.1007/978-3-540-78862-1, II.10. */
 #include "analysis/work_precision.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -116,48 +115,62 @@ static lag_sim *prepare(CostMethod *m, const CostScene *scene, double knob, int 
   return sim;
 }
 
-enum { LEAST_REPEATS = 5, MOST_REPEATS = 41 };
+/* Ends a run that takes too long, or with the sweep. The clock is read about once a millisecond. */
+typedef struct Watch {
+  const CostSweep *s;
+  const CostMethod *m;
+  double begin, longest; /* [s] */
+  long long steps, next;
+} Watch;
 
-/* Runs one setting, and repeats it for its time while that is short. LAG_OK: *run has its result; LAG_STOPPED: it ended before the reference
- * did; < 0: it failed. */
-static int run_setting(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, double longest,
-                       Samples *own, CostRun *run) {
+static int is_too_long(void *watch, const lag_sim *sim) {
+  Watch *w = watch;
+  (void)sim;
+  if (++w->steps < w->next) return 0;
+  double used = lag_processor_seconds() - w->begin;
+  w->next = w->steps + 1 + (long long)fmin((double)w->steps, 1e-3 * (double)w->steps / fmax(used, 1e-9));
+  return used > w->longest || (w->s->note && w->s->note(w->s->context, w->m, -1));
+}
+
+int lag_cost_run(CostMethod *m, const CostSweep *s, double enough, int most, double longest, Samples *own, CostRun *run) {
+  enum { MOST_REPEATS = 41 };
   double times[MOST_REPEATS], total = 0;
-  const double enough = fmin(0.05, longest); /* s */
   int n = 0;
 
-  while (n < MOST_REPEATS && (n == 0 || total < enough || (n < LEAST_REPEATS && total < 20 * enough))) {
+  while (n < MOST_REPEATS && n < most && (n == 0 || total < enough)) {
     int rc;
-    lag_sim *sim = prepare(m, scene, run->knob, &rc);
+    lag_sim *sim = prepare(m, &s->scene, run->knob, &rc);
     lag_stats st;
+    Watch watch = {.s = s, .m = m, .begin = lag_processor_seconds(), .longest = longest};
     if (!sim) return rc;
-    own->rows = reference->rows;
+    own->rows = s->reference->rows;
+    if (n == 0) lag_sim_on_step(sim, is_too_long, &watch);
     double begin = lag_processor_seconds();
     rc = lag_samples_take(own, sim);
     times[n] = lag_processor_seconds() - begin;
-    if (rc) {
+    if (rc == LAG_INTERRUPTED) {
+      snprintf(m->why, sizeof m->why, "it took longer than %.2g s", longest);
+    } else if (rc) {
       snprintf(m->why, sizeof m->why, "%s", lag_sim_message(sim));
     } else {
       lag_sim_stats(sim, &st);
       run->steps = st.steps;
       run->calls = st.rhs_calls;
+      m->why[0] = '\0';
     }
     lag_sim_free(sim);
     run->time = times[n];
-    if (rc || own->rows < reference->rows) return rc ? rc : LAG_STOPPED;
+    if (rc || own->rows < s->reference->rows) return rc ? rc : LAG_STOPPED;
     total += times[n++];
   }
-  run->error = lag_cost_error(own, reference, scale);
+  run->error = lag_cost_error(own, s->reference, s->scale);
   qsort(times, (size_t)n, sizeof *times, ascending);
   run->time = times[n / 2];
   run->spread = n > 1 ? (times[3 * n / 4] - times[n / 4]) / times[n / 2] : NAN;
   return LAG_OK;
 }
 
-/* ---- One method */
-
-/* Observed order: the median of the last three slopes between runs that neither rounding nor the reference's error affects. */
-static double order_of(const CostMethod *m, double uncertainty) {
+double lag_cost_order(const CostMethod *m, double uncertainty) {
   enum { SLOPES = 3 };
   double slope[LAG_COST_MOST_RUNS], *last, floor = HUGE_VAL;
   int n = 0, varies = m->method->order_most > 0 && !m->option.name;
@@ -172,35 +185,6 @@ static double order_of(const CostMethod *m, double uncertainty) {
   last = slope + n - SLOPES;
   qsort(last, SLOPES, sizeof *last, ascending);
   return last[SLOPES / 2];
-}
-
-int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, double longest) {
-  const double least_tol = 4.5 * DBL_EPSILON, rough = 0.3;
-  int adaptive = (m->method->flags & LAG_METHOD_ADAPTIVE) != 0, idle = 0;
-  double span = fabs(reference->t[reference->rows - 1] - scene->t0), least = HUGE_VAL;
-  long long steps = 0;
-  Samples own;
-
-  m->nruns = 0;
-  m->why[0] = '\0';
-  int rc = lag_samples_init(&own, reference->rows, reference->n);
-  if (rc == LAG_OK) memcpy(own.t, reference->t, (size_t)reference->rows * sizeof *own.t);
-  for (int k = 0; rc == LAG_OK && m->nruns < LAG_COST_MOST_RUNS && idle < 2; k++) {
-    CostRun run = {.knob = adaptive ? pow(10, -2 - k) : span / ldexp(reference->rows, k)};
-    if (run.knob < (adaptive ? least_tol : 1e-12 * span)) break;
-    int done = run_setting(m, scene, reference, scale, longest, &own, &run);
-    rc = done == LAG_ENOMEM ? done : LAG_OK;
-    if (done == LAG_EINVAL || run.time > longest) break;
-    if (done == LAG_OK && run.error < rough) {
-      idle = run.steps == steps ? idle : run.error >= 0.7 * least ? idle + 1 : 0;
-      least = fmin(least, run.error);
-      steps = run.steps;
-      m->run[m->nruns++] = run;
-    }
-  }
-  lag_samples_free(&own);
-  m->order = order_of(m, reference->uncertainty);
-  return rc;
 }
 
 /* ---- All methods */

@@ -33,7 +33,7 @@ void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale
 double lag_cost_row_error(int n, const double *a, const double *b, const double *scale);
 double lag_cost_error(const Samples *a, const Samples *b, const double *scale);
 
-/* One run: knob is its tolerance, or its step where steps are of equal size. */
+/* One setting: knob is its tolerance, or its step where steps are of equal size. */
 typedef struct CostRun {
   double knob;
   double error;
@@ -42,7 +42,7 @@ typedef struct CostRun {
   int best;            /* Pareto-optimal: no other run of any method is both faster and more accurate */
 } CostRun;
 
-enum { LAG_COST_MOST_RUNS = 40 };
+enum { LAG_COST_MOST_RUNS = 48 };
 
 /* A method at one value of its option `option` (name NULL: without). */
 typedef struct CostMethod {
@@ -52,12 +52,33 @@ typedef struct CostMethod {
   CostRun run[LAG_COST_MOST_RUNS]; /* [nruns], from the least accurate on */
   int nruns;
   double order;   /* observed order, the slope of log error against log of the number of steps; NaN: not visible */
-  char why[512];  /* without runs: why the last one tried has no result; "": its error was too large */
+  char why[512];  /* why the last setting tried has no result; "": its error was too large */
+  double left_out; /* largest error from which on finer settings were left out: behind the front, or for want of time; 0: none were */
 } CostMethod;
 
-/* Runs the settings of one method, from coarse to fine, until its error stops falling, or a run takes longer than `longest` [s of
- * processor time]. LAG_OK, also where no run has a result (m->why); LAG_ENOMEM. */
-int lag_cost_measure(CostMethod *m, const CostScene *scene, const Samples *reference, const double *scale, double longest);
+/* A sweep over the settings of all methods. */
+typedef struct CostSweep {
+  CostMethod *method; /* [n] */
+  int n;
+  CostScene scene;
+  const Samples *reference;
+  const double *scale;
+  double seconds;  /* time to spend, by the clock */
+  double target;   /* an error for which settings between those of the grid are tried, too; 0: none */
+  int (*note)(void *context, const CostMethod *m, double part); /* before each setting, with the part of the time that is used, and about once a
+                                                                    millisecond of it, with -1; != 0 ends the sweep */
+  void *context;
+} CostSweep;
+
+/* cost_sweep.c. Runs settings from coarse to fine, methods near the front first and the shortest run next, until errors stop falling or the time is
+ * used; then repeats the runs of the front for their times, and marks it. LAG_OK, also where no method has a result (why); LAG_ENOMEM. */
+int lag_cost_sweep(CostSweep *s);
+
+/* One setting of *m, run once, and again while `enough` processor time [s] is not used, at most `most` times. LAG_OK: *run has its result;
+ * LAG_STOPPED: the run ended before the reference; LAG_INTERRUPTED: it took longer than `longest` [s]; < 0: it failed. Not LAG_OK: m->why says why. */
+int lag_cost_run(CostMethod *m, const CostSweep *s, double enough, int most, double longest, Samples *own, CostRun *run);
+/* Observed order: the median of the last three slopes between runs that neither rounding nor the reference's error affects; NaN: none is visible. */
+double lag_cost_order(const CostMethod *m, double uncertainty);
 
 /* The last component before i of the same kind (coordinate, velocity or state) and unit; -1: there is none. */
 int lag_previous_alike(const lag_sim *sim, int i);

@@ -61,22 +61,22 @@ static const Option options[] = {
     {"method", offsetof(Args, method), 0, RUN | LYAPUNOV | EFFECTS},
     {"tol", offsetof(Args, tol), 0, RUN | LYAPUNOV | EFFECTS}, {"accuracy", offsetof(Args, accuracy), 0, RUN},
     {"step", offsetof(Args, step), 0, RUN | LYAPUNOV | EFFECTS}, {"until", offsetof(Args, until), 0, ANY & ~MODES},
-    {"every", offsetof(Args, every), 0, RUN}, {"svg", offsetof(Args, svg), 0, RUN | COST | LYAPUNOV},
+    {"every", offsetof(Args, every), 0, RUN}, {"svg", offsetof(Args, svg), 0, RUN | LYAPUNOV},
     {"plot-x", offsetof(Args, plot_x), 0, ANY}, {"plot-y", offsetof(Args, plot_y), 0, ANY},
     {"html", offsetof(Args, html), 0, RUN}, {"points", offsetof(Args, points), 0, ANY},
     {"from", offsetof(Args, from), 0, ANY}, {"no-rods", offsetof(Args, no_rods), 1, ANY},
     {"trace", offsetof(Args, trace), 1, ANY}, {"save-state", offsetof(Args, save), 0, RUN},
     {"resume", offsetof(Args, resume), 0, RUN}, {"events", offsetof(Args, events), 0, RUN},
-    {"section", offsetof(Args, section), 0, RUN}, {"output", offsetof(Args, out), 0, RUN | LYAPUNOV},
-    {"json", offsetof(Args, json), 1, ANY}, {"sketch", offsetof(Args, sketch), 1, RUN},
+    {"section", offsetof(Args, section), 0, RUN}, {"output", offsetof(Args, out), 0, RUN | LYAPUNOV | COST},
+    {"json", offsetof(Args, json), 1, ANY}, {"sketch", offsetof(Args, sketch), 1, RUN | COST},
     {"quiet", offsetof(Args, quiet), 1, ANY},
     {"tangent", offsetof(Args, tangent), 1, RUN}, {"modes", offsetof(Args, modes), 1, ANY},
     {"lyapunov", offsetof(Args, lyapunov), 1, ANY}, {"transient", offsetof(Args, transient), 0, LYAPUNOV},
     {"exponents", offsetof(Args, exponents), 0, LYAPUNOV}, {"effects", offsetof(Args, effects), 0, ANY},
     {"help", offsetof(Args, help), 1, ANY}, {"cost", offsetof(Args, cost), 1, ANY},
     {"reference", offsetof(Args, reference), 1, ANY}, {"target", offsetof(Args, target), 0, COST},
-    {"longest", offsetof(Args, longest), 0, COST}, {"methods", offsetof(Args, methods), 0, COST},
-    {"against", offsetof(Args, against), 0, COST},
+    {"seconds", offsetof(Args, seconds), 0, COST | REFERENCE}, {"methods", offsetof(Args, methods), 0, COST},
+    {"against", offsetof(Args, against), 0, COST}, {"all", offsetof(Args, all), 1, COST}, {"runs", offsetof(Args, runs), 1, COST},
 };
 enum { NOPTIONS = sizeof options / sizeof *options };
 
@@ -159,8 +159,8 @@ static int check_analysis(const Args *a) {
 static int check_kinds(const Args *a) {
   const struct {
     const char *option, *path, *suffixes, *writes;
-  } files[] = {{"-o", a->out, "csv npy", "CSV, or NumPy where the name ends in .npy"}, {"--events", a->events, "csv", "CSV"},
-               {"--svg", a->svg, "svg", "SVG"}, {"--html", a->html, "html htm", "HTML"}};
+  } files[] = {{"-o", a->out, a->cost ? "svg csv json" : "csv npy", a->cost ? "a picture, .svg, or all runs, .csv or .json" : "CSV, or NumPy where the name ends in .npy"},
+               {"--events", a->events, "csv", "CSV"}, {"--svg", a->svg, "svg", "SVG"}, {"--html", a->html, "html htm", "HTML"}};
 
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
     const char *path = files[i].path, *other = path ? lag_outfile_other_type(path, files[i].suffixes) : NULL;

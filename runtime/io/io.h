@@ -62,7 +62,6 @@ double lag_tick_step(double lo, double hi, int n);
 typedef struct PlottedCurves {
   int n, *x, *y;
   const char *xname, *yname; /* axis labels where several columns are drawn; NULL: all columns against time */
-  int powers; /* 1: values are exponents of ten; each row is marked */
 } PlottedCurves;
 
 /* Writes the picture as SVG. -1 with errno set. */

@@ -24,7 +24,6 @@ typedef struct Panel {
   double x, y, w, h;         /* rectangle in pixels */
   double x0, x1, y0, y1;     /* ranges of the data */
   const char *xlabel;
-  int powers;                /* 1: data are exponents of ten, labelled 1e.. */
 } Panel;
 
 double lag_tick_step(double lo, double hi, int n) {
@@ -69,14 +68,7 @@ static double px(const Panel *p, double x) { return p->x + (x - p->x0) / (p->x1 
 
 static double py(const Panel *p, double y) { return p->y + p->h - (y - p->y0) / (p->y1 - p->y0) * p->h; }
 
-static void tick_label(char *s, size_t n, const Panel *p, double value, double step) {
-  snprintf(s, n, p->powers ? "1e%.6g" : "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value);
-}
-
-static double tick_step(const Panel *p, double lo, double hi, int n) {
-  double step = lag_tick_step(lo, hi, n);
-  return p->powers ? fmax(step, 1) : step;
-}
+static void tick_label(char *s, size_t n, double value, double step) { snprintf(s, n, "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value); }
 
 /* Number of x ticks per label, so that long labels (-3.086e+07) do not overlap. */
 static double label_stride(const Panel *p, double dx) {
@@ -84,7 +76,7 @@ static double label_stride(const Panel *p, double dx) {
   size_t longest = 0;
   char s[32];
   for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
-    tick_label(s, sizeof s, p, k * dx, dx);
+    tick_label(s, sizeof s, k * dx, dx);
     if (strlen(s) > longest) longest = strlen(s);
   }
   return ceil(((double)longest * WIDTH_OF_CHARACTER + ROOM) / (px(p, dx) - px(p, 0)));
@@ -92,19 +84,19 @@ static double label_stride(const Panel *p, double dx) {
 
 static void axes(FILE *f, const Panel *p, const char *ylabel, int last) {
   char s[32];
-  double dx = tick_step(p, p->x0, p->x1, 8), dy = tick_step(p, p->y0, p->y1, p->h > 220 ? 7 : 4), size = fmax(fabs(p->y0), fabs(p->y1));
+  double dx = lag_tick_step(p->x0, p->x1, 8), dy = lag_tick_step(p->y0, p->y1, p->h > 220 ? 7 : 4), size = fmax(fabs(p->y0), fabs(p->y1));
   double base = size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0; /* left out of labels that would be equal otherwise */
   double stride = label_stride(p, dx);
   fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y, p->w, p->h);
   for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
     fprintf(f, "<path d=\"M%.2f %.1fv%.1f\" class=\"g\"/>\n", px(p, k * dx), p->y, p->h);
-    tick_label(s, sizeof s, p, k * dx, dx);
+    tick_label(s, sizeof s, k * dx, dx);
     if (last && fmod(k, stride) == 0.0) text(f, px(p, k * dx), p->y + p->h + 17, "text-anchor=\"middle\"", s);
   }
   for (double k = ceil((p->y0 - base) / dy - 1e-9); k * dy <= p->y1 - base + 1e-9 * dy; k++) {
     double y = py(p, base + k * dy);
     fprintf(f, "<path d=\"M%.1f %.2fh%.1f\" class=\"g\"/>\n", p->x, y, p->w);
-    tick_label(s, sizeof s, p, k * dy, dy);
+    tick_label(s, sizeof s, k * dy, dy);
     text(f, p->x - 7, y + 4, "text-anchor=\"end\"", s);
   }
   if (base != 0.0) {
@@ -233,7 +225,6 @@ static void draw_series(FILE *f, const Panel *p, const Table *t, const PlottedCu
     int x = unit ? 0 : d->x[i], y = d->y[i];
     if (unit && strcmp(t->cols[y].unit, unit) != 0) continue;
     curve(f, p, t, x, y, i);
-    for (size_t k = 0; k < t->nrows && d->powers; k++) mark(f, px(p, lag_table_cell(t, k, x)), py(p, lag_table_cell(t, k, y)), colour[i % 8]);
     if (unit || total > 1) legend(f, p, shown++, total, i, t->cols[y].name);
   }
 }
@@ -349,7 +340,7 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   char xlabel[176], ylabel[176];
   int x = d->x[0];
   Panel p = {.x = LEFT, .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380, .xlabel = xlabel,
-             .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL, .powers = d->powers};
+             .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL};
   for (int i = 0; i < d->n; i++) {
     lag_table_range(t, d->x[i], &p.x0, &p.x1);
     lag_table_range(t, d->y[i], &p.y0, &p.y1);
@@ -362,7 +353,7 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   head(f, d->n > 1 ? LEFT + (int)p.w + legend_width(t, d) : WIDTH, TOP + (int)p.h + BOTTOM, title);
   axes(f, &p, ylabel, 1);
   draw_series(f, &p, t, d, NULL);
-  if (x && !t->points && !d->powers && d->n == 1) mark_ends(f, &p, t, x, d->y[0]);
+  if (x && !t->points && d->n == 1) mark_ends(f, &p, t, x, d->y[0]);
 }
 
 int lag_svg_write(const char *path, const Table *t, const char *title, const PlottedCurves *d) {

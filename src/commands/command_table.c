@@ -46,11 +46,12 @@ static const CommandRow commands[] = {
    "measured; `at half the time` is the estimate then. An exponent of zero approaches 0 as log(t)/t. "
    "Method and steps are chosen as for `lagc run`: --method, --tol, --step.\n\n"
    "  name=value            a parameter, another start, an input: as for lagc run"},
-  {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [-o FILE.svg]", "time against accuracy: all methods, side by side",
-   "Runs every method that can integrate the model over a range of tolerances or steps. Prints for each run its error, its time and "
-   "its calls of the right-hand side; for each method its measured order; and the settings that no other beats in time and error. The error is "
+  {CMD_COST, "cost", NULL, "MODEL [SCENE] [name=value ...] [--target X] [--seconds S] [-o FILE.svg]", "time against accuracy: all methods, side by side",
+   "Names the fastest settings for errors of 1e-3, 1e-6, 1e-9 and 1e-12, or of --target X; then prints the time that the best method of each family "
+   "takes for errors of 1e-2 to 1e-14, and the front: the runs that no other beats in time and error. Methods are tried from coarse to fine tolerances or "
+   "steps, those near the front first, for --seconds S in all. The error is "
    "the largest difference, at 16 times, from a reference by Taylor series in the highest available precision, relative to the "
-   "largest value of its kind and unit. Times are measured on this processor, now.\n\n"
+   "largest value of its kind and unit. Times are measured on this processor, now. Ctrl-C prints what is known.\n\n"
    "  name=value            a parameter, another start, an input, as for `lagc run`\n\n"
    "Exit status 3: no setting reaches the target."},
   {CMD_EFFECTS, "effects", NULL, "MODEL [SCENE] [name=value ...] [--accuracy X] [--json]", "cost of each effect, and whether the result needs it",
@@ -135,7 +136,7 @@ static const OptionRow options[] = {
   {"--output", "-o", "FILE.h", TAKES_FILE, "h hpp", C(HEADER), OWN(output), "the header to write; default: standard output"},
   {"--output", "-o", "FILE.c", TAKES_FILE, "c", C(EMIT), OWN(output), "the C file to write; default: standard output"},
   {"--output", "-o", "FILE.svg", TAKES_FILE, "svg", C(PLOT), OWN(output), "default: MODEL_SCENE.svg in this folder"},
-  {"--output", "-o", "FILE.svg", TAKES_FILE, "svg", C(COST), OWN(output), "a picture: time against error, on logarithmic axes"},
+  {"--output", "-o", "FILE", TAKES_FILE, "svg csv json", C(COST), PASSED, "a picture, FILE.svg: time against error, on logarithmic axes; or all runs: FILE.csv, FILE.json"},
   {"--output", "-o", "FILE.html", TAKES_FILE, "html htm", C(ANIMATE), OWN(output), "default: MODEL_SCENE.html in this folder"},
   {"--output", "-o", "FILE", TAKES_FILE, "csv npy", C(RUN), PASSED, "rows of output: CSV, or NumPy where FILE ends in .npy; - is standard output"},
   {"--output", "-o", "FILE", TAKES_FILE, "csv npy", C(LYAPUNOV), PASSED, "the estimates as they settle: CSV, or NumPy where FILE ends in .npy"},
@@ -150,7 +151,9 @@ static const OptionRow options[] = {
   {"--step", NULL, "H", TAKES_NUMBER, "", STEPS, PASSED, "step [s]; the first step to try if the method chooses its own steps"},
   {"--target", NULL, "X", TAKES_NUMBER, "", C(COST), PASSED, "names the cheapest setting whose error is at most X"},
   {"--methods", NULL, "NAME,NAME", TAKES_TEXT, "", C(COST), PASSED, "only these methods"},
-  {"--longest", NULL, "S", TAKES_NUMBER, "", C(COST), PASSED, "no method goes on to finer settings after a run of S seconds; default: 0.5"},
+  {"--seconds", NULL, "S", TAKES_NUMBER, "", C(COST), OWN(seconds), "the time to spend, with building; default: 10. What was left out is said"},
+  {"--all", NULL, NULL, TAKES_NOTHING, "", C(COST), PASSED, "the times of every method, not of one a family"},
+  {"--runs", NULL, NULL, TAKES_NOTHING, "", C(COST), PASSED, "every run, not the front alone"},
   {"--until", NULL, "T", TAKES_NUMBER, "", SIMULATE | C(COST) | C(EFFECTS), PASSED, "run to time T [s]; before the start: backwards"},
   {"--accuracy", NULL, "X", TAKES_NUMBER, "", C(EFFECTS), OWN(accuracy), "the relative difference that does not matter; finds the smallest set of effects within it"},
   {"--until", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "measure to time T [s]; default: 20 spans of the scene"},
@@ -163,7 +166,7 @@ static const OptionRow options[] = {
   {"--svg", NULL, "FILE.svg", TAKES_FILE, "svg", C(LYAPUNOV), PASSED, "a picture of the estimates as they settle"},
   {"--plot-x", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "with --plot-y NAME: the picture shows one output against another"},
   {"--plot-y", NULL, "NAME", TAKES_TEXT, "", SIMULATE, PASSED, "the picture shows this output"},
-  {"--sketch", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "a picture in the terminal"},
+  {"--sketch", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(COST), PASSED, "a picture in the terminal"},
   {"--html", NULL, "FILE.html", TAKES_FILE, "html htm", C(RUN) | C(PLOT), PASSED, "an animation of the points that --points names; `lagc animate` finds them itself"},
   {"--points", NULL, "'X,Y X,Y'", TAKES_TEXT, "", C(RUN) | C(PLOT), PASSED, "points of an animation; X and Y are names of outputs"},
   {"--from", NULL, "'X,Y'", TAKES_TEXT, "", C(RUN) | C(PLOT), PASSED, "the point where the first rod begins; default: the origin"},

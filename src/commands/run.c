@@ -2,10 +2,13 @@
 #include "commands/commands.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "commands/command_table.h"
+#include "commands/cost_reference.h"
 #include "commands/simulator.h"
 #include "jets/self_check.h"
 #include "toolchain/process.h"
@@ -28,40 +31,41 @@ static void tell_last_state(void *compiler, const double *number, uint32_t n) {
   if (nonfinite_note(c->run, c->run_by, number, n)) compiler_print_messages(c);
 }
 
-/* lagc cost: a simulator in quadruple precision computes the reference solution, which the simulator reads from its standard input. On
- * failure the simulator computes a reference of its own. */
-static void give_reference(Compiler *c, const Units *units) {
-  VEC(char *) argv = {0};
-  const char *path = c->picture.argv.n > 1 ? simulator_precise(c, units) : NULL;
-  if (!path) return;
-  vec_push(c->arena, &argv, c->picture.argv.at[0]);
-  vec_push(c->arena, &argv, arena_strdup(c->arena, "--reference"));
-  for (uint32_t i = 0; i < c->o.rest.n; i++) {
-    const char *word = c->o.rest.at[i];
-    int until = strncmp(word, "--until", 7) == 0, alone = until && !word[7];
-    if (strcmp(word, "--against") == 0 || strncmp(word, "--against=", 10) == 0) return; /* the user gave a reference */
-    if (word[0] == '-' && !until) i += (uint32_t)option_takes_next(c->o.command, word);
-    else vec_push(c->arena, &argv, arena_strdup(c->arena, word));
-    if (alone && i + 1 < c->o.rest.n) vec_push(c->arena, &argv, arena_strdup(c->arena, c->o.rest.at[++i]));
-  }
-  vec_push(c->arena, &argv, NULL);
-  if (process_to_stdin(path, argv.at) != 0) return;
+static double seconds_now(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9*(double)now.tv_nsec;
+}
+
+/* Makes the simulator of `lagc cost`, beside it the reference, and tells it how much of the time is left: at least a third. */
+static int make_cost_simulator(Compiler *c, const Units *units, double begin, const char **path) {
+  double asked = c->o.seconds ? strtod(c->o.seconds, NULL) : 10;
+  CostReference reference;
+  cost_reference_begin(c, 0.4*asked, &reference);
+  int status = simulator_of_units(c, units, NULL, path), given = cost_reference_end(&reference);
+  double left = asked - (seconds_now() - begin);
   c->picture.argv.n--; /* the NULL at the end */
-  vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--against"));
-  vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "-"));
+  vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--seconds"));
+  vec_push(c->arena, &c->picture.argv, !(asked > 0) ? arena_strdup(c->arena, c->o.seconds) : arena_printf(c->arena, "%.3g", left > asked/3 ? left : asked/3));
+  if (given) {
+    vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--against"));
+    vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "-"));
+  }
   vec_push(c->arena, &c->picture.argv, NULL);
+  return status;
 }
 
 /* run, plot, animate, modes, lyapunov, cost: builds the simulator and becomes it by exec. */
 int command_run(Compiler *c) {
   const char *path;
+  double begin = seconds_now();
   int status = simulator_prepare(c);
   if (status != STATUS_OK) return status;
   Units units = {0};
-  status = simulator_lower(c, &units) ? simulator_of_units(c, &units, NULL, &path) : STATUS_MODEL;
+  if (!simulator_lower(c, &units)) return STATUS_MODEL;
+  status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path) : simulator_of_units(c, &units, NULL, &path);
   if (status != STATUS_OK) return status;
   if (writes_source(c)) return STATUS_USAGE;
-  if (c->o.command == CMD_COST) give_reference(c, &units);
   fflush(stdout);
   compiler_print_messages(c); /* warnings: the simulator does not come back */
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);

@@ -1,6 +1,7 @@
 /* Simulators of all scenes: Eqns -> IrUnits -> C texts -> program. */
 #include "commands/simulator.h"
 
+#include <float.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -124,7 +125,8 @@ int simulator_of_units(Compiler *c, const Units *units, const char *output, cons
 const char *simulator_precise(Compiler *c, const Units *units) {
   Toolchain tools;
   const char *error = NULL;
-  if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) || !toolchain_precision(c->arena, &tools, "quad", &error)) return NULL;
+  const char *precision = LDBL_MANT_DIG > DBL_MANT_DIG ? "long" : "quad";
+  if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) || !toolchain_precision(c->arena, &tools, precision, &error)) return NULL;
   Texts texts = simulator_texts(c, units, 0);
   return toolchain_simulator(c->arena, &tools, texts.at, texts.n, &error);
 }

@@ -12,7 +12,7 @@
 
 #include "base/vec.h"
 
-enum { LIMIT_MIB = 1024, NAME = 32 }; /* NAME: digits of an entry's name */
+enum { LIMIT_MIB = 1024, NAME = 32, SUFFIX = 9 }; /* digits of an entry's name; those of a reference follow after a dot */
 
 /* --- folders --- */
 
@@ -133,6 +133,12 @@ int cache_has(const char *path) {
   return whole;
 }
 
+int cache_has_data(const char *path) {
+  int whole = file_is_own(path);
+  if (whole) utimensat(AT_FDCWD, path, NULL, 0);
+  return whole;
+}
+
 typedef struct {
   const char *path;
   long long size;
@@ -140,7 +146,9 @@ typedef struct {
 } Entry;
 typedef VEC(Entry) Entries;
 
-static int is_entry(const char *name) { return strlen(name) == NAME && strspn(name, "0123456789abcdef") == NAME; }
+static int is_reference(const char *name) { return strlen(name) == NAME + SUFFIX && name[NAME] == '.' && strspn(name + NAME + 1, "0123456789abcdef") == SUFFIX - 1; }
+
+static int is_entry(const char *name) { return strspn(name, "0123456789abcdef") == NAME && (name[NAME] == '\0' || is_reference(name)); }
 
 static int by_age(const void *x, const void *y) {
   const struct timespec *a = &((const Entry *)x)->used, *b = &((const Entry *)y)->used;
@@ -182,6 +190,12 @@ void cache_limit(Arena *a, const char *keep) {
   }
 }
 
+static uint32_t count_simulators(const Entries *all) {
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < all->n; i++) n += !is_reference(strrchr(all->at[i].path, '/') + 1);
+  return n;
+}
+
 static double mib(long long bytes) { return (double)bytes / (1 << 20); }
 
 void cache_print(Arena *a, StrBuf *out) {
@@ -189,12 +203,14 @@ void cache_print(Arena *a, StrBuf *out) {
   const char *dir = cache_folder(a);
   Entries all = entries(a, dir, &total);
   sb_printf(out, "folder      %s\n", dir ? dir : "none: set XDG_CACHE_HOME to a folder that only you can write");
-  sb_printf(out, "simulators  %u\nsize        %.1f MiB\nlimit       %.0f MiB (LAGC_CACHE_MIB)\n", all.n, mib(total), mib(limit()));
+  sb_printf(out, "simulators  %u\nreferences  %u (lagc cost)\nsize        %.1f MiB\nlimit       %.0f MiB (LAGC_CACHE_MIB)\n", count_simulators(&all),
+            all.n - count_simulators(&all), mib(total), mib(limit()));
 }
 
 void cache_clear(Arena *a, StrBuf *out) {
   long long total;
   Entries all = entries(a, cache_folder(a), &total);
   for (uint32_t i = 0; i < all.n; i++) unlink(all.at[i].path);
-  sb_printf(out, "removed %u simulator%s, %.1f MiB\n", all.n, all.n == 1 ? "" : "s", mib(total));
+  uint32_t n = count_simulators(&all);
+  sb_printf(out, "removed %u simulator%s, %.1f MiB\n", n, n == 1 ? "" : "s", mib(total));
 }

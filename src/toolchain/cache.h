@@ -1,4 +1,4 @@
-/* Cache of simulators: an entry is named by a hash of its texts, and run only where nobody but the user can have written it. */
+/* Cache of simulators, and of the reference motions that they computed: an entry is named by a hash of its texts, and run only where nobody but the user can have written it. */
 #pragma once
 
 #include "base/strbuf.h"
@@ -21,6 +21,8 @@ void build_folder_remove(BuildFolder *f);
 
 /* Whether the simulator is there, whole and the user's own; otherwise it is built anew. Marks the entry as used. */
 int cache_has(const char *path);
+/* The same for a reference, beside its simulator with a suffix of eight digits. */
+int cache_has_data(const char *path);
 /* Removes the entries used longest ago, except `keep`, until the cache is within its limit. */
 void cache_limit(Arena *a, const char *keep);
 

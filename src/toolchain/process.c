@@ -50,20 +50,27 @@ int process_run(Arena *a, const char *path, char *const *argv, char **said) {
   return pid < 0 ? -1 : wait_for(pid);
 }
 
-int process_to_stdin(const char *path, char *const *argv) {
-  FILE *out = tmpfile();
-  pid_t pid = out ? fork() : -1;
+int process_to_file(const char *path, char *const *argv, FILE *out) {
+  pid_t pid = fork();
   if (pid == 0) {
     dup2(fileno(out), 1);
     if (!freopen("/dev/null", "w", stderr)) _exit(127);
     execv(path, argv);
     _exit(127);
   }
-  int status = pid > 0 ? wait_for(pid) : -1;
-  if (status == 0 && (lseek(fileno(out), 0, SEEK_SET) != 0 || dup2(fileno(out), 0) != 0)) status = -1;
-  if (out) fclose(out);
-  return status;
+  return pid > 0 ? wait_for(pid) : -1;
 }
+
+long process_begin(int (*work)(void *data), void *data) {
+  fflush(NULL);
+  pid_t pid = fork();
+  if (pid == 0) _exit(work(data));
+  return pid;
+}
+
+int process_end(long process) { return wait_for((pid_t)process); }
+
+int process_read_from(FILE *f) { return lseek(fileno(f), 0, SEEK_END) > 0 && lseek(fileno(f), 0, SEEK_SET) == 0 && dup2(fileno(f), 0) == 0; }
 
 static void wait_and_tell(Arena *a, int fd, void (*tell)(void *data, const double *number, uint32_t n), void *data) {
   FILE *f = fdopen(fd, "r");

@@ -2,15 +2,22 @@
 #pragma once
 
 #include <stdint.h>
+#include <stdio.h>
 
 #include "base/strbuf.h"
 
 /* Runs the program at `path`; *said gets its standard output and error. Returns its exit status, or -1. */
 int process_run(Arena *a, const char *path, char *const *argv, char **said);
 
-/* Runs the program at path; its standard output becomes the standard input of this process, its messages are dropped.
- * Returns its exit status, or -1; unless that is 0 the standard input is unchanged. */
-int process_to_stdin(const char *path, char *const *argv);
+/* Runs the program at path with its standard output to a file; its messages are dropped. Returns its exit status, or -1. */
+int process_to_file(const char *path, char *const *argv, FILE *out);
+
+/* Begins work(data) in a child process, whose exit status is what work returns. Returns the process, or -1. */
+long process_begin(int (*work)(void *data), void *data);
+/* Waits for its end; its exit status, or -1. */
+int process_end(long process);
+/* Makes what the file holds the standard input. Returns 0 where it is empty or that fails. */
+int process_read_from(FILE *f);
 
 /* Forks a listener beside the simulator that lagc becomes by exec: it keeps the compiled model, and waits for the state at which a run ended for
  * want of a finite value. Returns in the process that becomes the simulator, which finds the pipe's descriptor in $LAG_LAST_STATE. The listener calls

@@ -53,6 +53,6 @@ every_command() {
   clean modes "$m"
   clean lyapunov "$m" --until "$sooner"
   clean effects "$m" --until "$sooner"
-  clean cost "$m" --until "$sooner" --longest 0.001 --methods rk4,rk45,dop853 -o "$said.cost.svg"
+  clean cost "$m" --until "$sooner" --seconds 0.5 --methods rk4,rk45,dop853 -o "$said.cost.svg"
   clean complete run "$m" ''
 }

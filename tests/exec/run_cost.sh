@@ -6,7 +6,7 @@
 export TMP
 . tests/tap.sh
 . tests/exec/lib_precision.sh
-unset LAGC_OPTIMISE # with --longest, the runs that a sweep reaches depend on the speed of the simulator
+unset LAGC_OPTIMISE # the runs that a sweep reaches depend on the speed of the simulator
 
 # cost ARGS...: rows of `method knob error seconds front cheapest order`
 cost() {
@@ -18,7 +18,7 @@ cost() {
 
 # RK4 on x'' = -w^2 x multiplies x + i x'/w by R(-i w h) a step, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24; the motion is
 # cos(w t). k = 4, m = 1: w = 2; 16 times up to 20 s. Rounding is 1e-16 a step, of errors that are 1e-9 and more.
-check "a spring by rk4" cost models/spring.lag free --methods rk4 --longest 0.02
+check "a spring by rk4" cost models/spring.lag free --methods rk4 --seconds 2
 rk4_by_hand() {
   [ "$(wc -l <"$TMP/runs")" -gt 8 ] || return 1
   awk '$3 > 1e-9 {
@@ -39,9 +39,8 @@ rk4_by_hand() {
 }
 check "its errors are those of the recursion" rk4_by_hand
 
-# 0.15: contribution of higher terms where rounding does not show yet. 0.2 s: symplectic_euler needs a range of 30 in its error to show an order, on a
-# busy machine as well.
-check "a pendulum by methods of fixed steps" cost models/pendulum.lag --until 4 --methods "rk4,verlet4${SLOW:+,symplectic_euler,verlet,variational,gauss}" --longest "0.${SLOW:+2}05"
+# 0.15: contribution of higher terms where rounding does not show yet.
+check "a pendulum by methods of fixed steps" cost models/pendulum.lag --until 4 --methods "rk4,verlet4${SLOW:+,symplectic_euler,verlet,variational,gauss}" --seconds ${SLOW:+1}2
 order() { awk -v m="$1" '$1 == m { print $7; exit }' "$TMP/runs"; }
 has_order() { check "$1 has order $2" awk -v got="$(order "$1")" -v want="$2" 'BEGIN { exit !(got != "" && got != "null" && (got - want)^2 < 0.15^2) }'; }
 has_order rk4 4
@@ -54,7 +53,7 @@ slow has_order 'gauss(stages=1)' 2
 slow has_order 'gauss(stages=2)' 4
 
 # The front and the target are functions of errors and times: recomputed.
-check "all methods, with a target" cost models/pendulum.lag --until 2 --longest 0.01 --target 1e-8
+check "all methods, with a target" cost models/pendulum.lag --until 2 --seconds 2 --target 1e-8
 front() {
   awk '{ e[NR] = $3; t[NR] = $4; f[NR] = $5 } END {
     for (i = 1; i <= NR; i++) {
@@ -72,38 +71,76 @@ all_there() { for m in rk45 dop853 rk4 verlet8 'gauss(stages=4)' radau taylor; d
 check "every method of liblag is there" all_there
 
 text() { "$LAGC" cost "$@" >"$TMP/text" 2>"$TMP/err"; }
-check "as a table" text models/pendulum.lag --until 2 --methods rk45,verlet --target 1e-6 --longest 0.01
+check "as a table" text models/pendulum.lag --until 2 --methods rk45,verlet --target 1e-6 --seconds 1
 says() { check "it says: $1" grep -q -e "$1" "$TMP/text"; }
 says '^reference: taylor'
-if ! has_precision quad; then
-  slow skip "a reference of 34 digits" "no libquadmath"
+if ! has_precision long; then
+  slow skip "a reference of 19 digits" "long double is a double"
 else
-  says 'taylor, 34 digits, itself uncertain by [0-9.]*e-3'
-  # A model with constraints has no Taylor series, and each digit of dop853 takes steps in software: as many as errors of doubles are
-  # judged by, at most 1e-19, and no more.
-  "$LAGC" cost tests/exec/models/rod.lag --until 2 --methods rk4 --longest 0.001 >"$TMP/rod"
-  check "with constraints, enough digits" awk '/uncertain by/ { x = $NF; exit } END { print x; exit !(x > 1e-24 && x < 1e-19) }' "$TMP/rod"
+  says 'taylor, 19 digits, itself uncertain by [0-9.]*e-1[6-9]'
+  # A model with constraints has no Taylor series; dop853 computes with as many digits as errors of doubles are judged by.
+  "$LAGC" cost tests/exec/models/rod.lag --until 2 --methods rk4 --seconds 1 >"$TMP/rod"
+  check "with constraints, enough digits" awk '/uncertain by/ { x = $NF; exit } END { print x; exit !(x > 1e-20 && x < 1e-16) }' "$TMP/rod"
 fi
-says '^cheapest setting for an error of 1e-06: --method '
+says '^cheapest setting for an error of 1e-06: .* ms, error '
 # The method that it names reaches the stated error, by the pendulum's closed form (checked in models/pendulum.facts).
 named() { sed -n 's/^  lagc run //p' "$TMP/text" >"$TMP/words" && read -r words <"$TMP/words" && sh -c "$LAGC run $words --until 2 --quiet -o $TMP/rows.csv" && [ -s "$TMP/rows.csv" ]; }
 check "the command that it names runs" named
-without_quad() { LAG_HOME=$TMP/home "$LAGC" cost models/pendulum.lag --until 1 --methods rk4 --longest 0.01 >"$TMP/text" && grep -q '^reference: taylor, 15 digits' "$TMP/text"; }
+without_quad() { LAG_HOME=$TMP/home "$LAGC" cost models/pendulum.lag --until 1 --methods rk4 --seconds 1 >"$TMP/text" && grep -q '^reference: taylor, 15 digits' "$TMP/text"; }
 mkdir -p "$TMP/home/lib" && cp "$BUILD"/liblag.a "$BUILD"/liblag_gsl.a "$TMP/home/lib" 2>"$TMP/err"
 cp -r "$INC" "$TMP/home/include"
 check "without more digits it is one of doubles" without_quad
-unreached() { text models/pendulum.lag --until 2 --methods symplectic_euler --longest 0.001 --target 1e-12; [ $? = 3 ]; }
+unreached() { text models/pendulum.lag --until 2 --methods symplectic_euler --seconds 0.3 --target 1e-12; [ $? = 3 ]; }
 check "a target out of reach is exit status 3" unreached
-says '^no setting has an error of 1e-12'
+says '^no setting has an error of 1e-12 or less; the smallest found is'
 
-check "a flow" text models/lorenz.lag --until 1 --methods rk45,verlet,taylor --longest 0.01
+check "a flow" text models/lorenz.lag --until 1 --methods rk45,verlet,taylor --seconds 1 --runs
 says '^not in the table: verlet: .*states'
 says '^. taylor(tol=1e-09)'
 
-check "a picture" text models/pendulum.lag --until 1 --longest 0.01 --methods rk4,rk45 -o "$TMP/cost.svg" --quiet
-check "is whole" grep -q '^</svg>' "$TMP/cost.svg"
-check "has a curve for each method" [ "$(grep -c '<path fill="none"' "$TMP/cost.svg")" = 2 ]
+check "a picture" text models/pendulum.lag --until 1 --seconds 1 --methods rk4,rk45,verlet,verlet4 -o "$TMP/cost.svg" --quiet
+check "is whole" grep -q '</svg>' "$TMP/cost.svg"
+check "has a curve for each family" [ "$(grep -c '<path fill="none".*stroke-linejoin' "$TMP/cost.svg")" = 2 ]
+check "with its name" grep -q '>rk4' "$TMP/cost.svg"
 check "and no other output" [ ! -s "$TMP/text" ]
+check "all runs as rows" text models/pendulum.lag --until 1 --seconds 1 --methods rk4 -o "$TMP/cost.csv" --sketch
+check "their head" grep -qx 'method,knob,setting,error,seconds,spread,steps,calls,front' "$TMP/cost.csv"
+check "errors fall from row to row" awk -F, 'NR > 2 && NR < 9 { if (!($4 < last)) bad = 1 } { last = $4 } END { exit bad || NR < 9 }' "$TMP/cost.csv"
+says '^processor time .s. against error'
+says '^ *a rk4$'
+check "and as JSON" sh -c '"$0" cost models/pendulum.lag --until 1 --seconds 1 --methods rk4 --quiet -o "$1" && grep -q "\"left_out_from\"" "$1"' "$LAGC" "$TMP/cost.json"
+
+# What the time allows: coarse settings first, and what was left out is said.
+check "in a short time" text models/double_pendulum.lag --seconds 2
+says '^left out, as three times slower than others or for want of time: '
+check "one method of each family" [ "$(grep -c '^  verlet' "$TMP/text")" = 1 ]
+slow check "or all of them" sh -c '"$0" cost models/double_pendulum.lag --seconds 0.4 --all >"$1" && [ "$(grep -c "^  verlet" "$1")" = 4 ]' "$LAGC" "$TMP/all"
+
+# Digits are lost with time, also those of the reference: errors are compared as far as it has some.
+if has_precision long; then
+  check "a chaotic motion longer than any digits" text models/double_pendulum.lag chaos --until 300 --seconds 1 --methods taylor
+  says '^no reference reaches t = 300 s: errors are compared up to t = '
+fi
+
+# Computed once for the same motion, kept beside the simulator.
+references() { XDG_CACHE_HOME=$TMP/cache "$LAGC" cache | sed -n 's/^references *\([0-9]*\).*/\1/p'; }
+if has_precision long; then
+  kept() {
+    XDG_CACHE_HOME=$TMP/cache "$LAGC" cost models/spring.lag "$@" --seconds 0.5 --methods rk4 --quiet && references
+  }
+  mkdir -p "$TMP/cache"
+  is "a reference is kept" "1 1 2 3" "$(echo "$(kept free)" "$(kept free --target 1e-3)" "$(kept free k=5)" "$(kept free --until 3)")"
+fi
+
+interrupted() { # Ctrl-C: what is known is printed
+  "$LAGC" cost models/double_pendulum.lag --seconds 60 >"$TMP/text" 2>"$TMP/err" &
+  pid=$!
+  sleep 4
+  kill -TERM $pid
+  wait $pid
+  [ $? = 143 ] && grep -q '^interrupted' "$TMP/text" && grep -q '^cheapest setting' "$TMP/text"
+}
+slow check "an interrupted sweep prints what it knows" interrupted
 
 refused() { # NAME PATTERN ARGS...
   name=$1 pattern=$2
@@ -115,22 +152,25 @@ refused() { # NAME PATTERN ARGS...
 }
 refused "an unknown method" 'did you mean verlet' models/pendulum.lag --methods verlet5
 refused "a target of zero" 'example --target 1e-8' models/pendulum.lag --target 0
+refused "no time to spend" 'example --seconds 60' models/pendulum.lag --seconds 0
+refused "a time in words" 'is not a number' models/pendulum.lag --seconds long
+refused "a picture of another kind" 'cost writes SVG' models/pendulum.lag -o cost.png
 refused "no time to run" 'nothing to compute' models/pendulum.lag --until 0
 refused "a tolerance" 'is an option of .lagc run' models/pendulum.lag --tol 1e-9
 echo garbage >"$TMP/garbage"
 "$LAGC" build models/pendulum.lag --method taylor -o "$TMP/sim" >"$TMP/out" 2>&1
 bad_reference() { "$TMP/sim" --cost --against "$TMP/garbage" 2>"$TMP/err"; [ $? = 2 ] && grep -q 'holds no reference' "$TMP/err"; }
 check "what is no reference is refused" bad_reference
-# With quadruple precision lagc computes the reference in it, from the given values and up to the given time.
+# With more digits than doubles have lagc computes the reference in them, from the given values and up to the given time.
 precise_reference() {
-  "$LAGC" cost models/pendulum.lag th='30[deg]' --until 2 --methods rk4 --longest 0.002 >"$TMP/out" || return 1
-  "$LAGC" build models/pendulum.lag --precision quad --method taylor -o "$TMP/precise" && "$TMP/precise" --reference th=0.52359877559829882 --until 2 >"$TMP/reference"
-  "$TMP/sim" --cost th=0.52359877559829882 --until 2 --methods rk4 --longest 0.002 --against "$TMP/reference" >"$TMP/other" || return 1
+  "$LAGC" cost models/pendulum.lag th='30[deg]' --until 2 --methods rk4 --seconds 0.5 --runs >"$TMP/out" || return 1
+  "$LAGC" build models/pendulum.lag --precision long --method taylor -o "$TMP/precise" && "$TMP/precise" --reference th=0.52359877559829882 --until 2 >"$TMP/reference"
+  "$TMP/sim" --cost th=0.52359877559829882 --until 2 --methods rk4 --seconds 0.5 --runs --against "$TMP/reference" >"$TMP/other" || return 1
   errors() { awk '/step=/ { sub(/^\*/, ""); print $1, $2 }' "$1" | head -4; }
-  grep -q '^reference: taylor, 34 digits' "$TMP/out" && [ "$(errors "$TMP/out")" = "$(errors "$TMP/other")" ]
+  grep -q '^reference: taylor, 19 digits' "$TMP/out" && [ "$(errors "$TMP/out")" = "$(errors "$TMP/other")" ]
 }
-if has_precision quad; then check "a reference from the start of the command" precise_reference; fi
-own_reference() { "$TMP/sim" --reference >"$TMP/reference" && "$TMP/sim" --cost --against "$TMP/reference" --methods rk45 >"$TMP/out" && grep -q 'rk45(tol=1e-10)' "$TMP/out"; }
+if has_precision long; then check "a reference from the start of the command" precise_reference; fi
+own_reference() { "$TMP/sim" --reference >"$TMP/reference" && "$TMP/sim" --cost --against "$TMP/reference" --methods rk45 --runs >"$TMP/out" && grep -q 'rk45(tol=1e-10)' "$TMP/out"; }
 check "one simulator's reference serves another" own_reference
 check "--math libm" "$LAGC" cost models/pendulum.lag --math libm --methods verlet4 --quiet
 tap_end

@@ -14,8 +14,8 @@ constraint_rate_residual constraints rank redundant[ rank_beside start_moved{ fi
 is "lyapunov" "model scene method chosen status from until steps blocks exponents[ spread[ errors[ at_half[ sum sum_spread divergence sum_error dimension \
 dimension_error entropy entropy_error chaotic" "$(fields lyapunov models/lorenz.lag --until 20)"
 is "modes" "model scene status verdict reason note steps start{ x y equilibrium{ pairs modes[ re im free repeats shape{ x[ y[" "$(fields modes models/spring_pendulum.lag)"
-is "cost" "model scene until reference uncertainty target methods[ method order refused runs[ step error seconds spread steps calls front cheapest" \
-  "$(fields cost models/pendulum.lag --until 0.2 --longest 0.001 --methods rk4)"
+is "cost" "model scene until reference uncertainty target interrupted methods[ method order best_of_family left_out_from refused runs[ step error seconds spread steps calls front cheapest" \
+  "$(fields cost models/pendulum.lag --until 0.2 --seconds 0.5 --methods rk4)"
 is "effects" "model scene method span_s integration_error limit operations base shared time_s base_time_s effects[ name on verdict weight difference together_with[" \
   "$(fields effects models/projectile_world.lag --until 0.5)"
 tap_end

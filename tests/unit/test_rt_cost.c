@@ -42,26 +42,68 @@ static int half_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
 static const lag_model half_model = {MODEL("half an oscillator"), .nq = 1, .q = names_q, .accel = half_accel};
 static const lag_scene half = {.name = "half", .doc = "", .model = &half_model, .start = osc_start, .t1 = 10, .has_span = 1};
 
-static int measured(CostMethod *m, Maker *maker, const Samples *reference)
+static int swept(CostMethod *m, int n, Maker *maker, const Samples *reference, double target)
 {
-  CostScene scene = {fresh, maker, 0};
-  return lag_cost_measure(m, &scene, reference, scale, 0.1);
+  CostSweep sweep = {.method = m, .n = n, .scene = {fresh, maker, 0}, .reference = reference, .scale = scale, .seconds = 2, .target = target};
+  return lag_cost_sweep(&sweep);
 }
 
-/* Of a thousandth of a second: one step, two, four, until they bring nothing. 41 runs of a few microseconds are far below 0.05 s. */
-static void a_short_run_is_repeated_41_times(void **state)
+static int measured(CostMethod *m, Maker *maker, const Samples *reference) { return swept(m, 1, maker, reference, 0); }
+
+/* Runs of a few microseconds: 41 of them are far below the time that is enough. */
+static void a_short_run_is_repeated(void **state)
+{
+  (void)state;
+  Maker maker = {.scene = &osc};
+  CostMethod m = {.method = &lag_rk4};
+  Samples reference = closed_form(), own;
+  CostSweep sweep = {.method = &m, .n = 1, .scene = {fresh, &maker, 0}, .reference = &reference, .scale = scale, .seconds = 1};
+  CostRun run = {.knob = osc.t1 / ROWS};
+  assert_int_equal(lag_samples_init(&own, ROWS, 2), LAG_OK);
+  memcpy(own.t, reference.t, ROWS * sizeof *own.t);
+  assert_int_equal(lag_cost_run(&m, &sweep, 1, 41, 1, &own, &run), LAG_OK);
+  assert_int_equal(maker.made, 41);
+  assert_int_equal(run.steps, ROWS);
+  assert_int_equal(lag_cost_run(&m, &sweep, 0, 41, 1, &own, &run), LAG_OK);
+  assert_int_equal(maker.made, 42);
+  run.knob = osc.t1 / 1e9; /* it would take a minute */
+  assert_int_equal(lag_cost_run(&m, &sweep, 0, 41, 0.01, &own, &run), LAG_INTERRUPTED);
+  assert_non_null(strstr(m.why, "longer than 0.01 s"));
+  lag_samples_free(&own);
+  lag_samples_free(&reference);
+}
+
+/* Of methods of order 1 and 8 the slow one is left at an error that the other reaches in a third of the time; a target is met from below, closely. */
+static void time_goes_where_the_front_is(void **state)
+{
+  (void)state;
+  Maker maker = {.scene = &osc};
+  CostMethod m[2] = {{.method = &lag_symplectic_euler}, {.method = &lag_dop853}};
+  Samples reference = closed_form();
+  const CostRun *run;
+  assert_int_equal(swept(m, 2, &maker, &reference, 3e-7), LAG_OK);
+  assert_true(m[0].left_out > 1e-9 && m[0].left_out < 1e-2);
+  assert_true(m[1].left_out == 0 && m[1].run[m[1].nruns - 1].error < 1e-13);
+  assert_ptr_equal(lag_cost_cheapest(m, 2, 3e-7, &run), &m[1]);
+  assert_true(run->error > 3e-8 && run->error <= 3e-7);
+  for (int k = 1; k < m[1].nruns; k++) assert_true(m[1].run[k].knob < m[1].run[k - 1].knob);
+  lag_samples_free(&reference);
+}
+
+/* The caller may end a sweep; what was measured stays. */
+static int after_nine(void *context, UNUSED const CostMethod *m, double part) { return part >= 0 && ++*(int *)context > 9; }
+static void a_sweep_can_be_ended(void **state)
 {
   (void)state;
   Maker maker = {.scene = &osc};
   CostMethod m = {.method = &lag_rk4};
   Samples reference = closed_form();
-  reference.rows = 1;
-  reference.t[0] = 1e-3;
-  reference.y[0] = cos(1e-3);
-  reference.y[1] = -sin(1e-3);
-  assert_int_equal(measured(&m, &maker, &reference), LAG_OK);
-  assert_in_range(m.nruns, 1, 5);
-  assert_int_equal(maker.made, 41 * m.nruns);
+  int noted = 0;
+  CostSweep sweep = {.method = &m, .n = 1, .scene = {fresh, &maker, 0}, .reference = &reference, .scale = scale, .seconds = 2, .note = after_nine, .context = &noted};
+  assert_int_equal(lag_cost_sweep(&sweep), LAG_OK);
+  assert_int_equal(noted, 10);
+  assert_in_range(m.nruns, 3, 9);
+  assert_true(m.run[m.nruns - 1].best);
   lag_samples_free(&reference);
 }
 
@@ -121,7 +163,9 @@ static void the_front_is_what_nothing_beats(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_short_run_is_repeated_41_times),
+      cmocka_unit_test(a_short_run_is_repeated),
+      cmocka_unit_test(time_goes_where_the_front_is),
+      cmocka_unit_test(a_sweep_can_be_ended),
       cmocka_unit_test(errors_fall_with_the_order),
       cmocka_unit_test(failures_are_no_runs),
       cmocka_unit_test(the_front_is_what_nothing_beats),

@@ -1,0 +1,252 @@
+/* Pictures of --cost: what accuracy costs in time, on logarithmic axes. Enters: methods with their runs; leaves: an SVG file, or lines for a
+ * terminal. Holds: at most one curve a family, told apart by marks and dashes as well as colours; legible at 8 cm. */
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/cost.h"
+
+/* ---- Curves */
+
+typedef struct Curve {
+  const CostMethod *m;
+  int family, n;
+  double x[LAG_COST_MOST_RUNS], y[LAG_COST_MOST_RUNS]; /* log10 of error and time, errors decreasing */
+} Curve;
+
+/* Runs of a method as long as their errors fall. */
+static void take_curve(Curve *c, const CostMethod *m) {
+  double least = HUGE_VAL;
+  c->m = m;
+  c->n = 0;
+  for (int k = 0; k < m->nruns; k++) {
+    const CostRun *r = &m->run[k];
+    if (!(r->error < least) || !(r->time > 0)) continue;
+    least = r->error;
+    c->x[c->n] = log10(fmax(r->error, 1e-17));
+    c->y[c->n++] = log10(r->time);
+  }
+}
+
+/* all[LAG_COST_FAMILIES] := a curve for each family that has one. Returns their number. */
+static int take_curves(const Cost *c, Curve *all) {
+  int n = 0;
+  for (int family = 0; family < LAG_COST_FAMILIES; family++) {
+    const CostMethod *m = lag_cost_best_of_family(c, family);
+    if (!m) continue;
+    take_curve(&all[n], m);
+    all[n].family = family;
+    n += all[n].n > 0;
+  }
+  return n;
+}
+
+typedef struct Range {
+  double x0, x1, y0, y1; /* whole powers of ten; x0 is the largest error */
+} Range;
+
+static Range range_of(const Curve *all, int n) {
+  Range r = {-HUGE_VAL, HUGE_VAL, HUGE_VAL, -HUGE_VAL};
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < all[i].n; k++) {
+      r.x0 = fmax(r.x0, all[i].x[k]);
+      r.x1 = fmin(r.x1, all[i].x[k]);
+      r.y0 = fmin(r.y0, all[i].y[k]);
+      r.y1 = fmax(r.y1, all[i].y[k]);
+    }
+  if (r.x1 < -12) r.x1 = -16; /* down to rounding */
+  r.x0 = ceil(r.x0) + 0.0; /* no -0 */
+  r.x1 = fmin(floor(r.x1), r.x0 - 1);
+  r.y0 = floor(r.y0);
+  r.y1 = fmax(ceil(r.y1), r.y0 + 1);
+  return r;
+}
+
+/* ---- SVG */
+
+enum { WIDTH = 800, HEIGHT = 560, LEFT = 92, RIGHT = 240, TOP = 52, BOTTOM = 70, SIZE = 20, LINE = 24 };
+
+/* Colours of Okabe and Ito, of different lightness; dashes tell them apart without colour. */
+static const struct {
+  const char *colour, *dash;
+} styles[LAG_COST_FAMILIES] = {{"#d55e00", ""}, {"#0072b2", ""}, {"#009e73", "9 4"}, {"#cc79a7", "2 3"}, {"#8a7f00", "9 4 2 4"}, {"#444444", ""},
+                               {"#56b4e9", "9 4"}, {"#000000", "2 3"}};
+
+static double px(const Range *r, double x) { return LEFT + (r->x0 - x) / (r->x0 - r->x1) * (WIDTH - LEFT - RIGHT); }
+static double py(const Range *r, double y) { return TOP + (r->y1 - y) / (r->y1 - r->y0) * (HEIGHT - TOP - BOTTOM); }
+
+static void put_text(FILE *f, double x, double y, const char *attributes, const char *s) {
+  fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, attributes);
+  lag_write_markup(f, s);
+  fputs("</text>\n", f);
+}
+
+/* 10 to the power k, as a tick. */
+static void put_power(FILE *f, double x, double y, const char *anchor, double k) {
+  fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">10<tspan dy=\"-7\" font-size=\"14\">%.0f</tspan></text>\n", x, y, anchor, k);
+}
+
+static void put_axes(FILE *f, const Range *r) {
+  double bottom = HEIGHT - BOTTOM, right = WIDTH - RIGHT, stride = ceil((r->x0 - r->x1) / 8);
+  fprintf(f, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"#777\"/>\n", LEFT, TOP, WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM);
+  for (double k = r->x0; k >= r->x1; k--) {
+    fprintf(f, "<path d=\"M%.1f %dV%.1f\" stroke=\"#e4e4e4\"/>\n", px(r, k), TOP, bottom);
+    if (fmod(r->x0 - k, stride) == 0.0) put_power(f, px(r, k), bottom + 26, "middle", k);
+  }
+  for (double k = r->y0; k <= r->y1; k++) {
+    fprintf(f, "<path d=\"M%d %.1fH%.1f\" stroke=\"#e4e4e4\"/>\n", LEFT, py(r, k), right);
+    put_power(f, LEFT - 10, py(r, k) + 7, "end", k);
+  }
+  put_text(f, (LEFT + right) / 2, HEIGHT - 14, "text-anchor=\"middle\"", "error");
+  fprintf(f, "<text transform=\"translate(24 %.1f) rotate(-90)\" text-anchor=\"middle\">processor time [s]</text>\n", (TOP + bottom) / 2);
+}
+
+/* A vertical line at an error below which no curve means anything, with its name. */
+static void put_floor(FILE *f, const Range *r, double error, const char *name, int at_top) {
+  double x = log10(error);
+  if (!(x > r->x1 && x < r->x0)) return;
+  fprintf(f, "<path d=\"M%.1f %dV%d\" stroke=\"#777\" stroke-width=\"2\" stroke-dasharray=\"3 5\"/>\n", px(r, x), TOP, HEIGHT - BOTTOM);
+  fprintf(f, "<text transform=\"translate(%.1f %d) rotate(-90)\" font-size=\"16\" fill=\"#555\">%s</text>\n", px(r, x) - 6, at_top ? TOP + 90 : HEIGHT - BOTTOM - 8, name);
+}
+
+static int by_error(const void *a, const void *b) {
+  const CostRun *x = *(const CostRun *const *)a, *y = *(const CostRun *const *)b;
+  return (x->error < y->error) - (x->error > y->error);
+}
+
+/* A band from the front to twice its time. */
+static void put_front(FILE *f, const Range *r, const Cost *c) {
+  const CostRun *front[LAG_COST_MOST_RUNS * LAG_COST_FAMILIES];
+  int n = 0;
+  for (int i = 0; i < c->nmethods; i++)
+    for (int k = 0; k < c->method[i].nruns; k++)
+      if (c->method[i].run[k].best && n < LAG_COST_MOST_RUNS * LAG_COST_FAMILIES) front[n++] = &c->method[i].run[k];
+  if (n < 2) return;
+  qsort(front, (size_t)n, sizeof *front, by_error);
+  fputs("<path fill=\"#f0c808\" fill-opacity=\"0.35\" stroke=\"none\" d=\"", f);
+  for (int k = 0; k < 2 * n; k++) {
+    const CostRun *run = front[k < n ? k : 2 * n - 1 - k];
+    double y = log10(run->time) + (k < n ? 0 : log10(2));
+    fprintf(f, "%s%.1f %.1f", k ? "L" : "M", px(r, log10(fmax(run->error, 1e-17))), py(r, y));
+  }
+  fputs("Z\"/>\n", f);
+}
+
+static void put_mark(FILE *f, int kind, double x, double y) {
+  static const char *const shapes[LAG_COST_FAMILIES] = {"m-5 0a5 5 0 1 0 10 0a5 5 0 1 0 -10 0", "m-5 -5h10v10h-10z", "m0 -6l6 10h-12z", "m0 -7l6 7l-6 7l-6 -7z",
+                                                        "m0 6l6 -10h-12z", "m-5 -5l10 10m0 -10l-10 10", "m-6 0h12m-6 -6v12", "m-6 -3h12v6h-12z"};
+  fprintf(f, "M%.1f %.1f%s", x, y, shapes[kind]);
+}
+
+static void put_curve(FILE *f, const Range *r, const Curve *c) {
+  const char *colour = styles[c->family].colour;
+  fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"2.5\" stroke-linejoin=\"round\"", colour);
+  if (styles[c->family].dash[0]) fprintf(f, " stroke-dasharray=\"%s\"", styles[c->family].dash);
+  fputs(" d=\"", f);
+  for (int k = 0; k < c->n; k++) fprintf(f, "%s%.1f %.1f", k ? "L" : "M", px(r, c->x[k]), py(r, c->y[k]));
+  fprintf(f, "\"/>\n<path fill=\"%s\" stroke=\"%s\" stroke-width=\"2\" d=\"", colour, colour);
+  for (int k = 0; k < c->n; k++) put_mark(f, c->family, px(r, c->x[k]), py(r, c->y[k]));
+  fputs("\"/>\n", f);
+}
+
+/* A triangle under the middle of the curve whose slope is that of the observed order: time grows as error^(-1/order). */
+static void put_slope(FILE *f, const Range *r, const Curve *c) {
+  char order[16];
+  int k = c->n / 2;
+  if (isnan(c->m->order) || c->m->method->flags & LAG_METHOD_ADAPTIVE || c->n < 4) return;
+  double x = c->x[k], y = c->y[k] - 0.12 * (r->y1 - r->y0) / 4, wide = 1.5;
+  fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"1.5\" d=\"M%.1f %.1fL%.1f %.1fV%.1fZ\"/>\n", styles[c->family].colour, px(r, x), py(r, y),
+          px(r, x - wide), py(r, y + wide / c->m->order), py(r, y));
+  snprintf(order, sizeof order, "%.1f", c->m->order);
+  put_text(f, px(r, x - wide) + 4, py(r, y + wide / c->m->order / 2) + 5, "font-size=\"15\"", order);
+}
+
+static int by_height(const void *a, const void *b) {
+  const Curve *x = *(const Curve *const *)a, *y = *(const Curve *const *)b;
+  return (x->y[x->n - 1] < y->y[y->n - 1]) - (x->y[x->n - 1] > y->y[y->n - 1]);
+}
+
+/* Names right of the panel, each joined with the end of its curve, none over another. */
+static void put_names(FILE *f, const Range *r, const Curve *all, int n) {
+  const Curve *sorted[LAG_COST_FAMILIES];
+  double y[LAG_COST_FAMILIES];
+  for (int i = 0; i < n; i++) sorted[i] = &all[i];
+  qsort(sorted, (size_t)n, sizeof *sorted, by_height);
+  for (int i = 0; i < n; i++) y[i] = fmax(py(r, sorted[i]->y[sorted[i]->n - 1]), i ? y[i - 1] + LINE : TOP + 10);
+  for (int i = n - 1, low = HEIGHT - BOTTOM - 4; i >= 0 && y[i] > low; i--, low -= LINE) y[i] = low;
+  for (int i = 0; i < n; i++) {
+    const Curve *c = sorted[i];
+    char attributes[64];
+    double right = WIDTH - RIGHT;
+    fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.5\" d=\"M%.1f %.1fL%.1f %.1fh8\"/>\n", styles[c->family].colour, px(r, c->x[c->n - 1]),
+            py(r, c->y[c->n - 1]), right + 6, y[i]);
+    snprintf(attributes, sizeof attributes, "fill=\"%s\"", styles[c->family].colour);
+    put_text(f, right + 18, y[i] + 7, attributes, c->m->name);
+  }
+}
+
+int lag_cost_put_picture(const char *path, const App *app, const Cost *c) {
+  Curve *all = calloc(LAG_COST_FAMILIES, sizeof *all);
+  Outfile o;
+  if (!all || lag_outfile_open(&o, path)) {
+    int why = all ? errno : ENOMEM;
+    free(all);
+    errno = why;
+    return -1;
+  }
+  char title[300];
+  int n = take_curves(c, all);
+  Range r = n ? range_of(all, n) : (Range){0, -15, -6, 0};
+  snprintf(title, sizeof title, "%s, %s: what accuracy costs", app->scene->model->name, app->scene->name);
+  fprintf(o.f, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" font-family=\"DejaVu Sans, "
+          "Helvetica, sans-serif\" font-size=\"%d\" fill=\"#222\">\n<title>", WIDTH, HEIGHT, WIDTH, HEIGHT, SIZE);
+  lag_write_markup(o.f, title);
+  fprintf(o.f, "</title>\n<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n", WIDTH, HEIGHT);
+  put_text(o.f, LEFT, 32, "font-weight=\"bold\"", title);
+  put_axes(o.f, &r);
+  put_floor(o.f, &r, DBL_EPSILON, "rounding", 0);
+  put_floor(o.f, &r, c->reference.uncertainty, "reference", 1);
+  put_front(o.f, &r, c);
+  for (int i = 0; i < n; i++) put_curve(o.f, &r, &all[i]);
+  for (int i = 0; i < n; i++) {
+    int known = 0; /* one triangle for curves with the same slope */
+    for (int k = 0; k < i; k++) known |= fabs(all[k].m->order - all[i].m->order) < 0.2;
+    if (!known) put_slope(o.f, &r, &all[i]);
+  }
+  put_names(o.f, &r, all, n);
+  fputs("<path fill=\"#f0c808\" fill-opacity=\"0.35\" d=\"M104 64h26v16h-26z\"/>\n<text x=\"138\" y=\"79\" font-size=\"16\">up to twice the least time</text>\n</svg>\n", o.f);
+  free(all);
+  return lag_outfile_close(&o, OUTFILE_KEEP);
+}
+
+/* ---- In a terminal */
+
+void lag_cost_sketch(FILE *f, const Cost *c) {
+  enum { COLUMNS = 64, ROWS = 18 };
+  char cell[ROWS][COLUMNS + 1];
+  Curve *all = calloc(LAG_COST_FAMILIES, sizeof *all);
+  int n = all ? take_curves(c, all) : 0;
+  if (n) {
+    Range r = range_of(all, n);
+    for (int y = 0; y < ROWS; y++) snprintf(cell[y], sizeof cell[y], "%*s", COLUMNS, "");
+    for (int i = n - 1; i >= 0; i--)
+      for (int k = 0; k + 1 < all[i].n; k++)
+        for (int part = 0; part <= COLUMNS; part++) {
+          double s = (double)part / COLUMNS, x = all[i].x[k] + s * (all[i].x[k + 1] - all[i].x[k]), y = all[i].y[k] + s * (all[i].y[k + 1] - all[i].y[k]);
+          cell[lrint((r.y1 - y) / (r.y1 - r.y0) * (ROWS - 1))][lrint((r.x0 - x) / (r.x0 - r.x1) * (COLUMNS - 1))] = (char)('a' + i);
+        }
+    fputs("\nprocessor time [s] against error\n", f);
+    for (int y = 0; y < ROWS; y++) {
+      double power = r.y1 - y * (r.y1 - r.y0) / (ROWS - 1);
+      int tick = fabs(power - nearbyint(power)) < 0.5 * (r.y1 - r.y0) / (ROWS - 1);
+      if (tick) fprintf(f, "%8s%-4.0f|%s\n", "1e", nearbyint(power), cell[y]);
+      else fprintf(f, "%12s|%s\n", "", cell[y]);
+    }
+    fprintf(f, "%12s+%.*s\n%13s1e%-*.0f1e%.0f\n%13s", "", COLUMNS, "----------------------------------------------------------------", "", COLUMNS - 6, r.x0, r.x1, "");
+    for (int i = 0; i < n; i++) fprintf(f, "%s%c %s", i ? ", " : "", 'a' + i, all[i].m->name);
+    putc('\n', f);
+  }
+  free(all);
+}

@@ -1,0 +1,238 @@
+/* The report of --cost. Enters: methods with their runs; leaves: the fastest settings, a table of times, the front, notes; or all runs as JSON or
+ * CSV. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "app/cost.h"
+#include "core/core.h"
+
+enum { COLUMNS = 7 }; /* errors 1e-2, 1e-4, .. 1e-14 */
+
+const char *lag_cost_knob(const lag_method *m) { return m->flags & LAG_METHOD_ADAPTIVE ? "tol" : "step"; }
+
+/* ---- Families */
+
+/* By the begin of their methods' names; the last takes all others. */
+static int family_of(const CostMethod *m) {
+  static const struct {
+    const char *begin;
+    int family;
+  } names[] = {{"taylor", 0}, {"rk", 1}, {"dop", 1}, {"verlet", 2}, {"symplectic", 2}, {"variational", 3}, {"gauss", 4}, {"radau", 5}, {"gsl-", 6}};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (strncmp(m->name, names[i].begin, strlen(names[i].begin)) == 0) return names[i].family;
+  return LAG_COST_FAMILIES - 1;
+}
+
+/* Time of the method's fastest run with an error of 10^-2k at most; HUGE_VAL: there is none. */
+static double time_for(const CostMethod *m, int k) {
+  const CostRun *run;
+  return lag_cost_cheapest(m, 1, pow(10, -2 * k), &run) ? run->time : HUGE_VAL;
+}
+
+const CostMethod *lag_cost_best_of_family(const Cost *c, int family) {
+  const CostMethod *best = NULL;
+  int most = -1;
+  for (int i = 0; i < c->nmethods; i++) {
+    const CostMethod *m = &c->method[i];
+    int wins = 0;
+    if (family_of(m) != family || m->nruns == 0) continue;
+    for (int k = 1; k <= COLUMNS; k++) {
+      double own = time_for(m, k);
+      int first = own < HUGE_VAL;
+      for (int j = 0; j < c->nmethods && first; j++) first = family_of(&c->method[j]) != family || time_for(&c->method[j], k) >= own;
+      wins += first;
+    }
+    if (wins > most) {
+      best = m;
+      most = wins;
+    }
+  }
+  return best;
+}
+
+/* ---- Text */
+
+/* s[n] := the options of `lagc run` for a setting. */
+static void put_options(char *s, size_t n, const CostMethod *m, const CostRun *run) {
+  const char *quote = m->option.name ? "\"" : "";
+  snprintf(s, n, "--method %s%s%s --%s %.9g", quote, m->name, quote, lag_cost_knob(m->method), run->knob);
+}
+
+static double smallest_error(const Cost *c) {
+  double least = HUGE_VAL;
+  for (int i = 0; i < c->nmethods; i++)
+    for (int k = 0; k < c->method[i].nruns; k++) least = fmin(least, c->method[i].run[k].error);
+  return least;
+}
+
+/* The fastest setting for an error, as a command. Returns 0 where no run has such an error. */
+static int put_cheapest(FILE *f, const App *app, const Cost *c, double error) {
+  const CostRun *run;
+  const CostMethod *m = lag_cost_cheapest(c->method, c->nmethods, error, &run);
+  char options[160];
+  if (!m) return 0;
+  put_options(options, sizeof options, m, run);
+  fprintf(f, "cheapest setting for an error of %g: %.4g ms, error %.1e\n  lagc run %s %s %s\n", error, 1e3 * run->time, run->error,
+          app->program->source, app->scene->name, options);
+  return 1;
+}
+
+static void put_answer(FILE *f, const App *app, const Cost *c) {
+  static const double errors[] = {1e-3, 1e-6, 1e-9, 1e-12};
+  int shown = 0;
+  if (c->target > 0) {
+    if (!put_cheapest(f, app, c, c->target))
+      fprintf(f, "no setting has an error of %g or less; the smallest found is %.1e; raise --target, or allow more time: --seconds %g\n", c->target,
+              smallest_error(c), 3 * c->seconds);
+    return;
+  }
+  for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) shown += put_cheapest(f, app, c, errors[i]);
+  if (!shown) fprintf(f, "no setting has an error of 0.001 or less; allow more time: --seconds %g\n", 3 * c->seconds);
+}
+
+/* A line for each method, or for the best of each family: its times for errors of 1e-2, 1e-4, .. */
+static void put_times(FILE *f, const Cost *c, int all) {
+  fprintf(f, "\n  %-30s", "time [ms] for an error of");
+  for (int k = 1; k <= COLUMNS; k++) fprintf(f, "%*s1e-%d", k < 5 ? 6 : 5, "", 2 * k);
+  putc('\n', f);
+  for (int i = 0; i < c->nmethods; i++) {
+    const CostMethod *m = &c->method[i];
+    if (m->nruns == 0 || (!all && lag_cost_best_of_family(c, family_of(m)) != m)) continue;
+    fprintf(f, "  %-30s", m->name);
+    for (int k = 1; k <= COLUMNS; k++) {
+      const CostRun *any;
+      double own = time_for(m, k);
+      if (own < HUGE_VAL) {
+        lag_cost_cheapest(c->method, c->nmethods, pow(10, -2 * k), &any);
+        fprintf(f, " %8.3g%c", 1e3 * own, own <= any->time ? '*' : ' ');
+      } else {
+        fprintf(f, " %8s ", "-");
+      }
+    }
+    putc('\n', f);
+  }
+  fputs(all ? "* the fastest of all\n" : "* the fastest of all; one method of each family, --all: every method\n", f);
+}
+
+/* The runs of the front, or all. */
+static void put_runs(FILE *f, const Cost *c, int all) {
+  char setting[160], order[32], spread[32];
+  fprintf(f, "\n  %-44s %-9s %12s %6s %10s %11s  %s\n", all ? "" : "the front", "error", "time [ms]", "+-", "steps", "calls", "order");
+  for (int i = 0; i < c->nmethods; i++) {
+    const CostMethod *m = &c->method[i];
+    int first = 1;
+    snprintf(order, sizeof order, isnan(m->order) ? "  -" : m->method->flags & LAG_METHOD_ADAPTIVE ? "  %.1f" : "  %.2f", m->order);
+    for (int k = 0; k < m->nruns; k++) {
+      const CostRun *r = &m->run[k];
+      if (!all && !r->best) continue;
+      snprintf(setting, sizeof setting, "%.*s%s%s=%.9g)", (int)strcspn(m->name, ")"), m->name, m->option.name ? ", " : "(", lag_cost_knob(m->method),
+               r->knob);
+      snprintf(spread, sizeof spread, isnan(r->spread) ? "-" : "%.0f %%", 50 * r->spread);
+      fprintf(f, "%c %-44s %-9.2e %12.4g %6s %10lld %11lld%s\n", r->best ? '*' : ' ', setting, r->error, 1e3 * r->time, spread, r->steps, r->calls,
+              first ? order : "");
+      first = 0;
+    }
+  }
+  fprintf(f, "* no other run is both faster and more accurate%s. time: median processor time; +- half of the interquartile range of the\n"
+          "times. order: slope of log error against log steps, at the smallest errors above rounding\n", all ? "" : "; --runs: every run");
+}
+
+static void put_notes(FILE *f, const Cost *c) {
+  const Samples *s = &c->reference;
+  const double worth_telling = 1e-14; /* finer settings would meet rounding */
+  int n = 0;
+  fprintf(f, "\nerror: the largest difference from the reference at %d times, relative to the largest value of its kind and unit\n", s->rows);
+  fprintf(f, "reference: %s, itself uncertain by %.1e\n", c->reference_name, s->uncertainty);
+  for (int i = 0; i < c->nmethods; i++) {
+    const CostMethod *m = &c->method[i];
+    if (m->nruns == 0 || !(m->left_out > worth_telling)) continue;
+    fprintf(f, "%s%s from %.0e", n++ ? ", " : "left out, as three times slower than others or for want of time: ", m->name, m->left_out);
+  }
+  if (n) fputs("; more --seconds measure more\n", f);
+  for (int i = 0; i < c->nmethods; i++) {
+    const CostMethod *m = &c->method[i];
+    const char *why = m->why[0] ? m->why : "no run had an error below 0.3 in the time allowed (--seconds)";
+    if (m->nruns == 0) fprintf(f, "not in the table: %s: %s\n", m->name, why);
+  }
+}
+
+void lag_cost_put_text(FILE *f, const App *app, const Cost *c) {
+  const Samples *s = &c->reference;
+  fprintf(f, "model %s, scene %s, to t = %.15g s\n", app->scene->model->name, app->scene->name, s->t[s->rows - 1]);
+  if (!isnan(c->reached)) fprintf(f, "no reference reaches t = %.15g s: errors are compared up to t = %.15g s\n", app->until, c->reached);
+  if (c->stopped) fputs("interrupted: what was measured until then\n", f);
+  put_answer(f, app, c);
+  put_times(f, c, app->args.all);
+  put_runs(f, c, app->args.runs);
+  put_notes(f, c);
+  if (app->args.sketch) lag_cost_sketch(f, c);
+}
+
+/* ---- JSON */
+
+void lag_cost_put_json(FILE *f, const App *app, const Cost *c) {
+  const Samples *s = &c->reference;
+  const CostRun *cheapest = NULL;
+  if (c->target > 0) lag_cost_cheapest(c->method, c->nmethods, c->target, &cheapest);
+  Json j = {.f = f};
+  lag_json_begin(&j, NULL, '{');
+  lag_json_string(&j, "model", app->scene->model->name);
+  lag_json_string(&j, "scene", app->scene->name);
+  lag_json_number(&j, "until", s->t[s->rows - 1]);
+  lag_json_string(&j, "reference", c->reference_name);
+  lag_json_number(&j, "uncertainty", s->uncertainty);
+  lag_json_number(&j, "target", c->target > 0 ? c->target : NAN);
+  lag_json_truth(&j, "interrupted", c->stopped);
+  lag_json_begin(&j, "methods", '[');
+  for (int i = 0; i < c->nmethods; i++) {
+    const CostMethod *m = &c->method[i];
+    lag_json_begin(&j, NULL, '{');
+    lag_json_string(&j, "method", m->name);
+    lag_json_number(&j, "order", m->order);
+    lag_json_truth(&j, "best_of_family", lag_cost_best_of_family(c, family_of(m)) == m);
+    lag_json_number(&j, "left_out_from", m->left_out > 0 ? m->left_out : NAN);
+    lag_json_string(&j, "refused", m->why[0] ? m->why : NULL);
+    lag_json_begin(&j, "runs", '[');
+    for (int k = 0; k < m->nruns; k++) {
+      const CostRun *r = &m->run[k];
+      lag_json_begin(&j, NULL, '{');
+      lag_json_number(&j, m->method->flags & LAG_METHOD_ADAPTIVE ? "tolerance" : "step", r->knob);
+      lag_json_number(&j, "error", r->error);
+      lag_json_number(&j, "seconds", r->time);
+      lag_json_number(&j, "spread", r->spread);
+      lag_json_count(&j, "steps", r->steps);
+      lag_json_count(&j, "calls", r->calls);
+      lag_json_truth(&j, "front", r->best);
+      lag_json_truth(&j, "cheapest", r == cheapest);
+      lag_json_end(&j, '}');
+    }
+    lag_json_end(&j, ']');
+    lag_json_end(&j, '}');
+  }
+  lag_json_end(&j, ']');
+  lag_json_end(&j, '}');
+  putc('\n', f);
+}
+
+/* ---- Rows */
+
+static void put_csv(FILE *f, const Cost *c) {
+  fputs("method,knob,setting,error,seconds,spread,steps,calls,front\n", f);
+  for (int i = 0; i < c->nmethods; i++)
+    for (int k = 0; k < c->method[i].nruns; k++) {
+      const CostMethod *m = &c->method[i];
+      const CostRun *r = &m->run[k];
+      fprintf(f, "%s,%s,%.17g,%.17g,%.9g,%.3g,%lld,%lld,%d\n", m->name, lag_cost_knob(m->method), r->knob, r->error, r->time, r->spread, r->steps,
+              r->calls, r->best);
+    }
+}
+
+int lag_cost_put_rows(const char *path, const App *app, const Cost *c) {
+  Outfile o;
+  size_t n = strlen(path);
+  if (lag_outfile_open(&o, path)) return -1;
+  if (n > 5 && strcmp(path + n - 5, ".json") == 0) lag_cost_put_json(o.f, app, c);
+  else put_csv(o.f, c);
+  return lag_outfile_close(&o, OUTFILE_KEEP);
+}

@@ -1,0 +1,105 @@
+/* The reference motion of `lagc cost`: a child process builds a simulator with more digits and runs it, while the caller builds the one that is
+ * measured. Errors of both grow alike along the motion, so long doubles leave it 2000 times more accurate than the best run in doubles. A whole reference is kept in the cache, by simulator, scene, values and end; one that time has cut short is not. */
+#include "commands/cost_reference.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/hash.h"
+#include "commands/command_table.h"
+#include "toolchain/cache.h"
+#include "toolchain/outfile.h"
+#include "toolchain/process.h"
+
+typedef VEC(char *) Words;
+
+/* The simulator's arguments: the scene, name=value and --until of the command line. Returns 0 if a reference is given by --against. */
+static int reference_words(Compiler *c, double seconds, Words *argv) {
+  vec_push(c->arena, argv, c->picture.argv.at[0]);
+  vec_push(c->arena, argv, arena_strdup(c->arena, "--reference"));
+  for (uint32_t i = 0; i < c->o.rest.n; i++) {
+    const char *word = c->o.rest.at[i];
+    int until = strncmp(word, "--until", 7) == 0, alone = until && !word[7];
+    if (strcmp(word, "--against") == 0 || strncmp(word, "--against=", 10) == 0) return 0;
+    if (word[0] == '-' && !until) i += (uint32_t)option_takes_next(c->o.command, word);
+    else vec_push(c->arena, argv, arena_strdup(c->arena, word));
+    if (alone && i + 1 < c->o.rest.n) vec_push(c->arena, argv, arena_strdup(c->arena, c->o.rest.at[++i]));
+  }
+  vec_push(c->arena, argv, arena_strdup(c->arena, "--seconds"));
+  vec_push(c->arena, argv, arena_printf(c->arena, "%g", seconds));
+  vec_push(c->arena, argv, NULL);
+  return 1;
+}
+
+/* The cache's file for what this simulator prints with these words, --seconds apart. */
+static const char *cached_path(Arena *a, const char *simulator, const Words *argv) {
+  uint64_t h = hash_bytes(FNV1A_START, simulator, strlen(simulator) + 1);
+  for (uint32_t i = 0; i + 3 < argv->n; i++) h = hash_bytes(h, argv->at[i], strlen(argv->at[i]) + 1);
+  return arena_printf(a, "%s.%08x", simulator, (unsigned)(h ^ h >> 32));
+}
+
+static int copy(FILE *from, FILE *to) {
+  char buffer[4096];
+  size_t n;
+  while ((n = fread(buffer, 1, sizeof buffer, from)) > 0)
+    if (fwrite(buffer, 1, n, to) != n) return 0;
+  return !ferror(from);
+}
+
+static int copy_of_cached(const char *path, FILE *out) {
+  FILE *f = cache_has_data(path) ? fopen(path, "r") : NULL;
+  int ok = f && copy(f, out) && fflush(out) == 0;
+  if (f) fclose(f);
+  return ok;
+}
+
+static void keep(Arena *a, const char *path, FILE *out) {
+  Outfile o;
+  if (fseek(out, 0, SEEK_SET) != 0 || lag_outfile_open(&o, path) != 0) return;
+  int whole = copy(out, o.f);
+  if (lag_outfile_close(&o, whole ? OUTFILE_KEEP : OUTFILE_DROP) == 0) cache_limit(a, path);
+}
+
+/* Prints the reference to `out`. Returns the simulator's exit status. */
+static int print_reference(Compiler *c, const Words *argv, FILE *out) {
+  Units units = {0};
+  c->o.command = CMD_BUILD; /* a simulator for one method: derivatives of others would take long to compile */
+  c->o.method = "taylor";
+  const char *simulator = simulator_lower(c, &units) ? simulator_precise(c, &units) : NULL;
+  if (!simulator) return 1;
+  const char *path = cached_path(c->arena, simulator, argv);
+  if (copy_of_cached(path, out)) return 0;
+  int status = process_to_file(simulator, argv->at, out);
+  if (status == 0) keep(c->arena, path, out);
+  return status;
+}
+
+typedef struct {
+  Compiler *c;
+  Words argv;
+  FILE *out;
+} Work;
+
+static int work_of_child(void *work) {
+  Work *w = work;
+  return print_reference(w->c, &w->argv, w->out);
+}
+
+void cost_reference_begin(Compiler *c, double seconds, CostReference *r) {
+  Work w = {.c = c};
+  *r = (CostReference){0};
+  if (c->picture.argv.n < 2 || !reference_words(c, seconds, &w.argv)) return;
+  r->out = w.out = tmpfile();
+  r->process = r->out ? process_begin(work_of_child, &w) : -1;
+  if (r->process > 0 || !r->out) return;
+  fclose(r->out);
+  r->out = NULL;
+}
+
+int cost_reference_end(CostReference *r) {
+  enum { CUT_SHORT = 3 };
+  if (!r->out) return 0;
+  int status = process_end(r->process), given = (status == 0 || status == CUT_SHORT) && process_read_from(r->out);
+  fclose(r->out);
+  return given;
+}
