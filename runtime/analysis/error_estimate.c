@@ -36,15 +36,27 @@ static void halve(ErrorEstimate *e) {
   e->stride *= 2;
 }
 
-void lag_error_estimate_note(ErrorEstimate *e, const lag_sim *sim) {
+/* *t, y[n] := the middle of the last step, whose error is that of rows between steps; its end where the method steps to each row. */
+static void take_place(lag_sim *sim, double *t, double *y) {
+  const Run *r = sim->run;
+  size_t bytes = (size_t)sim->pb.n * sizeof(double);
+  double calls = sim->pb.rhs_calls; /* of the run: interpolation may take more */
+  *t = 0.5 * (r->step_t0 + r->t);
+  int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && lag_dense_state(sim, *t, sim->yc) == LAG_OK;
+  sim->pb.rhs_calls = calls;
+  if (!between) *t = r->t;
+  memcpy(y, between ? sim->yc : sim->now, bytes);
+}
+
+void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim) {
   Samples *s = &e->motion;
   int at_event = sim->run->events != e->events;
   e->events = sim->run->events;
   if (at_event || ++e->seen % e->stride) return;
   if (s->rows == LAG_ERROR_PLACES) halve(e);
   if (e->seen % e->stride) return;
-  s->t[s->rows] = lag_sim_time(sim);
-  memcpy(s->y + (size_t)s->rows++ * (size_t)s->n, sim->now, (size_t)s->n * sizeof(double));
+  take_place(sim, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
+  s->rows++;
 }
 
 /* ---- The law of growth */

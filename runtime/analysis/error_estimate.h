@@ -1,4 +1,4 @@
-/* Error of a run by a second, more accurate run: the differences of the two motions at ends of steps, relative to the largest value of their kind
+/* Error of a run by a second, more accurate run: the differences of the two motions in the middle of steps, where rows are interpolated, relative to the largest value of their kind
  * and unit, as in work_precision.h. Enters: a run under way, then a simulation of the same scene; leaves: the error, its law of growth, and the
  * horizon, the time from which no digit is left. Holds: the run is the same, bit by bit, with an estimate or without. */
 #pragma once
@@ -11,8 +11,8 @@ typedef enum ErrorGrowth { LAG_ERROR_UNKNOWN, LAG_ERROR_BOUNDED, LAG_ERROR_LINEA
 enum { LAG_ERROR_PLACES = 512 };
 
 typedef struct ErrorEstimate {
-  Samples motion;        /* the run at `motion.rows` ends of steps; [LAG_ERROR_PLACES] rows of room */
-  long long stride, seen; /* each stride-th end of a step is kept; ends of steps seen */
+  Samples motion;        /* the run at `motion.rows` places; [LAG_ERROR_PLACES] rows of room */
+  long long stride, seen; /* each stride-th step has a place; steps seen */
   double t0;
   double error[LAG_ERROR_PLACES]; /* [compared] */
   int compared;          /* rows that the second run reached, */
@@ -21,7 +21,7 @@ typedef struct ErrorEstimate {
   double horizon;        /* NaN: beyond the end of the run */
   ErrorGrowth growth;
   double rate;           /* of exponential growth [1/s] */
-  double events;         /* events of the run so far: an end of a step at an event is not kept */
+  double events;         /* events of the run so far: a step that ends at an event has no place */
   char why[200];         /* without an estimate: the reason */
 } ErrorEstimate;
 
@@ -29,8 +29,8 @@ typedef struct ErrorEstimate {
 int lag_error_estimate_init(ErrorEstimate *e, const lag_sim *sim);
 void lag_error_estimate_free(ErrorEstimate *e);
 
-/* Notes the present state of the run: call it at the end of each step. */
-void lag_error_estimate_note(ErrorEstimate *e, const lag_sim *sim);
+/* Notes a place of the last step: call it at the end of each. The run goes on as it would have. */
+void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim);
 
 /* Runs `other`, a simulation of the same scene at its start with a more accurate setting, along the noted motion, until it fails or its hook (lag_sim_on_step)
  * ends it, and fills in the rest of *e; until: end of the run. LAG_OK, also where `other` fails (e->why), or LAG_ENOMEM. */

@@ -1,5 +1,5 @@
 /* --accuracy: the setting whose error over the whole run is below a number. Enters: a simulation with its values; leaves: its method and tolerance or
- * step. Each trial is a run and a second, more accurate one (analysis/error_estimate.h); the setting is refined until the estimated error is half
+ * step. Each trial is a run and a second, more accurate one (analysis/error_estimate.h); the setting is refined until the estimated error is a third
  * of what was asked. */
 #include <float.h>
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "app/app.h"
 #include "core/core.h"
 
-static const double share = 0.5; /* of the error that was asked: an estimate is right within a factor of 2 or so */
+static const double share = 0.3; /* of the error that was asked: an estimate is right within a factor of 3 or so */
 enum { MOST_TRIALS = 10 };
 
 /* Method with tolerance or step of the next trial. */
@@ -25,8 +25,14 @@ static int set_knob(App *app, double knob) {
   return lag_sim_set_method(s, s->method, opt, s->method->noptions);
 }
 
-static int note(void *estimate, const lag_sim *sim) {
-  lag_error_estimate_note(estimate, sim);
+typedef struct Trial {
+  ErrorEstimate *e;
+  lag_sim *sim;
+} Trial;
+
+static int note(void *trial, const lag_sim *sim) {
+  const Trial *x = trial;
+  lag_error_estimate_note(x->e, x->sim);
   return sim->run->steps >= LAG_ACCURACY_STEPS;
 }
 
@@ -36,7 +42,7 @@ static int try_setting(App *app, ErrorEstimate *e) {
   int rc = trial ? lag_error_estimate_init(e, trial) : LAG_ENOMEM;
   rc = rc ? rc : lag_app_copy_method(app->sim, trial, 1);
   if (rc == 0) {
-    lag_sim_on_step(trial, note, e);
+    lag_sim_on_step(trial, note, &(Trial){e, trial});
     rc = lag_sim_advance(trial, app->until);
     if (rc < 0) lag_fail(app->sim, rc, "%s", lag_sim_message(trial));
     if (rc == LAG_INTERRUPTED) rc = lag_fail(app->sim, LAG_ESTEP, "%s would take more than %g steps", app->sim->method->name, LAG_ACCURACY_STEPS);
@@ -58,7 +64,7 @@ static int refuse(const App *app, double asked, double best, double horizon) {
 int lag_app_choose_by_accuracy(App *app) {
   const Args *a = &app->args;
   ErrorEstimate e = {0};
-  double asked, best = HUGE_VAL, horizon = NAN;
+  double asked, best = HUGE_VAL, best_knob = 0, horizon = NAN;
   if (!lag_args_number(a, "--accuracy", a->accuracy, "--accuracy 1e-8", &asked)) return EXIT_USAGE;
   if (!(asked > 0 && asked < 1)) return lag_app_error(a, "--accuracy %s: a relative error between 0 and 1, for example --accuracy 1e-8", a->accuracy);
   int equal = lag_equal_step(app->sim) > 0;
@@ -74,6 +80,7 @@ int lag_app_choose_by_accuracy(App *app) {
     double error = rc || !isnan(e.horizon) || isnan(e.largest) || e.continued ? HUGE_VAL : e.largest;
     horizon = rc ? NAN : e.horizon;
     lag_error_estimate_free(&e);
+    if (error < best) best_knob = knob;
     best = fmin(best, error);
     if (error <= share * asked) return 0;
     if (knob <= least || (equal && best < HUGE_VAL && error > 2 * best)) break;
@@ -81,5 +88,5 @@ int lag_app_choose_by_accuracy(App *app) {
     if (equal && error < HUGE_VAL && steps > 10 * LAG_ACCURACY_STEPS * pow(wanted, 1 / order)) step_factor = pow(wanted, 1 / order); /* refused at once */
     knob = fmax(least, knob * step_factor);
   }
-  return refuse(app, asked, best, horizon);
+  return best <= 0.5 * asked ? set_knob(app, best_knob) : refuse(app, asked, best, horizon);
 }

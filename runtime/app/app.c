@@ -25,7 +25,7 @@ static double seconds_since(const struct timespec *t) {
 /* After each step: tests for signals, updates the progress line (on a terminal, after 1 s, at most 5 times a second). */
 int lag_app_after_step(void *context, const lag_sim *sim) {
   App *app = context;
-  if (app->watched) lag_error_estimate_note(&app->error, sim);
+  if (app->watched) lag_error_estimate_note(&app->error, app->sim);
   if (app->progress >= 0 && seconds_since(&app->shown) >= (app->progress ? 0.2 : 1.0)) {
     double t = lag_sim_time(sim), t0 = app->scene->t0, part = (t - t0) / (app->until - t0);
     fprintf(stderr, "\rt = %.6g s, %.0f %% ", t, 100 * part);

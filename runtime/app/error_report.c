@@ -5,6 +5,7 @@
 
 #include "app/app.h"
 #include "core/core.h"
+#include "core/rhs.h"
 
 static const double tighter = 0.1; /* than the tolerance of the run: its error is then small beside the run's */
 
@@ -24,12 +25,22 @@ int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times) {
 /* Ends the second run after a number of steps, or on Ctrl-C. */
 static int enough(void *app, const lag_sim *other) { return other->run->steps >= ((App *)app)->second_most || lag_app_interrupted() != EXIT_SIGNAL; }
 
-/* A setting whose error is small beside the run's. */
+/* A setting whose error is small beside the run's; near the smallest tolerance, one whose error is of another making, and about as small: taylor with a
+ * lower order, or, where there is no series, a larger tolerance, which shows an error that is too large, but not 0. */
 static int set_more_accurate(const lag_sim *run, lag_sim *other) {
-  if (!(lag_equal_step(run) > 0)) /* near the smallest tolerance a run with a larger one shows an error that is too large, not 0 */
-    return lag_app_copy_method(run, other, run->tol * tighter >= 4.5 * DBL_EPSILON ? tighter : 3);
-  int rc = lag_sim_set_method(other, &lag_dop853, NULL, 0);
-  return rc ? rc : lag_sim_set_tolerance(other, pow(DBL_EPSILON, 0.75));
+  const double lower = 3; /* for shorter steps: a higher one would make longer ones, and cancel more digits */
+  const lag_taylor *series = run->scene->model->constraints ? NULL : run->scene->model->taylor;
+  int equal = lag_equal_step(run) > 0, rc;
+  if (!equal && run->tol * tighter >= 4.5 * DBL_EPSILON) return lag_app_copy_method(run, other, tighter);
+  if (!equal && series && run->method == &lag_taylor_method) {
+    const lag_option order = {.name = "order", .value = fmax(lag_taylor_order(run->method_work) - lower, 1)};
+    rc = lag_sim_set_method(other, &lag_taylor_method, &order, 1);
+  } else if (!equal) {
+    return lag_app_copy_method(run, other, 3);
+  } else {
+    rc = lag_sim_set_method(other, &lag_dop853, NULL, 0);
+  }
+  return rc ? rc : lag_sim_set_tolerance(other, equal ? pow(DBL_EPSILON, 0.75) : run->tol);
 }
 
 int lag_app_compare_errors(App *app, ErrorEstimate *e, const lag_sim *run, double most) {
@@ -46,11 +57,18 @@ int lag_app_compare_errors(App *app, ErrorEstimate *e, const lag_sim *run, doubl
   return rc == LAG_ENOMEM ? rc : LAG_OK;
 }
 
+/* Work of a step, in units of one unknown without constraints: these add the factors of a dense matrix at each stage. */
+static double work_of_step(const lag_sim *run) {
+  const lag_model *m = run->scene->model;
+  double size = m->constraints ? m->nq + m->constraints->n : 0;
+  return run->pb.n + size * size * size / 50;
+}
+
 void lag_app_error_end(App *app) {
-  const double part = 1. / 15, steps_times_size = 20000, fewest = 24; /* fewer show no law of growth */
+  const double part = 1. / 15, work = 20000, fewest = 24; /* fewer show no law of growth */
   const lag_sim *run = app->sim;
   if (!app->watched || app->status < 0 || app->status == LAG_INTERRUPTED) return;
-  double most = app->asked > 0 ? LAG_ACCURACY_STEPS : fmax(fmax(part * run->run->steps, steps_times_size / run->pb.n), fewest);
+  double most = app->asked > 0 ? LAG_ACCURACY_STEPS : fmax(fmax(part * run->run->steps, work / work_of_step(run)), fewest);
   if (lag_app_compare_errors(app, &app->error, run, most)) app->status = LAG_ENOMEM;
 }
 

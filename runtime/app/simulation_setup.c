@@ -135,7 +135,7 @@ static int choose_method(App *app) {
   if (rc) return rc;
   const lag_method *m = c.name ? lag_app_find_method(app, c.name) : NULL;
   if (c.name && !m) return lag_app_unknown_method(app, c.name);
-  if (app->scene->method && strcmp(app->scene->method, c.name) == 0 && c.n == 0)
+  if (c.name && app->scene->method && strcmp(app->scene->method, c.name) == 0 && c.n == 0)
     for (int i = 0; i < app->scene->noptions && c.n < MOST_OPTIONS - 1; i++) c.opt[c.n++] = app->scene->options[i];
   if (a->step) {
     lag_option *o = &c.opt[c.n++];

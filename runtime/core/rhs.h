@@ -52,3 +52,6 @@ LAG_ALWAYS_INLINE int lag_rhs_inline(lag_problem *pb, int nq, double t, const do
   lag_copy(nq, y + nq, dy);
   return m->accel(t, y, y + nq, y + 2 * nq, pb->p, pb->u, dy + nq, dy + 2 * nq, pb->work);
 }
+
+/* methods/taylor.c: the order of the series, from the work of a run by taylor that has begun. */
+double lag_taylor_order(const double *method_work);

@@ -52,6 +52,8 @@ typedef struct Taylor {
 
 enum { COMP, COMP1, Y1, SUM, SLOPE, SCALE, ARRAYS }; /* arrays of `width` doubles; the two series follow */
 
+double lag_taylor_order(const double *method_work) { return ((const Taylor *)(const void *)method_work)->order; }
+
 static int width(const lag_problem *pb) { return pb->model->taylor->width; }
 
 static double *array(Taylor *w, const lag_problem *pb, int which) { return w->x + which * width(pb); }

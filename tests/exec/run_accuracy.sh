@@ -103,6 +103,7 @@ for how in "1e-4" "1e-8" "1e-12" "1e-6 --method rk4" "1e-5 --method verlet" "1e-
   check "--accuracy $how: the estimate is below it" awk -v e="$(value error)" -v x="${how%% *}" 'BEGIN { print e, x; exit !(e > 0 && e <= x) }'
 done
 
+check "where the scene names a method, another is chosen" run models/slider_crank.lag --until 1 --accuracy 1e-9
 # Refusals
 check "refused: --accuracy 0" says 2 'a relative error between 0 and 1' "$LAGC" run "$dp" --accuracy 0
 check "refused: --accuracy -1e-3" says 2 'a relative error between 0 and 1' "$LAGC" run "$dp" --accuracy -1e-3
