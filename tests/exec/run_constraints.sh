@@ -118,7 +118,7 @@ still() { # no coordinate moves by more than rounding of lengths of 1
 }
 for scene in forms distances tied; do
   for m in variational verlet verlet4 symplectic_euler; do
-    one_of 3 || continue
+    one_of 6 || continue
     check "at rest: $scene, $m" still $scene --method $m --step 1e-3
     check "by long steps: $scene, $m" still $scene --method $m --step 0.02
   done

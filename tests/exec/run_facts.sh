@@ -39,7 +39,7 @@ const lag_scene *const facts_scenes[] = {$listed NULL};" >"$dir/$1_scenes.c"
 for facts in models/*.facts; do
   name=$(basename "$facts" .facts)
   case " ${*:-$name} " in *" $name "*) ;; *) continue ;; esac
-  [ $# -gt 0 ] || one_of 4 || continue
+  [ $# -gt 0 ] || one_of 6 || continue
   if build "$name" "$facts" 2>"$dir/err"; then relay "$dir/$name" "$name" "$facts"; else empty "$name: its scenes compile" "$(cat "$dir/err")"; fi
 done
 
