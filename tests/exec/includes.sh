@@ -134,6 +134,7 @@ fi
 # ---- emitted code: a model needs lag_model.h and <math.h>; a header only <math.h> ----
 includes_of() {
   for m in models/*.lag; do
+    one_of 4 || continue
     "$LAGC" "$1" "$m" -o "$TMP/emitted" || echo "lagc $1 $m: exit status $?"
     sed -n 's/^[ \t]*#[ \t]*include[ \t]*//p' "$TMP/emitted" | grep -v -x -e "$2" | sed "s|^|lagc $1 $m includes |"
   done 2>&1
