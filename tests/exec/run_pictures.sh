@@ -105,8 +105,8 @@ labels_apart() {
          if (n++ && x - w/2 < end) { print v " touches the label before it"; bad = 1 } end = x + w/2 }
        END { exit bad || n < 3 }' "$1"
 }
-check "a path whose labels are long" runs plot "$p" wide --x '-3.08e7*l + 1e4*x' --y '1e4*y' -o far.svg
-check "leaves some out" labels_apart far.svg
+slow check "a path whose labels are long" runs plot "$p" wide --x '-3.08e7*l + 1e4*x' --y '1e4*y' -o far.svg
+slow check "leaves some out" labels_apart far.svg
 check "and others in" labels_apart path.svg
 
 check "an unknown name, with its place" says 1 '--x:1:7: error: unknown name `thh`' plot "$p" --x 'l*sin(thh)' --y th -o none.svg
@@ -251,9 +251,9 @@ check "a family of points hangs from its number 0" a "$c" -o b.html
 is "each from the one before" 'true false true [["x[0]", "y[0]"], ["x[1]", "y[1]"], ["x[2]", "y[2]"], ["x[3]", "y[3]"]]' "$(hook b.html)"
 check "or is named" a "$c" --points 'x,y' --no-rods --until 1 -o b.html
 is "point by point" 'false false false [["x[0]", "y[0]"], ["x[1]", "y[1]"], ["x[2]", "y[2]"], ["x[3]", "y[3]"]]' "$(hook b.html)"
-check "a row of masses" a "$models/string.lag" -D N=3 -o b.html
-is "each at its number" 'false false false [["1", "u[1]"], ["2", "u[2]"], ["3", "u[3]"]]' "$(hook b.html)"
-check "each axis on its own scale" grep -q '"free": true' b.html
+slow check "a row of masses" a "$models/string.lag" -D N=3 -o b.html
+[ -z "${SLOW:-}" ] || is "each at its number" 'false false false [["1", "u[1]"], ["2", "u[2]"], ["3", "u[3]"]]' "$(hook b.html)"
+slow check "each axis on its own scale" grep -q '"free": true' b.html
 cat >only.lag <<'END'
 model only "One angle"
 coord th periodic
@@ -273,9 +273,9 @@ check "frames as asked" a "$p" --every 0.001 -o b.html
 is "a row is a frame" "20001" "$(page_frames b.html)"
 # By default frames follow the motion: 5254 swings of Foucault's pendulum are some 70 frames each, in a few MB.
 f=$models/foucault.lag
-check "a day of swings" a "$f" -o day.html
-check "has more frames than 20 a swing" [ "$(page_frames day.html)" -gt 105080 ]
-check "in less than 8 MB" [ "$(wc -c <day.html)" -lt 8000000 ]
+slow check "a day of swings" a "$f" -o day.html
+[ -z "${SLOW:-}" ] || check "has more frames than 20 a swing" [ "$(page_frames day.html)" -gt 105080 ]
+[ -z "${SLOW:-}" ] || check "in less than 8 MB" [ "$(wc -c <day.html)" -lt 8000000 ]
 check "coarse frames are told" says 0 'note: rows every 60 s are too coarse for this motion' animate "$f" --until 3600 --every 60 -o b.html
 check "in the page, too" grep -q '"note": "rows every 60 s' b.html
 check "fine ones are not" runs animate "$f" --until 3600 --every 0.25 -o b.html
