@@ -1,7 +1,6 @@
 /* What symplectic and symmetric methods keep, measured: energy without a trend, the symplectic form, time reversal, and
  * rounding that grows with the root of the number of steps. Each is shown to be lost by a method that does not keep it.
  * LAG_STEPS: steps of the long runs (tests/exec/long_geometry.sh sets 1000000). */
-#include "slow.h"
 #include "test_rt_trend.h"
 
 static const lag_method *const family[] = {&lag_symplectic_euler, &lag_verlet, &lag_verlet4, &lag_verlet6, &lag_verlet8};
@@ -22,7 +21,7 @@ static const Long runs[] = {
 
 static void energy_is_bounded_without_trend(void **state)
 {
-  int steps = long_run(slow(100000, 40000));
+  int steps = long_run(100000);
   (void)state;
   for (size_t r = 0; r < sizeof runs / sizeof *runs; r++) {
     for (int m = 0; m < MEMBERS; m++) {
