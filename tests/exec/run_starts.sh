@@ -53,6 +53,7 @@ check "what holds at no place" refused c 'vanish where it holds'
 one 'constraint c: sqrt(x - l) = 0' 'scene s { start x = 2 [m]; span 2 [s] }'
 check "a root" refused c 'have no value where it holds'
 one 'constraint c: log(x/l) = 0' 'scene s { start x = -2 [m]; span 2 [s] }'
+tap_row=0 # by a run, too
 check "where there is no value" refused c 'has no value at the start'
 one 'constraint c: x^2 + y^2 = l^2' 'contact wall: x >= -2*l, restitution = 0.5' 'scene s { start x = 1e200 [m]; span 2 [s] }'
 check "where it is too large" refused c 'has no value at the start'
