@@ -74,6 +74,8 @@ $(CONFIG): src/toolchain/compiler_probe.in $(CC_FILE) $(CONFIG_STALE)
 	    $$d/quad 2>/dev/null && echo quad || echo; \
 	  printf 'SAFE_FOUND := '; $(CC) $(CFLAGS) $(LDFLAGS) -x c src/toolchain/compiler_probe.in -o $$d/safe 2>/dev/null && \
 	    { $$d/safe 2>/dev/null; [ $$? = 1 ]; } && echo -fno-tree-slp-vectorize || echo; \
+	  printf 'FAST_LINKER := '; echo 'int main(void) { return 0; }' | $(CC) $(LDFLAGS) -fuse-ld=gold -x c - -o $$d/gold 2>/dev/null && \
+	    $$d/gold 2>/dev/null && command -v ld.gold || echo; \
 	  printf 'LONG_DIGITS := '; echo __LDBL_DECIMAL_DIG__ | $(CC) -E -P -x c - 2>/dev/null || echo; \
 	} >$$d/config.mk; mv $$d/config.mk $@; rm -rf $$d
 endif
@@ -90,8 +92,7 @@ LAGC_OBJ := $(LAGC_SRC:%.c=$(BUILD)/obj/%.o) $(GEN_SRC:$(BUILD)/gen/%.c=$(BUILD)
 RT_OBJ   := $(RT_SRC:%.c=$(BUILD)/obj/%.o)
 GSL_OBJ  := $(GSL_SRC:%.c=$(BUILD)/obj/%.o)
 
-RT_BUILD ?= $(BUILD)
-LIBLAG  := $(RT_BUILD)/liblag.a $(if $(GSL),$(RT_BUILD)/liblag_gsl.a)
+LIBLAG  := $(BUILD)/liblag.a $(if $(GSL),$(BUILD)/liblag_gsl.a)
 LIBLAG_MORE := $(PRECISIONS:%=$(BUILD)/liblag_%.a)
 
 all: $(BUILD)/lagc $(LIBLAG) $(LIBLAG_MORE)
@@ -242,12 +243,14 @@ gallery: all
 
 # ---- tests: tests/run.sh says what a suite is -------------------------------------------------------
 # Two builds for `make test`: as users get it, less the precisions; and in $(BUILD)/san with the address and undefined-behaviour sanitizers,
-# which unit tests, their helpers and fuzz targets link. gcc compiles sanitized code at -Og in 60 % of the time of -O1 or of -O0.
-# `make test-long` has more: long and quad precision, the compiler alone in $(BUILD)/zero with sanitizers at -O0, which leaves out no load,
-# and, where clang is installed, everything by clang.
+# which unit tests, their helpers and fuzz targets link. gcc compiles sanitized code at -Og in 60 % of the time of -O1 or of -O0, and in two
+# thirds of that without the four checks of pointers, whose faults the address sanitizer sees for the greater part.
+# `make test-long` has all checks, at -O0, which leaves out no load, in $(BUILD)/zero, and runs unit tests and fuzz targets once more with them;
+# long and quad precision; and, where clang is installed, everything by clang.
 SAN_BUILD := $(BUILD)/san
 SAN_OPT   := -Og -g1
-SAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+SAN_ALL   := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+SAN_FLAGS := $(SAN_ALL) -fno-sanitize=null,alignment,pointer-overflow,object-size
 BIN       := $(BUILD)/test/bin
 CLANG     ?= $(shell command -v clang 2>/dev/null)
 CXX_FOUND := $(shell command -v $(CXX) 2>/dev/null)
@@ -260,7 +263,7 @@ ONLY      := $(if $(filter-out unit/%,$(T)),,$(wildcard $(T:%=tests/%*.c)))
 
 RUN_TESTS = @LAGC='$(BUILD)/lagc' LAGC_SAN='$(SAN_BUILD)/lagc' SAN_FLAGS='$(SAN_FLAGS)' LAGC_CLANG= PRECISIONS= $(MORE_BUILDS) \
             LIBLAG='$(LIBLAG)' LIBS='$(GSL_LIBS) -lm' INC='runtime/include' BIN='$(BIN)' BUILD='$(BUILD)' \
-            CC='$(or $(MODEL_CC),$(CC))' CLANG='$(CLANG)' CXX='$(CXX_FOUND)' GSL='$(GSL)' MAKE='$(MAKE)' sh tests/run.sh
+            CC='$(or $(MODEL_CC),$(CC))' LINKER='$(FAST_LINKER)' CLANG='$(CLANG)' CXX='$(CXX_FOUND)' GSL='$(GSL)' MAKE='$(MAKE)' sh tests/run.sh
 
 # A job pool for all builds.
 BUILD_TESTS = $(QUIET) build-tests
@@ -280,10 +283,14 @@ check-quick:
 	$(SETUP) test
 	$(QUIET) BIN=$(QUICK_BIN) SAN_BUILD=$(BUILD) SAN_FLAGS= PRECISIONS= $(BUILD)/lagc $(LIBLAG) $(UNIT_SRC:tests/unit/%.c=$(QUICK_BIN)/%)
 	$(RUN_TESTS) $(or $(T),$(QUICK))
-test-long: MORE_BUILDS = PRECISIONS='$(PRECISIONS)' LAGC_SAN='$(BUILD)/zero/lagc' LAGC_CLANG='$(if $(CLANG),$(BUILD)/clang/lagc)'
+ZERO = SAN_BUILD='$(BUILD)/zero' SAN_OPT='-O0 -g1' SAN_FLAGS='$(SAN_ALL)' BIN='$(BUILD)/zero/bin'
+test-long: MORE_BUILDS = PRECISIONS='$(PRECISIONS)' LAGC_CLANG='$(if $(CLANG),$(BUILD)/clang/lagc)'
+test-long: SAN_BUILD := $(BUILD)/zero
+test-long: SAN_FLAGS := $(SAN_ALL)
+test-long: BIN := $(BUILD)/zero/bin
 test-long:
 	$(SETUP) test
-	$(BUILD_TESTS) build-more
+	$(BUILD_TESTS) build-more $(ZERO)
 	$(RUN_TESTS) --long $(T)
 bless:
 	$(SETUP) test
@@ -318,14 +325,13 @@ build-plain:
 	@echo 'building $(BUILD)/lagc'
 	$(QUIET) PRECISIONS= all
 build-more: build-san build-plain
-	@echo 'building $(BUILD)/zero with sanitizers at -O0$(if $(CLANG), and $(BUILD)/clang by clang)'
+	@echo 'building other precisions$(if $(CLANG), and $(BUILD)/clang by clang)'
 	$(QUIET) all
-	$(QUIET) BUILD=$(BUILD)/zero RT_BUILD=$(SAN_BUILD) PRECISIONS= CFLAGS='-O0 -g1' SAN='$(SAN_FLAGS)' $(BUILD)/zero/lagc
 	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang PRECISIONS= CC='$(CLANG)' all)
 
 # Test programs themselves: -O1 would take ten times as long to compile.
 TEST_OPT ?= -O0 -g1
-TEST_CC = $(CC) -std=c11 -Wall -Wextra $(CPPFLAGS_ALL) $(TEST_OPT) $(SAN_FLAGS) -MMD -MP -MF $@.d -o $@ $<
+TEST_CC = $(CC) -std=c11 -Wall -Wextra $(CPPFLAGS_ALL) $(TEST_OPT) $(SAN_FLAGS) $(FAST_LINKER:%=-fuse-ld=gold) -MMD -MP -MF $@.d -o $@ $<
 # tests/unit/test_rt_*: of the runtime. The rest of tests/unit: of the compiler.
 $(BIN)/test_rt_%: tests/unit/test_rt_%.c $(SAN_RT)
 	@mkdir -p $(@D)
@@ -333,19 +339,19 @@ $(BIN)/test_rt_%: tests/unit/test_rt_%.c $(SAN_RT)
 $(BIN)/%: tests/unit/%.c $(SAN_LAGC)
 	@mkdir -p $(@D)
 	$(TEST_CC) -Isrc -I$(SAN_BUILD)/gen $(SAN_LAGC) -lcmocka -lm
-$(BIN)/fuzz_%: tests/fuzz/fuzz_%.c $(BUILD)/test/driver.o $(SAN_LAGC)
+$(BIN)/fuzz_%: tests/fuzz/fuzz_%.c $(BIN)/driver.o $(SAN_LAGC)
 	@mkdir -p $(@D)
-	$(TEST_CC) -Isrc -I$(SAN_BUILD)/gen $(BUILD)/test/driver.o $(SAN_LAGC) -lm
+	$(TEST_CC) -Isrc -I$(SAN_BUILD)/gen $(BIN)/driver.o $(SAN_LAGC) -lm
 # fuzz_load is of the runtime, with models as lagc emits them: the method behind the colon is what they are emitted for.
 LOAD_MODELS := spring:verlet pend:variational series:taylor flow:gauss rod:variational ball:verlet
 LOAD_SRC    := $(foreach m,$(LOAD_MODELS),$(BUILD)/test/load_$(firstword $(subst :, ,$m)).c)
 $(BUILD)/test/load_%.c: tests/fuzz/load/load_%.lag $(BUILD)/lagc
 	@mkdir -p $(@D)
 	$(BUILD)/lagc emit $< --with linear --method $(patsubst $*:%,%,$(filter $*:%,$(LOAD_MODELS))) -o $@
-$(BIN)/fuzz_load: tests/fuzz/fuzz_load.c $(BUILD)/test/driver.o $(LOAD_SRC) $(SAN_RT)
+$(BIN)/fuzz_load: tests/fuzz/fuzz_load.c $(BIN)/driver.o $(LOAD_SRC) $(SAN_RT)
 	@mkdir -p $(@D)
-	$(TEST_CC) -Iruntime/include -Iruntime -ffp-contract=off $(BUILD)/test/driver.o $(LOAD_SRC) $(SAN_RT) $(GSL_LIBS) -lm
-$(BUILD)/test/driver.o: tests/fuzz/driver.c
+	$(TEST_CC) -Iruntime/include -Iruntime -ffp-contract=off $(BIN)/driver.o $(LOAD_SRC) $(SAN_RT) $(GSL_LIBS) -lm
+$(BIN)/driver.o: tests/fuzz/driver.c
 	@mkdir -p $(@D)
 	$(TEST_CC) -c
 
@@ -357,14 +363,14 @@ fuzz:
 	$(SETUP) build
 ifneq ($(CLANG),)
 	$(QUIET) BUILD=$(BUILD)/fuzz PRECISIONS= CC='$(CLANG)' CFLAGS='-O1 -g' \
-	  SAN='$(SAN_FLAGS) -fsanitize=fuzzer-no-link' \
+	  SAN='$(SAN_ALL) -fsanitize=fuzzer-no-link' \
 	  $(BUILD)/fuzz/liblagc.a $(BUILD)/fuzz/liblag.a
 	$(QUIET) $(if $(filter fuzz_load,$(FUZZ)),$(LOAD_SRC))
 	@set -e; for f in $(FUZZ); do \
 	  corpus=tests/fuzz/corpus/$${f#fuzz_}; found=$(BUILD)/fuzz/found/$$f; mkdir -p $$found; \
 	  with="-Isrc -I$(BUILD)/fuzz/gen $(BUILD)/fuzz/liblagc.a"; \
 	  [ $$f != fuzz_load ] || with="-DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION -Iruntime/include -Iruntime $(LOAD_SRC) $(BUILD)/fuzz/liblag.a"; \
-	  $(CLANG) -std=c11 $(CPPFLAGS_ALL) -O1 -g $(SAN_FLAGS) -fsanitize=fuzzer -o $(BUILD)/fuzz/$$f tests/fuzz/$$f.c $$with -lm; \
+	  $(CLANG) -std=c11 $(CPPFLAGS_ALL) -O1 -g $(SAN_ALL) -fsanitize=fuzzer -o $(BUILD)/fuzz/$$f tests/fuzz/$$f.c $$with -lm; \
 	  $(BUILD)/fuzz/$$f -max_total_time=$(SECONDS) -max_len=4096 -print_final_stats=1 -artifact_prefix=$(BUILD)/fuzz/ $$found $$corpus; \
 	done
 else
@@ -394,7 +400,7 @@ coverage:
 	$(SETUP) test
 	$(COVERAGE_MAKE) build-coverage
 	@find $(COVERAGE) -name '*.gcda' -delete
-	@ln -sfn . $(COVERAGE)/san && ln -sfn "$(CURDIR)/runtime" $(COVERAGE)/../runtime # lagc finds its headers in ../runtime
+	@ln -sfn "$(CURDIR)/runtime" $(COVERAGE)/../runtime # lagc finds its headers in ../runtime
 	@printf '#!/bin/sh\nexec %s "$$@" -O0 --coverage\n' '$(CC)' >$(COVERAGE)/counted-cc && chmod +x $(COVERAGE)/counted-cc
 	-$(COVERAGE_MAKE) MODEL_CC='$(CURDIR)/$(COVERAGE)/counted-cc' COVERAGE=yes run-coverage
 	@sh tests/coverage/lib_report.sh $(COVERAGE)

@@ -8,7 +8,7 @@
 #   tests/fuzz/fuzz_NAME.c         replays tests/fuzz/corpus/NAME                suite fuzz/fuzz_NAME
 #   tests/FOLDER/NAME.sh           run from the top of the source tree by sh     suite FOLDER/NAME
 #   tests/FOLDER/long_NAME.sh      the same, in `make test-long`, which also runs, with SLOW=1, each NAME.sh that has a `slow` check or `one_of`
-#                                     (tests/tap.sh) and each test_NAME.c that asks slow() (tests/unit/slow.h)
+#                                     (tests/tap.sh), and each test_NAME.c and fuzz_NAME.c, where slow() is the larger (tests/unit/slow.h)
 #   tests/bench/NAME.sh            run by `make bench`; its output is shown, and written to tests/bench/RESULTS.md
 #   tests/FOLDER/lib_NAME.sh       no suite: functions that scripts share
 # --bless runs the scripts that know BLESS with BLESS=1: they rewrite their expectations.
@@ -18,11 +18,12 @@
 # runs into the time limit, or has fewer or more results than its plan says, counts one failure more.
 #
 # Environment of scripts (paths relative to the top; empty: not available):
-#   LAGC, LAGC_SAN, LAGC_CLANG     the compiler; built under the sanitizers of SAN_FLAGS, in `make test-long` with -O0; built by clang, in `make test-long`
+#   LAGC, LAGC_SAN, LAGC_CLANG     the compiler; built under the sanitizers of SAN_FLAGS, in `make test-long` all, with -O0; built by clang, in `make test-long`
 #   PRECISIONS                     libraries of other precisions: none in `make test`
 #   LIBLAG, INC, LIBS              the runtime's libraries, its headers, libraries to link after them
 #   BIN, BUILD, TMP                built test programs; the build folder; a folder of the suite's own, empty
 #   CC, CLANG, CXX, GSL, MAKE      GSL is `yes` or empty
+#   LINKER                         a faster linker than CC's own, for `make test`: COMPILER_PATH
 #   LAG_TREE                       value of LAG_HOME with which LAGC_SAN and LAGC_CLANG find the runtime
 #   LAGC_OPTIMISE                  -O0 in `make test`, whose simulators run for less time than they compile for; unset, so -O2, elsewhere
 # Every suite leaves its output in $BUILD/test/log. The last line is `N passed, N failed`.
@@ -48,7 +49,15 @@ case ${1:-} in
 esac
 case ${1:-} in --*) shift ;; esac
 case $kind in
-  test | bless) export LAGC_OPTIMISE="${LAGC_OPTIMISE:--O0}" && unset SLOW ;;
+  test | bless)
+    export LAGC_OPTIMISE="${LAGC_OPTIMISE:--O0}" && unset SLOW
+    # Compilers look for `ld` there first: gold links a simulator in half the time.
+    if [ -n "${LINKER:-}" ]; then
+      mkdir -p "$BUILD/test/linker"
+      ln -sfn "$LINKER" "$BUILD/test/linker/ld"
+      export COMPILER_PATH="$(pwd)/$BUILD/test/linker${COMPILER_PATH:+:$COMPILER_PATH}"
+    fi
+    ;;
   long) unset LAGC_OPTIMISE && export SLOW=1 ;;
   bench) unset LAGC_OPTIMISE SLOW ;;
 esac
@@ -96,7 +105,8 @@ found() {
       case $f in *.sh) ;; *) continue ;; esac
       grep -q BLESS "$f" || continue
     elif [ "$is" != "$kind" ]; then
-      [ "$kind $is" = 'long test' ] && grep -q 'SLOW\|^ *slow \|\<one_of \|\<slow(' "$f" || continue
+      [ "$kind $is" = 'long test' ] || continue
+      case $f in *.sh) grep -q 'SLOW\|^ *slow \|\<one_of ' "$f" || continue ;; esac
     fi
     [ $# = 0 ] && echo "$name"
     for prefix; do

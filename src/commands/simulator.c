@@ -96,6 +96,7 @@ int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, cons
   return *path ? STATUS_OK : usage_error(error);
 }
 
+/* A text for each unit, the last of them with the program: a file less to compile. */
 Texts simulator_texts(Compiler *c, const Units *units, int gsl) {
   Texts texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units->n);
@@ -103,11 +104,9 @@ Texts simulator_texts(Compiler *c, const Units *units, int gsl) {
     names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units->at[i]->name), i);
     StrBuf b = strbuf(c->arena);
     emit_model(units->at[i], names[i], &b);
+    if (i + 1 == units->n) emit_program((const IrUnit *const *)units->at, names, units->n, gsl, &b);
     vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
   }
-  StrBuf b = strbuf(c->arena);
-  emit_program((const IrUnit *const *)units->at, names, units->n, gsl, &b);
-  vec_push(c->arena, &texts, ((SourceText){"program.c", sb_text(&b)}));
   return texts;
 }
 

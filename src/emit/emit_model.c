@@ -573,7 +573,7 @@ static void emit_main(int gsl, StrBuf *out) {
 void emit_program(const IrUnit *const *units, const char *const *names, uint32_t n, int gsl, StrBuf *out) {
   const IrUnit *first = units[0];
   Arena *a = first->arena;
-  sb_puts(out, "#include \"lag.h\"\n\n");
+  sb_puts(out, "\n#include \"lag.h\"\n\n");
   uint32_t scenes = 0;
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t k = 0; k < units[i]->scenes.n; k++, scenes++)

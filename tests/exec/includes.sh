@@ -44,10 +44,14 @@ private='syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/sc
 
 # Every #include as `FILE HEADER`; <stdio.h> keeps its brackets.
 list=$TMP/list
-find src grammar runtime -name '*.[chly]' | LC_ALL=C sort | while read -r f; do
-  sed -n 's/^[ \t]*#[ \t]*include[ \t]*\(<[^>]*>\).*/\1/p; s/^[ \t]*#[ \t]*include[ \t]*"\([^"]*\)".*/\1/p' "$f" |
-    sed "s|^|$f |"
-done >"$list"
+find src grammar runtime -name '*.[chly]' | LC_ALL=C sort | xargs awk '
+  match($0, /^[ \t]*#[ \t]*include[ \t]*/) {
+    header = substr($0, RLENGTH + 1)
+    if (header ~ /^<[^>]*>/) sub(/>.*/, ">", header)
+    else if (header ~ /^"[^"]*"/) { sub(/^"/, "", header); sub(/".*/, "", header) }
+    else next
+    print FILENAME, header
+  }' >"$list"
 
 # Files generated from lag.y and lag.l are included by src/syntax only.
 empty "generated parser headers: src/syntax only" \
@@ -134,6 +138,7 @@ fi
 # ---- emitted code: a model needs lag_model.h and <math.h>; a header only <math.h> ----
 includes_of() {
   for m in models/*.lag; do
+    one_of 4 || continue
     "$LAGC" "$1" "$m" -o "$TMP/emitted" || echo "lagc $1 $m: exit status $?"
     sed -n 's/^[ \t]*#[ \t]*include[ \t]*//p' "$TMP/emitted" | grep -v -x -e "$2" | sed "s|^|lagc $1 $m includes |"
   done 2>&1

@@ -5,7 +5,7 @@
 case $LAGC_SAN in /*) san=$LAGC_SAN ;; *) san=$(pwd)/$LAGC_SAN ;; esac
 if [ ! -d "$TMP/tree" ]; then
   mkdir -p "$TMP/tree"
-  ln -s "$(pwd)/$BUILD/san" "$TMP/tree/lib"
+  ln -s "${san%/*}" "$TMP/tree/lib"
   ln -s "$(pwd)/runtime/include" "$TMP/tree/include"
   # The last -O counts: simulators are compiled fast, and no load is left out of them.
   printf '#!/bin/sh\nexec %s -g %s "$@" -O0\n' "$CC" "$SAN_FLAGS" >"$TMP/cc"

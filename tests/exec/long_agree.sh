@@ -31,7 +31,7 @@ build() { # OUTPUT LIBRARY OPTIONS...
     "$@" tests/exec/emit_agree.c $files "$library" -lm -o "$output"
 }
 sanitized() {
-  build "$TMP/sanitized" "$BUILD/san/liblagc.a" -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all &&
+  build "$TMP/sanitized" "${LAGC_SAN%/*}/liblagc.a" -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all &&
     "$TMP/sanitized" $models
 }
 check "emitted C computes what its program says, under both sanitizers" sanitized

@@ -6,10 +6,9 @@ folders=$(find src runtime tests models -type f -name '*.[ch]' -o -type f -name 
 empty "each folder has a README" "$(for d in src runtime tests $folders; do [ -f "$d/README.md" ] || echo "$d"; done)"
 
 pages=$(find . -name '*.md' -not -path './build/*' -not -path './.git/*' | LC_ALL=C sort)
-empty "links of pages lead to files" "$(for f in $pages; do
-  grep -o ']([^)#]*[)#]' "$f" | sed 's/^](//; s/[)#]$//' | grep -v -e '^http' -e '^$' -e '^[0-9]' | while read -r l; do
-    [ -e "$(dirname "$f")/$l" ] || echo "$f: $l"
-  done
+# shellcheck disable=SC2086 # a list of files
+empty "links of pages lead to files" "$(grep -Ho ']([^)#]*[)#]' $pages | sed 's/:](/ /; s/[)#]$//' | while read -r f l; do
+  case $l in http* | '' | [0-9]*) ;; *) [ -e "${f%/*}/$l" ] || echo "$f: $l" ;; esac
 done)"
 
 # Sentences begin with their noun; only beginnings that never have one are looked for.
@@ -22,11 +21,12 @@ empty "files that READMEs of sources name exist" "$(for f in src/README.md src/*
   grep -oE '(^|[^a-zA-Z0-9_{}-])[a-z_0-9]+\.[ch]\b' "$f" | grep -oE '[a-z_0-9]+\.[ch]$' | LC_ALL=C sort -u | grep -vxFf "$TMP/names" | sed "s|^|$f: |"
 done)"
 
-empty "the README of a folder names each of its .c files" "$(for f in $(find src runtime -mindepth 2 -name '*.c' | LC_ALL=C sort); do
-  grep -qE "(^|[^a-z0-9_])$(basename "$f" .c)([^a-z0-9_]|\$)" "$(dirname "$f")/README.md" || echo "$f"
-done)"
+empty "the README of a folder names each of its .c files" "$(find src runtime -mindepth 2 -name '*.c' | LC_ALL=C sort | awk '
+  {
+    folder = name = $0; sub(/\/[^\/]*$/, "", folder); sub(/.*\//, "", name); sub(/\.c$/, "", name)
+    if (!(folder in text)) while ((getline line <(folder "/README.md")) > 0) text[folder] = text[folder] " " line " "
+    if (text[folder] !~ "[^a-z0-9_]" name "[^a-z0-9_]") print
+  }')"
 
-empty "each file of sources begins with a comment" "$(for f in $(find src runtime -name '*.[ch]' | LC_ALL=C sort); do
-  head -n 1 "$f" | grep -q '^/\*' || echo "$f"
-done)"
+empty "each file of sources begins with a comment" "$(find src runtime -name '*.[ch]' -exec awk 'FNR == 1 && !/^\/\*/ { print FILENAME }' {} +)"
 tap_end

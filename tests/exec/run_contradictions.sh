@@ -64,7 +64,7 @@ constraint circle: x^2 + y^2 = l^2
 constraint height: y = v*t
 scene s { start x = 1; span 2; output x, y, x^2 + y^2 - l^2 every 0.01 }
 END
-for method in dop853 rk45 rk4 radau verlet variational; do
+for method in dop853 ${SLOW:+rk45 rk4 radau} verlet ${SLOW:+variational}; do
   status=0
   "$LAGC" run "$TMP/leaves.lag" --method $method -o "$TMP/rows.csv" >/dev/null 2>&1 || status=$?
   is "$method ends at the end of the circle, and writes only what is on it" '3 yes' \
@@ -81,7 +81,7 @@ constraint blade: x'*sin(a) = y'*cos(a)
 constraint again: x'*sin(a) - y'*cos(a) = k/T*max(t/T - 1, 0)
 scene s { start x' = 1 [m/s], a' = 1 [rad/s]; span 3; output x, y, a every 0.1 }
 END
-for method in dop853 rk45 rk4 radau verlet variational; do
+for method in ${SLOW:+dop853} rk45 ${SLOW:+rk4 radau verlet} variational; do
   "$LAGC" run "$TMP/blades.lag" --method $method -o "$TMP/rows.csv" >"$TMP/report" 2>&1
   check "$method finds velocities that contradict each other" grep -E 'FAILED: at t = 1(.0[0-9]*)? s: .*constraint (blade|again) \(line [56]\) is (off|not met)' "$TMP/report"
 done

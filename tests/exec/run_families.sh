@@ -84,7 +84,7 @@ potential = ((b-a)^2 + (c-b)^2)/2 + (e-d)^2 + (f-e)^2 + ((d-a)^4 + (e-b)^4 + (f-
 scene s { start a = 2/3, b = 1/3, c = 0, d = 5/3, e = 4/3, f = 1; span 1; tolerance 1e-13
   output a, b, c, d, e, f, a', b', c', d', e', f' every 0.01 }
 LAG
-same "a lattice with two indices" "$dir/lattice.lag" "$dir/lattice_by_hand.lag"
+slow same "a lattice with two indices" "$dir/lattice.lag" "$dir/lattice_by_hand.lag"
 
 # ---- at the command line: a family is set at once, a vector by its components ----
 sed 's/start u.*- j\/3; span/start u[1,1] = 0; span/' "$dir/lattice.lag" >"$dir/still.lag"
@@ -126,7 +126,7 @@ large() { # NAME SECONDS KIBIBYTES COMMAND...
   check "$name" limited "$@"
 }
 limited() { (ulimit -t "$seconds" -v "$memory"; "$@"); }
-large "a string of 10000 masses" 30 1500000 "$LAGC" derive models/string.lag -D N=10000 --ops
+slow large "a string of 10000 masses" 30 1500000 "$LAGC" derive models/string.lag -D N=10000 --ops
 roots() { "$LAGC" derive tests/bench/models/bodies.lag -D N=40 --ops | tee "$dir/out" && grep -q ', 780 square roots$' "$dir/out"; }
 check "40 bodies: a square root of each of 40*39/2 pairs" roots
 shared() { "$LAGC" derive models/slider_crank.lag --ops | awk '{ print; exit !($1 <= 208) }'; }

@@ -26,10 +26,10 @@ final() {
     END { exit wrong || seen != n }' "$TMP/$1.want" "$TMP/$1.json"
 }
 check "gauss: the digits of a pair of vortices" final vortex_pair 0.05
-check "gauss: the digits of three vortices" final vortices_3 0.01
-check "gauss: the digits of four vortices" final vortices_4_same_sign 0.01
+slow check "gauss: the digits of three vortices" final vortices_3 0.01
+slow check "gauss: the digits of four vortices" final vortices_4_same_sign 0.01
 check "gauss: the digits of hunters and prey" final lotka_volterra_degenerate 0.01
-check "gauss: the digits of deformed vortices" final vortices_deformed_gni 0.0005
+slow check "gauss: the digits of deformed vortices" final vortices_deformed_gni 0.0005
 sed 's/^\(vortex-pair [a-z]* 100 c_x1 0\.45754\)5/\16/' $digits >"$TMP/wrong.expected"
 wrong() { ! cmp -s "$TMP/wrong.expected" $digits && (digits=$TMP/wrong.expected && ! final vortex_pair 0.05); }
 check "a wrong digit is seen" wrong

@@ -14,8 +14,8 @@ if [ -n "${ALL_MODELS:-}" ]; then
   # Models with thousands of coordinates test nothing that smaller ones do not.
   models=$(ls models/*.lag tests/exec/models/*.lag tests/exec/lanes/*.lag | grep -v 'models/string\.lag')
 else # Branches, powers, tables; blocks, a sparse matrix, loops; constraints, of velocities too; a rotation; states of effects.
-  models='tests/exec/lanes/branches.lag models/double_pendulum.lag models/chain.lag models/lagrange_top.lag models/kapitza.lag'
-  for m in blocks bead constrained effects four_bars indefinite jumps light names planets powers rolling_ball tables; do
+  models="tests/exec/lanes/branches.lag models/double_pendulum.lag models/chain.lag ${SLOW:+models/lagrange_top.lag models/kapitza.lag}"
+  for m in effects four_bars powers tables ${SLOW:+blocks bead constrained indefinite jumps light names planets rolling_ball}; do
     models="$models tests/exec/models/$m.lag"
   done
 fi

@@ -58,12 +58,12 @@ slow check 'a sum of 20,000 powers' answer sum 10000000
 { printf "lagrangian = x'^2/2 + "; lines 1000 'printf "if(x > %d, ", i'; printf x; lines 1000 'printf ", %d)", i'; echo; } | model ifs
 slow check '1,000 choices inside each other' answer ifs
 { lines 1500 'printf "scene s%d { start x = 1 }\neffect e%d { force x = %d }\n", i, i, i'; echo "lagrangian = x'^2/2"; } | model scenes
-check '1,500 scenes and 1,500 effects' answer scenes
+slow check '1,500 scenes and 1,500 effects' answer scenes
 
 { printf "lagrangian = x'^2/2 + "; lines 30000 'printf "sin("'; printf x; lines 30000 'printf ")"'; echo; } | model deep
 check '30,000 sines inside each other' starved deep
 { echo 'function f0(a) = a*a + 1'; lines 40 'printf "function f%d(a) = f%d(f%d(a))\n", i, i - 1, i - 1'; echo "lagrangian = x'^2/2 + f40(x)"; } | model power_tower
-check 'a function applied 2^40 times' starved power_tower
+slow check 'a function applied 2^40 times' starved power_tower
 model infinite <<'END'
 lagrangian = x'^2/2 + 1e999*x
 END
@@ -77,9 +77,9 @@ check '50,000 primes' limit primes 1 'second derivative'
 { lines 1000 'printf "let a%d = a%d\n", i, i % 1000 + 1'; echo "lagrangian = x'^2/2"; } | model ring
 check 'a ring of 1,000 lets' limit ring 1 'is circular'
 { printf "lagrangian = x'^2/2 + "; lines 40 'printf "sum(i in 1..2, "'; printf x; lines 40 'printf ")"'; echo; } | model sums
-check '40 sums inside each other' limit sums 1 'sums inside sums run through more than'
+slow check '40 sums inside each other' limit sums 1 'sums inside sums run through more than'
 { lines 20000 'printf "let a%d = q%d\n", i, i'; echo "lagrangian = x'^2/2"; } | model unknown
-check '20,000 unknown names' limit unknown 1 'unknown name'
+slow check '20,000 unknown names' limit unknown 1 'unknown name'
 echo "lagrangian = x'^2/2 - sum(i in 1..1000000, i)*x" | model longest
 check 'the longest range there may be' timeout 60 "$LAGC" check "$dir/longest.lag"
 table() { # ROWS: a model with an input of so many

@@ -84,9 +84,9 @@ pairs() { # METHOD TOLERANCE
   check "$title: chaos" awk -v x="$(list exponents 1)" 'BEGIN { exit !(x > 0.02 && x < 0.08) }'
 }
 pairs 'verlet8(step=0.1)' 1e-8 # the vectors' first directions leave a number of order 1 in logarithms, over the time
-pairs 'gauss(stages=3, step=0.1)' 1e-8
+slow pairs 'gauss(stages=3, step=0.1)' 1e-8
 pairs dop853 1e-8
-pairs taylor 1e-8
+slow pairs taylor 1e-8
 
 # ---- events that change the state. Flights under g = 1 that begin with velocity v take 2v and end with -v; the next begins with f(v). So one exponent is
 # 0, along the motion, and the other the mean of log |f'| over the mean of 2v.

@@ -23,4 +23,7 @@ mutants() {
 
 slow mutants double_pendulum 299 1
 mutants cart_pendulum 68 4
+# A term of an argument, as one of the double pendulum's mutants has it.
+sed '18s/cos(2\*th1-2\*th2)/cos(2*th1-2*l2)/' tests/exec/models/mutants_double_pendulum.lag >"$TMP/term.lag"
+check "a wrong term of an argument" says 1 '`2*l2` should be `2*th2`' "$LAGC" check "$TMP/term.lag"
 tap_end

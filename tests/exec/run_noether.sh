@@ -173,7 +173,7 @@ lagrangian = m/2*x'^2 + cosh(th')
 effect drag { param c = 1; dissipation = c/2*x'^2 }
 END
   check "JSON" sh -c '"$0" noether "$1" --format json >"$2" && python3 "$3" <"$2" || { cat "$2"; exit 1; }' "$LAGC" "$TMP/json.lag" "$TMP/report" "$TMP/read.py"
-  check "JSON of every model" sh -c 'for m in pendulum room turntable point_vortices kepler; do "$0" noether models/$m.lag --format json | python3 -m json.tool >/dev/null || exit 1; done' "$LAGC"
+  check "JSON of every model" sh -c 'for m in turntable point_vortices $1; do "$0" noether models/$m.lag --format json | python3 -m json.tool >/dev/null || exit 1; done' "$LAGC" ${SLOW:+"pendulum room kepler"}
 else skip "JSON" "there is no python3"
 fi
 
@@ -181,6 +181,7 @@ fi
 unsearched() {
   for m in models/*.lag; do
     case $m in */outer_planets.lag | */pleiades.lag | */lennard_jones.lag | */string.lag) continue ;; esac # seconds each
+    one_of 3 || continue
     "$LAGC" noether "$m" 2>&1 | grep -e "not searched" -e "^ *[0-9]* of [0-9]* proved" | sed "s|^|$m: |"
   done
 }

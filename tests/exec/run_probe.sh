@@ -61,7 +61,7 @@ is "make: no flag where nothing is wrong" 0 "$(makes "$CC")"
 
 # ---- LAGC_OPTIMISE: the same bits at every level, and no other words
 . tests/exec/lib_levels.sh
-for words in "double_pendulum swing" "slider_crank" "kepler --method taylor" "bouncing_ball"; do
+for words in ${SLOW:+"double_pendulum swing"} "slider_crank" "kepler --method taylor" ${SLOW:+"bouncing_ball"}; do
   check "the same rows at -O0 and at -O2: $words" same_rows $words
 done
 for level in -O9 O0 '-O2 -ffast-math' -Ofast; do

@@ -116,7 +116,7 @@ long() {
   awk -F, 'NR > 1 && ($NF > 1e-14 || $NF < -1e-14) { print; bad = 1 } END { exit bad || NR < 100 }' "$TMP/long.csv" || return 1
   sed -n 's/.*"energy_drift": \([^,]*\),.*/\1/p' "$TMP/long.json" | awk '{ print; exit !($1 < 1e-13) }'
 }
-check "10^5 steps by variational: energy and length" long
+slow check "10^5 steps by variational: energy and length" long
 
 # ---- embedded headers ----
 cat >"$TMP/free_body.c" <<'E2'
@@ -146,6 +146,6 @@ check "an embedded header turns a body, in C" embedded "$CC" -std=c11
 cp "$TMP/free_body.c" "$TMP/free_body.cc"
 if command -v "${CXX:-c++}" >/dev/null; then
   embedded_cc() { "${CXX:-c++}" -std=c++17 -O2 -Wall -Wextra -Werror -I"$TMP" -o "$TMP/embedded_cc" "$TMP/free_body.cc" -lm && "$TMP/embedded_cc"; }
-  check "and in C++" embedded_cc
+  slow check "and in C++" embedded_cc
 fi
 tap_end

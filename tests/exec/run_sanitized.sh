@@ -1,8 +1,8 @@
 #!/bin/sh
 # Two models, a constraint and an event, by every command, with a compiler and a runtime under sanitizers. long_sanitized.sh has all of the gallery.
 . tests/exec/lib_sanitized.sh
-for name in slider_crank bouncing_ball; do
-  empty "$name" "$(every_command "models/$name.lag")"
+for model in ${SLOW:+models/slider_crank.lag} tests/exec/models/rod.lag models/bouncing_ball.lag; do
+  empty "$model" "$(every_command "$model")"
 done
 # Further code: dry friction that sticks, and the tangent of a flow across events.
 cat >"$TMP/slide.lag" <<'X'

@@ -54,9 +54,11 @@ mutants() {
   is "$what: emitted as it is, the monitors are content" 0 $?
   sign=1
   while [ "$sign" -le "$3" ]; do
-    flip "$sign" <"$TMP/right.c" >"$TMP/wrong.c"
-    moves "$what" wrong
-    is "$what: with sign $sign flipped a monitor ends the run" 3 $?
+    if one_of 3; then
+      flip "$sign" <"$TMP/right.c" >"$TMP/wrong.c"
+      moves "$what" wrong
+      is "$what: with sign $sign flipped a monitor ends the run" 3 $?
+    fi
     sign=$((sign + 1))
   done
 }

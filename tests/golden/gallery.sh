@@ -49,7 +49,7 @@ small() { [ "$(wc -c <"$1")" -lt 30000 ] && tail -n 1 "$1" | grep -qx '</svg>'; 
 sed -n 's/^<!-- drawn by: build\/lagc \(.*\) -o \(.*\) -->$/\2 \1/p' models/README.md >"$TMP/list"
 check "there is a gallery" [ -s "$TMP/list" ]
 while read -r picture words; do
-  one_of 5 || continue
+  one_of 8 || continue
   check "$picture is drawn" sh -c "$LAGC $words -o $TMP/new.svg --quiet"
   check "$picture is up to date" same_picture "$picture" "$TMP/new.svg"
   check "$picture is small and whole" small "$picture"
@@ -60,7 +60,7 @@ case $LAGC in /*) lagc=$LAGC ;; *) lagc=$(pwd)/$LAGC ;; esac
 ln -s "$(pwd)/models" "$TMP/models"
 sed -n 's/^lagc //p' models/README.md | grep -v NAME >"$TMP/commands"
 while read -r words; do
-  one_of 5 || continue
+  one_of 8 || continue
   case $words in check* | derive* | modes*) quiet= ;; *) quiet=--quiet ;; esac
   check "lagc $words" sh -c "cd $TMP && $lagc $words $quiet"
 done <"$TMP/commands"

@@ -107,14 +107,14 @@ static int with_budget(const char *lag, int errors, long n, size_t chunk, size_t
 static void test_each_allocation(void **state) {
   (void)state;
   long n = 0;
-  while (!with_budget(good, 0, n, 2048, 0)) n += slow(1, 3);
+  while (!with_budget(good, 0, n, 2048, 0)) n += slow(1, 6);
   assert_true(n > 200); /* or the chunks are too large to say anything */
 }
 
 static void test_each_allocation_of_errors(void **state) {
   (void)state;
   long n = 0;
-  while (!with_budget(bad, 1, n, 256, 0)) n += slow(1, 3);
+  while (!with_budget(bad, 1, n, 256, 0)) n += slow(1, 6);
   assert_true(n > 100);
 }
 

@@ -281,7 +281,7 @@ static void test_consistent_mass(void **state) {
 static void test_long(void **state) {
   (void)state;
   Arena *arena = arena_new(NULL);
-  uint32_t n = (uint32_t)slow(300, 150);
+  uint32_t n = (uint32_t)slow(300, 100);
   Eqns *e = equations(arena, arena_printf(arena, CHAIN ENERGIES, n), NULL);
   assert_non_null(e);
   assert_false(e->mass_known);

@@ -2,6 +2,7 @@
  * same map and which are not, forces, what Newton's method costs and how it fails, what symmetries conserve. Expected values:
  * closed forms, trajectories of the algorithm itself in 40- and 60-digit arithmetic by an independent script, and dop853.
  * Orders are measured in quadruple precision: tests/exec/long_quad.sh. LAG_STEPS: steps of the long runs. */
+#include "slow.h"
 #include "test_rt_systems.h"
 
 #include "methods/band_matrix.h"
@@ -355,7 +356,7 @@ static void what_rests_stays(void **state)
 static int long_run(void)
 {
   const char *text = getenv("LAG_STEPS");
-  return text ? atoi(text) : 10000;
+  return text ? atoi(text) : slow(10000, 3000);
 }
 
 typedef struct Charge {

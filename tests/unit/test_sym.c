@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "compile_text.h"
+#include "slow.h"
 #include "sym/diff.h"
 #include "sym/print.h"
 
@@ -312,14 +313,14 @@ static void test_print(void **state) {
 
 static void test_depth(void **state) {
   (void)state;
-  enum { DEEP = 200000 };
+  const int deep = slow(200000, 50000);
   Lab l = lab_new();
   ExprGraph *g = l.g;
   Expr e = l.pool[0];
-  for (int i = 0; i < DEEP; i++) e = expr_fn(g, EX_SIN, e);
+  for (int i = 0; i < deep; i++) e = expr_fn(g, EX_SIN, e);
   long double v[NSYM + 1] = {0, 1};
   long double x = 1;
-  for (int i = 0; i < DEEP; i++) x = sinl(x);
+  for (int i = 0; i < deep; i++) x = sinl(x);
   assert_true(value(&l, e, v) == x);
   assert_true(expr_contains_sym(g, e, l.sym[0]));
   assert_false(expr_contains_sym(g, e, l.sym[1]));
@@ -329,28 +330,28 @@ static void test_depth(void **state) {
   assert_true(expr_contains_sym(g, s, l.sym[1]) && !expr_contains_sym(g, s, l.sym[0]));
   StrBuf out = strbuf(l.a);
   expr_print(g, e, PRINT_TEXT, &out);
-  assert_int_equal(out.n, 5 * DEEP + 1);
+  assert_int_equal(out.n, 5 * (size_t)deep + 1);
   arena_free(l.a);
 }
 
 /* A chain of lets keeps its length under both modes of differentiation. */
 static void test_long_chain(void **state) {
   (void)state;
-  enum { LONG = 30000 };
+  const int length = slow(30000, 10000);
   Lab l = lab_new();
   ExprGraph *g = l.g;
   Interner *names = interner_new(l.a);
   Expr e = l.pool[0];
-  for (int i = 0; i < LONG; i++) {
+  for (int i = 0; i < length; i++) {
     Expr s = expr_fn(g, EX_SIN, e), sum = expr_add(g, s, l.pool[1]);
     e = expr_def(g, intern(names, "c"), sum);
   }
   uint32_t before = expr_count(g);
   Expr d = expr_diff(g, e, l.sym[0]), grad[2];
   expr_gradient(g, e, l.sym, 2, grad);
-  assert_true(expr_count(g) - before < 20 * LONG);
+  assert_true(expr_count(g) - before < 20 * (uint32_t)length);
   long double v[NSYM + 1] = {0, 0.5L, 0.25L}, x = 0.5L, dx = 1, dy = 0;
-  for (int i = 0; i < LONG; i++) {
+  for (int i = 0; i < length; i++) {
     dx *= cosl(x);
     dy = dy * cosl(x) + 1;
     x = sinl(x) + 0.25L;

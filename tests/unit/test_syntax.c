@@ -287,7 +287,7 @@ static void parse_fast(const char *lag, int ok) {
 
 static void test_many_terms(void **state) {
   (void)state;
-  char *lag = repeated("let a = x", " + x", (size_t)slow(1000000, 200000), "\n");
+  char *lag = repeated("let a = x", " + x", (size_t)slow(1000000, 100000), "\n");
   parse_fast(lag, 1);
   free(lag);
 }
@@ -299,13 +299,13 @@ static void test_deep(void **state) {
   parse_fast(lag, 1);
   free(open);
   free(lag);
-  lag = repeated("let a = 1", "^1", (size_t)slow(300000, 100000), "\n");
+  lag = repeated("let a = 1", "^1", (size_t)slow(300000, 50000), "\n");
   parse_fast(lag, 1);
   free(lag);
-  lag = repeated("let a = ", "-", (size_t)slow(300000, 100000), "x\n");
+  lag = repeated("let a = ", "-", (size_t)slow(300000, 50000), "x\n");
   parse_fast(lag, 1);
   free(lag);
-  lag = repeated("let a = x", "'", (size_t)slow(300000, 100000), "\n");
+  lag = repeated("let a = x", "'", (size_t)slow(300000, 50000), "\n");
   parse_fast(lag, 1);
   free(lag);
 }
