@@ -215,7 +215,7 @@ $(BUILD)/gen/base/visible.h: runtime/io/visible.h
 	@mkdir -p $(@D)
 	cp $< $@
 $(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/base/visible.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(BUILD)/gen/numeric/edit_distance.h
-$(BUILD)/obj/src/toolchain/files.o $(BUILD)/obj/src/commands/options.o $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
+$(BUILD)/obj/src/toolchain/files.o $(BUILD)/obj/src/commands/options.o $(BUILD)/obj/src/commands/cost_reference.o $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 	@mkdir -p $(@D)
