@@ -47,7 +47,7 @@ if [ -n "$gcc" ] && echo 'int main(void) { return 0; }' | "$gcc" -include "$TMP/
 else
   skip "quadruple precision agrees" "there is no libquadmath"
 fi
-# run_lanes.sh: vectors.
+# long_lanes.sh: vectors.
 for c in $compilers; do
   [ "$c" != "$CC" ] || continue
   evaluate other "$c"

@@ -1,5 +1,5 @@
 /* What every function of emitted models computes at the same random states, as a double or in lanes: a line a state and function,
- * `model function status values...`, for run_lanes.sh to compare. Linked with scenes.c, which lists the models' scenes.
+ * `model function status values...`, for long_lanes.sh to compare. Linked with scenes.c, which lists the models' scenes.
  *
  * A lane's status is -1 when its bit in the negative of the function's is set. States differ in sign and size, so that lanes
  * take different branches; some have angles beyond what short reductions take. */
