@@ -3,6 +3,7 @@
  * motion in proportion to time; a method adds to it once or twice more: hence the laws of growth. */
 #include "analysis/error_estimate.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -105,15 +106,34 @@ static void extrapolate(ErrorEstimate *e, double until, double power) {
 
 /* ---- The comparison */
 
+/* A time at which no digit is left. It is the horizon if the motions stay apart: in a close encounter velocities differ for a moment. */
+typedef struct Parting {
+  double t, least; /* NaN: none; smallest error from a twentieth of the time so far later on */
+} Parting;
+
+/* Whether the error at time t confirms the parting; p->t := NaN where it refutes it. */
+static int is_confirmed(const ErrorEstimate *e, Parting *p, double t, double error, int last) {
+  const double soon = 0.05, later = 0.1, apart = 0.01;
+  if (isnan(p->t) && error >= no_digit) *p = (Parting){t, HUGE_VAL};
+  if (isnan(p->t)) return 0;
+  double since = fabs(t - p->t) / fmax(fabs(p->t - e->t0), DBL_MIN);
+  if (since > soon || last) p->least = fmin(p->least, error);
+  if (since <= later && !last) return 0;
+  if (p->least >= apart) return 1;
+  p->t = NAN;
+  return 0;
+}
+
 /* Compares rows up to the end, the horizon, or where `other` stops. */
 static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
+  Parting parting = {NAN, HUGE_VAL};
   for (e->compared = 0; e->compared < e->motion.rows && isnan(e->horizon); e->compared++) {
     int i = e->compared, rc = lag_sim_advance(other, e->motion.t[i]);
     if (rc < 0) snprintf(e->why, sizeof e->why, "the second run failed: %s", lag_sim_message(other));
     if (rc) return rc;
     e->error[i] = lag_cost_row_error(e->motion.n, e->motion.y + (size_t)i * (size_t)e->motion.n, other->now, scale);
     e->largest = fmax(e->largest, e->error[i]);
-    if (e->error[i] >= no_digit) e->horizon = e->motion.t[i];
+    if (is_confirmed(e, &parting, e->motion.t[i], e->error[i], i + 1 == e->motion.rows)) e->horizon = parting.t;
   }
   return LAG_OK;
 }

@@ -49,6 +49,34 @@ if [ -n "${GSL:-yes}" ] && "$LAGC" run "$dp" --method gsl-rk8pd --tol 1e-13 --js
       awk -v a="$(value horizon)" -v b="$parted" 'BEGIN { print a, b; exit !(a > 0 && a < 1.2*b && a > 0.8*b) }'
   done
 fi
+
+# Other chaos, by long double runs: where motions part by 0.3 of the largest value of the columns, which are of one kind and unit.
+. tests/exec/lib_precision.sh
+horizon() { # NAME COLUMNS MODEL WORDS...
+  name=$1 columns=$2
+  shift 2
+  run "$@" -o "$TMP/a.csv"
+  "$LAGC" run "$@" --precision long --tol 1e-18 -o "$TMP/b.csv" --quiet 2>"$TMP/err" || { cat "$TMP/err"; return 1; }
+  parted=$(paste -d , "$TMP/a.csv" "$TMP/b.csv" | awk -F , -v n="$columns" 'NR > 1 { h = NF/2; for (i = 2; i <= n + 1; i++) { v = $i < 0 ? -$i : $i; if (v > s) s = v
+    d = $i - $(i + h); if (d < 0) d = -d; if (!t && NR > 5 && d > 0.3*s) t = $1 } } END { print t }')
+  check "$name: the horizon is within 20 % of where long doubles part" awk -v a="$(value horizon)" -v b="$parted" 'BEGIN { print a, b; exit !(a > 0 && a < 1.2*b && a > 0.8*b) }'
+}
+cat >"$TMP/three.lag" <<'EOF'
+model three_bodies
+coord r[3]: vec2
+param G = 1
+lagrangian = sum(i in 1..3, dot(r[i]', r[i]')/2) + sum(i in 2..3, sum(j in 1..i-1, G/norm(r[i] - r[j])))
+scene s { start r[1] = (-1, 0.05), r[2] = (1, 0), r[1]' = (0.3, 0.5), r[2]' = (0.3, 0.5), r[3]' = (-0.6, -1); span 150
+  output r[1].x, r[1].y, r[2].x, r[2].y, r[3].x, r[3].y every 0.1 }
+EOF
+# At 30.3 s two of them nearly meet: velocities differ there, and agree again.
+run "$TMP/three.lag" --method taylor --tol 1e-12 --until 60
+is "a close encounter is no horizon" null "$(value horizon)"
+if has_precision long; then
+  slow horizon "Lorenz" 1 models/lorenz.lag butterfly --until 60 --method taylor --tol 1e-12 --every 0.05 --observe x
+  slow horizon "Henon and Heiles" 2 models/henon_heiles.lag chaos --until 1000 --method taylor --tol 1e-10 --every 0.5 --observe x --observe y
+  slow horizon "three bodies" 6 "$TMP/three.lag" --method taylor --tol 1e-12
+fi
 check "a horizon is told" says 0 'no digit is left: the motion there' "$LAGC" run "$dp" chaos --until 40
 check "the number asked stands beside the estimate" says 0 '(asked 1e-06)' "$LAGC" run "$dp" --accuracy 1e-6
 check "a run that is saved and continued keeps its bits; what is resumed has no estimate" sh -c '

@@ -71,6 +71,34 @@ check "Lorenz: the second" within "$(list exponents 2)" 0 "$(list spread 2)"
 check "Lorenz: the third" within "$(list exponents 3)" -14.5723 "$(list spread 3)"
 close "the sum is -(sigma + 1 + beta)" "-(10 + 1 + 8/3)" "$(number sum)" 1e-9
 close "the dimension" 2.062 "$(number dimension)" 0.002
+if [ -n "${SLOW:-}" ]; then
+  # Roessler's flow with a = b = 0.2, c = 5.7, and the simplest one, x''' = -A x'' + x'^2 - x with A = 2.017 (J.C. Sprott, ibid.; Phys. Lett. A 228 (1997) 271)
+  cat >"$TMP/roessler.lag" <<'END'
+model roessler
+state x, y, z
+flow x' = -y - z
+flow y' = x + 0.2*y
+flow z' = 0.2 + z*(x - 5.7)
+scene s { start x = 1, y = 1; span 500; tolerance 1e-9 }
+END
+  cat >"$TMP/simplest.lag" <<'END'
+model simplest
+state x, v, a
+flow x' = v
+flow v' = a
+flow a' = -2.017*a + v^2 - x
+scene s { start x = 0, v = 0, a = 1; span 500; tolerance 1e-9 }
+END
+  for flow in "roessler 0.0714 -5.3943" "simplest 0.0551 -2.0721"; do
+    # shellcheck disable=SC2086 # words
+    set -- $flow
+    find_them "$TMP/$1.lag" --until 10000
+    check "$1: the first" within "$(list exponents 1)" "$2" "$(list spread 1)"
+    check "$1: the second" within "$(list exponents 2)" 0 "$(list spread 2)"
+    check "$1: the third" within "$(list exponents 3)" "$3" "$(list spread 3)"
+  done
+  find_them models/lorenz.lag --until 2000 --tol 1e-9
+fi
 first=$(list exponents 1)
 find_them models/lorenz.lag --until 2000 --tol 1e-9 --exponents 1
 is "the first alone is the same" "$first" "$(list exponents 1)"
