@@ -62,25 +62,69 @@ void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim) {
 
 /* ---- The law of growth */
 
-/* The law from the envelope of errors below the horizon: log E against t, or against log t. *power: exponent of t. */
-static void find_growth(ErrorEstimate *e, double *power) {
-  enum { FEWEST = 8 };
-  double x[LAG_ERROR_PLACES], lx[LAG_ERROR_PLACES], y[LAG_ERROR_PLACES], peak = 0, rate;
-  int n = 0;
-  *power = 0;
-  for (int i = 0; i < e->compared && !(e->error[i] >= no_digit); i++) {
-    peak = fmax(peak, e->error[i]);
-    if (i < e->compared / 8 || !(peak > 0)) continue; /* the first steps show rounding, not growth */
-    x[n] = fabs(e->motion.t[i] - e->t0);
-    lx[n] = log(x[n]);
-    y[n++] = log(peak);
+enum { BINS = 24 };
+
+typedef struct Piece {
+  double error, weight; /* weight: its time [s] */
+} Piece;
+
+static int by_error(const void *a, const void *b) {
+  double x = ((const Piece *)a)->error, y = ((const Piece *)b)->error;
+  return (x > y) - (x < y);
+}
+
+/* The error that is exceeded half of the time of these pieces: close encounters, where velocities differ for a moment, do not count. */
+static double typical_error(int n, Piece *all) {
+  double whole = 0, part = 0;
+  int i = 0;
+  qsort(all, (size_t)n, sizeof *all, by_error);
+  for (int k = 0; k < n; k++) whole += all[k].weight;
+  for (; i < n - 1 && (part += all[i].weight) < 0.5 * whole; i++) continue;
+  return all[i].error;
+}
+
+/* *t, *y := time and log of the typical error of the pieces, if it has one. Returns whether it has. */
+static int put_level(int n, Piece *all, double at, double *t, double *y) {
+  double typical = n ? typical_error(n, all) : 0;
+  if (!(typical > 0)) return 0;
+  *t = at;
+  *y = log(typical);
+  return 1;
+}
+
+/* t[BINS], y[BINS] := time and log of the typical error in equal spans of the time compared, up to the horizon. Returns the number of those with an
+ * error. */
+static int take_levels(const ErrorEstimate *e, double *t, double *y) {
+  static const double latest = 1 - 1e-12;
+  Piece piece[LAG_ERROR_PLACES];
+  double end = fabs((isnan(e->horizon) ? e->compared ? e->motion.t[e->compared - 1] : e->t0 : e->horizon) - e->t0), before = 0;
+  int n = 0, pieces = 0, bin = 0;
+  for (int i = 0; i < e->compared; i++) {
+    double at = fabs(e->motion.t[i] - e->t0);
+    if (at > end) break;
+    int into = (int)(fmin(at / end, latest) * BINS);
+    if (into > bin) n += put_level(pieces, piece, (bin + 0.5) / BINS * end, t + n, y + n), pieces = 0;
+    bin = into;
+    piece[pieces++] = (Piece){e->error[i], at - before};
+    before = at;
   }
-  if (n < FEWEST) return;
-  LineFit by_power = lag_line_fit(n, lx, y), by_rate = lag_line_fit(n, x, y);
+  return n + put_level(pieces, piece, (bin + 0.5) / BINS * end, t + n, y + n);
+}
+
+/* The law of growth: log of the typical error against t, or against log t. *power: exponent of t; *level: typical error at the end of the comparison. */
+static void find_growth(ErrorEstimate *e, double *power, double *level) {
+  enum { FEWEST = 8 };
+  double x[BINS], lx[BINS], y[BINS], rate;
+  int n = take_levels(e, x, y), first = n / 8; /* the first ones show rounding, not growth */
+  *power = 0;
+  *level = n ? exp(y[n - 1]) : 0;
+  if (n - first < FEWEST) return;
+  for (int i = 0; i < n; i++) lx[i] = log(x[i]);
+  LineFit by_power = lag_line_fit(n - first, lx + first, y + first), by_rate = lag_line_fit(n - first, x + first, y + first);
   double rest_of_power = by_power.yy - by_power.xy * by_power.xy / by_power.xx, rest_of_rate = by_rate.yy - by_rate.xy * by_rate.xy / by_rate.xx;
   *power = by_power.xy / by_power.xx;
   rate = by_rate.xy / by_rate.xx;
-  if (rest_of_rate < 0.5 * rest_of_power && rate * (x[n - 1] - x[0]) > 6 && y[n - 1] - y[0] > 6) {
+  if (rest_of_rate < 0.5 * rest_of_power && rate * (x[n - 1] - x[first]) > 6 && y[n - 1] - y[first] > 6) {
     e->growth = LAG_ERROR_EXPONENTIAL;
     e->rate = rate;
   } else {
@@ -89,17 +133,17 @@ static void find_growth(ErrorEstimate *e, double *power) {
 }
 
 /* Extends the errors from the last compared time to the end of the run by their law; without one they are not known. */
-static void extrapolate(ErrorEstimate *e, double until, double power) {
+static void extrapolate(ErrorEstimate *e, double until, double power, double level) {
   double t = fabs(e->motion.t[e->compared - 1] - e->t0), rest = fabs(until - e->t0) - t, dir = until < e->t0 ? -1 : 1, reach = HUGE_VAL;
   e->continued = 1;
   if (e->growth == LAG_ERROR_UNKNOWN) {
     e->largest = NAN;
   } else if (e->growth == LAG_ERROR_EXPONENTIAL) {
-    reach = log(no_digit / e->largest) / e->rate;
-    e->largest *= exp(e->rate * fmin(rest, reach));
+    reach = fmax(log(no_digit / level) / e->rate, 0);
+    e->largest = fmin(e->largest * exp(e->rate * fmin(rest, reach)), fmax(e->largest, 1));
   } else if (power > 0.4) {
-    reach = t * (pow(no_digit / e->largest, 1 / power) - 1);
-    e->largest *= pow((t + fmin(rest, reach)) / t, power);
+    reach = fmax(t * (pow(no_digit / level, 1 / power) - 1), 0);
+    e->largest = fmin(e->largest * pow((t + fmin(rest, reach)) / t, power), fmax(e->largest, 1));
   }
   if (reach < rest) e->horizon = e->t0 + dir * (t + reach);
 }
@@ -139,14 +183,14 @@ static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
 }
 
 int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
-  double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale), power;
+  double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale), power, level;
   if (!scale) return LAG_ENOMEM;
   lag_cost_scales(&e->motion, other, scale);
   int rc = compare_rows(e, other, scale);
   free(scale);
   if (rc == LAG_ENOMEM) return rc;
-  find_growth(e, &power);
-  if (e->compared && isnan(e->horizon) && e->compared < e->motion.rows) extrapolate(e, until, power);
+  find_growth(e, &power, &level);
+  if (e->compared && isnan(e->horizon) && e->compared < e->motion.rows) extrapolate(e, until, power, level);
   if (isnan(e->largest) && !e->why[0]) snprintf(e->why, sizeof e->why, "a second run reached only t = %.3g s", lag_sim_time(other));
   return LAG_OK;
 }

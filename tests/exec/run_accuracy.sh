@@ -66,7 +66,7 @@ model three_bodies
 coord r[3]: vec2
 param G = 1
 lagrangian = sum(i in 1..3, dot(r[i]', r[i]')/2) + sum(i in 2..3, sum(j in 1..i-1, G/norm(r[i] - r[j])))
-scene s { start r[1] = (-1, 0.05), r[2] = (1, 0), r[1]' = (0.3, 0.5), r[2]' = (0.3, 0.5), r[3]' = (-0.6, -1); span 150
+scene s { start r[1] = (-1, 0.05), r[2] = (1, 0), r[1]' = (0.3, 0.5), r[2]' = (0.3, 0.5), r[3]' = (-0.6, -1); span 300
   output r[1].x, r[1].y, r[2].x, r[2].y, r[3].x, r[3].y every 0.1 }
 EOF
 # At 30.3 s two of them nearly meet: velocities differ there, and agree again.
