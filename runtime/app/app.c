@@ -241,6 +241,16 @@ static void tell_last_state(const App *app) {
   while (wait(NULL) < 0 && errno == EINTR) continue;
 }
 
+/* Pictures are grey past the horizon. */
+static void note_horizon(App *app) {
+  Table *t = &app->table;
+  double dir = app->until < app->scene->t0 ? -1 : 1;
+  size_t n = 0;
+  if (!app->watched || isnan(app->error.horizon)) return;
+  while (n < t->nrows && dir * (lag_table_cell(t, n, 0) - app->error.horizon) <= 0) n++;
+  if (n && n < t->nrows) t->certain = n;
+}
+
 /* Completes the files and prints the report. Returns the exit status. */
 static int finish(App *app) {
   const Args *a = &app->args;
@@ -256,6 +266,7 @@ static int finish(App *app) {
   if (app->rows.open && lag_rows_close(&app->rows, 1)) bad = lag_app_io_error(app, a->out);
   else app->written = 1;
   if (lag_rows_close(&app->log_rows, 1)) bad = lag_app_io_error(app, a->events);
+  note_horizon(app);
   lag_sampling_warn(app, note, sizeof note);
   app->show.note = note;
   snprintf(title, sizeof title, "%s: %s%s%s", app->scene->model->name, app->scene->name, app->section < 0 ? "" : ", ",

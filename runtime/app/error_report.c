@@ -11,7 +11,7 @@ static const double tighter = 0.1; /* than the tolerance of the run: its error i
 
 int lag_app_error_begin(App *app) {
   const Args *a = &app->args;
-  app->watched = (!a->quiet || a->json) && !app->resumed;
+  app->watched = (!a->quiet || a->json || a->svg || a->html) && !app->resumed;
   return app->watched && lag_error_estimate_init(&app->error, app->sim) ? lag_app_error(a, "out of memory") : 0;
 }
 

@@ -160,6 +160,14 @@ static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol) {
   }
 }
 
+static void one_curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, const char *stroke) {
+  fprintf(f, "<path fill=\"none\" %s stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"", stroke);
+  if (xcol == 0 && t->nrows > (size_t)(2 * p->w)) min_max_curve(f, p, t, ycol);
+  else path(f, p, t, xcol, ycol);
+  fputs("\"/>\n", f);
+}
+
+/* In grey past the horizon; points of a section stay, since the whole of them may still hold. */
 static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, int k) {
   char stroke[64];
   if (t->points) {
@@ -167,10 +175,23 @@ static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, i
     return;
   }
   stroke_of(k, stroke, sizeof stroke);
-  fprintf(f, "<path fill=\"none\" %s stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"", stroke);
-  if (xcol == 0 && t->nrows > (size_t)(2 * p->w)) min_max_curve(f, p, t, ycol);
-  else path(f, p, t, xcol, ycol);
-  fputs("\"/>\n", f);
+  Table part = *t;
+  if (t->certain) {
+    part.data += (t->certain - 1) * (size_t)t->ncols;
+    part.nrows -= t->certain - 1;
+    one_curve(f, p, &part, xcol, ycol, "stroke=\"#bbb\"");
+    part = *t;
+    part.nrows = t->certain;
+  }
+  one_curve(f, p, &part, xcol, ycol, stroke);
+}
+
+/* The horizon in a panel over time. */
+static void put_horizon(FILE *f, const Panel *p, const Table *t, int named) {
+  if (!t->certain || t->points) return;
+  double x = px(p, lag_table_cell(t, t->certain - 1, 0));
+  fprintf(f, "<path d=\"M%.1f %.1fv%.1f\" stroke=\"#888\" stroke-dasharray=\"2 4\"/>\n", x, p->y, p->h);
+  if (named) text(f, x, p->y - 6, "font-size=\"11\" text-anchor=\"middle\" fill=\"#666\"", "no digit is left");
 }
 
 /* s[n] := `from`, shortened to at most `most` characters with "..." at the end. */
@@ -287,6 +308,7 @@ static void against_time(FILE *f, const Table *t, const char *title, const Plott
     snprintf(s, sizeof s, "[%s]", units[k]);
     axes(f, &p, units[k][0] ? s : "", k == n - 1);
     draw_series(f, &p, t, d, units[k]);
+    put_horizon(f, &p, t, k == 0);
     p.y += h + GAP;
   }
 }
@@ -353,6 +375,7 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   head(f, d->n > 1 ? LEFT + (int)p.w + legend_width(t, d) : WIDTH, TOP + (int)p.h + BOTTOM, title);
   axes(f, &p, ylabel, 1);
   draw_series(f, &p, t, d, NULL);
+  if (!x) put_horizon(f, &p, t, 1);
   if (x && !t->points && d->n == 1) mark_ends(f, &p, t, x, d->y[0]);
 }
 

@@ -312,6 +312,16 @@ check "an unknown name, with its place" says 1 '--points:1:1: error: unknown nam
 check "two units" says 2 'needs one unit' animate "$p" --points 'x,th' -o none.html
 check "nothing is left of all that" [ -z "$(ls none* ./*.part* 2>/dev/null)" ]
 
+# Past the horizon, where no digit is left, curves are grey, and so are the points of an animation; points of a section stay.
+check "a chaotic motion" "$LAGC" plot "$d" chaos --until 40 -o chaos.svg --quiet
+is "each curve has a grey end" "$(grep -c '<path fill="none" stroke="#[0-9a-f]\{6\}"' chaos.svg)" "$(grep -c '<path fill="none" stroke="#bbb"' chaos.svg)"
+check "and the horizon its name" grep -q '>no digit is left<' chaos.svg
+check "a section of it" "$LAGC" plot "$d" chaos --until 40 --section 'sin(th1) rising' --x th2 --y "th2'" -o section.svg --quiet
+is "has no grey" 0 "$(grep -c '#bbb' section.svg)"
+check "a page of it" "$LAGC" animate "$d" chaos --until 40 -o chaos.html --quiet
+check "knows the horizon" grep -q '"horizon": 1[0-9]\.' chaos.html
+check "a regular motion has none" sh -c '"$0" plot "$1" -o regular.svg --quiet && ! grep -q "#bbb" regular.svg' "$LAGC" "$d"
+
 # ---- animate: the page in a browser ----
 for name in chromium chromium-browser google-chrome; do
   browser=$(command -v $name) && break

@@ -44,7 +44,7 @@ strays() {
       return dx*dx + dy*dy <= 0.25
     }' "$2" "$1"
 }
-small() { [ "$(wc -c <"$1")" -lt 30000 ] && tail -n 1 "$1" | grep -qx '</svg>'; }
+small() { [ "$(wc -c <"$1")" -lt 50000 ] && tail -n 1 "$1" | grep -qx '</svg>'; }
 
 sed -n 's/^<!-- drawn by: build\/lagc \(.*\) -o \(.*\) -->$/\2 \1/p' models/README.md >"$TMP/list"
 check "there is a gallery" [ -s "$TMP/list" ]
