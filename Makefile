@@ -306,6 +306,12 @@ bench:
 	$(QUIET) all
 	$(RUN_TESTS) --bench $(T)
 
+# What accuracy costs in time: models/COST.md, by this machine.
+cost-report:
+	$(SETUP) build
+	$(QUIET) all
+	@LAGC='$(BUILD)/lagc' CC='$(CC)' sh tests/bench/lib_cost_report.sh
+
 SAN_MAKE = $(QUIET) BUILD=$(SAN_BUILD) PRECISIONS= CFLAGS='$(SAN_OPT)' SAN='$(SAN_FLAGS)'
 SAN_LAGC := $(SAN_BUILD)/liblagc.a
 SAN_RT   := $(if $(GSL),$(SAN_BUILD)/liblag_gsl.a) $(SAN_BUILD)/liblag.a
@@ -468,6 +474,7 @@ help:
 	@echo 'make test-long    the suites that take minutes'
 	@echo 'make hard         hard cases with published digits: a row each, error beside what is allowed'
 	@echo 'make bench        instructions and times next to peers, to tests/bench/RESULTS.md; nothing fails by being slow'
+	@echo 'make cost-report  what accuracy costs in time, for eight models: models/COST.md with its pictures'
 	@echo 'make bless        rewrites the expectations of golden tests: look at the diff before you commit it'
 	@echo 'make fuzz         looks for inputs that break the compiler; SECONDS=60, T=fuzz_parse'
 	@echo 'make fuzz-coverage  the share of lines of src/ir, src/mech and src/emit that its inputs reach'
@@ -486,4 +493,4 @@ ifneq ($(BUILDS),)
 endif
 
 FORCE:
-.PHONY: FORCE all demo run-demo gallery test check-quick test-long bless hard bench build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall clean help
+.PHONY: FORCE all demo run-demo gallery test check-quick test-long bless hard bench cost-report build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall clean help

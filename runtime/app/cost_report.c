@@ -59,6 +59,16 @@ static void put_options(char *s, size_t n, const CostMethod *m, const CostRun *r
   snprintf(s, n, "--method %s%s%s --%s %.9g", quote, m->name, quote, lag_cost_knob(m->method), run->knob);
 }
 
+/* The values and the end that the command line gave, for a command to copy. */
+static void put_given(FILE *f, const Args *a) {
+  static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.=+-";
+  for (int i = 0; i < a->nsets; i++) {
+    const char *quote = a->sets[i][strspn(a->sets[i], plain)] ? "\"" : "";
+    fprintf(f, " %s%s%s", quote, a->sets[i], quote);
+  }
+  if (a->until) fprintf(f, " --until %s", a->until);
+}
+
 static double smallest_error(const Cost *c) {
   double least = HUGE_VAL;
   for (int i = 0; i < c->nmethods; i++)
@@ -73,8 +83,10 @@ static int put_cheapest(FILE *f, const App *app, const Cost *c, double error) {
   char options[160];
   if (!m) return 0;
   put_options(options, sizeof options, m, run);
-  fprintf(f, "cheapest setting for an error of %g: %.4g ms, error %.1e\n  lagc run %s %s %s\n", error, 1e3 * run->time, run->error,
-          app->program->source, app->scene->name, options);
+  fprintf(f, "cheapest setting for an error of %g: %.4g ms, error %.1e\n  lagc run %s %s", error, 1e3 * run->time, run->error,
+          app->program->source, app->scene->name);
+  put_given(f, &app->args);
+  fprintf(f, " %s\n", options);
   return 1;
 }
 
@@ -98,7 +110,7 @@ static void put_times(FILE *f, const Cost *c, int all) {
   putc('\n', f);
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
-    if (m->nruns == 0 || (!all && lag_cost_best_of_family(c, family_of(m)) != m)) continue;
+    if (time_for(m, 1) == HUGE_VAL || (!all && lag_cost_best_of_family(c, family_of(m)) != m)) continue;
     fprintf(f, "  %-30s", m->name);
     for (int k = 1; k <= COLUMNS; k++) {
       const CostRun *any;
