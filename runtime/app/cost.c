@@ -245,6 +245,10 @@ static int run_cost(App *app, Cost *c) {
     double last = c->reference.t[c->reference.rows - 1];
     c->reached = last == asked ? NAN : last;
   }
+  if (rc == 0 && a->realtime) {
+    lag_app_catch_interrupt();
+    return lag_app_realtime(app, c);
+  }
   rc = rc ? rc : measure(app, c);
   return rc ? rc : show(app, c);
 }

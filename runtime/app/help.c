@@ -31,7 +31,7 @@ static const char usage[] =
     "  --cost               no run, but time against error: all methods, or --methods NAME,NAME, at many tolerances or\n"
     "                       steps, their errors and times, in --seconds S, 10 by default; --target X names the cheapest that\n"
     "                       reaches X; --all: every method, --runs: every run; -o FILE.svg draws them, .csv and .json hold\n"
-    "                       all runs; --sketch; methods need what the model was built with (--method NAME)\n"
+    "                       all runs; --sketch; --realtime H: methods of equal steps, with steps of H [s]; methods need what the model was built with (--method NAME)\n"
     "  --reference          no run, but the motion at 16 times as precisely as this program can, as text; --against FILE:\n"
     "                       --cost compares with another simulator's\n"
     "  --lyapunov           no run, but the Lyapunov exponents of the motion to --until T, 20 spans of the scene, without the first\n"

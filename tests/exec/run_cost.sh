@@ -110,6 +110,30 @@ says '^processor time .s. against error'
 says '^ *a rk4$'
 check "and as JSON" sh -c '"$0" cost models/pendulum.lag --until 1 --seconds 1 --methods rk4 --quiet -o "$1" && grep -q "\"left_out_from\"" "$1"' "$LAGC" "$TMP/cost.json"
 
+refused() { # NAME PATTERN ARGS...
+  name=$1 pattern=$2
+  shift 2
+  text "$@"
+  status=$?
+  check "$name is refused" [ "$status" = 2 ]
+  check "with advice" grep -q -e "$pattern" "$TMP/err"
+}
+# Steps of a program's own: the error is that of a run with this step; Verlet's method, whose phase error is w t (w h)^2/24, here 6.7 h^2, follows
+# to within 0.3 up to 0.21 s, found in factors of sqrt(2).
+of_method() { sed 's/{"method"/\n&/g' "$TMP/json" | grep "\"method\": \"$1\"" | sed "s/.*\"$2\": \([^,}]*\).*/\1/"; }
+check "runs with a step" cost models/spring.lag free --methods rk4 --seconds 1
+expected=$(awk '$2 == 0.01953125 { print $3 }' "$TMP/runs")
+check "steps of 0.02 s" cost models/spring.lag free --realtime 0.01953125 --seconds 3
+check "rk4: the same error" awk -v a="$(of_method rk4 error)" -v b="$expected" 'BEGIN { print a, b; exit !(a > 0 && (a - b)^2 < (1e-9*b)^2) }'
+check "Verlet's largest step" awk -v h="$(of_method verlet largest_step)" 'BEGIN { print h; exit !(h > 0.15 && h < 0.23) }'
+check "a step takes time, the longest more" awk -v m="$(of_method verlet step_s)" -v w="$(of_method verlet worst_s)" 'BEGIN { print m, w; exit !(m > 0 && w > m && w < 0.01) }'
+check "with its command" text models/spring.lag free --realtime 0.02 --seconds 2
+says '^best: '
+says '^  lagc run .*--method ".*step=0.02)"'
+refused "a step of nothing" 'example --realtime 1e-3' models/spring.lag --realtime 0
+hopeless() { text models/spring.lag free k=1e6 --realtime 0.5 --seconds 2; [ $? = 3 ] && grep -q 'take shorter steps' "$TMP/text"; }
+check "steps that are too long are said" hopeless
+
 # What the time allows: coarse settings first, and what was left out is said.
 check "in a short time" text models/double_pendulum.lag --seconds 2
 says '^left out, as three times slower than others or for want of time: '
@@ -142,14 +166,6 @@ interrupted() { # Ctrl-C: what is known is printed
 }
 slow check "an interrupted sweep prints what it knows" interrupted
 
-refused() { # NAME PATTERN ARGS...
-  name=$1 pattern=$2
-  shift 2
-  text "$@"
-  status=$?
-  check "$name is refused" [ "$status" = 2 ]
-  check "with advice" grep -q -e "$pattern" "$TMP/err"
-}
 refused "an unknown method" 'did you mean verlet' models/pendulum.lag --methods verlet5
 refused "a target of zero" 'example --target 1e-8' models/pendulum.lag --target 0
 refused "no time to spend" 'example --seconds 60' models/pendulum.lag --seconds 0
