@@ -27,6 +27,29 @@ is "Runge-Kutta's, too: an error of the frequency" '"t"' "$(value error_growth)"
 run "$dp" chaos --until 12
 is "chaos: neighbours part exponentially" '"exponential"' "$(value error_growth)"
 
+# Kepler's problem, a hundred turns: geometric methods keep the energy, and their phases drift in proportion to time; others lose energy in proportion
+# to time, and the phase as its square (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), X.3.1 and table I.2.1).
+cat >"$TMP/kepler.lag" <<'EOF'
+model kepler
+coord x, y
+param e = 0.6
+lagrangian = (x'^2 + y'^2)/2 + 1/sqrt(x^2 + y^2)
+scene run { start x = 1 - e, y' = sqrt((1 + e)/(1 - e)); span 628.318530717958648 }
+EOF
+while read -r growth trend how; do
+  # shellcheck disable=SC2086 # a list of words
+  run "$TMP/kepler.lag" $how
+  is "Kepler by $how: the error grows, and the energy" "\"$growth\" \"$trend\"" "$(value error_growth) $(sed 's/.*"energy": {[^}]*"trend": \("[a-z]*"\).*/\1/' "$TMP/json")"
+done <<'EOF'
+t oscillates --method verlet --step 0.005
+t oscillates --method verlet4 --step 0.02
+t oscillates --method variational --step 0.005
+t^2 grows --method rk45 --tol 1e-7
+t^2 grows --method rk4 --step 0.01
+t^2 grows --method dop853 --tol 1e-8
+t^2 grows --method taylor --tol 1e-8
+EOF
+
 # GSL's rk8pd as an independent integrator: the difference at the end.
 if [ -n "${GSL:-yes}" ] && "$LAGC" run "$dp" --method gsl-rk8pd --tol 1e-13 --json >"$TMP/gsl" 2>/dev/null; then
   final() { sed 's/.*"final": *{//; s/}.*//' "$1" | tr ',' '\n' | sed 's/[" ]//g; s/:/ /' | grep '^th[12]'; }
