@@ -59,9 +59,10 @@ static void put_options(char *s, size_t n, const CostMethod *m, const CostRun *r
   snprintf(s, n, "--method %s%s%s --%s %.9g", quote, m->name, quote, lag_cost_knob(m->method), run->knob);
 }
 
-/* The values and the end that the command line gave, for a command to copy. */
-static void put_given(FILE *f, const Args *a) {
+void lag_cost_put_command(FILE *f, const App *app) {
+  const Args *a = &app->args;
   static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.=+-";
+  fprintf(f, "  lagc run %s %s%s", app->program->source, app->scene->name, a->defines ? a->defines : "");
   for (int i = 0; i < a->nsets; i++) {
     const char *quote = a->sets[i][strspn(a->sets[i], plain)] ? "\"" : "";
     fprintf(f, " %s%s%s", quote, a->sets[i], quote);
@@ -83,9 +84,8 @@ static int put_cheapest(FILE *f, const App *app, const Cost *c, double error) {
   char options[160];
   if (!m) return 0;
   put_options(options, sizeof options, m, run);
-  fprintf(f, "cheapest setting for an error of %g: %.4g ms, error %.1e\n  lagc run %s %s", error, 1e3 * run->time, run->error,
-          app->program->source, app->scene->name);
-  put_given(f, &app->args);
+  fprintf(f, "cheapest setting for an error of %g: %.4g ms, error %.1e\n", error, 1e3 * run->time, run->error);
+  lag_cost_put_command(f, app);
   fprintf(f, " %s\n", options);
   return 1;
 }

@@ -138,8 +138,10 @@ static void put_text(const App *app, const FixedStep *all, int n, double step) {
   printf("model %s, scene %s, steps of %g s to t = %.15g s\n", app->scene->model->name, app->scene->name, step, app->until);
   if (best) {
     snprintf(setting, sizeof setting, "%.*s%sstep=%g)", (int)strcspn(best->name, ")"), best->name, strchr(best->name, '(') ? ", " : "(", step);
-    printf("best: %s, error %.1e, %.2g us a step, at worst %.2g us; its steps may be as long as %.2g s\n  lagc run %s %s --method \"%s\"\n", best->name,
-           best->error, 1e6 * best->mean, 1e6 * best->worst, best->largest, app->program->source, app->scene->name, setting);
+    printf("best: %s, error %.1e, %.2g us a step, at worst %.2g us; its steps may be as long as %.2g s\n", best->name, best->error,
+           1e6 * best->mean, 1e6 * best->worst, best->largest);
+    lag_cost_put_command(stdout, app);
+    printf(" --method \"%s\"\n", setting);
   } else {
     printf("no method of equal steps follows the motion with steps of %g s, in half of that time; take shorter steps\n", step);
   }

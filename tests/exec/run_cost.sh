@@ -134,6 +134,9 @@ refused "a step of nothing" 'example --realtime 1e-3' models/spring.lag --realti
 hopeless() { text models/spring.lag free k=1e6 --realtime 0.5 --seconds 2; [ $? = 3 ] && grep -q 'take shorter steps' "$TMP/text"; }
 check "steps that are too long are said" hopeless
 
+check "with -D" text models/chain.lag -D N=3 g=5 --until 1 --methods rk4 --seconds 1
+says '^  lagc run models/chain.lag swing -D N=3 g=5 --until 1 --method rk4 --step '
+
 # What the time allows: coarse settings first, and what was left out is said.
 check "in a short time" text models/double_pendulum.lag --seconds 2
 says '^left out, as three times slower than others or for want of time: '
