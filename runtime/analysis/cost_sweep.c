@@ -46,7 +46,8 @@ static int is_adaptive(const CostMethod *m) { return (m->method->flags & LAG_MET
 /* Tolerance or step of setting k; 0: there is none so fine. */
 static double knob_of(const Plan *p, const CostMethod *m, int k) {
   const Samples *r = p->s->reference;
-  double span = fabs(r->t[r->rows - 1] - p->s->scene.t0), knob = is_adaptive(m) ? pow(10, -2 - k) : span / ldexp(r->rows, k);
+  int rows = r->rows - (r->t[0] == p->s->scene.t0); /* without the start */
+  double span = fabs(r->t[r->rows - 1] - p->s->scene.t0), knob = is_adaptive(m) ? pow(10, -2 - k) : span / ldexp(rows, k);
   return knob < (is_adaptive(m) ? 4.5 * DBL_EPSILON : 1e-12 * span) ? 0 : knob;
 }
 
@@ -179,6 +180,7 @@ static int repeat_front(Plan *p) {
 int lag_cost_sweep(CostSweep *s) {
   Plan p = {.s = s, .of = calloc((size_t)s->n + 1, sizeof *p.of), .begin = clock_seconds()};
   int rc = lag_samples_init(&p.own, s->reference->rows, s->reference->n), i;
+  p.own.output = s->reference->output;
   if (rc == LAG_OK) memcpy(p.own.t, s->reference->t, (size_t)s->reference->rows * sizeof *p.own.t);
   if (!p.of) rc = LAG_ENOMEM;
   for (i = 0; i < s->n && rc == LAG_OK; i++) {

@@ -53,11 +53,19 @@ void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim) {
   Samples *s = &e->motion;
   int at_event = sim->run->events != e->events;
   e->events = sim->run->events;
-  if (at_event || ++e->seen % e->stride) return;
+  if ((at_event && sim->method->flags & LAG_METHOD_STEPS_TO) || ++e->seen % e->stride) return;
   if (s->rows == LAG_ERROR_PLACES) halve(e);
   if (e->seen % e->stride) return;
   take_place(sim, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
   s->rows++;
+}
+
+void lag_error_estimate_note_end(ErrorEstimate *e, const lag_sim *sim) {
+  Samples *s = &e->motion;
+  if (sim->run->events != e->events || (s->rows && s->t[s->rows - 1] == lag_sim_time(sim))) return;
+  if (s->rows == LAG_ERROR_PLACES) halve(e);
+  s->t[s->rows] = lag_sim_time(sim);
+  memcpy(s->y + (size_t)s->rows++ * (size_t)s->n, sim->now, (size_t)s->n * sizeof(double));
 }
 
 /* ---- The law of growth */

@@ -1,4 +1,4 @@
-/* Error of a run by a second, more accurate run: the differences of the two motions in the middle of steps, where rows are interpolated, relative to the largest value of their kind
+/* Error of a run by a second, more accurate run: the differences of the two motions in the middle of steps, where rows are interpolated, and at its end, relative to the largest value of their kind
  * and unit, as in work_precision.h. Enters: a run under way, then a simulation of the same scene; leaves: the error, its law of growth, and the
  * horizon, the time from which no digit is left. Holds: the run is the same, bit by bit, with an estimate or without. */
 #pragma once
@@ -31,6 +31,9 @@ void lag_error_estimate_free(ErrorEstimate *e);
 
 /* Notes a place of the last step: call it at the end of each. The run goes on as it would have. */
 void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim);
+
+/* Notes the state at the end of the run, unless it ended at an event. */
+void lag_error_estimate_note_end(ErrorEstimate *e, const lag_sim *sim);
 
 /* Runs `other`, a simulation of the same scene at its start with a more accurate setting, along the noted motion, until it fails or its hook (lag_sim_on_step)
  * ends it, and fills in the rest of *e; until: end of the run. LAG_OK, also where `other` fails (e->why), or LAG_ENOMEM. */

@@ -21,6 +21,15 @@ void lag_samples_free(Samples *s) {
   s->t = s->y = NULL;
 }
 
+/* *y := output k of the scene. */
+static int take_output(lag_sim *sim, int k, double *y) {
+  double *all = malloc((size_t)lag_sim_scene(sim)->nout * sizeof *all);
+  int rc = all ? lag_sim_outputs(sim, all) : LAG_ENOMEM;
+  if (rc == LAG_OK) *y = all[k];
+  free(all);
+  return rc;
+}
+
 int lag_samples_take(Samples *s, lag_sim *sim) {
   const lag_model *m = lag_sim_scene(sim)->model;
   size_t nq = (size_t)m->nq, nz = (size_t)m->nz;
@@ -32,6 +41,10 @@ int lag_samples_take(Samples *s, lag_sim *sim) {
       return LAG_OK;
     }
     if (rc) return rc;
+    if (s->output) {
+      if ((rc = take_output(sim, s->output - 1, y)) != 0) return rc;
+      continue;
+    }
     memcpy(y, lag_sim_q(sim), nq * sizeof *y);
     memcpy(y + nq, lag_sim_v(sim), nq * sizeof *y);
     memcpy(y + 2 * nq, lag_sim_z(sim), nz * sizeof *y);
@@ -57,12 +70,12 @@ int lag_previous_alike(const lag_sim *sim, int i) {
 void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale) {
   int n = reference->n;
   for (int i = 0; i < n; i++) {
-    int alike = lag_previous_alike(sim, i);
+    int alike = reference->output ? -1 : lag_previous_alike(sim, i);
     scale[i] = alike < 0 ? 0 : scale[alike];
     for (int r = 0; r < reference->rows; r++) scale[i] = fmax(scale[i], fabs(reference->y[(size_t)r * (size_t)n + (size_t)i]));
   }
   for (int i = n - 1; i >= 0; i--) { /* the last of a kind has the largest */
-    int alike = lag_previous_alike(sim, i);
+    int alike = reference->output ? -1 : lag_previous_alike(sim, i);
     scale[i] = scale[i] > 0 ? scale[i] : 1;
     if (alike >= 0) scale[alike] = scale[i];
   }

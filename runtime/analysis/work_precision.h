@@ -9,6 +9,7 @@ typedef struct Samples {
   int rows, n;
   double *t, *y;
   double uncertainty;
+  int output; /* 0: the state; k > 0: y[rows] is output k - 1 of the scene alone, n = 1 */
 } Samples;
 
 /* Allocates samples of zeros. LAG_OK or LAG_ENOMEM. Free with lag_samples_free, also after an error. */

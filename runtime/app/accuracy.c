@@ -38,7 +38,7 @@ static int note(void *trial, const lag_sim *sim) {
 
 /* *e := the error of a run with the present setting. LAG_OK, or the failure of the run with app->sim's message. */
 static int try_setting(App *app, ErrorEstimate *e) {
-  lag_sim *trial = lag_app_fresh_bare_sim(app);
+  lag_sim *trial = lag_app_fresh_sim(app); /* with the scene's monitors: a setting that they stop is not accurate enough */
   int rc = trial ? lag_error_estimate_init(e, trial) : LAG_ENOMEM;
   rc = rc ? rc : lag_app_copy_method(app->sim, trial, 1);
   if (rc == 0) {
@@ -77,7 +77,7 @@ int lag_app_choose_by_accuracy(App *app) {
     int rc = set_knob(app, knob);
     if (rc) return app->args.method ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : rc;
     rc = try_setting(app, &e);
-    double error = rc || !isnan(e.horizon) || isnan(e.largest) || e.continued ? HUGE_VAL : e.largest;
+    double error = rc || !isnan(e.horizon) || isnan(e.largest) || e.continued ? HUGE_VAL : fmax(e.largest, DBL_EPSILON); /* 0: both runs round alike */
     horizon = rc ? NAN : e.horizon;
     lag_error_estimate_free(&e);
     if (error < best) best_knob = knob;

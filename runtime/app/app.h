@@ -16,7 +16,7 @@ typedef struct Args {
   const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
   const char *accuracy;
   const char *transient, *exponents; /* for --lyapunov */
-  const char *target, *seconds, *realtime, *methods, *against, *defines; /* for --cost */
+  const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
   int json, sketch, quiet, help, trace, no_rods, modes, tangent, lyapunov, cost, reference, all, runs;
   char **sets; /* name=value, in order */

@@ -76,7 +76,7 @@ static const Option options[] = {
     {"help", offsetof(Args, help), 1, ANY}, {"cost", offsetof(Args, cost), 1, ANY},
     {"reference", offsetof(Args, reference), 1, ANY}, {"target", offsetof(Args, target), 0, COST},
     {"seconds", offsetof(Args, seconds), 0, COST | REFERENCE}, {"realtime", offsetof(Args, realtime), 0, COST}, {"methods", offsetof(Args, methods), 0, COST},
-    {"against", offsetof(Args, against), 0, COST}, {"defines", offsetof(Args, defines), 0, COST}, {"all", offsetof(Args, all), 1, COST}, {"runs", offsetof(Args, runs), 1, COST},
+    {"against", offsetof(Args, against), 0, COST}, {"given", offsetof(Args, given), 0, COST}, {"error", offsetof(Args, error), 0, COST | REFERENCE}, {"all", offsetof(Args, all), 1, COST}, {"runs", offsetof(Args, runs), 1, COST},
 };
 enum { NOPTIONS = sizeof options / sizeof *options };
 

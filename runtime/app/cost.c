@@ -37,9 +37,9 @@ static int is_too_late(void *pair, const lag_sim *sim) {
   return lag_processor_seconds() > ((Pair *)pair)->latest || lag_app_interrupted() != EXIT_SIGNAL;
 }
 
-/* *s := state of sim at time t. LAG_OK, or what ended the run. */
-static int take_row(lag_sim *sim, double t, double *y) {
-  Samples row = {.rows = 1, .n = sim->pb.n, .t = &t, .y = y};
+/* y := state of sim at time t, or the output that is judged. LAG_OK, or what ended the run. */
+static int take_row(lag_sim *sim, const Samples *like, double t, double *y) {
+  Samples row = {.rows = 1, .n = like->n, .output = like->output, .t = &t, .y = y};
   int rc = lag_samples_take(&row, sim);
   return rc == LAG_OK && row.rows == 0 ? LAG_STOPPED : rc;
 }
@@ -54,13 +54,13 @@ static int fill_rows(Pair *p, Cost *c, const lag_sim *like) {
   s->uncertainty = DBL_EPSILON;
   for (int i = 0; i < asked && rc == LAG_OK; i++) {
     size_t at = (size_t)i * (size_t)s->n;
-    rc = take_row(p->fine, s->t[i], s->y + at);
-    rc = rc ? rc : take_row(p->coarse, s->t[i], other + at);
+    rc = take_row(p->fine, s, s->t[i], s->y + at);
+    rc = rc ? rc : take_row(p->coarse, s, s->t[i], other + at);
     s->rows = coarse.rows = i + (rc == LAG_OK);
     if (rc) break;
     lag_cost_scales(s, like, c->scale);
     double uncertainty = fmax(lag_cost_error(&coarse, s, c->scale), DBL_EPSILON);
-    if (i > 0 && uncertainty > judges) {
+    if (i > 1 && uncertainty > judges) {
       s->rows = i;
       break;
     }
@@ -89,12 +89,12 @@ static int compute_reference(App *app, Cost *c, double seconds, int *limited) {
     rc = fill_rows(&p, c, app->sim);
     *limited = rc == LAG_INTERRUPTED;
     if (rc == LAG_ENOMEM) rc = lag_app_error(&app->args, "out of memory");
-    else if (rc < 0 && c->reference.rows == 0)
+    else if (rc < 0 && c->reference.rows < 2)
       rc = lag_app_error(&app->args, "the reference run by %s(tol=%g) failed: %s", method->name, tol,
                          lag_sim_message(lag_sim_message(p.fine)[0] ? p.fine : p.coarse)) ? EXIT_RUN : 0;
-    else if (*limited && c->reference.rows == 0)
+    else if (*limited && c->reference.rows < 2)
       rc = lag_app_error(&app->args, "the reference run by %s(tol=%g) takes more than %.3g s to t = %g s; allow more time: --seconds %g, or end earlier: --until",
-                         method->name, tol, seconds, c->reference.t[0], 10 * seconds) ? EXIT_RUN : 0;
+                         method->name, tol, seconds, c->reference.t[1], 10 * seconds) ? EXIT_RUN : 0;
     else rc = 0;
   }
   lag_sim_free(p.fine);
@@ -239,8 +239,8 @@ static int run_cost(App *app, Cost *c) {
   double asked = c->reference.t[c->reference.rows - 1];
   app->progress = isatty(2) && !a->quiet ? 0 : -1;
   rc = rc ? rc : a->against ? read_reference(app, c) : compute_reference(app, c, 0.4 * c->seconds, &limited);
-  if (rc == 0 && c->reference.rows == 0)
-    rc = lag_app_error(a, "an event ends the run before t = %g s, the first time of comparison; write --until with an earlier time", c->reference.t[0]);
+  if (rc == 0 && c->reference.rows < 2)
+    rc = lag_app_error(a, "an event ends the run before t = %g s, the first time of comparison; write --until with an earlier time", c->reference.t[1]);
   if (rc == 0) {
     double last = c->reference.t[c->reference.rows - 1];
     c->reached = last == asked ? NAN : last;
@@ -253,18 +253,28 @@ static int run_cost(App *app, Cost *c) {
   return rc ? rc : show(app, c);
 }
 
+/* 1 + number of the output of this name; -1: there is none. */
+static int find_output(const App *app, const char *name) {
+  for (int i = 0; i < app->scene->nout; i++)
+    if (strcmp(app->scene->outputs[i].name, name) == 0) return i + 1;
+  return -1;
+}
+
 int lag_app_cost(App *app) {
   Cost cost = {.seconds = 10, .reached = NAN};
   const Args *a = &app->args;
   int limited, rc = lag_app_set_up_start(app);
   if (rc) return rc;
   double t0 = app->scene->t0, span = app->until - t0;
-  int n = app->sim->pb.n, failed = lag_samples_init(&cost.reference, SAMPLES, n) || !(cost.scale = calloc((size_t)n + 1, sizeof *cost.scale));
+  int final = a->error && strcmp(a->error, "final") == 0, output = a->error && !final ? find_output(app, a->error) : 0, rows = (final ? 1 : SAMPLES) + 1; /* the start among them, for the scales */
+  if (output < 0) return lag_app_error(a, "--error %s: no such output; lagc cost takes any expression of the model, `energy` among them, or `final`", a->error);
+  int n = output ? 1 : app->sim->pb.n, failed = lag_samples_init(&cost.reference, rows, n) || !(cost.scale = calloc((size_t)n + 1, sizeof *cost.scale));
   rc = failed ? lag_app_error(a, "out of memory")
        : span == 0.0 ? lag_app_error(a, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0) : 0;
   if (rc == 0 && a->seconds && (!lag_args_number(a, "--seconds", a->seconds, "--seconds 60", &cost.seconds) || cost.seconds <= 0))
     rc = lag_app_error(a, "--seconds %s: the time to spend, for example --seconds 60", a->seconds);
-  for (int i = 0; i < SAMPLES && rc == 0; i++) cost.reference.t[i] = t0 + span * (i + 1) / SAMPLES;
+  cost.reference.output = output;
+  for (int i = 0; i < rows && rc == 0; i++) cost.reference.t[i] = t0 + span * i / (rows - 1);
   if (rc == 0 && !a->reference) {
     rc = run_cost(app, &cost);
   } else if (rc == 0 && (rc = compute_reference(app, &cost, cost.seconds, &limited)) == 0) {

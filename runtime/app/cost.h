@@ -25,7 +25,7 @@ enum { LAG_COST_FAMILIES = 8 };
 const CostMethod *lag_cost_best_of_family(const Cost *c, int family);
 
 /* cost_report.c: `lagc run` with the model, scene, values and end of this call, for a command to copy. */
-void lag_cost_put_command(FILE *f, const App *app);
+void lag_cost_put_command(FILE *f, const App *app, const Cost *c);
 /* As text, as one JSON object, as rows of CSV. lag_cost_put_csv: -1 with errno. */
 void lag_cost_put_text(FILE *f, const App *app, const Cost *c);
 void lag_cost_put_json(FILE *f, const App *app, const Cost *c);

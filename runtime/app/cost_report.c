@@ -59,15 +59,13 @@ static void put_options(char *s, size_t n, const CostMethod *m, const CostRun *r
   snprintf(s, n, "--method %s%s%s --%s %.9g", quote, m->name, quote, lag_cost_knob(m->method), run->knob);
 }
 
-void lag_cost_put_command(FILE *f, const App *app) {
+void lag_cost_put_command(FILE *f, const App *app, const Cost *c) {
   const Args *a = &app->args;
-  static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.=+-";
-  fprintf(f, "  lagc run %s %s%s", app->program->source, app->scene->name, a->defines ? a->defines : "");
-  for (int i = 0; i < a->nsets; i++) {
-    const char *quote = a->sets[i][strspn(a->sets[i], plain)] ? "\"" : "";
-    fprintf(f, " %s%s%s", quote, a->sets[i], quote);
-  }
-  if (a->until) fprintf(f, " --until %s", a->until);
+  fprintf(f, "  lagc run %s %s", app->program->source, app->scene->name);
+  if (a->given) fputs(a->given, f);
+  for (int i = 0; i < a->nsets && !a->given; i++) fprintf(f, " %s", a->sets[i]);
+  if (!isnan(c->reached)) fprintf(f, " --until %.9g", c->reached); /* errors were compared up to there; the last --until counts */
+  else if (a->until && !a->given) fprintf(f, " --until %s", a->until);
 }
 
 static double smallest_error(const Cost *c) {
@@ -85,18 +83,19 @@ static int put_cheapest(FILE *f, const App *app, const Cost *c, double error) {
   if (!m) return 0;
   put_options(options, sizeof options, m, run);
   fprintf(f, "cheapest setting for an error of %g: %.4g ms, error %.1e\n", error, 1e3 * run->time, run->error);
-  lag_cost_put_command(f, app);
+  lag_cost_put_command(f, app, c);
   fprintf(f, " %s\n", options);
   return 1;
 }
 
 static void put_answer(FILE *f, const App *app, const Cost *c) {
+  const double rounding = 1e-14;
   static const double errors[] = {1e-3, 1e-6, 1e-9, 1e-12};
   int shown = 0;
   if (c->target > 0) {
     if (!put_cheapest(f, app, c, c->target))
-      fprintf(f, "no setting has an error of %g or less; the smallest found is %.1e; raise --target, or allow more time: --seconds %g\n", c->target,
-              smallest_error(c), 3 * c->seconds);
+      fprintf(f, "no setting has an error of %g or less; the smallest found is %.1e; raise --target%s\n", c->target, smallest_error(c),
+              smallest_error(c) > rounding ? ", or allow more time (--seconds)" : ": that is rounding of doubles");
     return;
   }
   for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) shown += put_cheapest(f, app, c, errors[i]);
@@ -150,11 +149,13 @@ static void put_runs(FILE *f, const Cost *c, int all) {
           "times. order: slope of log error against log steps, at the smallest errors above rounding\n", all ? "" : "; --runs: every run");
 }
 
-static void put_notes(FILE *f, const Cost *c) {
+static void put_notes(FILE *f, const App *app, const Cost *c) {
   const Samples *s = &c->reference;
   const double worth_telling = 1e-14; /* finer settings would meet rounding */
   int n = 0;
-  fprintf(f, "\nerror: the largest difference from the reference at %d times, relative to the largest value of its kind and unit\n", s->rows);
+  if (s->output) fprintf(f, "\nerror: of %s, the largest difference from the reference at %d times, relative to its largest value\n", app->args.error, s->rows - 1);
+  else if (s->rows == 2) fputs("\nerror: the difference from the reference at the end, relative to the value or others of its kind and unit there\n", f);
+  else fprintf(f, "\nerror: the largest difference from the reference at %d times, relative to the largest value of its kind and unit\n", s->rows - 1);
   fprintf(f, "reference: %s, itself uncertain by %.1e\n", c->reference_name, s->uncertainty);
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
@@ -172,12 +173,13 @@ static void put_notes(FILE *f, const Cost *c) {
 void lag_cost_put_text(FILE *f, const App *app, const Cost *c) {
   const Samples *s = &c->reference;
   fprintf(f, "model %s, scene %s, to t = %.15g s\n", app->scene->model->name, app->scene->name, s->t[s->rows - 1]);
-  if (!isnan(c->reached)) fprintf(f, "no reference reaches t = %.15g s: errors are compared up to t = %.15g s\n", app->until, c->reached);
+  if (!isnan(c->reached))
+    fprintf(f, "the reference ends at t = %.15g s (an event ends the run, no digit is left, or it takes too long): errors are compared up to there\n", c->reached);
   if (c->stopped) fputs("interrupted: what was measured until then\n", f);
   put_answer(f, app, c);
   put_times(f, c, app->args.all);
   put_runs(f, c, app->args.runs);
-  put_notes(f, c);
+  put_notes(f, app, c);
   if (app->args.sketch) lag_cost_sketch(f, c);
 }
 

@@ -45,6 +45,7 @@ static int set_more_accurate(const lag_sim *run, lag_sim *other) {
 
 int lag_app_compare_errors(App *app, ErrorEstimate *e, const lag_sim *run, double most) {
   lag_sim *other = lag_app_fresh_bare_sim(app);
+  lag_error_estimate_note_end(e, run);
   int rc = other ? set_more_accurate(run, other) : LAG_ENOMEM;
   app->second_most = most;
   if (rc == LAG_OK) {

@@ -131,7 +131,7 @@ static const FixedStep *choose(const FixedStep *all, int n, double step) {
   return best;
 }
 
-static void put_text(const App *app, const FixedStep *all, int n, double step) {
+static void put_text(const App *app, const Cost *c, const FixedStep *all, int n, double step) {
   const FixedStep *best = choose(all, n, step);
   char setting[128];
   printf("model %s, scene %s, steps of %g s to t = %.15g s\n", app->scene->model->name, app->scene->name, step, app->until);
@@ -139,7 +139,7 @@ static void put_text(const App *app, const FixedStep *all, int n, double step) {
     snprintf(setting, sizeof setting, "%.*s%sstep=%g)", (int)strcspn(best->name, ")"), best->name, strchr(best->name, '(') ? ", " : "(", step);
     printf("best: %s, error %.1e, %.2g us a step, at worst %.2g us; its steps may be as long as %.2g s\n", best->name, best->error,
            1e6 * best->mean, 1e6 * best->worst, best->largest);
-    lag_cost_put_command(stdout, app);
+    lag_cost_put_command(stdout, app, c);
     printf(" --method \"%s\"\n", setting);
   } else {
     printf("no method of equal steps follows the motion with steps of %g s, in half of that time; take shorter steps\n", step);
@@ -195,6 +195,7 @@ int lag_app_realtime(App *app, const Cost *c) {
       for (int k = 1; k <= 2; k++) n = add_method(app, all, n, m, m->name[0] == 'g' ? "stages" : "order", m->name[0] == 'g' ? k : 2 * k);
     else n = add_method(app, all, n, m, NULL, 0);
   }
+  own.output = c->reference.output;
   if (rc == 0) memcpy(own.t, c->reference.t, (size_t)c->reference.rows * sizeof *own.t);
   for (int i = 0; i < n && rc == 0; i++) {
     measure(app, c, &all[i], step, overhead, &own);
@@ -203,7 +204,7 @@ int lag_app_realtime(App *app, const Cost *c) {
   if (rc == 0) {
     qsort(all, (size_t)n, sizeof *all, by_error);
     if (a->json) put_json(app, all, n, step);
-    else if (!a->quiet) put_text(app, all, n, step);
+    else if (!a->quiet) put_text(app, c, all, n, step);
     rc = fflush(stdout) ? lag_app_io_error(app, "standard output") : choose(all, n, step) ? EXIT_FINE : EXIT_RUN;
   }
   lag_samples_free(&own);

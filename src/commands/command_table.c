@@ -152,6 +152,7 @@ static const OptionRow options[] = {
   {"--target", NULL, "X", TAKES_NUMBER, "", C(COST), PASSED, "names the cheapest setting whose error is at most X"},
   {"--methods", NULL, "NAME,NAME", TAKES_TEXT, "", C(COST), PASSED, "only these methods"},
   {"--seconds", NULL, "S", TAKES_NUMBER, "", C(COST), OWN(seconds), "the time to spend, with building; default: 10. What was left out is said"},
+  {"--error", NULL, "EXPR|final", TAKES_EXPR, "", C(COST), OWN(error), "the error of this expression, `energy` for example, or of the state at the end, instead of the state at 16 times"},
   {"--realtime", NULL, "H", TAKES_NUMBER, "", C(COST), PASSED,
    "for games and controllers, which make steps of H [s]: the error of each method of equal steps, the time of a step at worst, and the largest step that follows the motion"},
   {"--all", NULL, NULL, TAKES_NOTHING, "", C(COST), PASSED, "the times of every method, not of one a family"},

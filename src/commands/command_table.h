@@ -22,7 +22,7 @@ typedef struct {
   const char *resume;      /* of run */
   const char *accurate;    /* run, plot, animate --accuracy */
   const char *tol;         /* run, plot, animate --tol */
-  const char *seconds;     /* cost --seconds */
+  const char *seconds, *error; /* cost --seconds, --error */
   const char *format;      /* derive, noether --format */
   const char *dump;        /* --dump=ast,eqns,passes,prog */
   const char *topic;       /* help TOPIC; completion SHELL */

@@ -19,6 +19,7 @@ typedef struct {
   Diags *diags;
   Ast *ast;
   RunRequest picture; /* requests of run, plot and animate */
+  const char *given_words; /* values, -D and --until of the command line, as a shell reads them: for commands that a report names */
   GivenList given; /* values that the command line gives to names, for run, plot and animate */
   StrBuf told;     /* comparisons with the text, for check --verbose */
   const Eqns *run; /* equations of the scene that the command runs, */

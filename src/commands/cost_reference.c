@@ -25,6 +25,10 @@ static int reference_words(Compiler *c, double seconds, Words *argv) {
     else vec_push(c->arena, argv, arena_strdup(c->arena, word));
     if (alone && i + 1 < c->o.rest.n) vec_push(c->arena, argv, arena_strdup(c->arena, c->o.rest.at[++i]));
   }
+  if (c->picture.error) {
+    vec_push(c->arena, argv, arena_strdup(c->arena, "--error"));
+    vec_push(c->arena, argv, arena_strdup(c->arena, c->picture.error));
+  }
   vec_push(c->arena, argv, arena_strdup(c->arena, "--seconds"));
   vec_push(c->arena, argv, arena_printf(c->arena, "%g", seconds));
   vec_push(c->arena, argv, NULL);

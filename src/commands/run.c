@@ -41,17 +41,15 @@ static double seconds_now(void) {
 static int make_cost_simulator(Compiler *c, const Units *units, double begin, const char **path) {
   double asked = c->o.seconds ? strtod(c->o.seconds, NULL) : 10;
   CostReference reference;
-  StrBuf defines = strbuf(c->arena); /* for the commands that it names */
   cost_reference_begin(c, 0.4*asked, &reference);
   int status = simulator_of_units(c, units, NULL, path), given = cost_reference_end(&reference);
   double left = asked - (seconds_now() - begin);
   c->picture.argv.n--; /* the NULL at the end */
   vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--seconds"));
   vec_push(c->arena, &c->picture.argv, !(asked > 0) ? arena_strdup(c->arena, c->o.seconds) : arena_printf(c->arena, "%.3g", left > asked/3 ? left : asked/3));
-  for (uint32_t i = 0; i < c->o.defines.n; i++) sb_printf(&defines, " -D %s=%s", c->o.defines.at[i].name, c->o.defines.at[i].value);
-  if (c->o.defines.n) {
-    vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--defines"));
-    vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, sb_text(&defines)));
+  if (c->given_words[0]) {
+    vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--given"));
+    vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, c->given_words));
   }
   if (given) {
     vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--against"));

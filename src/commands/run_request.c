@@ -303,6 +303,11 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
   if (o->command == CMD_LYAPUNOV) add_argument(&k, "--lyapunov", NULL);
   if (o->command == CMD_COST) add_argument(&k, "--cost", NULL);
+  if (o->command == CMD_COST && o->error) {
+    p->error = strcmp(o->error, "final") == 0 ? "final" : add_output(&k, "--error", o->error);
+    ok = ok && p->error;
+    if (p->error) add_argument(&k, "--error", p->error);
+  }
   for (uint32_t i = 0; i < o->rest.n; i++) add_argument(&k, o->rest.at[i], NULL);
   vec_push(k.arena, &p->argv, NULL);
   return ok;

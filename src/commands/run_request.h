@@ -12,6 +12,7 @@ typedef struct {
   Section section;  /* Poincare section that chooses the rows; or none */
   Name scene;       /* scene of the run; NULL: the first */
   VEC(char *) argv; /* the simulator's, NULL-terminated */
+  const char *error; /* cost --error: name of the output that is judged, or "final"; NULL: the state */
   const char *note; /* points that were chosen for the user, or NULL */
 } RunRequest;
 

@@ -130,8 +130,35 @@ const char *simulator_precise(Compiler *c, const Units *units) {
   return toolchain_simulator(c->arena, &tools, texts.at, texts.n, &error);
 }
 
+/* " word", in quotes where a shell would read it otherwise. */
+static void add_word(StrBuf *b, const char *word) {
+  static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.=+-/";
+  if (!word[strspn(word, plain)]) {
+    sb_printf(b, " %s", word);
+    return;
+  }
+  sb_puts(b, " '");
+  for (const char *c = word; *c; c++) sb_printf(b, *c == '\'' ? "'\\''" : "%c", *c);
+  sb_puts(b, "'");
+}
+
+/* Before settings_compiled, which takes values away. */
+static const char *words_given(Compiler *c) {
+  StrBuf b = strbuf(c->arena);
+  for (uint32_t i = 0; i < c->o.defines.n; i++) sb_printf(&b, " -D %s=%s", c->o.defines.at[i].name, c->o.defines.at[i].value);
+  for (uint32_t i = 0; i < c->o.rest.n; i++) {
+    const char *word = c->o.rest.at[i];
+    int until = strncmp(word, "--until", 7) == 0, alone = until && !word[7];
+    if (word[0] == '-' && !until) i += (uint32_t)option_takes_next(c->o.command, word);
+    else if (!c->o.scene || strcmp(word, c->o.scene) != 0) add_word(&b, word);
+    if (alone && i + 1 < c->o.rest.n) add_word(&b, c->o.rest.at[++i]);
+  }
+  return sb_text(&b);
+}
+
 int simulator_prepare(Compiler *c) {
   const char *error = NULL;
+  c->given_words = words_given(c);
   if (c->o.scene && !model_has_scene(c->ast, c->o.scene)) return STATUS_MODEL;
   if (!settings_compiled(c->ast, &c->o, &c->given, &error)) return error ? usage_error(error) : STATUS_MODEL;
   if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;

@@ -55,7 +55,7 @@ not_listed() {
 empty "functions and units of the reference" "$(not_listed)"
 
 # Options that lagc passes on are options of simulators: two tables in two programs that share no header.
-taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --effects -e --modes -e --lyapunov -e --cost -e --reference -e --against -e --defines -e --seconds -e --section | sort; } # lagc passes these itself: --modes, --cost, --lyapunov for its commands, --seconds for what is left of the time, --section for an event that it makes
+taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --effects -e --modes -e --lyapunov -e --cost -e --reference -e --against -e --error -e --given -e --seconds -e --section | sort; } # lagc passes these itself: --modes, --cost, --lyapunov for its commands, --seconds for what is left of the time, --section for an event that it makes
 handed() { { words 'passed run'; words 'passed animate'; words 'passed cost'; words 'passed lyapunov'; } | grep -e -- | sort -u; }
 check "a simulator has options" [ "$(taken | wc -l)" -gt 10 ]
 is "options of a simulator" "$(taken)" "$(handed)"
