@@ -248,7 +248,8 @@ static void note_horizon(App *app) {
   size_t n = 0;
   if (!app->watched || isnan(app->error.horizon)) return;
   while (n < t->nrows && dir * (lag_table_cell(t, n, 0) - app->error.horizon) <= 0) n++;
-  if (n && n < t->nrows) t->certain = n;
+  t->certain = n < t->nrows ? n : 0;
+  t->horizon = app->error.horizon;
 }
 
 /* Completes the files and prints the report. Returns the exit status. */

@@ -57,7 +57,7 @@ static void put_data(FILE *f, const Table *t, const Animation *a) {
   lag_json_number(&j, "t0", t0);
   lag_json_number(&j, "tick", tick);
   lag_json_number(&j, "t1", t1);
-  lag_json_number(&j, "horizon", t->certain ? lag_table_cell(t, t->certain - 1, 0) : NAN);
+  lag_json_number(&j, "horizon", t->certain ? t->horizon : NAN);
   lag_json_number(&j, "speed", choose_speed(t, fabs(t1 - t0)));
   lag_json_number(&j, "zero", zero);
   lag_json_number(&j, "scale", scale);

@@ -19,6 +19,7 @@ typedef struct Table {
   int keep;   /* 0: rows are not stored, data stays NULL */
   int points; /* 1: rows are separate points, not joined to a curve */
   size_t certain; /* rows up to the horizon of the run, as far as their digits mean something; 0: all. The rest is drawn grey */
+  double horizon; /* where certain > 0: its time, in the unit of column 0 */
   double *data;
   size_t nrows, capacity;
 } Table;

@@ -189,7 +189,7 @@ static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, i
 /* The horizon in a panel over time. */
 static void put_horizon(FILE *f, const Panel *p, const Table *t, int named) {
   if (!t->certain || t->points) return;
-  double x = px(p, lag_table_cell(t, t->certain - 1, 0));
+  double x = px(p, t->horizon);
   fprintf(f, "<path d=\"M%.1f %.1fv%.1f\" stroke=\"#888\" stroke-dasharray=\"2 4\"/>\n", x, p->y, p->h);
   if (named) text(f, x, p->y - 6, "font-size=\"11\" text-anchor=\"middle\" fill=\"#666\"", "no digit is left");
 }

@@ -86,6 +86,7 @@ void lag_table_scale_time(Table *t) {
   for (int i = 1; i < t->ncols; i++) has_units |= t->cols[i].unit[0] && strcmp(t->cols[i].unit, "rad") != 0;
   if (!has_units || !name) return;
   for (size_t i = 0; i < t->nrows; i++) t->data[i * (size_t)t->ncols] /= unit;
+  t->horizon /= unit;
   strcpy(t->cols[0].unit, name);
 }
 
