@@ -27,7 +27,7 @@ def exact(x):
     return repr(round(x * k) / k)
 
 
-def run(args, timeout=120):
+def run(args, timeout=30):
     try:
         p = subprocess.run([LAGC, *args], capture_output=True, text=True, timeout=timeout, stdin=subprocess.DEVNULL)
     except subprocess.TimeoutExpired:
