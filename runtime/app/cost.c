@@ -160,25 +160,38 @@ static int add(Cost *c, const lag_method *m, lag_option option) {
   return LAG_OK;
 }
 
+static int is_wanted(const Args *a, const char *name) { return !a->methods || lag_app_has_word(a->methods, name, strlen(name)); }
+
+/* Whether each word of --methods is a method, or one at a value of its option that was listed. */
+static int check_methods(App *app, const Cost *c) {
+  char word[64], base[64];
+  for (const char *s = app->args.methods; s && *s; s += strcspn(s, ", "), s += strspn(s, ", ")) {
+    int known = 0;
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(s, ", "), s);
+    snprintf(base, sizeof base, "%.*s", (int)strcspn(word, "("), word);
+    if (!lag_app_find_method(app, base)) return lag_app_unknown_method(app, base);
+    for (int i = 0; i < c->nmethods; i++) known |= strcmp(c->method[i].name, word) == 0 || strcmp(c->method[i].method->name, word) == 0;
+    if (!known) return lag_app_error(&app->args, "--methods %s: write %s, or a value of its option that lagc cost tries: variational(order=2), 4, 6, 8; gauss(stages=1) to 4", word, base);
+  }
+  return 0;
+}
+
 /* Lists the methods of --methods, or all. */
 static int list_methods(App *app, Cost *c) {
   const Args *a = &app->args;
   const lag_method *m;
   char name[64];
   int bad = 0;
-  for (const char *s = a->methods; s && *s; s += strcspn(s, ", "), s += strspn(s, ", ")) {
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(s, ", "), s);
-    if (!lag_app_find_method(app, name)) return lag_app_unknown_method(app, name);
-  }
   for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) {
     size_t k = 0;
-    if (a->methods && !lag_app_has_word(a->methods, m->name, strlen(m->name))) continue;
     while (k < NFAMILIES && strcmp(families[k].method, m->name) != 0) k++;
-    if (k == NFAMILIES) bad |= add(c, m, (lag_option){0});
-    for (int x = k < NFAMILIES ? families[k].from : 0; k < NFAMILIES && x <= families[k].to; x += families[k].by)
-      bad |= add(c, m, (lag_option){.name = families[k].option, .value = x});
+    if (k == NFAMILIES && is_wanted(a, m->name)) bad |= add(c, m, (lag_option){0});
+    for (int x = k < NFAMILIES ? families[k].from : 0; k < NFAMILIES && x <= families[k].to; x += families[k].by) {
+      snprintf(name, sizeof name, "%s(%s=%d)", m->name, families[k].option, x);
+      if (is_wanted(a, m->name) || is_wanted(a, name)) bad |= add(c, m, (lag_option){.name = families[k].option, .value = x});
+    }
   }
-  return bad ? lag_app_error(a, "out of memory") : 0;
+  return bad ? lag_app_error(a, "out of memory") : check_methods(app, c);
 }
 
 static lag_sim *fresh(void *app) { return lag_app_fresh_sim(app); }

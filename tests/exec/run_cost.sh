@@ -185,6 +185,9 @@ interrupted() { # Ctrl-C: what is known is printed
 slow check "an interrupted sweep prints what it knows" interrupted
 
 refused "an unknown method" 'did you mean verlet' models/pendulum.lag --methods verlet5
+check "a method at one value of its option" text models/pendulum.lag --until 2 --methods "gauss(stages=2),rk4" --seconds 1 --all
+check "is that one" [ "$(grep -c '^  gauss' "$TMP/text")" = 1 ]
+refused "a value that is not tried" 'gauss(stages=1) to 4' models/pendulum.lag --methods "gauss(stages=9)"
 refused "a target of zero" 'example --target 1e-8' models/pendulum.lag --target 0
 refused "no time to spend" 'example --seconds 60' models/pendulum.lag --seconds 0
 refused "a time in words" 'is not a number' models/pendulum.lag --seconds long
