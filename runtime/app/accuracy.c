@@ -53,12 +53,13 @@ static int try_setting(App *app, ErrorEstimate *e) {
 }
 
 static int refuse(const App *app, double asked, double best, double horizon) {
-  char reach[160] = "";
+  char reach[600] = "";
+  int failed = isnan(horizon) && !(best < HUGE_VAL) && lag_sim_message(app->sim)[0]; /* the message has its own advice */
   if (!isnan(horizon)) snprintf(reach, sizeof reach, ": after t = %.3g s no digit is left in " LAG_PRECISION " precision", horizon);
-  else if (best < HUGE_VAL) snprintf(reach, sizeof reach, ": the smallest error found is %.2g", best);
-  else if (lag_sim_message(app->sim)[0]) snprintf(reach, sizeof reach, ": %.120s", lag_sim_message(app->sim));
-  return lag_app_error(&app->args, "--accuracy %g is not reached to t = %g s%s; end the run earlier (--until)%s", asked, app->until, reach,
-                       strcmp(LAG_PRECISION, "double") == 0 ? ", or write --precision quad" : "");
+  else if (best < HUGE_VAL) snprintf(reach, sizeof reach, ": the smallest error found is %.2g%s", best, best <= asked ? ", too near to be sure" : "");
+  else if (failed) snprintf(reach, sizeof reach, ": %s", lag_sim_message(app->sim));
+  return lag_app_error(&app->args, "--accuracy %g is not reached to t = %g s%s%s%s", asked, app->until, reach, failed ? "" : "; end the run earlier (--until)",
+                       !failed && strcmp(LAG_PRECISION, "double") == 0 ? ", or write --precision quad" : "");
 }
 
 int lag_app_choose_by_accuracy(App *app) {
