@@ -10,7 +10,7 @@
 #include "analysis/work_precision.h"
 
 /* A method within the sweep. */
-typedef struct Progress {
+typedef struct MethodProgress {
   int next;           /* number of its next setting, from coarse to fine */
   int done;
   int idle;           /* settings in a row that took more steps and did not reduce the error */
@@ -18,11 +18,11 @@ typedef struct Progress {
   long long steps;    /* of the last setting with a result */
   double tried;       /* processor time of the last setting [s], also of one without a result */
   double time, error; /* of the next setting, predicted */
-} Progress;
+} MethodProgress;
 
 typedef struct Plan {
   CostSweep *s;
-  Progress *of; /* [s->n] */
+  MethodProgress *of; /* [s->n] */
   Samples own;
   double begin; /* by the clock [s] */
   int stopped;  /* 1: the caller ended the sweep */
@@ -52,7 +52,7 @@ static double knob_of(const Plan *p, const CostMethod *m, int k) {
 }
 
 /* Time and error of the next setting, from the last two. */
-static void predict(const CostMethod *m, Progress *g) {
+static void predict(const CostMethod *m, MethodProgress *g) {
   double longer = is_adaptive(m) ? 1.5 : 2, smaller = 0.1;
   if (m->nruns > 1) {
     const CostRun *last = &m->run[m->nruns - 1], *before = last - 1;
@@ -78,7 +78,7 @@ static int choose(const Plan *p) {
   double left = 0.7 * s->seconds - used(p), least = HUGE_VAL;
   int which = -1, near = 0;
   for (int i = 0; i < s->n; i++) {
-    const Progress *g = &p->of[i];
+    const MethodProgress *g = &p->of[i];
     if (g->done) continue;
     int pilot = s->method[i].nruns < 2, front = pilot || g->time <= behind * front_time(s, g->error);
     if (g->time > fmin(left, s->seconds * (pilot ? 0.05 : front ? 0.3 : 0.01))) continue;
@@ -95,7 +95,7 @@ static int choose(const Plan *p) {
 static int run_next(Plan *p, int i) {
   CostSweep *s = p->s;
   CostMethod *m = &s->method[i];
-  Progress *g = &p->of[i];
+  MethodProgress *g = &p->of[i];
   CostRun run = {.knob = knob_of(p, m, g->next++)};
   double longest = fmax(0.01, s->seconds * (m->nruns < 2 ? 0.1 : 0.5));
   if (run.knob == 0 || m->nruns == LAG_COST_MOST_RUNS - 2) {
@@ -118,7 +118,7 @@ static int run_next(Plan *p, int i) {
   return rc == LAG_ENOMEM ? rc : LAG_OK;
 }
 
-/* What choose() passes over is left out. */
+/* Methods that choose() passes over are left out from their next error on. */
 static void note_left_out(Plan *p) {
   for (int i = 0; i < p->s->n; i++)
     if (!p->of[i].done) p->s->method[i].left_out = p->of[i].error;
@@ -184,7 +184,7 @@ int lag_cost_sweep(CostSweep *s) {
   if (rc == LAG_OK) memcpy(p.own.t, s->reference->t, (size_t)s->reference->rows * sizeof *p.own.t);
   if (!p.of) rc = LAG_ENOMEM;
   for (i = 0; i < s->n && rc == LAG_OK; i++) {
-    p.of[i] = (Progress){.least = HUGE_VAL, .error = rough};
+    p.of[i] = (MethodProgress){.least = HUGE_VAL, .error = rough};
     s->method[i].nruns = 0;
     s->method[i].why[0] = '\0';
     s->method[i].left_out = 0;

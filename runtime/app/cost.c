@@ -196,16 +196,16 @@ static int list_methods(App *app, Cost *c) {
 
 static lag_sim *fresh(void *app) { return lag_app_fresh_sim(app); }
 
-/* Progress line, at most ten times a second; Ctrl-C ends the sweep. */
-typedef struct Progress {
+/* ProgressLine line, at most ten times a second; Ctrl-C ends the sweep. */
+typedef struct ProgressLine {
   App *app;
   double seconds, part, shown; /* to spend [s]; part used; its value as shown */
-} Progress;
+} ProgressLine;
 
 static int note_progress(void *progress, const CostMethod *m, double part) {
   enum { WIDTH = 30 };
   static const char bar[] = "##############################..............................";
-  Progress *p = progress;
+  ProgressLine *p = progress;
   if (part >= 0) p->part = fmin(part, 1);
   if (p->app->progress >= 0 && p->part - p->shown > 0.1 / p->seconds) {
     int done = (int)(p->part * WIDTH);
@@ -216,7 +216,7 @@ static int note_progress(void *progress, const CostMethod *m, double part) {
 }
 
 static int measure(App *app, Cost *c) {
-  Progress p = {app, c->seconds, 0, -1};
+  ProgressLine p = {app, c->seconds, 0, -1};
   CostSweep sweep = {.method = c->method, .n = c->nmethods, .scene = {fresh, app, app->scene->t0}, .reference = &c->reference, .scale = c->scale,
                      .seconds = c->seconds, .target = c->target, .note = note_progress, .context = &p};
   lag_app_catch_interrupt();

@@ -17,14 +17,10 @@ typedef VEC(char *) Words;
 static int reference_words(Compiler *c, double seconds, Words *argv) {
   vec_push(c->arena, argv, c->picture.argv.at[0]);
   vec_push(c->arena, argv, arena_strdup(c->arena, "--reference"));
-  for (uint32_t i = 0; i < c->o.rest.n; i++) {
-    const char *word = c->o.rest.at[i];
-    int until = strncmp(word, "--until", 7) == 0, alone = until && !word[7];
-    if (strcmp(word, "--against") == 0 || strncmp(word, "--against=", 10) == 0) return 0;
-    if (word[0] == '-' && !until) i += (uint32_t)option_takes_next(c->o.command, word);
-    else vec_push(c->arena, argv, arena_strdup(c->arena, word));
-    if (alone && i + 1 < c->o.rest.n) vec_push(c->arena, argv, arena_strdup(c->arena, c->o.rest.at[++i]));
-  }
+  for (uint32_t i = 0; i < c->o.rest.n; i++)
+    if (strcmp(c->o.rest.at[i], "--against") == 0 || strncmp(c->o.rest.at[i], "--against=", 10) == 0) return 0;
+  OptionTexts words = simulator_values(c);
+  for (uint32_t i = 0; i < words.n; i++) vec_push(c->arena, argv, arena_strdup(c->arena, words.at[i]));
   if (c->picture.error) {
     vec_push(c->arena, argv, arena_strdup(c->arena, "--error"));
     vec_push(c->arena, argv, arena_strdup(c->arena, c->picture.error));
@@ -82,15 +78,15 @@ typedef struct {
   Compiler *c;
   Words argv;
   FILE *out;
-} Work;
+} ReferenceWork;
 
 static int work_of_child(void *work) {
-  Work *w = work;
+  ReferenceWork *w = work;
   return print_reference(w->c, &w->argv, w->out);
 }
 
 void cost_reference_begin(Compiler *c, double seconds, CostReference *r) {
-  Work w = {.c = c};
+  ReferenceWork w = {.c = c};
   *r = (CostReference){0};
   if (c->picture.argv.n < 2 || !reference_words(c, seconds, &w.argv)) return;
   r->out = w.out = tmpfile();

@@ -130,6 +130,18 @@ const char *simulator_precise(Compiler *c, const Units *units) {
   return toolchain_simulator(c->arena, &tools, texts.at, texts.n, &error);
 }
 
+OptionTexts simulator_values(Compiler *c) {
+  OptionTexts words = {0};
+  for (uint32_t i = 0; i < c->o.rest.n; i++) {
+    const char *word = c->o.rest.at[i];
+    int until = strncmp(word, "--until", 7) == 0, alone = until && !word[7];
+    if (word[0] == '-' && !until) i += (uint32_t)option_takes_next(c->o.command, word);
+    else vec_push(c->arena, &words, word);
+    if (alone && i + 1 < c->o.rest.n) vec_push(c->arena, &words, c->o.rest.at[++i]);
+  }
+  return words;
+}
+
 /* " word", in quotes where a shell would read it otherwise. */
 static void add_word(StrBuf *b, const char *word) {
   static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.=+-/";
@@ -146,13 +158,9 @@ static void add_word(StrBuf *b, const char *word) {
 static const char *words_given(Compiler *c) {
   StrBuf b = strbuf(c->arena);
   for (uint32_t i = 0; i < c->o.defines.n; i++) sb_printf(&b, " -D %s=%s", c->o.defines.at[i].name, c->o.defines.at[i].value);
-  for (uint32_t i = 0; i < c->o.rest.n; i++) {
-    const char *word = c->o.rest.at[i];
-    int until = strncmp(word, "--until", 7) == 0, alone = until && !word[7];
-    if (word[0] == '-' && !until) i += (uint32_t)option_takes_next(c->o.command, word);
-    else if (!c->o.scene || strcmp(word, c->o.scene) != 0) add_word(&b, word);
-    if (alone && i + 1 < c->o.rest.n) add_word(&b, c->o.rest.at[++i]);
-  }
+  OptionTexts words = simulator_values(c);
+  for (uint32_t i = 0; i < words.n; i++)
+    if (!c->o.scene || strcmp(words.at[i], c->o.scene) != 0) add_word(&b, words.at[i]);
   return sb_text(&b);
 }
 

@@ -23,6 +23,9 @@ int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, cons
 /* The same from units, with the precision and the libraries that the command line asks for. */
 int simulator_of_units(Compiler *c, const Units *units, const char *output, const char **path);
 
+/* The words of the command line that say which motion is run: scene, name=value, --until. */
+OptionTexts simulator_values(Compiler *c);
+
 /* A simulator with more digits than doubles have, in the cache: long double, or quadruple precision where that is no more than a double; NULL where
  * there is neither. */
 const char *simulator_precise(Compiler *c, const Units *units);
