@@ -65,21 +65,21 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %token PLUS "+" MINUS "-" TIMES "*" DIVIDE "/" POWER "^"
 %token LT "<" LE "<=" GT ">" GE ">=" EQ "==" NE "!=" AND "and" OR "or" NOT "not" IN "in"
 %token <ident> SUM "sum" PRODUCT "product"
-%token MODEL "model" INCLUDE "include" COORD "coord" PARAM "param" CONST "const" INPUT "input" STATE "state"
-%token LET "let" FUNCTION "function" LAGRANGIAN "lagrangian" KINETIC "kinetic" POTENTIAL "potential"
-%token DISSIPATION "dissipation" FORCE "force" FLOW "flow" CONSTRAINT "constraint" SYMMETRY "symmetry"
-%token EXPECT "expect" EVENT "event" CONTACT "contact" OBSERVE "observe" FOR "for" EFFECT "effect"
+%token MODEL "model" INCLUDE "include" COORD "coord" MOMENTUM "momentum" PARAM "param" CONST "const" INPUT "input" STATE "state"
+%token LET "let" FUNCTION "function" HAMILTONIAN "hamiltonian" LAGRANGIAN "lagrangian" KINETIC "kinetic" POTENTIAL "potential"
+%token DISSIPATION "dissipation" FORCE "force" FRICTION "friction" FLOW "flow" CONSTRAINT "constraint" SYMMETRY "symmetry" CANONICAL "canonical"
+%token EXPECT "expect" EVENT "event" KICK "kick" CONTACT "contact" OBSERVE "observe" FOR "for" EFFECT "effect"
 %token REQUIRES "requires" EXCLUDES "excludes" SCENE "scene" START "start" EXACT "exact" USE "use"
-%token SPAN "span" METHOD "method" TOLERANCE "tolerance" OUTPUT "output" MONITOR "monitor" LIKE "like"
+%token SPAN "span" METHOD "method" TOLERANCE "tolerance" OUTPUT "output" MONITOR "monitor" MEASURE "measure" LIKE "like"
 %token STOP "stop" PERIODIC "periodic" RISING "rising" FALLING "falling" CROSSING "crossing"
-%token RESTITUTION "restitution" EXACTLY "exactly" EVERY "every"
+%token ON "on" OF "of" STATIC "static" RESTITUTION "restitution" SLIP "slip" TANGENTIAL "tangential" LAW "law" EXACTLY "exactly" EVERY "every" WHILE "while"
 
-%type <stmts> stmts block stmt coords params consts inputs states lets requires excludes assigns maps
+%type <stmts> stmts block stmt coords momenta params consts inputs states lets requires excludes assigns maps items
 %type <stmts> options options_opt uses monitors
-%type <one> single coord param const input_ state let map map_item each required excluded
+%type <one> single coord momentum param const input_ state let item map map_item each required excluded
 %type <one> assign option use monitor
-%type <list> dims indices places_bound exprs args names
-%type <id> expr arith primary reach place moved bound value comparison every number literal declared gap tuple
+%type <list> rubbing laws dims indices places_bound exprs args names variables
+%type <id> expr arith primary reach place moved bound value comparison every number literal declared gap law tuple condition
 %type <text> doc
 %type <unit> unit
 %type <ident> type method_name
@@ -110,6 +110,7 @@ block: "{" stmts[s] "}" { $$ = $s; };
 
 stmt: single[x]                       { $$ = stmts_one($x); }
     | "coord" coords[l]               { $$ = $l; }
+    | "momentum" momenta[l]           { $$ = $l; }
     | "param" params[l]               { $$ = $l; }
     | "const" consts[l]               { $$ = $l; }
     | "input" inputs[l]               { $$ = $l; }
@@ -122,23 +123,28 @@ stmt: single[x]                       { $$ = stmts_one($x); }
     | "exact" assigns[l]              { $$ = stmts_set_kind(ast, $l, STMT_EXACT, 0); }
     | "use" uses[l]                   { $$ = $l; }
     | "monitor" monitors[l]           { $$ = $l; }
+    | "friction" IDENT[n] dims[d] "on" place[q] ":" arith[f] { $$ = stmts_friction(ast, @$, $n, $d, $q, $f, 0); }
+    | "friction" IDENT[n] dims[d] "on" place[q] ":" arith[f] "," "static" "=" arith[s] { $$ = stmts_friction(ast, @$, $n, $d, $q, $f, $s); }
     ;
 
 single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MODEL, @$, $n, $d, NONE_STMTS); }
       | "include" STRING[p]                     { $$ = stmt_include(ast, @$, $p); }
       | "function" IDENT[n] "(" names[a] ")" "=" expr[e] { $$ = stmt_function(ast, @$, $n, $a, $e); }
+      | "hamiltonian" "=" expr[e]               { $$ = stmt_hamiltonian(ast, @$, $e); }
       | "lagrangian" "=" expr[e]                { $$ = stmt_value(ast, STMT_LAGRANGIAN, @$, $e); }
       | "kinetic" "=" expr[e]                   { $$ = stmt_value(ast, STMT_KINETIC, @$, $e); }
       | "potential" "=" expr[e]                 { $$ = stmt_value(ast, STMT_POTENTIAL, @$, $e); }
       | "dissipation" "=" expr[e]               { $$ = stmt_value(ast, STMT_DISSIPATION, @$, $e); }
       | "force" place[q] "=" expr[e]            { $$ = stmt_pair(ast, STMT_FORCE, @$, $q, $e); }
       | "force" tuple[q] "=" expr[e]            { $$ = stmt_pair(ast, STMT_FORCE, @$, $q, $e); }
-      | "constraint" IDENT[n] dims[d] ":" arith[a] "=" expr[b] { $$ = stmt_equation(ast, STMT_CONSTRAINT, @$, $n, $d, $a, $b); }
+      | "constraint" IDENT[n] dims[d] ":" arith[a] "=" expr[b] condition[w] { $$ = stmt_constraint(ast, @$, $n, $d, $a, $b, $w); }
       | "symmetry" IDENT[n] "(" names[a] ")" doc[d] ":" maps[m] { $$ = stmt_symmetry(ast, @$, $n, $a, $d, $m); }
+      | "canonical" IDENT[n] variables[a] doc[d] ":" items[m] { $$ = stmt_canonical(ast, @$, $n, $a, $d, $m); }
       | "expect" IDENT[n] ":" arith[a] "=" expr[b] { $$ = stmt_equation(ast, STMT_EXPECT, @$, $n, NONE_LIST, $a, $b); }
       | "expect" arith[a] "=" expr[b]           { $$ = stmt_equation(ast, STMT_EXPECT, @$, NONE_IDENT, NONE_LIST, $a, $b); }
       | "event" IDENT[n] dims[d] ":" arith[g] direction[w] block[b] { $$ = stmt_event(ast, @$, $n, $d, $g, $w, $b); }
-      | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] { $$ = stmt_equation(ast, STMT_CONTACT, @$, $n, $d, $g, $e); }
+      | "kick" IDENT[n] dims[d] "every" arith[T] block[b] { $$ = stmt_event(ast, @$, $n, $d, $T, AT_EQUAL_TIMES, $b); }
+      | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
       | "observe" IDENT[n] dims[d] unit[u] "=" expr[e] { $$ = stmt_define(ast, STMT_OBSERVE, @$, $n, $d, $u, $e); }
       | "for" IDENT[i] "in" arith[lo] ".." arith[hi] block[b] { $$ = stmt_for(ast, @$, $i, $lo, $hi, $b); }
       | "effect" IDENT[n] doc[d] block[b]       { $$ = stmt_titled(ast, STMT_EFFECT, @$, $n, $d, $b); }
@@ -147,6 +153,7 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "method" method_name[n] options_opt[o]  { $$ = stmt_options(ast, STMT_METHOD, @$, $n, $o); }
       | "tolerance" arith[e]                    { $$ = stmt_value(ast, STMT_TOLERANCE, @$, $e); }
       | "output" exprs[l] every[e]              { $$ = stmt_output(ast, @$, $l, $e); }
+      | "measure" IDENT[n] "=" expr[e]          { $$ = stmt_measure(ast, @$, $n, $e); }
       | "like" IDENT[n]                         { $$ = stmt_name(ast, STMT_LIKE, @$, $n); }
       | "stop"                                  { $$ = stmt_plain(ast, STMT_STOP, @$); }
       | moved[p] "=" value[v]                   { $$ = stmt_pair(ast, STMT_SET, @$, $p, $v); }
@@ -158,6 +165,11 @@ coords: coord[x]               { $$ = stmts_one($x); }
       | coords[l] "," coord[x] { $$ = stmts_add($l, $x); }
       ;
 coord: IDENT[n] dims[d] type[t] unit[u] periodic[p] { $$ = stmt_coord(ast, STMT_COORD, @$, $n, $d, $t, $u, $p); };
+
+momenta: momentum[x]                { $$ = stmts_one($x); }
+       | momenta[l] "," momentum[x] { $$ = stmts_add($l, $x); }
+       ;
+momentum: IDENT[n] dims[d] type[t] "of" IDENT[q] unit[u] { $$ = stmt_momentum(ast, @$, $n, $d, $t, $q, $u); };
 
 params: param[x]               { $$ = stmts_one($x); }
       | params[l] "," param[x] { $$ = stmts_add($l, $x); }
@@ -207,6 +219,18 @@ map_item: map[m]  { $$ = $m; }
         ;
 each: "for" IDENT[i] "in" arith[lo] ".." arith[hi] ":" map[m] { $$ = stmt_for_map(ast, @$, $i, $lo, $hi, $m); };
 map: place[q] "->" expr[e] { $$ = stmt_pair(ast, STMT_MAP, @$, $q, $e); };
+
+/* ---- canonical transformations ---- */
+
+variables: %empty            { $$ = NONE_LIST; }
+         | "(" names[l] ")"  { $$ = $l; }
+         ;
+items: item[x]               { $$ = stmts_one($x); }
+     | items[l] "," item[x]  { $$ = stmts_add($l, $x); }
+     ;
+item: IDENT[n] "=" expr[e]                    { $$ = stmt_define(ast, STMT_SET, @$, $n, NONE_LIST, NONE_UNIT, $e); }
+    | IDENT[n] "(" names[a] ")" "=" expr[e]   { $$ = stmt_function(ast, @$, $n, $a, $e); }
+    ;
 
 /* ---- scenes ---- */
 
@@ -276,7 +300,22 @@ direction: %empty     { $$ = CROSS_BOTH; }
          | "rising"   { $$ = CROSS_RISING; }
          | "falling"  { $$ = CROSS_FALLING; }
          ;
+rubbing: %empty { $$ = NONE_LIST; }
+       | laws
+       ;
+laws: "," law[x]          { $$ = ast_list($x); }
+    | laws[r] "," law[x]  { $$ = ast_list_add(ast, $r, $x); }
+    ;
+law: "friction" "=" expr[e]   { $$ = ast_option(ast, @$, "friction", $e); }
+   | "static" "=" expr[e]     { $$ = ast_option(ast, @$, "static", $e); }
+   | "slip" "=" expr[e]       { $$ = ast_option(ast, @$, "slip", $e); }
+   | "tangential" "=" expr[e] { $$ = ast_option(ast, @$, "tangential", $e); }
+   | "law" "=" IDENT[n]       { $$ = ast_option(ast, @$, "law", ast_name(ast, $n)); }
+   ;
 gap: arith[a] ">="[op] arith[b] { $$ = ast_contact_gap(ast, @$, @op, $a, $b); };
+condition: %empty       { $$ = 0; }
+         | "while" expr[e] { $$ = $e; }
+         ;
 every: %empty          { $$ = 0; }
      | "every" arith[e] { $$ = $e; }
      ;

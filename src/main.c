@@ -9,22 +9,27 @@
 #include <string.h>
 
 #include "base/diag.h"
+#include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "commands/commands.h"
 #include "syntax/parse.h"
+#include "toolchain/gallery.h"
 
 enum { MEMORY_LIMIT_MIB = 2048 };
 
 static int do_command(Compiler *c) {
   switch (c->o.command) {
     case CMD_CHECK: return command_check(c);
+    case CMD_VERIFY: return command_verify(c);
     case CMD_DERIVE: return command_derive(c);
     case CMD_NOETHER: return command_noether(c);
+    case CMD_ACTION: return command_action(c);
     case CMD_EMIT: return command_emit(c);
     case CMD_HEADER: return command_header(c);
+    case CMD_FMU: return command_fmu(c);
     case CMD_BUILD: return command_build(c);
-    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: case CMD_LYAPUNOV: case CMD_COST: return command_run(c);
+    case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: case CMD_LYAPUNOV: case CMD_COST: case CMD_SWEEP: return command_run(c);
     case CMD_EFFECTS: return command_effects(c);
-    case CMD_METHODS: case CMD_CACHE: case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
+    case CMD_METHODS: case CMD_MODELS: case CMD_NEW: case CMD_CACHE: case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
   }
   return STATUS_USAGE;
 }
@@ -38,6 +43,7 @@ static int folds_digits(const Compiler *c) {
 
 static int compile(Compiler *c) {
   c->sources = sources_new(c->arena);
+  c->sources->library = gallery_library(c->arena, c->argv0);
   c->diags = diags_new(c->arena, c->sources);
   c->ast = ast_new(c->arena, interner_new(c->arena), c->sources, c->diags);
   int status = compiler_read(c);
@@ -54,6 +60,8 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   if (c->o.command == CMD_COMPLETION || c->o.command == CMD_COMPLETE) return command_completion(c);
   if (c->o.command == CMD_METHODS) return command_methods(c);
   if (c->o.command == CMD_CACHE) return command_cache(c);
+  if (c->o.command == CMD_MODELS) return command_models(c);
+  if (c->o.command == CMD_NEW) return command_new(c);
   if (c->o.command == CMD_VERSION) {
     puts("lagc " LAGC_VERSION);
     return fflush(stdout) == 0 ? STATUS_OK : usage_error("cannot write standard output");
@@ -66,6 +74,7 @@ int main(int argc, char **argv) {
   Compiler c = {.arena = arena_new(&config)};
   jmp_buf out_of_memory;
   int status;
+  lag_binary_streams();
   if (!c.arena) return usage_error("out of memory");
   if (setjmp(out_of_memory)) {
     if (arena_hit_limit(c.arena)) fprintf(stderr, "lagc: the model needs more than the limit of %d MiB of memory\n", MEMORY_LIMIT_MIB);

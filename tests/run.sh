@@ -24,9 +24,10 @@
 #   BIN, BUILD, TMP                built test programs; the build folder; a folder of the suite's own, empty
 #   CC, CLANG, CXX, GSL, MAKE      GSL is `yes` or empty
 #   LINKER                         a faster linker than CC's own, for `make test`: COMPILER_PATH
-#   LAG_TREE                       value of LAG_HOME with which LAGC_SAN and LAGC_CLANG find the runtime
+#   LAG_TREE                       value of LAG_HOME with which LAGC_SAN and LAGC_CLANG find the runtime and the gallery
 #   LAGC_OPTIMISE                  -O0 in `make test`, whose simulators run for less time than they compile for; unset, so -O2, elsewhere
-# Every suite leaves its output in $BUILD/test/log. The last line is `N passed, N failed`.
+# Every suite leaves its output in $BUILD/test/log, those of `make test-long` in $BUILD/test/long, which reports in the order in which suites begin.
+# The last line is `N passed, N failed`.
 cd "$(dirname "$0")/.." || exit 2
 unset MAKEFLAGS MFLAGS MAKELEVEL
 export LAGC LAGC_SAN SAN_FLAGS LAGC_CLANG PRECISIONS LIBLAG LIBS INC BIN BUILD CC CLANG CXX GSL MAKE
@@ -42,7 +43,7 @@ export XDG_CACHE_HOME LAG_TREE
 kind='test'
 limit=600
 case ${1:-} in
-  --long) kind=long limit=3600 ;;
+  --long) kind=long limit=3600 logs=$BUILD/test/long ;;
   --bless) kind=bless JOBS=1 ;;
   --bench) kind=bench limit=3600 JOBS=1 ;;
   --run-one) kind=one ;;
@@ -68,6 +69,7 @@ seconds() { date +%s.%N 2>/dev/null; }
 if [ "$kind" = one ]; then
   suite=$1
   limit=$2
+  logs=$3
   log=$logs/$suite.log
   TMP=$(pwd)/$BUILD/test/tmp/$suite
   export TMP
@@ -138,7 +140,8 @@ else
   unset BLESS
 fi
 
-mkdir -p "$LAG_TREE"
+mkdir -p "$LAG_TREE/share/lagc"
+ln -sfn "$(pwd)/models" "$LAG_TREE/share/lagc/models"
 ln -sfn "$(pwd)/$BUILD" "$LAG_TREE/lib"
 ln -sfn "$(pwd)/runtime/include" "$LAG_TREE/include"
 
@@ -152,9 +155,10 @@ slowest_first() {
   done | sort -s -k1,1nr | cut -d ' ' -f 2
 }
 order=$(slowest_first)
+[ "$kind" != long ] || suites=$order
 for s in $suites; do rm -f "$logs/$s.done"; done
 # shellcheck disable=SC2086 # a list of words
-printf '%s\n' $order | xargs -P "$JOBS" -I SUITE sh tests/run.sh --run-one SUITE "$limit" &
+printf '%s\n' $order | xargs -P "$JOBS" -I SUITE sh tests/run.sh --run-one SUITE "$limit" "$logs" &
 runner=$!
 trap 'kill "$runner" 2>/dev/null; exit 130' INT TERM
 

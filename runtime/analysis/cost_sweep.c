@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "analysis/work_precision.h"
+#include "numeric/clock.h"
 
 /* A method within the sweep. */
 typedef struct MethodProgress {
@@ -33,13 +33,7 @@ static const double rough = 0.3;
 /* A setting predicted to take so many times as long as a known one that is as accurate lies behind the front. */
 static const double behind = 3;
 
-static double clock_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static double used(const Plan *p) { return clock_seconds() - p->begin; }
+static double used(const Plan *p) { return lag_clock_seconds() - p->begin; }
 
 static int is_adaptive(const CostMethod *m) { return (m->method->flags & LAG_METHOD_ADAPTIVE) != 0; }
 
@@ -97,6 +91,7 @@ static int run_next(Plan *p, int i) {
   CostMethod *m = &s->method[i];
   MethodProgress *g = &p->of[i];
   CostRun run = {.knob = knob_of(p, m, g->next++)};
+  const double fine = 1e-7; /* errors that stop falling there do so for rounding; coarse ones may rise and fall by chance */
   double longest = fmax(0.01, s->seconds * (m->nruns < 2 ? 0.1 : 0.5));
   if (run.knob == 0 || m->nruns == LAG_COST_MOST_RUNS - 2) {
     g->done = 1;
@@ -112,7 +107,7 @@ static int run_next(Plan *p, int i) {
     g->least = fmin(g->least, run.error);
     g->steps = run.steps;
     m->run[m->nruns++] = run;
-    g->done = g->done || g->idle == 2;
+    g->done = g->done || g->idle == (g->least < fine ? 2 : 6);
   }
   predict(m, g);
   return rc == LAG_ENOMEM ? rc : LAG_OK;
@@ -178,7 +173,7 @@ static int repeat_front(Plan *p) {
 }
 
 int lag_cost_sweep(CostSweep *s) {
-  Plan p = {.s = s, .of = calloc((size_t)s->n + 1, sizeof *p.of), .begin = clock_seconds()};
+  Plan p = {.s = s, .of = calloc((size_t)s->n + 1, sizeof *p.of), .begin = lag_clock_seconds()};
   int rc = lag_samples_init(&p.own, s->reference->rows, s->reference->n), i;
   p.own.output = s->reference->output;
   if (rc == LAG_OK) memcpy(p.own.t, s->reference->t, (size_t)s->reference->rows * sizeof *p.own.t);

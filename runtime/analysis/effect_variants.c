@@ -8,6 +8,7 @@
 
 #include "analysis/memory_pool.h"
 #include "core/core.h"
+#include "numeric/clock.h"
 
 void lag_variant_free(Variant *v) {
   lag_samples_free(&v->run);

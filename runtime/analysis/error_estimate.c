@@ -37,13 +37,21 @@ static void halve(ErrorEstimate *e) {
   e->stride *= 2;
 }
 
-/* *t, y[n] := the middle of the last step, whose error is that of rows between steps; its end where the method steps to each row. */
+/* Whether a switching surface or an event has cut the last step: a dense output that calls the model, or is projected to its constraints, has the
+ * wrong branch, or set of constraints, by now. */
+static int is_cut(const lag_sim *sim) {
+  const lag_model *m = sim->scene->model;
+  return (m->nmodes || m->ncontacts) && sim->run->t != sim->run->step_t1;
+}
+
+/* *t, y[n] := a place within the last step, whose error is that of rows between steps; its end where the method steps to each row, or the step is cut. In the
+ * middle of a flight between two walls, as in that of a symmetric swing, a coordinate would be 0, and have no size. */
 static void take_place(lag_sim *sim, double *t, double *y) {
   const Run *r = sim->run;
   size_t bytes = (size_t)sim->pb.n * sizeof(double);
   double calls = sim->pb.rhs_calls; /* of the run: interpolation may take more */
-  *t = 0.5 * (r->step_t0 + r->t);
-  int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && lag_dense_state(sim, *t, sim->yc) == LAG_OK;
+  *t = r->step_t0 + 0.4 * (r->t - r->step_t0);
+  int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && !is_cut(sim) && lag_dense_state(sim, *t, sim->yc) == LAG_OK;
   sim->pb.rhs_calls = calls;
   if (!between) *t = r->t;
   memcpy(y, between ? sim->yc : sim->now, bytes);
@@ -53,7 +61,7 @@ void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim) {
   Samples *s = &e->motion;
   int at_event = sim->run->events != e->events;
   e->events = sim->run->events;
-  if ((at_event && sim->method->flags & LAG_METHOD_STEPS_TO) || ++e->seen % e->stride) return;
+  if ((at_event && (sim->method->flags & LAG_METHOD_STEPS_TO || is_cut(sim))) || ++e->seen % e->stride) return;
   if (s->rows == LAG_ERROR_PLACES) halve(e);
   if (e->seen % e->stride) return;
   take_place(sim, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
@@ -136,8 +144,35 @@ static void find_growth(ErrorEstimate *e, double *power, double *level) {
     e->growth = LAG_ERROR_EXPONENTIAL;
     e->rate = rate;
   } else {
-    e->growth = *power < 0.4 ? LAG_ERROR_BOUNDED : *power < 1.5 ? LAG_ERROR_LINEAR : LAG_ERROR_QUADRATIC;
+    double uncertain = 2 * sqrt(rest_of_power / (n - first - 2) / by_power.xx); /* errors that oscillate show a slope by chance */
+    e->growth = *power < fmax(0.4, uncertain) ? LAG_ERROR_BOUNDED : *power < 1.5 ? LAG_ERROR_LINEAR : LAG_ERROR_QUADRATIC;
   }
+}
+
+ErrorGrowth lag_error_growth(int n, double *t, const double *error) {
+  ErrorEstimate e = {.motion = {.rows = n, .t = t}, .t0 = n ? t[0] : 0, .horizon = NAN, .compared = n < LAG_ERROR_PLACES ? n : LAG_ERROR_PLACES};
+  double power, level;
+  for (int i = 0; i < e.compared; i++) {
+    e.error[i] = error[i];
+    if (error[i] >= no_digit) return LAG_ERROR_UNKNOWN;
+  }
+  find_growth(&e, &power, &level);
+  return e.growth;
+}
+
+double lag_error_reach(ErrorEstimate *e, double factor) {
+  double power, level, t, rest;
+  find_growth(e, &power, &level);
+  for (int i = 1; i < e->compared; i++) {
+    double before = factor * e->error[i - 1], error = factor * e->error[i];
+    if (error < no_digit || !(before > 0)) continue;
+    double part = before < no_digit ? log(no_digit / before) / log(error / before) : 0;
+    return fabs(e->motion.t[i - 1] - e->t0) + part * fabs(e->motion.t[i] - e->motion.t[i - 1]);
+  }
+  if (!e->compared || e->growth == LAG_ERROR_UNKNOWN) return NAN;
+  t = fabs((isnan(e->horizon) ? e->motion.t[e->compared - 1] : e->horizon) - e->t0);
+  rest = log(no_digit / (factor * level));
+  return e->growth == LAG_ERROR_EXPONENTIAL ? t + rest / e->rate : power > 0.4 ? t * exp(rest / power) : HUGE_VAL;
 }
 
 /* Extends the errors from the last compared time to the end of the run by their law; without one they are not known. */
@@ -199,6 +234,18 @@ int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
   if (rc == LAG_ENOMEM) return rc;
   find_growth(e, &power, &level);
   if (e->compared && isnan(e->horizon) && e->compared < e->motion.rows) extrapolate(e, until, power, level);
+  if (isnan(e->largest) && !e->why[0] && !e->motion.rows) snprintf(e->why, sizeof e->why, "the run ended at an event in its first step");
   if (isnan(e->largest) && !e->why[0]) snprintf(e->why, sizeof e->why, "a second run reached only t = %.3g s", lag_sim_time(other));
   return LAG_OK;
+}
+
+int lag_error_estimate_is_blind(ErrorEstimate *e) {
+  int alike = e->compared > 0;
+  for (int i = 0; i < e->compared; i++) alike = alike && e->error[i] == 0;
+  if (!alike) return 0;
+  e->continued = 0;
+  e->largest = e->horizon = NAN;
+  e->growth = LAG_ERROR_UNKNOWN;
+  e->why[0] = 0;
+  return 1;
 }

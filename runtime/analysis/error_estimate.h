@@ -1,4 +1,4 @@
-/* Error of a run by a second, more accurate run: the differences of the two motions in the middle of steps, where rows are interpolated, and at its end, relative to the largest value of their kind
+/* Error of a run by a second, more accurate run: the differences of the two motions within steps, where rows are interpolated, and at its end, relative to the largest value of their kind
  * and unit, as in work_precision.h. Enters: a run under way, then a simulation of the same scene; leaves: the error, its law of growth, and the
  * horizon, the time from which no digit is left. Holds: the run is the same, bit by bit, with an estimate or without. */
 #pragma once
@@ -38,3 +38,13 @@ void lag_error_estimate_note_end(ErrorEstimate *e, const lag_sim *sim);
 /* Runs `other`, a simulation of the same scene at its start with a more accurate setting, along the noted motion, until it fails or its hook (lag_sim_on_step)
  * ends it, and fills in the rest of *e; until: end of the run. LAG_OK, also where `other` fails (e->why), or LAG_ENOMEM. */
 int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until);
+
+/* After a comparison: whether the motions are the same to the last bit. If so, *e is as before it, for another one. */
+int lag_error_estimate_is_blind(ErrorEstimate *e);
+
+/* After a comparison: time since the start at which errors `factor` times as large leave no digit, by their law of growth; HUGE_VAL: never; NaN: no law
+ * is known. */
+double lag_error_reach(ErrorEstimate *e, double factor);
+
+/* The law of errors at n times t, the first of which is the start; LAG_ERROR_UNKNOWN: none is visible, or no digit is left at the last ones. */
+ErrorGrowth lag_error_growth(int n, double *t, const double *error);

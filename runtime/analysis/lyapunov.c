@@ -1,4 +1,4 @@
-/* Lyapunov exponents by repeated Gram-Schmidt orthonormalisation of the tangent (lyapunov.h), with their errors, and the dimension and entropy
+/* Lyapunov exponents by repeated orthonormalisation of the tangent (lyapunov.h), with their errors, and the dimension and entropy
  * that follow. */
 #include "analysis/lyapunov.h"
 
@@ -7,34 +7,13 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "analysis/orthonormalise.h"
 #include "core/core.h"
 
 /* Largest step times spectral radius: a step of order 5 is then wrong by some 1e-9 of each vector. */
 static const double resolution = 0.1;
 
 void lag_lyapunov_free(Lyapunov *l) { lag_pool_free(&l->pool); }
-
-static double dot(const Lyapunov *l, int a, int b) {
-  double s = 0;
-  for (int i = 0; i < l->n; i++) s += l->Y[i * l->k + a] * l->Y[i * l->k + b];
-  return s;
-}
-
-/* Y := Q of Y = Q R by modified Gram-Schmidt, enough as vectors are still nearly orthogonal after one step. Adds the logarithms of the diagonal
- * of R to `sum` where `counts`. */
-static int orthonormalise(Lyapunov *l, int counts) {
-  for (int a = 0; a < l->k; a++) {
-    for (int b = 0; b < a; b++) {
-      double c = dot(l, a, b);
-      for (int i = 0; i < l->n; i++) l->Y[i * l->k + a] -= c * l->Y[i * l->k + b];
-    }
-    double length = sqrt(dot(l, a, a));
-    if (!(length > 0) || !isfinite(length)) return LAG_EDOMAIN;
-    for (int i = 0; i < l->n; i++) l->Y[i * l->k + a] /= length;
-    l->sum[a] += counts ? log(length) : 0;
-  }
-  return LAG_OK;
-}
 
 /* Pseudo-random vectors, the same in every run: axes of a model may be directions that its flow never leaves. Generator: D.E. Knuth, MMIX; the
  * upper bits of its states. */
@@ -48,14 +27,16 @@ static void random_vectors(Lyapunov *l) {
 
 int lag_lyapunov_begin(Lyapunov *l, lag_sim *sim, int k, double from, double until) {
   size_t n = (size_t)sim->pb.n, kk = (size_t)k, nn = n * n;
-  *l = (Lyapunov){.n = sim->pb.n, .k = k, .from = from, .until = until, .begun = NAN, .t = NAN, .half = NAN};
+  *l = (Lyapunov){.n = sim->pb.n, .d = sim->pb.n, .k = k, .from = from, .until = until, .begun = NAN, .t = NAN, .half = NAN};
   double **const parts[] = {&l->sum, &l->at_half, &l->block_sum, &l->block, &l->Y, &l->J, &l->A, &l->B, &l->work};
   const size_t sizes[] = {kk, kk, kk, LAG_LYAPUNOV_BLOCKS * (kk + 1), n * kk, nn, nn, nn, lag_linear_work(sim->pb.model) + 1};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lag_pool_doubles(&l->pool, sizes[i]);
   if (l->pool.failed) return LAG_ENOMEM;
   random_vectors(l);
-  orthonormalise(l, 0);
-  return lag_sim_set_tangent(sim, k, l->Y);
+  lag_orthonormalise(l->n, k, l->Y, l->sum, 0, 0);
+  int rc = lag_sim_set_tangent(sim, k, l->Y);
+  l->d = rc ? rc : lag_tangent_dimension(sim);
+  return l->d < 0 ? l->d : LAG_OK;
 }
 
 /* Closes the present block: its mean rates. */
@@ -98,7 +79,7 @@ static int examine_jacobian(Lyapunov *l, lag_sim *sim, double t, const double *y
   lag_problem *pb = &sim->pb;
   int n = l->n, nq = pb->nq;
   double before = l->trace, dt = isnan(l->begun) ? 0 : t - l->traced;
-  if (!pb->model->linear) return LAG_OK;
+  if (!pb->model->linear && !pb->model->constraints) return LAG_OK;
   if (lag_jacobian(pb, t, y, l->J, l->work) || lag_not_finite((n - nq) * n, l->J) >= 0) return LAG_EDOMAIN;
   memset(l->A, 0, (size_t)(n * n) * sizeof(double));
   memcpy(l->A + nq * n, l->J, (size_t)((n - nq) * n) * sizeof(double));
@@ -119,11 +100,11 @@ void lag_lyapunov_event(Lyapunov *l, lag_sim *sim, double t, const double *befor
 }
 
 int lag_lyapunov_step(Lyapunov *l, lag_sim *sim) {
-  int rc = lag_sim_tangent(sim, l->Y), counts = !isnan(l->begun);
-  rc = rc ? rc : orthonormalise(l, counts);
+  int rc = lag_sim_tangent(sim, l->Y), counts = !isnan(l->begun), joins = sim->tangent_log == -HUGE_VAL;
+  rc = rc ? rc : lag_orthonormalise(l->n, l->k, l->Y, l->sum, counts, joins);
   rc = rc ? rc : lag_sim_set_tangent(sim, l->k, l->Y);
   l->t = lag_sim_time(sim);
-  l->divergence += counts ? sim->tangent_log : 0;
+  l->divergence += counts || joins ? sim->tangent_log : 0;
   sim->tangent_log = 0;
   rc = rc ? rc : examine_jacobian(l, sim, l->t, sim->now);
   if (rc) return rc;
@@ -157,7 +138,11 @@ double lag_lyapunov_exponent(const Lyapunov *l, int i) { return mean_rate(l, l->
 
 double lag_lyapunov_at_half(const Lyapunov *l, int i) { return isnan(l->half) ? 0 : mean_rate(l, l->at_half, i, l->half); }
 
+/* Whether exponent i, or for i = k their sum, is minus infinity: a slide has joined neighbouring motions. */
+static int is_infinite(const Lyapunov *l, int i) { return mean_rate(l, l->sum, i, l->t) == -HUGE_VAL; }
+
 double lag_lyapunov_spread(const Lyapunov *l, int i) {
+  if (is_infinite(l, i)) return 0;
   double mean = 0, square = 0;
   int n = l->nblocks;
   for (int b = 0; b < n; b++) mean += l->block[b * (l->k + 1) + i] / n;
@@ -171,6 +156,7 @@ double lag_lyapunov_spread(const Lyapunov *l, int i) {
 double lag_lyapunov_divergence(const Lyapunov *l) { return l->t > l->begun ? l->divergence / (l->t - l->begun) : NAN; }
 
 double lag_lyapunov_error(const Lyapunov *l, int i) {
+  if (is_infinite(l, i)) return 0;
   double time = l->t - l->begun, moved = fabs(lag_lyapunov_exponent(l, i) - lag_lyapunov_at_half(l, i));
   return time > 0 ? fmax(fmax(moved, lag_lyapunov_spread(l, i)), fmax(1, DBL_EPSILON * (double)l->steps) / time) : NAN;
 }
@@ -194,7 +180,7 @@ double lag_lyapunov_entropy(const Lyapunov *l, double *error) {
 double lag_lyapunov_dimension(const Lyapunov *l, double *error) {
   double sum = 0, lost = 0;
   *error = NAN;
-  if (l->k < l->n || lag_lyapunov_sign(l, l->k) >= 0) return NAN;
+  if (l->k < l->d || lag_lyapunov_sign(l, l->k) >= 0) return NAN;
   for (int i = 0; i < l->k; i++) {
     double x = lag_lyapunov_sign(l, i) ? lag_lyapunov_exponent(l, i) : 0, off = lag_lyapunov_error(l, i);
     if (sum + x < 0) {

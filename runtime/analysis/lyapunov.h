@@ -1,5 +1,5 @@
 /* Lyapunov exponents of a run with a tangent: k vectors are carried along and made orthonormal again after each step; the logarithms of their
- * growth are summed. G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, Meccanica 15 (1980) 9, DOI 10.1007/BF02128236; I. Shimada, T.
+ * growth are summed. With constraints vectors lie in their tangent space. G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, Meccanica 15 (1980) 9, DOI 10.1007/BF02128236; I. Shimada, T.
  * Nagashima, Prog. Theor. Phys. 61 (1979) 1605, DOI 10.1143/PTP.61.1605. */
 #pragma once
 
@@ -9,7 +9,7 @@
 enum { LAG_LYAPUNOV_BLOCKS = 20 };
 
 typedef struct Lyapunov {
-  int n, k;
+  int n, d, k;             /* size of the state; dimension of the phase space, smaller with constraints; exponents */
   double from, until;      /* interval of the measurement */
   double begun, t;         /* its actual begin and present end, both ends of steps; NaN: not yet */
   double *sum;             /* [k] sum of the logarithms of growth since `begun` */
@@ -42,7 +42,8 @@ void lag_lyapunov_event(Lyapunov *l, lag_sim *sim, double t, const double *befor
 /* At the end of the run: closes the last block if it is at least half full. */
 void lag_lyapunov_end(Lyapunov *l);
 
-/* Exponent i, or for i = k the sum of all, and its estimate at half the time, 0 before; NaN without a measurement. */
+/* Exponent i, or for i = k the sum of all, and its estimate at half the time, 0 before; NaN without a measurement. -HUGE_VAL, with error 0: the motion has
+ * begun to slide on a surface, where neighbouring motions become one. */
 double lag_lyapunov_exponent(const Lyapunov *l, int i);
 double lag_lyapunov_at_half(const Lyapunov *l, int i);
 /* Standard error of exponent i from the means of blocks, as if these were independent; NaN where there are fewer than two. */
@@ -61,6 +62,6 @@ int lag_lyapunov_sign(const Lyapunov *l, int i);
 /* Pesin's entropy: the sum of the positive ones among the k exponents. *error: summed over these and over those within their errors of 0. */
 double lag_lyapunov_entropy(const Lyapunov *l, double *error);
 
-/* Lyapunov dimension of the attractor by J.L. Kaplan and J.A. Yorke (1979, DOI 10.1007/BFb0064319), from all n exponents; those within three
+/* Lyapunov dimension of the attractor by J.L. Kaplan and J.A. Yorke (1979, DOI 10.1007/BFb0064319), from all d exponents; those within three
  * errors of 0 count as 0. NaN where not all are known, or volumes are not known to shrink. */
 double lag_lyapunov_dimension(const Lyapunov *l, double *error);

@@ -249,16 +249,13 @@ static int add_mode(ModeSearch *w, Mode mode, const double *re, const double *im
 
 /* ---- Zero modes */
 
-/* A basis of the kernel with as many zeros as possible: Gauss-Jordan elimination of its vectors, measured in scales. */
-static void reduce_kernel(ModeSearch *w) {
-  int k = w->nkernel, n = w->n;
-  double *v = w->kernel;
+void lag_reduce_columns(int n, int k, const double *scale, double *v) {
   for (int done = 0; done < k; done++) {
     int row = 0, col = done;
     double most = 0;
     for (int i = 0; i < n; i++)
       for (int j = done; j < k; j++) {
-        double e = amplitude(w, i, v[i * k + j], 0);
+        double e = fabs(v[i * k + j]) / scale[i];
         if (e > most * (1 + 1e-9)) {
           most = e;
           row = i;
@@ -310,7 +307,7 @@ static int free_together(ModeSearch *w, double *x) {
 static int add_zero_modes(ModeSearch *w) {
   double *x = lag_pool_doubles(&w->out->pool, (size_t)w->n);
   int rc = x ? LAG_OK : LAG_ENOMEM, all = 1;
-  if (rc == LAG_OK) reduce_kernel(w);
+  if (rc == LAG_OK) lag_reduce_columns(w->n, w->nkernel, w->rest->scale, w->kernel);
   for (int k = 0; k < w->nkernel && rc == LAG_OK; k++) {
     for (int i = 0; i < w->n; i++) {
       x[i] = w->kernel[i * w->nkernel + k];
@@ -420,6 +417,8 @@ static int by_class(const void *a, const void *b) {
   return (x->re < y->re) - (x->re > y->re);
 }
 
+void lag_modes_sort(Modes *s) { qsort(s->mode, (size_t)s->n, sizeof *s->mode, by_class); }
+
 int lag_modes_find(Modes *out, Equilibrium *rest, const lag_algebra *algebra) {
   lag_problem *pb = &rest->sim->pb;
   ModeSearch w = {.out = out, .rest = rest, .algebra = algebra, .pb = pb, .nq = pb->nq, .n = rest->n, .ny = pb->n};
@@ -431,7 +430,7 @@ int lag_modes_find(Modes *out, Equilibrium *rest, const lag_algebra *algebra) {
   if (rc) return rc;
   out->lowering = w.m.lowering;
   rc = pb->nz == 0 && w.m.undamped && out->lowering >= 0 ? modes_of_values(&w) : modes_of_matrix(&w);
-  qsort(out->mode, (size_t)out->n, sizeof *out->mode, by_class);
+  lag_modes_sort(out);
   out->verdict = decide_stability(&w);
   return rc;
 }

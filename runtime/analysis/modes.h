@@ -35,6 +35,7 @@ typedef struct Modes {
   int pairs;     /* each mode stands for both +-(re + i im) */
   int drifts;    /* 1: a push along a zero mode drifts for ever */
   int together;  /* 1: free zero modes are free in any combination */
+  int steady;    /* 1: about a steady motion, in the frame that moves with it */
   int lowering;  /* number of directions in which the energy falls; -1: not known */
 } Modes;
 
@@ -42,3 +43,9 @@ typedef struct Modes {
  * converge. Call lag_modes_free in every case. */
 int lag_modes_find(Modes *modes, Equilibrium *rest, const lag_algebra *algebra);
 void lag_modes_free(Modes *modes);
+
+/* Orders modes as they are listed. */
+void lag_modes_sort(Modes *modes);
+
+/* Columns v[n * k] := a basis of the same space with as many zeros as possible: Gauss-Jordan elimination, components measured in scale[n]. */
+void lag_reduce_columns(int n, int k, const double *scale, double *v);

@@ -6,19 +6,24 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+
+#include "core/core.h"
+#include "core/rhs.h"
+#include "numeric/clock.h"
 
 int lag_samples_init(Samples *s, int rows, int n) {
   *s = (Samples){.rows = rows, .n = n};
   s->t = calloc((size_t)rows + 1, sizeof *s->t);
   s->y = calloc((size_t)rows * (size_t)n + 1, sizeof *s->y);
-  return s->t && s->y ? LAG_OK : LAG_ENOMEM;
+  s->largest = calloc((size_t)n + 1, sizeof *s->largest);
+  return s->t && s->y && s->largest ? LAG_OK : LAG_ENOMEM;
 }
 
 void lag_samples_free(Samples *s) {
   free(s->t);
   free(s->y);
-  s->t = s->y = NULL;
+  free(s->largest);
+  s->t = s->y = s->largest = NULL;
 }
 
 /* *y := output k of the scene. */
@@ -30,9 +35,79 @@ static int take_output(lag_sim *sim, int k, double *y) {
   return rc;
 }
 
+int lag_samples_note(Samples *s, lag_sim *sim) {
+  enum { PLACES = 8 }; /* within a step: long ones pass by maxima */
+  double from = sim->run->step_t0, h = sim->run->t - from, calls = sim->pb.rhs_calls, y;
+  int rc = s->output > 0 ? take_output(sim, s->output - 1, &y) : LAG_OK;
+  if (s->output > 0) {
+    if (rc == LAG_OK) *s->largest = fmax(*s->largest, fabs(y));
+    return rc;
+  }
+  for (int k = sim->method->flags & LAG_METHOD_STEPS_TO ? PLACES : 1; k <= PLACES && rc == LAG_OK; k++) {
+    rc = k < PLACES ? lag_dense_state(sim, from + h * k / PLACES, sim->yc) : LAG_OK;
+    for (int i = 0; i < s->n && rc == LAG_OK; i++) s->largest[i] = fmax(s->largest[i], fabs(k < PLACES ? sim->yc[i] : sim->now[i]));
+  }
+  sim->pb.rhs_calls = calls;
+  return rc;
+}
+
+/* Residuals on their way: the largest of each component since the last row, and the hook that was there before. */
+typedef struct Residuals {
+  double *most, *r; /* [n] each; r: of one step */
+  int rc;
+  int (*before)(void *, const lag_sim *);
+  void *context;
+} Residuals;
+
+/* r[n] := the residual in the middle of the last step. The derivative of the motion is that of a polynomial of degree 8. */
+static int take_residual(lag_sim *sim, double *r) {
+  static const double weight[] = {4. / 5, -1. / 5, 4. / 105, -1. / 280};
+  const double apart = 0.1; /* of a step */
+  double from = sim->run->step_t0, h = sim->run->t - from, middle = from + 0.5 * h, calls = sim->pb.rhs_calls, *y = sim->yc;
+  int n = sim->pb.n, rc = LAG_OK;
+  memset(r, 0, (size_t)n * sizeof *r);
+  if (h == 0) return LAG_OK;
+  if (sim->method->flags & LAG_METHOD_STEPS_TO) return lag_fail(sim, LAG_EINVAL, "%s has no motion between the ends of its steps, and so no residual", sim->method->name);
+  rc = lag_dense_state(sim, middle, y);
+  rc = rc ? rc : lag_rhs(&sim->pb, middle, y, r);
+  for (int i = 0; i < n && rc == LAG_OK; i++) r[i] = -r[i];
+  for (int k = 1; k <= 8 && rc == LAG_OK; k++) {
+    int side = k > 4 ? -1 : 1, at = k > 4 ? k - 4 : k;
+    rc = lag_dense_state(sim, middle + side * at * apart * h, y);
+    for (int i = 0; i < n && rc == LAG_OK; i++) r[i] += side * weight[at - 1] / (apart * h) * y[i];
+  }
+  sim->pb.rhs_calls = calls;
+  return rc;
+}
+
+static int note_residual(void *residuals, const lag_sim *sim) {
+  Residuals *w = residuals;
+  w->rc = take_residual((lag_sim *)sim, w->r);
+  for (int i = 0; i < sim->pb.n && w->rc == LAG_OK; i++) w->most[i] = w->r[i] - w->r[i] == 0 ? fmax(w->most[i], fabs(w->r[i])) : HUGE_VAL;
+  return w->rc || (w->before && w->before(w->context, sim));
+}
+
+/* s->y := the largest residuals between the rows. */
+static int take_residuals(Samples *s, lag_sim *sim) {
+  Residuals w = {.before = sim->on_step, .context = sim->on_step_context};
+  int rc = (w.r = calloc((size_t)s->n + 1, sizeof *w.r)) ? LAG_OK : LAG_ENOMEM;
+  lag_sim_on_step(sim, note_residual, &w);
+  for (int i = 0; i < s->rows && rc == LAG_OK; i++) {
+    w.most = s->y + (size_t)i * (size_t)s->n;
+    memset(w.most, 0, (size_t)s->n * sizeof *w.most);
+    rc = lag_sim_advance(sim, s->t[i]);
+    if (rc == LAG_STOPPED) s->rows = i;
+    rc = w.rc ? w.rc : rc;
+  }
+  lag_sim_on_step(sim, w.before, w.context);
+  free(w.r);
+  return rc == LAG_STOPPED ? LAG_OK : rc;
+}
+
 int lag_samples_take(Samples *s, lag_sim *sim) {
   const lag_model *m = lag_sim_scene(sim)->model;
   size_t nq = (size_t)m->nq, nz = (size_t)m->nz;
+  if (s->output == LAG_SAMPLES_RESIDUAL) return take_residuals(s, sim);
   for (int i = 0; i < s->rows; i++) {
     double *y = s->y + (size_t)i * (size_t)s->n;
     int rc = lag_sim_advance(sim, s->t[i]);
@@ -70,12 +145,12 @@ int lag_previous_alike(const lag_sim *sim, int i) {
 void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale) {
   int n = reference->n;
   for (int i = 0; i < n; i++) {
-    int alike = reference->output ? -1 : lag_previous_alike(sim, i);
-    scale[i] = alike < 0 ? 0 : scale[alike];
+    int alike = reference->output > 0 ? -1 : lag_previous_alike(sim, i);
+    scale[i] = fmax(alike < 0 ? 0 : scale[alike], reference->largest ? reference->largest[i] : 0);
     for (int r = 0; r < reference->rows; r++) scale[i] = fmax(scale[i], fabs(reference->y[(size_t)r * (size_t)n + (size_t)i]));
   }
   for (int i = n - 1; i >= 0; i--) { /* the last of a kind has the largest */
-    int alike = reference->output ? -1 : lag_previous_alike(sim, i);
+    int alike = reference->output > 0 ? -1 : lag_previous_alike(sim, i);
     scale[i] = scale[i] > 0 ? scale[i] : 1;
     if (alike >= 0) scale[alike] = scale[i];
   }
@@ -99,19 +174,12 @@ double lag_cost_error(const Samples *a, const Samples *b, const double *scale) {
 
 /* ---- One setting */
 
-double lag_processor_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
 }
 
-/* A simulation with the method at this setting; NULL without memory, or with *rc and m->why set. */
-static lag_sim *prepare(CostMethod *m, const CostScene *scene, double knob, int *rc) {
+lag_sim *lag_cost_prepare(CostMethod *m, const CostScene *scene, double knob, int *rc) {
   lag_sim *sim = scene->fresh(scene->context);
   int adaptive = (m->method->flags & LAG_METHOD_ADAPTIVE) != 0, n = 0;
   lag_option opt[2];
@@ -145,42 +213,56 @@ static int is_too_long(void *watch, const lag_sim *sim) {
   return used > w->longest || (w->s->note && w->s->note(w->s->context, w->m, -1));
 }
 
+/* One run: own, *run's time, steps and calls. `watched`: it is left after `longest` [s]. */
+static int run_once(CostMethod *m, const CostSweep *s, int watched, double longest, Samples *own, CostRun *run) {
+  int rc;
+  lag_sim *sim = lag_cost_prepare(m, &s->scene, run->knob, &rc);
+  lag_stats st;
+  Watch watch = {.s = s, .m = m, .begin = lag_processor_seconds(), .longest = longest};
+  if (!sim) return rc;
+  own->rows = s->reference->rows;
+  if (watched) lag_sim_on_step(sim, is_too_long, &watch);
+  double begin = lag_processor_seconds();
+  rc = lag_samples_take(own, sim);
+  run->time = lag_processor_seconds() - begin;
+  if (rc == LAG_INTERRUPTED) {
+    snprintf(m->why, sizeof m->why, "it took longer than %.2g s", longest);
+  } else if (rc) {
+    snprintf(m->why, sizeof m->why, "%s", lag_sim_message(sim));
+  } else {
+    lag_sim_stats(sim, &st);
+    run->steps = st.steps;
+    run->calls = st.rhs_calls;
+    /* A motion that has left the true one, and all forces, has a small residual. */
+    if (own->output == LAG_SAMPLES_RESIDUAL && lag_sim_judge(sim) < 0) own->y[0] = HUGE_VAL;
+    m->why[0] = '\0';
+  }
+  lag_sim_free(sim);
+  return rc ? rc : own->rows < s->reference->rows ? LAG_STOPPED : LAG_OK;
+}
+
 int lag_cost_run(CostMethod *m, const CostSweep *s, double enough, int most, double longest, Samples *own, CostRun *run) {
   enum { MOST_REPEATS = 41 };
   double times[MOST_REPEATS], total = 0;
-  int n = 0;
-
-  while (n < MOST_REPEATS && n < most && (n == 0 || total < enough)) {
-    int rc;
-    lag_sim *sim = prepare(m, &s->scene, run->knob, &rc);
-    lag_stats st;
-    Watch watch = {.s = s, .m = m, .begin = lag_processor_seconds(), .longest = longest};
-    if (!sim) return rc;
-    own->rows = s->reference->rows;
-    if (n == 0) lag_sim_on_step(sim, is_too_long, &watch);
-    double begin = lag_processor_seconds();
-    rc = lag_samples_take(own, sim);
-    times[n] = lag_processor_seconds() - begin;
-    if (rc == LAG_INTERRUPTED) {
-      snprintf(m->why, sizeof m->why, "it took longer than %.2g s", longest);
-    } else if (rc) {
-      snprintf(m->why, sizeof m->why, "%s", lag_sim_message(sim));
-    } else {
-      lag_sim_stats(sim, &st);
-      run->steps = st.steps;
-      run->calls = st.rhs_calls;
-      m->why[0] = '\0';
-    }
-    lag_sim_free(sim);
-    run->time = times[n];
-    if (rc || own->rows < s->reference->rows) return rc ? rc : LAG_STOPPED;
-    total += times[n++];
+  int n = 0, residual = own->output == LAG_SAMPLES_RESIDUAL, rc = run_once(m, s, 1, longest, own, run);
+  if (rc) return rc;
+  run->error = 0;
+  for (int i = 0; i < own->rows && i < LAG_COST_MOST_ROWS; i++) {
+    size_t at = (size_t)i * (size_t)own->n;
+    run->at[i] = lag_cost_row_error(own->n, own->y + at, s->reference->y + at, s->scale);
+    run->error = fmax(run->error, run->at[i]);
   }
-  run->error = lag_cost_error(own, s->reference, s->scale);
+  own->output = residual ? 0 : own->output; /* whose computation is not part of a run's time */
+  if (!residual) total = times[n++] = run->time;
+  while (n < MOST_REPEATS && (n == 0 || (n < most && total < enough)) && rc == LAG_OK) {
+    rc = run_once(m, s, 0, longest, own, run);
+    total += times[n++] = run->time;
+  }
+  own->output = residual ? LAG_SAMPLES_RESIDUAL : own->output;
   qsort(times, (size_t)n, sizeof *times, ascending);
   run->time = times[n / 2];
   run->spread = n > 1 ? (times[3 * n / 4] - times[n / 4]) / times[n / 2] : NAN;
-  return LAG_OK;
+  return rc;
 }
 
 double lag_cost_order(const CostMethod *m, double uncertainty) {
@@ -216,15 +298,20 @@ void lag_pareto_front(CostMethod *m, int n) {
     }
 }
 
-const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run) {
+/* answers: 1: without runs that monitors stop. */
+static const CostMethod *find_cheapest(const CostMethod *m, int n, double target, int answers, const CostRun **run) {
   const CostMethod *which = NULL;
   for (int i = 0; i < n; i++)
     for (int k = 0; k < m[i].nruns; k++) {
       const CostRun *r = &m[i].run[k];
-      if (r->error <= target && (!which || r->time < (*run)->time)) {
+      if (r->error <= target && !(answers && r->stopped) && (!which || r->time < (*run)->time)) {
         which = &m[i];
         *run = r;
       }
     }
   return which;
 }
+
+const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run) { return find_cheapest(m, n, target, 0, run); }
+
+const CostMethod *lag_cost_answer(const CostMethod *m, int n, double target, const CostRun **run) { return find_cheapest(m, n, target, 1, run); }

@@ -8,9 +8,14 @@
 typedef struct Samples {
   int rows, n;
   double *t, *y;
+  double *largest;  /* [n] largest size of each component between the rows, where it is known; 0: only rows count for scales */
   double uncertainty;
-  int output; /* 0: the state; k > 0: y[rows] is output k - 1 of the scene alone, n = 1 */
+  int output; /* 0: the state; k > 0: y[rows] is output k - 1 of the scene alone, n = 1; LAG_SAMPLES_RESIDUAL */
 } Samples;
+
+/* y: the largest of what is left of the equations of motion, y' - f(t, y), in the middle of each step since the row before, where y is the method's own
+ * motion between the ends of steps. */
+enum { LAG_SAMPLES_RESIDUAL = -1 };
 
 /* Allocates samples of zeros. LAG_OK or LAG_ENOMEM. Free with lag_samples_free, also after an error. */
 int lag_samples_init(Samples *s, int rows, int n);
@@ -26,7 +31,10 @@ typedef struct CostScene {
 /* Runs `sim` to each of the times s->t and fills s->y. Fewer rows remain where an event ends the run. < 0: failure, see lag_sim_message. */
 int lag_samples_take(Samples *s, lag_sim *sim);
 
-/* scale[n] := divisor of the error of component i: the largest reference value among components of the same kind (coordinate, velocity or state)
+/* Notes in s->largest the state, or output, of sim: after each step of a reference. LAG_OK, or a failure of the output. */
+int lag_samples_note(Samples *s, lag_sim *sim);
+
+/* scale[n] := divisor of the error of component i: the largest reference value, at rows and between them, among components of the same kind (coordinate, velocity or state)
  * and unit; 1 where all of them are 0. */
 void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale);
 
@@ -34,12 +42,16 @@ void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale
 double lag_cost_row_error(int n, const double *a, const double *b, const double *scale);
 double lag_cost_error(const Samples *a, const Samples *b, const double *scale);
 
+enum { LAG_COST_MOST_ROWS = 17 };
+
 /* One setting: knob is its tolerance, or its step where steps are of equal size. */
 typedef struct CostRun {
   double knob;
   double error;
   double time, spread; /* median processor time [s] of the repeats; their interquartile range relative to it, NaN for one run */
   long long steps, calls;
+  double at[LAG_COST_MOST_ROWS]; /* error at each row of the reference, for its growth */
+  int stopped;         /* 1: the scene's monitors stop this setting, so that it is no answer */
   int best;            /* Pareto-optimal: no other run of any method is both faster and more accurate */
 } CostRun;
 
@@ -78,16 +90,17 @@ int lag_cost_sweep(CostSweep *s);
 /* One setting of *m, run once, and again while `enough` processor time [s] is not used, at most `most` times. LAG_OK: *run has its result;
  * LAG_STOPPED: the run ended before the reference; LAG_INTERRUPTED: it took longer than `longest` [s]; < 0: it failed. Not LAG_OK: m->why says why. */
 int lag_cost_run(CostMethod *m, const CostSweep *s, double enough, int most, double longest, Samples *own, CostRun *run);
+/* A simulation with the method at this setting; NULL without memory, or with *rc and m->why set. */
+lag_sim *lag_cost_prepare(CostMethod *m, const CostScene *scene, double knob, int *rc);
 /* Observed order: the median of the last three slopes between runs that neither rounding nor the reference's error affects; NaN: none is visible. */
 double lag_cost_order(const CostMethod *m, double uncertainty);
 
 /* The last component before i of the same kind (coordinate, velocity or state) and unit; -1: there is none. */
 int lag_previous_alike(const lag_sim *sim, int i);
-/* Processor time of this process [s]. */
-double lag_processor_seconds(void);
 
 /* Marks the Pareto front of all runs. */
 void lag_pareto_front(CostMethod *m, int n);
 
-/* The method of the fastest run with an error of at most `target`, and *run; NULL: there is none. */
+/* The method of the fastest run with an error of at most `target`, and *run; NULL: there is none. lag_cost_answer: of those that are not `stopped`. */
 const CostMethod *lag_cost_cheapest(const CostMethod *m, int n, double target, const CostRun **run);
+const CostMethod *lag_cost_answer(const CostMethod *m, int n, double target, const CostRun **run);

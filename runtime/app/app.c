@@ -4,35 +4,32 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#ifndef _WIN32
 #include <sys/wait.h>
-#include <unistd.h>
+#endif
 
 #include "app/app.h"
 #include "core/core.h"
+#include "io/posix.h"
+#include "numeric/clock.h"
 
 /* Signal received, 0: none. The only mutable global, since a signal handler can reach nothing else. */
 static volatile sig_atomic_t interrupted;
 
 static void on_interrupt(int signal_number) { interrupted = signal_number; }
 
-static double seconds_since(const struct timespec *t) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)(now.tv_sec - t->tv_sec) + 1e-9 * (double)(now.tv_nsec - t->tv_nsec);
-}
-
 /* After each step: tests for signals, updates the progress line (on a terminal, after 1 s, at most 5 times a second). */
 int lag_app_after_step(void *context, const lag_sim *sim) {
   App *app = context;
-  if (app->watched) lag_error_estimate_note(&app->error, app->sim);
-  if (app->progress >= 0 && seconds_since(&app->shown) >= (app->progress ? 0.2 : 1.0)) {
+  if (app->watched && sim == app->sim) lag_error_estimate_note(&app->error, app->sim);
+  if (app->volume.n && sim == app->sim) lag_app_volume_step(app);
+  if (app->progress >= 0 && lag_clock_seconds() - app->shown >= (app->progress ? 0.2 : 1.0)) {
     double t = lag_sim_time(sim), t0 = app->scene->t0, part = (t - t0) / (app->until - t0);
     fprintf(stderr, "\rt = %.6g s, %.0f %% ", t, 100 * part);
-    clock_gettime(CLOCK_MONOTONIC, &app->shown);
+    app->shown = lag_clock_seconds();
     app->progress = 1;
   }
-  return interrupted != 0 || app->bad_file || app->section_rc;
+  return interrupted != 0 || app->bad_file || app->section_rc || app->volume_rc;
 }
 
 /* ---- Settings of the run */
@@ -69,19 +66,25 @@ static int same_file(const char *a, const char *b) {
   return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino && S_ISREG(x.st_mode);
 }
 
+/* The path without ./ before it: files that are not there yet are told apart by their names. */
+static const char *plain(const char *path) {
+  while (strncmp(path, "./", 2) == 0) path += 2;
+  return path;
+}
+
 int lag_app_check_outputs(const App *app) {
   const Args *a = &app->args;
-  const char *const to[] = {a->out, a->svg, a->html, a->save, a->events}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume};
+  const char *const to[] = {a->out, a->svg, a->html, a->save, a->events, a->motions}, *const keep[] = {app->program->source, "/proc/self/exe", a->resume, a->rows};
   enum { N = sizeof to / sizeof *to, KEPT = sizeof keep / sizeof *keep };
 
   for (int i = 0; i < N; i++) {
     for (int k = 0; to[i] && k < KEPT; k++)
       if (keep[k] && same_file(to[i], keep[k]) && !(to[i] == a->save && keep[k] == a->resume)) {
         return lag_app_error(a, "%s would be overwritten: it is %s; write to another file", to[i],
-                         k == 0 ? "the model" : k == 1 ? "this program" : "the state to go on from");
+                         k == 0 ? "the model" : k == 1 ? "this program" : k == 2 ? "the state to go on from" : "the file of --rows");
       }
     for (int k = 0; to[i] && k < i; k++)
-      if (to[k] && (strcmp(to[i], to[k]) == 0 ? strcmp(to[i], "/dev/null") != 0 : same_file(to[i], to[k])))
+      if (to[k] && (strcmp(plain(to[i]), plain(to[k])) == 0 ? !lag_is_null_device(to[i]) : same_file(to[i], to[k])))
         return lag_app_error(a, "%s would be written twice; give each result a file of its own", to[i]);
   }
   return 0;
@@ -91,6 +94,7 @@ int lag_app_check_outputs(const App *app) {
 static int choose_grid(App *app) {
   const Args *a = &app->args;
   double *grid = lag_sim_output_grid(app->sim), every = app->resumed ? grid[1] : app->scene->every;
+  if (lag_app_equal_times(a)) every = 0;
   double t = lag_sim_time(app->sim), origin = app->resumed && every > 0 ? grid[0] : t;
   if (a->every) {
     if (!lag_args_number(a, "--every", a->every, "--every 0.01", &every)) return EXIT_USAGE;
@@ -112,7 +116,7 @@ static int choose_grid(App *app) {
 }
 
 /* Time of the next row k: k/(1/every) where 1/every is whole, so that times are 0.3, not 0.1*3. */
-static double row_time(const App *app, const double *grid) {
+double lag_app_row_time(const App *app, const double *grid) {
   double dir = app->until < app->scene->t0 ? -1 : 1, whole = 1 / grid[1], n = nearbyint(whole);
   if (n >= 1 && fabs(whole - n) <= 4e-16 * n) return grid[0] + dir * (grid[2] / n);
   return grid[0] + dir * (grid[2] * grid[1]);
@@ -136,6 +140,7 @@ int lag_app_write_row(App *app, int drawn) {
     app->bad_file = app->args.out;
     return LAG_EIO;
   }
+  if (drawn && app->args.energy_error) lag_energy_without_jumps(app);
   return drawn && lag_table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
 
@@ -143,6 +148,7 @@ int lag_app_put_row(App *app) {
   double t = lag_sim_time(app->sim);
   app->row[0] = app->last_row = t;
   int rc = lag_sim_outputs(app->sim, app->row + 1);
+  rc = rc ? rc : lag_marks_note(app);
   rc = rc ? rc : lag_tangent_columns_row(app);
   if (rc) return rc;
   note_empty(app, t);
@@ -154,7 +160,7 @@ static int run_rows(App *app) {
   double *grid = lag_sim_output_grid(app->sim), dir = app->until < app->scene->t0 ? -1 : 1;
   int rc = 0;
   while (rc == 0) {
-    double t = row_time(app, grid), rest = (app->until - t) * dir;
+    double t = lag_app_row_time(app, grid), rest = (app->until - t) * dir;
     if (rest < -1e-9 * grid[1]) return LAG_OK;
     if (fabs(rest) <= 1e-9 * grid[1]) {
       app->until = t; /* same time up to rounding */
@@ -167,7 +173,8 @@ static int run_rows(App *app) {
 }
 
 static void run(App *app) {
-  int rows = app->section < 0 && (app->args.out || (app->table.keep && (app->args.every || !app->sampling.on))), rc = rows ? run_rows(app) : 0;
+  int rows = app->section < 0 && (app->args.out || (app->table.keep && (app->args.every || !app->sampling.on))), rc = lag_app_measures_begin(app), begun = rc >= 0;
+  rc = rows && rc == 0 ? run_rows(app) : rc;
   if (rc == 0) {
     rc = lag_sampling_advance(app, app->until);
     rc = rc ? rc : lag_sim_judge(app->sim);
@@ -176,8 +183,9 @@ static void run(App *app) {
     int bad = lag_app_put_row(app);
     rc = bad ? bad : rc;
   }
+  if (begun && lag_app_measures_end(app)) rc = LAG_ENOMEM;
   if (lag_sampling_close(app)) rc = LAG_ENOMEM;
-  app->status = app->bad_file ? LAG_EIO : app->section_rc && rc >= 0 ? app->section_rc : rc;
+  app->status = app->bad_file ? LAG_EIO : app->section_rc && rc >= 0 ? app->section_rc : app->volume_rc && rc >= 0 ? app->volume_rc : rc;
   lag_app_stop_clock(app);
 }
 
@@ -185,8 +193,7 @@ static void run(App *app) {
 
 int lag_app_io_error(const App *app, const char *path) { return lag_app_error(&app->args, "cannot write %s: %s", path, strerror(errno)); }
 
-/* Tests before a long run whether a file can be written. */
-static int try_file(const App *app, const char *path) {
+int lag_app_try_file(const App *app, const char *path) {
   Outfile o;
   return path && (lag_outfile_open(&o, path) || lag_outfile_close(&o, OUTFILE_DROP)) ? lag_app_io_error(app, path) : 0;
 }
@@ -198,10 +205,11 @@ static int open_output(App *app) {
     return lag_app_error(a, "out of memory");
   }
   app->table.points = app->section >= 0;
-  if (lag_tangent_columns_open(app) || lag_app_choose_curves(app)) return EXIT_USAGE;
+  if (lag_tangent_columns_open(app) || lag_app_volume_open(app) || lag_app_choose_curves(app) || lag_portrait_open(app)) return EXIT_USAGE;
   if (a->html && lag_app_choose_points(app)) return EXIT_USAGE;
-  if (try_file(app, a->svg) || try_file(app, a->html) || try_file(app, a->save)) return EXIT_USAGE;
+  if (lag_app_try_file(app, a->svg) || lag_app_try_file(app, a->html) || lag_app_try_file(app, a->save)) return EXIT_USAGE;
   int rc = lag_sampling_open(app);
+  rc = rc ? rc : lag_marks_open(app);
   rc = rc ? rc : lag_event_log_open(app);
   return rc ? rc : a->out && lag_rows_open(&app->rows, a->out, &app->table) ? lag_app_io_error(app, a->out) : 0;
 }
@@ -226,6 +234,9 @@ static int save_state(const App *app) {
 
 /* After a NaN: sends t, q, v, z and p through the pipe $LAG_LAST_STATE (a descriptor) to the waiting lagc process, if there is one, which
  * names the expression that has no value. Waits for its end. */
+#ifdef _WIN32
+static void tell_last_state(const App *app) { (void)app; } /* lagc does not wait there */
+#else
 static void tell_last_state(const App *app) {
   const char *name = getenv("LAG_LAST_STATE");
   const lag_model *m = app->scene->model;
@@ -240,6 +251,7 @@ static void tell_last_state(const App *app) {
   fclose(f);
   while (wait(NULL) < 0 && errno == EINTR) continue;
 }
+#endif
 
 /* Pictures are grey past the horizon. */
 static void note_horizon(App *app) {
@@ -274,7 +286,8 @@ static int finish(App *app) {
            app->section < 0 ? "" : app->scene->model->ev[app->section].name);
   if (a->html && lag_html_write(a->html, &app->table, title, &app->show)) bad = lag_app_io_error(app, a->html);
   lag_table_scale_time(&app->table);
-  if (a->svg && lag_svg_write(a->svg, &app->table, title, &app->drawn)) bad = lag_app_io_error(app, a->svg);
+  if (a->energy_error) lag_energy_errors(&app->table, &app->drawn);
+  if (lag_app_draw_table(app, title)) bad = EXIT_USAGE;
   if (a->save && app->status >= 0 && save_state(app)) bad = EXIT_USAGE;
   if (a->sketch) {
     FILE *to = a->json ? stderr : f;
@@ -303,18 +316,17 @@ void lag_app_catch_interrupt(void) {
 void lag_app_start_clock(App *app) {
   lag_app_catch_interrupt();
   app->progress = isatty(2) && !app->args.quiet ? 0 : -1;
-  clock_gettime(CLOCK_MONOTONIC, &app->begun);
-  app->shown = app->begun;
+  app->begun = app->shown = lag_clock_seconds();
 }
 
 void lag_app_stop_clock(App *app) {
-  app->wall = seconds_since(&app->begun);
+  app->wall = lag_clock_seconds() - app->begun;
   if (app->progress > 0) fputs("\r\33[K", stderr);
 }
 
 int lag_app_interrupted(void) { return EXIT_SIGNAL + interrupted; }
 
-static int simulate(App *app) {
+int lag_app_run(App *app) {
   int rc = lag_app_set_up(app);
   if (rc || (rc = lag_section_choose(app)) != 0 || (rc = lag_app_check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0)
     return rc;
@@ -322,6 +334,7 @@ static int simulate(App *app) {
     return lag_app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",
                      lag_sim_method(app->sim)->name);
   }
+  if ((rc = lag_app_measures_open(app)) != 0) return rc;
   lag_app_catch_interrupt();
   if ((rc = open_output(app)) != 0) return rc;
   if (!app->args.quiet || app->args.json || app->args.save) {
@@ -334,38 +347,61 @@ static int simulate(App *app) {
   lag_app_start_clock(app);
   run(app);
   lag_app_error_end(app);
-  return finish(app);
+  return 0;
+}
+
+static int simulate(App *app) {
+  int rc = lag_app_run(app);
+  return rc ? rc : finish(app);
+}
+
+void lag_app_free(App *app) {
+  lag_sim_free(app->sim);
+  lag_table_free(&app->table);
+  lag_event_log_free(app);
+  lag_sampling_free(app);
+  lag_marks_free(app);
+  lag_error_estimate_free(&app->error);
+  lag_app_measures_free(app);
+  lag_phase_volume_free(&app->volume);
+  free(app->show.cols);
+  free(app->portrait);
+  free(app->drawn.x);
+  free(app->row);
+  free(app->state.data);
 }
 
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras) {
   App app = {.program = program, .extras = extras ? *extras : (lag_extras){0}, .last_row = NAN};
+  lag_binary_streams();
   int rc = lag_args_parse(&app.args, argc, argv);
+  rc = rc ? rc : lag_app_check_parts(&app);
   if (rc == 0 && app.args.help) {
     lag_app_help(&app, stdout);
   } else if (rc == 0 && app.args.method && strcmp(app.args.method, "help") == 0) {
     lag_app_list_methods(&app, NULL, stdout);
   } else if (rc == 0 && app.args.method && strncmp(app.args.method, "help ", 5) == 0 && lag_app_find_method(&app, app.args.method + 5)) {
     lag_app_list_methods(&app, app.args.method + 5, stdout);
+  } else if (rc == 0 && app.args.sweep) {
+    rc = lag_app_sweep(&app);
   } else if (rc == 0 && app.args.modes) {
     rc = lag_app_modes(&app);
   } else if (rc == 0 && app.args.lyapunov) {
     rc = lag_app_lyapunov(&app);
   } else if (rc == 0 && app.args.effects) {
     rc = lag_app_effects(&app);
+  } else if (rc == 0 && app.args.where) {
+    rc = lag_app_where(&app);
   } else if (rc == 0 && (app.args.cost || app.args.reference)) {
     rc = lag_app_cost(&app);
   } else if (rc == 0) {
-    rc = simulate(&app);
+    rc = app.args.cloud ? lag_app_cloud(&app) : lag_app_overlays(&app.args) ? lag_app_overlay(&app) : simulate(&app);
   }
-  lag_sim_free(app.sim);
-  lag_table_free(&app.table);
-  lag_event_log_free(&app);
-  lag_sampling_free(&app);
-  lag_error_estimate_free(&app.error);
-  free(app.show.cols);
-  free(app.drawn.x);
-  free(app.row);
+  lag_app_free(&app);
   free(app.args.sets);
-  free(app.state.data);
+  free(app.args.scenes);
+  free(app.args.measures);
+  free(app.args.plot_ys);
+  free(app.args.vs);
   return rc;
 }

@@ -3,9 +3,10 @@
 #pragma once
 
 #include <signal.h>
-#include <time.h>
 
 #include "analysis/error_estimate.h"
+#include "analysis/measure.h"
+#include "analysis/phase_volume.h"
 #include "io/io.h"
 
 enum { EXIT_FINE = 0, EXIT_USAGE = 2, EXIT_RUN = 3, EXIT_SIGNAL = 128 };
@@ -13,14 +14,25 @@ enum { MOST_OPTIONS = 16 };
 
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
-  const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section;
+  const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section, *cloud, *starts;
   const char *accuracy;
   const char *transient, *exponents; /* for --lyapunov */
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
+  const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram; /* for --sweep */
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
-  int json, sketch, quiet, help, trace, no_rods, modes, tangent, lyapunov, cost, reference, all, runs;
+  int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs, where, sweep, zip, go_on, portrait, potential, distance, energy_error;
   char **sets; /* name=value, in order */
   int nsets;
+  const char **scenes; /* all scenes named; scene is the first */
+  int nscenes;
+  const char **measures; /* the values of --measure, in order; NULL: none */
+  int nmeasures;
+  int argc;         /* as main gets them */
+  char **argv;
+  const char **vs; /* the values of --vs, name=value, in order; NULL: none */
+  int nvs;
+  const char **plot_ys; /* the values of --plot-y; plot_y is the first */
+  int nplot_ys;
 } Args;
 
 /* A column that pictures draw: its range so far, the deviation allowed, and the slopes of the swinging door. */
@@ -51,7 +63,8 @@ typedef struct App {
   lag_extras extras;
   Args args;
   const lag_scene *scene;
-  lag_scene bare;   /* for exponents, costs and errors: the scene without monitors and closed forms, which would end a rough run or take time */
+  const lag_scene *whole; /* the scene with its monitors */
+  lag_scene bare;   /* for exponents, costs, errors and their pictures: the scene without monitors and closed forms, which would end a rough run or take time */
   lag_sim *sim;
   State state;      /* the saved state of --resume */
   int resumed;      /* 1: the run continues from `state` */
@@ -59,7 +72,10 @@ typedef struct App {
   PictureSampling sampling;
   Rows rows;
   Animation show;
+  int *marked;      /* [tracks] the words noted last; NULL: no animation */
   PlottedCurves drawn;
+  char drawn_ys[96]; /* label of an axis with the names of several --plot-y */
+  double *portrait, portrait_unit[3]; /* --portrait, --potential: a state; SI units in those of its first two components and of the energy, as drawn */
   double *row;      /* [ncols] */
   double last_row;  /* time of the last row, NaN before the first */
   long long rows_put, empty_rows; /* rows written; rows with an output that is not finite */
@@ -70,14 +86,23 @@ typedef struct App {
   int section_rc;   /* failure of its last row */
   char why[200];    /* reason of the automatic choice of the method; "" where one was named */
   int status;       /* LAG_... of the run */
+  int refused;      /* 1: the method refuses the model */
+  int overlaid;     /* 1: a run among others of one picture: its error is not estimated */
+  int compared;     /* 1: beside runs by other methods, which the picture compares: monitors are not asked */
   int written;      /* 1: the file of rows is complete */
-  struct timespec begun, shown; /* start of the run; last update of the progress line */
+  double begun, shown; /* start of the run; last update of the progress line [s of lag_clock_seconds] */
   double wall;      /* wall-clock time of the run [s] */
   ErrorEstimate error; /* of the run, */
   int watched;      /* where it is estimated */
   double asked;     /* --accuracy; 0: none */
   double second_most; /* most steps of the second run */
   int progress;     /* progress line: 1 shown, 0 not yet, -1 never (no terminal, or --quiet) */
+  PhaseVolume volume; /* --volume */
+  int volume_rc;    /* failure of its last step */
+  Measures *measures; /* of the scene and of --measure; NULL: none */
+  const char **measure_texts; /* their expressions */
+  char **measure_names;
+  double *measured; /* their values */
   Table log;        /* event log: its columns, */
   Rows log_rows;    /* its file, */
   double *log_row;  /* the row being written, */
@@ -91,6 +116,8 @@ int lag_args_parse(Args *a, int argc, char **argv);
 int lag_args_decimal(const char *text, double *x);
 /* The same for finite numbers. Else a message with the name `what` and an example; returns 0. */
 int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x);
+/* x := the whole number of an option, from 1 on. 0, or EXIT_USAGE after a message. */
+int lag_args_count(const Args *a, const char *option, const char *text, const char *example, long long *x);
 /* Prints an error to standard error after the program's name; returns EXIT_USAGE. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
@@ -120,13 +147,18 @@ const lag_method *lag_app_find_method(const App *app, const char *name);
 /* Prints that there is no such method; returns EXIT_USAGE. */
 int lag_app_unknown_method(const App *app, const char *name);
 
-/* automatic_method.c: chooses a method with these options for app->sim, whose values are set; app->why := the reason. 0, or EXIT_USAGE after a
- * message. */
+/* Chooses a method with these options for app->sim, whose values are set; app->why := the reason. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_automatically(App *app, const lag_option *opt, int n);
 
 /* help.c: --help; the table of all methods, or of the one of this name. */
 void lag_app_help(const App *app, FILE *f);
 void lag_app_list_methods(const App *app, const char *name, FILE *f);
+
+/* pictures.c: writes a picture to path by `write`, which makes an SVG file (-1 with errno set); of a path that ends in .png that becomes a PNG. lag_app_draw_table: the
+ * table to --svg, if given. 0, or EXIT_USAGE after a message. lag_app_check_parts: refuses files that only a program built with librsvg or libhdf5 writes. */
+int lag_app_check_parts(const App *app);
+int lag_app_picture(const App *app, const char *path, int (*write)(const char *svg, void *context), void *context);
+int lag_app_draw_table(const App *app, const char *title);
 
 /* column_lookup.c: app->drawn := columns of --plot-x and --plot-y, or all. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_curves(App *app);
@@ -141,6 +173,15 @@ int lag_sampling_close(App *app);
 void lag_sampling_warn(App *app, char *note, size_t size);
 void lag_sampling_free(App *app);
 
+/* app.c: time of row grid[2] of a grid that begins at grid[0], with rows grid[1] apart. */
+double lag_app_row_time(const App *app, const double *grid);
+/* error_curves.c: whether the rows of a picture lie at equal times, as differences need them; the present row's energy, less its jumps at events so far;
+ * the energies that `d` draws := decimal logarithms of their errors, relative where no run begins with the energy 0. */
+int lag_app_equal_times(const Args *a);
+void lag_energy_without_jumps(App *app);
+void lag_energy_errors(Table *t, PlottedCurves *d);
+/* portrait.c: what --portrait or --potential draws beneath app->drawn. 0, or EXIT_USAGE after a message. */
+int lag_portrait_open(App *app);
 /* app.c: writes a row of the present state; writes app->row, also to the table if drawn. LAG_OK, or a failure. */
 int lag_app_put_row(App *app);
 int lag_app_write_row(App *app, int drawn);
@@ -153,8 +194,21 @@ void lag_app_start_clock(App *app);
 int lag_app_after_step(void *app, const lag_sim *sim);
 void lag_app_stop_clock(App *app);
 int lag_app_interrupted(void);
-/* Refuses outputs that would overwrite the model, this program, the resumed state or each other. 0, or EXIT_USAGE after a message. */
+/* Refuses outputs that would overwrite the model, this program, a file that is read or each other. 0, or EXIT_USAGE after a message. */
 int lag_app_check_outputs(const App *app);
+
+/* One run: set up, opened files, up to its end, app->status; no report. 0, or EXIT_USAGE after a message. lag_app_free: all that it holds but the command line. */
+int lag_app_run(App *app);
+void lag_app_free(App *app);
+
+/* overlay.c: whether the command line names several scenes or methods, or --vs, for one picture; draws it and returns the exit status. */
+int lag_app_overlays(const Args *a);
+/* Length of the first method in a list with commas; those between the parentheses of options separate none. */
+size_t lag_app_method_length(const char *list);
+int lag_app_overlay(App *app);
+
+/* cloud.c: --cloud. Returns the exit status. */
+int lag_app_cloud(App *app);
 
 /* event_log.c: --section. 0, or EXIT_USAGE after a message. */
 int lag_section_choose(App *app);
@@ -165,6 +219,23 @@ int lag_tangent_columns_open(App *app);
 int lag_tangent_columns_row(App *app);
 void lag_report_tangent(App *app, FILE *f);
 void lag_report_tangent_json(App *app, Json *j);
+
+/* phase_volume.c: --volume. open: gives the run its tangent; 0, or EXIT_USAGE after a message. step: at the end of each step; a failure ends the run. */
+int lag_app_volume_open(App *app);
+void lag_app_volume_step(App *app);
+void lag_report_volume(App *app, FILE *f);
+void lag_report_volume_json(App *app, Json *j);
+
+/* measures.c: --measure, and the measures of the scene. open: before the run, and before files are opened; 0, or EXIT_USAGE after a message. begin and
+ * end: of the run; a status. advance: lag_sim_advance, with measures if there are any. */
+int lag_app_measures_open(App *app);
+int lag_app_measures_begin(App *app);
+int lag_app_advance(App *app, double t);
+int lag_app_measures_end(App *app);
+void lag_app_measures_free(App *app);
+const char *lag_app_measure_unit(const App *app, int k);
+void lag_report_measures(const App *app, FILE *f);
+void lag_report_measures_json(const App *app, Json *j);
 
 /* error_report.c: the error of the run, by a second run. begin: before the run; 0, or EXIT_USAGE after a message. end: after it. */
 int lag_app_error_begin(App *app);
@@ -177,6 +248,8 @@ int lag_app_compare_errors(App *app, ErrorEstimate *e, const lag_sim *run, doubl
 #define LAG_ACCURACY_STEPS 2e7
 /* accuracy.c: --accuracy: sets method and tolerance or step of app->sim. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_by_accuracy(App *app);
+/* "bounded", "t", "t^2", "exponential"; "": not known. */
+const char *lag_growth_name(ErrorGrowth growth);
 void lag_report_error(const App *app, FILE *f);
 void lag_report_error_json(const App *app, Json *j);
 
@@ -189,11 +262,24 @@ int lag_app_modes(App *app);
 /* effects.c: --effects. Returns the exit status. */
 int lag_app_effects(App *app);
 
+/* sweep.c: --sweep. Returns the exit status. */
+int lag_app_sweep(App *app);
+
 /* cost.c: --cost and --reference. Returns the exit status. */
 int lag_app_cost(App *app);
+/* where.c: --cost --where. Returns the exit status. */
+int lag_app_where(App *app);
 
 /* Prints that a file cannot be written, with errno; returns EXIT_USAGE. */
 int lag_app_io_error(const App *app, const char *path);
+/* Tests before a long run whether a file can be written; path NULL: none. 0, or EXIT_USAGE after a message. */
+int lag_app_try_file(const App *app, const char *path);
+
+/* motion_marks.c: what an animation marks. lag_marks_note: the state now; LAG_ENOMEM. lag_marks_event: event k at time t; -1: no memory. */
+int lag_marks_open(App *app);
+int lag_marks_note(App *app);
+int lag_marks_event(App *app, int k, double t);
+void lag_marks_free(App *app);
 
 /* event_log.c: the log of --events. 0, or EXIT_USAGE after a message. lag_event_note: as the function of lag_sim_on_event, for both. */
 int lag_event_log_open(App *app);

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "io/posix.h"
 #include "io/visible.h"
 #include "core/core.h"
 
@@ -48,42 +49,59 @@ int lag_args_number(const Args *a, const char *what, const char *text, const cha
   return 1;
 }
 
+int lag_args_count(const Args *a, const char *option, const char *text, const char *example, long long *x) {
+  double value;
+  if (!lag_args_number(a, option, text, example, &value)) return EXIT_USAGE;
+  if (value > 1e12) return lag_app_error(a, "%s %s: up to 1e12", option, text);
+  if (value < 1 || value != floor(value)) return lag_app_error(a, "%s %s: a whole number, for example %s", option, text, example);
+  *x = (long long)value;
+  return 0;
+}
+
 typedef struct Option {
   const char *name;
   size_t offset;
-  int is_flag;
+  int is_flag; /* 1: it takes no value; 2: it can be repeated */
   int takes; /* runs and analyses that use the option */
 } Option;
 
-enum { MODES = 1, COST = 2, LYAPUNOV = 4, EFFECTS = 8, REFERENCE = 16, RUN = 32, ANY = 63 };
+enum { MODES = 1, COST = 2, LYAPUNOV = 4, EFFECTS = 8, REFERENCE = 16, RUN = 32, WHERE = 64, SWEEP = 128, ANY = 255 };
 
 static const Option options[] = {
-    {"method", offsetof(Args, method), 0, RUN | LYAPUNOV | EFFECTS},
-    {"tol", offsetof(Args, tol), 0, RUN | LYAPUNOV | EFFECTS}, {"accuracy", offsetof(Args, accuracy), 0, RUN},
-    {"step", offsetof(Args, step), 0, RUN | LYAPUNOV | EFFECTS}, {"until", offsetof(Args, until), 0, ANY & ~MODES},
-    {"every", offsetof(Args, every), 0, RUN}, {"svg", offsetof(Args, svg), 0, RUN | LYAPUNOV},
-    {"plot-x", offsetof(Args, plot_x), 0, ANY}, {"plot-y", offsetof(Args, plot_y), 0, ANY},
+    {"method", offsetof(Args, method), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP},
+    {"tol", offsetof(Args, tol), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP}, {"accuracy", offsetof(Args, accuracy), 0, RUN},
+    {"step", offsetof(Args, step), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP}, {"until", offsetof(Args, until), 0, ANY & ~MODES},
+    {"every", offsetof(Args, every), 0, RUN | SWEEP}, {"svg", offsetof(Args, svg), 0, RUN | LYAPUNOV | SWEEP},
+    {"plot-x", offsetof(Args, plot_x), 0, ANY}, {"plot-y", offsetof(Args, plot_ys), 2, ANY},
+    {"portrait", offsetof(Args, portrait), 1, RUN}, {"potential", offsetof(Args, potential), 1, RUN},
+    {"distance", offsetof(Args, distance), 1, RUN}, {"energy-error", offsetof(Args, energy_error), 1, RUN},
     {"html", offsetof(Args, html), 0, RUN}, {"points", offsetof(Args, points), 0, ANY},
     {"from", offsetof(Args, from), 0, ANY}, {"no-rods", offsetof(Args, no_rods), 1, ANY},
     {"trace", offsetof(Args, trace), 1, ANY}, {"save-state", offsetof(Args, save), 0, RUN},
     {"resume", offsetof(Args, resume), 0, RUN}, {"events", offsetof(Args, events), 0, RUN},
-    {"section", offsetof(Args, section), 0, RUN}, {"output", offsetof(Args, out), 0, RUN | LYAPUNOV | COST},
+    {"section", offsetof(Args, section), 0, RUN}, {"cloud", offsetof(Args, cloud), 0, RUN}, {"starts", offsetof(Args, starts), 0, RUN}, {"output", offsetof(Args, out), 0, RUN | LYAPUNOV | COST | SWEEP},
     {"json", offsetof(Args, json), 1, ANY}, {"sketch", offsetof(Args, sketch), 1, RUN | COST},
     {"quiet", offsetof(Args, quiet), 1, ANY},
-    {"tangent", offsetof(Args, tangent), 1, RUN}, {"modes", offsetof(Args, modes), 1, ANY},
+    {"measure", offsetof(Args, measures), 2, RUN | SWEEP}, {"vs", offsetof(Args, vs), 2, RUN}, {"tangent", offsetof(Args, tangent), 1, RUN}, {"volume", offsetof(Args, volume), 1, RUN}, {"modes", offsetof(Args, modes), 1, ANY}, {"steady", offsetof(Args, steady), 1, MODES},
     {"lyapunov", offsetof(Args, lyapunov), 1, ANY}, {"transient", offsetof(Args, transient), 0, LYAPUNOV},
     {"exponents", offsetof(Args, exponents), 0, LYAPUNOV}, {"effects", offsetof(Args, effects), 0, ANY},
     {"help", offsetof(Args, help), 1, ANY}, {"cost", offsetof(Args, cost), 1, ANY},
-    {"reference", offsetof(Args, reference), 1, ANY}, {"target", offsetof(Args, target), 0, COST},
-    {"seconds", offsetof(Args, seconds), 0, COST | REFERENCE}, {"realtime", offsetof(Args, realtime), 0, COST}, {"methods", offsetof(Args, methods), 0, COST},
-    {"against", offsetof(Args, against), 0, COST}, {"given", offsetof(Args, given), 0, COST}, {"error", offsetof(Args, error), 0, COST | REFERENCE}, {"all", offsetof(Args, all), 1, COST}, {"runs", offsetof(Args, runs), 1, COST},
+    {"reference", offsetof(Args, reference), 1, ANY}, {"target", offsetof(Args, target), 0, COST | EFFECTS},
+    {"seconds", offsetof(Args, seconds), 0, COST | REFERENCE | WHERE | EFFECTS}, {"realtime", offsetof(Args, realtime), 0, COST}, {"methods", offsetof(Args, methods), 0, COST | EFFECTS},
+    {"against", offsetof(Args, against), 0, COST}, {"given", offsetof(Args, given), 0, COST | WHERE}, {"where", offsetof(Args, where), 1, WHERE}, {"error", offsetof(Args, error), 0, COST | REFERENCE}, {"all", offsetof(Args, all), 1, COST}, {"runs", offsetof(Args, runs), 1, COST},
+    {"sweep", offsetof(Args, sweep), 1, ANY}, {"consts", offsetof(Args, consts), 0, SWEEP}, {"zip", offsetof(Args, zip), 1, SWEEP}, {"rows", offsetof(Args, rows), 0, SWEEP}, {"motions", offsetof(Args, motions), 0, SWEEP},
+    {"samples", offsetof(Args, samples), 0, SWEEP}, {"sampling", offsetof(Args, sampling), 0, SWEEP}, {"seed", offsetof(Args, seed), 0, SWEEP},
+    {"threads", offsetof(Args, threads), 0, SWEEP}, {"lanes", offsetof(Args, lanes), 0, SWEEP}, {"mpi", offsetof(Args, mpi), 0, SWEEP}, {"shard", offsetof(Args, shard), 0, SWEEP},
+    {"merge", offsetof(Args, merge), 0, SWEEP}, {"histogram", offsetof(Args, histogram), 0, SWEEP}, {"resume", offsetof(Args, go_on), 1, SWEEP},
 };
 enum { NOPTIONS = sizeof options / sizeof *options };
 
-static const Option *find_option(const char *name, size_t n) {
+/* Two options of one name are for different analyses: --sweep comes before those that are its own. */
+static const Option *find_option(const Args *a, const char *name, size_t n) {
+  const Option *found = NULL;
   for (int i = 0; i < NOPTIONS; i++)
-    if (strlen(options[i].name) == n && memcmp(options[i].name, name, n) == 0) return &options[i];
-  return NULL;
+    if (strlen(options[i].name) == n && memcmp(options[i].name, name, n) == 0 && (!found || (a->sweep && options[i].takes & SWEEP))) found = &options[i];
+  return found;
 }
 
 static int unknown_option(const Args *a, const char *text, size_t n) {
@@ -99,17 +117,26 @@ static int unknown_option(const Args *a, const char *text, size_t n) {
 static int long_option(Args *a, int argc, char **argv, int *i) {
   const char *name = argv[*i] + 2, *eq = strchr(name, '=');
   size_t n = eq ? (size_t)(eq - name) : strlen(name);
-  const Option *o = find_option(name, n);
+  const Option *o = find_option(a, name, n);
   if (!o) return unknown_option(a, name, n);
   void *field = (char *)a + o->offset;
-  if (o->is_flag) {
+  if (o->is_flag == 1) {
     if (eq) return lag_app_error(a, "--%s takes no value", o->name);
     *(int *)field = 1;
     return 0;
   }
   const char *value = eq ? eq + 1 : *i + 1 < argc ? argv[++*i] : NULL;
   if (!value || !*value) return lag_app_error(a, "--%s needs a value; see --help", o->name);
-  *(const char **)field = value;
+  if (o->is_flag == 2) {
+    int vs = o->offset == offsetof(Args, vs), plot = o->offset == offsetof(Args, plot_ys);
+    const char ***list = vs ? &a->vs : plot ? &a->plot_ys : &a->measures;
+    if (!*list && !(*list = calloc((size_t)argc, sizeof **list))) return lag_app_error(a, "out of memory");
+    (*list)[vs ? a->nvs++ : plot ? a->nplot_ys++ : a->nmeasures++] = value;
+    a->plot_y = a->nplot_ys ? a->plot_ys[0] : NULL;
+  } else {
+    if (o->offset == offsetof(Args, starts) && a->starts) return lag_app_error(a, "--starts stands twice, %s and %s: one range of runs is drawn", a->starts, value);
+    *(const char **)field = value;
+  }
   return 0;
 }
 
@@ -124,31 +151,32 @@ static int one_argument(Args *a, int argc, char **argv, int *i) {
     return long_option(a, argc, argv, i);
   } else if (s[0] == '-') {
     return lag_app_error(a, "unknown option %s; see --help", s);
-  } else if (strchr(s, '=')) {
+  } else if (strpbrk(s, "=~")) {
     a->sets[a->nsets++] = s;
-  } else if (a->scene) {
-    return lag_app_error(a, "two scenes are named: %s and %s; to set a value write name=value", a->scene, s);
   } else {
-    a->scene = s;
+    a->scenes[a->nscenes++] = s;
+    a->scene = a->scenes[0];
   }
   return 0;
 }
 
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
 static int check_analysis(const Args *a) {
-  const int what = a->modes ? MODES : a->cost ? COST : a->reference ? REFERENCE : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
+  const int what = a->sweep ? SWEEP : a->modes ? MODES : a->where ? WHERE : a->cost ? COST : a->reference ? REFERENCE : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
   for (int i = 0; i < NOPTIONS; i++) {
     const Option *o = &options[i];
     const void *field = (const char *)a + o->offset;
-    int given = o->is_flag ? *(const int *)field : *(const char *const *)field != NULL;
+    int given = o->is_flag == 1 ? *(const int *)field : *(const char *const *)field != NULL;
     if (!given || o->takes & what) continue;
     if (what == RUN || what == REFERENCE) {
       return o->takes & RUN ? lag_app_error(a, "--%s has no meaning for --reference, which takes name=value and --until", o->name)
-                            : lag_app_error(a, "--%s is for %s", o->name, o->takes & COST ? "--cost" : "--lyapunov");
+                            : lag_app_error(a, "--%s is for %s", o->name, o->takes & COST ? "--cost" : o->takes & SWEEP ? "--sweep" : o->takes & MODES ? "--modes" : "--lyapunov");
     }
     return lag_app_error(a, "--%s has no meaning for %s", o->name,
-                     what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some"
-                     : what == MODES ? "--modes, which takes name=value and --json"
+                     what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some, and --where takes one"
+                     : what == WHERE ? "--where, which takes name=value, --until, --seconds, a method and --json"
+                     : what == SWEEP ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
+                     : what == MODES ? "--modes, which takes name=value, --steady and --json"
                      : what == EFFECTS ? "--effects, which takes name=value, --until and a method"
                                      : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
   }
@@ -159,8 +187,8 @@ static int check_analysis(const Args *a) {
 static int check_kinds(const Args *a) {
   const struct {
     const char *option, *path, *suffixes, *writes;
-  } files[] = {{"-o", a->out, a->cost ? "svg csv json" : "csv npy", a->cost ? "a picture, .svg, or all runs, .csv or .json" : "CSV, or NumPy where the name ends in .npy"},
-               {"--events", a->events, "csv", "CSV"}, {"--svg", a->svg, "svg", "SVG"}, {"--html", a->html, "html htm", "HTML"}};
+  } files[] = {{"-o", a->out, a->cost ? "svg png csv json" : a->sweep ? "csv npy h5" : "csv npy", a->cost ? "a picture, .svg or .png, or all runs, .csv or .json" : a->sweep ? "CSV, NumPy where the name ends in .npy, or HDF5 where it ends in .h5" : "CSV, or NumPy where the name ends in .npy"},
+               {"--events", a->events, "csv", "CSV"}, {"--motions", a->motions, "csv npy h5", "CSV, NumPy where the name ends in .npy, or HDF5 where it ends in .h5"}, {"--svg", a->svg, "svg png", "SVG, or PNG where the name ends in .png"}, {"--html", a->html, "html htm", "HTML"}};
 
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
     const char *path = files[i].path, *other = path ? lag_outfile_other_type(path, files[i].suffixes) : NULL;
@@ -172,33 +200,74 @@ static int check_kinds(const Args *a) {
   return 0;
 }
 
+/* --cloud draws one scene by several methods, and writes nothing else. */
+static int check_cloud(const Args *a) {
+  const char *other = a->out ? "-o" : a->json ? "--json" : a->html ? "--html" : a->save ? "--save-state" : a->resume ? "--resume" : a->events ? "--events"
+                      : a->measures ? "--measure" : a->tangent ? "--tangent" : a->volume ? "--volume" : a->accuracy ? "--accuracy" : a->section ? "--section" : a->vs ? "--vs" : a->starts ? "--starts"
+                      : a->distance ? "--distance" : a->energy_error ? "--energy-error" : a->portrait ? "--portrait" : a->potential ? "--potential" : a->sketch ? "--sketch" : NULL;
+  if (other) return lag_app_error(a, "%s and --cloud: a cloud is a picture of its own; leave one of them out", other);
+  if (a->nscenes > 1) return lag_app_error(a, "--cloud: two scenes are named, %s and %s; a cloud is around the start of one", a->scenes[0], a->scenes[1]);
+  return a->svg && a->plot_x && a->plot_y ? 0 : lag_app_error(a, "--cloud needs a picture: `lagc plot` makes it, or add --svg FILE and --plot-x, --plot-y");
+}
+
+/* Several scenes or methods, or --vs, draw one picture, and write nothing else. */
+static int check_overlay(const Args *a) {
+  const char *other = a->out ? "-o" : a->json ? "--json" : a->html ? "--html" : a->save ? "--save-state" : a->resume ? "--resume" : a->events ? "--events"
+                      : a->measures ? "--measure" : a->tangent ? "--tangent" : a->volume ? "--volume" : a->accuracy ? "--accuracy" : NULL;
+  if (a->cloud) return check_cloud(a);
+  if (!lag_app_overlays(a)) return 0;
+  for (int i = 0; i < a->nvs; i++)
+    if (!strchr(a->vs[i], '=')) return lag_app_error(a, "--vs %s: write name=value, for example --vs th=1.2", a->vs[i]);
+  if (a->starts && (a->vs || a->distance)) return lag_app_error(a, "--starts and --%s: the range says which runs are drawn; leave one of them out", a->vs ? "vs" : "distance");
+  if (a->modes || a->lyapunov || a->cost || a->reference || a->effects || a->sweep || !a->svg) {
+    return a->nscenes > 1 ? lag_app_error(a, "two scenes are named: %s and %s; `lagc plot` draws several in one picture; to set a value write name=value", a->scenes[0], a->scenes[1])
+           : a->starts ? lag_app_error(a, "--starts %s: several runs are for a picture, which `lagc plot` draws", a->starts)
+           : a->nvs    ? lag_app_error(a, "--vs %s: another run is for a picture, which `lagc plot` draws", a->vs[0])
+                       : lag_app_error(a, "--method %s: several methods are for a picture, which `lagc plot` draws; name one", a->method);
+  }
+  return other ? lag_app_error(a, "%s is for one run; a picture of several goes without it", other) : 0;
+}
+
 static int check(const Args *a) {
+  if (check_overlay(a)) return EXIT_USAGE;
   int on_stdout = a->out && strcmp(a->out, "-") == 0;
+  if (a->motions && strcmp(a->motions, "-") == 0) return lag_app_error(a, "--motions -: motions are written to a file, for example --motions motions.csv");
   if (on_stdout && a->json) return lag_app_error(a, "-o - and --json both write to standard output; give -o a file name");
   if (a->events && strcmp(a->events, "-") == 0 && a->json)
     return lag_app_error(a, "--events - and --json both write to standard output; give --events a file name");
   if ((a->plot_x || a->plot_y) && !a->svg && !a->sketch) return lag_app_error(a, "--plot-x and --plot-y need a picture: add --svg FILE or --sketch");
+  if (a->distance && (a->energy_error || !lag_app_overlays(a)))
+    return lag_app_error(a, a->energy_error ? "--distance and --energy-error are two pictures; leave one of them out" : "--distance is between runs: add one with another value, for example --vs th=1.2, or another method or scene");
+  if ((a->distance || a->energy_error) && (!a->svg || a->section || a->plot_x || a->portrait || a->potential || a->tangent))
+    return lag_app_error(a, "--%s is a picture over time, which `lagc plot` draws", a->distance ? "distance" : "energy-error");
+  if ((a->portrait || a->potential) && !(a->svg && a->plot_x && a->plot_y))
+    return lag_app_error(a, "--portrait and --potential need a picture: `lagc plot` makes it, or add --svg FILE and --plot-x, --plot-y");
+  if (a->portrait && a->potential) return lag_app_error(a, "--portrait and --potential are two pictures; leave one of them out");
   if (a->plot_x && !a->plot_y) return lag_app_error(a, "--plot-x %s: the other axis is missing; add --plot-y NAME", a->plot_x);
   if ((a->points || a->from || a->trace || a->no_rods) && !a->html)
     return lag_app_error(a, "--points, --from, --trace and --no-rods need an animation: add --html FILE");
   if (a->html && !a->points) return lag_app_error(a, "--html %s: points are missing; add --points 'X,Y X,Y ...' with the names of outputs", a->html);
   if (a->section && a->html) return lag_app_error(a, "--section and --html: a motion is shown in time; leave one of them out");
-  if (a->tangent && (a->save || a->resume))
-    return lag_app_error(a, "--tangent and --%s: a saved state holds no tangent; run it in one piece", a->save ? "save-state" : "resume");
+  if ((a->tangent || a->volume) && (a->save || a->resume))
+    return lag_app_error(a, "--%s and --%s: a saved state holds no tangent; run it in one piece", a->tangent ? "tangent" : "volume", a->save ? "save-state" : "resume");
+  if (a->tangent && a->volume) return lag_app_error(a, "--tangent and --volume: each takes the tangent of the run for itself; make two runs");
   if (a->accuracy && (a->tol || a->step || a->resume))
     return lag_app_error(a, "--accuracy chooses the tolerance or step; leave out --%s", a->tol ? "tol" : a->step ? "step" : "resume");
   if (a->section && a->every)
     return lag_app_error(a, "--section and --every: rows are put out at crossings, or at equal distances in time; leave one of them out");
-  if (strcmp(LAG_PRECISION, "double") != 0 && a->out && lag_outfile_has_suffix(a->out, "npy")) /* NumPy has no type of 34 digits */
-    return lag_app_error(a, "%s: .npy files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", a->out);
+  const char *const rows[] = {a->out, a->motions};
+  for (int i = 0; i < 2; i++)
+    if (strcmp(LAG_PRECISION, "double") != 0 && rows[i] && (lag_outfile_has_suffix(rows[i], "npy") || lag_outfile_has_suffix(rows[i], "h5"))) /* there is no type of 34 digits */
+      return lag_app_error(a, "%s: .npy and .h5 files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", rows[i]);
   return check_kinds(a) || check_analysis(a) ? EXIT_USAGE : 0;
 }
 
 int lag_args_parse(Args *a, int argc, char **argv) {
-  const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
-  *a = (Args){.self = slash ? slash + 1 : argc > 0 ? argv[0] : "simulator"};
+  const char *slash = argc > 0 ? lag_last_slash(argv[0]) : NULL;
+  *a = (Args){.self = slash ? slash + 1 : argc > 0 ? argv[0] : "simulator", .argc = argc, .argv = argv};
   a->sets = calloc((size_t)argc + 1, sizeof *a->sets);
-  if (!a->sets) return lag_app_error(a, "out of memory");
+  a->scenes = calloc((size_t)argc + 1, sizeof *a->scenes);
+  if (!a->sets || !a->scenes) return lag_app_error(a, "out of memory");
   for (int i = 1; i < argc; i++) {
     if (strpbrk(argv[i], "\n\t")) { /* messages show each argument on one line */
       return lag_app_error(a, "word %d has a line break or a tab: leave it out; a file with one in its name needs another name", i);

@@ -1,7 +1,9 @@
 /* Finds the columns that --plot-x, --plot-y, --points and --from name. Enters: the names and the table; leaves: column indices. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/effect_variants.h"
 #include "app/app.h"
 #include "core/core.h"
 
@@ -63,18 +65,43 @@ static int columns_of(const App *app, const char *name, int *cols) {
   return n ? n : no_column(app, name);
 }
 
+/* The period of an angle that is declared periodic, in the unit of its column, over which points of a section are drawn; 0: none. */
+static double period_of(const App *app, int col) {
+  const lag_model *m = app->scene->model;
+  int i = lag_component_index(m, app->table.cols[col].name);
+  const lag_var *v = i >= 0 && i < m->nq ? &m->q[i] : i >= 2 * m->nq ? &m->z[i - 2 * m->nq] : NULL;
+  return v && v->periodic ? 2 * acos(-1) / v->factor : 0;
+}
+
+/* d->y := the columns of each --plot-y; d->yname := their names, NULL for several over the time, whose axes have units. -1 after a message. */
+static int choose_ys(App *app) {
+  const Args *a = &app->args;
+  PlottedCurves *d = &app->drawn;
+  size_t used = 0;
+  d->n = 0;
+  for (int i = 0; i < a->nplot_ys; i++) {
+    int n = columns_of(app, a->plot_ys[i], d->y + d->n);
+    if (n < 0) return -1;
+    d->n += n;
+    if (used < sizeof app->drawn_ys) used += (size_t)snprintf(app->drawn_ys + used, sizeof app->drawn_ys - used, "%s%s", i ? ", " : "", a->plot_ys[i]);
+  }
+  d->yname = a->nplot_ys == 1 ? a->plot_y : a->plot_x ? app->drawn_ys : NULL;
+  return 0;
+}
+
 int lag_app_choose_curves(App *app) {
   const Args *a = &app->args;
   PlottedCurves *d = &app->drawn;
-  int most = app->table.ncols, nx = 1;
-  *d = (PlottedCurves){.n = most - 1, .x = calloc(2 * (size_t)most, sizeof *d->x), .xname = a->plot_x ? a->plot_x : "t", .yname = a->plot_y};
+  int most = app->table.ncols, all = most * (a->nplot_ys ? a->nplot_ys : 1), nx = 1;
+  *d = (PlottedCurves){.n = most - 1, .x = calloc(2 * (size_t)all, sizeof *d->x), .xname = a->plot_x ? a->plot_x : "t"};
   if (!d->x) return lag_app_error(a, "out of memory");
-  d->y = d->x + most;
+  d->y = d->x + all;
   for (int i = 1; i < most; i++) d->y[i - 1] = i;
-  if ((a->plot_x && (nx = columns_of(app, a->plot_x, d->x)) < 0) || (a->plot_y && (d->n = columns_of(app, a->plot_y, d->y)) < 0)) return EXIT_USAGE;
+  if ((a->plot_x && (nx = columns_of(app, a->plot_x, d->x)) < 0) || (a->plot_y && choose_ys(app))) return EXIT_USAGE;
   if (nx != 1 && nx != d->n)
     return lag_app_error(a, "--plot-x %s has %d parts, --plot-y %s has %d; draw one against the other by naming a part", a->plot_x, nx, a->plot_y, d->n);
   for (int i = nx; i < d->n; i++) d->x[i] = d->x[0];
+  if (app->table.points && a->plot_x) d->beneath.period = period_of(app, d->x[0]);
   return 0;
 }
 

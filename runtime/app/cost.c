@@ -6,19 +6,50 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "app/cost.h"
 #include "core/core.h"
+#include "core/rhs.h"
+#include "io/posix.h"
+#include "numeric/clock.h"
 
-enum { SAMPLES = 16 };
+int lag_cost_begin(Cost *c, int rows, int n, double t0, double span) {
+  if (lag_samples_init(&c->reference, rows, n) || !(c->scale = calloc((size_t)n + 1, sizeof *c->scale))) return LAG_ENOMEM;
+  for (int i = 0; i < rows; i++) c->reference.t[i] = t0 + span * i / (rows - 1);
+  return LAG_OK;
+}
+
+void lag_cost_end(Cost *c) {
+  lag_samples_free(&c->reference);
+  free(c->scale);
+  free(c->method);
+}
+
+static int has_gone_far(void *steps, const lag_sim *sim) {
+  (void)sim;
+  return --*(long *)steps < 0 || lag_app_interrupted() != EXIT_SIGNAL;
+}
+
+double lag_cost_event_end(App *app) {
+  const double tol = 1e-6;
+  long steps = 50000;
+  double t = app->until;
+  lag_sim *sim = app->scene->model->nev ? lag_app_fresh_sim(app) : NULL;
+  if (sim && lag_sim_set_method(sim, &lag_dop853, NULL, 0) == LAG_OK && lag_sim_set_tolerance(sim, tol) == LAG_OK) {
+    lag_sim_on_step(sim, has_gone_far, &steps);
+    if (lag_sim_advance(sim, app->until) == LAG_STOPPED) t = lag_sim_time(sim);
+  }
+  lag_sim_free(sim);
+  return t;
+}
 
 /* ---- The reference */
 
 /* Two runs of one method at two tolerances, side by side. */
 typedef struct Pair {
   lag_sim *fine, *coarse;
-  double latest; /* processor time at which they are left [s] */
+  Samples *reference; /* of `fine` */
+  double latest, used; /* processor time at which they are left, and that of `fine` [s] */
 } Pair;
 
 /* A simulation by this method at a tolerance; NULL after a message. */
@@ -32,9 +63,10 @@ static lag_sim *begin_run(App *app, const lag_method *method, double tol) {
   return NULL;
 }
 
-static int is_too_late(void *pair, const lag_sim *sim) {
-  (void)sim;
-  return lag_processor_seconds() > ((Pair *)pair)->latest || lag_app_interrupted() != EXIT_SIGNAL;
+static int note_step(void *pair, const lag_sim *sim) {
+  Pair *p = pair;
+  if (sim == p->fine) lag_samples_note(p->reference, p->fine);
+  return lag_processor_seconds() > p->latest || lag_app_interrupted() != EXIT_SIGNAL;
 }
 
 /* y := state of sim at time t, or the output that is judged. LAG_OK, or what ended the run. */
@@ -46,7 +78,7 @@ static int take_row(lag_sim *sim, const Samples *like, double t, double *y) {
 
 /* Rows of c->reference from both runs, as long as their difference, the uncertainty, stays small enough to judge others by. Returns what ended it. */
 static int fill_rows(Pair *p, Cost *c, const lag_sim *like) {
-  const double judges = 1e-4;
+  const double judges = c->target > 0 ? fmin(1e-4, 0.1 * c->target) : 1e-4;
   Samples *s = &c->reference;
   double *other = calloc((size_t)s->rows * (size_t)s->n + 1, sizeof *other);
   int rc = other ? LAG_OK : LAG_ENOMEM, asked = s->rows;
@@ -54,7 +86,9 @@ static int fill_rows(Pair *p, Cost *c, const lag_sim *like) {
   s->uncertainty = DBL_EPSILON;
   for (int i = 0; i < asked && rc == LAG_OK; i++) {
     size_t at = (size_t)i * (size_t)s->n;
+    double begin = lag_processor_seconds();
     rc = take_row(p->fine, s, s->t[i], s->y + at);
+    p->used += lag_processor_seconds() - begin;
     rc = rc ? rc : take_row(p->coarse, s, s->t[i], other + at);
     s->rows = coarse.rows = i + (rc == LAG_OK);
     if (rc) break;
@@ -71,21 +105,31 @@ static int fill_rows(Pair *p, Cost *c, const lag_sim *like) {
   return rc;
 }
 
-/* Reference by taylor, or by dop853 where the model has no Taylor series, at two tolerances; their difference is its uncertainty. It ends where
- * that is too large or, after `seconds` of processor time, with the rows that it has: then *limited = 1. */
-static int compute_reference(App *app, Cost *c, double seconds, int *limited) {
+/* Method and tolerance of the reference: taylor, or dop853 where the model has no Taylor series. */
+static const lag_method *most_accurate(const App *app, double *tol) {
   const lag_model *m = app->scene->model;
   int series = m->taylor && !m->constraints;
-  const lag_method *method = series ? &lag_taylor_method : &lag_dop853;
   /* dop853 takes ten times as many steps for eight more digits, and with --reference serves doubles: 1e-17 suffices. */
-  double tol = series ? 9 * DBL_EPSILON : app->args.reference ? fmax(100 * DBL_EPSILON, 1e-22) : pow(DBL_EPSILON, 0.75);
-  Pair p = {.fine = begin_run(app, method, tol), .latest = lag_processor_seconds() + seconds};
+  *tol = series ? 9 * DBL_EPSILON : app->args.reference ? fmax(100 * DBL_EPSILON, 1e-22) : pow(DBL_EPSILON, 0.75);
+  return series ? &lag_taylor_method : &lag_dop853;
+}
+
+lag_sim *lag_cost_most_accurate(App *app) {
+  double tol;
+  const lag_method *method = most_accurate(app, &tol);
+  return begin_run(app, method, tol);
+}
+
+int lag_cost_reference(App *app, Cost *c, double seconds, int *limited) {
+  double tol;
+  const lag_method *method = most_accurate(app, &tol);
+  Pair p = {.fine = begin_run(app, method, tol), .reference = &c->reference, .latest = lag_processor_seconds() + seconds};
   p.coarse = p.fine ? begin_run(app, method, 10 * tol) : NULL;
   int rc = p.coarse ? LAG_OK : LAG_EINVAL;
   *limited = 0;
   if (rc == LAG_OK) {
-    lag_sim_on_step(p.fine, is_too_late, &p);
-    lag_sim_on_step(p.coarse, is_too_late, &p);
+    lag_sim_on_step(p.fine, note_step, &p);
+    lag_sim_on_step(p.coarse, note_step, &p);
     rc = fill_rows(&p, c, app->sim);
     *limited = rc == LAG_INTERRUPTED;
     if (rc == LAG_ENOMEM) rc = lag_app_error(&app->args, "out of memory");
@@ -96,6 +140,7 @@ static int compute_reference(App *app, Cost *c, double seconds, int *limited) {
       rc = lag_app_error(&app->args, "the reference run by %s(tol=%g) takes more than %.3g s to t = %g s; allow more time: --seconds %g, or end earlier: --until",
                          method->name, tol, seconds, c->reference.t[1], 10 * seconds) ? EXIT_RUN : 0;
     else rc = 0;
+    c->precision[0] = (CostPrecision){.name = LAG_PRECISION, .epsilon = DBL_EPSILON, .seconds = p.used, .to = lag_sim_time(p.fine)};
   }
   lag_sim_free(p.fine);
   lag_sim_free(p.coarse);
@@ -103,14 +148,50 @@ static int compute_reference(App *app, Cost *c, double seconds, int *limited) {
   return rc;
 }
 
+/* --error residual: its scales, the largest rates of change along an accurate run. The residual itself should be 0. */
+typedef struct Rates {
+  lag_sim *sim;
+  Samples *reference;
+  double *now; /* [n] */
+} Rates;
+
+static int note_rates(void *rates, const lag_sim *sim) {
+  Rates *w = rates;
+  int bad = lag_rhs(&w->sim->pb, sim->run->t, sim->now, w->now);
+  for (int i = 0; i < w->reference->n && !bad; i++) w->reference->largest[i] = fmax(w->reference->largest[i], fabs(w->now[i]));
+  return bad || lag_app_interrupted() != EXIT_SIGNAL;
+}
+
+static int scale_residual(App *app, Cost *c) {
+  const double differences = 1e-13; /* rounding of those that give the derivative */
+  Samples *s = &c->reference;
+  Rates w = {lag_cost_most_accurate(app), s, calloc((size_t)s->n + 1, sizeof(double))};
+  int rc = w.sim && w.now ? LAG_OK : LAG_ENOMEM, rows = s->rows;
+  if (rc == LAG_OK) lag_sim_on_step(w.sim, note_rates, &w);
+  for (int i = 0; i < rows && rc == LAG_OK; i++) {
+    rc = lag_sim_advance(w.sim, s->t[i]);
+    s->rows = i + (rc == LAG_OK);
+  }
+  if (rc < 0 && w.sim && s->rows < 2) lag_app_error(&app->args, "--error residual: %s; end the run earlier: --until", lag_sim_message(w.sim));
+  s->uncertainty = differences;
+  lag_cost_scales(s, app->sim, c->scale);
+  lag_sim_free(w.sim);
+  free(w.now);
+  return rc < 0 && s->rows < 2 ? EXIT_RUN : 0;
+}
+
 static void write_reference(FILE *f, const Cost *c) {
   const Samples *s = &c->reference;
   fprintf(f, "samples %d %d\nby %s\nuncertainty %.17g\n", s->rows, s->n, c->reference_name, s->uncertainty);
+  for (int k = 0; k < s->n; k++) fprintf(f, "%s%.17g", k ? " " : "largest ", s->largest[k]);
+  putc('\n', f);
   for (int i = 0; i < s->rows; i++) {
     fprintf(f, "%.17g", s->t[i]);
     for (int k = 0; k < s->n; k++) fprintf(f, " %.17g", s->y[(size_t)i * (size_t)s->n + (size_t)k]);
     putc('\n', f);
   }
+  const CostPrecision *p = &c->precision[0];
+  fprintf(f, "precision %s %.17g %.9g %.17g\n", p->name, p->epsilon, p->seconds, p->to);
 }
 
 /* *x := next number in the file. 0: there is none. */
@@ -129,11 +210,15 @@ static int read_reference(App *app, Cost *c) {
   if (!f) return lag_app_error(a, "cannot read %s: %s", a->against, strerror(errno));
   good = fscanf(f, "samples %d %d by %95[^\n]", &rows, &n, c->reference_name) == 3 && rows > 0 && rows <= s->rows && n == s->n;
   good = good && fscanf(f, " uncertainty") == 0 && read_number(f, &s->uncertainty);
+  good = good && fscanf(f, " largest") == 0;
+  for (int k = 0; good && k < n; k++) good = read_number(f, &s->largest[k]);
   for (int i = 0; good && i < rows; i++) {
     good = read_number(f, &s->t[i]);
     for (int k = 0; good && k < n; k++) good = read_number(f, &s->y[(size_t)i * (size_t)n + (size_t)k]);
   }
   s->rows = rows;
+  for (CostPrecision p; good && c->nprecisions < LAG_COST_PRECISIONS && fscanf(f, " precision %15s", p.name) == 1; c->precision[c->nprecisions++] = p)
+    good = read_number(f, &p.epsilon) && read_number(f, &p.seconds) && read_number(f, &p.to);
   if (f != stdin) fclose(f);
   if (good) lag_cost_scales(s, app->sim, c->scale);
   return good ? 0 : lag_app_error(a, "%s holds no reference for this scene; `--reference` of a simulator of the same model writes one",
@@ -176,8 +261,7 @@ static int check_methods(App *app, const Cost *c) {
   return 0;
 }
 
-/* Lists the methods of --methods, or all. */
-static int list_methods(App *app, Cost *c) {
+int lag_cost_list_methods(App *app, Cost *c) {
   const Args *a = &app->args;
   const lag_method *m;
   char name[64];
@@ -185,6 +269,10 @@ static int list_methods(App *app, Cost *c) {
   for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) {
     size_t k = 0;
     while (k < NFAMILIES && strcmp(families[k].method, m->name) != 0) k++;
+    if (m->flags & LAG_METHOD_IMPULSES) {
+      if (a->methods && is_wanted(a, m->name)) return lag_app_error(a, "--methods %s: lagc cost leaves it out, as impacts that it meets at other steps have no error that falls with the step", m->name);
+      continue;
+    }
     if (k == NFAMILIES && is_wanted(a, m->name)) bad |= add(c, m, (lag_option){0});
     for (int x = k < NFAMILIES ? families[k].from : 0; k < NFAMILIES && x <= families[k].to; x += families[k].by) {
       snprintf(name, sizeof name, "%s(%s=%d)", m->name, families[k].option, x);
@@ -226,7 +314,51 @@ static int measure(App *app, Cost *c) {
   return rc ? lag_app_error(&app->args, "out of memory") : 0;
 }
 
+/* LAG_OK where `lagc run` would accept this run: its monitors, and an energy that is kept. */
+static int judge_run(App *app, Cost *c, const CostMethod *m, const CostRun *run) {
+  CostMethod own = *m;
+  int rc;
+  lag_sim *sim = lag_cost_prepare(&own, &(CostScene){fresh, app, app->scene->t0}, run->knob, &rc);
+  if (!sim) return rc;
+  rc = lag_sim_advance(sim, c->reference.t[c->reference.rows - 1]);
+  rc = rc < 0 ? rc : lag_sim_judge(sim);
+  if (rc < 0) snprintf(c->monitor, sizeof c->monitor, "%s", lag_sim_message(sim));
+  lag_sim_free(sim);
+  return rc < 0 ? rc : LAG_OK;
+}
+
+/* Marks the answers that `lagc run` would refuse, until none is. After MOST of them all runs with such an error are marked. */
+static void check_answers(App *app, Cost *c) {
+  enum { MOST = 40 };
+  static const double errors[] = {1e-3, 1e-6, 1e-9, 1e-12};
+  const lag_scene *own = app->scene;
+  int n = c->target > 0 ? 1 : sizeof errors / sizeof *errors;
+  app->scene = app->whole;
+  for (int i = 0, tries = 0; i < n;) {
+    const CostRun *run;
+    double error = c->target > 0 ? c->target : errors[i];
+    const CostMethod *m = lag_cost_answer(c->method, c->nmethods, error, &run);
+    int bad = m && tries < MOST && judge_run(app, c, m, run) < 0;
+    tries += bad;
+    if (bad) ((CostRun *)run)->stopped = 1;
+    for (int x = 0; bad && tries == MOST && x < c->nmethods; x++)
+      for (int y = 0; y < c->method[x].nruns; y++) c->method[x].run[y].stopped |= c->method[x].run[y].error <= errors[0] || c->target > 0;
+    i += !bad;
+  }
+  app->scene = own;
+}
+
 /* ---- The command */
+
+typedef struct Drawing {
+  const App *app;
+  const Cost *cost;
+} Drawing;
+
+static int draw(const char *svg, void *drawing) {
+  const Drawing *d = drawing;
+  return lag_cost_put_picture(svg, d->app, d->cost);
+}
 
 static int show(App *app, const Cost *c) {
   const Args *a = &app->args;
@@ -234,35 +366,36 @@ static int show(App *app, const Cost *c) {
   if (a->json) lag_cost_put_json(stdout, app, c);
   else if (!a->quiet) lag_cost_put_text(stdout, app, c);
   if (a->out) {
-    int svg = lag_outfile_has_suffix(a->out, "svg"), rc = svg ? lag_cost_put_picture(a->out, app, c) : lag_cost_put_rows(a->out, app, c);
-    if (rc) return lag_app_io_error(app, a->out);
+    int picture = lag_outfile_has_suffix(a->out, "svg png"), rc = picture ? lag_app_picture(app, a->out, draw, &(Drawing){app, c}) : lag_cost_put_rows(a->out, app, c);
+    if (rc) return picture ? rc : lag_app_io_error(app, a->out);
   }
   if (fflush(stdout)) return lag_app_io_error(app, "standard output");
   if (c->stopped) return lag_app_interrupted();
-  if (c->target > 0 && !lag_cost_cheapest(c->method, c->nmethods, c->target, &run)) return EXIT_RUN;
+  if (c->target > 0 && !lag_cost_answer(c->method, c->nmethods, c->target, &run)) return EXIT_RUN;
   return EXIT_FINE;
 }
 
 static int run_cost(App *app, Cost *c) {
   const Args *a = &app->args;
-  int limited = 0, rc = list_methods(app, c);
+  int limited = 0, rc = lag_cost_list_methods(app, c);
   if (rc == 0 && a->target && (!lag_args_number(a, "--target", a->target, "--target 1e-8", &c->target) || c->target <= 0))
     rc = lag_app_error(a, "--target %s: an error to reach, relative and positive; for example --target 1e-8", a->target);
   rc = rc ? rc : lag_app_check_outputs(app);
-  double asked = c->reference.t[c->reference.rows - 1];
   app->progress = isatty(2) && !a->quiet ? 0 : -1;
-  rc = rc ? rc : a->against ? read_reference(app, c) : compute_reference(app, c, 0.4 * c->seconds, &limited);
+  rc = rc ? rc : c->reference.output == LAG_SAMPLES_RESIDUAL ? scale_residual(app, c) : a->against ? read_reference(app, c) : lag_cost_reference(app, c, 0.4 * c->seconds, &limited);
   if (rc == 0 && c->reference.rows < 2)
     rc = lag_app_error(a, "an event ends the run before t = %g s, the first time of comparison; write --until with an earlier time", c->reference.t[1]);
   if (rc == 0) {
     double last = c->reference.t[c->reference.rows - 1];
-    c->reached = last == asked ? NAN : last;
+    c->reached = last == app->until ? NAN : last;
   }
   if (rc == 0 && a->realtime) {
     lag_app_catch_interrupt();
     return lag_app_realtime(app, c);
   }
+  if (rc == 0 && c->reference.output != LAG_SAMPLES_RESIDUAL && lag_cost_precisions(app, c, 0.1 * c->seconds)) rc = lag_app_error(a, "out of memory");
   rc = rc ? rc : measure(app, c);
+  if (rc == 0) check_answers(app, c);
   return rc ? rc : show(app, c);
 }
 
@@ -278,24 +411,25 @@ int lag_app_cost(App *app) {
   const Args *a = &app->args;
   int limited, rc = lag_app_set_up_start(app);
   if (rc) return rc;
+  const double before = 0.98; /* of a run that an event ends: coarse settings miss its time a little */
   double t0 = app->scene->t0, span = app->until - t0;
-  int final = a->error && strcmp(a->error, "final") == 0, output = a->error && !final ? find_output(app, a->error) : 0, rows = (final ? 1 : SAMPLES) + 1; /* the start among them, for the scales */
-  if (output < 0) return lag_app_error(a, "--error %s: no such output; lagc cost takes any expression of the model, `energy` among them, or `final`", a->error);
-  int n = output ? 1 : app->sim->pb.n, failed = lag_samples_init(&cost.reference, rows, n) || !(cost.scale = calloc((size_t)n + 1, sizeof *cost.scale));
+  int final = a->error && strcmp(a->error, "final") == 0, residual = a->error && strcmp(a->error, "residual") == 0, rows = final ? 2 : LAG_COST_ROWS;
+  int output = residual ? LAG_SAMPLES_RESIDUAL : a->error && !final ? find_output(app, a->error) : 0;
+  cost.event = lag_cost_event_end(app);
+  if (cost.event != app->until) span = before * (cost.event - t0);
+  if (output < 0 && !residual) return lag_app_error(a, "--error %s: no such output; lagc cost takes any expression of the model, `energy` among them, `final` or `residual`", a->error);
+  int failed = lag_cost_begin(&cost, rows, output > 0 ? 1 : app->sim->pb.n, t0, span);
   rc = failed ? lag_app_error(a, "out of memory")
        : span == 0.0 ? lag_app_error(a, "nothing to compute: the run begins and ends at t = %g s; write --until with another time", t0) : 0;
   if (rc == 0 && a->seconds && (!lag_args_number(a, "--seconds", a->seconds, "--seconds 60", &cost.seconds) || cost.seconds <= 0))
     rc = lag_app_error(a, "--seconds %s: the time to spend, for example --seconds 60", a->seconds);
   cost.reference.output = output;
-  for (int i = 0; i < rows && rc == 0; i++) cost.reference.t[i] = t0 + span * i / (rows - 1);
   if (rc == 0 && !a->reference) {
     rc = run_cost(app, &cost);
-  } else if (rc == 0 && (rc = compute_reference(app, &cost, cost.seconds, &limited)) == 0) {
+  } else if (rc == 0 && (rc = lag_cost_reference(app, &cost, cost.seconds, &limited)) == 0) {
     write_reference(stdout, &cost);
     rc = fflush(stdout) ? lag_app_io_error(app, "standard output") : limited ? EXIT_RUN : EXIT_FINE;
   }
-  lag_samples_free(&cost.reference);
-  free(cost.scale);
-  free(cost.method);
+  lag_cost_end(&cost);
   return rc;
 }

@@ -51,6 +51,14 @@ const CostMethod *lag_cost_best_of_family(const Cost *c, int family) {
   return best;
 }
 
+/* How the error of a run grows with time: "t^2"; "": not visible, or rounding. */
+static const char *growth_of(const Cost *c, const CostRun *r) {
+  const double rounding = 1e-13;
+  const Samples *s = &c->reference;
+  int seen = s->rows <= LAG_COST_MOST_ROWS && r->error > rounding && r->error > 30 * s->uncertainty;
+  return lag_growth_name(seen ? lag_error_growth(s->rows, s->t, r->at) : LAG_ERROR_UNKNOWN);
+}
+
 /* ---- Text */
 
 /* s[n] := the options of `lagc run` for a setting. */
@@ -64,8 +72,15 @@ void lag_cost_put_command(FILE *f, const App *app, const Cost *c) {
   fprintf(f, "  lagc run %s %s", app->program->source, app->scene->name);
   if (a->given) fputs(a->given, f);
   for (int i = 0; i < a->nsets && !a->given; i++) fprintf(f, " %s", a->sets[i]);
-  if (!isnan(c->reached)) fprintf(f, " --until %.9g", c->reached); /* errors were compared up to there; the last --until counts */
+  if (!isnan(c->reached) && c->event == app->until) fprintf(f, " --until %.9g", c->reached); /* errors were compared up to there; the last --until counts */
   else if (a->until && !a->given) fprintf(f, " --until %s", a->until);
+}
+
+/* Whether more time would show more accurate runs. */
+static int lacks_time(const Cost *c) {
+  int any = 0;
+  for (int i = 0; i < c->nmethods; i++) any |= c->method[i].left_out > 0 || c->method[i].nruns == 0;
+  return any;
 }
 
 static double smallest_error(const Cost *c) {
@@ -78,7 +93,7 @@ static double smallest_error(const Cost *c) {
 /* The fastest setting for an error, as a command. Returns 0 where no run has such an error. */
 static int put_cheapest(FILE *f, const App *app, const Cost *c, double error) {
   const CostRun *run;
-  const CostMethod *m = lag_cost_cheapest(c->method, c->nmethods, error, &run);
+  const CostMethod *m = lag_cost_answer(c->method, c->nmethods, error, &run);
   char options[160];
   if (!m) return 0;
   put_options(options, sizeof options, m, run);
@@ -93,13 +108,18 @@ static void put_answer(FILE *f, const App *app, const Cost *c) {
   static const double errors[] = {1e-3, 1e-6, 1e-9, 1e-12};
   int shown = 0;
   if (c->target > 0) {
-    if (!put_cheapest(f, app, c, c->target))
+    if (put_cheapest(f, app, c, c->target)) return;
+    if (c->monitor[0])
+      fprintf(f, "no setting with an error of %g or less is one that `lagc run` accepts\n", c->target);
+    else
       fprintf(f, "no setting has an error of %g or less; the smallest found is %.1e; raise --target%s\n", c->target, smallest_error(c),
-              smallest_error(c) > rounding ? ", or allow more time (--seconds)" : ": that is rounding of doubles");
+              smallest_error(c) > rounding && lacks_time(c) ? ", or allow more time (--seconds)" : ": that is rounding of doubles, or its growth");
     return;
   }
   for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) shown += put_cheapest(f, app, c, errors[i]);
-  if (!shown) fprintf(f, "no setting has an error of 0.001 or less; allow more time: --seconds %g\n", 3 * c->seconds);
+  if (!shown && c->monitor[0]) fprintf(f, "no setting with an error of 0.001 or less is one that `lagc run` accepts\n");
+  else if (!shown && lacks_time(c)) fprintf(f, "no setting has an error of 0.001 or less; allow more time: --seconds %g\n", 3 * c->seconds);
+  else if (!shown) fprintf(f, "no setting has an error of 0.001 or less; the smallest found is %.1e: end the run earlier (--until)\n", smallest_error(c));
 }
 
 /* A line for each method, or for the best of each family: its times for errors of 1e-2, 1e-4, .. */
@@ -129,7 +149,7 @@ static void put_times(FILE *f, const Cost *c, int all) {
 /* The runs of the front, or all. */
 static void put_runs(FILE *f, const Cost *c, int all) {
   char setting[160], order[32], spread[32];
-  fprintf(f, "\n  %-44s %-9s %12s %6s %10s %11s  %s\n", all ? "" : "the front", "error", "time [ms]", "+-", "steps", "calls", "order");
+  fprintf(f, "\n  %-44s %-9s %-11s %12s %6s %10s %11s  %s\n", all ? "" : "the front", "error", "grows as", "time [ms]", "+-", "steps", "calls", "order");
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
     int first = 1;
@@ -140,7 +160,7 @@ static void put_runs(FILE *f, const Cost *c, int all) {
       snprintf(setting, sizeof setting, "%.*s%s%s=%.9g)", (int)strcspn(m->name, ")"), m->name, m->option.name ? ", " : "(", lag_cost_knob(m->method),
                r->knob);
       snprintf(spread, sizeof spread, isnan(r->spread) ? "-" : "%.0f %%", 50 * r->spread);
-      fprintf(f, "%c %-44s %-9.2e %12.4g %6s %10lld %11lld%s\n", r->best ? '*' : ' ', setting, r->error, 1e3 * r->time, spread, r->steps, r->calls,
+      fprintf(f, "%c %-44s %-9.2e %-11s %12.4g %6s %10lld %11lld%s\n", r->best ? '*' : ' ', setting, r->error, growth_of(c, r), 1e3 * r->time, spread, r->steps, r->calls,
               first ? order : "");
       first = 0;
     }
@@ -149,37 +169,59 @@ static void put_runs(FILE *f, const Cost *c, int all) {
           "times. order: slope of log error against log steps, at the smallest errors above rounding\n", all ? "" : "; --runs: every run");
 }
 
+/* Why a method has no runs, without its name. */
+static const char *why_absent(const CostMethod *m) {
+  const char *why = m->why[0] ? m->why : "no run had an error below 0.3 in the time allowed (--seconds)";
+  size_t n = strcspn(m->name, "(");
+  return strncmp(why, "method ", 7) == 0 && strncmp(why + 7, m->name, n) == 0 && why[7 + n] == ' ' ? why + 8 + n : why;
+}
+
+/* A line for each reason, with the methods that it keeps out of the table. */
+static void put_absent(FILE *f, const Cost *c) {
+  for (int i = 0; i < c->nmethods; i++) {
+    const char *why = why_absent(&c->method[i]);
+    int first = c->method[i].nruns == 0;
+    for (int k = 0; k < i; k++) first &= c->method[k].nruns > 0 || strcmp(why_absent(&c->method[k]), why) != 0;
+    if (!first) continue;
+    fprintf(f, "not in the table: %s", c->method[i].name);
+    for (int k = i + 1; k < c->nmethods; k++)
+      if (c->method[k].nruns == 0 && strcmp(why_absent(&c->method[k]), why) == 0) fprintf(f, ", %s", c->method[k].name);
+    fprintf(f, ": %s\n", why);
+  }
+}
+
 static void put_notes(FILE *f, const App *app, const Cost *c) {
   const Samples *s = &c->reference;
   const double worth_telling = 1e-14; /* finer settings would meet rounding */
   int n = 0;
-  if (s->output) fprintf(f, "\nerror: of %s, the largest difference from the reference at %d times, relative to its largest value\n", app->args.error, s->rows - 1);
+  if (s->output == LAG_SAMPLES_RESIDUAL)
+    fprintf(f, "\nerror: what is left of the equations of motion in the middle of steps, relative to the largest rate of its kind and unit\n");
+  else if (s->output) fprintf(f, "\nerror: of %s, the largest difference from the reference at %d times, relative to its largest value\n", app->args.error, s->rows - 1);
   else if (s->rows == 2) fputs("\nerror: the difference from the reference at the end, relative to the value or others of its kind and unit there\n", f);
   else fprintf(f, "\nerror: the largest difference from the reference at %d times, relative to the largest value of its kind and unit\n", s->rows - 1);
-  fprintf(f, "reference: %s, itself uncertain by %.1e\n", c->reference_name, s->uncertainty);
+  if (s->output != LAG_SAMPLES_RESIDUAL) fprintf(f, "reference: %s, itself uncertain by %.1e\n", c->reference_name, s->uncertainty);
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
     if (m->nruns == 0 || !(m->left_out > worth_telling)) continue;
     fprintf(f, "%s%s from %.0e", n++ ? ", " : "left out, as three times slower than others or for want of time: ", m->name, m->left_out);
   }
   if (n) fputs("; more --seconds measure more\n", f);
-  for (int i = 0; i < c->nmethods; i++) {
-    const CostMethod *m = &c->method[i];
-    const char *why = m->why[0] ? m->why : "no run had an error below 0.3 in the time allowed (--seconds)";
-    if (m->nruns == 0) fprintf(f, "not in the table: %s: %s\n", m->name, why);
-  }
+  put_absent(f, c);
 }
 
 void lag_cost_put_text(FILE *f, const App *app, const Cost *c) {
   const Samples *s = &c->reference;
   fprintf(f, "model %s, scene %s, to t = %.15g s\n", app->scene->model->name, app->scene->name, s->t[s->rows - 1]);
-  if (!isnan(c->reached))
+  if (c->event != app->until) fprintf(f, "an event ends the run at about t = %.6g s; errors are compared up to t = %.6g s\n", c->event, s->t[s->rows - 1]);
+  else if (!isnan(c->reached))
     fprintf(f, "the reference ends at t = %.15g s (an event ends the run, no digit is left, or it takes too long): errors are compared up to there\n", c->reached);
   if (c->stopped) fputs("interrupted: what was measured until then\n", f);
   put_answer(f, app, c);
+  if (c->monitor[0]) fprintf(f, "`lagc run` refuses cheaper settings: %s\n", c->monitor);
   put_times(f, c, app->args.all);
   put_runs(f, c, app->args.runs);
   put_notes(f, app, c);
+  lag_cost_put_precisions(f, c);
   if (app->args.sketch) lag_cost_sketch(f, c);
 }
 
@@ -188,7 +230,7 @@ void lag_cost_put_text(FILE *f, const App *app, const Cost *c) {
 void lag_cost_put_json(FILE *f, const App *app, const Cost *c) {
   const Samples *s = &c->reference;
   const CostRun *cheapest = NULL;
-  if (c->target > 0) lag_cost_cheapest(c->method, c->nmethods, c->target, &cheapest);
+  if (c->target > 0) lag_cost_answer(c->method, c->nmethods, c->target, &cheapest);
   Json j = {.f = f};
   lag_json_begin(&j, NULL, '{');
   lag_json_string(&j, "model", app->scene->model->name);
@@ -198,6 +240,7 @@ void lag_cost_put_json(FILE *f, const App *app, const Cost *c) {
   lag_json_number(&j, "uncertainty", s->uncertainty);
   lag_json_number(&j, "target", c->target > 0 ? c->target : NAN);
   lag_json_truth(&j, "interrupted", c->stopped);
+  lag_cost_put_precisions_json(&j, c);
   lag_json_begin(&j, "methods", '[');
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
@@ -219,6 +262,7 @@ void lag_cost_put_json(FILE *f, const App *app, const Cost *c) {
       lag_json_count(&j, "calls", r->calls);
       lag_json_truth(&j, "front", r->best);
       lag_json_truth(&j, "cheapest", r == cheapest);
+      lag_json_string(&j, "growth", growth_of(c, r)[0] ? growth_of(c, r) : NULL);
       lag_json_end(&j, '}');
     }
     lag_json_end(&j, ']');

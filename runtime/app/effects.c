@@ -1,12 +1,14 @@
 /* --effects: measures the variants in a program made by `lagc effects`, whose first scene is the user's and whose others are that scene
  * with other effects. Enters: the command line; leaves: lines for lagc, `method`, `span`, `error`, then `variant NUMBER OPERATIONS
- * SECONDS DIFFERENCE WEIGHT` for each. `--effects runs`: differences only. */
+ * SECONDS DIFFERENCE WEIGHT` for each. `--effects runs`: differences only. `--effects budget`: for each variant `setting NUMBER ERROR SECONDS METHOD KNOB
+ * VALUE`, its fastest setting whose error against the first scene's motion is at most --target, or `none NUMBER SMALLEST`. */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "analysis/effect_variants.h"
-#include "app/app.h"
+#include "app/cost.h"
 #include "core/core.h"
 
 typedef struct Trial {
@@ -184,15 +186,120 @@ static void print(const Trial *k) {
   }
 }
 
+/* ---- Budget: the error of a variant is measured against the first scene, effects that are left out included */
+
+typedef struct VariantSource {
+  Trial *k;
+  int scene;
+} VariantSource;
+
+static lag_sim *fresh_variant(void *source) {
+  const VariantSource *s = source;
+  App *app = s->k->app;
+  int rc = make(s->k, s->scene);
+  if (rc == 0) copy_start(s->k->v[0].sim, app->sim);
+  lag_sim *sim = rc ? NULL : app->sim;
+  if (rc) lag_sim_free(app->sim);
+  app->sim = NULL;
+  return sim;
+}
+
+/* own := the reference's values of the components that the variant has. LAG_OK, LAG_ENOMEM, or LAG_EINVAL: the scene lacks one. */
+static int take_components(const Cost *c, const lag_model *m, const lag_sim *sim, Cost *own) {
+  const Samples *all = &c->reference;
+  int n = sim->pb.n, rc = lag_cost_begin(own, all->rows, n, 0, 0);
+  for (int k = 0; k < n && rc == LAG_OK; k++) {
+    int at = lag_component_index(m, lag_state_column(sim, k).name);
+    if (at < 0) rc = LAG_EINVAL;
+    own->reference.largest[k] = at < 0 ? 0 : all->largest[at];
+    for (int i = 0; i < all->rows && rc == LAG_OK; i++) own->reference.y[(size_t)i * (size_t)n + (size_t)k] = all->y[(size_t)i * (size_t)all->n + (size_t)at];
+  }
+  if (rc) return rc;
+  memcpy(own->reference.t, all->t, (size_t)all->rows * sizeof *all->t);
+  own->reference.uncertainty = all->uncertainty;
+  lag_cost_scales(&own->reference, sim, own->scale);
+  return LAG_OK;
+}
+
+static void print_setting(int variant, const Cost *c, double target) {
+  const CostRun *run;
+  const CostMethod *m = lag_cost_cheapest(c->method, c->nmethods, target, &run);
+  double least = HUGE_VAL;
+  if (m) {
+    printf("setting %d %.9g %.9g %s %s %.9g\n", variant, run->error, run->time, m->name, lag_cost_knob(m->method), run->knob);
+    return;
+  }
+  for (int i = 0; i < c->nmethods; i++)
+    for (int k = 0; k < c->method[i].nruns; k++) least = fmin(least, c->method[i].run[k].error);
+  printf("none %d %.9g\n", variant, least);
+}
+
+static int note_nothing(void *context, const CostMethod *m, double part) {
+  (void)context, (void)m, (void)part;
+  return lag_app_interrupted() != EXIT_SIGNAL;
+}
+
+/* Sweeps over the settings of one variant. */
+static int weigh_variant(Trial *k, const Cost *c, int scene, double seconds, double target) {
+  App *app = k->app;
+  Cost own = {0};
+  VariantSource source = {k, scene};
+  lag_sim *sim = fresh_variant(&source);
+  int rc = sim ? take_components(c, k->v[0].sim->scene->model, sim, &own) : LAG_ENOMEM;
+  rc = rc == LAG_EINVAL ? LAG_EINVAL : rc ? lag_app_error(&app->args, "out of memory") : lag_cost_list_methods(app, &own);
+  if (rc == 0) {
+    CostSweep sweep = {.method = own.method, .n = own.nmethods, .scene = {fresh_variant, &source, k->t0}, .reference = &own.reference, .scale = own.scale,
+                       .seconds = seconds, .target = target, .note = note_nothing};
+    rc = lag_cost_sweep(&sweep) ? lag_app_error(&app->args, "out of memory") : 0;
+  }
+  if (rc == 0) print_setting(scene, &own, target);
+  lag_sim_free(sim);
+  lag_cost_end(&own);
+  return rc == LAG_EINVAL ? 0 : rc;
+}
+
+static int weigh_budget(Trial *k) {
+  App *app = k->app;
+  const Args *a = &app->args;
+  Cost cost = {.reached = NAN};
+  double seconds, target;
+  int limited;
+  const double before = 0.95; /* of a run that an event ends: other sets of effects end it at other times */
+  if (!lag_args_number(a, "--seconds", a->seconds, "--seconds 10", &seconds) || !lag_args_number(a, "--target", a->target, "--target 1e-6", &target)) return EXIT_USAGE;
+  if (target < 10 * DBL_EPSILON) { /* below what this precision can show */
+    for (int i = 0; i < k->nscenes; i++) printf("none %d nan\n", i);
+    return 0;
+  }
+  cost.target = target;
+  lag_app_catch_interrupt();
+  app->scene = app->program->scenes[0];
+  app->sim = k->v[0].sim;
+  app->until = k->t1;
+  cost.event = lag_cost_event_end(app);
+  double span = cost.event == k->t1 ? k->t1 - k->t0 : before * (cost.event - k->t0);
+  int rc = lag_cost_begin(&cost, LAG_COST_ROWS, app->sim->pb.n, k->t0, span) ? lag_app_error(a, "out of memory") : lag_cost_reference(app, &cost, 0.4 * seconds, &limited);
+  app->sim = NULL;
+  if (rc == 0 && cost.reference.rows < 2) rc = lag_app_error(a, "no digit of %g is left at t = %g s, the first time of comparison; end the run earlier: --until", target, cost.reference.t[1]);
+  if (rc == 0) printf("reference %.9g %.17g %d %s\n", cost.reference.uncertainty, cost.reference.t[cost.reference.rows - 1], cost.event != k->t1, cost.reference_name);
+  for (int i = 0; i < k->nscenes && rc == 0 && lag_app_interrupted() == EXIT_SIGNAL; i++) rc = weigh_variant(k, &cost, i, 0.6 * seconds / k->nscenes, target);
+  lag_cost_end(&cost);
+  return rc;
+}
+
 int lag_app_effects(App *app) {
   Trial k = {.app = app, .nscenes = app->program->nscenes};
   k.v = calloc((size_t)k.nscenes + 1, sizeof *k.v);
   int rc = k.v ? prepare_first(&k) : lag_app_error(&app->args, "out of memory");
-  rc = rc ? rc : prepare_others(&k);
-  rc = rc ? rc : measure(&k);
-  if (rc == 0) print(&k);
+  if (rc == 0 && strcmp(app->args.effects, "budget") == 0) {
+    rc = weigh_budget(&k);
+  } else {
+    rc = rc ? rc : prepare_others(&k);
+    rc = rc ? rc : measure(&k);
+    if (rc == 0) print(&k);
+  }
   for (int i = 0; k.v && i < k.nscenes; i++) lag_variant_free(&k.v[i]);
   lag_variant_free(&k.finer);
   free(k.v);
-  return rc ? rc : fflush(stdout) ? lag_app_io_error(app, "standard output") : EXIT_FINE;
+  if (rc == 0 && fflush(stdout)) rc = lag_app_io_error(app, "standard output");
+  return rc || lag_app_interrupted() == EXIT_SIGNAL ? rc : lag_app_interrupted();
 }

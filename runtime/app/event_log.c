@@ -45,6 +45,7 @@ void lag_event_note(void *context, int k, double t, const double *before, const 
   App *app = context;
   int n = (app->log.ncols - 2) / 2;
   if (k == app->section && app->section_rc == 0) app->section_rc = lag_app_put_row(app);
+  if (lag_marks_event(app, k, t)) app->section_rc = LAG_ENOMEM;
   if (!app->log_rows.open) return;
   app->log_row[0] = t;
   app->log_row[1] = k;
@@ -72,7 +73,8 @@ int lag_section_choose(App *app) {
   for (int k = 0; name && k < m->nev; k++) {
     if (strcmp(name, m->ev[k].name) == 0) {
       app->section = k;
-      return 0;
+      if (lag_event_is_located(app->sim, k)) return 0;
+      return lag_app_error(&app->args, "--section %s: %s does not locate events of contacts; dop853 does", name, lag_sim_method(app->sim)->name);
     }
     lag_try_nearest(&near, m->ev[k].name);
   }
@@ -88,8 +90,9 @@ void lag_report_events(const App *app, FILE *f) {
   const lag_model *m = app->scene->model;
   for (int k = 0; k < m->nev && k < MOST_EVENTS; k++) {
     double first, last;
+    if (!lag_event_is_located(app->sim, k)) continue;
     long long n = lag_sim_event_times(app->sim, k, &first, &last);
-    fprintf(f, "%s %s: ", k == app->section ? "section" : "event", m->ev[k].name);
+    fprintf(f, "%s %s: ", m->ev[k].direction == LAG_KICK ? "kick" : k == app->section ? "section" : "event", m->ev[k].name);
     if (n == 0) fputs("never", f);
     else fprintf(f, "%lld time%s", n, n == 1 ? "" : "s");
     if (n == 1) fprintf(f, ", t = %s s", lag_number_text(first, (char[64]){0}));
@@ -105,6 +108,7 @@ void lag_report_events_json(const App *app, Json *j) {
   lag_json_begin(j, "events", '{');
   for (int k = 0; k < m->nev; k++) {
     double first, last;
+    if (!lag_event_is_located(app->sim, k)) continue;
     lag_json_begin(j, m->ev[k].name, '{');
     lag_json_count(j, "count", lag_sim_event_times(app->sim, k, &first, &last));
     lag_json_number(j, "first", first);

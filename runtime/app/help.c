@@ -20,21 +20,39 @@ static const char usage[] =
     "                       (in pictures: as many as the motion needs)\n"
     "  --events FILE        a CSV row for each event: time, event, the state before and after it\n"
     "  --section EVENT      rows, and points of pictures, each time this event happens, instead of in time\n"
+    "  --measure EXPR       a number of the run: max(x), period(x), hit(EVENT, 3), x(10), ...; or NAME=EXPR; repeatable\n"
     "  --tangent            more columns, dx/dy(0): the exact derivative of the state by its start\n"
+    "  --volume             the volume of phase space along the run, by the determinant of that derivative\n"
     "  --svg FILE           a picture of all output against time; --plot-x NAME --plot-y NAME: one against another\n"
+    "  --cloud N            with --plot-x X --plot-y Y: N starts around the scene's, at several times, by each method\n"
+    "  --portrait           with --plot-x X --plot-y \"X'\": level curves of the energy; --potential, with --plot-y energy: the potential\n"
+    "  --energy-error       the picture shows |E/E(0) - 1| (--plot-y energy); --distance: of several runs, from the first\n"
+    "  --vs name=value      another run in the picture; it also shows several SCENEs, and those of --method NAME,NAME\n"
+    "  --starts name=A..B:N a run for each value of the range, in one picture without a legend, as for sections\n"
     "  --html FILE --points 'X,Y X,Y'   an animation of these points, X and Y names of outputs, joined by rods from\n"
     "                       --from 'X,Y' (the origin) on; --no-rods; --trace: the path of the last one\n"
     "  --sketch             a picture in the terminal\n"
-    "  --json               the report as one JSON object; it also names the source of sines and cosines, and the build\n"
+    "  --json               the report as one JSON object; it also names the source of sines and cosines, and the build\n";
+static const char more_usage[] =
     "  --modes              no run, but the equilibrium next to the start, and small motion about it; with --json as one\n"
-    "                       object (in simulators built with GSL, and with their linearisation: --with linear)\n"
+    "                       object (in simulators built with GSL, and with their linearisation: --with linear); --steady:\n"
+    "                       about the steady motion next to the start, in place of rest\n"
     "  --cost               no run, but time against error: all methods, or --methods NAME,NAME, at many tolerances or\n"
     "                       steps, their errors and times, in --seconds S, 10 by default; --target X names the cheapest that\n"
     "                       reaches X; --all: every method, --runs: every run; -o FILE.svg draws them, .csv and .json hold\n"
     "                       all runs; --sketch; --realtime H: methods of equal steps, with steps of H [s]; --error NAME: of this\n"
-    "                       output, or final: of the state at the end, instead of the state at 16 times; methods need what the model was built with (--method NAME)\n"
+    "                       output, or final: of the state at the end, or residual, instead of the state at 16 times; methods need what the model was built with (--method NAME)\n"
+    "  --where              with --cost: shares of the time of one run, the scene's or that of --method, --tol, --step; Linux\n"
     "  --reference          no run, but the motion at 16 times as precisely as this program can, as text; --against FILE:\n"
     "                       --cost compares with another simulator's\n"
+    "  --sweep              many runs, one for each combination of name=FIRST..LAST:NUMBER, FIRST..LAST:log:NUMBER, A,B,C (--zip:\n"
+    "                       together), of --rows FILE.csv, and of --samples N of name~normal(MEAN, DEVIATION) or ~uniform(A, B), by\n"
+    "                       --sampling random|lhs|sobol|halton and --seed K; -o FILE gets a row each, with every --measure; --svg FILE;\n"
+    "                       --histogram N: how many runs lie in each of N parts of a measure's range; --threads N;\n"
+    "                       --lanes 1|4|8: runs at once in vectors (in simulators of lagc sweep);\n"
+    "                       --motions FILE: their rows, .csv, .npy or .h5, every --every DT;\n"
+    "                       --mpi K: K processes (in simulators that lagc sweep --mpi makes);\n"
+    "                       --resume: goes on after an interruption; --shard I/N: part I of N, --merge N: joins them\n"
     "  --lyapunov           no run, but the Lyapunov exponents of the motion to --until T, 20 spans of the scene, without the first\n"
     "                       --transient T, a tenth of that; --exponents K: the largest ones; -o FILE, --svg FILE: as they\n"
     "                       settle; --json (in simulators built --with linear)\n"
@@ -75,6 +93,7 @@ void lag_app_help(const App *app, FILE *f) {
   fprintf(f, "%s%s\n", p->build ? "\nbuilt by: " : "", p->build ? p->build : "");
   if (p->nscenes > 0 && p->scenes[0]->model->math) fprintf(f, "%s\n", p->scenes[0]->model->math);
   fputs(usage, f);
+  fputs(more_usage, f);
 }
 
 /* ---- Methods */

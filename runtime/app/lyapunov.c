@@ -34,14 +34,16 @@ static int choose_times(App *app, double *from) {
   return 0;
 }
 
-static int choose_number(const App *app, int *k) {
-  const lag_model *m = app->scene->model;
+static int choose_number(App *app, int *k) {
   const Args *a = &app->args;
-  int n = 2 * m->nq + m->nz;
+  int n = lag_tangent_dimension(app->sim);
   double x = n;
+  if (n < 0) return lag_app_error(a, "%s", lag_sim_message(app->sim));
+  if (n == 0) return lag_app_error(a, "constraints fix all coordinates of the model: there are no neighbouring motions");
   if (a->exponents && !lag_args_number(a, "--exponents", a->exponents, "--exponents 1", &x)) return EXIT_USAGE;
   if (x < 1 || x > n || x != floor(x))
-    return lag_app_error(a, "--exponents %s: write a whole number from 1 to %d, the coordinates, velocities and states of the model", a->exponents, n);
+    return lag_app_error(a, "--exponents %s: write a whole number from 1 to %d, the coordinates, velocities and states of the model%s", a->exponents, n,
+                         app->scene->model->constraints ? " that constraints leave free" : "");
   *k = (int)x;
   return 0;
 }
@@ -104,9 +106,10 @@ static void conclude(FILE *f, const Lyapunov *l) {
   if (sign > 0)
     fprintf(f, "chaotic, if the motion is bounded: small errors grow by a factor of e in %.3g s (%.3g to %.3g), in the mean\n", 1 / first, 1 / (first + off),
             1 / (first - off));
-  if (sign > 0 && l->k == l->n) fprintf(f, "sum of the positive exponents (entropy by Pesin): %.4g, error %.1g 1/s\n", x, error);
+  if (sign > 0 && l->k == l->d) fprintf(f, "sum of the positive exponents (entropy by Pesin): %.4g, error %.1g 1/s\n", x, error);
   if (sign == 0) fprintf(f, "not known to be chaotic: the first exponent is 0 within three errors; one below %.1g 1/s needs a longer run\n", 3 * off);
   if (sign < 0) fputs("not chaotic: small errors decay\n", f);
+  if (isinf(lag_lyapunov_exponent(l, l->k))) fputs("minus infinity: where the motion begins to slide, or a body to stick, neighbouring motions become one\n", f);
   x = lag_lyapunov_dimension(l, &error);
   if (isfinite(x)) fprintf(f, "dimension by Kaplan and Yorke: %.4g, error %.1g\n", x, error);
   fprintf(f, "error: the largest of the standard error from %d blocks, of the change since half the time, and of one factor of e in the whole time; zero is "
@@ -123,10 +126,11 @@ static void put_text(FILE *f, App *app, const Lyapunov *l) {
     return;
   }
   fprintf(f, "measured from t = %.6g to %.6g s, over %lld step%s\n", l->begun, l->t, l->steps, l->steps == 1 ? "" : "s");
+  if (l->d < l->n) fprintf(f, "phase space: %d dimensions, the %d coordinates, velocities and states less %d that constraints fix\n", l->d, l->n, l->n - l->d);
   fprintf(f, "  %-4s%18s%14s%22s\n", "", "exponent [1/s]", "error", "at half the time");
   for (int i = 0; i < l->k; i++)
     fprintf(f, "  %-4d%18.8g%14.2g%22.8g\n", i + 1, lag_lyapunov_exponent(l, i), lag_lyapunov_error(l, i), lag_lyapunov_at_half(l, i));
-  if (l->k == l->n) {
+  if (l->k == l->d) {
     fprintf(f, "  %-4s%18.8g%14.2g%22.8g\n", "sum", lag_lyapunov_exponent(l, l->k), lag_lyapunov_error(l, l->k), lag_lyapunov_at_half(l, l->k));
     caution(f, l);
   }
@@ -143,8 +147,15 @@ static void json_list(Json *j, const char *name, const Lyapunov *l, double (*val
   lag_json_end(j, ']');
 }
 
+/* Number of exponents that are minus infinity. */
+static int infinite(const Lyapunov *l) {
+  int count = 0;
+  for (int i = 0; i < l->k; i++) count += isinf(lag_lyapunov_exponent(l, i)) != 0;
+  return count;
+}
+
 static void put_json(FILE *f, const App *app, const Lyapunov *l) {
-  int all = l->k == l->n, sign = lag_lyapunov_sign(l, 0);
+  int all = l->k == l->d, sign = lag_lyapunov_sign(l, 0);
   double error, dimension = lag_lyapunov_dimension(l, &error), entropy_error, entropy = lag_lyapunov_entropy(l, &entropy_error);
   Json j = {.f = f};
   lag_json_begin(&j, NULL, '{');
@@ -153,10 +164,12 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l) {
   lag_json_number(&j, "until", l->t);
   lag_json_count(&j, "steps", l->steps);
   lag_json_count(&j, "blocks", l->nblocks);
+  lag_json_count(&j, "phase_space", l->d);
   json_list(&j, "exponents", l, lag_lyapunov_exponent);
   json_list(&j, "spread", l, lag_lyapunov_spread);
   json_list(&j, "errors", l, lag_lyapunov_error);
   json_list(&j, "at_half", l, lag_lyapunov_at_half);
+  lag_json_count(&j, "minus_infinity", infinite(l));
   lag_json_number(&j, "sum", all ? lag_lyapunov_exponent(l, l->k) : NAN);
   lag_json_number(&j, "sum_spread", all ? lag_lyapunov_spread(l, l->k) : NAN);
   lag_json_number(&j, "divergence", lag_lyapunov_divergence(l));
@@ -200,7 +213,7 @@ static int finish(App *app, Job *job) {
   }
   snprintf(title, sizeof title, "%s: %s, Lyapunov exponents so far", app->scene->model->name, app->scene->name);
   if (lag_rows_close(&app->rows, 1)) rc = lag_app_io_error(app, a->out);
-  if (a->svg && (lag_app_choose_curves(app) || lag_svg_write(a->svg, &app->table, title, &app->drawn))) rc = lag_app_io_error(app, a->svg);
+  if (a->svg && (lag_app_choose_curves(app) || lag_app_draw_table(app, title))) rc = EXIT_USAGE;
   if (a->json) put_json(stdout, app, &job->l);
   else if (!a->quiet) put_text(on_stdout ? stderr : stdout, app, &job->l);
   if (fflush(stdout) != 0) rc = lag_app_io_error(app, "standard output");

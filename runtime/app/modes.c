@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/modes.h"
+#include "analysis/steady_motion.h"
 #include "app/app.h"
 
 /* Description of coordinate or state i of x[nq + nz]. */
@@ -28,6 +28,9 @@ static const char *changing_input(const App *app) {
   return NULL;
 }
 
+/* Whether modes are computed in the tangent space of the constraints, or about a motion. */
+static int in_tangent_space(const App *app) { return app->scene->model->constraints || app->args.steady; }
+
 /* EXIT_USAGE after a message where this simulator or model has no modes; else 0. */
 static int refuse(const App *app) {
   const lag_model *m = app->scene->model;
@@ -37,11 +40,10 @@ static int refuse(const App *app) {
     return lag_app_error(a, "this simulator was built without GSL, which finds roots and eigenvalues; install GSL (libgsl-dev), make "
                         "lagc anew, and leave out --no-gsl");
   }
-  if (m->constraints) {
-    return lag_app_error(a, "modes with %s are not computed yet (%s): %s", m->ncontacts ? "contacts" : "constraints", m->constraints->of[0].name,
-                     m->ncontacts ? "take a model without them" : "describe the model by coordinates that need no constraints, such as angles");
+  if (m->ncontacts) {
+    return lag_app_error(a, "modes with contacts are not computed yet (%s): take a model without them", m->constraints->of[m->contacts[0].constraint].name);
   }
-  if (!m->linear) {
+  if (!m->linear && !in_tangent_space(app)) {
     return lag_app_error(a, "this simulator was built without the model's linearisation; write lagc modes %s, or build it with: lagc "
                         "build %s --with linear", source, source);
   }
@@ -97,6 +99,9 @@ static void put_reason(const Modes *s, char *text, size_t n) {
     snprintf(text, n, "mode %d grows by a factor of e in %.6g s", (int)(top - s->mode) + 1, 1 / top->re);
   } else if (s->verdict == LAG_DECAYS) {
     snprintf(text, n, "every mode decays, the slowest by a factor of e in %.6g s", -1 / top->re);
+  } else if (s->verdict == LAG_NEUTRAL && s->steady) {
+    snprintf(text, n, "zero modes lead to other steady motions%s", last->re == 0.0 && last->im == 0.0 ? "; there are no other modes" : "; all other modes decay, "
+             "so the motion comes back to one of them beside it");
   } else if (s->verdict == LAG_NEUTRAL) {
     snprintf(text, n, "no force along the zero modes%s%s", s->drifts ? ", so a push causes an endless drift" : "",
              last->re == 0.0 && last->im == 0.0 ? "; there are no others"
@@ -177,20 +182,45 @@ static void put_vector(Line *l, Vector v) {
 /* Distance of a variable from its start, in scales. */
 static double moved(const Equilibrium *r, int i) { return fabs(r->found[i] - r->start[i]) / r->scale[i]; }
 
-static void put_equilibrium(FILE *f, const App *app, const Equilibrium *r) {
+/* Rates of a steady motion: of coordinates, or of the states of a model that has no others. */
+typedef struct Rates {
+  int n;
+  const double *of; /* [n] of variable(m, i) */
+} Rates;
+
+static Rates steady_rates(const lag_model *m, const Equilibrium *r) { return m->nq ? (Rates){m->nq, r->y + m->nq} : (Rates){m->nz, r->rate}; }
+
+/* "  moving with x' 5 m/s, ...": the rates of a steady motion. */
+static void put_velocities(FILE *f, const lag_model *m, Rates rates) {
+  Line line = {f, fprintf(f, "  moving with"), 4};
+  const double *v = rates.of;
+  int last = rates.n - 1;
+  while (last > 0 && v[last] == 0.0) last--;
+  for (int i = 0; i <= last; i++) {
+    char word[300];
+    const lag_var *x = variable(m, i);
+    const char *unit = strcmp(x->unit, "1") == 0 ? "" : x->unit;
+    snprintf(word, sizeof word, "%s' %.6g%s%s%s%s", x->name, v[i] / x->factor, unit[0] ? " " : "", unit[0] ? unit : "", unit[0] ? "/s" : " /s", i < last ? "," : "");
+    if (v[i] != 0.0) put_word(&line, word);
+  }
+  putc('\n', f);
+}
+
+static void put_equilibrium(FILE *f, const App *app, const Equilibrium *r, const Modes *s) {
   const lag_model *m = app->scene->model;
   Line line = {f, 0, 4};
   int far = 0, moving = 0;
   for (int i = 0; i < r->n; i++) far = moved(r, i) > moved(r, far) ? i : far;
   for (int i = 0; i < m->nq; i++) moving |= r->sim->now[m->nq + i] != 0;
-  fprintf(f, "%s: scene %s\nequilibrium: ", m->name, app->scene->name);
+  fprintf(f, "%s: scene %s\n%s: ", m->name, app->scene->name, s->steady ? "steady motion" : "equilibrium");
   const lag_var *v = variable(m, far);
   if (moved(r, far) > 1e-12)
     fprintf(f, "from the start %s moved by %.6g%s%s", v->name, (r->found[far] - r->start[far]) / v->factor, v->unit[0] ? " " : "", v->unit);
   else fputs("the start itself", f);
-  fprintf(f, "%s\n ", moving ? ", at rest" : "");
+  fprintf(f, "%s\n ", moving && !s->steady ? ", at rest" : "");
   put_vector(&line, (Vector){.m = m, .re = r->found, .state = 1, .all = 1});
   putc('\n', f);
+  if (s->steady) put_velocities(f, m, steady_rates(m, r));
 }
 
 static void put_number(FILE *f, int width, double x) {
@@ -258,7 +288,7 @@ static void put_modes(FILE *f, const App *app, const Modes *s) {
 /* Prints the table of modes, text of 118 columns. */
 static void put_text(FILE *f, const App *app, const Equilibrium *r, const Modes *s) {
   const char *note = caution_of(app, r);
-  put_equilibrium(f, app, r);
+  put_equilibrium(f, app, r, s);
   if (note) fprintf(f, "note: %s\n", note);
   put_modes(f, app, s);
 }
@@ -300,7 +330,13 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
   lag_json_string(&j, "note", caution_of(app, r));
   lag_json_count(&j, "steps", r->steps);
   json_vector(&j, "start", m, r->start, NULL);
-  json_vector(&j, "equilibrium", m, r->found, NULL);
+  json_vector(&j, s->steady ? "steady_motion" : "equilibrium", m, r->found, NULL);
+  if (s->steady) {
+    lag_json_begin(&j, "velocity", '{');
+    Rates rates = steady_rates(m, r);
+    for (int i = 0; i < rates.n; i++) lag_json_number(&j, variable(m, i)->name, rates.of[i] / variable(m, i)->factor);
+    lag_json_end(&j, '}');
+  }
   lag_json_truth(&j, "pairs", s->pairs != 0);
   lag_json_begin(&j, "modes", '[');
   for (int i = 0; i < s->n; i++) {
@@ -320,18 +356,33 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
 
 /* ---- The command */
 
+static void json_none(const App *app) {
+  if (!app->args.json) return;
+  Json j = {.f = stdout};
+  json_head(&j, app, app->args.steady ? "no steady motion" : "no equilibrium");
+  lag_json_end(&j, '}');
+  putchar('\n');
+}
+
+/* Message of a search that found none near the start. */
+static int none_near(const App *app) {
+  json_none(app);
+  if (!app->args.steady)
+    lag_app_error(&app->args, "no equilibrium found near the start of scene %s: start near one: name=VALUE; for a motion that runs steadily, as a wheel that rolls, write --steady",
+                  app->scene->name);
+  else
+    lag_app_error(&app->args, "no steady motion found near the start of scene %s: one along whose path nothing changes but coordinates that run at constant rates%s; start near one: name=VALUE",
+                  app->scene->name, app->scene->model->nq ? ", or turn together" : " (a circle in x and y is found in polar coordinates)");
+  return EXIT_RUN;
+}
+
 static int not_found(const App *app, const Equilibrium *r) {
   const lag_model *m = app->scene->model;
   int i = r->worst, nq = m->nq, at = nq + i;
   const lag_var *v = variable(m, i);
   char unit[80] = "";
   if (v->unit[0]) snprintf(unit, sizeof unit, " %s/s%s", v->unit, i < nq ? "^2" : "");
-  if (app->args.json) {
-    Json j = {.f = stdout};
-    json_head(&j, app, "no equilibrium");
-    lag_json_end(&j, '}');
-    putchar('\n');
-  }
+  json_none(app);
   if (r->away)
     lag_app_error(&app->args, "no equilibrium found from the start of scene %s: forces only vanish at infinity. Where the model has one, start near it: %s=VALUE",
                   app->scene->name, v->name);
@@ -350,17 +401,21 @@ static int analysis_failed(const App *app, int rc, const char *where) {
   const Args *a = &app->args;
   const char *form = app->scene->model->flags & LAG_FIRST_ORDER ? "two-form of L" : "mass matrix";
   if (rc == LAG_ENOMEM) return lag_app_error(a, "out of memory");
-  if (rc == LAG_ESINGULAR) lag_app_error(a, "the %s is singular %s: choose other coordinates there, or another start: name=VALUE", form, where);
+  if (rc == LAG_ESINGULAR && app->scene->model->constraints)
+    lag_app_error(a, "the constraints are dependent, or nearly, %s and independent beside it, as bars in one line are, so small motion has no one tangent "
+                     "space; another start: name=VALUE", where);
+  else if (rc == LAG_ESINGULAR) lag_app_error(a, "the %s is singular %s: choose other coordinates there, or another start: name=VALUE", form, where);
   else lag_app_error(a, "%s %s; another start: name=VALUE", rc == LAG_EMETHOD ? "the eigenvalues do not converge" : "the model has no values", where);
   return EXIT_RUN;
 }
 
-static int analyse(const App *app, Equilibrium *r, Modes *s) {
-  int rc = lag_equilibrium_find(r, app->sim, app->extras.algebra);
-  if (rc == 0) return not_found(app, r);
+static int analyse(const App *app, Equilibrium *r, SteadyMotion *steady, Modes *s) {
+  int tangent = in_tangent_space(app), moving = app->args.steady;
+  int rc = tangent ? lag_steady_find(steady, r, app->sim, app->extras.algebra, moving) : lag_equilibrium_find(r, app->sim, app->extras.algebra);
+  if (rc == 0) return tangent ? none_near(app) : not_found(app, r);
   if (rc < 0) return analysis_failed(app, rc, "at the start");
-  rc = lag_modes_find(s, r, app->extras.algebra);
-  if (rc) return analysis_failed(app, rc, "at the equilibrium");
+  rc = tangent ? lag_steady_modes(s, steady, r) : lag_modes_find(s, r, app->extras.algebra);
+  if (rc) return analysis_failed(app, rc, moving ? "at the steady motion" : "at the equilibrium");
   if (app->args.json) json_modes(stdout, app, r, s);
   else put_text(stdout, app, r, s);
   return fflush(stdout) ? lag_app_error(&app->args, "cannot write standard output") : EXIT_FINE;
@@ -368,12 +423,14 @@ static int analyse(const App *app, Equilibrium *r, Modes *s) {
 
 int lag_app_modes(App *app) {
   Equilibrium rest = {0};
+  SteadyMotion steady = {0};
   Modes modes = {0};
   int rc = lag_app_set_up_start(app);
   if (rc == 0 && lag_sim_advance(app->sim, app->scene->t0)) rc = lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
   rc = rc ? rc : refuse(app);
-  rc = rc ? rc : analyse(app, &rest, &modes);
+  rc = rc ? rc : analyse(app, &rest, &steady, &modes);
   lag_modes_free(&modes);
+  lag_steady_free(&steady);
   lag_equilibrium_free(&rest);
   return rc;
 }

@@ -144,7 +144,7 @@ int lag_sampling_open(App *app) {
   PictureSampling *f = &app->sampling;
   double span = fabs(app->until - lag_sim_time(app->sim));
   size_t ncols = (size_t)app->table.ncols;
-  if (!app->table.keep || app->section >= 0 || app->args.tangent) { /* a tangent is known at rows only */
+  if (!app->table.keep || app->section >= 0 || app->args.tangent || lag_app_equal_times(&app->args)) { /* a tangent is known at rows only */
     return 0;
   }
   *f = (PictureSampling){.on = 1, .places = 16, .soonest = span / (1 << 20), .store = !app->args.every, .part = PART, .longest = span / 400};
@@ -216,16 +216,16 @@ int lag_sampling_advance(App *app, double until) {
   while (rc == 0 && f->on && lag_sim_time(app->sim) != until) {
     rc = lag_sim_ensure_step(app->sim, sampling_stop(app, lag_sim_time(app->sim), until), &reach);
     double t = lag_sim_time(app->sim);
-    if (rc < 0) return rc;
+    if (rc < 0 || (lag_marks_note(app) && (rc = LAG_ENOMEM))) return rc;
     if (rc || reach == until || f->kept == 0 || fabs(reach - f->seen_to) >= f->soonest) {
       int bad = sample_step(app, t, reach);
       rc = bad ? bad : rc;
       f->length = fabs(reach - t) * 4 / f->places;
       f->seen_to = reach;
     }
-    rc = rc ? rc : lag_sim_advance(app->sim, reach);
+    rc = rc ? rc : lag_app_advance(app, reach);
   }
-  return rc ? rc : lag_sim_advance(app->sim, until);
+  return rc ? rc : lag_app_advance(app, until);
 }
 
 /* Keeps the last row, and thins the rows to the size of an HTML page. -1: no memory. */

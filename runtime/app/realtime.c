@@ -7,6 +7,7 @@
 
 #include "app/cost.h"
 #include "core/core.h"
+#include "numeric/clock.h"
 
 enum { MOST_METHODS = 24, RUNS = 5 };
 /* A motion with this error has left the reference. */
@@ -21,6 +22,7 @@ typedef struct FixedStep {
   double largest;       /* step [s]; 0: none was found */
   double mean, worst;   /* processor time of a step [s] */
   char why[160];
+  int refused;          /* 1: `lagc run` would refuse this run (why): a monitor of the scene, or an energy that is lost */
 } FixedStep;
 
 /* Processor time of each step. */
@@ -86,6 +88,21 @@ static void measure(App *app, const Cost *c, FixedStep *x, double step, double o
   x->why[0] = '\0';
 }
 
+/* Notes whether `lagc run` would refuse the run with this step. */
+static void judge(App *app, const Cost *c, FixedStep *x, double step) {
+  const lag_scene *own = app->scene;
+  app->scene = app->whole;
+  lag_sim *sim = lag_app_fresh_sim(app);
+  app->scene = own;
+  x->option[x->noptions] = (lag_option){.name = "step", .value = step};
+  int rc = sim ? lag_sim_set_method(sim, x->method, x->option, x->noptions + 1) : LAG_ENOMEM;
+  rc = rc ? rc : lag_sim_advance(sim, c->reference.t[c->reference.rows - 1]);
+  rc = rc < 0 ? rc : lag_sim_judge(sim);
+  x->refused = rc < 0;
+  if (rc < 0) snprintf(x->why, sizeof x->why, "refused: %.140s", sim ? lag_sim_message(sim) : "out of memory");
+  lag_sim_free(sim);
+}
+
 /* The largest step of H 2^k/2 that stays with the motion, upwards from one that does, or downwards to one. */
 static void find_largest(App *app, const Cost *c, FixedStep *x, double step, Samples *own) {
   const double factor = sqrt(2), span = fabs(c->reference.t[c->reference.rows - 1] - app->scene->t0);
@@ -125,7 +142,7 @@ static const FixedStep *choose(const FixedStep *all, int n, double step) {
   const FixedStep *best = NULL;
   for (int i = 0; i < n; i++) {
     const FixedStep *x = &all[i];
-    if (isnan(x->error) || x->error >= lost || x->worst > 0.5 * step) continue;
+    if (isnan(x->error) || x->error >= lost || x->refused || x->worst > 0.5 * step) continue;
     if (!best || (x->error <= 2 * best->error && x->mean <= 0.5 * best->mean)) best = x;
   }
   return best;
@@ -134,7 +151,7 @@ static const FixedStep *choose(const FixedStep *all, int n, double step) {
 static void put_text(const App *app, const Cost *c, const FixedStep *all, int n, double step) {
   const FixedStep *best = choose(all, n, step);
   char setting[128];
-  printf("model %s, scene %s, steps of %g s to t = %.15g s\n", app->scene->model->name, app->scene->name, step, app->until);
+  printf("model %s, scene %s, steps of %g s to t = %.15g s\n", app->scene->model->name, app->scene->name, step, c->reference.t[c->reference.rows - 1]);
   if (best) {
     snprintf(setting, sizeof setting, "%.*s%sstep=%g)", (int)strcspn(best->name, ")"), best->name, strchr(best->name, '(') ? ", " : "(", step);
     printf("best: %s, error %.1e, %.2g us a step, at worst %.2g us; its steps may be as long as %.2g s\n", best->name, best->error,
@@ -149,7 +166,7 @@ static void put_text(const App *app, const Cost *c, const FixedStep *all, int n,
   for (int i = 0; i < n; i++) {
     const FixedStep *x = &all[i];
     if (isnan(x->error)) printf("  %-24s %10s %14s %14s %18.2g  %s\n", x->name, "-", "-", "-", x->largest, x->why);
-    else printf("%c %-24s %10.1e %14.3g %14.3g %18.2g\n", x == best ? '*' : ' ', x->name, x->error, 1e6 * x->mean, 1e6 * x->worst, x->largest);
+    else printf("%c %-24s %10.1e %14.3g %14.3g %18.2g%s%s\n", x == best ? '*' : ' ', x->name, x->error, 1e6 * x->mean, 1e6 * x->worst, x->largest, x->why[0] ? "  " : "", x->why);
   }
   printf("error: the largest difference from the reference at 16 times, relative to the largest value of its kind and unit. largest step: with an error\n"
          "below %g to the end of this run, found in factors of sqrt(2); longer ones are unstable or miss the motion\n", lost);
@@ -199,6 +216,7 @@ int lag_app_realtime(App *app, const Cost *c) {
   if (rc == 0) memcpy(own.t, c->reference.t, (size_t)c->reference.rows * sizeof *own.t);
   for (int i = 0; i < n && rc == 0; i++) {
     measure(app, c, &all[i], step, overhead, &own);
+    if (!isnan(all[i].error)) judge(app, c, &all[i], step);
     if (!isnan(all[i].error) || strstr(all[i].why, "finite")) find_largest(app, c, &all[i], step, &own);
   }
   if (rc == 0) {

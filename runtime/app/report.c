@@ -76,6 +76,13 @@ static void put_lost_digits(const App *app, const lag_charge_stats *c, FILE *f) 
   }
 }
 
+static int has_kicks(const App *app) {
+  const lag_model *m = app->scene->model;
+  int n = 0;
+  for (int k = 0; k < m->nev; k++) n += m->ev[k].direction == LAG_KICK;
+  return n > 0;
+}
+
 static void charges(const App *app, FILE *f) {
   for (int k = 0; k < lag_sim_ncharges(app->sim); k++) {
     lag_charge_stats c;
@@ -89,6 +96,8 @@ static void charges(const App *app, FILE *f) {
     else put_energy(app, &c, f);
     put_trend(app, &c, f);
     putc('\n', f);
+    if (k == 0 && isfinite(c.dry_friction)) fprintf(f, "work of dry friction: %.6g%s%s\n", c.dry_friction, c.unit[0] ? " " : "", c.unit);
+    if (c.at_events != 0.0) fprintf(f, "%s and events: %.6g%s%s of energy\n", has_kicks(app) ? "kicks" : "impacts", c.at_events, c.unit[0] ? " " : "", c.unit);
     if (k == 0) put_lost_digits(app, &c, f);
   }
 }
@@ -106,6 +115,8 @@ static void charges_json(const App *app, Json *j) {
     lag_json_number(j, "initial", c.begin);
     lag_json_number(j, "final", c.now);
     lag_json_number(j, "work", c.work);
+    if (isfinite(c.dry_friction)) lag_json_number(j, "dry_friction", c.dry_friction);
+    if (k == 0) lag_json_number(j, "at_events", c.at_events);
     lag_json_number(j, "drift", c.drift);
     lag_json_number(j, "drift_absolute", c.absolute);
     lag_json_string(j, "unit", c.unit);
@@ -191,6 +202,29 @@ static void caveat(const App *app, const lag_stats *st, FILE *f) {
   }
 }
 
+/* Contacts that the method meets by impulses. */
+static void impulses(const App *app, FILE *f) {
+  lag_contact_stats c;
+  if (!lag_sim_contacts(app->sim, &c)) return;
+  fprintf(f, "contacts: at most %g act at once, %g impact%s, %.3g iterations a step with contacts; the deepest is %.3g inside (in SI)", c.touching, c.impacts, c.impacts == 1 ? "" : "s",
+          c.steps > 0 ? c.sweeps / c.steps : 0, c.depth);
+  if (c.gained > 0) fprintf(f, "; they bring in %.3g J", c.gained);
+  putc('\n', f);
+}
+
+static void impulses_json(const App *app, Json *j) {
+  lag_contact_stats c;
+  if (!lag_sim_contacts(app->sim, &c)) return;
+  lag_json_begin(j, "contacts", '{');
+  lag_json_number(j, "at_once", c.touching);
+  lag_json_number(j, "impacts", c.impacts);
+  lag_json_number(j, "iterations", c.sweeps);
+  lag_json_number(j, "steps", c.steps);
+  lag_json_number(j, "deepest", c.depth);
+  lag_json_number(j, "energy_gained", c.gained);
+  lag_json_end(j, '}');
+}
+
 /* "explicit" or "implicit", and *why, for a method that has both forms; NULL for others. */
 static const char *form(const App *app, const char **why) {
   unsigned has = app->scene->model->flags;
@@ -254,6 +288,37 @@ static void exact_json(const App *app, Json *j) {
   lag_json_end(j, '}');
 }
 
+/* Switching surfaces that the motion has crossed, or slid on. */
+static void switches(const App *app, FILE *f) {
+  const lag_model *m = app->scene->model;
+  int lines = 0;
+  for (int k = 0; k < m->nmodes && lines < MOST_LINES; k++) {
+    long long crossings, slides;
+    double time = lag_sim_switch_times(app->sim, k, &crossings, &slides);
+    if (crossings + slides == 0) continue;
+    lines++;
+    fprintf(f, "surface %s = 0: crossed %lld time%s", m->switches[k].surface, crossings, crossings == 1 ? "" : "s");
+    if (slides) fprintf(f, "; stuck or slid there %lld time%s, for %.6g s", slides, slides == 1 ? "" : "s", time);
+    putc('\n', f);
+  }
+}
+
+static void switches_json(const App *app, Json *j) {
+  const lag_model *m = app->scene->model;
+  if (m->nmodes == 0) return;
+  lag_json_begin(j, "surfaces", '{');
+  for (int k = 0; k < m->nmodes; k++) {
+    long long crossings, slides;
+    double time = lag_sim_switch_times(app->sim, k, &crossings, &slides);
+    lag_json_begin(j, m->switches[k].surface, '{');
+    lag_json_count(j, "crossings", crossings);
+    lag_json_count(j, "slides", slides);
+    lag_json_number(j, "sliding_s", time);
+    lag_json_end(j, '}');
+  }
+  lag_json_end(j, '}');
+}
+
 void lag_report_text(App *app, FILE *f) {
   const lag_scene *c = app->scene;
   lag_stats st;
@@ -264,8 +329,10 @@ void lag_report_text(App *app, FILE *f) {
   if (app->why[0]) fprintf(f, "chosen: %s\n", app->why);
   verdict(app, f);
   final_state(app, f);
+  lag_report_measures(app, f);
   fprintf(f, "steps %lld, rejected %lld, right-hand sides %lld, %.3g s\n", st.steps, st.rejected, st.rhs_calls, app->wall);
   newton(app, &st, f);
+  impulses(app, f);
   lag_report_error(app, f);
   charges(app, f);
   constraints(app, &st, f);
@@ -278,7 +345,9 @@ void lag_report_text(App *app, FILE *f) {
             app->empty_rows, app->rows_put);
   }
   lag_report_events(app, f);
+  switches(app, f);
   lag_report_tangent(app, f);
+  lag_report_volume(app, f);
   if (app->written && app->args.out) fprintf(f, "%zu rows%s in %s\n", app->rows.nrows, app->status < 0 ? " up to the failure" : "", app->args.out);
   if (app->args.svg) fprintf(f, "picture in %s\n", app->args.svg);
   if (app->args.html) fprintf(f, "animation in %s\n", app->args.html);
@@ -359,13 +428,17 @@ void lag_report_json(App *app, FILE *f) {
   }
   charges_json(app, &j);
   lag_report_events_json(app, &j);
+  switches_json(app, &j);
   exact_json(app, &j);
+  lag_report_measures_json(app, &j);
   lag_report_tangent_json(app, &j);
+  lag_report_volume_json(app, &j);
   lag_json_string(&j, "math", m->math);
   lag_json_string(&j, "build", app->program->build);
   lag_json_number(&j, "constraint_residual", st.constraint); /* null without constraints */
   lag_json_number(&j, "constraint_rate_residual", st.constraint_rate);
   constraints_json(app, &j);
+  impulses_json(app, &j);
   lag_json_begin(&j, "final", '{');
   for (int i = 0; i < n; i++) lag_json_number(&j, lag_state_column(app->sim, i).name, lag_sim_state_value(app->sim, i));
   final_outputs(app, &j);

@@ -35,7 +35,8 @@ static int choose_scene(App *app) {
   for (int i = 0; i < p->nscenes; i++)
     if (!name || strcmp(p->scenes[i]->name, name) == 0) {
       app->scene = p->scenes[i];
-      if (app->args.lyapunov || app->args.cost || app->args.reference) app->scene = bare_scene(app, app->scene);
+      app->whole = app->scene;
+      if (app->args.lyapunov || (app->args.cost && !app->args.where) || app->args.reference || app->args.energy_error || app->args.distance || app->args.cloud || app->compared) app->scene = bare_scene(app, app->scene);
       return 0;
     }
   return name ? no_scene(app, name) : lag_app_error(&app->args, "this program has no scenes");
@@ -115,7 +116,7 @@ static int parse_method(const Args *a, Choice *c) {
   return 0;
 }
 
-/* Suggests the nearest name, or lists all methods. */
+/* Suggests the nearest name. */
 int lag_app_unknown_method(const App *app, const char *name) {
   const lag_method *m;
   lag_nearest near = {.name = name};
@@ -123,9 +124,12 @@ int lag_app_unknown_method(const App *app, const char *name) {
   if (strncmp(name, "gsl-", 4) == 0 && strcmp(LAG_PRECISION, "double") != 0)
     return lag_app_error(&app->args, "method %s computes with doubles, this run in " LAG_PRECISION " precision; dop853 and taylor do, too", name);
   if (near.best) return lag_app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near.best);
-  lag_app_error(&app->args, "unknown method %s", name);
-  lag_app_list_methods(app, NULL, stderr);
-  return EXIT_USAGE;
+  return lag_app_error(&app->args, "unknown method %s; --method help lists them, and without --method the run chooses one", name);
+}
+
+int lag_app_choose_automatically(App *app, const lag_option *opt, int n) {
+  int rc = lag_sim_choose_method(app->sim, app->until, app->args.lyapunov, opt, n, app->why, sizeof app->why);
+  return rc ? lag_app_error(&app->args, "%s", lag_sim_message(app->sim)) : 0;
 }
 
 static int choose_method(App *app) {
@@ -145,6 +149,7 @@ static int choose_method(App *app) {
   if ((rc = check_steps(app, &c)) != 0) return rc;
   if (!m) return lag_app_choose_automatically(app, c.opt, c.n);
   rc = lag_sim_set_method(app->sim, m, c.opt, c.n);
+  app->refused = rc == LAG_EMETHOD;
   if (rc == 0 && a->tol && !(m->flags & LAG_METHOD_ADAPTIVE) && !a->quiet)
     fprintf(stderr, "%s: note: %s has a fixed step; --tol does not change it\n", a->self, m->name);
   return rc ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : 0;

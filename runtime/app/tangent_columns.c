@@ -66,6 +66,16 @@ static const double *final_tangent(App *app) {
   return !app->args.tangent || app->status < 0 || lag_tangent_columns_row(app) ? NULL : app->row + app->table.ncols - n * n;
 }
 
+static long long slides_begun(const App *app) {
+  long long all = 0;
+  for (int k = 0; k < app->scene->model->nmodes; k++) {
+    long long some = 0;
+    lag_sim_switch_times(app->sim, k, NULL, &some);
+    all += some;
+  }
+  return all;
+}
+
 void lag_report_tangent(App *app, FILE *f) {
   int n = components(app);
   const double *J = final_tangent(app);
@@ -78,6 +88,8 @@ void lag_report_tangent(App *app, FILE *f) {
     for (int j = 0; j < n; j++) fprintf(f, " %17.10g", J[i * n + j]);
   }
   putc('\n', f);
+  long long slides = slides_begun(app);
+  if (slides) fprintf(f, "rank of the tangent falls by 1 where a slide begins: %lld time%s\n", slides, slides == 1 ? "" : "s");
 }
 
 void lag_report_tangent_json(App *app, Json *out) {

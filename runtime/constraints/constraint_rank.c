@@ -76,7 +76,7 @@ static double slope(const lag_problem *pb, const double *y, const double *row, d
 
 double lag_independence(lag_problem *pb, double t, const double *y, int *weakest) {
   const lag_constraints *of = pb->model->constraints;
-  const double follows = pb->redundant ? 1e-9 : 0; /* below: always redundant */
+  const double follows = pb->redundant || pb->model->ncontacts > 0 ? 1e-9 : 0; /* below: always redundant, as two feet of a block that stick */
   int nq = pb->nq, n = of->n, r = 0;
   double least = 1, *A = lag_independence_scratch(pb), *unit = A + n * nq, *size = unit + nq;
   int rc = lag_constraint_jacobian(pb, t, y, A, unit, NULL);

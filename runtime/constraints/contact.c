@@ -1,6 +1,6 @@
 /* Contacts: gaps that stay at least 0. Enters: a state set by an event or a user; leaves: the state after all impacts, with the gaps closed that
  * are pressed. Holds: a closed gap is a constraint of the model, switched on by its input in `hold` (1); no closed gap pulls; an open gap that
- * touches is armed anew, so that its next closing is seen.
+ * touches is armed anew, so that its next closing is seen. Constraints with a condition (conditional.c) count as other constraints here.
  *
  * Impacts that follow each other ever faster come to an end in finite time (a ball that loses a fifth of its speed at each bounce). The gap is
  * closed when the rest of that time is too short to matter, or the next flight stays within rounding; Brogliato, Nonsmooth Mechanics, 3rd ed.
@@ -17,7 +17,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/core.h"
+#include "constraints/contact_set.h"
+#include "core/rhs.h"
 #include "numeric/complementarity.h"
 #include "numeric/workspace.h"
 
@@ -27,50 +28,38 @@ const lag_contact *lag_contact_of(const lag_model *m, int event) {
   return NULL;
 }
 
+int lag_event_is_located(const lag_sim *s, int k) { return !s->pb.contacts || !lag_contact_of(s->scene->model, k); }
+
 int lag_contact_is_closed(const lag_sim *s, const lag_contact *c) { return s->hold[c->input] > 0.5; }
+
+void lag_contact_set_closed(lag_sim *s, int i, int closed) {
+  const lag_contact *c = &s->scene->model->contacts[i];
+  s->hold[c->input] = closed ? 1 : NAN;
+  if (c->is_tangent) s->hold[c->force] = NAN;
+}
+
+/* The tangent of contact i; -1: it has no friction. */
+static int tangent_of(const lag_model *m, int i) { return i + 1 < m->ncontacts && m->contacts[i + 1].is_tangent ? i + 1 : -1; }
 
 void lag_contact_open(lag_sim *s) {
   const lag_model *m = s->scene->model;
-  for (int i = 0; i < m->ncontacts; i++) s->hold[m->contacts[i].input] = NAN;
+  for (int i = 0; i < m->ncontacts; i++)
+    if (!m->contacts[i].conditional) lag_contact_set_closed(s, i, 0);
 }
 
-/* All contacts of a model at a state: gaps, rates and the sizes of their terms; and of[n], the contacts that touch, with W: impulses L change
- * their rates by W L, where all constraints hold. Memory is freed by free_contacts. */
-typedef struct ContactSet {
-  lag_sim *sim;
-  double *y;                    /* [n of the state] */
-  int n, *of;
-  double *gap, *rate, *gap_size, *rate_size; /* [contacts] */
-  double *W;                    /* [n n] */
-  double *pull;                 /* [n] acceleration of each gap while all are open */
-  double *push;                 /* [n] impulses, or forces */
-  double *M, *scale;            /* [n n], [n] matrix and scales of the complementarity problem, whose row k is contact at[k] */
-  int *at;
-  unsigned char *part, *in;     /* [n] takes part; pushes */
-  unsigned char *was;           /* [contacts] closed before */
-  unsigned char *follows;       /* [n] its gap is held by the contacts that push */
-  double *g, *c, *r, *d, *force, *test, *events; /* scratch: [constraints], [constraints], [constraints], [nq], [nq], [n of the state], [nev] */
-  double *A, *mass;             /* sparse entries of the constraints' Jacobian, with all contacts closed, and of M */
-  double *block;
-} ContactSet;
-
-static const lag_contact *contact(const ContactSet *w, int a) { return &w->sim->scene->model->contacts[w->of[a]]; }
-
-static const char *name(const ContactSet *w, int a) { return w->sim->scene->model->constraints->of[contact(w, a)->constraint].name; }
-
-/* Closes all contacts, or contact `which` alone, or none (which = -1). */
-static void close_only(const ContactSet *w, int all, int which) {
+void lag_contacts_close_only(const ContactSet *w, int all, int which) {
   const lag_model *m = w->sim->scene->model;
-  for (int i = 0; i < m->ncontacts; i++) w->sim->hold[m->contacts[i].input] = all || i == which ? 1 : NAN;
+  for (int i = 0; i < m->ncontacts; i++)
+    if (!m->contacts[i].conditional) lag_contact_set_closed(w->sim, i, all || i == which);
 }
 
 /* Closes the contacts of w with closed[n], and no others. */
 static void close_contacts(const ContactSet *w, const unsigned char *closed) {
-  close_only(w, 0, -1);
-  for (int a = 0; a < w->n; a++) w->sim->hold[contact(w, a)->input] = closed[a] ? 1 : NAN;
+  lag_contacts_close_only(w, 0, -1);
+  for (int a = 0; a < w->n; a++) lag_contact_set_closed(w->sim, w->of[a], closed[a]);
 }
 
-static int no_values(ContactSet *w, int i) {
+int lag_contacts_no_values(ContactSet *w, int i) {
   const lag_model *m = w->sim->scene->model;
   return lag_fail(w->sim, LAG_EMODEL, "the contact %s has no finite values at t = %s s", m->constraints->of[m->contacts[i].constraint].name,
                   LAG_TEXT(w->sim->run->t));
@@ -83,8 +72,8 @@ static int make_room(ContactSet *w) {
   const lag_constraints *of = m->constraints;
   size_t p = (size_t)m->ncontacts, n = (size_t)of->n, nq = (size_t)m->nq;
   double **const parts[] = {&w->gap, &w->rate, &w->gap_size, &w->rate_size, &w->g, &w->c, &w->r, &w->d, &w->force, &w->test, &w->events,
-                            &w->A, &w->mass};
-  const size_t sizes[] = {p, p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)m->nev, (size_t)of->njacobian, (size_t)of->nmass};
+                            &w->A, &w->mass, &w->law, &w->side};
+  const size_t sizes[] = {p, p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)(m->nev + m->nmodes), (size_t)of->njacobian, (size_t)of->nmass, 3 * p, p};
   w->block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
@@ -103,12 +92,11 @@ static void free_contacts(ContactSet *w) {
   free(w->W);
 }
 
-/* rate[i] := rate of each gap at the state y; leaves all contacts closed. */
-static int find_rates(ContactSet *w, const double *y, double *rate) {
+int lag_contacts_rates(ContactSet *w, const double *y, double *rate) {
   const lag_model *m = w->sim->scene->model;
-  close_only(w, 1, -1);
+  lag_contacts_close_only(w, 1, -1);
   int rc = lag_residuals(&w->sim->pb, w->sim->run->t, y, w->c, w->r);
-  for (int i = 0; i < m->ncontacts; i++) rate[i] = rc ? NAN : w->r[m->contacts[i].constraint];
+  for (int i = 0; i < m->ncontacts; i++) rate[i] = rc ? NAN : m->contacts[i].conditional ? 0 : w->r[m->contacts[i].constraint];
   return rc;
 }
 
@@ -131,36 +119,49 @@ static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
   int rc = make_room(w), nq = pb->nq;
   if (rc) return rc;
   for (int i = 0; i < m->ncontacts; i++) w->was[i] = s->hold[m->contacts[i].input] > 0.5;
-  rc = find_rates(w, y, w->rate);
+  rc = lag_contacts_rates(w, y, w->rate);
   for (int i = 0; i < m->ncontacts; i++) {
-    w->gap[i] = w->c[m->contacts[i].constraint];
-    if (rc || !isfinite(w->gap[i]) || !isfinite(w->rate[i])) return no_values(w, i);
+    if (m->contacts[i].conditional) continue;
+    w->gap[i] = m->contacts[i].is_tangent ? 1 : w->c[m->contacts[i].constraint];
+    if (rc || !isfinite(w->gap[i]) || !isfinite(w->rate[i])) return lag_contacts_no_values(w, i);
   }
   rc = term_sizes(s, y, 1, w->g, w->c);
-  for (int i = 0; i < m->ncontacts; i++) w->gap_size[i] = w->g[m->contacts[i].constraint];
+  for (int i = 0; i < m->ncontacts; i++) w->gap_size[i] = m->contacts[i].is_tangent ? 1 : w->g[m->contacts[i].constraint];
   rc = rc ? rc : term_sizes(s, y, 0, w->g, w->c);
   for (int i = 0; i < m->ncontacts; i++) w->rate_size[i] = w->g[m->contacts[i].constraint];
   rc = rc ? rc : lag_inputs(pb, t);
+  if (rc == 0 && m->contact_laws) rc = lag_contact_laws(s, y, w->law);
   rc = rc ? rc : m->constraints->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->mass, pb->work);
-  return rc ? no_values(w, 0) : LAG_OK;
+  return rc ? lag_contacts_no_values(w, 0) : LAG_OK;
 }
 
-/* Change of the rate of contact i by a change d of velocities. */
-static double change_of_rate(const ContactSet *w, int i, const double *d) {
-  const lag_constraints *of = w->sim->scene->model->constraints;
+/* Change of the rate of contact i by a change d of velocities; A: entries of the Jacobian. */
+static double rate_change(const lag_model *m, const double *A, int i, const double *d) {
+  const lag_constraints *of = m->constraints;
   double s = 0;
-  for (int e = 0; e < of->njacobian; e++)
-    s += of->jacobian[e].row == w->sim->scene->model->contacts[i].constraint ? w->A[e] * d[of->jacobian[e].col] : 0;
+  for (int e = 0; e < of->njacobian; e++) s += of->jacobian[e].row == m->contacts[i].constraint ? A[e] * d[of->jacobian[e].col] : 0;
   return s;
 }
 
-/* w->d := the least change of velocities that changes the rate of contact i by 1, the others open. Returns the change of the rate per unit
- * impulse; 0 if no impulse changes it; NaN: no finite values. */
-static double response(ContactSet *w, int i) {
+static double change_of_rate(const ContactSet *w, int i, const double *d) { return rate_change(w->sim->scene->model, w->A, i, d); }
+
+double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed, const double *d, const double *A, double *before, double *after) {
+  const lag_model *m = pb->model;
+  int nq = m->nq, stop = 0;
+  size_t bytes = (size_t)pb->n * sizeof *y;
+  memcpy(before, y, bytes);
+  for (int j = 0; j < nq; j++) before[nq + j] -= (speed + rate) * d[j];
+  memcpy(after, before, bytes);
+  if (m->act(m->contacts[i].impact, t, before, before + nq, before + 2 * nq, pb->p, pb->u, after, after + nq, after + 2 * nq, &stop, pb->work)) return NAN;
+  for (int j = 0; j < nq; j++) before[nq + j] = after[nq + j] - before[nq + j];
+  return rate_change(m, A, i, before + nq) / speed - 1;
+}
+
+double lag_contacts_response(ContactSet *w, int i) {
   lag_problem *pb = &w->sim->pb;
   int nq = pb->nq, k = w->sim->scene->model->contacts[i].constraint;
   double s = 0;
-  close_only(w, 0, i);
+  lag_contacts_close_only(w, 0, i);
   memset(w->g, 0, (size_t)pb->model->constraints->n * sizeof *w->g);
   w->g[k] = 1;
   if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) return NAN;
@@ -170,39 +171,25 @@ static double response(ContactSet *w, int i) {
 
 /* The coefficient of restitution of contact i; NaN where no impulse moves it. */
 static double restitution(ContactSet *w, int i) {
-  const lag_sim *s = w->sim;
-  const lag_model *m = s->scene->model;
-  size_t bytes = (size_t)s->pb.n * sizeof(double);
-  int nq = m->nq, stop = 0;
-  double to = response(w, i), speed = w->rate_size[i] > 0 ? w->rate_size[i] : 1;
-  if (!(to > 0)) return NAN;
-  memcpy(s->yc, w->y, bytes);
-  for (int j = 0; j < nq; j++) { /* test velocity: the gap closes with a typical speed */
-    s->yc[nq + j] -= (speed + w->rate[i]) * w->d[j];
-  }
-  memcpy(w->test, s->yc, bytes);
-  if (m->act(m->contacts[i].impact, s->run->t, s->yc, s->yc + nq, s->yc + 2 * nq, s->p, s->u, w->test, w->test + nq, w->test + 2 * nq, &stop,
-             s->work)) {
-    return NAN;
-  }
-  for (int j = 0; j < nq; j++) w->d[j] = w->test[nq + j] - s->yc[nq + j];
-  return change_of_rate(w, i, w->d) / speed - 1;
+  lag_sim *s = w->sim;
+  double to = lag_contacts_response(w, i), speed = w->rate_size[i] > 0 ? w->rate_size[i] : 1; /* test velocity: the gap closes with a typical speed */
+  return to > 0 ? lag_contact_restitution(&s->pb, s->run->t, w->y, i, w->rate[i], speed, w->d, w->A, s->yc, w->test) : NAN;
 }
 
 /* Computes W for the contacts of[n]. */
 static int find_responses(ContactSet *w) {
-  size_t n = (size_t)w->n;
+  size_t n = (size_t)w->rows;
   double *x = w->W = calloc(2 * n * n + 3 * n + 1, sizeof *x);
   if (!x) return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
   w->M = x + n * n;
   w->pull = w->M + n * n;
   w->push = w->pull + n;
   w->scale = w->push + n;
-  for (int a = 0; a < w->n; a++) {
-    double to = response(w, w->of[a]);
-    if (!isfinite(to)) return no_values(w, w->of[a]);
-    for (int b = 0; b < w->n; b++) w->W[b * w->n + a] = to * change_of_rate(w, w->of[b], w->d);
-    w->W[a * w->n + a] = to;
+  for (int a = 0; a < w->rows; a++) {
+    double to = lag_contacts_response(w, w->of[a]);
+    if (!isfinite(to)) return lag_contacts_no_values(w, w->of[a]);
+    for (int b = 0; b < w->rows; b++) w->W[b * w->rows + a] = to * change_of_rate(w, w->of[b], w->d);
+    w->W[a * w->rows + a] = to;
   }
   return LAG_OK;
 }
@@ -220,9 +207,9 @@ static int fail_incompatible(ContactSet *w, int a) {
     }
   if (against >= 0) {
     return lag_fail(w->sim, LAG_EMODEL, "at t = %.9g s the contacts %s and %s contradict each other: no force keeps both gaps from closing",
-                    w->sim->run->t, name(w, a), name(w, against));
+                    w->sim->run->t, lag_contacts_name(w, a), lag_contacts_name(w, against));
   }
-  return lag_fail(w->sim, LAG_EMODEL, "at t = %.9g s nothing can keep the contact %s from closing further", w->sim->run->t, name(w, a < 0 ? 0 : a));
+  return lag_fail(w->sim, LAG_EMODEL, "at t = %.9g s nothing can keep the contact %s from closing further", w->sim->run->t, lag_contacts_name(w, a < 0 ? 0 : a));
 }
 
 /* Solves the complementarity problem of the contacts that take part: in[n]; push[n] := impulses where in[n]. */
@@ -260,10 +247,10 @@ static int impact(ContactSet *w, const double *e, const unsigned char *struck) {
   if (rc) return rc;
   close_contacts(w, w->in);
   memset(w->g, 0, (size_t)s->pb.model->constraints->n * sizeof *w->g);
-  for (int a = 0; a < w->n; a++) w->g[contact(w, a)->constraint] = w->in[a] ? -dir * w->pull[a] : 0;
+  for (int a = 0; a < w->n; a++) w->g[lag_contacts_at(w, a)->constraint] = w->in[a] ? -dir * w->pull[a] : 0;
   rc = lag_least_change(&s->pb, s->run->t, w->y, 0, w->g, w->d, w->force);
   for (int i = 0; i < nq; i++) w->y[nq + i] += w->d[i];
-  return rc || lag_not_finite(nq, w->d) >= 0 || find_rates(w, w->y, w->rate) ? no_values(w, w->of[0]) : LAG_OK;
+  return rc || lag_not_finite(nq, w->d) >= 0 || lag_contacts_rates(w, w->y, w->rate) ? lag_contacts_no_values(w, w->of[0]) : LAG_OK;
 }
 
 /* ---- forces */
@@ -271,10 +258,10 @@ static int impact(ContactSet *w, const double *e, const unsigned char *struck) {
 /* pull[n] := acceleration of each open gap: -(force if this contact alone is closed) * (its response). */
 static int find_pulls(ContactSet *w) {
   for (int a = 0; a < w->n; a++) {
-    close_only(w, 0, w->of[a]);
+    lag_contacts_close_only(w, 0, w->of[a]);
     int rc = lag_events_eval(w->sim, w->sim->run->t, w->y, w->events);
     if (rc) return rc;
-    w->pull[a] = -w->W[a * w->n + a] * w->events[contact(w, a)->release];
+    w->pull[a] = -w->W[a * w->n + a] * w->events[lag_contacts_at(w, a)->release];
   }
   return LAG_OK;
 }
@@ -285,7 +272,7 @@ static int none_pulls(ContactSet *w, const unsigned char *closed) {
   close_contacts(w, closed);
   if (lag_events_eval(w->sim, w->sim->run->t, w->y, w->events)) return 0;
   for (int a = 0; a < w->n; a++) {
-    double force = closed[a] ? w->events[contact(w, a)->release] : 0;
+    double force = closed[a] ? w->events[lag_contacts_at(w, a)->release] : 0;
     least = fmin(least, force);
     most = fmax(most, force);
   }
@@ -304,7 +291,7 @@ static int contacts_at_rest(ContactSet *w, double *acceleration) {
     w->follows[a] |= w->in[a];
   }
   if (more && none_pulls(w, w->follows)) memcpy(w->in, w->follows, (size_t)n);
-  close_only(w, 0, -1);
+  lag_contacts_close_only(w, 0, -1);
   return rc;
 }
 
@@ -315,9 +302,9 @@ static const lag_constraint *constraint_of(const lag_sim *s, int i) {
   return &m->constraints->of[m->contacts[i].constraint];
 }
 
-/* Relative tolerances: a speed after an impact that counts as 0; rounding of a gap or of its rate, relative to their terms; a flight too low to
+/* Relative tolerances: a speed after an impact that counts as 0; a flight too low to
  * be followed, relative to the terms of the gap. */
-static const double no_speed = 1e-9, no_gap = 0x1p12 * DBL_EPSILON, no_flight = 0x1p6 * DBL_EPSILON;
+static const double no_speed = 1e-9, no_flight = 0x1p6 * DBL_EPSILON;
 
 /* ---- contacts that take part */
 
@@ -328,12 +315,20 @@ static int find_touching(ContactSet *w, const char *who, int event) {
   const lag_model *m = s->scene->model;
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *c = &m->contacts[i];
-    int inside = w->gap[i] < -no_gap * w->gap_size[i];
+    if (c->conditional) continue;
+    int inside = w->gap[i] < -lag_no_gap * w->gap_size[i];
     if (inside && who) {
       const lag_constraint *of = constraint_of(s, i);
       return lag_fail(s, LAG_EINVAL, "%s is inside the contact %s: its gap is %.3g%s%s", who, of->name, w->gap[i], of->unit[0] ? " " : "", of->unit);
     }
-    if (c->impact == event || c->release == event || w->was[i] || w->gap[i] <= no_gap * w->gap_size[i]) w->of[w->n++] = i;
+    if (c->is_tangent) continue;
+    if (c->impact == event || c->release == event || w->was[i] || w->gap[i] <= lag_no_gap * w->gap_size[i]) w->of[w->n++] = i;
+  }
+  w->rows = w->n;
+  for (int a = 0; a < w->n; a++) {
+    int tangent = tangent_of(m, w->of[a]);
+    w->at[a] = tangent < 0 ? -1 : w->rows;
+    if (tangent >= 0) w->of[w->rows++] = tangent;
   }
   return LAG_OK;
 }
@@ -348,84 +343,145 @@ static int check_restitution(lag_sim *s, int i, double e) {
   return LAG_OK;
 }
 
+static int check_friction(lag_sim *s, int i, const double *law) {
+  if (!(law[0] >= 0)) return lag_fail(s, LAG_EINVAL, "the contact %s has a friction of %.3g, which must be at least 0", constraint_of(s, i - 1)->name, law[0]);
+  if (!(law[-3] >= law[0]))
+    return lag_fail(s, LAG_EINVAL, "the contact %s has a static friction of %.3g, which must be at least its friction while it slips, %.3g", constraint_of(s, i - 1)->name, law[-3], law[0]);
+  if (law[1] >= 0 && law[1] <= 1) return LAG_OK;
+  return lag_fail(s, LAG_EINVAL, "the contact %s has a tangential restitution of %.3g, which must be between 0 and 1", constraint_of(s, i - 1)->name, law[1]);
+}
+
 /* ---- impacts */
 
 /* Marks event k as due now, unless it has fired already. */
-static void mark_due(lag_sim *s, int k) { s->root[k] = s->root[k] == HUGE_VAL ? HUGE_VAL : s->run->limit; }
+void lag_mark_due(lag_sim *s, int k) { s->root[k] = s->root[k] == HUGE_VAL ? HUGE_VAL : s->run->limit; }
 
-/* Impacts of the gaps that close; before[n] := their rates before it. */
-static int apply_impacts(ContactSet *w, int event, int ends, double *before, double *e, unsigned char *struck) {
+/* Impacts of the gaps that close, without restitution for those in ends[n]; before[n] := their rates before it. */
+static int apply_impacts(ContactSet *w, const unsigned char *ends, double *before, double *e, unsigned char *struck) {
   lag_sim *s = w->sim;
   const lag_model *m = s->scene->model;
   int any = 0;
   for (int a = 0; a < w->n; a++) {
     int i = w->of[a];
     before[a] = s->run->dir * w->rate[i];
-    struck[a] = before[a] < -no_gap * w->rate_size[i];
+    struck[a] = before[a] < -lag_no_gap * w->rate_size[i];
     any |= struck[a];
-    if (struck[a]) {
+    e[a] = 0;
+    if (struck[a] || w->rows > w->n) { /* one impact may lead to others */
       e[a] = restitution(w, i);
       int rc = check_restitution(s, i, e[a]);
       if (rc) return rc;
-      e[a] = isnan(e[a]) || (ends && m->contacts[i].impact == event) ? 0 : e[a];
-      mark_due(s, m->contacts[i].impact);
+      e[a] = isnan(e[a]) || ends[a] ? 0 : e[a];
+      if (struck[a]) lag_mark_due(s, m->contacts[i].impact);
     }
   }
-  return any ? impact(w, e, struck) : LAG_OK;
+  return !any ? LAG_OK : w->rows > w->n ? lag_contacts_strike(w, e) : impact(w, e, struck);
 }
 
 /* ---- resting contacts */
 
-/* Finds the contacts that rest, and among them those that are pressed and stay closed. */
-static int rest(ContactSet *w, int event, int ends, const double *before, double *acceleration) {
-  const lag_model *m = w->sim->scene->model;
+/* w->in, acceleration[n] of the contacts that take part. */
+static int find_closed(ContactSet *w, int event, double *acceleration) {
+  return w->rows > w->n ? lag_contacts_choose_modes(w, event, acceleration) : contacts_at_rest(w, acceleration);
+}
+
+/* Finds the contacts that rest, and among them those that are pressed and stay closed. ends[n]: those which rest after this impact, more of them on return. */
+static int rest(ContactSet *w, int event, unsigned char *ends, const double *before, double *acceleration) {
   double dir = w->sim->run->dir;
   for (int a = 0; a < w->n; a++) {
-    const lag_contact *c = &m->contacts[w->of[a]];
     double after = dir * w->rate[w->of[a]];
-    w->part[a] = after <= no_gap * w->rate_size[w->of[a]] || after <= no_speed * fabs(before[a]) || (ends && c->impact == event);
+    w->part[a] = after <= lag_no_gap * w->rate_size[w->of[a]] || after <= no_speed * fabs(before[a]) || ends[a];
   }
-  int rc = contacts_at_rest(w, acceleration), more = 0;
+  int rc = find_closed(w, event, acceleration), more = 0;
   for (int a = 0; a < w->n && rc == 0; a++) { /* its flight would stay within rounding */
     double after = w->rate[w->of[a]], back = -2 * acceleration[a] * no_flight * w->gap_size[w->of[a]];
     if (!w->part[a] && after * after <= back) {
-      w->part[a] = 1;
+      w->part[a] = ends[a] = 1;
       more = 1;
     }
   }
-  return rc == 0 && more ? contacts_at_rest(w, acceleration) : rc;
+  return rc == 0 && more ? find_closed(w, event, acceleration) : rc;
 }
 
 /* Closes the contacts that are pressed, and projects away the speed and gap that remain. */
 static int close_gaps(ContactSet *w) {
   lag_sim *s = w->sim;
   for (int a = 0; a < w->n; a++)
-    if (w->was[w->of[a]] && !w->in[a]) mark_due(s, s->scene->model->contacts[w->of[a]].release);
+    if (w->was[w->of[a]] && !w->in[a]) lag_mark_due(s, s->scene->model->contacts[w->of[a]].release);
   close_contacts(w, w->in);
+  if (w->rows > w->n) lag_contacts_set_friction(w);
   if (lag_project(&s->pb, s->run->t, w->y, NULL) == LAG_OK) return LAG_OK;
   return lag_fail(s, LAG_EMODEL, "at t = %.9g s contacts cannot stay closed: %s", s->run->t, s->pb.detail ? s->pb.detail : "");
 }
 
-static int resolve_contacts(ContactSet *w, const char *who, int event, int ends) {
+/* The impacts, and what rests after them. Friction at impacts that are left out would be missing, whose sum is that of one without restitution: where the flight
+ * after an impact would stay within rounding, the impact is replaced by that one. */
+static int strike_and_rest(ContactSet *w, int event, unsigned char *ends, double *before, double *e, double *acceleration, unsigned char *struck, double *y, double *rate) {
+  const size_t size = (size_t)w->sim->pb.n * sizeof *y, rates = (size_t)w->sim->scene->model->ncontacts * sizeof *rate;
+  memcpy(y, w->y, size);
+  memcpy(rate, w->rate, rates);
+  for (int again = 1; again;) {
+    int rc = apply_impacts(w, ends, before, e, struck);
+    memcpy(struck + w->n, ends, (size_t)w->n);
+    rc = rc ? rc : rest(w, event, ends, before, acceleration);
+    if (rc) return rc;
+    again = 0;
+    for (int a = 0; a < w->n && w->rows > w->n; a++) again |= struck[a] && ends[a] && !struck[w->n + a];
+    if (!again) break;
+    memcpy(w->y, y, size);
+    memcpy(w->rate, rate, rates);
+  }
+  return LAG_OK;
+}
+
+static int resolve_contacts(ContactSet *w, const char *who, int event, int last) {
   int rc = find_touching(w, who, event);
   lag_contact_open(w->sim);
   if (rc || w->n == 0) return rc;
-  size_t n = (size_t)w->n;
-  double *room = calloc(3 * n, sizeof *room);
-  unsigned char *struck = calloc(n, 1);
-  rc = room && struck ? find_responses(w) : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
-  rc = rc ? rc : apply_impacts(w, event, ends, room, room + n, struck);
-  rc = rc ? rc : rest(w, event, ends, room, room + 2 * n);
+  size_t n = (size_t)w->n, others = (size_t)w->sim->pb.n + (size_t)w->sim->scene->model->ncontacts;
+  double *room = calloc(3 * n + others, sizeof *room), *y = room + 3 * n;
+  unsigned char *ends = calloc(3 * n, 1);
+  rc = room && ends ? find_responses(w) : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  for (size_t a = 0; a < n && rc == 0; a++) ends[a] = last && lag_contacts_at(w, (int)a)->impact == event;
+  rc = rc ? rc : strike_and_rest(w, event, ends, room, room + n, room + 2 * n, ends + n, y, y + w->sim->pb.n);
   rc = rc ? rc : close_gaps(w);
   free(room);
-  free(struck);
+  free(ends);
   return rc;
+}
+
+/* ---- contacts that are met by impulses (methods/contact_step.c) */
+
+void lag_contact_mute(const lag_sim *s, double *g) {
+  const lag_model *m = s->scene->model;
+  for (int i = 0; i < m->ncontacts; i++) g[m->contacts[i].impact] = g[m->contacts[i].release] = 1;
+}
+
+void lag_contact_show(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    s->pb.u[c->input] = !c->is_tangent && s->pb.contact_impulse[i] > 0;
+    if (c->is_tangent) s->pb.u[c->force] = s->pb.contact_impulse[i] / s->pb.contacts->length;
+  }
+}
+
+/* Refuses a state set by `who` that is deeper inside a contact than this run was before. */
+static int check_depth(ContactSet *w, const char *who) {
+  for (int i = 0; i < w->sim->scene->model->ncontacts; i++) w->gap[i] += w->sim->pb.contacts->depth;
+  return who ? find_touching(w, who, -1) : LAG_OK;
 }
 
 int lag_contact_resolve(lag_sim *s, double *y, const char *who, int event, int ends) {
   ContactSet w;
   if (s->scene->model->ncontacts == 0) return LAG_OK;
   int rc = evaluate_contacts(s, y, &w);
+  if (s->pb.contacts) {
+    rc = rc ? rc : check_depth(&w, who);
+    lag_contact_open(s);
+    free_contacts(&w);
+    return rc;
+  }
   rc = rc ? rc : resolve_contacts(&w, who, event, ends);
   free_contacts(&w);
   return rc;
@@ -436,7 +492,11 @@ static int check_all(lag_sim *s) {
   ContactSet w;
   int rc = evaluate_contacts(s, s->now, &w);
   for (int i = 0; i < s->scene->model->ncontacts && rc == 0; i++) {
-    double e = restitution(&w, i);
+    if (s->scene->model->contacts[i].is_tangent) {
+      rc = check_friction(s, i, w.law + 3 * i);
+      continue;
+    }
+    double e = s->scene->model->contacts[i].conditional ? NAN : restitution(&w, i);
     rc = isfinite(e) ? check_restitution(s, i, s->run->dir < 0 ? fmax(e, 1) : e) : LAG_OK;
   }
   free_contacts(&w);
@@ -446,31 +506,46 @@ static int check_all(lag_sim *s) {
 
 int lag_contact_begin(lag_sim *s) {
   int rc = LAG_OK;
+  if (s->pb.contacts && s->run->dir < 0) return lag_fail(s, LAG_EINVAL, "%s does not follow contacts backwards in time", s->method->name);
+  if (s->scene->model->contact_laws && s->run->dir < 0)
+    return lag_fail(s, LAG_EINVAL, "contacts with friction are not followed backwards in time: many motions come to rest in the same place");
   if (s->scene->model->ncontacts > 0) {
     lag_contact_open(s);
     rc = check_all(s);
-    rc = rc ? rc : lag_contact_resolve(s, s->now, "the start", -1, 0);
+    rc = rc ? rc : lag_settle_constraints(s, s->now, "the start", -1, 0, 0, NULL);
   }
   memcpy(s->y, s->now, (size_t)s->pb.n * sizeof(double));
+  return rc;
+}
+
+/* size[constraints] of tangents := size of the terms of their slip velocities. */
+static int tangent_sizes(lag_sim *s, double *size) {
+  const lag_model *m = s->scene->model;
+  double *rates = size + m->constraints->n;
+  int rc = lag_constraint_terms(&s->pb, s->run->t, s->now, 0, rates);
+  for (int i = 0; i < m->ncontacts && rc == 0; i++)
+    if (m->contacts[i].is_tangent) size[m->contacts[i].constraint] = rates[m->contacts[i].constraint];
   return rc;
 }
 
 int lag_contact_arm(lag_sim *s, const double *g) {
   const lag_model *m = s->scene->model;
   double most = 0, *size = s->contact_scratch;
-  if (m->ncontacts == 0) return LAG_OK;
+  if (m->ncontacts == 0 || s->pb.contacts) return LAG_OK;
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *c = &m->contacts[i];
     s->contact_was[i] = s->hold[c->input];
-    most = lag_contact_is_closed(s, c) ? fmax(most, fabs(g[c->release])) : most;
+    most = lag_contact_is_closed(s, c) && !c->conditional ? fmax(most, fabs(g[c->release])) : most;
   }
-  for (int i = 0; i < m->ncontacts; i++) s->hold[m->contacts[i].input] = 1;
+  for (int i = 0; i < m->ncontacts; i++)
+    if (!m->contacts[i].conditional) s->hold[m->contacts[i].input] = 1;
   int rc = term_sizes(s, s->now, 1, size, size + m->constraints->n);
+  if (rc == 0 && m->contact_laws) rc = tangent_sizes(s, size);
   for (int i = 0; i < m->ncontacts; i++) {
     const lag_contact *c = &m->contacts[i];
     s->hold[c->input] = s->contact_was[i];
     int k = lag_contact_is_closed(s, c) ? c->release : c->impact;
-    double noise = k == c->release ? 1e-12 * most : no_flight * size[c->constraint];
+    double noise = c->conditional ? 0 : k == c->release ? 1e-12 * most : no_flight * size[c->constraint];
     if (g[k] <= noise) { /* no sign yet; below -noise the event fires */
       s->sign[k] = 0;
       s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* with a larger factor it would grow at each impact */

@@ -113,8 +113,9 @@ double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, ch
 int lag_observe(lag_sim *s, double t, const double *y, double *out) {
   const double doubtful = 1e-3; /* with independence i, forces have an error of rounding/i^2 and of the state's error/i^2 */
   const lag_scene *c = s->scene;
-  int weakest, rc = lag_inputs(&s->pb, t);
+  int weakest, rc = lag_inputs_at(&s->pb, t, y);
   rc = rc ? rc : lag_closed_form_at(s, t);
+  if (rc == 0 && s->pb.contacts && c->forces && s->pb.contacts->length > 0) lag_contact_show(s);
   rc = rc ? rc : c->observe(t, y, y + s->pb.nq, y + 2 * s->pb.nq, s->p, s->u, out, s->work);
   if (rc == 0 && c->forces && c->model->constraints && lag_independence(&s->pb, t, y, &weakest) < doubtful)
     for (int i = 0; i < c->nout; i++) out[i] = c->forces[i] ? NAN : out[i];

@@ -39,12 +39,11 @@ unsigned lag_charge_flags(const lag_sim *s, int k) {
 
 static void no_values(lag_sim *s, int from) { for (int i = 2 * from; i < 2 * lag_sim_ncharges(s); i++) s->charge_now[i] = NAN; }
 
-/* charge_now[2 k], charge_now[2 k + 1] := value and scale of charge k; NaN where there is none. */
-static void values_at(lag_sim *s, double t, const double *y) {
+void lag_charges_at(lag_sim *s, double t, const double *y) {
   const lag_model *m = s->scene->model;
   int n = lag_sim_ncharges(s), nq = m->nq;
   if (n == 0) return;
-  if (lag_inputs_inline(&s->pb, t)) {
+  if (lag_inputs_at(&s->pb, t, y)) {
     no_values(s, 0);
     return;
   }
@@ -82,22 +81,38 @@ void lag_charges_method(lag_sim *s, const lag_method *method) {
   int ends = method->order_most == 0 && order > between;
   order = ends || order < between ? order : between;
   s->nodes = (order + 1) / 2 > LAG_NODES ? LAG_NODES : order < 2 ? 1 : (order + 1) / 2;
-  (ends ? lag_radau_points : lag_gauss_points)(s->nodes, s->node, s->weight);
+  s->nodes_at_end = ends;
+  s->node[0] = 0;
 }
 
-/* gain[n] := int P dt over [a, b], within the last step; NaN where P has no value. */
+void lag_charges_nodes(lag_sim *s) {
+  if (s->node[0] == 0.0) (s->nodes_at_end ? lag_radau_points : lag_gauss_points)(s->nodes, s->node, s->weight);
+}
+
+/* Number of powers: those of the charges, and that of dry friction. */
+static int npowers(const lag_model *m) { return m->charges->n + m->charges->dry_friction; }
+
+/* gain[npowers] := int P dt over [a, b], within the last step; NaN where P has no value. */
 static void work_over(lag_sim *s, double a, double b, double *gain) {
   const lag_model *m = s->scene->model;
-  int n = m->charges->n, nq = m->nq;
+  int n = npowers(m), nq = m->nq;
   double *y = s->yc;
+  lag_charges_nodes(s);
   memset(gain, 0, (size_t)n * sizeof *gain);
   for (int i = 0; i < s->nodes && a != b; i++) {
     double t = a + s->node[i] * (b - a);
     s->method->dense(s->method_work, &s->pb, t, y);
-    int rc = lag_inputs(&s->pb, t);
+    int rc = lag_inputs_at(&s->pb, t, y);
     rc = rc ? rc : m->charges->powers(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_power, s->work);
     for (int k = 0; k < n; k++) gain[k] += rc ? NAN : (b - a) * s->weight[i] * s->charge_power[k];
   }
+}
+
+/* *sum += x with compensation: W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723. */
+static void add_compensated(double *sum, double *lost, double x) {
+  double rest = x - *lost, next = *sum + rest;
+  *lost = (next - *sum) - rest;
+  *sum = next;
 }
 
 /* Adds the work from the last look to t, within the step that the method still knows. */
@@ -105,11 +120,10 @@ static void add_work(lag_sim *s, double t) {
   double *gain = s->charge_gain;
   if (s->run->balanced != 0.0) {
     work_over(s, s->run->watched, t, gain);
-    for (int k = 0; k < lag_sim_ncharges(s); k++) { /* compensated sum: W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723 */
+    if (s->scene->model->charges->dry_friction) add_compensated(&s->run->dry_work, &s->run->dry_lost, gain[lag_sim_ncharges(s)]);
+    for (int k = 0; k < lag_sim_ncharges(s); k++) {
       Charge *c = &s->charges[k];
-      double x = c->balanced * gain[k] - c->lost, sum = c->work + x;
-      c->lost = (sum - c->work) - x;
-      c->work = sum;
+      add_compensated(&c->work, &c->lost, c->balanced * gain[k]);
       c->through += fabs(c->balanced * gain[k]);
     }
   }
@@ -150,6 +164,11 @@ static double median_size(const Charge *c) {
   return n == 0 ? 0 : size[n < FEW || i == n ? n - 1 : i];
 }
 
+/* The size of the charge in this run, which is not needed at each step. */
+static double size_of(const Charge *c) { return c->bins > 0 ? median_size(c) : c->size; }
+
+static double relative(const Charge *c, double x, double size) { return x == 0.0 ? 0 : x / fmax(fabs(c->begin), size); }
+
 static void add_to_trend(Charge *c, double t, double d, double size) {
   const int open = LAG_BINS;
   c->t[open] += t;
@@ -161,22 +180,21 @@ static void add_to_trend(Charge *c, double t, double d, double size) {
   c->m[(int)c->bins] = c->m[open] / c->width;
   c->t[open] = c->d[open] = c->m[open] = c->in_bin = 0;
   if (++c->bins >= LAG_BINS) merge_bins(c);
-  c->scale = median_size(c);
 }
 
 void lag_charges_begin(lag_sim *s, double t, const double *y) {
-  values_at(s, t, y);
+  lag_charges_at(s, t, y);
   s->run->watched = t;
   s->run->balanced = can_balance(s) && (s->balances || watches_charges(s->scene));
   for (int k = 0; k < lag_sim_ncharges(s); k++) {
-    s->charges[k] = (Charge){.begin = s->charge_now[2 * k], .first = s->charge_now[2 * k], .scale = fmax(s->charge_now[2 * k + 1], 0), .width = 1};
+    s->charges[k] = (Charge){.begin = s->charge_now[2 * k], .first = s->charge_now[2 * k], .size = fmax(s->charge_now[2 * k + 1], 0), .width = 1};
     s->charges[k].balanced = (lag_charge_flags(s, k) & LAG_BALANCED) != 0;
   }
 }
 
 int lag_energy_undefined(lag_sim *s, double t, const double *y) {
   int n = lag_sim_ncharges(s);
-  values_at(s, t, y);
+  lag_charges_at(s, t, y);
   return n > 0 && isfinite(s->charges[0].begin) && !isfinite(s->charge_now[0]);
 }
 
@@ -185,10 +203,10 @@ int lag_energy_undefined(lag_sim *s, double t, const double *y) {
  * tolerances, which lose as much as there is without a pole. Not judged: few bins, since a motion from rest has no size yet; errors below 1e-12
  * of the unit, rounding of unknown terms; constraints that move with time, whose peaks may lie between steps. */
 static int is_lost(const lag_model *m, const Charge *c, double d, double size) {
-  const double part = 0.25, times = 4, least = 1e-12, few = 8, of = fmax(fabs(c->begin), c->scale);
+  const double part = 0.25, times = 4, least = 1e-12, few = 8, off = fabs(d);
   int driven = m->constraints && !(m->flags & LAG_AUTONOMOUS);
 
-  return c->balanced != 0.0 && !driven && c->bins >= few && fabs(d) > fmax(times * of, least) && fabs(d) > part * fmax(size, c->through);
+  return c->balanced != 0.0 && !driven && c->bins >= few && off > fmax(times * fabs(c->begin), least) && off > part * fmax(size, c->through) && off > times * size_of(c);
 }
 
 int lag_energy_retained(lag_sim *s) {
@@ -210,7 +228,7 @@ static int say_lost(lag_sim *s, double t, double before, double d) {
   double h = lag_equal_step(s);
   return lag_fail(s, LAG_EDRIFT, "at t = %.9g s the energy is off by %.3g%s%s, %.2g times its size in this run: the numbers mean nothing from here on. The step from "
                   "t = %.9g s, of %.3g s, caused %.3g%s%s of that error: it crosses a pole of a force, or is too long; %s", t, d, space, unit,
-                  fabs(d) / fmax(fabs(c->begin), c->scale), s->run->step_t0, s->run->step_t1 - s->run->step_t0, d - before, space, unit,
+                  relative(c, fabs(d), size_of(c)), s->run->step_t0, s->run->step_t1 - s->run->step_t0, d - before, space, unit,
                   h > 0 ? "take smaller steps, or dop853, which stops in front of a pole" : "take a smaller tolerance");
 }
 
@@ -218,13 +236,14 @@ static int say_lost(lag_sim *s, double t, double before, double d) {
  * computed only where the change has doubled. */
 static void note_jolt(lag_sim *s, double t, const double *y, double change) {
   enum { MANY = 64 };
+  const double rounding = 64 * DBL_EPSILON;
   const lag_model *m = s->scene->model;
   const Charge *c = &s->charges[0];
   Run *r = s->run;
   int which;
 
-  if (m->nq == 0 || m->nq > MANY || m->flags & (LAG_FIRST_ORDER | LAG_CONSTANT_MASS) || !(change > fmax(2 * r->energy_jump, 64 * DBL_EPSILON * fmax(fabs(c->begin), c->scale))))
-    return;
+  if (m->nq == 0 || m->nq > MANY || m->flags & (LAG_FIRST_ORDER | LAG_CONSTANT_MASS)) return;
+  if (!(change > fmax(2 * r->energy_jump, rounding * fabs(c->begin)) && change > rounding * size_of(c))) return;
   r->energy_jump = change;
   r->energy_jump_t = t;
   r->mass_condition = lag_mass_condition(&s->pb, t, y, &which);
@@ -249,24 +268,41 @@ int lag_charges_record(lag_sim *s, double t, const double *y) {
 
 void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb) {
   for (int pass = 0; pass < 2; pass++) {
-    values_at(s, t, pass ? yb : ya);
+    lag_charges_at(s, t, pass ? yb : ya);
     for (int k = 0; k < lag_sim_ncharges(s); k++) s->charges[k].first += pass ? s->charge_now[2 * k] : -s->charge_now[2 * k];
+    if (lag_sim_ncharges(s)) s->run->at_events += pass ? s->charge_now[0] : -s->charge_now[0];
   }
 }
 
-static double relative(const Charge *c, double x) { return x == 0.0 ? 0 : x / fmax(fabs(c->begin), c->scale); }
-
-/* Includes the present state in the peak. */
-static void with_present(Charge *c, double now, double work, double size) {
-  double d = fabs(now - work - c->first);
-  c->peak = d > c->peak || isnan(d) ? d : c->peak;
-  c->scale = c->scale > 0 ? c->scale : size;
+void lag_charges_add_work(lag_sim *s, double at_events, double rubbed) {
+  if (!lag_sim_ncharges(s)) return;
+  Charge *c = &s->charges[0];
+  int known = c->balanced != 0.0 && s->scene->model->charges->dry_friction;
+  *(known ? &c->work : &c->first) += rubbed;
+  *(known ? &s->run->dry_work : &s->run->at_events) += rubbed;
+  c->first += at_events;
+  s->run->at_events += at_events;
 }
 
-double lag_charge_drift(const lag_sim *s, int k) { return relative(&s->charges[k], s->charges[k].peak); }
+/* Work of contacts by impulses in the present step up to now that is not in the charges yet. */
+static double pending_work(const lag_sim *s) {
+  const lag_contact_stats *c = s->pb.contacts;
+  const Run *r = s->run;
+  if (!c || c->due == 0.0 || r->have_step == 0.0) return 0;
+  double part = c->from < r->step_t1 ? r->t >= c->from : (r->t - r->step_t0) / (r->step_t1 - r->step_t0);
+  return part * (c->work + c->rubbed);
+}
+
+/* Includes the present state in the peak. */
+static void with_present(Charge *c, double now, double work) {
+  double d = fabs(now - work - c->first);
+  c->peak = d > c->peak || isnan(d) ? d : c->peak;
+}
+
+double lag_charge_drift(const lag_sim *s, int k) { return relative(&s->charges[k], s->charges[k].peak, size_of(&s->charges[k])); }
 
 /* Fits a line to the bins: *slope and *error; returns the trend. */
-static int trend_of(const Charge *c, double steps, double *slope, double *error) {
+static int trend_of(const Charge *c, double size, double steps, double *slope, double *error) {
   const int fewest = 16;
   const double explained = 0.8; /* a line explains at most 6/pi^2 = 0.61 of a sine whose period is the run */
   int n = (int)c->bins;
@@ -275,7 +311,7 @@ static int trend_of(const Charge *c, double steps, double *slope, double *error)
   LineFit f = lag_line_fit(n, c->t, c->d);
   *slope = f.xy / f.xx;
   *error = sqrt(fmax(f.yy - f.xy * *slope, 0) / (n - 2) / f.xx);
-  if (c->peak <= 16 * DBL_EPSILON * c->scale * sqrt(steps)) return LAG_TREND_ROUNDING;
+  if (c->peak <= 16 * DBL_EPSILON * size * sqrt(steps)) return LAG_TREND_ROUNDING;
   return f.xy * f.xy >= explained * f.xx * f.yy ? LAG_TREND_GROWS : LAG_TREND_OSCILLATES;
 }
 
@@ -286,26 +322,31 @@ void lag_sim_charge(lag_sim *s, int k, lag_charge_stats *st) {
   const lag_model *m = s->scene->model;
   const Run *r = s->run;
   Charge seen = s->charges[k], *c = &seen;
-  double since = 0;
+  double since = 0, size = size_of(c);
 
   *st = (lag_charge_stats){.name = m->charges ? m->charges->of[k].name : "energy", .unit = m->charges ? m->charges->of[k].unit : "",
                            .flags = lag_charge_flags(s, k), .begin = c->begin, .mass_condition = NAN, .mass_condition_of = ""};
   if (r->begun != 0.0 && r->have_step != 0.0 && r->balanced != 0.0) { /* the run's end is within a step */
     work_over(s, r->watched, r->t, s->charge_gain);
     since = c->balanced * s->charge_gain[k];
+    if (k == 0 && m->charges->dry_friction) st->dry_friction = s->charge_gain[m->charges->n];
   }
-  values_at(s, r->t, s->now);
+  lag_charges_at(s, r->t, s->now);
   st->now = s->charge_now[2 * k];
+  c->first += k == 0 ? pending_work(s) : 0;
   st->work = c->work + since;
+  st->dry_friction = k == 0 && m->charges && m->charges->dry_friction && r->balanced != 0.0 ? r->dry_work + st->dry_friction : NAN;
+  st->at_events = k == 0 ? r->at_events : 0;
   if (r->begun == 0.0) st->begin = st->now;
-  else with_present(c, st->now, st->work, s->charge_now[2 * k + 1]);
-  st->drift = relative(c, c->peak);
+  else with_present(c, st->now, st->work);
+  if (r->begun != 0.0 && !(size > 0)) size = s->charge_now[2 * k + 1];
+  st->drift = relative(c, c->peak, size);
   st->absolute = c->peak;
-  st->trend = trend_of(c, r->steps, &st->slope, &st->slope_error);
-  st->slope = relative(c, st->slope);
-  st->slope_error = relative(c, st->slope_error);
+  st->trend = trend_of(c, size, r->steps, &st->slope, &st->slope_error);
+  st->slope = relative(c, st->slope, size);
+  st->slope_error = relative(c, st->slope_error, size);
   if (k == 0 && r->energy_jump > 0) {
-    st->energy_jump = relative(c, r->energy_jump);
+    st->energy_jump = relative(c, r->energy_jump, size);
     st->energy_jump_t = r->energy_jump_t;
     st->mass_condition = r->mass_condition;
     st->mass_condition_of = m->q[(int)r->mass_condition_of].name;

@@ -1,4 +1,4 @@
-/* Comparison of a run with closed forms. Enters: states of the run; leaves: the largest differences, and the closed forms behind the inputs in
+/* Comparison of a run with closed forms. Enters: states of the run; leaves: the largest differences, and the closed forms behind inputs and modes in
  * s->u, where outputs read them. */
 #include <math.h>
 
@@ -7,14 +7,14 @@
 int lag_closed_form_at(lag_sim *s, double t) {
   const lag_scene *c = s->scene;
   int nq = s->pb.nq;
-  return c->nexact ? c->exact(t, s->begin, s->begin + nq, s->begin + 2 * nq, s->p, s->u, s->u + c->model->nu) : 0;
+  return c->nexact ? c->exact(t, s->begin, s->begin + nq, s->begin + 2 * nq, s->p, s->u, s->u + c->model->nu + c->model->nmodes) : 0;
 }
 
 /* Motion minus closed form k, which lag_closed_form_at has computed; of angles the nearest way around. */
 static double difference(const lag_sim *s, const double *y, int k) {
   const lag_model *m = s->scene->model;
   int i = s->scene->exact_of[k];
-  double d = y[i] - s->u[m->nu + k];
+  double d = y[i] - s->u[m->nu + m->nmodes + k];
   return i < m->nq && m->q[i].periodic ? remainder(d, 2 * 3.14159265358979323846) : d;
 }
 

@@ -21,6 +21,8 @@ typedef struct Run {
   double steps, rejected, rhs_calls, systems, iterations, events;
   double watched;        /* charges and their work are known up to this time */
   double balanced;       /* 1: the work of forces on charges is integrated along the run */
+  double dry_work, dry_lost; /* work of dry friction, and the rounding error of that sum */
+  double at_events;      /* change of the energy at events: impacts, constraints that begin to hold, actions */
   double c_peak, r_peak; /* the largest residual of a constraint, and of its rate, at ends of steps */
   double rank, beside;   /* rank of the constraints at the start; and, at a singular start, their rank a hundredth away from it */
   double looks, coarse, period; /* steps of equal size: period estimates made; estimates shorter than two steps; the last such period [s] */
@@ -28,6 +30,7 @@ typedef struct Run {
   double energy_jump, energy_jump_t;   /* largest energy change in one step, and its time; replaced only by a change more than twice as large */
   double mass_condition, mass_condition_of; /* condition of the mass matrix at energy_jump_t, and the coordinate of least inertia */
   double chatter, chatter_since; /* impacts that follow another at once and leave the gap open, and the time of the first of them */
+  double rattles;        /* ends of branches of switches that followed another at once */
   double row_origin, row_every, row_next;  /* output grid, kept here for app/ */
   double seal;           /* in a saved state: hash of its numbers, and of what they belong to */
 } Run;
@@ -38,7 +41,7 @@ typedef struct Charge {
   double begin;      /* Q at the start */
   double first;      /* Q at the start, plus the jumps of Q at events */
   double peak;       /* largest |difference| */
-  double scale;      /* median over the bins of the sum of |terms of Q|; with few bins the largest */
+  double size;       /* sum of |terms of Q| at the start: the size of Q, until there are bins */
   double before;     /* difference at the last look */
   double through;    /* int |P| dt, step by step */
   double work, lost; /* int P dt, and the rounding error of that sum (Kahan) */
@@ -57,6 +60,14 @@ typedef struct Charge {
 #define LAG_MORE_PRECISION ""
 #endif
 
+/* A step that is made elsewhere, in the lanes of a vector (lanes/): with `on`, lag_sim_advance returns LAG_WANTS_STEP where it needs a step, towards `to`;
+ * once `made` is set it goes on from the state in y, at the end t of the step. */
+enum { LAG_WANTS_STEP = 1000 };
+typedef struct OutsideStep {
+  int on, made;
+  double to, t;
+} OutsideStep;
+
 struct lag_sim {
   const lag_scene *scene;
   const lag_method *method;
@@ -71,12 +82,16 @@ struct lag_sim {
   double *sides;         /* [3 nswitch] switching functions, scratch of stall_detector.c */
   double *rate_history;         /* [3 n] force_pole.c: rate of change of the state over the last two steps, and its fading peak; NaN: not known */
   double *contact_scratch, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
+  double *grip;          /* [nmodes] the largest mode of a sliding motion */
+  double *side_noise, *slid_off, *meets, *left, *meeting; /* [nmodes] switching.c: rounding of the switching functions, their size before events; whether
+                          * the motion is at the surface, the side to which it has slid off; scratch */
+  int *meeting_of;       /* [2 nmodes] scratch, and pb.sliding */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
   double *saved;         /* one block: Run and the arrays below; it lies in `room`, which is freed */
   char *room;
   size_t nsaved;
   Run *run;
-  double *p, *derived, *hold; /* [np + nderived]; its last nderived; [nu] input constants, NaN: none */
+  double *p, *derived, *hold; /* [np + nderived]; its last nderived; [nu + nmodes] modes, and input constants, NaN: none */
   double *begin;         /* [n] at the start of the run */
   double *asked;         /* [n] start as requested, before projection onto the constraints */
   double *redundant;     /* [constraints] 1: it follows from the others at the start */
@@ -92,23 +107,26 @@ struct lag_sim {
   double *count;         /* [nev] */
   double *first, *last;  /* [nev] times of firing, where count is not 0 */
   double *interval, *shorter; /* [nev] interval between the last two firings; number of intervals in a row, each shorter than the one before */
+  double *crossed, *slips, *slid, *slid_since; /* [nmodes] times that a surface was crossed, slides begun; their time, start of the present mode */
   double *mon_first, *mon_peak; /* [nmonitors] first value and largest deviation of a monitored output */
   double *charge_block;
   Charge *charges;       /* charge_block as [lag_sim_ncharges]; the energy first */
   double *charge_now, *charge_power, *charge_gain; /* scratch: value and scale of each charge; P; int P dt */
-  double node[LAG_NODES], weight[LAG_NODES]; /* quadrature nodes and weights over a step, */
-  int nodes;             /* and their number */
+  double node[LAG_NODES], weight[LAG_NODES]; /* quadrature nodes and weights over a step, as lag_charges_nodes left them; node[0] 0: not yet */
+  int nodes, nodes_at_end; /* their number; 1: Radau's, the last of them at the end */
   int balances;          /* lag_sim_balance was called */
   double *exact_peak;    /* [nexact] largest difference from the closed form */
   double *method_work;   /* [nwork] */
   size_t nwork;
   double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
   int tangent_columns, tangent_at_event; /* tangent_at_event: the event at this time is already applied to it */
-  double tangent_log;    /* sum of log |det S| over events (tangent.c); its reader sets it back to 0 */
+  int tangent_meets, tangent_moves, tangent_touches; /* switches met at this time; whether that time depends on the state; whether the last one is only touched */
+  double tangent_log;    /* sum of log |det S| over events (tangent.c), -HUGE_VAL once a slide has begun; its reader sets it back to 0 */
   int (*on_step)(void *, const lag_sim *);
   void *on_step_context;
   lag_event_fn *on_event;
   void *on_event_context;
+  OutsideStep outside;
   char message[512];
 };
 
@@ -120,6 +138,9 @@ int lag_is_step_option(const char *option);
 const char *lag_step_error(const lag_sim *s, double x);
 /* The common size of the steps [s]; 0 where the method adapts it. */
 double lag_equal_step(const lag_sim *s);
+
+/* saved_state.c: FNV-1a hash that goes on from h with a number, by its value: in memory, numbers of some precisions have bytes without meaning. */
+unsigned long long lag_hash_number(unsigned long long h, double x);
 
 /* A number for %s in a message. */
 #define LAG_TEXT(x) lag_number_text((x), (char[64]){0})
@@ -170,8 +191,9 @@ int lag_setup_start(lag_sim *sim);
 
 /* events.c and event_location.c. arm: signs of g at the start of a chain of steps. locate: the first event in (run->from, step_t1]; sets limit and
  * pending. spread: variation of g[nev] about limit within the last digits of the time, which the dense output cannot resolve. fire: applies the
- * events at limit. eval: g[nev] at y, t. */
+ * events at limit. inputs_jump: modes of switches after a jump of inputs. eval: g[nev] at y, t. */
 int lag_events_arm(lag_sim *sim);
+int lag_events_inputs_jump(lag_sim *sim);
 int lag_events_locate(lag_sim *sim);
 int lag_events_spread(lag_sim *sim, const double *at_event, double *spread);
 int lag_events_fire(lag_sim *sim);
@@ -180,6 +202,25 @@ int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 /* branch_change.c: whether the step from `now` to y at t continues another motion, beside a singular position of the constraints. LAG_OK, or
  * LAG_EMETHOD with the reason in pb. */
 int lag_changes_branch(lag_sim *sim, double t);
+
+/* switching.c. place: modes for a new state `now`. meet: the event of switch k is due; settle: modes from there on, and whether any has changed. before_events: call before events
+ * change the state. eval: event functions g[nmodes] at y, t, after lag_inputs_at. noise: |g| up to this counts as 0. count: pb.sliding from the modes. */
+int lag_switch_place(lag_sim *sim);
+int lag_switch_before_events(lag_sim *sim);
+void lag_switch_meet(lag_sim *sim, int k);
+int lag_switch_settle(lag_sim *sim, int *changed);
+int lag_switch_eval(lag_sim *sim, double t, const double *y, double *g);
+double lag_switch_noise(const lag_sim *sim, int k);
+int lag_switch_fail_zeno(lag_sim *sim, int k);
+void lag_switch_count(lag_sim *sim);
+/* 1: no branch is held, for right-hand sides at states that are not of the run; 0: those of the run again. */
+void lag_switch_set_free(lag_sim *sim, int free);
+/* Holds switch k at mode m, 0: sliding, for right-hand sides beside the surface. */
+void lag_switch_hold(lag_sim *sim, int k, double m);
+/* Event functions that are watched: events, then switches that have a mode; none of these for methods that find no events. */
+static inline int lag_watched(const lag_sim *s) {
+  return s->scene->model->nev + (s->method->flags & LAG_METHOD_STEPS_TO ? 0 : s->scene->model->nmodes);
+}
 
 /* stall_detector.c: judges the step from `now` to y at t. LAG_OK; LAG_ESTALL or LAG_ESTEP where the motion makes no progress, with the reason in
  * pb. */
@@ -200,31 +241,72 @@ int lag_hold_integrals(lag_sim *sim, double t, const double *y);
  * that set y, which must not lie inside a contact, or NULL. begin: contacts at the start. arm: signs of contact events in `now`, where their
  * functions are g[nev]; those that touch have none. Failures have their message. */
 const lag_contact *lag_contact_of(const lag_model *m, int event);
+/* Whether event k is located: those of contacts that are met by impulses are not. */
+int lag_event_is_located(const lag_sim *sim, int k);
 int lag_contact_is_closed(const lag_sim *sim, const lag_contact *contact);
 void lag_contact_open(lag_sim *sim);
 int lag_contact_resolve(lag_sim *sim, double *y, const char *who, int event, int ends);
 int lag_contact_begin(lag_sim *sim);
 int lag_contact_arm(lag_sim *sim, const double *g);
+/* contact_friction.c: law[3 contacts] at y, now. Failures have their message. */
+int lag_contact_laws(lag_sim *sim, const double *y, double *law);
+/* Event functions g[nev] of tangents: 1 where they are none, 1 or -1 times the slip velocity. */
+void lag_tangent_events(const lag_sim *sim, double *g);
+/* Event functions g[nev] of contacts that are met by impulses: 1, as they do not happen. show: u of these contacts, for outputs with multipliers: closed where the last step pressed them. */
+void lag_contact_mute(const lag_sim *sim, double *g);
+void lag_contact_show(lag_sim *sim);
+void lag_mark_due(lag_sim *sim, int event); /* the event happens at this time, too, unless it has fired already */
+/* conditional.c: constraints that hold while a condition is true. place: which of them hold at y, and no more. settle: which of them hold at y, with
+ * the velocities that they and contacts then allow; moved: the event has set velocities (1) or positions, too (2); zero[events]: rounding of event
+ * functions, or NULL; the others as for lag_contact_resolve. */
+int lag_conditional_place(lag_sim *sim, double t, const double *y);
+int lag_settle_constraints(lag_sim *sim, double *y, const char *who, int event, int ends, int moved, const double *zero);
 
-/* tangent.c. pass: carries the tangent over a step that is used up. jump: carries it over event k, which changes the state from `now` to yb;
- * more: another event has changed the state at this time. */
+/* linearisation.c: the scale of component i of the state at which a smooth model bends, for differences; of an angle at most 1. */
+double lag_difference_scale(lag_problem *pb, const double *y, int i);
+
+/* kicks.c: events at equal times (LAG_KICK). begin: checks their periods, values of the event functions. plan: pb.kick := the time of the next. locate: root[] of those
+ * in the step, whose event functions at its start are given; returns the end of the part of the step before the first. at_once: whether one is due now; it then makes a step
+ * of no length, which ends there. */
+int lag_is_kick(const lag_model *m, int k);
+int lag_kicks_begin(lag_sim *sim, const double *period);
+int lag_kicks_plan(lag_sim *sim);
+double lag_kicks_locate(lag_sim *sim, const double *period);
+int lag_kicks_at_once(lag_sim *sim);
+/* tangent.c. meet: carries the tangent to the present time, where switch event k ends its branch; corner: over the change of rates there, after modes are
+ * settled; begin: projects the tangent of a motion that begins by sliding. pass: carries the tangent over a step that is used up. jump: carries it over event k, which changes the state from `now` to yb; more:
+ * another event has changed the state at this time. */
 int lag_tangent_pass(lag_sim *sim);
+int lag_tangent_meet(lag_sim *sim, int k);
+int lag_tangent_corner(lag_sim *sim);
+int lag_tangent_begin(lag_sim *sim);
 int lag_tangent_jump(lag_sim *sim, int k, int more);
 void lag_tangent_free(lag_sim *sim);
+/* tangent_space.c. dimension: of the tangent space of the constraints at the present state; of a run that has not begun at its start, which is
+ * computed; n without constraints; or a status < 0 with its message. project: each column of Y[n k] at y, t onto that space, in the mass metric;
+ * scratch[lag_tangent_projection_size]. */
+int lag_tangent_dimension(lag_sim *sim);
+size_t lag_tangent_projection_size(const lag_problem *pb);
+int lag_tangent_project(lag_problem *pb, double t, const double *y, int k, double *Y, double *scratch);
 
 /* closed_form.c. at: the closed forms at t, stored behind the inputs in s->u; call lag_inputs first. see: as in monitors.c. */
 int lag_closed_form_at(lag_sim *sim, double t);
 int lag_closed_form_record(lag_sim *sim, double t, const double *y);
 
-/* charges.c: begin, see and jump as in monitors.c. method: chooses quadrature nodes for the method of the steps. drift: of charge k so far,
+/* charges.c: charge_now[2 k], charge_now[2 k + 1] := value and scale of charge k at y, t; NaN where there is none. */
+void lag_charges_at(lag_sim *sim, double t, const double *y);
+/* begin, see and jump as in monitors.c. method: chooses quadrature nodes for the method of the steps, which nodes computes before their first use. drift: of charge k so far,
  * relative to its size. flags: what is known of its rate, given the inputs that are set. _see returns LAG_EDRIFT, with a message, where the
  * energy has drifted past its size. */
 void lag_charges_method(lag_sim *sim, const lag_method *method);
+void lag_charges_nodes(lag_sim *sim);
 void lag_charges_begin(lag_sim *sim, double t, const double *y);
 int lag_charges_record(lag_sim *sim, double t, const double *y);
 /* Whether the energy, finite at the start, is not finite at t. _see then adds nothing and returns LAG_ENAN. */
 int lag_energy_undefined(lag_sim *sim, double t, const double *y);
 void lag_charges_jump(lag_sim *sim, double t, const double *ya, const double *yb);
+/* Work at an instant, of impulses, whose effect on the energy is known better than from states before and after; rubbed: of friction. */
+void lag_charges_add_work(lag_sim *sim, double at_events, double rubbed);
 double lag_charge_drift(const lag_sim *sim, int k);
 unsigned lag_charge_flags(const lag_sim *sim, int k);
 
@@ -235,6 +317,8 @@ int lag_energy_retained(lag_sim *sim);
  * yb. */
 int lag_monitors_begin(lag_sim *sim);
 int lag_monitors_record(lag_sim *sim, double t, const double *y);
+/* impulses: the same for impulses of contacts within a step, at the present time, once dense output contains them. */
+int lag_monitors_impulses(lag_sim *sim);
 int lag_monitors_jump(lag_sim *sim, double t, const double *ya, const double *yb);
 
 /* Kinds of names in a scene. */

@@ -45,7 +45,7 @@ static int g_at(lag_sim *s, double t, double *g) {
 
 int lag_events_spread(lag_sim *s, const double *at_event, double *spread) {
   const Run *r = s->run;
-  int nev = s->scene->model->nev, rc = 0;
+  int nev = lag_watched(s), rc = 0;
   double last = 4 * DBL_EPSILON * fmax(fabs(r->step_t0), fabs(r->step_t1));
   memset(spread, 0, (size_t)nev * sizeof *spread);
   for (int i = -2; i <= 2 && rc == 0; i++) {
@@ -73,10 +73,10 @@ static double g_of(void *context, double t) {
   return c->sim->g1[c->k] + c->lift;
 }
 
-/* root[k] := the zero of g + lift. */
+/* root[k] := the zero of g + lift; the end of a step may be one. */
 static int find_crossing(lag_sim *s, int k, double lift, double ta, double ga, double tb, double gb) {
   Crossing c = {s, k, 0, lift};
-  s->root[k] = ga + lift > 0 || gb + lift > 0 ? lag_root(g_of, &c, ta, ga + lift, tb, gb + lift) : tb;
+  s->root[k] = ga + lift == 0 ? ta : ga + lift > 0 || gb + lift > 0 ? lag_root(g_of, &c, ta, ga + lift, tb, gb + lift) : tb;
   return c.rc;
 }
 
@@ -84,16 +84,16 @@ static int find_crossing(lag_sim *s, int k, double lift, double ta, double ga, d
 static int detect_sign_changes(lag_sim *s, double ta, const double *ga, double tb, const double *gb, int *found) {
   const lag_model *m = s->scene->model;
   int rc = 0;
-  for (int k = 0; k < m->nev && rc == 0; k++) {
+  for (int k = 0; k < lag_watched(s) && rc == 0; k++) {
     double now = sign_of(gb[k]), was = s->sign_end[k];
     if (was == 0.0) {
       s->sign_end[k] = fabs(gb[k]) > s->noise[k] ? now : 0;
-      if (s->sign_end[k] < 0 && lag_contact_of(m, k)) { /* it may have been positive: a closing gap, a force that pulls */
+      if (s->sign_end[k] < 0 && (k >= m->nev || lag_contact_of(m, k))) { /* it may have been positive: a switch, a closing gap, a force that pulls */
         rc = find_crossing(s, k, s->noise[k], ta, ga[k], tb, gb[k]);
         *found = 1;
       }
     } else if (now == -was) {
-      int direction = m->ev[k].direction;
+      int direction = k < m->nev ? m->ev[k].direction : -1;
       s->sign_end[k] = now;
       if (direction == 0 || direction == (int)now) {
         rc = find_crossing(s, k, 0, ta, ga[k], tb, gb[k]);
@@ -107,14 +107,14 @@ static int detect_sign_changes(lag_sim *s, double ta, const double *ga, double t
 /* ---- parts of the step */
 
 /* Sample j of the N + 1 in a part of the step, and its time: at the Chebyshev extrema, both ends included. */
-static double *value(lag_sim *s, int j) { return s->spare + j * s->scene->model->nev; }
+static double *value(lag_sim *s, int j) { return s->spare + j * lag_watched(s); }
 
 static double time_at(double ta, double tb, int j) { return j == 0 ? ta : j == N ? tb : ta + (tb - ta) * (0.5 - 0.5 * cosine[j]); }
 
 /* Rounding of the event functions: their change when the state changes in its last digits. */
 static int find_rounding(lag_sim *s, double t, double *rounding) {
   const double last = 4 * DBL_EPSILON;
-  int nev = s->scene->model->nev, n = s->pb.n;
+  int nev = lag_watched(s), n = s->pb.n;
   int rc = g_at(s, t, rounding);
   for (int j = 0; j < n; j++) s->yc[j] += (j % 2 ? -last : last) * (fabs(s->yc[j]) + fabs(s->y[j] - s->y0[j]));
   rc = rc ? rc : lag_events_eval(s, t * (1 + last), s->yc, s->g1);
@@ -160,7 +160,7 @@ static int halvings(const double *value, int stride, double rounding) {
 
 /* Samples 1 to N of a part; *most := halvings allowed. *known: rounding is known. */
 static int sample_part(lag_sim *s, double ta, double tb, int *known, int *most) {
-  int nev = s->scene->model->nev, rc = 0;
+  int nev = lag_watched(s), rc = 0;
   double *rounding = value(s, N + 1);
   for (int j = 1; j <= N && rc == 0; j++) rc = g_at(s, time_at(ta, tb, j), value(s, j));
   for (int turn = *known; turn < 2 && rc == 0; turn++) {
@@ -178,7 +178,7 @@ static int sample_part(lag_sim *s, double ta, double tb, int *known, int *most) 
 
 /* Walks the samples of a resolved part until an event is found. Sample 0 becomes the one at its end. */
 static int scan_samples(lag_sim *s, double ta, double tb, int *found) {
-  size_t bytes = (size_t)s->scene->model->nev * sizeof(double);
+  size_t bytes = (size_t)lag_watched(s) * sizeof(double);
   int rc = 0, j = 0;
   while (j < N && rc == 0 && !*found) {
     rc = detect_sign_changes(s, time_at(ta, tb, j), value(s, j), time_at(ta, tb, j + 1), value(s, j + 1), found);
@@ -213,7 +213,7 @@ static int search(lag_sim *s, double a, double b, int *found) {
  * step. Sample 0 is the one at its start. */
 static int first_part(lag_sim *s, double *to) {
   Run *r = s->run;
-  int nev = s->scene->model->nev, rc = 0, back = 0;
+  int nev = lag_watched(s), rc = 0, back = 0;
   double *left = value(s, 1), *g = value(s, 2);
   for (int k = 0; k < nev; k++) left[k] = 0;
   for (int i = 0; i < PROBES && rc == 0 && !back; i++) {
@@ -229,31 +229,54 @@ static int first_part(lag_sim *s, double *to) {
   return rc;
 }
 
-/* limit := the earliest root. */
+/* Whether no switch can end its branch in the step, as the parabola through three values of each event function shows; sample 0 is the first of them.
+ * A step resolves the motion, so that functions of the state are smooth on it; those that contain t are searched, and so are events. */
+static int is_quiet(lag_sim *s, int *rc) {
+  const lag_model *m = s->scene->model;
+  const Run *r = s->run;
+  const double *first = value(s, 0), *mid = value(s, 1), *last = value(s, 2);
+  int quiet = m->nev == 0;
+  for (int k = 0; k < m->nmodes && quiet; k++) quiet = !m->switches[k].is_timed && s->sign[k] > 0 && s->pb.nslide == 0;
+  if (!quiet) return 0;
+  *rc = g_at(s, r->from + (r->step_t1 - r->from) / 2, value(s, 1));
+  *rc = *rc ? *rc : g_at(s, r->step_t1, value(s, 2));
+  for (int k = 0; k < m->nmodes && quiet && *rc == 0; k++) {
+    double least = fmin(fmin(first[k], mid[k]), last[k]), bend = fabs(first[k] - 2 * mid[k] + last[k]);
+    quiet = least > fabs(last[k] - first[k]) / 2 + 4 * bend;
+  }
+  return quiet && *rc == 0;
+}
+
+/* limit := the earliest root; pending: whether there is one. */
 static void first_root(lag_sim *s) {
   Run *r = s->run;
-  r->pending = 1;
   r->limit = r->step_t1;
-  for (int k = 0; k < s->scene->model->nev; k++)
-    if (!isnan(s->root[k]) && (s->root[k] - r->limit) * r->dir < 0) r->limit = s->root[k];
+  for (int k = 0; k < lag_watched(s); k++) {
+    if (isnan(s->root[k])) continue;
+    r->pending = 1;
+    if ((s->root[k] - r->limit) * r->dir < 0) r->limit = s->root[k];
+  }
 }
 
 int lag_events_locate(lag_sim *s) {
   Run *r = s->run;
-  int nev = s->scene->model->nev, found = 0, unknown = 0;
+  int nev = lag_watched(s), found = 0, unknown = 0;
   double to = r->step_t1;
   r->limit = r->step_t1;
   r->pending = 0;
-  if (nev == 0) return LAG_OK;
+  if (nev == 0 || (s->pb.contacts && nev == 2 * s->scene->model->ncontacts)) return LAG_OK; /* contacts that are met by impulses have no other events */
   for (int k = 0; k < nev; k++) {
     s->root[k] = NAN;
     s->sign_end[k] = s->sign[k];
     unknown |= s->sign[k] == 0.0;
   }
   int rc = g_at(s, r->from, value(s, 0));
+  if (rc == 0 && !unknown && is_quiet(s, &rc)) return LAG_OK;
+  double end = rc == 0 ? lag_kicks_locate(s, value(s, 0)) : to; /* roots of kicks are known before */
   rc = rc == 0 && unknown ? first_part(s, &to) : rc;
+  to = (to - end) * r->dir > 0 ? end : to;
   rc = rc ? rc : search(s, r->from, to, &found);
-  if (rc == 0 && !found && to != r->step_t1) rc = search(s, to, r->step_t1, &found);
-  if (rc == 0 && found) first_root(s);
+  if (rc == 0 && !found && to != end) rc = search(s, to, end, &found);
+  if (rc == 0) first_root(s);
   return rc;
 }

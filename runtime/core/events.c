@@ -10,8 +10,13 @@
 
 int lag_events_eval(lag_sim *s, double t, const double *y, double *g) {
   const lag_model *m = s->scene->model;
-  int rc = lag_inputs(&s->pb, t);
-  if (rc == 0) rc = m->events(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, g, s->work);
+  int rc = lag_inputs_at(&s->pb, t, y);
+  if (rc > 0 && s->pb.nslide) return lag_fail(s, LAG_EDOMAIN, "nothing keeps the motion on the surface on which it slides at t = %s s", LAG_TEXT(t));
+  if (rc == 0 && lag_watched(s) > m->nev && lag_switch_eval(s, t, y, g + m->nev))
+    return lag_fail(s, LAG_ENAN, "a switching function is not a number at t = %s s", LAG_TEXT(t));
+  if (rc == 0 && m->nev) rc = m->events(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, g, s->work);
+  if (rc == 0 && s->pb.contacts) lag_contact_mute(s, g);
+  else if (rc == 0 && m->contact_laws) lag_tangent_events(s, g);
   int bad = rc ? -1 : lag_not_finite(m->nev, g);
   if (rc || bad >= 0) {
     return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its function is not a number at t = %s s",
@@ -22,15 +27,34 @@ int lag_events_eval(lag_sim *s, double t, const double *y, double *g) {
 
 static double sign_of(double g) { return (g > 0) - (g < 0); }
 
+/* Signs of the event functions of switches, g: 1 where the branch fits, 0 at the surface. */
+static void arm_switches(lag_sim *s, const double *g) {
+  int nev = s->scene->model->nev;
+  for (int k = nev; k < lag_watched(s); k++) {
+    s->noise[k] = lag_switch_noise(s, k - nev);
+    s->sign[k] = g[k] > s->noise[k];
+  }
+}
+
 int lag_events_arm(lag_sim *s) {
   int nev = s->scene->model->nev;
-  if (nev == 0) return LAG_OK;
+  if (lag_watched(s) == 0) return LAG_OK;
   int rc = lag_events_eval(s, s->run->t, s->now, s->g1);
   for (int k = 0; k < nev && rc == 0; k++) {
     s->sign[k] = sign_of(s->g1[k]);
     s->noise[k] = 0;
   }
+  if (rc == 0) arm_switches(s, s->g1);
+  rc = rc ? rc : lag_kicks_begin(s, s->g1);
   return rc ? rc : lag_contact_arm(s, s->g1);
+}
+
+int lag_events_inputs_jump(lag_sim *s) {
+  int rc = lag_switch_before_events(s);
+  rc = rc ? rc : lag_switch_place(s);
+  rc = rc ? rc : lag_events_eval(s, s->run->t, s->now, s->g1);
+  if (rc == 0) arm_switches(s, s->g1);
+  return rc;
 }
 
 /* Intervals below this part of the run so far count as 0. */
@@ -63,24 +87,51 @@ static int fail_chatter(lag_sim *s, int k, const lag_contact *c, double dt) {
   }
   if (++r->chatter < most) return LAG_OK;
   return lag_fail(s, LAG_EZENO, "contact %s strikes at t = %s s again and again, and neither closes nor opens: the dense output of %s is too "
-                  "rough there; take verlet or dop853", s->scene->model->ev[k].name, LAG_TEXT(r->t), s->method->name);
+                  "rough there; take verlet or dop853, or moreau, which does not locate impacts", s->scene->model->ev[k].name, LAG_TEXT(r->t), s->method->name);
 }
 
-/* Applies the action of event k to `now`, by way of yb. *changed: the state has been replaced. */
+/* Rounding of event functions at this time: their own, and of those that have fired also the distance from zero. */
+static const double *rounding_of_events(const lag_sim *s) {
+  int n = lag_watched(s);
+  const double *before = s->e + 2, *spread = s->spare;
+  double *zero = s->spare + n;
+  for (int k = 0; k < n; k++) zero[k] = 16 * spread[k] + (s->root[k] == HUGE_VAL ? 2 * fabs(before[k]) : 0);
+  return zero;
+}
+
+enum { BY_EVENT = 1, BY_KICK = 2 };
+
+/* The state after event k, yb, becomes that of the run. *changed: it was, at this time already. A kick changes neighbouring states where it leaves this one, and is told after it. */
+static int replace_state(lag_sim *s, int k, int *changed) {
+  int kick = lag_is_kick(s->scene->model, k), more = kick ? *changed & BY_EVENT : *changed;
+  double t = s->run->t;
+  size_t bytes = (size_t)s->pb.n * sizeof(double);
+  if (!kick && memcmp(s->yb, s->now, bytes) == 0) return LAG_OK;
+  int rc = lag_tangent_jump(s, k, more);
+  if (rc) return rc;
+  *changed |= kick ? BY_KICK : BY_EVENT;
+  rc = lag_monitors_jump(s, t, s->now, s->yb);
+  memcpy(s->yc, s->now, bytes);
+  memcpy(s->now, s->yb, bytes);
+  if (kick && s->on_event) s->on_event(s->on_event_context, k, t, s->yc, s->now);
+  return rc;
+}
+
+/* Applies the action of event k to `now`, by way of yb. *changed: the state has been replaced, BY_ what. */
 static int act(lag_sim *s, int k, int *stop, int *changed) {
   const lag_model *m = s->scene->model;
   Run *r = s->run;
   int nq = m->nq, n = s->pb.n;
   size_t bytes = (size_t)n * sizeof(double);
-  double since = s->count[k] > 0 ? fabs(r->t - s->last[k]) : HUGE_VAL;
+  double since = s->count[k] > 0 ? fabs(r->t - s->last[k]) : HUGE_VAL, last = s->last[k];
   r->events++;
   s->first[k] = s->count[k] > 0 ? s->first[k] : r->t;
   s->last[k] = r->t;
   s->count[k]++;
-  const lag_contact *contact = lag_contact_of(m, k);
+  const lag_contact *of = lag_contact_of(m, k), *contact = of && !of->conditional ? of : NULL;
   int rc = lag_inputs(&s->pb, r->t);
   memcpy(s->yb, s->now, bytes);
-  if (rc == 0 && m->act && !contact) {
+  if (rc == 0 && m->act && !of) {
     rc = m->act(k, r->t, s->now, s->now + nq, s->now + 2 * nq, s->p, s->u, s->yb, s->yb + nq, s->yb + 2 * nq, stop,
                 s->work);
   }
@@ -88,33 +139,26 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
     return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %s s", m->ev[k].name,
                     LAG_TEXT(r->t));
   }
-  int ends = is_zeno(s, k, since, contact ? 3 : 10), moved = memcmp(s->yb, s->now, bytes) != 0;
+  int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, since, contact ? 3 : 10), moved = memcmp(s->yb, s->now, bytes) != 0;
   int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
-  if (moved) {
-    lag_contact_open(s); /* bodies at rest may have been lifted or thrown */
-  }
-  if (elsewhere) lag_release_integrals(s);
-  if (moved && lag_project(&s->pb, r->t, s->yb, NULL) != 0) {
-    return lag_fail(s, LAG_EMODEL, "event %s: its action at t = %s s leaves the constraints: %s", m->ev[k].name, LAG_TEXT(r->t),
-                    s->pb.detail ? s->pb.detail : "");
-  }
-  if (elsewhere) rc = lag_hold_integrals(s, r->t, s->yb);
-  if (rc == 0 && (contact || moved)) {
+  if (of || moved) {
     char who[128];
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
-    rc = lag_contact_resolve(s, s->yb, contact ? NULL : who, contact ? k : -1, ends);
+    rc = lag_settle_constraints(s, s->yb, of && !moved ? NULL : who, k, ends, moved + elsewhere, rounding_of_events(s));
   }
   if (rc == 0 && contact) rc = fail_chatter(s, k, contact, since);
   if (rc) return rc;
-  int more = *changed;
-  *changed |= contact != NULL; /* the set of closed contacts may be another */
-  if (s->on_event) s->on_event(s->on_event_context, k, r->t, s->now, s->yb);
-  if (memcmp(s->yb, s->now, bytes) != 0) {
-    if ((rc = lag_tangent_jump(s, k, more)) != 0) return rc;
-    *changed = 1;
-    rc = lag_monitors_jump(s, r->t, s->now, s->yb);
-    memcpy(s->now, s->yb, bytes);
+  int before = *changed;
+  *changed |= of != NULL; /* the set of closed contacts may be another */
+  int turns = contact && contact->is_tangent && k == contact->impact && !lag_contact_is_closed(s, contact); /* slips back at once: no event */
+  if (turns) {
+    r->events--;
+    s->count[k]--;
+    s->last[k] = last;
   }
+  if (s->on_event && !turns && !kick) s->on_event(s->on_event_context, k, r->t, s->now, s->yb);
+  rc = replace_state(s, k, &before);
+  *changed |= before;
   return rc ? rc : ends && !contact ? fail_zeno(s, k) : LAG_OK;
 }
 
@@ -123,6 +167,7 @@ static int rearm(lag_sim *s, const double *before, const double *spread) {
   const lag_model *m = s->scene->model;
   int rc = lag_events_eval(s, s->run->t, s->now, s->g1);
   for (int k = 0; k < m->nev && rc == 0; k++) {
+    if (lag_is_kick(m, k)) continue;
     double g = s->g1[k], residue = fabs(before[k]) + 4 * spread[k];
     double same = fmax(2 * residue, 1e-12 * fabs(s->g0[k])); /* g0: a sample of g in this step, for its size */
     int fired = s->root[k] == HUGE_VAL;
@@ -136,6 +181,7 @@ static int rearm(lag_sim *s, const double *before, const double *spread) {
       s->noise[k] = 0;
     }
   }
+  if (rc == 0) arm_switches(s, s->g1);
   return rc ? rc : lag_contact_arm(s, s->g1);
 }
 
@@ -143,21 +189,49 @@ static int rearm(lag_sim *s, const double *before, const double *spread) {
 static int next_due(const lag_sim *s) {
   const Run *r = s->run;
   double together = 4 * DBL_EPSILON * fmax(fabs(r->limit), fabs(r->step_t1));
-  int k = 0, nev = s->scene->model->nev;
+  int k = 0, nev = lag_watched(s);
   while (k < nev && (isnan(s->root[k]) || !(fabs(s->root[k] - r->limit) <= together))) k++;
   return k < nev ? k : -1;
 }
 
+/* The branch of a switch ends, at event k. Fails where that comes to no end. */
+static int meet_switch(lag_sim *s, int k) {
+  const int most = 100;
+  Run *r = s->run;
+  double since = s->count[k] > 0 ? fabs(r->t - s->last[k]) : HUGE_VAL, elapsed = fabs(r->t - s->scene->t0);
+  s->last[k] = r->t;
+  s->count[k]++;
+  r->rattles = since <= at_once * elapsed ? r->rattles + 1 : 0;
+  int which = k - s->scene->model->nev;
+  if (is_zeno(s, k, since, 10) || r->rattles > most) return lag_switch_fail_zeno(s, which);
+  lag_switch_meet(s, which);
+  return lag_tangent_meet(s, k);
+}
+
+/* Modes after the events at this time. */
+static int settle_switches(lag_sim *s, int met, int *changed) {
+  int rc = *changed ? lag_switch_place(s) : LAG_OK;
+  if (*changed && rc == LAG_OK && s->tangent && (met || s->pb.nslide))
+    rc = lag_fail(s, LAG_EMETHOD, "at t = %s s an event changes the state where the motion meets a surface or slides: there is no tangent over it; end the run before", LAG_TEXT(s->run->t));
+  if (*changed) return rc;
+  rc = met ? lag_switch_settle(s, changed) : LAG_OK;
+  *changed |= met && s->tangent; /* which is at this time already */
+  return rc || !*changed ? rc : lag_tangent_corner(s);
+}
+
 int lag_events_fire(lag_sim *s) {
   Run *r = s->run;
-  int stop = 0, changed = 0;
+  int stop = 0, changed = 0, met = 0, nev = s->scene->model->nev;
   double *before = s->e + 2, *spread = s->spare;
   int rc = lag_events_eval(s, r->t, s->now, before);
   rc = rc ? rc : lag_events_spread(s, before, spread);
+  rc = rc ? rc : lag_switch_before_events(s);
   for (int k; rc == 0 && (k = next_due(s)) >= 0;) { /* an impact may make others happen at once */
     s->root[k] = HUGE_VAL; /* fired */
-    rc = act(s, k, &stop, &changed);
+    rc = k < nev ? act(s, k, &stop, &changed) : meet_switch(s, k);
+    met |= k >= nev;
   }
+  rc = rc ? rc : settle_switches(s, met, &changed);
   rc = rc ? rc : rearm(s, before, spread);
   r->from = r->t;
   r->pending = 0;

@@ -1,6 +1,6 @@
 /* The linearisation of a model as dense matrices. Enters: a state; leaves: derivatives of its residuals, or of its right-hand side. Holds:
- * without constraints both are exact, from emitted derivatives; with constraints those of the right-hand side are finite differences, to half of
- * the digits, which is enough for a simplified Newton's method only. */
+ * without constraints both are exact, from emitted derivatives; with constraints, and while the motion slides, those of the right-hand side are finite
+ * differences: to half of the digits for a simplified Newton's method, of order 6 for a tangent. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -27,7 +27,8 @@ static LinearLayout parts_of(const lag_model *m, double *work) {
 
 size_t lag_linear_work(const lag_model *m) {
   size_t nq = (size_t)m->nq, n = 2 * nq + (size_t)m->nz;
-  return m->linear ? n + (size_t)m->linear->ndr + (size_t)m->linear->nmass + nq * nq : m->constraints ? 3 * n : 0;
+  size_t exact = m->linear ? n + (size_t)m->linear->ndr + (size_t)m->linear->nmass + nq * nq : 0, differences = m->constraints || m->nmodes ? 3 * n : 0;
+  return exact > differences ? exact : differences;
 }
 
 int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, double *dr, double *M, double *work) {
@@ -39,7 +40,7 @@ int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, d
     return LAG_EMETHOD;
   }
   LinearLayout p = parts_of(m, work);
-  int rc = lag_inputs(pb, t);
+  int rc = lag_inputs_at(pb, t, y);
   if (!a) memset(p.rate, 0, n * sizeof(double));
   rc = rc ? rc : l->eval(t, y, y + nq, y + 2 * nq, pb->p, pb->u, a ? a : p.rate, p.dr, p.mass, pb->work);
   if (rc) return rc;
@@ -53,12 +54,16 @@ int lag_linearise(lag_problem *pb, double t, const double *y, const double *a, d
   return LAG_OK;
 }
 
+static double component_magnitude(lag_problem *pb, const double *y, int k) {
+  return k < 2 * pb->nq ? lag_typical_magnitude(pb, y, k < pb->nq, k % pb->nq) : fabs(y[k]) > 0 ? fabs(y[k]) : 1;
+}
+
 /* J by forward differences, column by column; backward where the model has no value ahead. */
 static int difference_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work) {
   int n = pb->n, nq = pb->nq, rc = lag_rhs(pb, t, y, work);
   double *there = work + n, *rate = there + n;
   for (int k = 0; k < n && rc == 0; k++) {
-    double far = k < 2 * nq ? lag_typical_magnitude(pb, y, k < nq, k % nq) : fabs(y[k]) > 0 ? fabs(y[k]) : 1, step = sqrt(DBL_EPSILON) * far;
+    double step = sqrt(DBL_EPSILON) * component_magnitude(pb, y, k);
     memcpy(there, y, (size_t)n * sizeof *y);
     there[k] = y[k] + step;
     rc = lag_rhs(pb, t, there, rate);
@@ -71,9 +76,40 @@ static int difference_jacobian(lag_problem *pb, double t, const double *y, doubl
   return rc;
 }
 
+double lag_difference_scale(lag_problem *pb, const double *y, int k) {
+  double size = component_magnitude(pb, y, k);
+  if (k >= pb->nq || !(size > 1)) return size;
+  const lag_var *q = &pb->model->q[k];
+  int is_angle = q->periodic || strcmp(q->unit, "rad") == 0 || strcmp(q->unit, "deg") == 0 || strcmp(q->unit, "rev") == 0;
+  return is_angle ? 1 : q->unit[0] ? size : sqrt(size); /* a coordinate without unit may be an angle that has turned often */
+}
+
+/* J by central differences of order 6, column by column: wrong by rounding over 2^-9, and by 2^-54/140 of a seventh derivative, for a scale of 1. */
+static int central_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work) {
+  static const double weight[] = {0.75, -0.15, 1.0 / 60};
+  const double part = 0x1p-9;
+  int n = pb->n, nq = pb->nq, rc = LAG_OK;
+  double *there = work + n, *rate = there + n;
+  memset(J, 0, (size_t)((n - nq) * n) * sizeof *J);
+  for (int k = 0; k < n; k++) {
+    double h = part * lag_difference_scale(pb, y, k);
+    memcpy(there, y, (size_t)n * sizeof *y);
+    for (int j = -3; j <= 3 && rc == LAG_OK; j++) {
+      there[k] = y[k] + j * h;
+      rc = j ? lag_rhs(pb, t, there, rate) : LAG_OK;
+      for (int i = nq; i < n && j; i++) J[(i - nq) * n + k] += (j < 0 ? -weight[-j - 1] : weight[j - 1]) * rate[i] / h;
+    }
+  }
+  return rc ? rc : lag_rhs(pb, t, y, work);
+}
+
+int lag_fine_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work) {
+  return pb->model->constraints || pb->nslide ? central_jacobian(pb, t, y, J, work) : lag_jacobian(pb, t, y, J, work);
+}
+
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work) {
   const lag_model *m = pb->model;
-  if (m->constraints) return difference_jacobian(pb, t, y, J, work);
+  if (m->constraints || pb->nslide) return difference_jacobian(pb, t, y, J, work);
   if (!m->linear) return lag_linearise(pb, t, y, NULL, J, NULL, work);
   LinearLayout p = parts_of(m, work);
   int rc = lag_rhs(pb, t, y, p.rate);

@@ -1,6 +1,7 @@
 /* Monitors of a run: charges (charges.c), outputs and residuals of constraints. Enters: states of the run; leaves: largest drifts, and a failure
  * when one passes its limit. Holds: the change of a quantity at an event is not drift: the reference moves by the jump. */
 #include <math.h>
+#include <string.h>
 
 #include "core/core.h"
 #include "core/rhs.h"
@@ -125,6 +126,26 @@ int lag_monitors_jump(lag_sim *s, double t, const double *ya, const double *yb) 
       }
     }
   return LAG_OK;
+}
+
+int lag_monitors_impulses(lag_sim *s) {
+  lag_contact_stats *c = s->pb.contacts;
+  Run *r = s->run;
+  int nq = s->pb.nq;
+  if (!c || c->due == 0.0 || r->t < c->from) return LAG_OK;
+  double before = r->at_events;
+  memcpy(s->yb, s->now, (size_t)s->pb.n * sizeof *s->yb);
+  for (int i = 0; i < nq; i++) s->yb[nq + i] -= s->pb.contact_change[i];
+  int rc = lag_monitors_jump(s, r->t, s->yb, s->now);
+  c->due = 0;
+  lag_charges_add_work(s, c->work - (r->at_events - before), c->rubbed);
+  return rc;
+}
+
+int lag_sim_contacts(const lag_sim *s, lag_contact_stats *c) {
+  if (!s || !c || !s->pb.contacts) return 0;
+  *c = *s->pb.contacts;
+  return 1;
 }
 
 void lag_sim_stats(lag_sim *s, lag_stats *st) {

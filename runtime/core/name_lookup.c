@@ -32,11 +32,11 @@ static int find_suffix(const lag_var *vars, int n, const char *name, int *count)
   return found;
 }
 
-/* Whether a variable is the input that closes a contact, which nobody may set. */
+/* Whether a variable is an input of a contact, which nobody may set. */
 static int is_switch(const lag_model *m, const lag_var *var) {
-  int i = 0;
-  while (i < m->ncontacts && &m->u[m->contacts[i].input] != var) i++;
-  return i < m->ncontacts;
+  for (int i = 0; i < m->ncontacts; i++)
+    if (&m->u[m->contacts[i].input] == var || (m->contacts[i].is_tangent && &m->u[m->contacts[i].force] == var)) return 1;
+  return 0;
 }
 
 /* Finds a name, inputs of contacts included. */

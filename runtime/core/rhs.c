@@ -8,6 +8,7 @@
 
 int lag_inputs(lag_problem *pb, double t) {
   const lag_model *m = pb->model;
+  for (int i = m->nu; i < m->nu + m->nmodes; i++) pb->u[i] = pb->hold[i];
   if (m->nu == 0) return 0;
   if (m->inputs) {
     int rc = m->inputs(t, pb->p, pb->u);
@@ -34,12 +35,12 @@ unsigned lag_facts(const lag_problem *pb) {
 }
 
 int lag_rhs_prepare(lag_problem *pb, double t, const double **y) {
-  if (!pb->redundant) return lag_inputs(pb, t);
+  if (!pb->redundant) return lag_inputs_at(pb, t, *y);
   double *at = pb->held + lag_constraint_scratch_size(pb->model) - pb->n;
   memcpy(at, *y, (size_t)pb->n * sizeof *at);
   int rc = lag_project(pb, t, at, NULL);
   *y = at;
-  return rc ? rc : lag_inputs(pb, t);
+  return rc ? rc : lag_inputs_at(pb, t, *y);
 }
 
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy) { return lag_rhs_inline(pb, pb->nq, t, y, dy); }

@@ -31,27 +31,50 @@ LAG_ALWAYS_INLINE void lag_copy(int n, const double *from, double *to) {
   if (i < n) to[i] = from[i];
 }
 
-/* The parts that few models have: pb->u := inputs; where constraints are redundant, *y := its projection onto them. */
+/* The parts that few models have: pb->u := inputs and modes of switches; where constraints are redundant, *y := its projection onto them. */
 int lag_rhs_prepare(lag_problem *pb, double t, const double **y);
 
-/* Inline lag_inputs and lag_next_row. */
-LAG_ALWAYS_INLINE int lag_inputs_inline(lag_problem *pb, double t) { return pb->model->nu ? lag_inputs(pb, t) : 0; }
+/* switching.c: modes in pb->u that keep the motion on the surfaces on which it slides, at y, t. > 0: there are none. */
+int lag_slide(lag_problem *pb, double t, const double *y);
 
-LAG_ALWAYS_INLINE double lag_next_row_inline(const lag_problem *pb, double t, double *row) {
-  return pb->model->ntables ? lag_next_row(pb, t, row) : HUGE_VAL;
+/* contact_friction.c: friction of contacts that slip, in pb->u, at y, t. > 0: there is none. */
+int lag_rub(lag_problem *pb, double t, const double *y);
+
+/* contact_step.c: size of pb->contact_room in doubles. */
+size_t lag_contact_step_size(const lag_model *m);
+
+/* contact.c: the coefficient of restitution of contact i, from Newton's law in the model for a state y whose velocities are changed by d[nq] times -(rate + speed), so that the gap closes with `speed`. rate: of its gap at
+ * y, t; d changes that by 1; pb->u: this contact is closed, others are open; A: entries of the Jacobian; before[n], after[n] are scratch. NaN: there is none. */
+double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed, const double *d, const double *A, double *before, double *after);
+
+/* Inline lag_inputs; the distance to the next row of a table or kick, as lag_next_row. */
+LAG_ALWAYS_INLINE int lag_inputs_inline(lag_problem *pb, double t) { return pb->model->nu | pb->model->nmodes ? lag_inputs(pb, t) : 0; }
+
+/* Distance from t to the next kick, *at; HUGE_VAL where there is none. */
+LAG_ALWAYS_INLINE double lag_next_kick(const lag_problem *pb, double t, double *at) {
+  *at = pb->kick;
+  return pb->kick > t ? pb->kick - t : HUGE_VAL;
 }
 
+LAG_ALWAYS_INLINE double lag_next_row_inline(const lag_problem *pb, double t, double *row) {
+  double kick, gap = pb->model->ntables ? lag_next_row(pb, t, row) : HUGE_VAL, to_kick = lag_next_kick(pb, t, &kick);
+  if (to_kick < gap) *row = kick;
+  return to_kick < gap ? to_kick : gap;
+}
+
+#ifndef LAG_LANES /* where accel takes vectors */
 /* Inline lag_rhs; nq is the model's, perhaps a compile-time constant. */
 LAG_ALWAYS_INLINE int lag_rhs_inline(lag_problem *pb, int nq, double t, const double *y, double *dy) {
   const lag_model *m = pb->model;
   pb->rhs_calls++;
-  if (m->nu | pb->redundant) {
+  if (m->nu | m->nmodes | pb->redundant) {
     int rc = lag_rhs_prepare(pb, t, &y);
     if (rc) return rc;
   }
   lag_copy(nq, y + nq, dy);
   return m->accel(t, y, y + nq, y + 2 * nq, pb->p, pb->u, dy + nq, dy + 2 * nq, pb->work);
 }
+#endif
 
 /* methods/taylor.c: the order of the series, from the work of a run by taylor that has begun. */
 double lag_taylor_order(const double *method_work);

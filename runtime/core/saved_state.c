@@ -10,7 +10,7 @@
 #include "numeric/fnv1a.h"
 
 /* The hash h continued by x: all digits, sign and exponent, of any scalar type; NaN is one number. */
-static unsigned long long hash_number(unsigned long long h, double x) {
+unsigned long long lag_hash_number(unsigned long long h, double x) {
   int e = 0;
   double m = isfinite(x) ? frexp(x, &e) : 0;
   long long high = (long long)ldexp(m, 62), low = (long long)ldexp(m - ldexp((double)high, -62), 124);
@@ -25,9 +25,9 @@ static double seal_of(const lag_sim *s, const double *x) {
   const size_t seal = offsetof(Run, seal) / sizeof(double);
   unsigned long long h = lag_sim_signature(s);
 
-  for (size_t i = 0; i < s->nsaved; i++) h = i == seal ? h : hash_number(h, x[i]);
-  for (int i = 0; s->options && i < s->method->noptions; i++) h = hash_number(h, s->options[i]);
-  for (int i = 0; i < s->scene->model->nu; i++) h = hash_number(h, s->signal[i].fn != NULL);
+  for (size_t i = 0; i < s->nsaved; i++) h = i == seal ? h : lag_hash_number(h, x[i]);
+  for (int i = 0; s->options && i < s->method->noptions; i++) h = lag_hash_number(h, s->options[i]);
+  for (int i = 0; i < s->scene->model->nu; i++) h = lag_hash_number(h, s->signal[i].fn != NULL);
   return (double)(h >> 12);
 }
 
@@ -56,6 +56,7 @@ static void take_over(lag_sim *s) {
   s->pb.dir = s->run->dir != 0.0 ? s->run->dir : 1;
   if (m->derive) m->derive(s->p);
   lag_note_redundant(s);
+  lag_switch_count(s);
   lag_reset_rate_history(s);
 }
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/core.h"
+#include "core/rhs.h"
 #include "numeric/workspace.h"
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
@@ -15,13 +16,14 @@ enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_D
 /* Allocates and lays out the blocks for this method, keeping only the settings of the caller (p, hold). opt: option values, which must live on. */
 static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   const lag_model *m = s->scene->model;
-  size_t np = (size_t)(m->np + m->nderived), nu = (size_t)m->nu, n = (size_t)s->pb.n, nev = (size_t)m->nev;
+  size_t np = (size_t)(m->np + m->nderived), nm = (size_t)m->nmodes, nu = (size_t)m->nu + nm, n = (size_t)s->pb.n, nev = (size_t)m->nev + nm;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  double **const parts[] = {&s->p, &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign,
-                            &s->noise, &s->root, &s->sign_end, &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->mon_first, &s->mon_peak,
-                            &s->exact_peak, &s->charge_block};
+  size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0, pushes = pushed ? lag_contact_step_size(m) : 0;
+  double *contacts, *contact_room = calloc(pushes + 1, sizeof *contact_room), **const parts[] = {&s->p, &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign,
+                            &s->noise, &s->root, &s->sign_end, &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->crossed, &s->slips, &s->slid, &s->slid_since, &s->mon_first, &s->mon_peak,
+                            &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change, &s->charge_block};
   const size_t sizes[] = {(size_t)m->np, (size_t)m->nderived, nu, n, n, nc, (size_t)m->nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev,
-                          nmon, nmon, (size_t)s->scene->nexact, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)};
+                          nm, nm, nm, nm, nmon, nmon, (size_t)s->scene->nexact, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0, pushed, pushed ? (size_t)m->nq : 0, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)};
   const size_t nparts = sizeof sizes / sizeof *sizes, fixed = RUN_DOUBLES + lag_cut(NULL, nparts, parts, sizes);
   lag_problem sized = s->pb;
 
@@ -30,7 +32,11 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   size_t before = (fixed + LINE_DOUBLES - 1) / LINE_DOUBLES * LINE_DOUBLES, work = method->work_size(&sized), total = before + work;
   char *room = calloc(total * sizeof(double) + LINE - 1, 1);
 
-  if (!room) return LAG_ENOMEM;
+  if (!room || !contact_room) {
+    free(room);
+    free(contact_room);
+    return LAG_ENOMEM;
+  }
   double *b = (double *)(void *)(room + (LINE - (uintptr_t)room % LINE) % LINE), *x = b + RUN_DOUBLES;
   if (s->saved) {
     memcpy(x, s->p, np * sizeof *x);
@@ -44,10 +50,14 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   lag_cut(x, nparts, parts, sizes);
   s->method_work = b + before;
   s->nwork = work;
+  free(s->pb.contact_room);
+  s->pb.contact_room = contact_room;
+  s->pb.contacts = pushed ? (lag_contact_stats *)(void *)contacts : NULL;
   s->pb.p = s->p;
   s->pb.hold = s->hold;
   s->pb.kept = s->kept;
   s->pb.begin = s->begin;
+  s->pb.kick = HUGE_VAL;
   s->pb.opt = opt;
   s->pb.variant = method->variant;
   s->charges = (Charge *)(void *)s->charge_block;
@@ -58,30 +68,28 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
 
 static int alloc_scratch(lag_sim *s) {
   const lag_model *m = s->scene->model;
-  size_t n = (size_t)s->pb.n, nev = (size_t)m->nev, nout = (size_t)s->scene->nout;
-  size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + (size_t)s->scene->nexact;
+  size_t n = (size_t)s->pb.n, nm = (size_t)m->nmodes, nev = (size_t)m->nev + nm, nout = (size_t)s->scene->nout;
+  size_t nu = (size_t)m->nu, nw = (size_t)(m->taylor && m->taylor->nw > m->nw ? m->taylor->nw : m->nw), nuu = nu + nm + (size_t)s->scene->nexact;
   size_t held = lag_constraint_scratch_size(m), ranks = lag_rank_scratch_size(m), sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
-  size_t nc = (size_t)lag_sim_ncharges(s);
+  size_t nc = (size_t)lag_sim_ncharges(s) + 1, np = (size_t)m->ncontacts;
   double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->pb.ranks, &s->contact_scratch,
-                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->rate_history};
-  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch, 3 * n};
+                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->rate_history, &s->grip, &s->side_noise, &s->slid_off, &s->meets, &s->left,
+                            &s->meeting, &s->pb.slide, &s->pb.rub};
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch, 3 * n, nm, nm, nm, nm, nm,
+                          nm * (7 + 2 * nm), nm * (3 + nm), m->contact_laws ? np * (5 + 2 * np) : 0};
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
   s->signal = calloc(nu + 1, sizeof *s->signal);
-  if (!s->scratch || !s->fixed || !s->start || !s->signal) return LAG_ENOMEM;
+  s->meeting_of = calloc(2 * nm + 1, sizeof *s->meeting_of);
+  if (!s->meeting_of || !s->scratch || !s->fixed || !s->start || !s->signal) return LAG_ENOMEM;
   for (size_t i = 0; i < n; i++) s->start[i] = NAN;
   lag_reset_rate_history(s);
+  s->pb.sliding = s->meeting_of + nm;
   s->pb.u = s->u;
   s->pb.signal = s->signal;
   s->pb.work = s->work;
   return LAG_OK;
-}
-
-static const lag_method *find_method(const char *name) {
-  for (int i = 0; name && i < lag_nmethods; i++)
-    if (strcmp(lag_methods[i]->name, name) == 0) return lag_methods[i];
-  return NULL;
 }
 
 /* Default values of the options; NULL: no memory. */
@@ -110,7 +118,7 @@ lag_sim *lag_sim_new(const lag_scene *scene) {
   s->pb = (lag_problem){.model = m, .nq = m->nq, .nz = m->nz, .n = 2 * m->nq + m->nz, .dir = 1, .bad_index = -1};
   s->pb.span = scene->has_span ? fabs(scene->t1 - scene->t0) : 0;
   s->tol = s->pb.tol = scene->tolerance > 0 ? scene->tolerance : 1e-9;
-  const lag_method *method = find_method(scene->method), *chosen = method ? method : lag_methods[0];
+  const lag_method *method = lag_find_method(scene->method), *chosen = method ? method : lag_methods[0];
   double *opt = default_options(chosen);
   int bad = !opt || alloc_scratch(s) || set_blocks(s, chosen, opt);
   free(opt);
@@ -119,7 +127,7 @@ lag_sim *lag_sim_new(const lag_scene *scene) {
     lag_sim_free(s);
     return NULL;
   }
-  for (int i = 0; i < m->nu; i++) s->hold[i] = NAN;
+  for (int i = 0; i < m->nu + m->nmodes; i++) s->hold[i] = i < m->nu ? NAN : LAG_FREE;
   if ((method || !scene->method) && lag_sim_set_method(s, chosen, scene->options, method ? scene->noptions : 0) == LAG_ENOMEM) {
     lag_sim_free(s);
     return NULL;
@@ -137,6 +145,8 @@ void lag_sim_free(lag_sim *s) {
   free(s->fixed);
   free(s->start);
   free(s->signal);
+  free(s->meeting_of);
+  free(s->pb.contact_room);
   free(s->scratch);
   free(s->room);
   free(s);
@@ -213,6 +223,9 @@ static int check_digits(lag_sim *s, const lag_method *method) {
 static int check_method(lag_sim *s, const lag_method *method) {
   const lag_model *m = s->scene->model;
   unsigned needs = method->flags, has = lag_facts(&s->pb);
+  if (m->contact_laws && (!(needs & LAG_METHOD_CONSTRAINTS) || needs & (LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS)))
+    return lag_fail(s, LAG_EMETHOD, "method %s cannot follow contacts with friction (%s); rk45, dop853, radau, rk4 and moreau can", method->name,
+                    m->ev[m->contacts[0].impact].name);
   if (m->constraints && !(needs & LAG_METHOD_CONSTRAINTS)) {
     return lag_fail(s, LAG_EMETHOD, "method %s cannot hold constraints (%s); rk45, dop853 and variational can", method->name,
                     m->constraints->of[0].name);
@@ -222,9 +235,14 @@ static int check_method(lag_sim *s, const lag_method *method) {
                     "builds a program where they have; rk45 and dop853 need none", method->name, method->name);
   }
   if ((needs & LAG_METHOD_FLOWS) && m->nq == 0) needs = (needs & ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION)) | LAG_METHOD_JACOBIAN;
+  if ((needs & LAG_METHOD_SPLITS) && m->nq == 0 && (has & LAG_SEPARABLE)) needs &= ~(unsigned)(LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION);
   if ((needs & LAG_METHOD_NO_STATES) && (has & LAG_FIRST_ORDER)) {
-    return lag_fail(s, LAG_EMETHOD, "method %s needs momenta beside coordinates, and L is linear in the velocities; gauss is symplectic there, rk45 and "
-                    "dop853 can, too", method->name);
+    if ((needs & LAG_METHOD_SPLITS) && (has & LAG_SUM_HAMILTONIAN)) {
+      return lag_fail(s, LAG_EMETHOD, "method %s takes forces of positions and t, and here forces depend on momenta or velocities; gauss, rk45 and dop853 can",
+                      method->name);
+    }
+    return lag_fail(s, LAG_EMETHOD, "method %s needs momenta beside coordinates, and L is linear in the velocities%s; gauss is symplectic there, rk45 and "
+                    "dop853 can, too", method->name, needs & LAG_METHOD_SPLITS ? ", or H is not a sum T(p) + V(q, t)" : "");
   }
   if ((needs & LAG_METHOD_NO_STATES) && m->nz > 0)
     return lag_fail(s, LAG_EMETHOD, "method %s cannot integrate a model with states; rk45 and dop853 can", method->name);
@@ -232,6 +250,15 @@ static int check_method(lag_sim *s, const lag_method *method) {
     return lag_fail(s, LAG_EMETHOD, "method %s does not find events (%s), as its motion within a step is too rough; dop853 and radau do", method->name,
                     m->ev[0].name);
   }
+  for (int k = 0; k < m->nmodes; k++) {
+    if (!m->switches[k].jumps || !(needs & (LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_IMPULSES))) continue;
+    return lag_fail(s, LAG_EMETHOD, "method %s cannot follow a motion that sticks or slides where `%s` jumps; rk45, dop853, radau and rk4 can", method->name,
+                    m->switches[k].text);
+  }
+  for (int i = 1; i < m->ncontacts && !(needs & LAG_METHOD_IMPULSES); i++)
+    if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent)
+      return lag_fail(s, LAG_EMETHOD, "method %s follows friction in a plane, and the slip of a contact has two components here (%s); --method \"moreau(step=1e-3)\" follows it", method->name,
+                      m->constraints->of[m->contacts[i].constraint].name);
   int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !m->constraints;
   if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH))
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min, max and tables; dop853 does not", method->name);
@@ -286,9 +313,19 @@ static int sign_ok(int sign, double x) { return sign == 1 ? x > 0 : sign == 2 ? 
 
 static const char *sign_text(int sign) { return sign == 1 ? "> 0" : sign == 2 ? ">= 0" : sign == -1 ? "< 0" : "<= 0"; }
 
+/* The quantity of first order whose rate `name` would be, as x of x'; NULL: none. */
+static const char *rate_of(const lag_model *m, const char *name) {
+  size_t n = strlen(name) - 1;
+  for (int i = 0; i < m->nz; i++)
+    if (name[n] == '\'' && strncmp(m->z[i].name, name, n) == 0 && !m->z[i].name[n]) return m->z[i].name;
+  return NULL;
+}
+
 static int unknown_name(lag_sim *s, const char *name) {
   const lag_model *m = s->scene->model;
+  const char *of = name[0] ? rate_of(m, name) : NULL;
   char near[64];
+  if (of) return lag_fail(s, LAG_EINVAL, "%s: the rate of %s follows from the equations of model %s: set %s, or where H is given its momentum", name, of, m->name, of);
   if (lag_family_member(m, name, 0, near, sizeof near)) return lag_fail(s, LAG_EINVAL, "%s has parts: set %s, and so on", name, near);
   return lag_nearest_name(m, name, near, sizeof near)
              ? lag_fail(s, LAG_EINVAL, "%s: no such parameter, coordinate or input in model %s; did you mean %s?", name, m->name,
@@ -417,7 +454,7 @@ int lag_setup_start(lag_sim *s) {
   set_start_state(s);
   if (lag_not_finite(n, s->now) >= 0) return lag_fail(s, LAG_ENAN, "the start is not finite");
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */
-  if ((rc = lag_consistent_start(s)) != 0) return rc;
+  if ((rc = lag_conditional_place(s, c->t0, s->now)) != 0 || (rc = lag_consistent_start(s)) != 0) return rc;
   memcpy(s->begin, s->now, (size_t)n * sizeof(double));
   memcpy(s->y, s->now, (size_t)n * sizeof(double));
   s->run->t = s->run->from = c->t0;

@@ -15,6 +15,7 @@ static int begin(lag_sim *s, double t) {
 
   rc = rc ? rc : lag_contact_begin(s);
   if (rc || t == s->scene->t0) return rc;
+  if ((rc = lag_switch_place(s)) != 0) return rc;
   if (!s->options && s->scene->method && strcmp(s->scene->method, s->method->name) != 0) {
     return lag_fail(s, LAG_EMETHOD, "scene %s asks for the method %s, which is not in liblag.a: set it by lag_sim_set_method, or another", s->scene->name,
                     s->scene->method);
@@ -25,30 +26,46 @@ static int begin(lag_sim *s, double t) {
   if ((rc = s->method->init(s->method_work, &s->pb, s->options)) != 0) return lag_explain(s, rc);
   s->run->begun = 1;
   rc = lag_monitors_begin(s);
+  rc = rc ? rc : lag_tangent_begin(s);
   return rc ? rc : lag_events_arm(s);
 }
 
 /* Passes a jump of a table, two rows next to each other in double precision, without a step. */
-static void pass_jump(lag_sim *s) {
+static int pass_jump(lag_sim *s) {
   Run *r = s->run;
   double row;
-  if (lag_next_row_inline(&s->pb, r->t, &row) < HUGE_VAL && row == nextafter(r->t, r->dir * HUGE_VAL)) {
+  if (s->scene->model->ntables && lag_next_row(&s->pb, r->t, &row) < HUGE_VAL && row == nextafter(r->t, r->dir * HUGE_VAL)) {
     r->t = row;
     s->method->reset(s->method_work, &s->pb);
+    return s->scene->model->nmodes ? lag_events_inputs_jump(s) : LAG_OK;
   }
+  return LAG_OK;
+}
+
+/* Moves y and *t to the end of a step. */
+static int make_step(lag_sim *s, double *t, double t_stop) {
+  if (!s->outside.on) return s->method->step(s->method_work, &s->pb, t, s->y, t_stop);
+  s->outside.made = 0;
+  *t = s->outside.t;
+  return LAG_OK;
 }
 
 /* Makes a step of the method and locates its first event. */
 static int take(lag_sim *s, double t_stop) {
   Run *r = s->run;
-  pass_jump(s);
+  int rc = pass_jump(s);
   double t = r->t, row = t_stop;
 
+  if (s->scene->model->nev && (rc = rc ? rc : lag_kicks_plan(s)) == 0 && lag_kicks_at_once(s)) return LAG_OK;
   if (lag_next_row_inline(&s->pb, t, &row) < fabs(t_stop - t)) t_stop = row;
+  if (s->outside.on && !s->outside.made) {
+    s->outside.to = t_stop;
+    return LAG_WANTS_STEP;
+  }
   lag_copy(s->pb.n, s->now, s->y0);
   s->pb.detail = NULL;
   s->pb.bad_t = t;
-  int rc = s->method->step(s->method_work, &s->pb, &t, s->y, t_stop);
+  rc = rc ? rc : make_step(s, &t, t_stop);
   rc = rc ? rc : lag_changes_branch(s, t);
   rc = rc ? rc : lag_detect_stall(s, t);
   rc = rc ? rc : lag_crosses_force_pole(s, t);
@@ -79,11 +96,12 @@ static int pass_limit(lag_sim *s) {
   Run *r = s->run;
   int rc = move_to(s, r->limit);
 
+  rc = rc ? rc : lag_monitors_impulses(s);
   rc = rc ? rc : lag_monitors_record(s, r->t, s->now);
   if (rc) return rc;
   if (r->pending != 0.0) return lag_events_fire(s);
   r->have_step = 0;
-  lag_copy(s->scene->model->nev, s->sign_end, s->sign);
+  lag_copy(lag_watched(s), s->sign_end, s->sign);
   return LAG_OK;
 }
 

@@ -94,16 +94,16 @@ static int say_switch(lag_sim *s, int k, double t) {
 static int check_sliding(lag_sim *s, double t) {
   const lag_model *m = s->scene->model;
   if (sides_at(s, s->run->t, s->now, s->sides) || sides_at(s, t, s->y, s->sides + m->nswitch)) return LAG_OK;
-  for (int k = 0; k < m->nswitch; k++)
+  for (int k = m->nmodes; k < m->nswitch; k++)
     if (stays(s, k, t)) return say_switch(s, k, t);
   return LAG_OK;
 }
 
-/* The switching function near whose surface the motion has stayed: |value| < |rate| led. -1: none. */
+/* The switching function without a mode near whose surface the motion has stayed: |value| < |rate| led. -1: none. */
 static int hangs_at(lag_sim *s, double t, double led) {
   int k = s->scene->model->nswitch - 1;
-  while (k >= 0 && (sides_at(s, t, s->y, s->sides) || !(fabs(s->sides[k]) < fabs(rate_of(s, k, t, t - s->run->t, s->y)) * led))) k--;
-  return k;
+  while (k >= s->scene->model->nmodes && (sides_at(s, t, s->y, s->sides) || !(fabs(s->sides[k]) < fabs(rate_of(s, k, t, t - s->run->t, s->y)) * led))) k--;
+  return k < s->scene->model->nmodes ? -1 : k;
 }
 
 /* Criterion 2: shrinking steps. */
@@ -158,7 +158,7 @@ int lag_detect_stall(lag_sim *s, double t) {
   long long steps = (long long)r->steps + 1;
   int rc = 0;
 
-  if (s->scene->model->nswitch) rc = check_sliding(s, t);
+  if (s->scene->model->nswitch > s->scene->model->nmodes) rc = check_sliding(s, t);
   if (rc == 0 && steps % MOST == 0) rc = check_pace(s, t);
   if (rc == 0 && (steps & (steps - 1)) == 0) { /* after 1, 2, 4, 8, ... steps */
     look_for_period(s, t);

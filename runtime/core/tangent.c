@@ -1,10 +1,12 @@
 /* The tangent of a run: small changes of the state, carried along the motion. Enters: Y at one time; leaves: Y at a later time. Holds: the run itself
- * is the same, bit by bit, with a tangent or without: steps are differentiated after they were made, and the counts of the run exclude that cost.
+ * is the same, bit by bit, with a tangent or without: steps are differentiated after they were made, and the counts of the run exclude that cost;
+ * with constraints Y lies in their tangent space (constraints/tangent_space.c).
  *
  * An event changes the state from y to y+ = R(t, y) where g(t, y) = 0; its time moves with y. With the rates f and f+ before and after it, small
  * changes are multiplied by the saltation matrix
  *   S = R_y + (f+ - R_y f - R_t) g_y / (g_y f + g_t):
- * R.I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004), ch. 7, DOI 10.1007/978-3-540-44398-8. */
+ * R.I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004), ch. 7, DOI 10.1007/978-3-540-44398-8. A switch that ends
+ * its branch has R_y = 1; where the motion begins to slide on its surface, f+ lies in the surface and S has one rank less. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,16 +27,18 @@ void lag_tangent_free(lag_sim *s) {
 static int check(lag_sim *s) {
   const lag_model *m = s->scene->model;
   int in_p = m->nq > 0 && (s->method->flags & LAG_METHOD_VARIATION) && !((s->method->flags & LAG_METHOD_SPLITS) && (m->flags & LAG_SEPARABLE));
-  if (m->constraints) {
-    return lag_fail(s, LAG_EMETHOD, "there is no tangent of a motion with constraints yet (%s): describe the model by coordinates that "
-                                    "need no constraints",
-                    m->constraints->of[0].name);
+  if (m->ncontacts) {
+    const lag_constraint *of = &m->constraints->of[m->contacts[0].constraint];
+    return lag_fail(s, LAG_EMETHOD, m->contacts[0].conditional ? "there is no tangent of a motion whose constraint %s begins and ends: the impulses there have no derivatives yet"
+                                                               : "there is no tangent of a motion with contact %s: its impacts have no derivatives yet; write them as an event that sets velocities", of->name);
   }
+  if (m->constraints && (!s->method->tangent || (s->method->flags & LAG_METHOD_VARIATION)))
+    return lag_fail(s, LAG_EMETHOD, "method %s has no derivative of its steps with constraints; dop853, rk45, rk4 and radau have", s->method->name);
   if (!s->method->tangent) {
     return lag_fail(s, LAG_EMETHOD, "method %s has no derivative of its steps; %s has", s->method->name,
                     s->method->flags & LAG_METHOD_SYMPLECTIC ? "verlet8" : "dop853");
   }
-  if (!in_p && !m->linear) {
+  if (!in_p && !m->linear && !m->constraints) {
     return lag_fail(s, LAG_EMETHOD,
                     "the tangent needs the derivatives of the equations, which this program was built without; `lagc run --tangent` builds "
                     "them in, and so does `lagc build --with linear`");
@@ -47,10 +51,16 @@ static int njump(const lag_sim *s) {
   return l && l->jumps ? l->njump : 0;
 }
 
+/* Scratch of a corner: rates before and after it, a state, the gradient of the event function and its rate, and event functions. */
+static size_t corner_size(const lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  return m->nmodes ? 4 * (size_t)s->pb.n + 1 + (size_t)(m->nev + m->nmodes) : 0;
+}
+
 /* Scratch of a jump: its entries, S[n n] and a copy, four vectors and a copy of Y[n k]. */
 static size_t jump_size(const lag_sim *s, int k) {
   size_t n = (size_t)s->pb.n;
-  return njump(s) ? (size_t)njump(s) + 2 * n * n + 4 * (n + 1) + n * (size_t)k : 0;
+  return corner_size(s) + (njump(s) ? (size_t)njump(s) + 2 * n * n + 4 * (n + 1) + n * (size_t)k : 0);
 }
 
 /* Allocates k columns, when there is another number of them. */
@@ -58,12 +68,31 @@ static int make_room(lag_sim *s, int k) {
   size_t n = (size_t)s->pb.n, size = n * (size_t)k;
   if (s->tangent && s->tangent_columns == k) return LAG_OK;
   lag_tangent_free(s);
-  s->tangent = calloc(size + jump_size(s, k) + s->method->tangent_size(&s->pb, k) + 1, sizeof *s->tangent);
+  size_t step = s->method->tangent_size(&s->pb, k), projection = lag_tangent_projection_size(&s->pb);
+  s->tangent = calloc(size + jump_size(s, k) + (step > projection ? step : projection) + 1, sizeof *s->tangent);
   if (!s->tangent) return lag_fail(s, LAG_ENOMEM, "out of memory");
   s->tangent_jump = s->tangent + size;
   s->tangent_scratch = s->tangent_jump + jump_size(s, k);
   s->tangent_columns = k;
   return LAG_OK;
+}
+
+/* Projects Y onto the tangent space of the constraints at the present state, t. Near a singular position, as of a folded linkage, there is none. */
+static int stay_on_constraints(lag_sim *s, double t, double *Y) {
+  const double least = 1e-3;
+  int weakest = -1;
+  if (s->scene->model->constraints && lag_independence(&s->pb, t, s->now, &weakest) < least && weakest >= 0)
+    return lag_fail(s, LAG_EMETHOD, "at t = %s s constraint %s nearly depends on the others: neighbouring motions part there, and there is no tangent; end the run before", LAG_TEXT(t),
+                    s->scene->model->constraints->of[weakest].name);
+  int rc = lag_tangent_project(&s->pb, t, s->now, s->tangent_columns, Y, s->tangent_scratch);
+  return rc ? lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN, "at t = %s s changes of the state cannot be projected onto the constraints", LAG_TEXT(t)) : LAG_OK;
+}
+
+/* The start on the constraints, where the run has none yet; a singular one has no tangent space. */
+static int check_start(lag_sim *s) {
+  int d = lag_tangent_dimension(s);
+  if (d < 0 || s->run->beside <= s->run->rank) return d < 0 ? d : LAG_OK;
+  return lag_fail(s, LAG_EMETHOD, "constraints depend on each other at the start, but not beside it: neighbouring motions are of another kind, and there is no tangent");
 }
 
 int lag_sim_set_tangent(lag_sim *s, int k, const double *Y) {
@@ -77,11 +106,11 @@ int lag_sim_set_tangent(lag_sim *s, int k, const double *Y) {
   if (k < 0 || (!Y && k != n)) return lag_fail(s, LAG_EINVAL, "a tangent of %d columns: give them, or take all %d", k, n);
   if (s->run->have_step != 0.0)
     return lag_fail(s, LAG_EINVAL, "a tangent begins at the end of a step, and t = %s lies within one", LAG_TEXT(s->run->t));
-  if ((rc = check(s)) != 0 || (rc = make_room(s, k)) != 0) return rc;
+  if ((rc = check(s)) != 0 || (rc = check_start(s)) != 0 || (rc = make_room(s, k)) != 0) return rc;
   if (Y) memcpy(s->tangent, Y, block(s) * sizeof *Y);
   else memset(s->tangent, 0, block(s) * sizeof *s->tangent);
   for (int i = 0; i < n && !Y; i++) s->tangent[i * n + i] = 1;
-  return LAG_OK;
+  return stay_on_constraints(s, s->run->begun != 0.0 ? s->run->t : s->scene->t0, s->tangent);
 }
 
 /* Y := D Y, with D the derivative of the last step up to t. */
@@ -94,7 +123,7 @@ static int advance_tangent(lag_sim *s, double t, double *Y) {
   pb->rhs_calls = rhs_calls;
   pb->systems = systems;
   pb->iterations = iterations;
-  return rc ? lag_explain(s, rc) : LAG_OK;
+  return rc ? lag_explain(s, rc) : stay_on_constraints(s, t, Y);
 }
 
 int lag_tangent_pass(lag_sim *s) {
@@ -103,6 +132,128 @@ int lag_tangent_pass(lag_sim *s) {
     return LAG_OK;
   }
   return advance_tangent(s, s->run->t, s->tangent);
+}
+
+/* Whether event k only touches zero: its rate there is negligible relative to its values at the ends of the step. */
+static int only_touches(lag_sim *s, int k, double rate) {
+  const Run *r = s->run;
+  const double flat = 1e-6;
+  double size = 0;
+  for (int end = 0; end < 2; end++)
+    if (lag_events_eval(s, end ? r->step_t1 : r->step_t0, end ? s->y : s->y0, s->g1) == LAG_OK) size = fmax(size, fabs(s->g1[k]));
+  return fabs(rate * (r->step_t1 - r->step_t0)) < flat * size;
+}
+
+/* ---- Switches that end a branch */
+
+typedef struct Corner {
+  double *before, *after, *there, *gradient, *g; /* f and f+; a state; gradient of the event function and its rate along f; event functions */
+} Corner;
+
+static Corner corner_layout(const lag_sim *s) {
+  int n = s->pb.n;
+  Corner c = {.before = s->tangent_scratch - corner_size(s)};
+  c.after = c.before + n;
+  c.there = c.after + n;
+  c.gradient = c.there + n;
+  c.g = c.gradient + n + 1;
+  return c;
+}
+
+/* *slope := change of event function k along component i of the state, or of t for i = n, by central differences of order 4. */
+static int event_slope(lag_sim *s, const Corner *w, int k, int i, double *slope) {
+  const double part = 0x1p-9;
+  lag_problem *pb = &s->pb;
+  int n = pb->n, rc = LAG_OK;
+  double h = part * (i < n ? lag_difference_scale(pb, s->now, i) : fabs(s->run->step_t1 - s->run->step_t0));
+  *slope = 0;
+  for (int j = 1; j <= 2 && rc == LAG_OK; j++) {
+    double difference = 0; /* exactly 0 where the function does not depend on the component */
+    for (int side = -1; side <= 1 && rc == LAG_OK; side += 2) {
+      memcpy(w->there, s->now, (size_t)n * sizeof(double));
+      if (i < n) w->there[i] += side * j * h;
+      rc = lag_events_eval(s, s->run->t + (i == n ? side * j * h : 0), w->there, w->g);
+      difference = rc ? 0 : side < 0 ? -w->g[k] : difference + w->g[k];
+    }
+    *slope += (j == 1 ? 8 : -1) * difference / (12 * h);
+  }
+  return rc;
+}
+
+int lag_tangent_meet(lag_sim *s, int k) {
+  if (!s->tangent) return LAG_OK;
+  int n = s->pb.n, rc = !s->tangent_at_event && s->run->t != s->run->step_t0 ? advance_tangent(s, s->run->t, s->tangent) : LAG_OK;
+  double calls = s->pb.rhs_calls, slope = 0;
+  Corner w = corner_layout(s);
+  s->tangent_at_event = 1;
+  s->tangent_meets++;
+  rc = rc ? rc : lag_rhs(&s->pb, s->run->t, s->now, w.before);
+  for (int i = 0; i <= n && rc == LAG_OK; i++) rc = event_slope(s, &w, k, i, i < n ? &w.gradient[i] : &slope);
+  for (int i = 0; i < n && rc == LAG_OK; i++) {
+    slope += w.gradient[i] * w.before[i];
+    s->tangent_moves |= w.gradient[i] != 0.0;
+  }
+  w.gradient[n] = slope;
+  s->pb.rhs_calls = calls;
+  s->tangent_touches = rc == LAG_OK && only_touches(s, k, slope);
+  return rc;
+}
+
+static int refuse_corner(lag_sim *s, const char *why) {
+  return lag_fail(s, LAG_EMETHOD, "at t = %s s a force jumps, and %s: there is no tangent over it; end the run before", LAG_TEXT(s->run->t), why);
+}
+
+int lag_tangent_corner(lag_sim *s) {
+  const double same = 1e-9;
+  if (!s->tangent) return LAG_OK;
+  int n = s->pb.n, k = s->tangent_columns, meets = s->tangent_meets, moves = s->tangent_moves;
+  double calls = s->pb.rhs_calls, far = 0, size = 0;
+  Corner w = corner_layout(s);
+  int rc = lag_rhs(&s->pb, s->run->t, s->now, w.after);
+  s->pb.rhs_calls = calls;
+  s->tangent_meets = s->tangent_moves = 0;
+  double rate = w.gradient[n], left = rate, terms = fabs(rate);
+  for (int i = 0; i < n; i++) {
+    far = fmax(far, fabs(w.after[i] - w.before[i]));
+    size = fmax(size, fabs(w.before[i]));
+    left += w.gradient[i] * (w.after[i] - w.before[i]);
+    terms += fabs(w.gradient[i] * (w.after[i] - w.before[i]));
+  }
+  if (rc || !moves || far <= same * size) return rc;
+  if (meets > 1) return refuse_corner(s, "two surfaces are met at once, which neighbouring motions may meet in either order");
+  if (s->tangent_touches) return refuse_corner(s, "the motion only touches its surface, which neighbouring motions may miss");
+  for (int c = 0; c < k; c++) {
+    double along = 0;
+    for (int i = 0; i < n; i++) along += w.gradient[i] * s->tangent[i * k + c];
+    for (int i = 0; i < n; i++) s->tangent[i * k + c] += (w.after[i] - w.before[i]) * along / rate;
+  }
+  int joins = fabs(left) <= same * terms; /* a slide begins */
+  s->tangent_log += joins ? -HUGE_VAL : log(fabs(left / rate));
+  return LAG_OK;
+}
+
+/* Neighbouring motions fall onto the surface at once, from either side along the jump of the rates: S = 1 - (f+ - f-) g_y / (g_y (f+ - f-)). */
+int lag_tangent_begin(lag_sim *s) {
+  if (!s->tangent || s->pb.nslide == 0) return LAG_OK;
+  if (s->pb.nslide > 1) return lag_fail(s, LAG_EMETHOD, "a motion that begins by sliding on several surfaces has no tangent yet; start beside them");
+  int n = s->pb.n, columns = s->tangent_columns, k = s->pb.sliding[0], rc = LAG_OK;
+  Corner w = corner_layout(s);
+  double calls = s->pb.rhs_calls, across = 0;
+  for (int side = -1; side <= 1 && rc == LAG_OK; side += 2) {
+    lag_switch_hold(s, k, side);
+    rc = lag_rhs(&s->pb, s->run->t, s->now, side < 0 ? w.before : w.after);
+  }
+  for (int i = 0; i < n && rc == LAG_OK; i++) rc = event_slope(s, &w, s->scene->model->nev + k, i, &w.gradient[i]);
+  lag_switch_hold(s, k, 0);
+  s->pb.rhs_calls = calls;
+  for (int i = 0; i < n && rc == LAG_OK; i++) across += w.gradient[i] * (w.after[i] - w.before[i]);
+  for (int c = 0; c < columns && rc == LAG_OK; c++) {
+    double along = 0;
+    for (int i = 0; i < n; i++) along += w.gradient[i] * s->tangent[i * columns + c];
+    for (int i = 0; i < n; i++) s->tangent[i * columns + c] -= (w.after[i] - w.before[i]) * along / across;
+  }
+  s->tangent_log = -HUGE_VAL;
+  return rc ? lag_fail(s, LAG_EMETHOD, "the start slides, and the rates beside its surface, which its tangent needs, have no values") : LAG_OK;
 }
 
 /* ---- Events that change the state */
@@ -169,22 +320,13 @@ static double log_det(int n, const double *S, double *a) {
   return log_of;
 }
 
-/* Whether event k only touches zero: its rate there is negligible relative to its values at the ends of the step. */
-static int only_touches(lag_sim *s, int k, double rate) {
-  const Run *r = s->run;
-  const double flat = 1e-6;
-  double size = 0;
-  for (int end = 0; end < 2; end++)
-    if (lag_events_eval(s, end ? r->step_t1 : r->step_t0, end ? s->y : s->y0, s->g1) == LAG_OK) size = fmax(size, fabs(s->g1[k]));
-  return fabs(rate * (r->step_t1 - r->step_t0)) < flat * size;
-}
-
 int lag_tangent_jump(lag_sim *s, int k, int more) {
   const lag_model *m = s->scene->model;
   lag_problem *pb = &s->pb;
   int n = pb->n, nq = pb->nq;
   double t = s->run->t, rhs_calls = pb->rhs_calls, rate = 0;
   if (!s->tangent) return LAG_OK;
+  if (m->constraints) return refuse(s, k, "what constraints make of its effect has no derivative yet");
   if (!m->linear) return refuse(s, k, "its effect on neighbouring motions needs derivatives, which `lagc build --with linear` builds in");
   if (more) return refuse(s, k, "another event does so at the same time, and neighbouring motions may meet the two in either order");
   Jump j = jump_layout(s);
@@ -193,13 +335,17 @@ int lag_tangent_jump(lag_sim *s, int k, int more) {
   if (!njump(s) || !collect_derivatives(s, k, &j)) {
     return refuse(s, k, "it depends on an input, whose rate a model does not have"); /* the compiler lists all others */
   }
-  int rc = s->run->have_step != 0.0 && t != s->run->step_t0 ? advance_tangent(s, t, s->tangent) : LAG_OK;
-  if (rc || lag_rhs(pb, t, s->now, j.before) || lag_rhs(pb, t, s->yb, j.after)) return rc ? rc : refuse(s, k, "the rates there cannot be computed");
+  int rc = s->run->have_step != 0.0 && t != s->run->step_t0 && !s->tangent_at_event ? advance_tangent(s, t, s->tangent) : LAG_OK;
+  rc = rc ? rc : lag_rhs(pb, t, s->now, j.before);
+  lag_switch_set_free(s, 1); /* the event may have changed branches */
+  int after = rc ? rc : lag_rhs(pb, t, s->yb, j.after);
+  lag_switch_set_free(s, 0);
+  if (rc || after) return rc ? rc : refuse(s, k, "the rates there cannot be computed");
   pb->rhs_calls = rhs_calls;
   for (int c = 0; c < n; c++) rate += j.g[c] * j.before[c];
   rate += j.g[n];
-  int touches = only_touches(s, k, rate);
-  for (int i = 0; i < n; i++) {
+  int kick = lag_is_kick(m, k), touches = !kick && only_touches(s, k, rate);
+  for (int i = 0; i < n && !kick; i++) { /* the time of a kick does not move */
     double gain = j.after[i] - j.Rt[i];
     for (int c = 0; c < n; c++) gain -= j.S[i * n + c] * j.before[c];
     for (int c = 0; c < n; c++) j.S[i * n + c] += gain * j.g[c] / rate;
@@ -215,5 +361,5 @@ int lag_sim_tangent(lag_sim *s, double *Y) {
 
   if (!s->tangent) return lag_fail(s, LAG_EINVAL, "this run has no tangent: lag_sim_set_tangent");
   memcpy(Y, s->tangent, block(s) * sizeof *Y);
-  return r->have_step != 0.0 && r->t != r->step_t0 ? advance_tangent(s, r->t, Y) : LAG_OK;
+  return r->have_step != 0.0 && r->t != r->step_t0 && !s->tangent_at_event ? advance_tangent(s, r->t, Y) : LAG_OK;
 }

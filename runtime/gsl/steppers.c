@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gsl/quasi_random.h"
 #include "lag.h"
 
 typedef struct Gsl {
@@ -185,4 +186,4 @@ const lag_method *const lag_gsl_methods[] = {METHODS(LIST)};
 enum { NMETHODS = sizeof lag_gsl_methods / sizeof *lag_gsl_methods };
 const int lag_gsl_nmethods = NMETHODS;
 
-const lag_extras lag_gsl = {lag_gsl_methods, NMETHODS, &lag_gsl_algebra};
+const lag_extras lag_gsl = {.methods = lag_gsl_methods, .nmethods = NMETHODS, .algebra = &lag_gsl_algebra, .points = lag_gsl_points};

@@ -12,6 +12,7 @@
 #ifndef LAG_H
 #define LAG_H
 
+#include "lag_libraries.h"
 #include "lag_model.h"
 
 #ifdef __cplusplus
@@ -54,19 +55,35 @@ typedef struct lag_signal {
   void *context;
 } lag_signal;
 
+/* Contacts of a run by a method with LAG_METHOD_IMPULSES. */
+typedef struct lag_contact_stats {
+  double steps;    /* steps in which contacts acted */
+  double touching; /* the most that took part in one step */
+  double impacts;  /* gaps that closed faster than forces alone make them close in a step */
+  double sweeps;   /* iterations over all contacts that take part, in all steps */
+  double depth;    /* the deepest gap, >= 0 [SI] */
+  double gained;   /* energy that contacts brought in, where they do work at all, step by step; rounding apart it is 0 [J] */
+  /* Of the last step: work along gaps and of friction; whether charges do not contain it yet, time from which on dense output does; length. */
+  double work, rubbed, due, from, length;
+} lag_contact_stats;
+
 /* The problem that a method integrates: the model as y' = f(t, y), and the method's counts. */
 typedef struct lag_problem {
   const lag_model *model;
   int n, nq, nz;       /* n = 2 nq + nz */
   const double *p;     /* [np + nderived] parameters */
-  double *u;           /* [nu] inputs, filled by lag_rhs */
-  const double *hold;  /* [nu] constants that replace inputs; NaN where an input is not replaced */
+  double *u;           /* [nu + nmodes] inputs and modes of switches, filled by lag_rhs */
+  const double *hold;  /* [nu + nmodes] constants that replace inputs, NaN where an input is not replaced; modes, 0 where the motion slides */
   const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
   double *held;        /* [lag_constraint_scratch_size] scratch of the constraint functions below */
   double *ranks;       /* [lag_rank_scratch_size] scratch of the functions that judge ranks of constraints */
   const double *begin; /* [n] start of the run, the scale of quantities that are 0 now; NULL: not known */
   const double *kept;  /* [nholonomic] value at which c is held, NaN: free so far; NULL: all at 0 */
+  int nslide;          /* switches on whose surface the motion slides, */
+  int *sliding;        /* [nmodes] and their numbers; their modes are found at each state */
+  double *slide;       /* scratch of lag_slide */
+  double *rub;         /* scratch of friction of contacts */
   int redundant;       /* 1: constraints are redundant; f is evaluated on the constraints only, see lag_rhs */
   const double *opt;   /* values of the method's options, [method->noptions] */
   const void *variant; /* method->variant */
@@ -82,6 +99,11 @@ typedef struct lag_problem {
   int bad_index;       /* component of y' (-1: unknown), */
   const char *detail;  /* explanation or NULL; a string that lives as long as this object, */
   char words[320];     /* for example composed here */
+  double kick;         /* time of the next kick, at which a step ends if it would reach it; HUGE_VAL: none */
+  lag_contact_stats *contacts; /* contacts met by impulses; NULL: the method is another, or there are none. In the next three, too */
+  double *contact_impulse;     /* [ncontacts] impulse of each in the last step, */
+  double *contact_change;      /* [nq] and the change of velocities by all of them */
+  double *contact_room;        /* scratch */
 } lag_problem;
 
 /* The model's facts (LAG_AUTONOMOUS, ...) less those that an input function of the caller takes away. */
@@ -89,15 +111,16 @@ unsigned lag_facts(const lag_problem *pb);
 
 /* pb->u := the inputs at t: the model's formulas, constants of pb->hold or functions of pb->signal. Returns the model's status. */
 int lag_inputs(lag_problem *pb, double t);
+/* The same, and modes of switches on whose surface the motion slides and friction of contacts that slip, at the state y[n]. */
+int lag_inputs_at(lag_problem *pb, double t, const double *y);
 
 /* dy[n] = f(t, y[n]). Returns the model's status; does not look for NaN. Where constraints are redundant, f is evaluated at the projection of y
  * (lag_project): stages of a step lie off the constraints; there redundant rows become independent, and their accelerations would be rounding divided
  * by rounding. On the constraints this f is the same, and near them as smooth. */
 int lag_rhs(lag_problem *pb, double t, const double *y, double *dy);
 
-/* Distance from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The third derivative of the right-hand side
- * jumps at a row, and a long step may skip rows: so an adaptive method ends its step at *row if its own end would lie beyond. STEPS_TO methods get it
- * as t_stop. */
+/* Distance from t to the next row of an input's table in direction pb->dir; HUGE_VAL where there is none. The third derivative of the right-hand side jumps
+ * at a row, and a long step may skip rows: so an adaptive method ends its step at *row if its own end would lie beyond. STEPS_TO methods get it as t_stop. */
 double lag_next_row(const lag_problem *pb, double t, double *row);
 
 /* Lq = dL/dq, Lv = dL/dv and Q, the forces outside L, all [nq]; and h[model->nsecond], their derivatives. For models that have these functions;
@@ -106,15 +129,16 @@ int lag_variation(lag_problem *pb, double t, const double *q, const double *v, d
 int lag_second_derivatives(lag_problem *pb, double t, const double *q, const double *v, double *h);
 
 /* Derivatives of f, for models emitted with their linearisation (model->linear; lagc --with linear). All matrices are dense and row-major;
- * work[lag_linear_work()] is scratch, 0 doubles for a model with neither linearisation nor constraints. Both return the model's status, or
- * LAG_EMETHOD (and pb->detail) without linearisation; LAG_ESINGULAR when M is singular. Neither looks for NaN; after an error the matrices are
- * undefined. */
+ * work[lag_linear_work()] is scratch, 0 doubles for a model with neither linearisation nor constraints. Both return the model's status, or LAG_EMETHOD (and
+ * pb->detail) without linearisation; LAG_ESINGULAR when M is singular. Neither looks for NaN; after an error the matrices are undefined. */
 size_t lag_linear_work(const lag_model *model);
 
 /* J[(nq + nz) * n]: derivatives by y of the accelerations and of the rates of states, that is the rows of df/dy below the first nq; with the nq
  * rows [0 | 1 | 0] above it J is df/dy. Exact without constraints; with constraints finite differences, correct to half of the digits, which
  * suffices for a simplified Newton's method. Calls lag_rhs, and leaves f(t, y) in the first n of work. */
 int lag_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
+/* The same with central differences of order 6, correct to 11 digits or so, as a tangent needs; six calls of lag_rhs a column. */
+int lag_fine_jacobian(lag_problem *pb, double t, const double *y, double *J, double *work);
 
 /* dr[(nq + nz) * n]: derivatives of the residuals r = (f - M a, flow) by y at given accelerations a[nq] (NULL: 0); M[nq * nq]: the mass matrix.
  * J above is M^-1 dr in its first nq rows. */
@@ -140,8 +164,7 @@ int lag_least_change(lag_problem *pb, double t, const double *y, int holonomic, 
  * E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed. (2006), IV.4, DOI 10.1007/3-540-30666-8: projection keeps the order
  * of a method. */
 int lag_project(lag_problem *pb, double t, double *y, double *lost);
-/* lag_project after a step from y0; > 0 also where the projection would move y farther than the step did: a constraint jumps there, or the step
- * is too long. */
+/* lag_project after a step from y0; > 0 also where the projection would move y farther than the step did: a constraint jumps there, or the step is too long. */
 int lag_project_step(lag_problem *pb, double t, const double *y0, double *y, double *lost);
 /* The test of lag_project_step. A step from y0 to y displaced the coordinates by led[nq], and the projection then by moved[nq]. Returns the first
  * coordinate whose correction is more than twice the larger of its own led and of that of coordinates of its unit that share a constraint with it;
@@ -160,7 +183,8 @@ double lag_unit_magnitude(const lag_problem *pb, const double *x, int i);
  * least 1e-6, and 1 if all values are 0, since nothing else sets a scale. Of a velocity at least that of a motion through such a distance in the time
  * of the run, as at rest the velocity itself is rounding. */
 double lag_typical_magnitude(const lag_problem *pb, const double *y, int holonomic, int i);
-/* Projects a small change e[n] of the state y onto the tangent space of the constraints: lag_project to first order. */
+/* Projects a small change e[n] of the state y onto the tangent space of the constraints: lag_project to first order, but for the change of A with the
+ * positions. */
 int lag_project_tangent(lag_problem *pb, double t, const double *y, double *e);
 
 /* size[nholonomic] (holonomic), or size[n] of the rates: the sum of |terms| of c, or r, at y, t. */
@@ -203,6 +227,7 @@ enum {
   LAG_METHOD_JACOBIAN = 2048,  /* needs the linearisation: lag_model.linear */
   LAG_METHOD_CONSTRAINTS = 4096, /* steps end on the constraints of a model that has them */
   LAG_METHOD_FLOWS = 8192,     /* takes models of first order (nq = 0), with the linearisation in place of derivatives of L */
+  LAG_METHOD_IMPULSES = 16384, /* meets contacts by impulses in each step: their events are not located */
   LAG_METHOD_NEWTON = 1024     /* solves equations by Newton's method; with SPLITS only where it does not split */
 };
 
@@ -268,6 +293,8 @@ typedef struct lag_method {
 
 /* Classical Runge-Kutta method of order 4, fixed step. */
 extern const lag_method lag_rk4;
+/* Euler's method of order 1, fixed step: for comparison. */
+extern const lag_method lag_euler;
 /* Dormand-Prince 5(4), adaptive: the default. */
 extern const lag_method lag_rk45;
 /* Dormand-Prince 8(5,3), adaptive, for tolerances below about 1e-6. */
@@ -276,6 +303,8 @@ extern const lag_method lag_dop853;
 extern const lag_method lag_symplectic_euler, lag_verlet, lag_verlet4, lag_verlet6, lag_verlet8;
 /* Symplectic, fixed step, implicit, for any L: from a discrete Lagrangian, and Gauss collocation, of order 2 to 8. */
 extern const lag_method lag_variational, lag_gauss;
+/* Time-stepping with contacts and friction by impulses, fixed step: for many contacts, or impacts that accumulate. */
+extern const lag_method lag_moreau;
 /* Radau IIA of order 5, implicit, adaptive: for stiff models; needs the linearisation. */
 extern const lag_method lag_radau;
 /* The model's own Taylor series, adaptive, for tolerances below about 1e-9; needs lag_model.taylor. */
@@ -315,6 +344,8 @@ typedef struct lag_charge_stats {
   unsigned flags;       /* LAG_CONSERVED, LAG_BALANCED (lag_model.h); neither: its rate is not known, or not integrated (lag_sim_balance) */
   double begin, now;    /* Q */
   double work;          /* int P dt, where P = dQ/dt is known and not 0 */
+  double dry_friction;  /* of the energy: the part of `work` that dry friction does; NaN: the model has none, or it is not integrated */
+  double at_events;     /* of the energy: its change at events, as by impacts and where constraints begin to hold; 0: other charges */
   double drift;         /* largest |Q - int P dt - Q0| over the run, without jumps at events, relative to the larger of |Q0| and the median over
                          * the run of the sum of |terms| of Q (a median, as a blow-up at the end would raise the maximum) */
   double absolute;      /* drift in `unit` */
@@ -329,6 +360,8 @@ typedef struct lag_charge_stats {
 /* Number of charges of the model; 0 without a Lagrangian. *stats := the monitor of charge k so far. */
 int lag_sim_ncharges(const lag_sim *sim);
 void lag_sim_charge(lag_sim *sim, int k, lag_charge_stats *stats);
+/* *contacts := counts of contacts that the method meets by impulses. Returns 1; 0: it does not, or the model has none. */
+int lag_sim_contacts(const lag_sim *sim, lag_contact_stats *contacts);
 
 /* All functions below: a NULL that is not allowed explicitly, a time that is not finite, or an index out of range gives LAG_EINVAL and changes
  * nothing; functions that return a number then return NAN, or 0 for an integer, and functions that return a pointer NULL. */
@@ -338,12 +371,17 @@ void lag_sim_charge(lag_sim *sim, int k, lag_charge_stats *stats);
  * advance, unless another one is set. Free with lag_sim_free (NULL allowed). */
 lag_sim *lag_sim_new(const lag_scene *scene);
 void lag_sim_free(lag_sim *sim);
+/* A new simulation of the same scene with the same settings: values, inputs, method, tolerance; `sim` may have begun. NULL: no memory. */
+lag_sim *lag_sim_like(const lag_sim *sim);
 
 /* The settings below are made before the first advance; later they return LAG_EINVAL. After an error the
  * simulation is unchanged and lag_sim_message() says what to write instead. */
 
 /* Chooses a method. opt[nopt] are options by name; the others keep their defaults. */
 int lag_sim_set_method(lag_sim *sim, const lag_method *method, const lag_option *opt, int nopt);
+/* The method of `lagc run` where none is named: by the tolerance, and by trials for stiffness until `until`; with these options. exponents: the run
+ * carries a tangent. why[size] := the reason. */
+int lag_sim_choose_method(lag_sim *sim, double until, int exponents, const lag_option *opt, int nopt, char *why, size_t size);
 /* tol is at least 4.5 DBL_EPSILON, about 1e-15. */
 int lag_sim_set_tolerance(lag_sim *sim, double tol);
 /* Sets by name, in the declared unit: a parameter ("m", "drag.c", or "c" when nothing else ends in ".c"), the start of
@@ -362,11 +400,10 @@ int lag_sim_is_redundant(const lag_sim *sim, int k);
  * of coordinate i is free at the start but determined nearby; the start then chooses the branch of the motion. */
 int lag_sim_nearby_rank(const lag_sim *sim);
 int lag_sim_is_undetermined(const lag_sim *sim, int i);
-/* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units unlike lag_sim_set; fn
- * NULL: as the model says again. It must be a function of t alone: methods, events and outputs call it for times that go back and forth, more
- * than once for some. A quantity that depends on the motion is a force of the model. For full accuracy fn has two continuous derivatives, or
- * steps are short beside its changes. A value that is not finite ends the run with LAG_ENAN. context must outlive the run. A saved state does
- * not hold fn: set it again before lag_sim_load. */
+/* Makes fn(context, t) the value of the input called name ("u", "wind.gust", or "gust" where that is unique), in SI units unlike lag_sim_set; fn NULL: as
+ * the model says again. It must be a function of t alone: methods, events and outputs call it for times that go back and forth, more than once for some. A
+ * quantity that depends on the motion is a force of the model. For full accuracy fn has two continuous derivatives, or steps are short beside its changes.
+ * A value that is not finite ends the run with LAG_ENAN. context must outlive the run. A saved state does not hold fn: set it again before lag_sim_load. */
 int lag_sim_set_input(lag_sim *sim, const char *name, lag_input_fn *fn, void *context);
 /* Integrates, along the run, the work of forces on charges, so that lag_sim_charge gives balances. Off by default, unless the scene monitors a
  * charge: it takes dense output at up to 8 places in each step. */
@@ -379,9 +416,8 @@ int lag_method_balances(const lag_method *method);
  * LAG_OK: the state is at t. LAG_STOPPED, LAG_INTERRUPTED: at lag_sim_time(). < 0: failure. */
 int lag_sim_advance(lag_sim *sim, double t);
 
-/* Makes the next step towards t, unless it is made: up to *reach, lag_sim_eval and lag_sim_outputs_at know the motion. *reach is t, the step's
- * end or the next event, whichever is first. An event at the present time happens here. Returns what lag_sim_advance would; after an error or
- * stop *reach is lag_sim_time(). */
+/* Makes the next step towards t, unless it is made: up to *reach, lag_sim_eval and lag_sim_outputs_at know the motion. *reach is t, the step's end or the next
+ * event, whichever is first. An event at the present time happens here. Returns what lag_sim_advance would; after an error or stop *reach is lag_sim_time(). */
 int lag_sim_ensure_step(lag_sim *sim, double t, double *reach);
 
 /* y[n] at time t within the last step and not after the next event, else LAG_EINVAL. Does not change the present state; may call the model. */
@@ -421,7 +457,9 @@ int lag_sim_outputs_at(lag_sim *sim, double t, double *y, double *out);
  * derivatives that an implicit method needs itself. LAG_EMETHOD: method or model have no such derivatives; the message names a method that has. At an
  * event that changes the state the tangent is multiplied by the saltation matrix; the run fails (LAG_EMETHOD) where that does not exist: the event
  * depends on an input, another one changes the state at the same time, or the motion only touches it. A saved state cannot be loaded into a run with
- * a tangent. At a branch of if, abs, sign, min, max the derivative is that of the branch taken. */
+ * a tangent. At a branch of if, abs, min, max the derivative is that of the branch taken; over a jump of a force, as of dry friction, columns are multiplied by
+ * the saltation matrix, which loses a rank where the motion begins to slide. With constraints the columns are projected onto their tangent space, in the mass
+ * metric, and derivatives are differences, to some 11 digits; contacts have no tangent. */
 int lag_sim_set_tangent(lag_sim *sim, int k, const double *Y);
 /* Y[n * k] at the present time; between the ends of steps, by one shorter step of the method. */
 int lag_sim_tangent(lag_sim *sim, double *Y);
@@ -429,15 +467,17 @@ int lag_sim_tangent(lag_sim *sim, double *Y);
 void lag_sim_stats(lag_sim *sim, lag_stats *stats);
 /* The drift of monitor i so far, as judged against its limit: at ends of steps, and at the present time. */
 double lag_sim_monitor_drift(lag_sim *sim, int i);
-/* Judges monitors and the energy at the present time; advancing judges them only at ends of steps, whatever times are asked for. LAG_OK;
- * LAG_EMONITOR; LAG_EDRIFT where half of an energy that is conserved or balanced is lost or created; both with a message. The run itself can
- * continue unchanged. */
+/* Judges monitors and the energy at the present time; advancing judges them only at ends of steps, whatever times are asked for. LAG_OK; LAG_EMONITOR;
+ * LAG_EDRIFT where half of an energy that is conserved or balanced is lost or created; both with a message. The run itself can continue unchanged. */
 int lag_sim_judge(lag_sim *sim);
 /* Closed form k of the scene (k < lag_sim_scene(sim)->nexact): the largest |motion - closed form| at the ends of steps so far, and the
  * difference now, both in the declared unit (of degC: K); of angles modulo 2 pi. NaN: the closed form is not finite. */
 void lag_sim_exact(lag_sim *sim, int k, double *largest, double *now);
 /* Number of firings of event k, and the times of the first and the last; NaN when there was none. */
 long long lag_sim_event_times(const lag_sim *sim, int k, double *first, double *last);
+/* Switching surface k < model->nmodes: the time during which the motion has slid on it, how often it has crossed the surface, and begun to slide; NULL:
+ * not wanted. */
+double lag_sim_switch_times(const lag_sim *sim, int k, long long *crossings, long long *slides);
 /* The last error, "" when there was none. */
 const char *lag_sim_message(const lag_sim *sim);
 
@@ -448,43 +488,46 @@ void lag_sim_on_step(lag_sim *sim, int (*hook)(void *context, const lag_sim *sim
 typedef void lag_event_fn(void *context, int k, double t, const double *before, const double *after);
 void lag_sim_on_event(lag_sim *sim, lag_event_fn *hook, void *context);
 
-/* save: x[lag_sim_save_size()] := everything that a later run needs. LAG_EINVAL when the method cannot be saved. load: into a simulation of the
- * same scene, method and options; x may come from anywhere: numbers that cannot be such a state are refused (LAG_EINVAL), and the simulation
- * stays as it was. */
+/* save: x[lag_sim_save_size()] := everything that a later run needs. LAG_EINVAL when the method cannot be saved. load: into a simulation of the same scene,
+ * method and options; x may come from anywhere: numbers that cannot be such a state are refused (LAG_EINVAL), and the simulation stays as it was. */
 size_t lag_sim_save_size(const lag_sim *sim);
 int lag_sim_save(lag_sim *sim, double *x);
 int lag_sim_load(lag_sim *sim, const double *x);
 /* A checksum of everything that must agree between save and load: the scene's names, sizes, equations and method. */
 unsigned long long lag_sim_signature(const lag_sim *sim);
 
-/* ---- Linear algebra -------------------------------------------------------------------------- */
+/* ---- Shared libraries ------------------------------------------------------------------------
 
-/* n equations in n unknowns: f[n] at x[n] and, where J is not NULL, J[n*n], row-major, their derivatives. Not 0: no values at x. */
-typedef int lag_equations(void *context, const double *x, double *f, double *J);
+ * `lagc build MODEL --shared -o libNAME.so` makes a library that exports the functions of this header, by the same names for every model. The
+ * functions below spare other languages the structs of lag_model.h. */
 
-/* The dense linear algebra that the analysis of equilibria takes from a library: row-major; eigenvectors are columns. All return LAG_OK,
- * LAG_ENOMEM, or the status given below; none prints or aborts. */
-typedef struct lag_algebra {
-  const char *name;
+/* The model's scenes: the one function that the library adds to liblag. */
+const lag_program *lag_library(void);
 
-  /* Moves x[n] towards a root by a trust region whose first radius is 0.3 max(1, |x|), in at most `most` steps, until no step gains. The
-   * Jacobian may be singular. The caller checks whether x is a root. *steps: steps made. LAG_EDOMAIN: no values at the start. */
-  int (*root)(int n, double *x, lag_equations *equations, void *context, int most, int *steps);
+/* LAG_ABI; scene i, NULL past the last; its name, its span and `every`, 0 where it does not say; the method that it names, or NULL. */
+int lag_library_abi(void);
+const lag_scene *lag_library_scene(const lag_program *program, int i);
+const char *lag_scene_span(const lag_scene *scene, double *t0, double *t1, double *every);
+const char *lag_scene_method(const lag_scene *scene);
 
-  /* K x = value M x; values ascending, x' M x = 1. K and M are symmetric (lower triangles are read) and destroyed. LAG_EINVAL:
-   * M is not positive definite. */
-  int (*symmetric)(int n, double *K, double *M, double *values, double *vectors);
+/* Name of item i of a kind: 'q' coordinates, 'z' states, 'p' parameters, 'u' inputs, 'e' events, 'c' charges, 'm' methods; NULL past the last. *unit,
+ * unless NULL: its declared unit; *factor, *offset: x units are x*factor + offset in SI. */
+const char *lag_item(const lag_scene *scene, int kind, int i, const char **unit, double *factor, double *offset);
+/* The method of this name, or NULL. */
+const lag_method *lag_find_method(const char *name);
 
-  /* A x = (re + i im) x, |x| = 1. A is destroyed. sensitivity[k] = |x_k| |y_k| / |y_k x_k| with the left eigenvector y_k: the condition number
-   * of the eigenvalue; huge where it is defective. LAG_EMETHOD: no convergence. */
-  int (*general)(int n, double *A, double *re, double *im, double *vre, double *vim, double *sensitivity);
+/* dy[count * n] := f(t[k], y[k]) for `count` states in SI, with the parameters and inputs as set; constraints with a condition hold
+ * where that is true, contacts as in the run. Returns the first status that is not 0. */
+int lag_sim_rhs(lag_sim *sim, int count, const double *t, const double *y, double *dy);
 
-  /* Balancing: A := D^-1 A D with D = diag(scale[n]) of powers of 2, so that rows and columns have like norms. */
-  int (*balance)(int n, double *A, double *scale);
+/* Advances to t[0] .. t[rows - 1]: y[rows * n] := the states [SI], out[rows * noutputs] := the outputs, in declared units; either may be NULL. *done:
+ * rows written. Returns as lag_sim_advance. */
+int lag_sim_rows(lag_sim *sim, int rows, const double *t, double *y, double *out, int *done);
 
-  /* Orthogonal Q[n*n] with A Q = [B | 0]: its columns from *rank on span the kernel of A; pivots up to tol count as 0. */
-  int (*kernel)(int n, const double *A, double tol, double *Q, int *rank);
-} lag_algebra;
+/* `count` motions with the scene, method, tolerance, inputs and values of `like`, each from its own start y0[n] and with its own parameters p[np], in
+ * SI; NULL: those of `like`, as for an element of p that is NaN, which follows its formula if it has one. y[count * rows * n] := the states at t[rows]; NaN from a failure or stop on. status[count] := that of each. `like` stays as
+ * it is; several threads may share it. Returns LAG_OK, LAG_ENOMEM or LAG_EINVAL. */
+int lag_sim_batch(const lag_sim *like, int count, const double *y0, const double *p, int rows, const double *t, double *y, int *status);
 
 /* ---- Simulators ------------------------------------------------------------------------------ */
 
@@ -493,11 +536,26 @@ typedef struct lag_extras {
   const lag_method *const *methods; /* [nmethods] */
   int nmethods;
   const lag_algebra *algebra;       /* or NULL */
+  /* u[n * dimensions] := the first n points of the quasi-random sequence "sobol" or "halton" in (0, 1). 0, or the largest number of dimensions; or NULL */
+  int (*points)(const char *sequence, int dimensions, long long n, double *u);
+  /* Draws the picture in the SVG file at path svg, as PNG, into the open FILE. 0, or -1 with the reason in why[size]; or NULL */
+  int (*png)(const char *svg, void *file, char *why, size_t size);
+  /* Writes the arrays to an HDF5 file. 0, or -1; or NULL */
+  int (*hdf5)(const char *path, const lag_grid *grid);
+  /* [nscenes] the program's scenes with their models compiled for vectors of 4 and 8 doubles (LAG_LANES in lag_model.h); or NULL */
+  const lag_scene *const *lanes_4, *const *lanes_8;
+  const lag_ranks *ranks; /* or NULL */
 } lag_extras;
 
 /* The contents of liblag_gsl.a, by the GNU Scientific Library. */
 extern const lag_algebra lag_gsl_algebra;
 extern const lag_extras lag_gsl;
+/* liblag_png.a, by librsvg. */
+int lag_png_write(const char *svg, void *file, char *why, size_t size);
+/* liblag_hdf5.a. */
+int lag_hdf5_write(const char *path, const lag_grid *grid);
+/* liblag_mpi.a, by MPI. */
+extern const lag_ranks lag_mpi;
 
 /* main() of a simulator: see --help, or app/help.c. extras may be NULL. Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 128 and the
  * number of the signal (130: Ctrl-C) when it was interrupted. */

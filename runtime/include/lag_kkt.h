@@ -3,22 +3,20 @@
  *   M x - A^T l = f        M[n*n] symmetric, A[m*n]
  *   A x         = g
  *
- * for any A, of full rank or not, and any M that is regular on the kernel of A: x is then unique, and l the multipliers of least norm (sum of
+ * for any A, of full rank or not, and any M that is regular on the kernel of A: x is then unique, and l the multipliers of least norm (the sum of
  * l_k^2, each in the unit of its constraint).
  * Null space method (Benzi, Golub, Liesen, Acta Numerica 14 (2005) 1, section 6, DOI 10.1017/S0962492904000212): A^T P = Q R by Householder
  * reflections with column pivoting (Golub & Van Loan, Matrix Computations, 4th ed. (2013), 5.4.2), where the part of a constraint that is
- * independent of those before it decides the rank. Rows and columns of the whole system are scaled to about 1 first (lag_scales), so that units
- * and factors of constraints do not matter. In the coordinates Q^T x the first r components follow from g, the others from M without
- * constraints; l is the least-norm solution of R l = M x - f there, by a second factorization where r < m. Cheaper methods come first where they
- * are as good: Schur's complement where M is positive definite and the constraints are far from dependent, as they mostly are; elimination
- * within a band for large systems.
+ * independent of those before it decides the rank. Rows and columns of the whole system are scaled to about 1 first (lag_scales), so that units and
+ * factors of constraints do not matter. In the coordinates Q^T x the first r components follow from g, the others from M without constraints; l is
+ * the least-norm solution of R l = M x - f there, by a second factorization where r < m. Cheaper methods come first where they are as good: Schur's
+ * complement where M is positive definite and the constraints are far from dependent; elimination within a band for large systems.
  *
  * Near a position where constraints become dependent, a coarse rank is the right one for corrections of a state, whose right-hand side is little
- * more than rounding: with s the independence of the weakest constraint, a residual of 1e-16 moves a position by 1e-16/s, and turns the
- * directions which constraints allow by 1e-16/s^2.
+ * more than rounding: with s the independence of the weakest constraint, a residual of 1e-16 moves a position by 1e-16/s, and turns the directions
+ * which constraints allow by 1e-16/s^2.
  *
- * lagc copies the sections below into what it emits, with LAG_ and lag_ replaced by the prefix of an emitted header. There LAG_REAL may be a
- * vector; LAG_LANE is its scalar. */
+ * lagc copies the sections below into emitted C; in headers with their prefix for LAG_ and lag_. LAG_REAL may be a vector; LAG_LANE is its scalar. */
 #ifndef LAG_KKT_H
 #define LAG_KKT_H
 
@@ -364,7 +362,7 @@ static int lag_rank(int n, int m, int coarse, LAG_LANE *A, LAG_LANE *diag, LAG_L
 }
 
 /* mu[m] := the least-norm solution of R (scaled back) mu = s[r], in the order of rows; S[m*r] is scratch. */
-static void lag_multipliers(int n, int m, int r, const LAG_LANE *A, const LAG_LANE *diag, const LAG_LANE *scale,
+static void lag_least_multipliers(int n, int m, int r, const LAG_LANE *A, const LAG_LANE *diag, const LAG_LANE *scale,
                             LAG_LANE *s, LAG_LANE *mu, LAG_LANE *S) {
   if (r == m) {
     for (int i = r - 1; i >= 0; i--) {
@@ -572,7 +570,7 @@ static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_
   }
   for (int k = r - 1; k >= 0; k--) lag_reflect(n - k, A + k*n + k, beta[k], x + k, 1);
   for (int i = 0; i < n; i++) x[i] *= unit[i];
-  lag_multipliers(n, m, r, A, diag, scale, s, mu, S);
+  lag_least_multipliers(n, m, r, A, diag, scale, s, mu, S);
   for (int j = 0; j < m; j++) l[(int)order[j]] = mu[j];
   return 1;
 }

@@ -2,7 +2,7 @@
  *
  * A model is a const struct of names, sizes and functions, emitted by lagc. Its state is q[nq] (generalised coordinates), v[nq] (their time
  * derivatives) and z[nz] (other states); p[np + nderived] are its parameters, of which derive computes the last nderived from the others; u[nu]
- * its inputs; w[nw] work space for its functions. All values are in SI units. No function allocates, keeps state, or writes past the sizes here.
+ * its inputs, and modes of switches behind them; w[nw] work space for its functions. All values are in SI units. No function allocates, keeps state, or writes past the sizes here.
  * Arrays passed to one call do not overlap.
  *
  * A function returns 0 when all went well, > 0 when a smaller step may help (the value left the model's domain), < 0 for a failure that no step
@@ -16,7 +16,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 7
+#define LAG_ABI 12
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many doubles, one state or one
  * set of parameters a lane. The status < 0 of such a call has bit k of its negative set where lane k is singular; the other lanes are right. */
@@ -27,6 +27,15 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 #else
 #define LAG_REAL double
 #define LAG_REAL_IS_DOUBLE 1
+#endif
+#endif
+
+/* The scalar of one lane. */
+#ifndef LAG_LANE
+#ifdef LAG_LANES
+#define LAG_LANE double
+#else
+#define LAG_LANE LAG_REAL
 #endif
 #endif
 
@@ -47,14 +56,16 @@ enum {
   LAG_CONSTANT_MASS = 2,    /* d2L/dq'2 depends on no coordinate, velocity or time */
   LAG_AUTONOMOUS = 4,       /* the right-hand side does not contain t */
   LAG_SMOOTH = 8,           /* no if, abs, sign, min, max, and no table */
-  LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states */
+  LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states; with LAG_FIRST_ORDER a Hamiltonian
+                             * T(p) + V(q, t): nz is even, z = [q|p], the rates of q are functions of p alone and those of p of q and t */
   LAG_TIMELESS = 32,        /* t enters only by the formulas and tables of inputs, if at all */
   LAG_LOSES_ENERGY = 64,    /* not conserved; with constant inputs and constant forces, the energy less the work of these forces never grows: the
                              * dissipation is quadratic in q' and nowhere negative, for the signs declared */
   LAG_FIRST_ORDER = 128,    /* L = theta(q, t) v - H is linear in all velocities: coordinates are among z, nq is 0, and their rates solve
                              * omega zd = dH/dq + ... with the two-form omega = dtheta in place of a mass matrix */
   LAG_CONSTANT_FORM = 256,  /* the same, and omega depends on no coordinate, state or time, and no force on velocities */
-  LAG_MASSLESS = 512        /* the mass matrix is singular; constraints determine the coordinates without inertia */
+  LAG_MASSLESS = 512,       /* the mass matrix is singular; constraints determine the coordinates without inertia */
+  LAG_SUM_HAMILTONIAN = 1024 /* the Hamiltonian is T(p) + V(q, t), z = [q|p]; LAG_SEPARABLE, too, if forces depend on q and t alone */
 };
 
 /* A named quantity. unit is as declared ("deg"), or as inferred from the equations, "" when none; x units are x*factor + offset in SI. */
@@ -67,16 +78,18 @@ typedef struct lag_var {
   double offset; /* 273.15 of degC; otherwise 0 */
 } lag_var;
 
+/* Direction of an event that happens at the times t0 + k T, k = 1, 2, ...: its function is the period T [s], of parameters alone. */
+#define LAG_KICK 2
 typedef struct lag_event {
   const char *name;
-  int direction; /* 1 rising, -1 falling, 0 both */
+  int direction; /* 1 rising, -1 falling, 0 both, LAG_KICK */
 } lag_event;
 
 /* The table of an input: n rows with increasing times, joined by cubic splines. Used by emitted code; the runtime only ends steps at the rows. */
 typedef struct lag_table {
   int input; /* index of the input */
   int n;
-  const double (*row)[3]; /* time, value, second derivative */
+  const LAG_LANE (*row)[3]; /* time, value, second derivative */
 } lag_table;
 
 /* Row and column of an entry of a sparse matrix. */
@@ -176,25 +189,42 @@ typedef struct lag_charges {
   int (*values)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                 const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
-  /* out[n]: dQ/dt of each charge, 0 where it is not known. NULL: all are conserved. */
+  /* out[n]: dQ/dt of each charge, 0 where it is not known; with dry_friction out[n + 1], the last the power of dry friction. NULL: all are
+   * conserved. */
   int (*powers)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                 const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int dry_friction;
 } lag_charges;
 
-/* A switching function of a force that jumps with the velocities, as dry friction does: 0 where the force jumps. */
+/* A switching function g: where it is 0 the equations jump, or have a corner, as sign(g), abs(g) and if(g > 0, a, b) do.
+ *
+ * The first nmodes switches of a model have a mode, in u behind the inputs: u[nu + k] is 1 for the branch of g > 0, -1 for that of g < 0, at any
+ * state; between, where the motion slides on g = 0, the value of sign(g) that keeps it there; with is_floor the value of floor(g). LAG_FREE: the
+ * state decides. So u has nu + nmodes elements. The other switches are watched only. */
+#define LAG_FREE 1e30
 typedef struct lag_switch {
   const char *surface, *text; /* "x'", "sign(x')" */
   int line;                   /* line of the model's text; 0: not known */
+  int jumps;                  /* 1: a force jumps there with the velocities or states, and a motion may slide */
+  int is_floor;
+  int is_timed;               /* 1: the function contains t, and may change fast in long steps of a slow motion */
   int nonnegative;            /* 1: the function is nowhere negative, as |v| */
 } lag_switch;
 
 /* A unilateral contact: a gap that stays at least 0. While it is closed the gap is a constraint; the model multiplies that constraint by an
  * input, 1 when closed and 0 when open. The runtime closes a contact if impacts accumulate or an impact leaves no relative speed; it opens the
- * contact when its multiplier becomes negative. */
+ * contact when its multiplier becomes negative. A constraint that holds while a condition is true has the same form: it closes and opens where the
+ * condition, whose function the two events contain, changes. */
 typedef struct lag_contact {
   int input, constraint; /* index in u, index in the constraints */
   int impact, release;   /* events: the gap closes; its multiplier falls below 0. act(impact) is Newton's impact law for this gap alone, with the
                           * other contacts as u says */
+  /* A contact with friction is followed by its tangent. Its constraint is on the velocity of slipping, and is on while the contact sticks; input
+   * `force` is the force along that velocity while it slips. impact: the function is the velocity of slipping; release: the largest force of
+   * friction minus the size of the multiplier. */
+  int is_tangent, force;
+  int conditional;       /* 1: a constraint with a condition; act(impact) does nothing */
+  int law;               /* of a tangent: the coefficient of restitution is Stronge's (0), Poisson's (1) or Newton's (2) */
 } lag_contact;
 
 /* An entry of lag_model.second: the second derivative of L by two of q, v, where of LAG_QQ and LAG_VV only row >= col is given and the row of
@@ -211,6 +241,7 @@ typedef struct lag_second {
  * changes no bits. (The rates have no order n.) */
 typedef struct lag_taylor {
   int order;   /* the highest order */
+  int lanes;   /* 1: compiled for lanes, or with the sums that lanes have */
   int columns, width, nw;
   int cost_first, cost_next, sums; /* operations of order 0, operations of each other order, and sums of k - 1 products in order k */
 
@@ -295,6 +326,19 @@ typedef struct lag_model {
   /* out[nswitch]: the switching functions. */
   int (*switch_values)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                        const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int nmodes;
+  /* out[nmodes]: rates dg/dt of the first nmodes, along the motion. NULL where nmodes is 0. */
+  int (*switch_rates)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                      const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  /* out[nmodes]: the largest mode of a sliding motion, for static friction above that of motion; less than 1 counts as 1. NULL: 1. */
+  int (*switch_grips)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                      const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+
+  /* out[3 ncontacts]: of a tangent its coefficient of friction and its tangential restitution, of a contact with friction that of static friction and 0, of
+   * others 0; and the multiplier of its constraint.
+   * NULL: no contact has friction. */
+  int (*contact_laws)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                      const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
   const char *math; /* library of sin and cos that the program calls; NULL: not known */
   const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */
@@ -313,6 +357,12 @@ typedef struct lag_monitor {
   double limit;  /* the run fails when the drift exceeds it */
   int absolute;  /* 1: the limit is on the value itself, in its declared unit */
 } lag_monitor;
+
+/* A number that one keeps of a run: an expression in the notation of runtime/analysis/measure.h. unit: of a value in SI, where its parts have
+ * several units. */
+typedef struct lag_measure {
+  const char *name, *text, *unit;
+} lag_measure;
 
 typedef struct lag_scene {
   const char *name;
@@ -348,12 +398,15 @@ typedef struct lag_scene {
   int nmonitors;
   const lag_monitor *monitors;
 
-  /* Closed forms to compare with: out[nexact] at time t of a motion that began at q0, v0, z0. For observe alone, u has nu + nexact elements:
-   * closed forms stand behind the inputs. */
+  /* Closed forms to compare with: out[nexact] at time t of a motion that began at q0, v0, z0. For observe alone, u has nexact elements more:
+   * closed forms stand behind the inputs and modes. */
   int nexact;
   const int *exact_of; /* [nexact] the component of [q|v|z] that each closed form describes */
   int (*exact)(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0, const LAG_REAL *p,
                const LAG_REAL *u, LAG_REAL *out);
+
+  int nmeasures;
+  const lag_measure *measures; /* [nmeasures] */
 } lag_scene;
 
 /* A compiled .lag file: all of its scenes. Several scenes may share one model. */

@@ -1,4 +1,4 @@
-/* Section `sincos` of lag_math.h, its only includer: sine and cosine by a table of multiples of pi/32, of lanes by longer polynomials. */
+/* Section `sincos` of lag_math.h, its only includer: sine and cosine by a table of multiples of pi/32; of lanes, and with LAG_AS_LANES, by longer polynomials. */
 #if LAG_OWN
 /* Payne and Hanek's reduction: returns y, with x modulo pi/2 = y - *lo, |y| <= pi/4, and *quarter, the number of quarter turns modulo 4, for x
  * of any size and next to a multiple of pi/2. Bits of 2/pi whose products with x are multiples of 4 are left out; the next 192 suffice, as no
@@ -7,7 +7,7 @@
 #if defined(__GNUC__)
 __attribute__((cold, noinline, unused))
 #endif
-static double lag_reduce(double x, double *lo, unsigned long long *quarter) {
+static double lag_reduce(double x, double *lo, lag_bits *quarter) {
   static const unsigned two_over_pi[] = { /* 2/pi = 0.a2f9836e..., after 64 zeros */
     0, 0,
     0xa2f9836e, 0x4e441529, 0xfc2757d1, 0xf534ddc0, 0xdb629599, 0x3c439041, 0xfe5163ab, 0xdebbc561, 0xb7246e3a, 0x424dd2e0,
@@ -19,12 +19,12 @@ static double lag_reduce(double x, double *lo, unsigned long long *quarter) {
   if (!(fabs(x) <= 1.7976931348623157e308)) return x - x; /* not a number */
   if (fabs(x) < 0.78539816339744828) return x;
   int e, negative = x < 0;
-  const unsigned long long n = (unsigned long long)ldexp(frexp(fabs(x), &e), 53); /* |x| = n 2^(e - 53) */
-  const unsigned long long factor[2] = {n & 0xffffffff, n >> 32};
+  const lag_bits n = (lag_bits)ldexp(frexp(fabs(x), &e), 53); /* |x| = n 2^(e - 53) */
+  const lag_bits factor[2] = {n & 0xffffffff, n >> 32};
   const int at = e - 53 - 2 + 64, shift = at % 32;
-  unsigned long long w[6], f[6] = {0, 0, 0, 0, 0, 0}, carry;
+  lag_bits w[6], f[6] = {0, 0, 0, 0, 0, 0}, carry;
   for (int i = 0; i < 6; i++) {
-    const unsigned long long two = (unsigned long long)two_over_pi[at/32 + i] << 32 | two_over_pi[at/32 + i + 1];
+    const lag_bits two = (lag_bits)two_over_pi[at/32 + i] << 32 | two_over_pi[at/32 + i + 1];
     w[i] = two >> (32 - shift) & 0xffffffff;
   }
   for (int k = 0; k < 2; k++) { /* f = n w modulo 2^192: two bits of quarters, and a fraction */
@@ -62,7 +62,14 @@ static double lag_reduce(double x, double *lo, unsigned long long *quarter) {
   return negative ? -y : y;
 }
 
+#if defined(LAG_LANES) || defined(LAG_AS_LANES)
 #ifdef LAG_LANES
+#define LAG_ALL_BITS(w) ((lag_word)((LAG_MASK)(w) >> 63))
+#define LAG_SINCOS_IS_FAR(w) __builtin_expect(lag_lanes_reach(w, 18), 0)
+#else
+#define LAG_ALL_BITS(w) ((lag_word)0 - ((w) >> 63))
+#define LAG_SINCOS_IS_FAR(w) ((w) >> 18 != 0)
+#endif
 /* Sine and cosine of x = k pi/2 + y - lo, |y| <= pi/4, where quarter is k modulo 4. Minimax polynomials by tests/math/remez.py, bracketed for a
  * short critical path. */
 LAG_INLINE void lag_sincos_turned(LAG_REAL y, LAG_REAL lo, lag_word quarter, LAG_REAL *s, LAG_REAL *c) {
@@ -75,7 +82,7 @@ LAG_INLINE void lag_sincos_turned(LAG_REAL y, LAG_REAL lo, lag_word quarter, LAG
                              lag_mad(z, LAG_K(-0.0013888888888873342), LAG_K(0.041666666666666595)));
   const LAG_REAL sine = y - lag_mad(z*y, p, lo), cosine = w + lag_mad(zz, q, lag_mad(y, lo, rest));
   const lag_word a = lag_to_word(sine), b = lag_to_word(cosine), odd = quarter << 63, minus = quarter << 62 & lag_to_word(LAG_K(-0.0));
-  const lag_word swap = (a ^ b) & (lag_word)((LAG_MASK)odd >> 63);
+  const lag_word swap = (a ^ b) & LAG_ALL_BITS(odd);
   *s = lag_to_real(a ^ swap ^ minus);
   *c = lag_to_real(b ^ swap ^ minus ^ odd);
 }
@@ -98,18 +105,25 @@ LAG_INLINE LAG_REAL lag_sincos_reduce(LAG_REAL x, LAG_REAL sum, LAG_REAL *lo) {
 }
 
 /* Sine and cosine for any x. A function of its own, with arguments by address, so that the common case keeps its registers. */
-__attribute__((cold, noinline, unused)) static void lag_sincos_far(const LAG_REAL *x, LAG_REAL *s, LAG_REAL *c) {
+#if defined(__GNUC__)
+__attribute__((cold, noinline, unused))
+#endif
+static void lag_sincos_far(const LAG_REAL *x, LAG_REAL *s, LAG_REAL *c) {
   const LAG_REAL sum = lag_quarters(*x);
   LAG_REAL lo, y = lag_sincos_reduce(*x, sum, &lo);
   lag_word quarter = lag_to_word(sum);
   const lag_word far = lag_quarters_far(sum) >> 18;
+#ifndef LAG_LANES
+  if (far) y = lag_reduce(*x, &lo, &quarter);
+#else
   for (int lane = 0; lane < LAG_LANES; lane++) {
     double low = lo[lane];
-    unsigned long long quarters = quarter[lane];
+    lag_bits quarters = quarter[lane];
     if (far[lane]) y[lane] = lag_reduce((*x)[lane], &low, &quarters);
     lo[lane] = low;
     quarter[lane] = quarters;
   }
+#endif
   lag_sincos_turned(y, lo, quarter, s, c);
 }
 
@@ -121,7 +135,7 @@ LAG_INLINE void lag_sincos_near(LAG_REAL x, LAG_REAL sum, LAG_REAL *s, LAG_REAL 
 
 LAG_INLINE void lag_sincos(LAG_REAL x, LAG_REAL *s, LAG_REAL *c) {
   const LAG_REAL sum = lag_quarters(x);
-  if (__builtin_expect(lag_lanes_reach(lag_quarters_far(sum), 18), 0)) {
+  if (LAG_SINCOS_IS_FAR(lag_quarters_far(sum))) {
     LAG_REAL at = x, sine, cosine;
     lag_sincos_far(&at, &sine, &cosine);
     *s = sine;
@@ -135,7 +149,7 @@ LAG_INLINE void lag_sincos(LAG_REAL x, LAG_REAL *s, LAG_REAL *c) {
 #define LAG_SINCOS_2 1
 LAG_INLINE void lag_sincos2(LAG_REAL a, LAG_REAL *sin_a, LAG_REAL *cos_a, LAG_REAL b, LAG_REAL *sin_b, LAG_REAL *cos_b) {
   const LAG_REAL sum_a = lag_quarters(a), sum_b = lag_quarters(b);
-  if (__builtin_expect(lag_lanes_reach(lag_quarters_far(sum_a) | lag_quarters_far(sum_b), 18), 0)) {
+  if (LAG_SINCOS_IS_FAR(lag_quarters_far(sum_a) | lag_quarters_far(sum_b))) {
     LAG_REAL at_a = a, at_b = b, s, c, sine, cosine;
     lag_sincos_far(&at_a, &s, &c);
     lag_sincos_far(&at_b, &sine, &cosine);
@@ -189,7 +203,7 @@ static const struct lag_sincos_table {
   LAG_TWICE(-0.09817477042452083), LAG_TWICE(-1.6020900947399724e-13), LAG_TWICE(6.6018744168671423e-25),
   LAG_TWICE(0.16666666666665958), LAG_TWICE(-0.0083333333154962386), LAG_TWICE(0.00019839993603852713),
   LAG_TWICE(0.5), LAG_TWICE(-0.041666666666665471), LAG_TWICE(0.0013888888865417341), LAG_TWICE(-2.4800157698025678e-05),
-  LAG_TWICE(0x4337fffffffc0000ULL), LAG_TWICE(~0x7ffffULL), LAG_TWICE(1008ULL)};
+  LAG_TWICE(LAG_BITS(0x4337ffff, 0xfffc0000)), LAG_TWICE(~(lag_bits)0x7ffff), LAG_TWICE(1008)};
 #define LAG_SINCOS_K(name) LAG_K(lag_sincos_table.name[0])
 
 LAG_INLINE const double *lag_sines(lag_word k) { return lag_sincos_table.sines + (2*k & 126); }
@@ -221,8 +235,8 @@ LAG_INLINE const double *lag_sines(lag_word k) { return lag_sincos_table.sines +
 
 /* Whether sum is not 1.5 2^52 + k with |k| <= 2^18, that is |x| < 25735: tested on its bits, which the table index needs anyway, for one angle
  * or several joined by `|`. */
-#define LAG_SINCOS_OFF(word) ((word) - 0x4337fffffffc0000ULL)
-#define LAG_SINCOS_FAR(off) (((off) & ~0x7ffffULL) != 0)
+#define LAG_SINCOS_OFF(word) ((word) - LAG_BITS(0x4337ffff, 0xfffc0000))
+#define LAG_SINCOS_FAR(off) (((off) & ~(lag_bits)0x7ffff) != 0)
 
 /* Sine and cosine of x - *lo (lo may be NULL) plus `quarters` quarter turns. */
 LAG_INLINE lag_pair lag_sincos_near(double x, double sum, const double *lo, lag_word quarters) {
@@ -239,7 +253,7 @@ __attribute__((cold, noinline, unused))
 #endif
 static lag_pair lag_sincos_far(double x) {
   double lo;
-  unsigned long long quarters;
+  lag_bits quarters;
   x = lag_reduce(x, &lo, &quarters);
   return lag_sincos_near(x, LAG_SINCOS_INTEGER(x, lag_mad, LAG_SINCOS_K), &lo, quarters);
 }
@@ -271,8 +285,8 @@ __attribute__((cold, noinline, unused)) static lag_pair lag_sincos_any(double x)
 }
 
 typedef double lag_two __attribute__((vector_size(16)));
-typedef unsigned long long lag_two_words __attribute__((vector_size(16)));
-typedef long long lag_two_integers __attribute__((vector_size(16)));
+typedef lag_bits lag_two_words __attribute__((vector_size(16)));
+typedef lag_signed lag_two_integers __attribute__((vector_size(16)));
 LAG_INLINE lag_two lag_two_mad(lag_two a, lag_two b, lag_two c) {
 #if LAG_FMA
   return __builtin_ia32_vfmaddpd(a, b, c);
@@ -281,7 +295,7 @@ LAG_INLINE lag_two lag_two_mad(lag_two a, lag_two b, lag_two c) {
 #endif
 }
 typedef double lag_two_there __attribute__((vector_size(16), aligned(8), may_alias)); /* two numbers in memory */
-typedef unsigned long long lag_two_words_there __attribute__((vector_size(16), aligned(8), may_alias));
+typedef lag_bits lag_two_words_there __attribute__((vector_size(16), aligned(8), may_alias));
 #define LAG_TWO_K(name) (*(const lag_two_there *)table->name)
 #define LAG_TWO_WORDS(name) (*(const lag_two_words_there *)table->name)
 
@@ -329,7 +343,7 @@ LAG_INLINE void lag_sincos2(double a, double *sin_a, double *cos_a, double b, do
 
 #ifdef LAG_SINCOS_4
 typedef double lag_four __attribute__((vector_size(32)));
-typedef unsigned long long lag_four_words __attribute__((vector_size(32)));
+typedef lag_bits lag_four_words __attribute__((vector_size(32)));
 LAG_INLINE lag_four lag_four_mad(lag_four a, lag_four b, lag_four c) { return __builtin_ia32_vfmaddpd256(a, b, c); }
 LAG_INLINE lag_four lag_four_of(double x) {
   const lag_four v = {x, x, x, x};

@@ -45,6 +45,23 @@ static int x_is_index(const Table *t, const Animation *a) {
   return differ;
 }
 
+/* Names of tracks, and of each mark its time in ticks, track and word. */
+static void put_marks(Json *j, const Marks *marks, double t0, double tick) {
+  if (!marks->n) return;
+  lag_json_begin(j, "marks", '{');
+  lag_json_begin(j, "names", '[');
+  for (int i = 0; i < marks->ntracks; i++) lag_json_string(j, NULL, marks->names[i]);
+  lag_json_end(j, ']');
+  lag_json_begin(j, "at", '[');
+  for (size_t i = 0; i < marks->n; i++) {
+    lag_json_count(j, NULL, (long long)nearbyint((marks->at[i].t - t0) / tick));
+    lag_json_count(j, NULL, marks->at[i].track);
+    lag_json_count(j, NULL, marks->at[i].word);
+  }
+  lag_json_end(j, ']');
+  lag_json_end(j, '}');
+}
+
 /* Writes the JSON object that page.html describes. */
 static void put_data(FILE *f, const Table *t, const Animation *a) {
   size_t n = t->nrows;
@@ -75,6 +92,7 @@ static void put_data(FILE *f, const Table *t, const Animation *a) {
     lag_json_end(&j, ']');
   }
   lag_json_end(&j, ']');
+  put_marks(&j, &a->marks, t0, tick);
   lag_json_begin(&j, "dt", '[');
   for (size_t i = 1; i < n; i++) {
     long long at = (long long)nearbyint((lag_table_cell(t, i, 0) - t0) / tick);

@@ -60,17 +60,68 @@ void lag_widen_range(double *lo, double *hi, double least, double margin);
 /* Step of axis ticks: 1, 2 or 5 times a power of ten, about n of them from lo to hi. */
 double lag_tick_step(double lo, double hi, int n);
 
+/* What a picture of a path has beneath: value(of, x, y) over its axes. */
+typedef struct Beneath {
+  double (*value)(void *of, double x, double y); /* NULL: nothing */
+  void *of;
+  double period; /* of x, which is then drawn from -period/2 to period/2; 0: none */
+  int profile; /* 1: y is of the kind of the value, and the curve value(of, x, 0) is drawn; 0: level curves */
+} Beneath;
+
 /* The curves of a picture: column y[i] against column x[i]; column 0 is the time. */
 typedef struct PlottedCurves {
   int n, *x, *y;
+  int xlog, ylog; /* 1: column 0, or the drawn ones, hold decimal logarithms */
   const char *xname, *yname; /* axis labels where several columns are drawn; NULL: all columns against time */
+  Beneath beneath;
+  int runs;   /* 0, or curve i is of run i mod runs, whose colour it has */
+  int unnamed; /* 1: curves have no legend */
 } PlottedCurves;
 
 /* Writes the picture as SVG. -1 with errno set. */
 int lag_svg_write(const char *path, const Table *t, const char *title, const PlottedCurves *d);
 
+/* A value over two others. */
+typedef struct ValueMap {
+  int nx, ny;
+  const double *x, *y;  /* [nx], [ny]: centres of the cells, ascending, in equal steps, */
+  int xlog, ylog;       /* 1: decimal logarithms */
+  const double *value;  /* [ny * nx], from the lowest y on; not finite: no value */
+  const char *xlabel, *ylabel, *label;
+} ValueMap;
+
+/* Writes the map as SVG. -1 with errno set. */
+int lag_map_write(const char *path, const ValueMap *m, const char *title);
+
+/* Columns from `first` on over those before, and over each other. */
+typedef struct ScatterMatrix {
+  const Table *table;
+  int first;
+  const int *log;       /* [first] 1: the column holds decimal logarithms */
+} ScatterMatrix;
+
+/* Writes the matrix as SVG. -1 with errno set. */
+int lag_matrix_write(const char *path, const ScatterMatrix *m, const char *title);
+
+/* Writes histograms of the columns from `first` on, of `parts` bars each, as SVG. -1 with errno set. */
+int lag_histograms_write(const char *path, const Table *t, int first, int parts, const char *title);
+
 /* Prints the first few curves as text (braille dots). */
 void lag_sketch_write(FILE *f, const Table *t, const PlottedCurves *d);
+
+/* From time t on a contact, constraint or surface of friction does as the word says; MARK_EVENT: at t alone. */
+enum { MARK_NONE, MARK_SLIPS, MARK_STICKS, MARK_ACTS, MARK_EVENT };
+typedef struct Mark {
+  double t;
+  int track, word;
+} Mark;
+
+typedef struct Marks {
+  int ntracks;
+  const char **names; /* [ntracks] of contacts, surfaces and events; owned by the model, the array by the marks */
+  size_t n;
+  Mark *at;           /* [n] in the order of time */
+} Marks;
 
 /* An animation: points whose x and y are columns of the table, all in one unit. */
 typedef struct Animation {
@@ -80,6 +131,7 @@ typedef struct Animation {
   int rods, trace;  /* 1: draw rods between the points; draw the path of the last point */
   const char *unit;
   const char *note; /* text below the animation, or "" */
+  Marks marks;
 } Animation;
 
 /* Writes an HTML page that plays the table. -1 with errno set. */

@@ -2,24 +2,11 @@
  * contents until the new one is complete. */
 #include "io/outfile.h"
 
-#include <dirent.h>
-#include <errno.h>
-#include <fcntl.h>
-#include <stdlib.h>
-#include <string.h>
-#include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-/* Locks a temporary file; the system releases the lock when the process ends. 0, or -1: another process holds it. */
-static int lock(int fd) {
-  struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
-  return fcntl(fd, F_SETLK, &all);
-}
+#include "io/posix.h"
 
 /* File name part of a path. */
 static const char *name_in(const char *path) {
-  const char *slash = strrchr(path, '/');
+  const char *slash = lag_last_slash(path);
   return slash ? slash + 1 : path;
 }
 
@@ -56,8 +43,8 @@ static void remove_remains(const char *path) {
   for (struct dirent *e; d && (e = readdir(d)) != NULL;) {
     const char *rest = e->d_name + n + strlen(".part-");
     if (strncmp(e->d_name, name, n) != 0 || strncmp(e->d_name + n, ".part-", 6) != 0 || strspn(rest, "0123456789-") != strlen(rest)) continue;
-    int fd = openat(dirfd(d), e->d_name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_uid == geteuid() && lock(fd) == 0) unlinkat(dirfd(d), e->d_name, 0);
+    int fd = lag_open_in(d, e->d_name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_uid == geteuid() && lag_file_lock(fd) == 0) lag_unlink_in(d, e->d_name);
     if (fd >= 0) close(fd);
   }
   if (d) closedir(d);
@@ -65,7 +52,7 @@ static void remove_remains(const char *path) {
 
 /* Whether path names an open stream, such as /dev/stdout; such a file is appended to, never replaced. */
 static int is_stream(const char *path) {
-  return strncmp(path, "/dev/std", 8) == 0 || strncmp(path, "/dev/fd/", 8) == 0 || strncmp(path, "/proc/", 6) == 0;
+  return strncmp(path, "/dev/std", 8) == 0 || strncmp(path, "/dev/fd/", 8) == 0 || strncmp(path, "/proc/", 6) == 0 || lag_is_null_device(path);
 }
 
 /* o->path := path with links resolved. A link owned by another user (except root) is refused with EACCES. */
@@ -96,7 +83,7 @@ static int make_part(Outfile *o) {
     int fd = open(o->part, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, there ? old.st_mode & 0600 : 0666);
     if (fd < 0 && errno != EEXIST) break;
     if (fd < 0) continue;
-    lock(fd);
+    lag_file_lock(fd);
     if (there && fstat(fd, &st) == 0 && (st.st_uid != old.st_uid || st.st_gid != old.st_gid)) {
       there = fchown(fd, old.st_uid, old.st_gid) == 0 ? 1 : 2; /* 2: the mode is kept, the owner cannot be changed */
     }

@@ -8,37 +8,45 @@
  *   sum H        FNV-1a, 64 bits */
 #include <errno.h>
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "io/io.h"
+#include "io/posix.h"
 #include "numeric/fnv1a.h"
 
 enum { MOST_BYTES = 256 * 1024 * 1024 };
 
-static void print_state(FILE *f, const State *s) {
-  fprintf(f, "lag-state 1\nprogram %s\nscene %s\nmethod %s\ntolerance %a\noptions %d", s->program, s->scene, s->method,
-          s->tol, s->noptions);
-  for (int i = 0; i < s->noptions; i++) fprintf(f, " %a", s->options[i]);
-  fprintf(f, "\nsignature %016llx\nt %a\ndata %zu\n", s->signature, s->t, s->n);
-  for (size_t i = 0; i < s->n; i++) fprintf(f, "%a\n", s->data[i]);
+/* A file and the hash of what was written. */
+typedef struct Summed {
+  FILE *f;
+  uint64_t sum;
+} Summed;
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+static void put(Summed *to, const char *format, ...) {
+  char text[sizeof(State)];
+  va_list more;
+  va_start(more, format);
+  int n = vsnprintf(text, sizeof text, format, more);
+  va_end(more);
+  to->sum = lag_fnv1a(to->sum, text, (size_t)n);
+  fwrite(text, 1, (size_t)n, to->f);
 }
 
 int lag_state_write(const char *path, const State *s) {
   Outfile o;
-  char *text = NULL;
-  size_t size = 0;
-  FILE *m = open_memstream(&text, &size);
-  if (!m) return -1;
-  print_state(m, s);
-  if (fclose(m) != 0 || lag_outfile_open(&o, path) != 0) {
-    free(text);
-    return -1;
-  }
-  fwrite(text, 1, size, o.f);
-  fprintf(o.f, "sum %016" PRIx64 "\n", lag_fnv1a(LAG_FNV1A_START, text, size));
-  free(text);
+  if (lag_outfile_open(&o, path) != 0) return -1;
+  Summed to = {.f = o.f, .sum = LAG_FNV1A_START};
+  put(&to, "lag-state 1\nprogram %s\nscene %s\nmethod %s\n", s->program, s->scene, s->method);
+  put(&to, "tolerance %a\noptions %d", s->tol, s->noptions);
+  for (int i = 0; i < s->noptions; i++) put(&to, " %a", s->options[i]);
+  put(&to, "\nsignature %016llx\nt %a\ndata %zu\n", s->signature, s->t, s->n);
+  for (size_t i = 0; i < s->n; i++) put(&to, "%a\n", s->data[i]);
+  fprintf(o.f, "sum %016" PRIx64 "\n", to.sum);
   return lag_outfile_close(&o, OUTFILE_SYNC);
 }
 

@@ -7,106 +7,15 @@
 #include <string.h>
 
 #include "io/io.h"
-#include "io/visible.h"
+#include "io/svg_panel.h"
 
-enum { WIDTH = 860, LEFT = 84, RIGHT = 150, TOP = 50, GAP = 26, BOTTOM = 52, MOST_PANELS = 6, MOST_LEGEND = 24, MOST_NAME = 48, LINE = 18 };
+enum { GAP = 26, MOST_PANELS = 6, MOST_LEGEND = 24, MOST_NAME = 48, LINE = 18 };
 
-/* Eight colours distinct for all kinds of colour vision (Okabe and Ito), yellow darkened. */
-static const char *const colour[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a7f00", "#444444"};
 
 /* text[n] := stroke attributes of series k: the second eight series are dashed, the third dotted. */
 static void stroke_of(int k, char *text, size_t n) {
   static const char *const dashes[] = {"", " stroke-dasharray=\"5 3\"", " stroke-dasharray=\"1.5 2.5\""};
-  snprintf(text, n, "stroke=\"%s\"%s", colour[k % 8], dashes[k / 8 % 3]);
-}
-
-typedef struct Panel {
-  double x, y, w, h;         /* rectangle in pixels */
-  double x0, x1, y0, y1;     /* ranges of the data */
-  const char *xlabel;
-} Panel;
-
-double lag_tick_step(double lo, double hi, int n) {
-  double raw = (hi - lo) / n, power = pow(10, floor(log10(raw))), f = raw / power;
-  return power * (f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10);
-}
-
-void lag_write_markup(FILE *f, const char *s) {
-  static const char special[] = "<>&\"", *const entity[] = {"&lt;", "&gt;", "&amp;", "&quot;"};
-  char shown[VISIBLE_SIZE];
-  for (size_t n = strlen(s), at = 0; at < n;) {
-    at += show_visible(s + at, n - at, shown);
-    for (const char *c = shown; *c; c++) {
-      const char *which = strchr(special, *c);
-      if (which) fputs(entity[which - special], f);
-      else putc(*c, f);
-    }
-  }
-}
-
-static void text(FILE *f, double x, double y, const char *attributes, const char *s) {
-  fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, attributes);
-  lag_write_markup(f, s);
-  fputs("</text>\n", f);
-}
-
-void lag_widen_range(double *lo, double *hi, double least, double margin) {
-  if (!(*lo <= *hi)) {
-    *lo = 0;
-    *hi = 1;
-  }
-  double d = *hi - *lo;
-  if (d <= least * fmax(fabs(*lo), fabs(*hi)) || d == 0.0) {
-    d = *lo == 0.0 ? 1 : fabs(*lo);
-    margin = 0.5;
-  }
-  *lo -= margin * d;
-  *hi += margin * d;
-}
-
-static double px(const Panel *p, double x) { return p->x + (x - p->x0) / (p->x1 - p->x0) * p->w; }
-
-static double py(const Panel *p, double y) { return p->y + p->h - (y - p->y0) / (p->y1 - p->y0) * p->h; }
-
-static void tick_label(char *s, size_t n, double value, double step) { snprintf(s, n, "%.6g", fabs(value) < 1e-9 * step ? 0.0 : value); }
-
-/* Number of x ticks per label, so that long labels (-3.086e+07) do not overlap. */
-static double label_stride(const Panel *p, double dx) {
-  enum { WIDTH_OF_CHARACTER = 7, ROOM = 10 };
-  size_t longest = 0;
-  char s[32];
-  for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
-    tick_label(s, sizeof s, k * dx, dx);
-    if (strlen(s) > longest) longest = strlen(s);
-  }
-  return ceil(((double)longest * WIDTH_OF_CHARACTER + ROOM) / (px(p, dx) - px(p, 0)));
-}
-
-static void axes(FILE *f, const Panel *p, const char *ylabel, int last) {
-  char s[32];
-  double dx = lag_tick_step(p->x0, p->x1, 8), dy = lag_tick_step(p->y0, p->y1, p->h > 220 ? 7 : 4), size = fmax(fabs(p->y0), fabs(p->y1));
-  double base = size > 1e5 * dy ? nearbyint((p->y0 + p->y1) / 2 / dy) * dy : 0; /* left out of labels that would be equal otherwise */
-  double stride = label_stride(p, dx);
-  fprintf(f, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" stroke=\"#999\"/>\n", p->x, p->y, p->w, p->h);
-  for (double k = ceil(p->x0 / dx - 1e-9); k * dx <= p->x1 + 1e-9 * dx; k++) {
-    fprintf(f, "<path d=\"M%.2f %.1fv%.1f\" class=\"g\"/>\n", px(p, k * dx), p->y, p->h);
-    tick_label(s, sizeof s, k * dx, dx);
-    if (last && fmod(k, stride) == 0.0) text(f, px(p, k * dx), p->y + p->h + 17, "text-anchor=\"middle\"", s);
-  }
-  for (double k = ceil((p->y0 - base) / dy - 1e-9); k * dy <= p->y1 - base + 1e-9 * dy; k++) {
-    double y = py(p, base + k * dy);
-    fprintf(f, "<path d=\"M%.1f %.2fh%.1f\" class=\"g\"/>\n", p->x, y, p->w);
-    tick_label(s, sizeof s, k * dy, dy);
-    text(f, p->x - 7, y + 4, "text-anchor=\"end\"", s);
-  }
-  if (base != 0.0) {
-    snprintf(s, sizeof s, "%.14g +", base);
-    text(f, p->x, p->y - 6, "font-size=\"11\"", s);
-  }
-  if (last) text(f, p->x + p->w / 2, p->y + p->h + 40, "text-anchor=\"middle\" class=\"l\"", p->xlabel);
-  fprintf(f, "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\" class=\"l\">", 18.0, p->y + p->h / 2);
-  lag_write_markup(f, ylabel);
-  fputs("</text>\n", f);
+  snprintf(text, n, "stroke=\"%s\"%s", lag_colour[k % 8], dashes[k / 8 % 3]);
 }
 
 /* Adds a point to an SVG path: "M" at the start of a piece, "L" within; a value that is not finite ends the piece. */
@@ -115,17 +24,18 @@ static void point(FILE *f, const Panel *p, double x, double y, int *pen) {
     *pen = 0;
     return;
   }
-  fprintf(f, "%s%.2f %.2f", *pen ? "L" : "M", px(p, x), py(p, y));
+  fprintf(f, "%s%.2f %.2f", *pen ? "L" : "M", lag_panel_x(p, x), lag_panel_y(p, y));
   *pen = 1;
 }
 
 /* Dots, as zero-length strokes with round ends in one element; smaller where there are many. */
-static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, const char *stroke) {
+static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, const char *stroke) {
   double width = t->nrows > 2000 ? 2 : t->nrows > 300 ? 2.6 : 4;
   fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"%.1f\" stroke-linecap=\"round\" d=\"", stroke, width);
   for (size_t i = 0; i < t->nrows; i++) {
     double x = lag_table_cell(t, i, xcol), y = lag_table_cell(t, i, ycol);
-    if (isfinite(x) && isfinite(y)) fprintf(f, "M%.2f %.2fh0", px(p, x), py(p, y));
+    x -= period > 0 ? period * floor(x / period + 0.5) : 0;
+    if (isfinite(x) && isfinite(y)) fprintf(f, "M%.2f %.2fh0", lag_panel_x(p, x), lag_panel_y(p, y));
   }
   fputs("\"/>\n", f);
 }
@@ -146,32 +56,48 @@ static void min_max_curve(FILE *f, const Panel *p, const Table *t, int ycol) {
   }
 }
 
-/* One column against another, or few rows: a path without the points that are nearer than a third of a pixel to the one drawn last. */
-static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol) {
+/* Takes the path over an end of the panel, where x is periodic: *turns, those of the point before at (from, y0), become those of (x, y). */
+static void cross_over(FILE *f, const Panel *p, double from, double y0, double x, double y, double *turns, int *pen) {
+  double way = x > from ? 1 : -1, period = p->x1 - p->x0, last = floor((x - p->x0) / period);
+  for (; *pen && *turns != last; *turns += way) {
+    double end = (way > 0 ? p->x1 : p->x0) + *turns * period, crossed = y0 + (y - y0) * (end - from) / (x - from);
+    point(f, p, end - *turns * period, crossed, pen);
+    *pen = 0;
+    point(f, p, end - (*turns + way) * period, crossed, pen);
+  }
+  *turns = last;
+}
+
+/* One column against another, or few rows: a path without the points that are nearer than a third of a pixel to the one drawn last. period: of x, or 0. */
+static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period) {
   const double near = 0.3;
-  double drawn_x = 0, drawn_y = 0;
+  double drawn_x = 0, drawn_y = 0, turns = 0;
   int pen = 0;
   for (size_t i = 0; i < t->nrows; i++) {
     double x = lag_table_cell(t, i, xcol), y = lag_table_cell(t, i, ycol);
-    if (pen && hypot(px(p, x) - drawn_x, py(p, y) - drawn_y) < near) continue;
+    if (period > 0 && isfinite(x) && isfinite(y)) {
+      cross_over(f, p, i ? lag_table_cell(t, i - 1, xcol) : x, i ? lag_table_cell(t, i - 1, ycol) : y, x, y, &turns, &pen);
+      x -= turns * period;
+    }
+    if (pen && hypot(lag_panel_x(p, x) - drawn_x, lag_panel_y(p, y) - drawn_y) < near) continue;
     point(f, p, x, y, &pen);
-    drawn_x = px(p, x);
-    drawn_y = py(p, y);
+    drawn_x = lag_panel_x(p, x);
+    drawn_y = lag_panel_y(p, y);
   }
 }
 
-static void one_curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, const char *stroke) {
+static void one_curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, const char *stroke) {
   fprintf(f, "<path fill=\"none\" %s stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"", stroke);
   if (xcol == 0 && t->nrows > (size_t)(2 * p->w)) min_max_curve(f, p, t, ycol);
-  else path(f, p, t, xcol, ycol);
+  else path(f, p, t, xcol, ycol, period);
   fputs("\"/>\n", f);
 }
 
 /* In grey past the horizon; points of a section stay, since the whole of them may still hold. */
-static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, int k) {
+static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, int k) {
   char stroke[64];
   if (t->points) {
-    dots(f, p, t, xcol, ycol, colour[k % 8]);
+    dots(f, p, t, xcol, ycol, period, lag_colour[k % 8]);
     return;
   }
   stroke_of(k, stroke, sizeof stroke);
@@ -179,19 +105,19 @@ static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, i
   if (t->certain) {
     part.data += (t->certain - 1) * (size_t)t->ncols;
     part.nrows -= t->certain - 1;
-    one_curve(f, p, &part, xcol, ycol, "stroke=\"#bbb\"");
+    one_curve(f, p, &part, xcol, ycol, period, "stroke=\"#bbb\"");
     part = *t;
     part.nrows = t->certain;
   }
-  one_curve(f, p, &part, xcol, ycol, stroke);
+  one_curve(f, p, &part, xcol, ycol, period, stroke);
 }
 
 /* The horizon in a panel over time. */
 static void put_horizon(FILE *f, const Panel *p, const Table *t, int named) {
   if (!t->certain || t->points) return;
-  double x = px(p, t->horizon);
+  double x = lag_panel_x(p, t->horizon);
   fprintf(f, "<path d=\"M%.1f %.1fv%.1f\" stroke=\"#888\" stroke-dasharray=\"2 4\"/>\n", x, p->y, p->h);
-  if (named) text(f, x, p->y - 6, "font-size=\"11\" text-anchor=\"middle\" fill=\"#666\"", "no digit is left");
+  if (named) lag_svg_text(f, x, p->y - 6, "font-size=\"11\" text-anchor=\"middle\" fill=\"#666\"", "no digit is left");
 }
 
 /* s[n] := `from`, shortened to at most `most` characters with "..." at the end. */
@@ -227,10 +153,10 @@ static void legend(FILE *f, const Panel *p, int i, int total, int k, const char 
     truncate_text(name, MOST_NAME, s, sizeof s);
     stroke_of(k, stroke, sizeof stroke);
     fprintf(f, "<path d=\"M%.1f %.1fh20\" %s stroke-width=\"2.5\"/>\n", x, y, stroke);
-    text(f, x + 27, y + 4, "", s);
+    lag_svg_text(f, x + 27, y + 4, "", s);
   } else if (i + 1 == room) {
     snprintf(s, sizeof s, "and %d more", total - i);
-    text(f, x, y + 4, "", s);
+    lag_svg_text(f, x, y + 4, "", s);
   }
 }
 
@@ -245,8 +171,10 @@ static void draw_series(FILE *f, const Panel *p, const Table *t, const PlottedCu
   for (int i = 0; i < d->n; i++) {
     int x = unit ? 0 : d->x[i], y = d->y[i];
     if (unit && strcmp(t->cols[y].unit, unit) != 0) continue;
-    curve(f, p, t, x, y, i);
-    if (unit || total > 1) legend(f, p, shown++, total, i, t->cols[y].name);
+    int stroke = d->runs ? i % d->runs + 8 * (shown / d->runs) : i;
+    curve(f, p, t, x, y, d->beneath.period, stroke);
+    if ((unit || total > 1) && !d->unnamed) legend(f, p, shown, total, stroke, t->cols[y].name);
+    shown++;
   }
 }
 
@@ -256,24 +184,11 @@ static int legend_width(const Table *t, const PlottedCurves *d) {
   int most = (RIGHT - KEY) / CHARACTER;
   char s[sizeof t->cols->name];
 
-  for (int i = 0; i < d->n; i++) {
+  for (int i = 0; i < d->n && !d->unnamed; i++) {
     truncate_text(t->cols[d->y[i]].name, MOST_NAME, s, sizeof s);
     most = (int)strlen(s) > most ? (int)strlen(s) : most;
   }
   return KEY + CHARACTER * most;
-}
-
-static void head(FILE *f, int width, int height, const char *title) {
-  fprintf(f,
-          "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" "
-          "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"12\" fill=\"#333\">\n<title>",
-          width, height, width, height);
-  lag_write_markup(f, title);
-  fprintf(f,
-          "</title>\n<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:13px}</style>\n"
-          "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
-          width, height);
-  text(f, LEFT, 26, "font-size=\"15\" font-weight=\"bold\"", title);
 }
 
 /* units := distinct units of the drawn columns, in order of first use, at most MOST_PANELS. Returns their number. */
@@ -293,20 +208,21 @@ static void against_time(FILE *f, const Table *t, const char *title, const Plott
   char xlabel[176];
   int n = units_of(t, d, units);
   double h = n == 1 ? 380 : n == 2 ? 230 : 170;
-  Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - RIGHT, .h = h, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .xlabel = xlabel};
+  Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - RIGHT, .h = h, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .xlog = d->xlog, .ylog = d->ylog, .xlabel = xlabel};
   label_of(t->cols[0].name, t->cols[0].unit, p.w, xlabel, sizeof xlabel);
-  head(f, LEFT + (int)p.w + legend_width(t, d), TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
+  lag_svg_head(f, LEFT + (int)p.w + legend_width(t, d), TOP + (int)h * n + GAP * (n - 1) + BOTTOM, title);
   lag_table_range(t, 0, &p.x0, &p.x1);
   lag_widen_range(&p.x0, &p.x1, 1e-12, 0);
   for (int k = 0; k < n; k++) {
-    char s[sizeof t->cols->unit + 3];
+    char s[176];
     p.y0 = HUGE_VAL;
     p.y1 = -HUGE_VAL;
     for (int i = 0; i < d->n; i++)
       if (strcmp(t->cols[d->y[i]].unit, units[k]) == 0) lag_table_range(t, d->y[i], &p.y0, &p.y1);
     lag_widen_range(&p.y0, &p.y1, 1e-12, 0.06);
-    snprintf(s, sizeof s, "[%s]", units[k]);
-    axes(f, &p, units[k][0] ? s : "", k == n - 1);
+    if (d->yname) label_of(d->yname, units[k], h + 40, s, sizeof s);
+    else snprintf(s, sizeof s, units[k][0] ? "[%s]" : "%s", units[k]);
+    lag_svg_axes(f, &p, s, k == n - 1);
     draw_series(f, &p, t, d, units[k]);
     put_horizon(f, &p, t, k == 0);
     p.y += h + GAP;
@@ -333,21 +249,22 @@ static int is_rate(const char *rate, const char *of) {
 
 /* Whether both axes get the same scale: columns of one unit, neither the rate of the other; without units only if their ranges are of
  * similar size. */
-static int shares_scale(const Table *t, int x, int y, const Panel *p) {
-  const Column *a = &t->cols[x], *b = &t->cols[y];
+static int shares_scale(const Table *t, const PlottedCurves *d, const Panel *p) {
+  const Column *a = &t->cols[d->x[d->n - 1]], *b = &t->cols[d->y[d->n - 1]];
   double ratio = (p->x1 - p->x0) / (p->y1 - p->y0);
-  if (strcmp(a->unit, b->unit) != 0 || is_rate(a->name, b->name) || is_rate(b->name, a->name)) return 0;
+  if (strcmp(a->unit, b->unit) != 0 || is_rate(d->xname, d->yname) || is_rate(d->yname, d->xname)) return 0;
   return a->unit[0] || (ratio > 1. / 4 && ratio < 4);
 }
 
 /* Marks start and end of a path; only for one column against another. */
-static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y) {
+static void mark_ends(FILE *f, const Panel *p, const Table *t, int x, int y, double period) {
   static const char *const name[] = {"start", "end"}, *const fill[] = {"#009e73", "#d55e00"};
   for (int k = 0; k < 2 && t->nrows; k++) {
     size_t row = k ? t->nrows - 1 : 0;
-    mark(f, px(p, lag_table_cell(t, row, x)), py(p, lag_table_cell(t, row, y)), fill[k]);
+    double turns = period > 0 ? floor(lag_table_cell(t, row, x) / period + 0.5) : 0;
+    mark(f, lag_panel_x(p, lag_table_cell(t, row, x) - turns * period), lag_panel_y(p, lag_table_cell(t, row, y)), fill[k]);
     mark(f, p->x + p->w + 20, p->y + 16 + 20 * k, fill[k]);
-    text(f, p->x + p->w + 32, p->y + 20 + 20 * k, "", name[k]);
+    lag_svg_text(f, p->x + p->w + 32, p->y + 20 + 20 * k, "", name[k]);
   }
 }
 
@@ -358,25 +275,31 @@ static void axis_label(const Table *t, int n, const int *cols, const char *name,
   label_of(n == 1 ? t->cols[cols[0]].name : name, unit, room, s, size);
 }
 
-static void paths(FILE *f, const Table *t, const char *title, const PlottedCurves *d) {
+static void paths(FILE *f, const Table *t, const char *title, const PlottedCurves *drawn) {
+  PlottedCurves copy = *drawn, *d = &copy;
   char xlabel[176], ylabel[176];
   int x = d->x[0];
-  Panel p = {.x = LEFT, .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380, .xlabel = xlabel,
+  Panel p = {.x = LEFT, .y = TOP, .w = x ? 600 : WIDTH - LEFT - 30, .h = x ? 520 : 380, .ylog = d->ylog, .xlabel = xlabel,
              .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .y0 = HUGE_VAL, .y1 = -HUGE_VAL};
   for (int i = 0; i < d->n; i++) {
     lag_table_range(t, d->x[i], &p.x0, &p.x1);
     lag_table_range(t, d->y[i], &p.y0, &p.y1);
   }
-  lag_widen_range(&p.x0, &p.x1, 1e-12, x ? 0.05 : 0);
-  lag_widen_range(&p.y0, &p.y1, 1e-12, 0.05);
-  if (x && shares_scale(t, d->x[d->n - 1], d->y[d->n - 1], &p)) same_scale(&p);
+  if (d->beneath.profile && p.x1 - p.x0 < d->beneath.period / 2) d->beneath.period = 0; /* a small part of the circle */
+  if (d->beneath.period > 0) p.x0 = -(p.x1 = d->beneath.period / 2);
+  else lag_widen_range(&p.x0, &p.x1, 1e-12, d->beneath.value ? 0.25 : x ? 0.05 : 0);
+  if (d->beneath.profile) lag_svg_profile_range(&d->beneath, p.x0, p.x1, &p.y0, &p.y1);
+  lag_widen_range(&p.y0, &p.y1, 1e-12, d->beneath.value && !d->beneath.profile ? 0.25 : 0.05);
+  if (x && !d->beneath.value && shares_scale(t, d, &p)) same_scale(&p);
   axis_label(t, d->n, d->x, d->xname, p.w, xlabel, sizeof xlabel);
   axis_label(t, d->n, d->y, d->yname, p.h + 40, ylabel, sizeof ylabel);
-  head(f, d->n > 1 ? LEFT + (int)p.w + legend_width(t, d) : WIDTH, TOP + (int)p.h + BOTTOM, title);
-  axes(f, &p, ylabel, 1);
+  lag_svg_head(f, d->n > 1 && LEFT + (int)p.w + legend_width(t, d) > WIDTH ? LEFT + (int)p.w + legend_width(t, d) : WIDTH, TOP + (int)p.h + BOTTOM, title);
+  lag_svg_axes(f, &p, ylabel, 1);
+  if (d->beneath.profile) lag_svg_profile(f, &p, &d->beneath);
+  else if (d->beneath.value) lag_svg_levels(f, &p, &d->beneath);
   draw_series(f, &p, t, d, NULL);
   if (!x) put_horizon(f, &p, t, 1);
-  if (x && !t->points && d->n == 1) mark_ends(f, &p, t, x, d->y[0]);
+  if (x && !t->points && d->n == 1 && !d->runs) mark_ends(f, &p, t, x, d->y[0], d->beneath.period);
 }
 
 int lag_svg_write(const char *path, const Table *t, const char *title, const PlottedCurves *d) {

@@ -129,22 +129,18 @@ static void npy_dict(Rows *r, FILE *f) {
 
 /* Writes the .npy header; its length does not depend on the number of rows, so it can be rewritten at the end. */
 static int npy_head(Rows *r) {
-  char *dict = NULL;
-  size_t size = 0;
-  FILE *m = open_memstream(&dict, &size);
-  if (!m) return -1;
-  npy_dict(r, m);
-  fclose(m);
-  size_t fixed = 12, total = (fixed + size + 32 + 63) / 64 * 64, length = total - fixed;
+  enum { MAGIC = 8, FIXED = 12 };
   FILE *f = r->out.f;
-  fwrite("\x93NUMPY\3\0", 1, 8, f);
-  for (int i = 0; i < 4; i++) putc((int)(length >> 8 * i & 255), f);
-  fwrite(dict, 1, size, f);
-  int n = fprintf(f, "%zu,), }", r->nrows);
-  for (size_t i = size + (size_t)n; i + 1 < length; i++) putc(' ', f);
+  fwrite("\x93NUMPY\3\0\0\0\0", 1, FIXED, f); /* the length follows below */
+  npy_dict(r, f);
+  long end = ftell(f);
+  if (end < 0) return -1;
+  long total = (end + 32 + 63) / 64 * 64, length = total - FIXED;
+  for (long i = end + fprintf(f, "%zu,), }", r->nrows); i + 1 < total; i++) putc(' ', f);
   putc('\n', f);
-  free(dict);
-  return 0;
+  if (fseek(f, MAGIC, SEEK_SET) != 0) return -1;
+  for (int i = 0; i < 4; i++) putc((int)(length >> 8 * i & 255), f);
+  return fseek(f, total, SEEK_SET);
 }
 
 int lag_rows_open(Rows *r, const char *path, const Table *t) {

@@ -36,7 +36,7 @@ int lag_band_matrix_factor(lag_band_matrix *m, double *scale) {
       }
     }
     if (!(best > 0)) return -1;
-    m->pivot[k] = p;
+    m->pivot[k] = (double)p;
     if (p != k) {
       lag_swap(&scale[k], &scale[p]);
       for (int j = k; j <= right; j++) lag_swap(lag_band_matrix_at(m, k, j), lag_band_matrix_at(m, p, j));

@@ -49,8 +49,7 @@ int lag_embedded_init(void *work, lag_problem *pb, const double *opt) {
   return LAG_OK;
 }
 
-/* Before a step: K1 := f(t, y), Y0 := y, w->h := the step to try. */
-static int prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y) {
+int lag_embedded_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y) {
   int row = lag_embedded_row(pb);
   double *k1 = lag_embedded_array(w, pb, EMBEDDED_K1);
   lag_copy(pb->n, y, lag_embedded_array(w, pb, EMBEDDED_Y0));
@@ -181,11 +180,11 @@ int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double 
   const EmbeddedPair *pair = pb->variant;
   Embedded *w = work;
   SizeSearch search = {.tries = 0};
-  int cause = LAG_ESTEP, retried = 0, rc = prepare(pair, w, pb, *t, y);
+  int cause = LAG_ESTEP, retried = 0, rc = lag_embedded_prepare(pair, w, pb, *t, y);
   (void)t_stop;
   while (rc == 0) {
     double wanted = lag_min(w->h, lag_longest_step(&w->limits, *t, pb->longest)), row;
-    double gap = w->limits.fixed != 0.0 ? HUGE_VAL : lag_next_row_inline(pb, *t, &row);
+    double gap = w->limits.fixed != 0.0 ? lag_next_kick(pb, *t, &row) : lag_next_row_inline(pb, *t, &row);
     int clipped = wanted * (1 + 1e-4) >= gap; /* the rest after this step would be too short */
     w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
@@ -206,6 +205,8 @@ int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double 
       if (w->limits.fixed == 0.0) {
         next_size(pair, w, err, retried);
         w->h = clipped ? lag_max(w->h, wanted) : w->h;
+      } else {
+        w->h = wanted;
       }
       accept(w, pb, t, y, dt, tb, tc);
       return LAG_OK;

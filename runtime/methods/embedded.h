@@ -1,4 +1,4 @@
-/* Explicit Runge-Kutta methods, shared by rk4, rk45 and dop853: a method is a tableau, the constants of its step control, and its dense output. A
+/* Explicit Runge-Kutta methods, shared by euler, rk4, rk45 and dop853: a method is a tableau, the constants of its step control, and its dense output. A
  * tableau whose order_embedded is 0 has no error estimate: all its steps are of equal size. */
 #pragma once
 
@@ -55,6 +55,9 @@ void lag_embedded_reset(void *work, lag_problem *pb);
 int lag_embedded_step(void *work, lag_problem *pb, double *t, double *y, double t_stop);
 size_t lag_embedded_tangent_size(const lag_problem *pb, int k);
 int lag_embedded_tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch);
+
+/* Before a step at t, y: K1 := f(t, y), Y0 := y, w->h := the step to try. LAG_OK, or a failure. */
+int lag_embedded_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb, double t, const double *y);
 
 /* > 0: a coordinate moved against its velocities at both ends of the step to tb, in a model whose constraints contain time. The step led over
  * a pole, as of x = tan(t), or is too long; the error estimate does not see it, because constraints determine the coordinate. */

@@ -1,4 +1,4 @@
-/* Stages and error of one trial step, inlined for a constant tableau: rk4.c, rk45.c and dop853.c include this file and expand
+/* Stages and error of one trial step, inlined for a constant tableau: euler.c, rk4.c, rk45.c and dop853.c include this file and expand
  * EMBEDDED_TRIAL. Sums over stages are then unrolled, without zero coefficients.
  * Holds: each component is summed in the same order for every n, so its value does not depend on the other components. */
 #pragma once
@@ -90,7 +90,8 @@ LAG_ALWAYS_INLINE void embedded_result(const lag_tableau *tab, Embedded *w, Embe
   const double *comp = w->x + EMBEDDED_COMP * row, *y0 = w->x + EMBEDDED_Y0 * row, *k = w->x + EMBEDDED_K1 * row;
   double *comp1 = w->x + EMBEDDED_COMP1 * row, *y1 = w->x + EMBEDDED_Y1 * row;
   for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
-    embedded_part sum = embedded_sum(tab->a[last], last - 1, k + i, row) + newest * embedded_newest(k + i + (last - 1) * row);
+    embedded_part sum = newest * embedded_newest(k + i + (last - 1) * row);
+    if (last > 1) sum += embedded_sum(tab->a[last], last - 1, k + i, row);
     embedded_part y = embedded_at(y0 + i), x = dt * sum + embedded_at(comp + i), r = y + x, b = r - y; /* as lag_compensated_sum */
     embedded_set(y1 + i, r);
     embedded_set(comp1 + i, (y - (r - b)) + (x - b));

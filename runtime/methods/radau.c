@@ -412,13 +412,20 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   (void)t_stop;
   w->h = w->limits.fixed != 0.0 ? w->limits.h_option : w->h;
   while (rc == 0) {
-    w->h = fmin(w->h, lag_longest_step(&w->limits, *t, pb->longest));
+    double wanted = fmin(w->h, lag_longest_step(&w->limits, *t, pb->longest)), kick, gap = lag_next_kick(pb, *t, &kick);
+    int clipped = wanted * (1 + 1e-4) >= gap;
+    w->h = clipped ? gap : wanted;
     double dt = pb->dir * w->h, tc = w->tc, tb = lag_compensated_sum(*t, dt, &tc);
+    if (clipped) {
+      tb = kick;
+      tc = 0;
+    }
     if (w->h <= 4 * DBL_EPSILON * fabs(*t) || w->h < DBL_MIN / DBL_EPSILON) return failure_status(w, pb, *t, why);
     pb->bad_index = -1;
     why = attempt(w, &a, pb, *t, tb, y, dt);
     if (why == 0) {
       accept(w, &a, pb, t, y, dt, tb, tc);
+      w->h = clipped ? fmax(w->h, wanted) : w->h;
       return LAG_OK;
     }
     if (why < 0) return why;

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 #include "lag.h"
 
@@ -44,29 +42,12 @@ static inline double lag_longest_step(const lag_step_limits *l, double t, double
   return l->fixed != 0.0 ? HUGE_VAL : longest > 0 ? lag_min(most, longest) : most;
 }
 
-/* x^p for a normal x > 0, with relative error 2e-4 for |p| <= 1/8 and 6e-4 for |p| <= 1, enough for a step size; pow would take a tenth of a short step's time.
- * log2(x) and 2^y are the exponent and a cubic in the fraction, fitted at Chebyshev points: errors 7e-4 binary orders and 8e-5. */
-static inline double lag_rough_power(double x, double p) {
-#ifdef LAG_REAL_IS_DOUBLE
-  const uint64_t root = 0x3fe6a09e667f3bcd; /* the bits of sqrt(1/2): sqrt(1/2) <= 1 + u < sqrt(2) */
-  const double whole = 6755399441055744.0;  /* 1.5 2^52: adding and subtracting this number rounds y to an integer */
-  uint64_t bits;
-  double u, two;
-
-  memcpy(&bits, &x, sizeof bits);
-  int64_t e = (int64_t)(bits - root) >> 52;
-  bits -= (uint64_t)e << 52;
-  memcpy(&u, &bits, sizeof u);
-  u -= 1;
-  double y = p * ((double)e + ((0.0005394920249608554 + 1.4462983444747144 * u) + u * u * (-0.7595145055376984 + 0.43966727293612035 * u)));
-  double k = (y + whole) - whole, f = y - k;
-  bits = (uint64_t)(int64_t)(k + 1023) << 52;
-  memcpy(&two, &bits, sizeof two);
-  return two * ((0.9999244814556045 + 0.6931210339915355 * f) + f * f * (0.24264008283279262 + 0.05592203564734233 * f));
+/* x^p, roughly. */
+#if defined(LAG_REAL_IS_DOUBLE) || defined(LAG_LANES)
+#include "lag_math.h"
 #else
-  return pow(x, p);
+static inline double lag_rough_power(double x, double p) { return pow(x, p); }
 #endif
-}
 
 /* Weighted root mean square of x[n], with weights 1/(absolute + relative |y_i|). */
 double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y);

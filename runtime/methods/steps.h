@@ -15,11 +15,16 @@ typedef struct lag_next_step {
   double dt, tb, tc;
 } lag_next_step;
 
-/* LAG_ESTEP: the step is lost in the rounding of t. */
+/* A step of the size s->h, or to a kick within it. LAG_ESTEP: the step is lost in the rounding of t. */
 static inline int lag_fixed_step_begin(const lag_fixed_step *s, lag_problem *pb, double t, lag_next_step *next) {
   next->dt = s->h * pb->dir;
   next->tc = s->tc;
   next->tb = lag_compensated_sum(t, next->dt, &next->tc);
+  if (pb->kick > t && next->tb + 1e-4 * s->h >= pb->kick) { /* the rest after this step would be too short */
+    next->tb = pb->kick;
+    next->dt = pb->kick - t;
+    next->tc = 0;
+  }
   pb->bad_index = -1;
   if (next->tb == t) {
     pb->bad_t = t;

@@ -19,7 +19,7 @@ size_t lag_tangent_size(const lag_problem *pb, int stages, int k) {
 }
 
 int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f) {
-  int n = w->pb->n, rc = lag_jacobian(w->pb, t, y, w->jacobian, w->linear);
+  int n = w->pb->n, rc = lag_fine_jacobian(w->pb, t, y, w->jacobian, w->linear);
   if (rc == LAG_EMETHOD) return lag_step_failed(w->pb, rc, t);
   if (rc) return lag_step_refused(w->pb, rc, t);
   if (f) memcpy(f, w->linear, (size_t)n * sizeof *f);

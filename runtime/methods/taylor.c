@@ -22,8 +22,9 @@
 #include "methods/step_control.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
+#include "methods/taylor.h"
 
-enum { WINDOW = 5, LEAST_ORDER = 6, AIM = 2 };
+enum { LEAST_ORDER = 6 };
 
 enum { OPT_ORDER = LAG_NADAPTIVE_OPTIONS, NOPTIONS };
 
@@ -35,81 +36,56 @@ static const lag_method_option options[NOPTIONS] = {
     {"order", "order of the series; 0: chosen from the tolerance and what an order costs", 0, 0, LAG_TAYLOR_ORDER, NULL},
 };
 
-/* Saved state of the method, doubles only; x holds the arrays named below. */
-typedef struct Taylor {
-  double order, reach; /* reach: r h of item 1 above */
-  double per_order[WINDOW]; /* 1/k of the orders in the root test, from the highest down */
-  double floor;     /* absolute/relative tolerance, the least size of a component in error norms */
-  lag_step_limits limits;
-  double ready;     /* 1: series[now] is expanded at t, y */
-  double now;       /* 0 or 1: series of the next step; the other one is of the last step */
-  double t0, dt;    /* the last step */
-  double unit[2];   /* signed unit of time of each series */
-  double noise;     /* defect found to be rounding, in tolerances; decays by a tenth a step */
-  double tc;        /* fixed steps: compensation of t */
-  double x[];
-} Taylor;
-
-enum { COMP, COMP1, Y1, SUM, SLOPE, SCALE, ARRAYS }; /* arrays of `width` doubles; the two series follow */
-
 double lag_taylor_order(const double *method_work) { return ((const Taylor *)(const void *)method_work)->order; }
-
-static int width(const lag_problem *pb) { return pb->model->taylor->width; }
-
-static double *array(Taylor *w, const lag_problem *pb, int which) { return w->x + which * width(pb); }
-
-/* Series 0 or 1: (order + 1) rows of `columns` doubles. */
-static double *series(Taylor *w, const lag_problem *pb, double which) {
-  const lag_taylor *ty = pb->model->taylor;
-  return w->x + ARRAYS * ty->width + (which > 0 ? (ty->order + 1) * ty->columns : 0);
-}
-
-/* [nu] 1 where the input is given by its formula, not held constant. */
-static double *follows(Taylor *w, const lag_problem *pb) {
-  const lag_taylor *ty = pb->model->taylor;
-  return w->x + ARRAYS * ty->width + 2 * (ty->order + 1) * ty->columns;
-}
 
 static size_t work_size(const lag_problem *pb) {
   const lag_taylor *ty = pb->model->taylor;
   size_t head = sizeof(Taylor) / sizeof(double);
-  return ty ? head + (size_t)(ARRAYS * ty->width + 2 * (ty->order + 1) * ty->columns + pb->model->nu) : head;
+  return ty ? head + (size_t)(TAYLOR_ARRAYS * ty->width + 2 * (ty->order + 1) * ty->columns + pb->model->nu) : head;
 }
 
 static void reset(void *work, lag_problem *pb) {
   Taylor *w = work;
   w->ready = 0;
   w->tc = 0;
-  memset(array(w, pb, COMP), 0, (size_t)width(pb) * sizeof(double));
+  memset(lag_taylor_array(w, pb, TAYLOR_COMP), 0, (size_t)lag_taylor_width(pb) * sizeof(double));
 }
 
 /* The relative error aimed at in a step, as -log2: a fraction of the tolerance, and far below rounding where the tolerance is near
  * rounding. Errors of one sign add up as the number of steps, rounding as its root. */
 static double target_bits(const lag_problem *pb) {
   double left = 1.5 * (9 - log2(pb->tol / DBL_EPSILON)); /* extra bits: 10 at 1e-15, 0 at 1e-13 */
-  return AIM - log2(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
+  return TAYLOR_AIM - log2(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
 }
 
 /* Costs in operations of `next`: of a step besides its series, of an operation of order 0, of a term in the sums over lower orders, and of
- * each product in such a term. Measured for doubles, of which two or four are summed at a time. */
+ * each product in such a term. Measured for doubles, of which two or four are summed at a time; in lanes, instructions are counted. */
+typedef struct Costs {
+  double step, first, term, product;
+} Costs;
+
+static Costs costs_of(const lag_taylor *ty) {
 #if DBL_MANT_DIG == 53
-static const double per_step = 400, per_first = 0.5, per_term = 1, per_product = 0.2;
+  return ty->lanes ? (Costs){800, 0.5, 0, 1.3} : (Costs){400, 0.5, 1, 0.2};
 #else
-static const double per_step = 100, per_first = 1, per_term = 1, per_product = 2;
+  (void)ty;
+  return (Costs){100, 1, 1, 2};
 #endif
+}
 
 /* The order with the most time covered per operation. The rounding of an increment is proportional to the step: where only rounding is
- * left, products count fully, which gives lower orders and shorter steps. */
+ * left, products count fully, which gives lower orders and shorter steps. In lanes sums are computed for three orders at once. */
 static double best_order(const lag_problem *pb) {
   enum { ROUNDING = 16 };
   const lag_taylor *ty = pb->model->taylor;
-  double product = pb->tol < ROUNDING * DBL_EPSILON ? fmax(per_product, 1) : per_product;
-  double bits = target_bits(pb), least = HUGE_VAL, term = per_term + product * ty->sums;
+  Costs c = costs_of(ty);
+  double product = pb->tol < ROUNDING * DBL_EPSILON ? fmax(c.product, 1) : c.product;
+  double bits = target_bits(pb), least = HUGE_VAL, term = c.term + product * ty->sums;
   int best = LEAST_ORDER;
 
-  for (int p = LEAST_ORDER; p <= ty->order; p++) {
+  for (int p = LEAST_ORDER; p <= ty->order; p += ty->lanes ? 3 : 1) {
     double orders = p * (ty->cost_next + 5.0) + p * (p - 1) / 2.0 * term;
-    double cost = (per_step + per_first * ty->cost_first + orders) * exp2(bits / (p + 1));
+    double cost = (c.step + c.first * ty->cost_first + orders) * exp2(bits / (p + 1));
     best = cost < least ? p : best;
     least = fmin(cost, least);
   }
@@ -120,10 +96,10 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   Taylor *w = work;
   w->order = fmin(pb->model->taylor->order, opt[OPT_ORDER] > 0 ? opt[OPT_ORDER] : best_order(pb));
   w->reach = exp2(-target_bits(pb) / (w->order + 1));
-  for (int i = 0; i < WINDOW; i++) w->per_order[i] = 1 / fmax(w->order - i, 1);
+  for (int i = 0; i < TAYLOR_WINDOW; i++) w->per_order[i] = 1 / fmax(w->order - i, 1);
   lag_step_limits_init(&w->limits, pb, opt);
   w->floor = w->limits.atol / pb->tol;
-  for (int i = 0; i < pb->model->nu; i++) follows(w, pb)[i] = isnan(pb->hold[i]) && pb->model->inputs;
+  for (int i = 0; i < pb->model->nu; i++) lag_taylor_follows(w, pb)[i] = isnan(pb->hold[i]) && pb->model->inputs;
   reset(work, pb);
   return LAG_OK;
 }
@@ -131,10 +107,10 @@ static int init(void *work, lag_problem *pb, const double *opt) {
 /* Order 0 of series[which] at t, y. Returns 0 or the model's status; > 0 with pb->bad_index >= 0 where a rate is not finite. */
 static int first(Taylor *w, lag_problem *pb, double which, double t, const double *y) {
   int nq = pb->nq, rc = lag_inputs_inline(pb, t);
-  double *x = series(w, pb, which);
+  double *x = lag_taylor_series(w, pb, which);
   pb->rhs_calls++;
   pb->bad_index = -1;
-  rc = rc ? rc : pb->model->taylor->first(t, y, y + nq, y + 2 * nq, pb->p, pb->u, follows(w, pb), x, pb->work);
+  rc = rc ? rc : pb->model->taylor->first(t, y, y + nq, y + 2 * nq, pb->p, pb->u, lag_taylor_follows(w, pb), x, pb->work);
   if (rc == 0) {
     int bad = lag_not_finite(nq + pb->nz, x + pb->n);
     pb->bad_index = bad < 0 ? -1 : nq + bad;
@@ -146,7 +122,7 @@ static int first(Taylor *w, lag_problem *pb, double which, double t, const doubl
 /* Unit of time of the first series: the time scale of the state, as a power of 2. Later series use about the last step. */
 static double guess_unit(Taylor *w, const lag_problem *pb, const double *y) {
   double fastest = 0;
-  const double *rates = series(w, pb, w->now) + pb->n;
+  const double *rates = lag_taylor_series(w, pb, w->now) + pb->n;
   for (int i = 0; i < pb->n; i++) fastest = fmax(fastest, fabs(i < pb->nq ? y[pb->nq + i] : rates[i - pb->nq]) / (fabs(y[i]) + w->floor));
   return fastest > 0 && isfinite(fastest) ? ldexp(1, -ilogb(fastest)) : 1;
 }
@@ -155,7 +131,7 @@ static double guess_unit(Taylor *w, const lag_problem *pb, const double *y) {
 static int expand(Taylor *w, lag_problem *pb, double which, double unit) {
   const lag_taylor *ty = pb->model->taylor;
   int order = (int)w->order;
-  double *x = series(w, pb, which);
+  double *x = lag_taylor_series(w, pb, which);
   for (int attempt = 0; attempt < 8; attempt++, unit *= 0x1p-40) {
     w->unit[which > 0] = pb->dir * unit;
     ty->rest(order, pb->dir * unit, x, pb->work);
@@ -164,8 +140,7 @@ static int expand(Taylor *w, lag_problem *pb, double which, double unit) {
   return 0;
 }
 
-/* Expands the series at t, y where none is known: at the start, and after an event. */
-static int prepare(Taylor *w, lag_problem *pb, double t, const double *y) {
+int lag_taylor_prepare(Taylor *w, lag_problem *pb, double t, const double *y) {
   lag_step_limits_begin(&w->limits, t);
   if (w->ready != 0.0) return LAG_OK;
   int rc = first(w, pb, w->now, t, y);
@@ -181,10 +156,10 @@ static int prepare(Taylor *w, lag_problem *pb, double t, const double *y) {
 /* Step size by the root test, item 1 above. HUGE_VAL where the last coefficients are zero. */
 static double root_test_step(Taylor *w, lag_problem *pb, const double *y) {
   int n = pb->n, order = (int)w->order, columns = pb->model->taylor->columns;
-  const double *x = series(w, pb, w->now);
-  double *scale = array(w, pb, SCALE), root = 0;
+  const double *x = lag_taylor_series(w, pb, w->now);
+  double *scale = lag_taylor_array(w, pb, TAYLOR_SCALE), root = 0;
   for (int i = 0; i < n; i++) scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + w->floor);
-  for (int k = order; k > order - WINDOW && k > 0; k--) {
+  for (int k = order; k > order - TAYLOR_WINDOW && k > 0; k--) {
     const double *row = x + k * columns;
     double most = 0;
     for (int i = 0; i < n; i++) {
@@ -201,7 +176,7 @@ static double root_test_step(Taylor *w, lag_problem *pb, const double *y) {
 static double error_of(Taylor *w, lag_problem *pb, double dt) {
   int nq = pb->nq, m = nq + pb->nz, order = (int)w->order;
   double per_unit = 1 / w->unit[w->now > 0], worst = 0, h = fabs(dt), to_v = h / (order + 1), to_q = h / (order + 2);
-  const double *slope = array(w, pb, SLOPE) + nq, *scale = array(w, pb, SCALE), *rates = series(w, pb, 1 - w->now) + pb->n;
+  const double *slope = lag_taylor_array(w, pb, TAYLOR_SLOPE) + nq, *scale = lag_taylor_array(w, pb, TAYLOR_SCALE), *rates = lag_taylor_series(w, pb, 1 - w->now) + pb->n;
   for (int i = 0; i < m; i++) {
     double error = fabs(slope[i] * per_unit - rates[i]) * to_v, size = error * scale[nq + i];
     double of_q = i < nq ? error * to_q * scale[i] : 0;
@@ -213,9 +188,9 @@ static double error_of(Taylor *w, lag_problem *pb, double dt) {
 
 /* Y1, COMP1 := the state at t + dt and its compensation. */
 static void advance(Taylor *w, lag_problem *pb, const double *y, double dt) {
-  const double *comp = array(w, pb, COMP);
-  double *sum = array(w, pb, SUM), *y1 = array(w, pb, Y1), *comp1 = array(w, pb, COMP1);
-  pb->model->taylor->at((int)w->order, dt / w->unit[w->now > 0], series(w, pb, w->now), sum, array(w, pb, SLOPE));
+  const double *comp = lag_taylor_array(w, pb, TAYLOR_COMP);
+  double *sum = lag_taylor_array(w, pb, TAYLOR_SUM), *y1 = lag_taylor_array(w, pb, TAYLOR_Y1), *comp1 = lag_taylor_array(w, pb, TAYLOR_COMP1);
+  pb->model->taylor->at((int)w->order, dt / w->unit[w->now > 0], lag_taylor_series(w, pb, w->now), sum, lag_taylor_array(w, pb, TAYLOR_SLOPE));
   for (int i = 0; i < pb->n; i++) {
     comp1[i] = comp[i];
     y1[i] = lag_compensated_sum(y[i], sum[i], &comp1[i]);
@@ -224,8 +199,8 @@ static void advance(Taylor *w, lag_problem *pb, const double *y, double dt) {
 
 /* Accepts the step, and expands the next series from order 0 at its end. */
 static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, double tb) {
-  const double *y1 = array(w, pb, Y1), *comp1 = array(w, pb, COMP1);
-  double *comp = array(w, pb, COMP);
+  const double *y1 = lag_taylor_array(w, pb, TAYLOR_Y1), *comp1 = lag_taylor_array(w, pb, TAYLOR_COMP1);
+  double *comp = lag_taylor_array(w, pb, TAYLOR_COMP);
   for (int i = 0; i < pb->n; i++) {
     y[i] = y1[i];
     comp[i] = comp1[i];
@@ -239,7 +214,7 @@ static void accept(Taylor *w, lag_problem *pb, double *t, double *y, double dt, 
 
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
   Taylor *w = work;
-  int cause = LAG_ESTEP, rc = prepare(w, pb, *t, y);
+  int cause = LAG_ESTEP, rc = lag_taylor_prepare(w, pb, *t, y);
   (void)t_stop;
   if (rc) return rc;
   double h = root_test_step(w, pb, y), most = lag_longest_step(&w->limits, *t, 0), last = HUGE_VAL;
@@ -251,7 +226,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     if (!(fabs(dt) > 4 * DBL_EPSILON * fabs(*t)) || h < DBL_MIN / DBL_EPSILON)
       return cause == LAG_ESTEP || cause == LAG_ESINGULAR ? lag_step_failed(pb, cause, *t) : cause;
     advance(w, pb, y, dt);
-    rc = first(w, pb, 1 - w->now, tb, array(w, pb, Y1));
+    rc = first(w, pb, 1 - w->now, tb, lag_taylor_array(w, pb, TAYLOR_Y1));
     if (rc < 0 && rc != LAG_ESINGULAR) return lag_step_refused(pb, rc, tb);
     double error = rc ? NAN : error_of(w, pb, dt);
     if (error > last / 2) { /* the defect did not shrink with the step: rounding */
@@ -267,16 +242,16 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     pb->bad_t = tb;
     if (w->limits.fixed != 0.0) return cause;
     last = rc ? HUGE_VAL : error;
-    h *= rc ? 0.5 : fmax(0.5, pow(error * (1 << AIM), -1 / (w->order + 1)));
+    h *= rc ? 0.5 : fmax(0.5, pow(error * (1 << TAYLOR_AIM), -1 / (w->order + 1)));
     pb->rejected++;
   }
 }
 
 static void dense(void *work, lag_problem *pb, double t, double *y) {
   Taylor *w = work;
-  double which = 1 - w->now, *sum = array(w, pb, SUM);
-  const double *x = series(w, pb, which);
-  pb->model->taylor->at((int)w->order, (t - w->t0) / w->unit[which > 0], x, sum, array(w, pb, SLOPE));
+  double which = 1 - w->now, *sum = lag_taylor_array(w, pb, TAYLOR_SUM);
+  const double *x = lag_taylor_series(w, pb, which);
+  pb->model->taylor->at((int)w->order, (t - w->t0) / w->unit[which > 0], x, sum, lag_taylor_array(w, pb, TAYLOR_SLOPE));
   for (int i = 0; i < pb->n; i++) y[i] = x[i] + sum[i];
 }
 

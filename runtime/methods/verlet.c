@@ -1,8 +1,9 @@
 /* symplectic_euler, verlet, verlet4, verlet6, verlet8: kicks and drifts (composition.c). Explicit, in this file, for models whose
- * accelerations depend on t and q only. For other models a composition of symplectic Euler and its adjoint in q and p, by Newton's
- * method (implicit_symplectic.c); two halves make the generalised Stoermer-Verlet method, the Lobatto IIIA-IIIB pair: Hairer, Lubich, Wanner,
- * Geometric Numerical Integration, 2nd ed. (2006), VI.3 and II.2.2. Enters: t, y; leaves: t + h, y one step later. Holds: sums over
- * steps of q, v and t are compensated (steps.h); the acceleration at the end of a step is the first of the next.
+ * accelerations depend on t and q only, y = [q|v], and for Hamiltonians T(p) + V(q, t), whose states are [q|p]. For other models a composition of
+ * symplectic Euler and its adjoint in q and p, by Newton's method (implicit_symplectic.c); two halves make the generalised Stoermer-Verlet method,
+ * the Lobatto IIIA-IIIB pair: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VI.3 and II.2.2. Enters: t, y; leaves: t + h,
+ * y one step later. Holds: sums over steps of q, v (or p) and t are compensated (steps.h); the acceleration at the end of a step is the first of the
+ * next.
  *
  * A drift advances t with q, so a force with explicit time is evaluated at the right time and keeps the order. The map is
  * symplectic only where the forces have a potential. Dense output has the order of the descriptor, and is not symplectic. */
@@ -16,31 +17,22 @@
 #include "methods/step_interpolant.h"
 #include "methods/steps.h"
 #include "methods/tangent.h"
-
-/* Saved state of the explicit methods, doubles only; x holds the arrays of n named below, then the path of step_interpolant.h. */
-typedef struct Verlet {
-  lag_fixed_step step;
-  double ready;     /* 1: F1 = f(t, y) is known */
-  double have_path; /* dense output: 1 built, -1 failed, 0 not built */
-  double x[];
-} Verlet;
-
-/* f = [v|a] at both ends and at a stage; y at both ends and at a stage; increments of y; compensation of y before and after. */
-enum { F0, F1, FS, Y0, Y1, YS, DY, COMP, COMP1, NARRAYS };
+#include "methods/verlet.h"
 
 static const lag_method_option options[] = {LAG_STEP_OPTION};
 
-/* A method of the family: its table for separable models, and the one for others. */
-typedef struct Member {
-  const lag_composition *separable, *any;
-} Member;
-
 static int is_explicit(const lag_problem *pb) { return (pb->model->flags & LAG_SEPARABLE) && !pb->model->constraints; }
 
+/* Kicks and drifts: those for q'' = f(q) where T is quadratic, those for any two flows of T(p) + V(q). */
+static const lag_composition *table_of(const lag_problem *pb) {
+  const VerletMember *m = pb->variant;
+  return pb->nq ? m->separable : m->any;
+}
+
 static size_t work_size(const lag_problem *pb) {
-  const Member *m = pb->variant;
+  const VerletMember *m = pb->variant;
   if (!is_explicit(pb)) return lag_implicit_composed_size(pb, m->any);
-  return sizeof(Verlet) / sizeof(double) + NARRAYS * (size_t)pb->n + lag_interpolant_size(pb->nq);
+  return sizeof(Verlet) / sizeof(double) + VERLET_NARRAYS * (size_t)pb->n + (pb->nq ? lag_interpolant_size(pb->nq) : 2 * (size_t)pb->n);
 }
 
 static void reset(void *work, lag_problem *pb) {
@@ -51,11 +43,11 @@ static void reset(void *work, lag_problem *pb) {
   }
   w->ready = w->have_path = 0;
   w->step.tc = 0;
-  memset(w->x + COMP * pb->n, 0, (size_t)pb->n * sizeof(double));
+  memset(w->x + VERLET_COMP * pb->n, 0, (size_t)pb->n * sizeof(double));
 }
 
 static int init(void *work, lag_problem *pb, const double *opt) {
-  const Member *m = pb->variant;
+  const VerletMember *m = pb->variant;
   Verlet *w = work;
   double h = lag_step_size(pb, opt[0]);
   if (!is_explicit(pb)) {
@@ -67,30 +59,40 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   return LAG_OK;
 }
 
-/* Adds one kick to the increment of v. */
+/* Number of coordinates, the first half of [q|v] or [q|p]. */
+static int half_of(const lag_problem *pb) { return pb->nq ? pb->nq : pb->n / 2; }
+
+/* Adds one kick to the increment of v, or p. */
 static void kick(Verlet *w, const lag_problem *pb, double h, const double *f) {
-  double *dv = w->x + DY * pb->n + pb->nq;
-  for (int i = 0; i < pb->nq; i++) dv[i] += h * f[pb->nq + i];
+  int nq = half_of(pb);
+  double *dv = w->x + VERLET_DY * pb->n + nq;
+  for (int i = 0; i < nq; i++) dv[i] += h * f[nq + i];
 }
 
-/* Adds one drift to the increment of q; YS := the state after it. */
-static void drift(Verlet *w, const lag_problem *pb, double h, const double *y) {
-  int nq = pb->nq, n = pb->n;
-  const double *comp = w->x + COMP * n;
-  double *dy = w->x + DY * n, *ys = w->x + YS * n;
+/* Adds one drift to the increment of q; YS := the state after it. The rate of q is v, or dT/dp at the new p. */
+static int drift(Verlet *w, lag_problem *pb, double t, double h, const double *y) {
+  int nq = half_of(pb), n = pb->n, rc;
+  const double *comp = w->x + VERLET_COMP * n;
+  double *dy = w->x + VERLET_DY * n, *ys = w->x + VERLET_YS * n;
+  const double *rate = pb->nq ? ys + nq : w->x + VERLET_FS * n;
   for (int i = 0; i < nq; i++) {
     ys[nq + i] = y[nq + i] + (comp[nq + i] + dy[nq + i]);
-    dy[i] += h * ys[nq + i];
     ys[i] = y[i] + (comp[i] + dy[i]);
   }
+  if (!pb->nq && (rc = lag_step_rhs(pb, t, ys, w->x + VERLET_FS * n)) != 0) return rc;
+  for (int i = 0; i < nq; i++) {
+    dy[i] += h * rate[i];
+    ys[i] = y[i] + (comp[i] + dy[i]);
+  }
+  return 0;
 }
 
-/* Y1, COMP1 := y + increments with compensation, for nq components from i0 on. */
+/* Y1, COMP1 := y + increments with compensation, for the coordinates or the other half, from i0 on. */
 static void add(Verlet *w, const lag_problem *pb, const double *y, int i0) {
   int n = pb->n;
-  const double *comp = w->x + COMP * n, *dy = w->x + DY * n;
-  double *y1 = w->x + Y1 * n, *comp1 = w->x + COMP1 * n;
-  for (int i = i0; i < i0 + pb->nq; i++) {
+  const double *comp = w->x + VERLET_COMP * n, *dy = w->x + VERLET_DY * n;
+  double *y1 = w->x + VERLET_Y1 * n, *comp1 = w->x + VERLET_COMP1 * n;
+  for (int i = i0; i < i0 + half_of(pb); i++) {
     comp1[i] = comp[i];
     y1[i] = lag_compensated_sum(y[i], dy[i], &comp1[i]);
   }
@@ -98,57 +100,75 @@ static void add(Verlet *w, const lag_problem *pb, const double *y, int i0) {
 
 /* All kicks and drifts of a step, from F0 = f(t, y) to Y1 and F1 = f(tb, Y1). */
 static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double t, double tb, const double *y, double dt) {
-  int n = pb->n, nq = pb->nq, last = c->stages - 1, rc;
-  double at = 0, *y1 = w->x + Y1 * n, *f = w->x + F0 * n;
-  memset(w->x + DY * n, 0, (size_t)n * sizeof(double));
+  int n = pb->n, nq = half_of(pb), last = c->stages - 1, rc;
+  double at = 0, *y1 = w->x + VERLET_Y1 * n, *f = w->x + VERLET_F0 * n;
+  memset(w->x + VERLET_DY * n, 0, (size_t)n * sizeof(double));
   for (int s = 0; s < c->stages; s++) {
     kick(w, pb, lag_composition_kick(c, s) * dt, f);
-    drift(w, pb, lag_composition_drift(c, s) * dt, y);
+    if ((rc = drift(w, pb, t + at * dt, lag_composition_drift(c, s) * dt, y)) != 0) return rc;
     at += lag_composition_drift(c, s);
     if (s < last) {
-      f = w->x + FS * n;
-      if ((rc = lag_step_rhs(pb, t + at * dt, w->x + YS * n, f)) != 0) return rc;
+      f = w->x + VERLET_FS * n;
+      if ((rc = lag_step_rhs(pb, t + at * dt, w->x + VERLET_YS * n, f)) != 0) return rc;
     }
   }
   /* Accelerations do not depend on velocities: those of the last stage serve until the last kick. */
-  memcpy(y1 + nq, w->x + YS * n + nq, (size_t)nq * sizeof(double));
+  memcpy(y1 + nq, w->x + VERLET_YS * n + nq, (size_t)nq * sizeof(double));
   add(w, pb, y, 0);
-  if ((rc = lag_step_rhs(pb, tb, y1, w->x + F1 * n)) != 0) return rc;
-  kick(w, pb, lag_composition_kick(c, c->stages) * dt, w->x + F1 * n);
+  if ((rc = lag_step_rhs(pb, tb, y1, w->x + VERLET_F1 * n)) != 0) return rc;
+  kick(w, pb, lag_composition_kick(c, c->stages) * dt, w->x + VERLET_F1 * n);
   add(w, pb, y, nq);
-  memcpy(w->x + F1 * n, y1 + nq, (size_t)nq * sizeof(double));
+  if (pb->nq) memcpy(w->x + VERLET_F1 * n, y1 + nq, (size_t)nq * sizeof(double));
+  else if ((rc = lag_step_rhs(pb, tb, y1, w->x + VERLET_F1 * n)) != 0) return rc;
   pb->bad_index = lag_not_finite(n, y1);
   return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, tb) : LAG_OK;
 }
 
 static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
-  const Member *m = pb->variant;
   Verlet *w = work;
   int n = pb->n, rc;
   size_t bytes = (size_t)n * sizeof(double);
   lag_next_step next;
   if (!is_explicit(pb)) return lag_implicit_step(work, pb, t, y, t_stop);
   if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0) return rc;
-  if (w->ready == 0.0 && (rc = lag_step_rhs(pb, *t, y, w->x + F1 * n)) != 0) return rc;
-  memcpy(w->x + F0 * n, w->x + F1 * n, bytes);
+  if (w->ready == 0.0 && (rc = lag_step_rhs(pb, *t, y, w->x + VERLET_F1 * n)) != 0) return rc;
+  memcpy(w->x + VERLET_F0 * n, w->x + VERLET_F1 * n, bytes);
   w->ready = w->have_path = 0; /* until this step succeeds */
-  if ((rc = compose(m->separable, w, pb, *t, next.tb, y, next.dt)) != 0) return rc;
-  memcpy(w->x + Y0 * n, y, bytes);
-  memcpy(y, w->x + Y1 * n, bytes);
-  memcpy(w->x + COMP * n, w->x + COMP1 * n, bytes);
+  if ((rc = compose(table_of(pb), w, pb, *t, next.tb, y, next.dt)) != 0) return rc;
+  memcpy(w->x + VERLET_Y0 * n, y, bytes);
+  memcpy(y, w->x + VERLET_Y1 * n, bytes);
+  memcpy(w->x + VERLET_COMP * n, w->x + VERLET_COMP1 * n, bytes);
   w->ready = 1;
   lag_fixed_step_end(&w->step, &next, t);
   return LAG_OK;
 }
 
+/* State inside the last step of T(p) + V(q): the cubic through both ends, of order 3, or a shorter step where the method's order is above 2. */
+static void dense_in_phase_space(Verlet *w, lag_problem *pb, double t, const StepEnds *ends, double *y) {
+  const lag_composition *c = table_of(pb);
+  size_t n = (size_t)pb->n, bytes = n * sizeof(double);
+  double *y1 = w->x + VERLET_Y1 * n, *f1 = w->x + VERLET_F1 * n, *kept = w->x + VERLET_NARRAYS * n;
+  lag_hermite(0, pb->n, ends->h, (t - ends->t0) / ends->h, ends->y0, ends->f0, ends->y1, ends->f1, y);
+  if (c->order <= 2) return;
+  memcpy(kept, y1, bytes);
+  memcpy(kept + n, f1, bytes);
+  if (compose(c, w, pb, ends->t0, t, ends->y0, t - ends->t0) == LAG_OK) memcpy(y, y1, bytes);
+  memcpy(y1, kept, bytes);
+  memcpy(f1, kept + n, bytes);
+}
+
 static void dense(void *work, lag_problem *pb, double t, double *y) {
-  const lag_composition *c = ((const Member *)pb->variant)->separable;
+  const lag_composition *c = table_of(pb);
   Verlet *w = work;
   int n = pb->n;
-  StepEnds ends = {w->step.t0, w->step.dt, w->x + Y0 * n, w->x + F0 * n, w->x + Y1 * n, w->x + F1 * n};
-  double *path = w->x + NARRAYS * n;
+  StepEnds ends = {w->step.t0, w->step.dt, w->x + VERLET_Y0 * n, w->x + VERLET_F0 * n, w->x + VERLET_Y1 * n, w->x + VERLET_F1 * n};
+  double *path = w->x + VERLET_NARRAYS * n;
   if (!is_explicit(pb)) {
     lag_implicit_dense(work, pb, t, y);
+    return;
+  }
+  if (!pb->nq) {
+    dense_in_phase_space(w, pb, t, &ends, y);
     return;
   }
   if (c->order == 1) {
@@ -171,21 +191,23 @@ static void kick_both(int nq, int k, double h, const double *f, const double *F,
 /* Repeats the kicks and drifts of compose with their derivatives: a kick adds the derivative of the force to dv, a drift adds dv to dq. */
 static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, double *scratch) {
   if (!is_explicit(pb)) return lag_implicit_tangent(work, pb, t, k, Y, scratch);
-  const lag_composition *c = ((const Member *)pb->variant)->separable;
+  const lag_composition *c = table_of(pb);
   Verlet *w = work;
-  int n = pb->n, nq = pb->nq, rc = 0;
+  int n = pb->n, nq = half_of(pb), rc = 0;
   double dt = lag_tangent_span(w->step.t0, t, w->step.h * pb->dir), at = 0, *rest;
   lag_tangent all = lag_tangent_layout(pb, k, scratch, &rest);
   double *y = rest, *f = y + n, *F = f + n;
 
-  memcpy(y, w->x + Y0 * n, (size_t)n * sizeof *y);
+  memcpy(y, w->x + VERLET_Y0 * n, (size_t)n * sizeof *y);
   for (int s = 0; s <= c->stages; s++) {
     if ((rc = lag_tangent_at(&all, w->step.t0 + at * dt, y, f)) != 0) return rc;
     lag_tangent_times(&all, Y, F);
     kick_both(nq, k, lag_composition_kick(c, s) * dt, f, F, y, Y);
     if (s < c->stages) {
-      lag_tangent_add(nq, lag_composition_drift(c, s) * dt, y + nq, y);
-      lag_tangent_add(nq * k, lag_composition_drift(c, s) * dt, Y + nq * k, Y);
+      if (!pb->nq && (rc = lag_tangent_at(&all, w->step.t0 + at * dt, y, f)) != 0) return rc;
+      if (!pb->nq) lag_tangent_times(&all, Y, F);
+      lag_tangent_add(nq, lag_composition_drift(c, s) * dt, pb->nq ? y + nq : f, y);
+      lag_tangent_add(nq * k, lag_composition_drift(c, s) * dt, pb->nq ? Y + nq * k : F, Y);
       at += lag_composition_drift(c, s);
     }
   }
@@ -196,7 +218,7 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
 #define METHODS(X)                                                                                                       \
   X(symplectic_euler, euler, euler, 1, 0, "kick, drift; one force a step. DOI 10.1017/S0962492902000144")                \
   X(verlet, verlet, verlet, 2, LAG_METHOD_SYMMETRIC,                                                                     \
-    "Stoermer-Verlet as kick, drift, kick; one force a step. DOI 10.1103/PhysRev.159.98")                                \
+    "Stoermer-Verlet, leapfrog, as kick, drift, kick; one force a step. DOI 10.1103/PhysRev.159.98")                                \
   X(verlet4, verlet4, any4, 4, LAG_METHOD_SYMMETRIC,                                                                     \
     "Blanes-Moan SRKN 6b, or S 6; 6 forces a step. DOI 10.1016/S0377-0427(01)00492-7")                                   \
   X(verlet6, verlet6, any6, 6, LAG_METHOD_SYMMETRIC,                                                                     \
@@ -205,7 +227,7 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
     "Blanes-Casas-Escorihuela B19, or Kahan-Li; 19 forces a step. DOI 10.1016/j.apnum.2022.07.010")
 
 #define DEFINE(id, table, general, p, properties, words)                                                                  \
-  static const Member member_##id = {&lag_compose_##table, &lag_compose_##general};                                       \
+  static const VerletMember member_##id = {&lag_compose_##table, &lag_compose_##general};                                       \
   const lag_method lag_##id = {                                                                                           \
       .name = #id,                                                                                                        \
       .order = p,                                                                                                         \

@@ -11,6 +11,7 @@
 typedef struct Chunk Chunk;
 struct Chunk {
   Chunk *next;
+  size_t serial; /* from 1, in order of allocation */
   size_t size, used;
   max_align_t data[];
 };
@@ -19,7 +20,7 @@ struct Arena {
   ArenaConfig config;
   Chunk *chunks;
   jmp_buf *handler;
-  size_t used;
+  size_t used, serial;
   int hit_limit;
 };
 
@@ -46,30 +47,59 @@ Arena *arena_new(const ArenaConfig *config) {
   return a;
 }
 
-/* Frees the chunks that are newer than `last`. */
-static void free_chunks(Arena *a, const Chunk *last) {
-  while (a->chunks != last) {
-    Chunk *c = a->chunks;
-    a->chunks = c->next;
-    UNPOISON(c->data, c->size);
-    a->config.dealloc(a->config.user, c);
-  }
+/* n bytes, rounded up to the alignment of any type. */
+static size_t whole_units(size_t n) {
+  const size_t align = sizeof(max_align_t);
+  return (n + align - 1) / align * align;
+}
+
+/* Frees the chunk to which *at points. */
+static void free_chunk(Arena *a, Chunk **at) {
+  Chunk *c = *at;
+  *at = c->next;
+  a->used -= c->used;
+  UNPOISON(c->data, c->size);
+  a->config.dealloc(a->config.user, c);
+}
+
+/* Frees the chunks that are newer than number `last`. */
+static void free_chunks(Arena *a, size_t last) {
+  while (a->chunks && a->chunks->serial > last) free_chunk(a, &a->chunks);
 }
 
 void arena_free(Arena *a) {
   if (!a) return;
-  free_chunks(a, NULL);
+  free_chunks(a, 0);
   a->config.dealloc(a->config.user, a);
 }
 
-ArenaMark arena_mark(const Arena *a) { return (ArenaMark){a->chunks, a->chunks ? a->chunks->used : 0, a->used}; }
+ArenaMark arena_mark(const Arena *a) {
+  const Chunk *c = a->chunks;
+  return c ? (ArenaMark){c->serial, c->used} : (ArenaMark){0};
+}
 
 void arena_forget(Arena *a, ArenaMark since) {
-  Chunk *c = since.chunk;
-  free_chunks(a, c);
-  if (c) POISON((char *)c->data + since.in_chunk, c->size - since.in_chunk);
-  if (c) c->used = since.in_chunk;
-  a->used = since.used;
+  free_chunks(a, since.serial);
+  Chunk *c = a->chunks;
+  if (!c || c->serial != since.serial) return;
+  POISON((char *)c->data + since.in_chunk, c->size - since.in_chunk);
+  a->used -= c->used - since.in_chunk;
+  c->used = since.in_chunk;
+}
+
+void arena_release(Arena *a, void *block, size_t n) {
+  Chunk *c = a->chunks;
+  if (n > a->config.chunk) {
+    Chunk **at = &a->chunks;
+    while (*at && (void *)(*at)->data != block) at = &(*at)->next;
+    if (*at) free_chunk(a, at);
+  } else if (c && (char *)block >= (char *)c->data && (char *)block < (char *)c->data + c->used) {
+    size_t whole = whole_units(n) + POISON_GAP;
+    POISON(block, n);
+    if ((char *)block + whole != (char *)c->data + c->used) return;
+    c->used -= whole;
+    a->used -= whole;
+  }
 }
 
 jmp_buf *arena_guard(Arena *a, jmp_buf *handler) {
@@ -83,12 +113,33 @@ _Noreturn void arena_fail(Arena *a) {
   longjmp(*a->handler, 1);
 }
 
+/* Whether the work was done, and not ended by want of memory. */
+static int run_guarded(Arena *outer, Arena *scratch, void (*work)(Arena *scratch, void *data), void *data) {
+  jmp_buf here;
+  arena_guard(outer, &here);
+  arena_guard(scratch, &here);
+  if (setjmp(here)) return 0;
+  work(scratch, data);
+  return 1;
+}
+
+void arena_with_scratch(Arena *outer, void (*work)(Arena *scratch, void *data), void *data) {
+  Arena *scratch = arena_new(NULL);
+  if (!scratch) arena_fail(outer);
+  jmp_buf *before = outer->handler;
+  int ok = run_guarded(outer, scratch, work, data);
+  outer->handler = before;
+  arena_free(scratch);
+  if (!ok) arena_fail(outer);
+}
+
 static Chunk *chunk_new(Arena *a, size_t n) {
   size_t size = n > a->config.chunk ? n : a->config.chunk;
   Chunk *c = a->config.alloc(a->config.user, sizeof *c + size);
   if (!c) arena_fail(a);
   c->size = size;
   c->used = 0;
+  c->serial = ++a->serial;
   c->next = a->chunks;
   a->chunks = c;
   POISON(c->data, c->size);
@@ -96,18 +147,17 @@ static Chunk *chunk_new(Arena *a, size_t n) {
 }
 
 void *arena_alloc(Arena *a, size_t n) {
-  const size_t align = sizeof(max_align_t);
   if (n > SIZE_MAX / 4) arena_fail(a);
   size_t asked = n;
-  n = (n + align - 1) / align * align;
+  n = whole_units(n) + POISON_GAP;
   if (a->config.max_bytes && a->used + n > a->config.max_bytes) {
     a->hit_limit = 1;
     arena_fail(a);
   }
   Chunk *c = a->chunks;
-  if (!c || c->size - c->used < n + POISON_GAP) c = chunk_new(a, n + POISON_GAP);
+  if (!c || c->size - c->used < n) c = chunk_new(a, n);
   void *p = (char *)c->data + c->used;
-  c->used += n + POISON_GAP;
+  c->used += n;
   a->used += n;
   UNPOISON(p, asked);
   return memset(p, 0, asked);

@@ -27,11 +27,14 @@ void arena_free(Arena *a);
 
 /* Mark: arena_forget frees all that was allocated since, to which nothing may point any more. For trials that are not kept. */
 typedef struct {
-  void *chunk;
-  size_t in_chunk, used;
+  size_t serial, in_chunk;
 } ArenaMark;
 ArenaMark arena_mark(const Arena *a);
 void arena_forget(Arena *a, ArenaMark since);
+
+/* Gives up a block of n bytes, to which nothing may point any more. A block larger than a chunk, and the latest block, are free at once; others
+ * with the arena (the address sanitizer reports their use from now on). A block that is not of this arena is left alone. */
+void arena_release(Arena *a, void *block, size_t n);
 
 /* n zeroed bytes aligned for any type; never NULL (see above). */
 void *arena_alloc(Arena *a, size_t n);
@@ -43,6 +46,9 @@ char *arena_strndup(Arena *a, const char *s, size_t n);
 /* A formatted string. */
 char *arena_printf(Arena *a, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 char *arena_vprintf(Arena *a, const char *fmt, va_list ap) __attribute__((format(printf, 2, 0)));
+
+/* Runs work with an arena of its own for values that are not kept, freed at the end; where either arena runs out of memory, `outer` fails. */
+void arena_with_scratch(Arena *outer, void (*work)(Arena *scratch, void *data), void *data);
 
 /* Gives the reason of a failure; returns 0. */
 static inline int fail_with(const char **error, const char *why) {
@@ -56,7 +62,7 @@ jmp_buf *arena_guard(Arena *a, jmp_buf *handler);
 /* Jumps to the handler as if memory had run out: how a guard passes a failure on to the next. */
 _Noreturn void arena_fail(Arena *a);
 
-/* Bytes handed out so far, and whether it was the limit (not the system) that refused. */
+/* Bytes handed out and not freed, and whether it was the limit (not the system) that refused. */
 size_t arena_used(const Arena *a);
 int arena_hit_limit(const Arena *a);
 

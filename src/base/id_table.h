@@ -56,6 +56,7 @@ static inline void idtable_add(IdTable *t, uint32_t hash, uint32_t id) {
     bigger.n = t->n;
     for (uint32_t i = 0; i < t->cap; i++)
       if (t->slots[i].id1) idtable_put(&bigger, t->slots[i]);
+    arena_release(t->arena, t->slots, t->cap * sizeof *t->slots);
     *t = bigger;
   }
   idtable_put(t, (IdSlot){.id1 = id + 1, .hash = hash});

@@ -194,9 +194,18 @@ static uint64_t residue_of_power(Num a, Num b) {
   return b.num < 0 ? mod_div(1, r) : r;
 }
 
+/* x^y; a small whole power as a product of long doubles, whose double does not depend on the C library. */
+static double power(double x, double y) {
+  enum { MOST = 64 };
+  long double r = 1;
+  if (y != nearbyint(y) || fabs(y) > MOST) return pow(x, y);
+  for (int n = abs((int)y); n; n--) r *= x;
+  return (double)(y < 0 ? 1 / r : r);
+}
+
 /* a^b, inexact. The error of ln |r| is |b| times that of ln |a|, plus |ln |a|| times that of b. */
 static Num pow_inexact(Num a, Num b) {
-  double x = num_value(a), y = num_value(b), r = pow(x, y), ea = value_error(a), eb = value_error(b), least = fabs(x) - ea;
+  double x = num_value(a), y = num_value(b), r = power(x, y), ea = value_error(a), eb = value_error(b), least = fabs(x) - ea;
   double relative = least > 0 ? fabs(y) * ea / least + fabs(log(fabs(x))) * eb + 4 * DBL_EPSILON : INFINITY;
   return inexact(r, relative < 0.1 ? 2 * relative * fabs(r) : INFINITY, residue_of_power(a, b));
 }

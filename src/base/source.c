@@ -2,11 +2,9 @@
 #include "base/source.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 
 #include "base/strbuf.h"
 
@@ -133,10 +131,25 @@ static size_t add_parts(char *out, size_t n, const char *path) {
 const char *path_relative_to(Arena *a, const char *from, const char *path) {
   char *out = arena_alloc(a, strlen(from) + strlen(path) + 3);
   size_t n = 0;
-  const char *slash = strrchr(from, '/');
-  if (path[0] == '/' || from[0] == '/') out[n++] = '/';
-  if (path[0] != '/' && slash) n = add_parts(out, n, arena_strndup(a, from, (size_t)(slash - from)));
+  const char *slash = lag_last_slash(from);
+  int whole = lag_is_absolute(path);
+  if ((whole ? path : from)[0] == '/') out[n++] = '/';
+  if (!whole && slash) n = add_parts(out, n, arena_strndup(a, from, (size_t)(slash - from)));
   n = add_parts(out, n, path);
   out[n] = '\0';
   return out;
+}
+
+static int is_readable(const char *path) {
+  const char *error;
+  FILE *f = source_open(path, &error);
+  if (f) fclose(f);
+  return f != NULL;
+}
+
+const char *source_locate(const Sources *s, const char *from, const char *path) {
+  const char *beside = path_relative_to(s->arena, from, path);
+  if (!s->library || lag_is_absolute(path) || is_readable(beside)) return beside;
+  const char *other = arena_printf(s->arena, "%s/%s", s->library, path);
+  return is_readable(other) ? other : beside;
 }

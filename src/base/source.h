@@ -31,6 +31,7 @@ typedef struct {
   Arena *arena;
   VEC(Source) files;
   uint32_t next_base;
+  const char *library; /* folder of files that models name from anywhere; NULL: none */
 } Sources;
 
 typedef struct {
@@ -61,3 +62,6 @@ Place source_place(const Sources *s, uint32_t offset);
 
 /* `path` as written in the file `from`: relative to its folder, in one spelling for each file. */
 const char *path_relative_to(Arena *a, const char *from, const char *path);
+
+/* The file that is `path` in the file `from`: beside it; or, where none can be read there, in the library that comes with lagc. */
+const char *source_locate(const Sources *s, const char *from, const char *path);

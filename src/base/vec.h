@@ -1,5 +1,5 @@
 /* VEC(T): a growable array in an arena. Growing copies, so pointers into a VEC do not outlive a
- * push; the arena keeps the old block until it is freed (at most as much again as the array). */
+ * push; the old block is given up. */
 #pragma once
 
 #include <stdint.h>
@@ -21,6 +21,7 @@ static inline void *vec_grow(Arena *a, void *at, uint32_t n, uint32_t *cap, size
     uint32_t bigger = *cap ? *cap * 2 : 8;
     void *block = arena_alloc(a, (size_t)bigger * size);
     if (n) memcpy(block, at, (size_t)n * size);
+    if (n) arena_release(a, at, (size_t)n * size);
     POISON((char *)block + (size_t)n * size, (bigger - n) * size);
     *cap = bigger;
     at = block;

@@ -187,7 +187,7 @@ static int linear_in(ExprGraph *g, Expr u, SymId s, Linear *out) {
   *out = (Linear){.s = s, .A = expr_diff(g, u, s)};
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(g, l.at[i]);
-    int steps = op == EX_SIGN || op == EX_LT || op == EX_LE || op == EX_EQ;
+    int steps = op == EX_SIGN || op == EX_FLOOR || op == EX_LT || op == EX_LE || op == EX_EQ;
     if (steps && expr_contains_sym(g, l.at[i], s)) return 0;
   }
   out->B = expr_replace(g, u, &s, &zero, 1);

@@ -98,6 +98,8 @@ static void other_params(CounterexampleSearch *s) {
   }
 }
 
+static uint32_t variables_of(const Canonical *c) { return c->is_point ? c->n : 2 * c->n; }
+
 /* The k-th simple state: at rest or moving, at a few angles; the last ones with other parameters. */
 static void simple_state(CounterexampleSearch *s, int k) {
   const Model *m = s->m;
@@ -113,6 +115,8 @@ static void simple_state(CounterexampleSearch *s, int k) {
   }
   for (uint32_t i = 0; i < m->states.n; i++) s->symbols[m->states.at[i].z] = at[(i + shift) % 4];
   for (uint32_t i = 0; i < m->inputs.n; i++) s->symbols[m->inputs.at[i].sym] = at[i % 2];
+  for (uint32_t i = 0; i < m->canonicals.n; i++)
+    for (uint32_t j = 0; j < variables_of(&m->canonicals.at[i]); j++) s->symbols[m->canonicals.at[i].fresh[j]] = at[(j + shift) % 4];
 }
 
 static void random_state(CounterexampleSearch *s, uint32_t seed) {
@@ -272,6 +276,11 @@ static void gather_free(CounterexampleSearch *s) {
       vec_push(a, &s->free, ((FreeSymbol){sym, &c->unit, rates, shown}));
     }
   for (uint32_t i = 0; i < m->states.n; i++) vec_push(a, &s->free, ((FreeSymbol){m->states.at[i].z, &m->states.at[i].unit, 0, 1}));
+  for (uint32_t i = 0; i < m->canonicals.n; i++)
+    for (uint32_t j = 0; j < variables_of(&m->canonicals.at[i]); j++) {
+      SymId sym = m->canonicals.at[i].fresh[j];
+      if (is_in_sides(s, sym)) vec_push(a, &s->free, ((FreeSymbol){sym, si, 0, 1}));
+    }
   vec_push(a, &s->free, ((FreeSymbol){m->time, si, 0, is_in_sides(s, m->time)}));
   for (uint32_t i = 0; i < m->inputs.n; i++)
     if (!model_is_contact_switch(m, m->inputs.at[i].sym)) vec_push(a, &s->free, ((FreeSymbol){m->inputs.at[i].sym, &m->inputs.at[i].unit, 0, 1}));

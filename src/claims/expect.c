@@ -4,6 +4,7 @@
 
 #include "claims/case_proofs.h"
 #include "symmetry/charges.h"
+#include "symmetry/expression_brackets.h"
 #include "claims/suggest_correction.h"
 #include "claims/counterexample.h"
 
@@ -51,9 +52,9 @@ static void report_agrees(const Eqns *e, const Expect *x, const ExpectResult *r,
 }
 
 /* A state at which the sides differ refutes, whatever a proof says; without one, a proof decides. */
-static ExpectResult judge(const Eqns *e, const CaseSymbols *symbols, const Expect *x) {
+ExpectResult expect_judge(const Eqns *e, const CaseSymbols *symbols, const Expect *x) {
   enum { FEW_UNKNOWNS = 12 };
-  ExpectResult r = {.label = label_of(e->m, x), .span = x->span};
+  ExpectResult r = {.label = x->lhs_ast ? label_of(e->m, x) : x->name, .span = x->span};
   Verdict v = prove_by_motion(e, x->lhs, x->rhs);
   Counterexample w = {0};
   int proved = v == PROVED_ZERO;
@@ -96,6 +97,7 @@ static const Expr *parameter_substitutions(const Model *m, int closed) {
   for (uint32_t i = 0; i < m->contacts.n; i++) {
     const Contact *c = &m->contacts.at[i];
     with[c->closed] = expr_int(m->g, (int)i == closed);
+    if (c->is_tangent && (int)i != closed && (int)i - 1 != closed && !((int)i - 2 == closed && m->contacts.at[i - 1].is_tangent)) with[c->force] = expr_int(m->g, 0);
     if ((int)i != closed) with[m->constraints.at[c->constraint].multiplier] = expr_int(m->g, 0);
   }
   return some || m->contacts.n ? with : NULL;
@@ -129,7 +131,7 @@ static ExpectResult judge_cases(const ContactCase *cases, const CaseSymbols *sym
     if (with) shown->lhs = expr_substitute(m->g, x->lhs, with, n, "");
     if (with) shown->rhs = expr_substitute(m->g, x->rhs, with, n, "");
     if (with && x->domain) shown->domain = expr_substitute(m->g, x->domain, with, n, "");
-    r = judge(*e, symbols, shown);
+    r = expect_judge(*e, symbols, shown);
     if (r.verdict == EXPECT_PROVED) continue;
     if (m->contacts.n) r.label = i ? arena_printf(m->arena, "%s, while `%s` is closed,", r.label, m->contacts.at[i - 1].name)
                                    : arena_printf(m->arena, "%s, while all contacts are open,", r.label);
@@ -146,6 +148,15 @@ static Expr domain_of(const Eqns *e, const Expect *x) {
   return !uses || !motion ? domain : domain ? expr_fn2(e->g, EX_AND, domain, motion) : motion;
 }
 
+/* The nodes of a side with the values of their brackets, so that no correction names a placeholder. */
+static const Expr *nodes_with_brackets(const Eqns *e, AstId side, const Expr *nodes) {
+  uint32_t n = side - ast_expr(e->m->ast, side)->first + 1;
+  Expr *out = ARENA_ARRAY(e->m->arena, Expr, n);
+  if (!nodes || !e->nbrackets) return nodes;
+  for (uint32_t i = 0; i < n; i++) out[i] = nodes[i] ? expression_brackets_substitute(e, nodes[i], 0) : 0;
+  return out;
+}
+
 void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults *out) {
   const Model *m = e->m;
   const CaseSymbols symbols = cases_symbols(m);
@@ -157,6 +168,8 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
     x.lhs = charges_substitute(e, x.lhs);
     x.rhs = charges_substitute(e, x.rhs);
     x.domain = domain_of(e, &x);
+    x.nodes[0] = nodes_with_brackets(e, x.lhs_ast, x.nodes[0]);
+    x.nodes[1] = nodes_with_brackets(e, x.rhs_ast, x.nodes[1]);
     ExpectResult r = judge_cases(cases, &symbols, &x, &shown, &at);
     if (r.verdict == EXPECT_REFUTED) report_refuted(at, &shown, r.label, r.difference);
     if (r.verdict == EXPECT_AGREES) report_agrees(at, &shown, &r, allow_numeric);

@@ -1,6 +1,7 @@
 /* Expectations: equations that the user wrote, proved or refuted by the equations of motion M q'' = f. */
 #pragma once
 
+#include "claims/case_proofs.h"
 #include "mech/eqns.h"
 
 typedef enum {
@@ -23,6 +24,9 @@ typedef struct {
 
 typedef VEC(ExpectResult) ExpectResults;
 
+/* Verdict on one equation without contacts, reported nowhere. Of a claim that stands in no text, lhs_ast is 0 and `name` its label. */
+ExpectResult expect_judge(const Eqns *e, const CaseSymbols *symbols, const Expect *x);
+
 /* Judges the expectations declared in `effect` (NULL: outside effects) and appends the verdicts. A refuted one is an error in the model's
  * diagnostics, with the single edit that corrects it if there is one; one that is not decided is an error too, or, where the sides agree in
  * numbers and allow_numeric is set, a warning. */
@@ -30,6 +34,13 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
 
 /* Appends a line for each expectation and a summary; nothing when there are none. */
 void expects_print(const ExpectResults *r, const Sources *sources, StrBuf *out);
+
+/* canonical_claims.c: whether a canonical transformation is one: the Poisson brackets of its map, or the mixed Hessian of its generating function, and
+ * the agreement of all that is given. Otherwise reported, with the bracket that is wrong. *how: the proof, in words. */
+int canonical_holds(Eqns *e, const Canonical *c, const CaseSymbols *symbols, const char **how);
+
+/* Judges all canonical transformations, and appends a line for each that holds. */
+void canonicals_check(Eqns *e, StrBuf *out);
 
 /* mobility.c: appends the degrees of freedom and a line for each constraint: its kind, and whether it is redundant. Nothing without constraints.
  * 0, reported in the model's diagnostics, when no motion is possible from the start that the scene gives: no state near it obeys the

@@ -36,8 +36,11 @@ static int has_slope(const Eqns *e, StateSolver *s, const long double *symbols, 
 static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts, uint32_t k, uint32_t rank, StrBuf *out) {
   const Constraint *c = e->constraints.of[k];
   Place place = source_place(e->m->ast->sources, c->span.begin);
-  if (contact_of_constraint(e->m, c)) {
-    sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
+  const Contact *contact = contact_of_constraint(e->m, c);
+  if (contact) {
+    if (contact->is_tangent) sb_printf(out, "  its friction: a constraint, %s = 0, while it sticks\n", c->name);
+    else if (contact->margin) sb_printf(out, "  constraint %s (line %u): %s, while its condition is true\n", c->name, place.line, kind_of(e, k));
+    else sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
     return;
   }
   sb_printf(out, "  constraint %s (line %u): %s%s", c->name, place.line, kind_of(e, k), c->inside ? ", the unit length of a rotation" : "");
@@ -82,12 +85,16 @@ static void show_integrability(const Eqns *e, StateSolver *s, StrBuf *out) {
                                       [INTEGRABLE_PROVED] = "are integrable: they could be stated for positions",
                                       [INTEGRABLE_UNDECIDED] = "are integrable at all states tried; not proved"};
   const Constraints *all = &e->constraints;
-  if (all->nholonomic == all->n) return;
+  uint32_t held = 0;
+  for (uint32_t i = all->nholonomic; i < all->n; i++) held += !contact_of_constraint(e->m, all->of[i]);
+  if (!held) return;
   sb_printf(out, "  constraints on velocities %s\n", words[frobenius(e, s)]);
   for (uint32_t i = all->nholonomic; i < all->nkept; i++) {
     sb_printf(out, "  constraint %s keeps ", all->of[i]->name);
-    expr_print(e->g, all->c[i], PRINT_TEXT, out);
-    sb_puts(out, " as it is at the start\n");
+    const Contact *switched = contact_of_constraint(e->m, all->of[i]);
+    Expr one = expr_int(e->g, 1), kept = switched ? expr_replace(e->g, all->c[i], &switched->closed, &one, 1) : all->c[i];
+    expr_print(e->g, kept, PRINT_TEXT, out);
+    sb_puts(out, switched ? " as it is when it begins to hold\n" : " as it is at the start\n");
   }
 }
 
@@ -167,24 +174,39 @@ static int check_inertia(const Eqns *e, StateSolver *s, const long double *symbo
   return 0;
 }
 
-/* Whether all gaps of contacts are nonnegative at the start, and restitutions between 0 and 1. */
+/* The mistake in the values of a contact, or NULL. value: gap, restitution, friction, static friction; far: the largest coordinate. */
+static const char *contact_mistake(const Eqns *e, const Contact *c, const long double *value, long double far) {
+  Arena *a = e->m->arena;
+  const Contact *gap = c;
+  while (gap->is_tangent) gap--;
+  const char *name = gap->name;
+  if (c->is_tangent && !(value[3] >= value[2]))
+    return arena_printf(a, "the contact `%s` has a static friction of %.3Lg, which must be at least its friction while it slips, %.3Lg", name, value[3], value[2]);
+  if (c->is_tangent && !(value[2] >= 0)) return arena_printf(a, "the contact `%s` has a friction of %.3Lg, which must be at least 0", name, value[2]);
+  if (!c->is_tangent && value[0] < -1e-12L * (far > 1 ? far : 1)) return arena_printf(a, "the start is inside the contact `%s`: its gap is %.3Lg", name, value[0]);
+  if (isnan(value[0])) return arena_printf(a, "the contact `%s` has no value at the start", name);
+  if (value[1] >= 0 && value[1] <= 1) return NULL;
+  return arena_printf(a, "the contact `%s` has a %srestitution of %.3Lg, which must be between 0 and 1", name, c->is_tangent ? "tangential " : "", value[1]);
+}
+
+/* Whether all gaps of contacts are nonnegative at the start, restitutions between 0 and 1, and frictions nonnegative. */
 static int check_contacts(const Eqns *e, const long double *symbols) {
   const Model *m = e->m;
   uint32_t n = m->contacts.n;
-  Expr *roots = ARENA_ARRAY(m->arena, Expr, 2 * (size_t)n + 1);
-  long double *value = ARENA_ARRAY(m->arena, long double, 2 * (size_t)n + 1), far = 0;
-  for (uint32_t i = 0; i < n; i++) roots[2 * i] = m->contacts.at[i].gap, roots[2 * i + 1] = m->contacts.at[i].restitution;
-  expr_eval(e->g, roots, 2 * n, symbols, value);
+  Expr *roots = ARENA_ARRAY(m->arena, Expr, 4 * (size_t)n + 1);
+  long double *value = ARENA_ARRAY(m->arena, long double, 4 * (size_t)n + 1), far = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    const Contact *c = &m->contacts.at[i];
+    roots[4 * i] = c->margin ? expr_int(e->g, 1) : c->gap, roots[4 * i + 1] = c->margin ? expr_int(e->g, 1) : c->restitution;
+    roots[4 * i + 2] = c->is_tangent ? c->friction : expr_int(e->g, 0);
+    roots[4 * i + 3] = c->is_tangent ? c->hold : expr_int(e->g, 0);
+  }
+  expr_eval(e->g, roots, 4 * n, symbols, value);
   for (uint32_t i = 0; i < e->n; i++) far = fmaxl(far, fabsl(symbols[m->coords.at[i].q]));
   for (uint32_t i = 0; i < n; i++) {
-    const Constraint *k = &m->constraints.at[m->contacts.at[i].constraint];
-    long double gap = value[2 * i], back = value[2 * i + 1];
-    const char *wrong = gap < -1e-12L * (far > 1 ? far : 1) ? arena_printf(m->arena, "the start is inside the contact `%s`: its gap is %.3Lg", k->name, gap)
-                        : isnan(gap) ? arena_printf(m->arena, "the contact `%s` has no value at the start", k->name)
-                        : !(back >= 0 && back <= 1) ? arena_printf(m->arena, "the contact `%s` has a restitution of %.3Lg, which must be between 0 and 1", k->name, back)
-                                                    : NULL;
+    const char *wrong = contact_mistake(e, &m->contacts.at[i], value + 4 * i, far);
     if (!wrong) continue;
-    diag_error(m->diags, k->span, "scene %s: %s", m->scene.name, wrong);
+    diag_error(m->diags, m->constraints.at[m->contacts.at[i].constraint].span, "scene %s: %s", m->scene.name, wrong);
     return 0;
   }
   return 1;

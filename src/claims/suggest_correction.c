@@ -7,7 +7,7 @@
 
 #include "claims/case_proofs.h"
 #include "claims/edit_sites.h"
-#include "claims/monomial_fit.h"
+#include "claims/feature_pool.h"
 #include "mech/states.h"
 #include "sym/print.h"
 
@@ -121,39 +121,13 @@ static int find_need(EditSearch *md, const Site *s, Need *need) {
 
 /* --- features --- */
 
-typedef struct {
-  Expr at[FEATURES_MAX];
-  uint32_t n;
-} Pool;
-
-static void pool_add(Pool *pool, Expr e) {
-  for (uint32_t i = 0; i < pool->n; i++)
-    if (pool->at[i] == e) return;
-  if (pool->n < FEATURES_MAX) pool->at[pool->n++] = e;
-}
-
 /* Whether e is or contains a whole side: that may not correct the other, or any x'' = formula could become x'' = x''. */
-static int contains_a_side(EditSearch *md, Expr e) {
+static int contains_a_side(const void *data, Expr e) {
+  const EditSearch *md = data;
   const Expr sides[2] = {md->x->lhs, md->x->rhs};
   for (int k = 0; k < 2; k++)
     if (e == sides[k] || (expr_op(md->g, sides[k]) == EX_SYM && expr_contains_sym(md->g, e, expr_sym_id(md->g, sides[k])))) return 1;
   return 0;
-}
-
-/* Adds the quantities of these kinds in the nodes, sines and cosines; `compounds`: also other functions and sums. */
-static void pool_nodes(Pool *pool, EditSearch *md, ExprList nodes, unsigned quantities, int compounds) {
-  for (uint32_t i = 0; i < nodes.n; i++) {
-    Expr e = nodes.at[i];
-    ExprOp op = expr_op(md->g, e);
-    if (op == EX_SYM && quantities & expr_kinds(md->g, e) && !contains_a_side(md, e)) pool_add(pool, e);
-    if (op == EX_SIN || op == EX_COS) {
-      Expr arg = expr_arg(md->g, e, 0), other = expr_fn(md->g, op == EX_SIN ? EX_COS : EX_SIN, arg);
-      pool_add(pool, op == EX_SIN ? e : other);
-      pool_add(pool, op == EX_SIN ? other : e);
-    }
-    int compound = op == EX_SUM || op == EX_HYPOT || op == EX_EXP || op == EX_TAN || op == EX_LOG;
-    if (compounds && compound && !contains_a_side(md, e)) pool_add(pool, e);
-  }
 }
 
 /* Quantities that the needed value of a place may be made of; simple ones first. What is missing often stands elsewhere in the expectations. */
@@ -172,12 +146,13 @@ static const Features *gather_features(EditSearch *md) {
   ExprList nodes[] = {expr_topo(md->g, own.at, own.n), expr_topo(md->g, inertia.at, inertia.n), expr_topo(md->g, all.at, all.n),
                       expr_topo(md->g, dynamics.at, dynamics.n)};
   const unsigned quantities = 1u << SYM_PARAM | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_RATE;
-  Pool pool = {.n = 0};
-  for (int k = 0; k < 4; k++) pool_nodes(&pool, md, nodes[k], quantities, 0);
-  pool_nodes(&pool, md, nodes[0], 1u << SYM_ACC, 0); /* may be monomials of the others */
-  pool_nodes(&pool, md, nodes[1], quantities, 1);
-  pool_nodes(&pool, md, nodes[0], quantities, 1);
-  pool_nodes(&pool, md, nodes[2], quantities, 1);
+  const unsigned simple = POOL_SYMBOLS | POOL_ANGLES, all_of = simple | POOL_COMPOUNDS;
+  FeaturePool pool = {.g = md->g, .barred = contains_a_side, .data = md};
+  for (int k = 0; k < 4; k++) pool_nodes(&pool, nodes[k], simple, quantities);
+  pool_nodes(&pool, nodes[0], simple, 1u << SYM_ACC); /* may be monomials of the others */
+  pool_nodes(&pool, nodes[1], all_of, quantities);
+  pool_nodes(&pool, nodes[0], all_of, quantities);
+  pool_nodes(&pool, nodes[2], all_of, quantities);
   return features_new(md->g, pool.at, pool.n, md->state);
 }
 

@@ -1,11 +1,21 @@
-/* `lagc build`: a simulator as a program of its own. */
+/* `lagc build`: a simulator as a program of its own, or a shared library. */
 #include "commands/commands.h"
+
 #include "commands/simulator.h"
+#include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
 int command_build(Compiler *c) {
   if (!compiler_knows_method(c)) return STATUS_USAGE;
   const char *path;
   Units units = {0};
-  if (!c->o.output) return usage_error("`lagc build` needs -o SIMULATOR");
-  return simulator_lower(c, &units) ? simulator_of_units(c, &units, c->o.output, &path) : STATUS_MODEL;
+  int is_so = c->o.output && lag_outfile_has_suffix(c->o.output, "so");
+  if (!c->o.output && !c->o.shared) return usage_error("`lagc build` needs -o SIMULATOR");
+  if (is_so && !c->o.shared) return usage_error("build writes a program: write -o SIMULATOR, or --shared for a library");
+  if (c->o.output && !is_so && c->o.shared) return usage_error("--shared writes a library: write -o libNAME.so");
+  if (c->o.shared && options_more_digits(&c->o)) return usage_error("a shared library has doubles: leave --precision out");
+  int status = simulator_lower(c, &units) ? simulator_of_units(c, &units, c->o.output, &path) : STATUS_MODEL;
+  if (status != STATUS_OK || c->o.output) return status;
+  StrBuf b = strbuf(c->arena);
+  sb_printf(&b, "%s\n", path);
+  return compiler_write(c, NULL, &b);
 }

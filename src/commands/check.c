@@ -5,6 +5,7 @@
 
 #include "symmetry/charges.h"
 #include "mech/discontinuity.h"
+#include "mech/switches.h"
 #include "claims/expect.h"
 #include "symmetry/noether_report.h"
 #include "report/equation_listing.h"
@@ -19,6 +20,7 @@ static void check_claims(Compiler *c, const Ast *ast, int allow_numeric, ExpectR
     if (!e[i]) continue;
     charges_judge(e[i], where.at[i]);
     charges_print(e[i], where.at[i], out);
+    if (!where.at[i]) canonicals_check(e[i], out);
   }
   for (uint32_t i = 0; i < where.n; i++)
     if (e[i]) expects_check(e[i], where.at[i], allow_numeric, results);
@@ -47,8 +49,8 @@ static void list_units(const FoundUnits *all, StrBuf *out) {
   if (all->n) sb_putc(out, '\n');
 }
 
-/* Whether the model declares inputs; each contact adds one more, which does not count. */
-static int has_inputs(const Model *m) { return m->inputs.n > m->contacts.n; }
+/* Whether the model declares inputs; those of contacts do not count. */
+static int has_inputs(const Model *m) { return m->inputs.n > model_contact_inputs(m); }
 
 int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) {
   const Ast *ast = c->ast;
@@ -64,9 +66,12 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
       show_cyclic(e, "", out);
     }
     collect_units(e->m, &found);
+    switches_find(e);
+    switches_warn(e);
     discontinuity_warn(e);
     if (!mobility_show(e, out)) continue;
     sb_printf(out, "scene %s: ok%s\n", scenes.at[i], with_effects(e->m));
+    if (i == 0 || scene || e->m->effects.n) switches_show(e, out);
     if (e->m->effects.n || has_inputs(e->m) || e->energy_jumps) charges_show_broken(e, out);
   }
   if (scene && !out->n) compiler_derive_compared(c, &(ModelChoice){.scene = scene}); /* reports the unknown scene */
@@ -74,6 +79,8 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
   for (uint32_t i = 0; i < unused.n && !scene; i++) {
     Eqns *e = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = unused.at[i]});
     if (!e) continue;
+    switches_find(e);
+    switches_warn(e);
     discontinuity_warn(e);
     collect_units(e->m, &found);
     sb_printf(out, "effect %s (in no scene): ok\n", unused.at[i]);

@@ -7,11 +7,17 @@
 #include "model/model.h"
 
 typedef enum {
-  CMD_NONE, CMD_CHECK, CMD_DERIVE, CMD_NOETHER, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_LYAPUNOV, CMD_COST, CMD_EFFECTS, CMD_METHODS, CMD_CACHE, CMD_BUILD, CMD_HEADER, CMD_EMIT,
+  CMD_NONE, CMD_CHECK, CMD_VERIFY, CMD_DERIVE, CMD_NOETHER, CMD_ACTION, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_LYAPUNOV, CMD_COST, CMD_SWEEP, CMD_EFFECTS, CMD_METHODS, CMD_MODELS, CMD_NEW, CMD_CACHE, CMD_BUILD, CMD_HEADER, CMD_EMIT, CMD_FMU,
   CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE, CMD_COUNT
 } Command;
 
 typedef VEC(const char *) OptionTexts;
+
+/* A constant that a sweep varies, and the texts of its values. */
+typedef struct {
+  const char *name;
+  OptionTexts values;
+} ConstRange;
 
 /* The command line as read: the command and the values of its options. */
 typedef struct {
@@ -22,26 +28,40 @@ typedef struct {
   const char *resume;      /* of run */
   const char *accurate;    /* run, plot, animate --accuracy */
   const char *tol;         /* run, plot, animate --tol */
-  const char *seconds, *error; /* cost --seconds, --error */
+  const char *seconds, *error, *budget; /* cost --seconds, --error, --budget */
   const char *format;      /* derive, noether --format */
+  const char *bracket;     /* derive --bracket */
+  const char *in;          /* derive --in */
+  const char *degree;      /* noether --degree */
   const char *dump;        /* --dump=ast,eqns,passes,prog */
   const char *topic;       /* help TOPIC; completion SHELL */
+  const char *like;        /* new --like */
   int clear;               /* of cache */
   int help;                /* --help: then command is CMD_HELP */
   int verbose;             /* check --verbose */
   int allow_numeric;       /* check --allow-numeric */
-  int no_gsl, ops, hamiltonian;
+  int no_gsl, ops, hamiltonian, lagrangian;
+  int involution;          /* noether --involution */
   const char *precision;   /* --precision: double, long, quad; NULL: double */
   const char *math;        /* --math own|libm */
-  const char *with;        /* --with linear: optional parts of an emitted model */
+  const char *with;        /* --with: optional parts of an emitted model, or of a header */
+  const char *prefix, *target; /* header --prefix, --for */
+  const char *fmi, *also_cc; /* fmu --fmi, --also-cc */
   VEC(Define) defines;
+  VEC(ConstRange) consts;  /* of sweep; `defines` ends with a value of each */
   const char *fix;         /* --fix g,l: parameters that become numbers */
   const char *accuracy;    /* effects --accuracy */
+  const char *against, *map; /* verify --against, --map */
+  int shared;              /* build --shared */
   int json;                /* effects --json; other commands pass it on */
+  OptionTexts scenes;      /* plot: all scenes named, each once */
   OptionTexts rest;        /* run, plot, animate: the simulator's arguments, the scene included; complete: the words */
   OptionTexts observe;     /* run --observe: expressions */
   const char *section;     /* run, plot --section */
-  const char *x, *y, *phase; /* plot */
+  OptionTexts y;           /* plot --y: expressions */
+  const char *x, *phase;   /* plot */
+  const char *cloud;       /* plot --cloud: N or N:PART */
+  int portrait, potential, distance, energy_error;
   const char *points, *from; /* animate */
   int no_rods;
 } Options;
@@ -103,6 +123,7 @@ const OptionRow *option_find(Command c, const char *arg, const char **value);
 /* Whether the word is an option whose value is the next word: in `--method rk4(step=0.01)` the second word is no setting. */
 int option_takes_next(Command c, const char *word);
 
-/* Whether the command runs a simulator, so that name=value is a setting; whether it reads a model. */
+/* Whether the command runs a simulator; whether name=value is a setting, as it is there; whether it reads a model. */
 int command_simulates(Command c);
+int command_takes_values(Command c);
 int command_reads_model(Command c);

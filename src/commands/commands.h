@@ -4,10 +4,13 @@
 #include "commands/compiler.h"
 
 int command_check(Compiler *c);
+int command_verify(Compiler *c);
 int command_derive(Compiler *c);
 int command_noether(Compiler *c);
+int command_action(Compiler *c);
 int command_emit(Compiler *c);
 int command_header(Compiler *c);
+int command_fmu(Compiler *c);
 int command_build(Compiler *c);
 int command_run(Compiler *c); /* run, plot, animate, modes, lyapunov, cost */
 int command_effects(Compiler *c);
@@ -24,8 +27,13 @@ int noether_print(Compiler *c, const char *scene, const char *format, StrBuf *ou
 typedef VEC(Name) Topics;
 void help_topics(Arena *a, Topics *out);
 
+/* Appends a line for each model of the gallery whose name or title has the word (NULL: for each), and returns their number. */
+uint32_t models_list(Compiler *c, const char *word, StrBuf *out);
+
 /* These read no model. */
 int command_help(Compiler *c);
 int command_methods(Compiler *c);
 int command_completion(Compiler *c);
 int command_cache(Compiler *c);
+int command_models(Compiler *c);
+int command_new(Compiler *c);

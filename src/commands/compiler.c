@@ -11,12 +11,15 @@
 #include "ir/unit.h"
 #include "jets/self_check.h"
 #include "lower/lower.h"
+#include "mech/constrain.h"
+#include "mech/consistent_start.h"
 #include "mech/mass_definiteness.h"
 #include "model/model.h"
 #include "report/equation_listing.h"
 #include "symmetry/charges.h"
 #include "syntax/parse.h"
 #include "toolchain/files.h"
+#include "toolchain/gallery.h"
 
 void compiler_print_messages(const Compiler *c) {
   StrBuf messages = strbuf(c->arena);
@@ -58,9 +61,15 @@ int compiler_write(Compiler *c, const char *path, const StrBuf *text) {
 /* --- the stages --- */
 
 int compiler_read(Compiler *c) {
-  const char *why = NULL;
-  const Source *source = source_read_model(c->sources, c->o.file, &why);
-  if (!source) return usage_error(arena_printf(c->arena, "cannot read %s: %s", c->o.file, why));
+  const char *why = NULL, *path = gallery_path(c->arena, c->argv0, c->o.file, &why);
+  if (!path) return usage_error(why);
+  c->o.file = path;
+  const Source *source = source_read_model(c->sources, path, &why);
+  if (!source) {
+    const char *model = gallery_name(c->arena, c->argv0, path), *whole = arena_printf(c->arena, "%s.lag", path);
+    if (file_exists(whole)) return usage_error(arena_printf(c->arena, "cannot read %s: %s; did you mean %s?", path, why, whole));
+    return usage_error(arena_printf(c->arena, model ? "cannot read %s: %s; the gallery has @%s" : "cannot read %s: %s", path, why, model));
+  }
   parse(c->ast, source);
   settings_defines(c->ast, c->o.defines.at, c->o.defines.n);
   if (wants_dump(c, "ast")) {
@@ -93,7 +102,13 @@ Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice) {
   return e && e->singular_mass && (derivatives_required(e, &c->o) & WANT_VARIATION) ? equations_regularised(e) : e;
 }
 
-IrUnit *compiler_new_unit(Compiler *c, Eqns *e) { return unit_new(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0); }
+IrUnit *compiler_unit_head(Compiler *c, Eqns *e) { return unit_head(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0); }
+
+IrUnit *compiler_new_unit(Compiler *c, Eqns *e) {
+  IrUnit *u = compiler_unit_head(c, e);
+  unit_add_programs(u, e);
+  return u;
+}
 
 static int agrees(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *told) {
   const char *wrong = unit_verify(u);
@@ -117,6 +132,22 @@ IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists) {
   if (wants_dump(c, "prog")) prog_dump(u->accel, &b);
   if (b.n) compiler_write(c, NULL, &b);
   return u;
+}
+
+/* Computes the consistent start that a run would find, and stores it in the header's scene. */
+static int bake_start(Compiler *c, const Eqns *e, IrUnit *u) {
+  long double *found = ARENA_ARRAY(c->arena, long double, 2 * (size_t)e->n + 1);
+  unsigned char *moved = ARENA_ARRAY(c->arena, unsigned char, 2 * (size_t)e->n + 1);
+  if (!start_of_scene(e, found, moved)) return 0;
+  for (uint32_t i = 0; i < 2 * e->n; i++)
+    if (moved[i]) vec_push(c->arena, &u->scenes.at[0].moves, ((IrMove){i, (double)found[i]}));
+  return 1;
+}
+
+IrUnit *compiler_lower_embedded(Compiler *c, Eqns *e) {
+  constraints_keep_none(e);
+  IrUnit *u = compiler_lower_scene(c, e, 0);
+  return u && bake_start(c, e, u) ? u : NULL;
 }
 
 Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice) {

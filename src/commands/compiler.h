@@ -54,6 +54,7 @@ Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice);
 Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice);
 
 IrUnit *compiler_new_unit(Compiler *c, Eqns *e);
+IrUnit *compiler_unit_head(Compiler *c, Eqns *e); /* see unit_head */
 
 /* Whether all programs of u are well formed and, for one of its scenes, compute what the text says; otherwise reported: an internal error. */
 int compiler_agrees(const Eqns *e, const IrUnit *u, uint32_t scene);
@@ -61,6 +62,9 @@ int compiler_agrees(const Eqns *e, const IrUnit *u, uint32_t scene);
 /* Programs of one scene, compared with the text. hoists: derived parameters are taken out, as emitted models have them. NULL with the reason
  * in c->diags when a program is wrong: an internal error. */
 IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists);
+
+/* The same for an embedded header, with the consistent start in its scene. */
+IrUnit *compiler_lower_embedded(Compiler *c, Eqns *e);
 
 /* Whether --method of emit and build is a method; reported if not. For a run the simulator judges. */
 int compiler_knows_method(Compiler *c);

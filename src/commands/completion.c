@@ -17,6 +17,7 @@
 #include "model/model.h"
 #include "commands/run_request.h"
 #include "syntax/parse.h"
+#include "toolchain/gallery.h"
 
 /* The command line before the cursor, parsed. */
 typedef struct {
@@ -24,6 +25,7 @@ typedef struct {
   StrBuf *out;
   const char *word; /* the last one */
   const char *head; /* prefix of every candidate: "--method=", "th + ", or "" */
+  const char *argv0;
   Command command;
   const char *file, *scene;
   const OptionRow *open; /* an option that waits for its value, or NULL */
@@ -42,8 +44,10 @@ static void offer(CommandLine *l, const char *candidate, const char *description
 static Ast *read_ast(CommandLine *l) {
   if (l->ast || !l->file) return l->ast;
   Sources *sources = sources_new(l->arena);
+  sources->library = gallery_library(l->arena, l->argv0);
   const char *why;
-  const Source *source = source_read_model(sources, l->file, &why);
+  const char *path = gallery_path(l->arena, l->argv0, l->file, &why);
+  const Source *source = path ? source_read_model(sources, path, &why) : NULL;
   if (!source) return NULL;
   l->ast = ast_new(l->arena, interner_new(l->arena), sources, diags_new(l->arena, sources));
   parse(l->ast, source);
@@ -85,7 +89,7 @@ static void offer_settings(CommandLine *l) {
 }
 
 static void offer_names(CommandLine *l, const AstStmt *list) {
-  static const char *const quantity[STMT_STOP + 1] = {[STMT_COORD] = "coordinate", [STMT_PARAM] = "parameter", [STMT_CONST] = "constant", [STMT_INPUT] = "input",
+  static const char *const quantity[STMT_STOP + 1] = {[STMT_COORD] = "coordinate", [STMT_MOMENTUM] = "momentum", [STMT_PARAM] = "parameter", [STMT_CONST] = "constant", [STMT_INPUT] = "input",
                                                       [STMT_STATE] = "state", [STMT_LET] = "let", [STMT_OBSERVE] = "observable"};
   for (const AstStmt *s = list; s; s = s->next) {
     if (s->name && quantity[s->kind]) offer(l, s->dims ? arena_printf(l->arena, "%s[", s->name) : s->name, quantity[s->kind]);
@@ -193,6 +197,11 @@ static void record_word(CommandLine *l, const char *word) {
   }
 }
 
+static void offer_models(CommandLine *l, const char *before) {
+  Gallery g = gallery_find(l->arena, l->argv0);
+  for (uint32_t i = 0; i < g.names.n; i++) offer(l, arena_printf(l->arena, "%s%s", before, g.names.at[i]), "model of the gallery");
+}
+
 static void offer_word(CommandLine *l) {
   const char *value;
   const OptionRow *o = l->word[0] == '-' ? option_find(l->command, l->word, &value) : NULL;
@@ -201,16 +210,17 @@ static void offer_word(CommandLine *l) {
     l->head = arena_strndup(l->arena, l->word, (size_t)(value - l->word));
     offer_value(l, o);
   } else if (l->word[0] == '-') offer_options(l);
+  else if (!l->file && l->word[0] == '@') offer_models(l, "@");
   else if (!l->file) sb_puts(l->out, ":files lag\n");
   else {
     if (!l->scene) offer_scenes(l);
-    if (command_simulates(l->command)) offer_settings(l);
+    if (command_takes_values(l->command)) offer_settings(l);
   }
 }
 
-static void complete(StrBuf *out, const char *const *words, size_t n) {
+static void complete(StrBuf *out, const char *argv0, const char *const *words, size_t n) {
   if (!n) return;
-  CommandLine l = {.arena = out->arena, .out = out, .word = words[n - 1], .head = ""};
+  CommandLine l = {.arena = out->arena, .out = out, .word = words[n - 1], .head = "", .argv0 = argv0};
   if (n == 1) {
     offer_commands(&l);
     return;
@@ -221,7 +231,8 @@ static void complete(StrBuf *out, const char *const *words, size_t n) {
   else if (l.command == CMD_COMPLETION && n == 2) {
     for (size_t i = 0; word_at(l.arena, "bash zsh fish", i); i++) offer(&l, word_at(l.arena, "bash zsh fish", i), "");
   } else if (command_reads_model(l.command)) offer_word(&l);
-  else if (l.command == CMD_CACHE) offer_options(&l);
+  else if (l.command == CMD_NEW && l.open) offer_models(&l, "");
+  else if (l.command == CMD_CACHE || l.command == CMD_NEW) offer_options(&l);
 }
 
 /* `lagc completion SHELL`: prints a built-in script. */
@@ -241,7 +252,7 @@ static void print_script(StrBuf *out, const char *shell) {
 
 int command_completion(Compiler *c) {
   StrBuf out = strbuf(c->arena);
-  if (c->o.command == CMD_COMPLETE) complete(&out, c->o.rest.at, c->o.rest.n);
+  if (c->o.command == CMD_COMPLETE) complete(&out, c->argv0, c->o.rest.at, c->o.rest.n);
   else print_script(&out, c->o.topic);
   return compiler_write(c, NULL, &out);
 }

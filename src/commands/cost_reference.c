@@ -13,12 +13,13 @@
 
 typedef VEC(char *) Words;
 
-/* The simulator's arguments: the scene, name=value and --until of the command line. Returns 0 if a reference is given by --against. */
+/* The simulator's arguments: the scene, name=value and --until of the command line. Returns 0 if none is needed: --against gives one, --where measures times alone. */
 static int reference_words(Compiler *c, double seconds, Words *argv) {
   vec_push(c->arena, argv, c->picture.argv.at[0]);
   vec_push(c->arena, argv, arena_strdup(c->arena, "--reference"));
   for (uint32_t i = 0; i < c->o.rest.n; i++)
-    if (strcmp(c->o.rest.at[i], "--against") == 0 || strncmp(c->o.rest.at[i], "--against=", 10) == 0) return 0;
+    if (strcmp(c->o.rest.at[i], "--against") == 0 || strncmp(c->o.rest.at[i], "--against=", 10) == 0 || strcmp(c->o.rest.at[i], "--where") == 0) return 0;
+  if (c->picture.error && strcmp(c->picture.error, "residual") == 0) return 0;
   OptionTexts words = simulator_values(c);
   for (uint32_t i = 0; i < words.n; i++) vec_push(c->arena, argv, arena_strdup(c->arena, words.at[i]));
   if (c->picture.error) {
@@ -60,6 +61,24 @@ static void keep(Arena *a, const char *path, FILE *out) {
   if (lag_outfile_close(&o, whole ? OUTFILE_KEEP : OUTFILE_DROP) == 0) cache_limit(a, path);
 }
 
+/* Appends what quadruple precision costs: the line `precision quad` of a reference by such a simulator, with a second at most. Models that take long to
+ * compile have none. */
+static void add_quad(Compiler *c, const Units *units, const Words *argv, FILE *out) {
+  enum { MOST = 12, ROOM = 256 };
+  char line[ROOM];
+  const char *simulator = c->run_by && c->run->n + c->run->m->states.n > MOST ? NULL : simulator_quad(c, units);
+  FILE *f = simulator ? tmpfile() : NULL;
+  if (!f) return;
+  argv->at[argv->n - 2] = arena_strdup(c->arena, "1"); /* --seconds */
+  process_to_file(simulator, argv->at, f);
+  rewind(f);
+  fseek(out, 0, SEEK_END);
+  while (fgets(line, sizeof line, f))
+    if (strncmp(line, "precision quad ", 15) == 0) fputs(line, out);
+  fclose(f);
+  fflush(out);
+}
+
 /* Prints the reference to `out`. Returns the simulator's exit status. */
 static int print_reference(Compiler *c, const Words *argv, FILE *out) {
   Units units = {0};
@@ -70,6 +89,7 @@ static int print_reference(Compiler *c, const Words *argv, FILE *out) {
   const char *path = cached_path(c->arena, simulator, argv);
   if (copy_of_cached(path, out)) return 0;
   int status = process_to_file(simulator, argv->at, out);
+  if (status == 0) add_quad(c, &units, argv, out);
   if (status == 0) keep(c->arena, path, out);
   return status;
 }

@@ -3,11 +3,13 @@
 
 #include "emit/cnames.h"
 #include "emit/emit_model.h"
+#include "mech/switches.h"
 
 int command_emit(Compiler *c) {
   if (!compiler_knows_method(c)) return STATUS_USAGE;
   Eqns *e = compiler_derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
+  switches_find(e); /* for the runtime; headers, and what is verified, follow the text */
   IrUnit *u = compiler_lower_scene(c, e, 1);
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);

@@ -4,7 +4,6 @@
 
 #include <ctype.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/method_table.h"
 #include "base/words.h"
@@ -13,6 +12,7 @@
 #include "commands/terminal_page.h"
 #include "model/model.h"
 #include "syntax/parse.h"
+#include "toolchain/process.h"
 #include "toolchain/toolchain.h"
 
 enum { TERMS = 24 }; /* column of the meanings in lists */
@@ -301,7 +301,7 @@ static int help_methods(Compiler *c, const char *name) {
   SourceText text = {"runtime_methods.c", arena_printf(c->arena, program, tools.gsl ? "&lag_gsl" : "NULL")};
   const char *path = toolchain_simulator(c->arena, &tools, &text, 1, &error);
   if (!path) return usage_error(error);
-  execv(path, argv);
+  process_become(path, argv);
   return usage_error(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
 }
 
@@ -313,8 +313,10 @@ int command_help(Compiler *c) {
   if (print_help(&out, topic, &near)) return compiler_write(c, NULL, &out);
   if (method_find(topic, strlen(topic))) return help_methods(c, topic);
   if (!near) near = method_suggest(c->arena, topic);
-  return usage_error(near ? arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near)
-                         : arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics", topic));
+  if (near) return usage_error(arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near));
+  StrBuf models = strbuf(c->arena);
+  const char *more = models_list(c, topic, &models) ? arena_printf(c->arena, ", `lagc models %s` models of it", topic) : "";
+  return usage_error(arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics%s", topic, more));
 }
 
 int command_methods(Compiler *c) { return help_methods(c, NULL); }

@@ -15,6 +15,8 @@ int noether_print(Compiler *c, const char *scene, const char *format, StrBuf *ou
   if (!e->m->lagrangian) return diag_error(e->m->diags, e->m->span, "no symmetries to look for: the model has no Lagrangian");
   if (!scene && !charges_judge(e, NULL)) return 0;
   NoetherReport *r = noether_report(e);
+  if (c->o.degree) r->polynomial = polynomial_charges_find(e, &r->found, (uint32_t)(*c->o.degree - '0'));
+  if (c->o.involution) r->involution = involution_find(e, &r->found, r->polynomial);
   for (uint32_t i = 0; i < e->m->all_effects.n && !scene; i++) {
     Name effect = e->m->all_effects.at[i];
     const Eqns *with = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .also = effect});

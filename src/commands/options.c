@@ -22,6 +22,8 @@ static const char *unknown_command(Arena *a, const char *word) {
   return arena_printf(a, "unknown command `%s`; `lagc help` lists them", word);
 }
 
+typedef VEC(Name) Names;
+
 /* ---- values of options ---- */
 
 static int add_define(Arena *a, Options *o, const char *text, const char **error) {
@@ -42,15 +44,25 @@ static const char *comma_separated(Arena *a, const char *choices) {
   return text;
 }
 
+/* ": did you mean `cvode`?", or "". */
+static const char *nearest_choice(Arena *a, const char *choices, const char *word) {
+  Names names = {0};
+  for (const char *choice; (choice = word_at(a, choices, names.n)) != NULL;) vec_push(a, &names, choice);
+  Name near = suggest(word, names.at, names.n);
+  return near ? arena_printf(a, ": did you mean `%s`?", near) : "";
+}
+
 static int check_choices(Arena *a, const OptionRow *row, const char *value, const char **error) {
-  int several = row->takes == TAKES_CHOICES, ok = value[0] != '\0';
-  for (const char *s = value; ok && *s;) {
+  int several = row->takes == TAKES_CHOICES;
+  for (const char *s = value;;) {
     size_t n = several ? strcspn(s, ",") : strlen(s);
-    ok = has_word_n(row->hint, s, n);
-    s += n + (s[n] == ',');
+    const char *word = arena_strndup(a, s, n);
+    if (!has_word(row->hint, word))
+      return fail_with(error, arena_printf(a, "%s takes %s%s, not `%s`%s", row->name, comma_separated(a, row->hint),
+                                           several ? ", with commas between several" : "", word, nearest_choice(a, row->hint, word)));
+    s += n;
+    if (!*s++ || !*s) return 1; /* a comma may end the list */
   }
-  if (!ok) *error = arena_printf(a, "%s takes %s%s, not `%s`", row->name, comma_separated(a, row->hint), several ? ", with commas between several" : "", value);
-  return ok;
 }
 
 /* Advice: the command or option that writes files of this suffix. */
@@ -69,9 +81,10 @@ static int check_kind(Arena *a, Command c, const OptionRow *row, const char *pat
   const char *other = lag_outfile_other_type(path, suffixes), *name = row->brief ? row->brief : row->name;
   if (!other) return 1;
   const char *writer = row->brief ? command_find(c)->name : row->name, *way = row->brief ? advice_for_suffix(c, other) : "";
-  const char *kind = !*suffixes ? (c == CMD_BUILD ? "a program" : "text") : has_word_n(suffixes, "npy", 3) ? "CSV, or NumPy where the name ends in .npy"
+  const char *kind = !*suffixes ? (c == CMD_BUILD ? "a program" : "text")
+                   : has_word_n(suffixes, "h5", 2) ? "CSV, NumPy where the name ends in .npy, or HDF5 where it ends in .h5" : has_word_n(suffixes, "npy", 3) ? "CSV, or NumPy where the name ends in .npy"
                    : has_word_n(suffixes, "svg", 3) ? "SVG" : has_word_n(suffixes, "html", 4) ? "HTML" : has_word_n(suffixes, "h", 1) ? "a C header"
-                   : has_word_n(suffixes, "tex", 3) ? "LaTeX" : has_word_n(suffixes, "json", 4) ? "JSON" : "C";
+                   : has_word_n(suffixes, "tex", 3) ? "LaTeX" : has_word_n(suffixes, "json", 4) ? "JSON" : has_word_n(suffixes, "fmu", 3) ? "an FMU" : "C";
   int stem = (int)(other - path) - !*suffixes;
   return fail_with(error, arena_printf(a, "%s %s: %s writes %s%s; write %s %.*s%.*s", name, path, writer, kind, way, name, stem, path,
                                        (int)strcspn(suffixes, " "), suffixes));
@@ -112,7 +125,7 @@ static int set_value(Arena *a, Options *o, const OptionRow *row, const char *val
 static const char *meant_option(const char *arg) {
   static const char *const other[][2] = {{"--dt --timestep --stepsize --h", "--step"}, {"--tolerance --rtol --atol --eps --accuracy", "--tol"},
                                          {"--time --tmax --tend --end --t1 --span --duration", "--until"}, {"--integrator --solver", "--method"},
-                                         {"--plot --image --figure", "--svg"}, {"--sampling --interval --fps", "--every"}};
+                                         {"--plot --image --figure --png --pdf --picture", "--svg"}, {"--sampling --interval --fps", "--every"}};
   for (size_t i = 0; i < sizeof other / sizeof *other; i++)
     if (has_word(other[i][0], arg)) return other[i][1];
   return NULL;
@@ -133,7 +146,8 @@ static const char *unknown_option(Arena *a, const Options *o, const char *word) 
   for (size_t i = 0; i < n && meant; i++)
     if (strcmp(names[i], meant) == 0) return arena_printf(a, "`lagc %s` has no option `%s`; here it is called `%s`", row->name, arg, meant);
   if (near) return arena_printf(a, "`lagc %s` has no option `%s`: did you mean `%s`?", row->name, arg, near);
-  return arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them", row->name, arg, row->name);
+  const char *set = command_takes_values(o->command) && strncmp(arg, "--", 2) == 0 ? arena_printf(a, "; a value of the model has no dashes: %s=1", arg + 2) : "";
+  return arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them%s", row->name, arg, row->name, set);
 }
 
 static int read_option(Arena *a, int argc, char **argv, int *i, Options *o, const OptionRow *row, const char *value, const char **error) {
@@ -145,29 +159,37 @@ static int read_option(Arena *a, int argc, char **argv, int *i, Options *o, cons
     value = argv[++*i];
     if (row->passed) vec_push(a, &o->rest, value);
   }
-  if (row->takes == TAKES_FILE && (*row->hint || o->command == CMD_BUILD) && !check_kind(a, o->command, row, value, row->hint, error)) return 0;
+  int library = o->command == CMD_BUILD && lag_outfile_has_suffix(value ? value : "", "so"); /* --shared may come later: build.c judges */
+  if (row->takes == TAKES_FILE && (*row->hint || o->command == CMD_BUILD) && !library && !check_kind(a, o->command, row, value, row->hint, error)) return 0;
   if (strcmp(row->name, "--method") == 0) o->method = value; /* passed on, and recorded: its derivatives are compiled in */
   if (strcmp(row->name, "--resume") == 0) o->resume = value;
   if (strcmp(row->name, "--tol") == 0) o->tol = value;
   if (strcmp(row->name, "--accuracy") == 0 && command_simulates(o->command)) o->accurate = value;
-  if (strcmp(row->name, "--tangent") == 0) o->with = "linear";
+  if (strcmp(row->name, "--tangent") == 0 || strcmp(row->name, "--volume") == 0) o->with = "linear";
   return row->passed || set_value(a, o, row, value, error);
+}
+
+static void add_scene(Arena *a, Options *o, const char *name) {
+  if (!o->scene) o->scene = name;
+  for (uint32_t i = 0; i < o->scenes.n; i++)
+    if (strcmp(o->scenes.at[i], name) == 0) return;
+  vec_push(a, &o->scenes, name);
 }
 
 /* A word that is no option: the model, a scene, a value. */
 static int read_word(Arena *a, const char *arg, Options *o, const char **error) {
-  int sets = command_simulates(o->command) && strchr(arg, '=');
+  int sets = command_takes_values(o->command) && (strchr(arg, '=') || (o->command == CMD_SWEEP && o->file && strchr(arg, '~')));
   if (!o->file && !sets) {
     o->file = arg;
     return 1;
   }
-  if (command_simulates(o->command)) {
-    if (!sets && !o->scene) o->scene = arg;
+  if (command_simulates(o->command) || sets) {
+    if (!sets) add_scene(a, o, arg);
     vec_push(a, &o->rest, arg);
     return 1;
   }
   if (o->scene) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
-  o->scene = arg;
+  add_scene(a, o, arg);
   return 1;
 }
 
@@ -189,7 +211,7 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
       return 1;
     }
   }
-  if (!o->file) *error = arena_printf(a, "a model is missing; usage: %s", usage(a, o->command));
+  if (!o->file) *error = arena_printf(a, "a %s is missing; usage: %s", o->command == CMD_NEW ? "name" : "model", usage(a, o->command));
   return o->file && check_format(a, o, error);
 }
 
@@ -230,6 +252,6 @@ int options_read(Arena *a, int argc, char **argv, Options *o, const char **error
     return 1;
   }
   if (o->command == CMD_MODES || o->command == CMD_LYAPUNOV) o->with = "linear";
-  if (command_reads_model(o->command)) return read_arguments(a, argc, argv, o, error);
+  if (command_reads_model(o->command) || o->command == CMD_NEW) return read_arguments(a, argc, argv, o, error);
   return read_one_word(a, argc, argv, o, error);
 }

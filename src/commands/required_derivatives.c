@@ -1,12 +1,15 @@
 /* Required derivatives: maps the methods of a scene and of the command line to flags WANT_... */
 #include "commands/compiler.h"
 
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/method_table.h"
 #include "base/source.h"
+#include "emit/emit_model.h"
+#include "fmu/fmu.h"
 #include "ir/unit.h"
 
 /* Flags of a method; one that splits T and V of separable models is implicit for others, and then needs derivatives of L. */
@@ -17,10 +20,18 @@ static unsigned required_by_info(const Eqns *e, const MethodInfo *m) {
          (m->flags & METHOD_TAYLOR ? WANT_TAYLOR : 0u);
 }
 
-/* Flags of a method written NAME or NAME(option=value, ...). */
+/* Flags of methods written NAME or NAME(option=value, ...), with commas between several. */
 static unsigned required_by_method(const Eqns *e, const char *text) {
-  const MethodInfo *m = text ? method_find(text, strcspn(text, " (")) : NULL;
-  return m ? required_by_info(e, m) : 0;
+  unsigned wants = 0;
+  while (text && *text) {
+    text += strspn(text, ", ");
+    const MethodInfo *m = method_find(text, strcspn(text, " (,"));
+    wants |= m ? required_by_info(e, m) : 0;
+    text += strcspn(text, "(,");
+    if (*text == '(') text += strcspn(text, ")");
+    text += strcspn(text, ",");
+  }
+  return wants;
 }
 
 /* The method of a saved state, from the line `method NAME` near its head; NULL: none, and the simulator refuses the file. */
@@ -34,6 +45,14 @@ static const char *method_of_state(Arena *a, const char *path) {
   return name;
 }
 
+/* Whether `name` stands in an expression. */
+static int has_name(const char *text, const char *name) {
+  size_t n = strlen(name);
+  for (const char *at = text; (at = strstr(at, name)) != NULL; at += n)
+    if ((at == text || !(isalnum((unsigned char)at[-1]) || at[-1] == '_')) && !(isalnum((unsigned char)at[n]) || at[n] == '_')) return 1;
+  return 0;
+}
+
 /* Flags that all methods together need. */
 static unsigned required_by_all(const Eqns *e) {
   unsigned wants = 0;
@@ -45,15 +64,23 @@ static unsigned required_by_all(const Eqns *e) {
  * stiff. None for long models, whose series and Jacobians take long to compile. */
 static unsigned required_by_choice(const Eqns *e, const Options *o) {
   enum { LONG = 40 };
-  const double below_taylor = 1e-9; /* as in runtime/app/automatic_method.c */
+  const double below_taylor = 1e-9; /* as in runtime/analysis/automatic_method.c */
   double tol = o->accurate ? 0.1 * below_taylor : o->tol ? strtod(o->tol, NULL) : e->m->scene.tolerance; /* --accuracy tries several tolerances */
   int runs = command_simulates(o->command) || o->command == CMD_BUILD;
   if (!runs || (e->m->scene.method && !o->accurate) || o->method || e->n + e->m->states.n > LONG) return 0;
   return (tol > 0 && tol < below_taylor ? WANT_TAYLOR : 0u) | (e->conserves_energy && !e->m->states.n ? 0u : WANT_LINEAR);
 }
 
+/* Whether a measure of the scene or of --measure contains the Lyapunov exponent, for which the run has a tangent. */
+static int measures_exponent(const Eqns *e, const Options *o) {
+  int found = 0;
+  for (uint32_t i = 0; i < e->m->scene.measures.n; i++) found |= has_name(e->m->scene.measures.at[i].text, "lyapunov");
+  for (uint32_t i = 0; i < o->rest.n; i++) found |= has_name(o->rest.at[i], "lyapunov");
+  return found;
+}
+
 unsigned derivatives_required(const Eqns *e, const Options *o) {
   if (o->command == CMD_COST) return required_by_all(e);
-  unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) | required_by_choice(e, o) | (o->with ? WANT_LINEAR : 0u);
+  unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) | required_by_choice(e, o) | (o->command == CMD_FMU ? fmu_wants() : o->command == CMD_HEADER ? WANT_HELD | header_wants(o->with) | header_wants(o->target) : o->with || measures_exponent(e, o) ? WANT_LINEAR : 0u);
   return o->resume ? wants | required_by_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

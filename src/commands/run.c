@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
+#include "commands/budget.h"
 #include "commands/command_table.h"
 #include "commands/cost_reference.h"
 #include "commands/simulator.h"
@@ -65,15 +65,16 @@ int command_run(Compiler *c) {
   double begin = seconds_now();
   int status = simulator_prepare(c);
   if (status != STATUS_OK) return status;
+  if (c->o.budget) return cost_budget(c);
   Units units = {0};
   if (!simulator_lower(c, &units)) return STATUS_MODEL;
   status = c->o.command == CMD_COST ? make_cost_simulator(c, &units, begin, &path) : simulator_of_units(c, &units, NULL, &path);
   if (status != STATUS_OK) return status;
   if (writes_source(c)) return STATUS_USAGE;
   fflush(stdout);
-  compiler_print_messages(c); /* warnings: the simulator does not come back */
+  if (!simulator_is_later_rank(c)) compiler_print_messages(c); /* warnings: the simulator does not come back */
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
-  if (c->run && c->run->n <= LARGE) last_state_listen(c->arena, tell_last_state, c);
-  execv(path, c->picture.argv.at);
+  if (c->run && c->run->n <= LARGE && c->o.command != CMD_SWEEP) last_state_listen(c->arena, tell_last_state, c);
+  process_become(path, c->picture.argv.at);
   return usage_error(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
 }

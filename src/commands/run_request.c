@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/words.h"
 #include "commands/command_table.h"
 #include "syntax/parse.h"
 
@@ -38,13 +39,27 @@ static void add_argument(RequestBuilder *k, const char *option, const char *valu
   if (value) vec_push(k->arena, &k->p->argv, arena_strdup(k->arena, value));
 }
 
-/* The file of -o, or MODEL_SCENE.suffix. */
+/* The file of -o, or MODEL_SCENE.suffix, with all scenes that are named. */
 static const char *file_name(RequestBuilder *k, const char *suffix) {
   if (k->o->output) return k->o->output;
   const char *model = "model";
   for (const AstStmt *s = k->ast->first; s; s = s->next)
     if (s->kind == STMT_MODEL && s->name) model = s->name;
-  return arena_printf(k->arena, "%s_%s.%s", model, k->p->scene ? k->p->scene : model_scenes(k->ast).at[0], suffix);
+  StrBuf name = strbuf(k->arena);
+  SceneList scenes = k->p->scenes.n ? k->p->scenes : (SceneList){model_scenes(k->ast).at, 1};
+  sb_puts(&name, model);
+  for (uint32_t i = 0; i < scenes.n; i++) sb_printf(&name, "_%s", scenes.at[i]);
+  sb_printf(&name, ".%s", suffix);
+  return sb_text(&name);
+}
+
+/* The statement outside effects that declares `name` as a number or a family of numbers; NULL: none. */
+static const AstStmt *find_quantity(const Ast *ast, const char *name) {
+  for (const AstStmt *s = ast->first; s; s = s->next) {
+    int counts = s->kind == STMT_COORD || s->kind == STMT_STATE || s->kind == STMT_LET || s->kind == STMT_OBSERVE;
+    if (counts && s->name && !s->type && strcmp(s->name, name) == 0) return s;
+  }
+  return NULL;
 }
 
 /* --- sections --- */
@@ -61,20 +76,66 @@ static int section_direction(const char *text, size_t *n) {
   return -1;
 }
 
-/* --section 'EXPR rising' becomes an event of the model, at which the simulator writes rows. */
+typedef VEC(Name) Names;
+
+/* Adds the names of events and kicks, also of effects. */
+static void list_events(Arena *a, const AstStmt *first, Names *names) {
+  for (const AstStmt *s = first; s; s = s->next) {
+    if (s->kind == STMT_EVENT && !s->dims) vec_push(a, names, s->name);
+    if (s->kind == STMT_EFFECT) list_events(a, s->body, names);
+  }
+}
+
+/* A section without a direction: the nearest event or kick, unless it is a quantity of the model. 0 with *error. */
+static int refuse_section(RequestBuilder *k, const char *text, Names events, const char **error) {
+  Name near = find_quantity(k->ast, text) ? NULL : suggest(text, events.at, events.n);
+  if (near) return fail_with(error, arena_printf(k->arena, "--section %s: there is no event or kick `%s`; did you mean `%s`?", text, text, near));
+  return fail_with(error, arena_printf(k->arena, "--section %s: a direction is missing; write --section '%s rising', falling or crossing (both)", text, text));
+}
+
+/* --section 'EXPR rising' becomes an event of the model, at which the simulator writes rows; the name of an event or a kick is passed on. */
 static int prepare_section(RequestBuilder *k, const char **error) {
   const char *text = k->o->section;
   size_t n = 0;
   if (!text) return 1;
   text = text_trimmed(k->arena, text, strlen(text));
+  Names events = {0};
+  list_events(k->arena, k->ast->first, &events);
+  for (uint32_t i = 0; i < events.n; i++) {
+    if (strcmp(events.at[i], text) != 0) continue;
+    add_argument(k, "--section", text);
+    return 1;
+  }
   int direction = section_direction(text, &n);
-  if (direction < 0)
-    return fail_with(error, arena_printf(k->arena, "--section %s: a direction is missing; write --section '%s rising', falling or crossing (both)",
-                                         text, text));
+  if (direction < 0) return refuse_section(k, text, events, error);
   const Source *source = source_add(k->ast->sources, "--section", text, n);
   k->p->section = (Section){source ? parse_expression(k->ast, source) : 0, (AstDirection)direction, intern(k->ast->names, text)};
   if (!k->p->section.expr) return 0;
   add_argument(k, "--section", text);
+  return 1;
+}
+
+/* --- measures --- */
+
+/* Lets and observables of the model in --measure EXPR become outputs, so that the simulator knows them. */
+static int prepare_measure(RequestBuilder *k, const char *text) {
+  for (const char *s = text; *s;) {
+    size_t n = strcspn(s, " +-*/^()[],='\"");
+    const AstStmt *st = n ? find_quantity(k->ast, arena_printf(k->arena, "%.*s", (int)n, s)) : NULL;
+    if (st && !st->dims && (st->kind == STMT_LET || st->kind == STMT_OBSERVE) && !add_output(k, "--measure", st->name)) return 0;
+    s += n ? n : 1;
+  }
+  return 1;
+}
+
+static int prepare_measures(RequestBuilder *k) {
+  static const char option[] = "--measure";
+  const OptionTexts *words = &k->o->rest;
+  for (uint32_t i = 0; i < words->n; i++) {
+    const char *word = words->at[i], *after = strncmp(word, option, sizeof option - 1) == 0 ? word + sizeof option - 1 : "?";
+    const char *text = *after == '=' ? after + 1 : !*after && i + 1 < words->n ? words->at[i + 1] : NULL;
+    if (text && !prepare_measure(k, text)) return 0;
+  }
   return 1;
 }
 
@@ -88,17 +149,63 @@ static const char *derivative_text(RequestBuilder *k, const char *text) {
   return arena_printf(k->arena, plain ? "%s'" : "(%s)'", text);
 }
 
+/* The momentum of the coordinate in a model that gives its Hamiltonian; NULL: the model gives its Lagrangian. */
+static const char *momentum_of(const Ast *ast, const char *coordinate) {
+  const char *momentum = NULL;
+  for (const AstStmt *s = ast->first; s; s = s->next) {
+    if (s->kind == STMT_LAGRANGIAN || s->kind == STMT_KINETIC || s->kind == STMT_POTENTIAL) return NULL;
+    if (s->kind == STMT_MOMENTUM && ast_expr(ast, s->lhs)->name == coordinate) momentum = s->name;
+  }
+  return momentum;
+}
+
+/* The only coordinate of the model, *second its momentum or NULL; or, for --portrait, its only two. NULL: it has others, which *error says. */
+static const char *only_coordinate(RequestBuilder *k, const char *option, const char **second, const char **error) {
+  const AstStmt *found[2] = {NULL, NULL};
+  uint32_t n = 0;
+  for (const AstStmt *s = k->ast->first; s; s = s->next) {
+    if (s->kind != STMT_COORD) continue;
+    if (n < 2 && s->name && !s->dims && !s->type) found[n] = s;
+    n++;
+  }
+  *second = NULL;
+  if (n == 1 && found[0]) *second = momentum_of(k->ast, found[0]->name);
+  if (n == 2 && found[0] && found[1] && k->o->portrait) *second = found[1]->name;
+  if ((n == 1 || *second) && found[0]) return found[0]->name;
+  *error = arena_printf(k->arena, "%s needs a model with one coordinate%s; --x and --y draw any expressions", option, k->o->portrait ? ", or with two of first order" : "");
+  return NULL;
+}
+
 static int prepare_plot(RequestBuilder *k, const char **error) {
   const Options *o = k->o;
-  const char *x = o->phase ? o->phase : o->x, *y = o->phase ? derivative_text(k, o->phase) : o->y;
-  if (o->phase && (o->x || o->y)) *error = "--phase EXPR draws the rate of EXPR against it; leave out --x and --y";
-  else if (x && !y) *error = arena_printf(k->arena, "--x %s: the other axis is missing; add --y EXPR", x);
+  const char *x = o->phase ? o->phase : o->x, *y = o->phase ? derivative_text(k, o->phase) : o->y.n ? o->y.at[0] : NULL, *second;
+  if (o->energy_error && !x && !y) y = "energy";
+  else if (o->energy_error) *error = "--energy-error chooses the axes; leave out --x, --y and --phase";
+  else if (o->distance && x) *error = "--distance is over time; leave out --x and --phase";
+  if (o->cloud && o->phase) *error = "--cloud draws the coordinate and its momentum, or --x and --y; leave out --phase";
+  else if (o->cloud && !x && !y && (x = only_coordinate(k, "--cloud", &second, error))) y = second ? second : arena_printf(k->arena, "p_%s", x);
+  if (o->cloud) add_argument(k, "--cloud", o->cloud);
+  if (o->energy_error) add_argument(k, "--energy-error", NULL);
+  if (o->distance) add_argument(k, "--distance", NULL);
+  const char *beneath = o->portrait ? "--portrait" : o->potential ? "--potential" : NULL;
+  if (*error) return 0;
+  if (o->portrait && o->potential) *error = "--portrait and --potential are two pictures; leave one of them out";
+  else if (beneath && (x || y)) *error = arena_printf(k->arena, "%s chooses the axes; leave out --x, --y and --phase", beneath);
+  else if (o->phase && (o->x || o->y.n)) *error = "--phase EXPR draws the rate of EXPR against it; leave out --x and --y";
+  else if (beneath && (x = only_coordinate(k, beneath, &second, error))) {
+    y = o->potential ? "energy" : second ? second : derivative_text(k, x);
+    add_argument(k, beneath, NULL);
+  } else if (x && !y) *error = arena_printf(k->arena, "--x %s: the other axis is missing; add --y EXPR", x);
   if (*error) return 0;
   add_argument(k, "--svg", file_name(k, "svg"));
   if (x && !(x = add_output(k, o->phase ? "--phase" : "--x", x))) return 0;
   if (y && !(y = add_output(k, o->phase ? "--phase" : "--y", y))) return 0;
   if (x) add_argument(k, "--plot-x", x);
   if (y) add_argument(k, "--plot-y", y);
+  for (uint32_t i = 1; i < o->y.n; i++) {
+    if (!(y = add_output(k, "--y", o->y.at[i]))) return 0;
+    add_argument(k, "--plot-y", y);
+  }
   return 1;
 }
 
@@ -157,15 +264,6 @@ static int points_split(Arena *a, const char *text, PointTexts *points, const ch
 
 /* --- animate --- */
 
-/* The statement outside effects that declares `name` as a number or a family of numbers; NULL: none. */
-static const AstStmt *find_quantity(const Ast *ast, const char *name) {
-  for (const AstStmt *s = ast->first; s; s = s->next) {
-    int counts = s->kind == STMT_COORD || s->kind == STMT_STATE || s->kind == STMT_LET || s->kind == STMT_OBSERVE;
-    if (counts && s->name && !s->type && strcmp(s->name, name) == 0) return s;
-  }
-  return NULL;
-}
-
 /* Points of the model, found by the names of its quantities. */
 typedef struct {
   const char *points, *from;
@@ -180,7 +278,10 @@ static int find_pair(RequestBuilder *k, const char *x, const char *y, StrBuf *po
   return 1;
 }
 
-/* The point of a model with one coordinate; a periodic one is drawn as a hanging rod of length 1. */
+/* Whether the text declares an angle: periodic, or in [rad] or [deg]. */
+static int is_angle(const AstStmt *s) { return s->periodic || (s->unit.text && has_word("rad deg", s->unit.text)); }
+
+/* The point of a model with one coordinate; an angle is drawn as a hanging rod of length 1. */
 static void find_only(RequestBuilder *k, FoundPoints *f) {
   const AstStmt *only = NULL;
   uint32_t n = 0;
@@ -190,8 +291,8 @@ static void find_only(RequestBuilder *k, FoundPoints *f) {
       n++;
     }
   if (n != 1 || !only->name || only->dims || only->type) return;
-  f->rods = only->periodic;
-  f->points = arena_printf(k->arena, only->periodic ? "sin(%s),-cos(%s)" : "%s,0", only->name, only->name);
+  f->rods = is_angle(only);
+  f->points = arena_printf(k->arena, f->rods ? "sin(%s),-cos(%s)" : "%s,0", only->name, only->name);
 }
 
 /* Points of a family u[1] u[2] ...: abscissa the index, ordinate the value. */
@@ -293,18 +394,22 @@ static int prepare_animate(RequestBuilder *k, const char **error) {
 int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **error) {
   RequestBuilder k = {p, ast, o, ast->arena};
   int ok = 1;
-  p->scene = o->scene ? intern(ast->names, o->scene) : NULL;
+  Name *scenes = ARENA_ARRAY(ast->arena, Name, o->scenes.n + 1);
+  for (uint32_t i = 0; i < o->scenes.n; i++) scenes[i] = intern(ast->names, o->scenes.at[i]);
+  p->scenes = (SceneList){scenes, o->scenes.n};
+  p->scene = o->scene ? scenes[0] : NULL;
   add_argument(&k, arena_printf(k.arena, "lagc %s", command_find(o->command)->name), NULL); /* head of the simulator's messages */
   if (o->command == CMD_EFFECTS) add_argument(&k, "--effects", "report");
   for (uint32_t i = 0; i < o->observe.n; i++) ok &= add_output(&k, "--observe", o->observe.at[i]) != NULL;
-  ok = ok && prepare_section(&k, error);
+  ok = ok && prepare_section(&k, error) && prepare_measures(&k);
   if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);
   if (o->command == CMD_LYAPUNOV) add_argument(&k, "--lyapunov", NULL);
   if (o->command == CMD_COST) add_argument(&k, "--cost", NULL);
+  if (o->command == CMD_SWEEP) add_argument(&k, "--sweep", NULL);
   if (o->command == CMD_COST && o->error) {
-    p->error = strcmp(o->error, "final") == 0 ? "final" : add_output(&k, "--error", o->error);
+    p->error = strcmp(o->error, "final") == 0 || strcmp(o->error, "residual") == 0 ? o->error : add_output(&k, "--error", o->error);
     ok = ok && p->error;
     if (p->error) add_argument(&k, "--error", p->error);
   }

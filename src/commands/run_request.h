@@ -11,8 +11,9 @@ typedef struct {
   VEC(CommandOutput) asked;
   Section section;  /* Poincare section that chooses the rows; or none */
   Name scene;       /* scene of the run; NULL: the first */
+  SceneList scenes; /* scenes that the command line names: a picture may show several */
   VEC(char *) argv; /* the simulator's, NULL-terminated */
-  const char *error; /* cost --error: name of the output that is judged, or "final"; NULL: the state */
+  const char *error; /* cost --error: name of the output that is judged, "final" or "residual"; NULL: the state */
   const char *note; /* points that were chosen for the user, or NULL */
 } RunRequest;
 
@@ -24,11 +25,14 @@ int settings_defines(Ast *ast, Define *defines, uint32_t n);
 
 typedef VEC(CommandInput) GivenList;
 
-/* Moves inputs with a formula or a table, and starts of rotations, from o->rest to *given. */
-int settings_compiled(Ast *ast, Options *o, GivenList *given, const char **error);
+/* Moves inputs with a formula or a table, and starts of rotations, from o->rest to *given; `all`: each name=value. */
+int settings_compiled(Ast *ast, Options *o, int all, GivenList *given, const char **error);
 
 /* Replaces values with a unit (`th=90[deg]`, `--until 2[min]`) and formulas (`th=pi/3`) in o->rest by numbers. */
 int settings_units(Ast *ast, const Options *o);
+
+/* Whether the text is a plain number. */
+int text_is_number(const char *text);
 
 /* A text on one line, without white space at its ends and with single spaces inside. */
 const char *text_trimmed(Arena *a, const char *text, size_t n);

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "commands/command_table.h"
+#include "commands/const_ranges.h"
+#include "commands/range.h"
 #include "toolchain/files.h"
 #include "syntax/parse.h"
 
@@ -34,7 +36,7 @@ static const AstStmt *find_declared(const Ast *ast, AstStmtKind kind, const char
   return NULL;
 }
 
-static int is_number(const char *text) { return *text && strspn(text, "+-.0123456789eE") == strlen(text); }
+int text_is_number(const char *text) { return *text && strspn(text, "+-.0123456789eE") == strlen(text); }
 
 /* Parses the expression after `name=`; 0 after a mistake. */
 static AstId parse_setting(Ast *ast, const char *name, const char *text) {
@@ -77,16 +79,49 @@ static int starts_rotation(const Ast *ast, const char *name) {
   return st && st->type && strcmp(st->type, "rotation") == 0 && !strchr(inner, '\'');
 }
 
-int settings_compiled(Ast *ast, Options *o, GivenList *given, const char **error) {
+/* Whether word i, a range of `name`, has a table or formula beside it: the simulator would not see that. */
+static const char *value_beside(Arena *a, const Options *o, uint32_t i, const char *name) {
+  for (uint32_t k = 0; k < o->rest.n; k++) {
+    const char *word = o->rest.at[k], *eq = word[0] != '-' ? strchr(word, '=') : NULL;
+    if (word[0] == '-' && option_takes_next(o->command, word)) k++;
+    if (k != i && eq && strcmp(text_trimmed(a, word, (size_t)(eq - word)), name) == 0 && !range_split(a, word)) return word;
+  }
+  return NULL;
+}
+
+/* Refuses names with a range and a value. */
+static int check_ranges(Ast *ast, const Options *o, const char **error) {
+  for (uint32_t i = 0; i < o->rest.n && o->command == CMD_SWEEP; i++) {
+    const char *word = o->rest.at[i];
+    if (word[0] == '-' && option_takes_next(o->command, word)) i++;
+    if (word[0] == '-' || !range_split(ast->arena, word)) continue;
+    const char *name = text_trimmed(ast->arena, word, strcspn(word, "=~")), *beside = value_beside(ast->arena, o, i, name);
+    if (beside) return fail_with(error, arena_printf(ast->arena, "%s: %s varies; leave one out", beside, name));
+  }
+  return 1;
+}
+
+int settings_compiled(Ast *ast, Options *o, int all, GivenList *given, const char **error) {
   uint32_t kept = 0;
   int ok = 1;
+  if (!check_ranges(ast, o, error)) return 0;
   for (uint32_t i = 0; i < o->rest.n; i++) {
-    const char *arg = o->rest.at[i], *eq = arg[0] != '-' ? strchr(arg, '=') : NULL;
-    const char *name = eq ? arena_strndup(ast->arena, arg, (size_t)(eq - arg)) : "";
-    if (eq && find_declared(ast, STMT_CONST, name) && !find_declared(ast, STMT_PARAM, name))
-      return fail_with(error, arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg));
-    int formula = eq && eq[1] && !is_number(eq + 1) && find_declared(ast, STMT_INPUT, name);
-    if (formula || (eq && eq[1] && starts_rotation(ast, name))) ok &= take_setting(ast, arg, given);
+    if (o->rest.at[i][0] == '-' && option_takes_next(o->command, o->rest.at[i]) && i + 1 < o->rest.n) { /* --measure u=x is no value of u */
+      o->rest.at[kept++] = o->rest.at[i++];
+      o->rest.at[kept++] = o->rest.at[i];
+      continue;
+    }
+    const char *arg = o->rest.at[i], *eq = arg[0] != '-' ? strpbrk(arg, o->command == CMD_SWEEP ? "=~" : "=") : NULL;
+    const char *name = eq ? text_trimmed(ast->arena, arg, (size_t)(eq - arg)) : "";
+    int ranges = eq && o->command == CMD_SWEEP && range_split(ast->arena, arg) != NULL;
+    int constant = eq && find_declared(ast, STMT_CONST, name) && !find_declared(ast, STMT_PARAM, name);
+    if (constant && !ranges) return fail_with(error, arena_printf(ast->arena, "%s: `%s` is a constant, fixed when compiling: write -D %s", arg, name, arg));
+    if (constant && !const_range_take(ast, o, i, name, error)) return 0;
+    arg = o->rest.at[i];
+    if (ranges && starts_rotation(ast, name))
+      return fail_with(error, arena_printf(ast->arena, "%s: the start of a rotation is compiled and cannot vary: write a `param` into it, as in `start omega(R) = (w, 0, 0)`, which can", arg));
+    int formula = eq && !text_is_number(eq + 1) && !ranges && find_declared(ast, STMT_INPUT, name);
+    if (eq && eq[1] && (all || formula || starts_rotation(ast, name))) ok &= take_setting(ast, arg, given);
     else o->rest.at[kept++] = arg;
   }
   o->rest.n = kept;
@@ -111,7 +146,7 @@ typedef struct {
 /* Whether the value has a unit or is a formula of numbers; all else goes to the simulator as it stands. */
 static int needs_conversion(const char *value) {
   size_t n = strlen(value);
-  if (is_number(value)) return 0;
+  if (text_is_number(value)) return 0;
   return strchr(value, '[') || strspn(value, "+-*/^.0123456789eE() pi") == n;
 }
 
@@ -175,18 +210,46 @@ static int convert_all(Converter *c) {
   return 1;
 }
 
+static int is_constant(const Options *o, const char *name) {
+  for (uint32_t k = 0; k < o->consts.n; k++)
+    if (strcmp(o->consts.at[k].name, name) == 0) return 1;
+  return 0;
+}
+
+typedef VEC(Range *) Ranges;
+
+/* Notes a range, which stands in word `at`, and its numbers for conversion. */
+static void note_range(Converter *c, Ranges *ranges, Range *range, uint32_t at, int *ok) {
+  range->word = at;
+  vec_push(c->arena, ranges, range);
+  for (uint32_t k = 0; k < range->numbers.n; k++) *ok &= convert_setting(c, &range->numbers.at[k]);
+  if (range->zero) *ok &= convert_setting(c, &range->zero);
+}
+
 int settings_units(Ast *ast, const Options *o) {
   Converter c = {.o = o, .ast = ast, .arena = ast->arena};
+  Ranges ranges = {0};
   int ok = 1;
   for (uint32_t i = 0; i < o->rest.n; i++) {
     const char *word = o->rest.at[i];
     uint32_t at = i;
+    Range *range = o->command == CMD_SWEEP && word[0] != '-' ? range_split(ast->arena, word) : NULL;
+    if (range && is_constant(o, range->name)) continue;
+    if (range) {
+      note_range(&c, &ranges, range, i, &ok);
+      continue;
+    }
     if (word[0] != '-') {
       if (strchr(word, '=')) ok &= convert_setting(&c, &o->rest.at[i]);
       continue;
     }
+    Range *starts = strcmp(word, "--starts") == 0 && i + 1 < o->rest.n ? range_split(ast->arena, o->rest.at[i + 1]) : NULL;
+    if (starts) note_range(&c, &ranges, starts, i + 1, &ok);
+    else if (strcmp(word, "--vs") == 0 && i + 1 < o->rest.n && strchr(o->rest.at[i + 1], '=')) ok &= convert_setting(&c, &o->rest.at[i + 1]);
     ok &= convert_time(&c, &i);
     if (i == at && option_takes_next(o->command, word)) i++;
   }
-  return ok && convert_all(&c);
+  ok = ok && convert_all(&c);
+  for (uint32_t i = 0; i < ranges.n && ok; i++) o->rest.at[ranges.at[i]->word] = range_joined(ast->arena, ranges.at[i]);
+  return ok;
 }

@@ -3,15 +3,19 @@
 
 #include <float.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "commands/const_ranges.h"
 #include "emit/cnames.h"
 #include "emit/emit_model.h"
 #include "ir/unit.h"
 #include "lower/lower.h"
 #include "mech/discontinuity.h"
+#include "mech/switches.h"
 #include "model/model.h"
 #include "toolchain/cache.h"
+#include "toolchain/files.h"
 
 /* The equations of a scene with the outputs, inputs and section of the command line. */
 static Eqns *derive_asked(Compiler *c, const char *scene) {
@@ -56,35 +60,65 @@ typedef struct {
 
 typedef VEC(Lowered) Lowereds;
 
+/* Whether the runs of a sweep may go in lanes (runtime/lanes/lane_choice.c knows of methods and scenes). */
+static int may_have_lanes(const Compiler *c, const Units *units) {
+  int may = c->o.command == CMD_SWEEP && !c->o.precision && toolchain_has_lanes();
+  for (uint32_t i = 0; i < units->n; i++) may &= !units->at[i]->constraints.of.n && !units->at[i]->libm;
+  return may;
+}
+
 /* After lowering: hoists derived parameters, and checks every scene against the text. */
-static int finish_units(const Units *units, const Lowereds *of) {
+static int finish_units(const Compiler *c, const Units *units, const Lowereds *of) {
+  int lanes = may_have_lanes(c, units);
+  for (uint32_t i = 0; i < units->n; i++) units->at[i]->lanes = lanes;
   for (uint32_t i = 0; i < units->n; i++) unit_hoist(units->at[i]);
   for (uint32_t i = 0; i < of->n; i++)
     if (!compiler_agrees(of->at[i].e, of->at[i].unit, of->at[i].scene)) return 0;
   return 1;
 }
 
+/* Says for which values of the constants the model is wrong; returns 0. */
+static int tell_variant(Compiler *c) {
+  for (uint32_t k = c->o.defines.n - c->o.consts.n; k < c->o.defines.n; k++) fprintf(stderr, "lagc: with %s=%s:\n", c->o.defines.at[k].name, c->o.defines.at[k].value);
+  return 0;
+}
+
+/* Adds a scene to a unit that accepts it, or to one of its own (apart: always). 0, after a message. */
+static int lower_scene(Compiler *c, const char *scene, int runs, int apart, Units *units, Lowereds *all) {
+  Eqns *e = derive_asked(c, scene);
+  if (!e) return 0;
+  switches_find(e);
+  if (runs) switches_warn(e), discontinuity_warn(e);
+  IrUnit *fresh = compiler_unit_head(c, e), *home = NULL;
+  for (uint32_t k = 0; k < units->n && !home && !apart; k++)
+    if (unit_accepts_scenes(units->at[k], fresh)) home = units->at[k];
+  if (!home) {
+    unit_add_programs(fresh, e);
+    vec_push(c->arena, units, home = fresh);
+  }
+  home->lines = 1;
+  if (runs) c->run = e, c->run_by = home;
+  unit_require(home, e, derivatives_required(e, &c->o));
+  unit_add_scene(home, e);
+  vec_push(c->arena, all, ((Lowered){e, home, home->scenes.n - 1}));
+  return 1;
+}
+
 int simulator_lower(Compiler *c, Units *units) {
   SceneList scenes = model_scenes(c->ast);
-  if (c->picture.asked.n || c->given.n || c->picture.section.expr) scenes = (SceneList){c->picture.scene ? &c->picture.scene : scenes.at, 1};
+  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->o.consts.n) scenes = c->picture.scenes.n ? c->picture.scenes : (SceneList){scenes.at, 1};
   Lowereds all = {0};
-  for (uint32_t i = 0; i < scenes.n; i++) {
-    Eqns *e = derive_asked(c, scenes.at[i]);
-    if (!e) return 0;
-    int runs = command_simulates(c->o.command) && strcmp(c->picture.scene ? c->picture.scene : scenes.at[0], scenes.at[i]) == 0;
-    if (runs) discontinuity_warn(e);
-    IrUnit *fresh = compiler_new_unit(c, e), *home = NULL;
-    for (uint32_t k = 0; k < units->n && !home; k++)
-      if (unit_accepts_scenes(units->at[k], fresh)) home = units->at[k];
-    if (!home) vec_push(c->arena, units, home = fresh);
-    home->lines = 1;
-    if (runs) c->run = e, c->run_by = home;
-    unit_require(home, e, derivatives_required(e, &c->o));
-    unit_add_scene(home, e);
-    vec_push(c->arena, &all, ((Lowered){e, home, home->scenes.n - 1}));
-    if (options_more_digits(&c->o) && i + 1 == scenes.n) precision_warn(c->ast, e->m->g, c->o.precision);
+  const char *error, *first = c->picture.scene ? c->picture.scene : scenes.at[0];
+  uint32_t variants = const_range_variants(c->arena, &c->o, &error);
+  for (uint32_t v = 0; v < variants; v++) { /* of the constants that a sweep varies */
+    if (!const_range_define(c->ast, &c->o, v)) return 0;
+    for (uint32_t i = 0; i < scenes.n; i++) {
+      int runs = command_simulates(c->o.command) && strcmp(first, scenes.at[i]) == 0;
+      if (!lower_scene(c, scenes.at[i], runs, variants > 1, units, &all)) return c->o.consts.n ? tell_variant(c) : 0;
+      if (options_more_digits(&c->o) && i + 1 == scenes.n && !simulator_is_later_rank(c)) precision_warn(c->ast, all.at[all.n - 1].e->m->g, c->o.precision);
+    }
   }
-  return finish_units(units, &all);
+  return finish_units(c, units, &all);
 }
 
 int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path) {
@@ -96,39 +130,110 @@ int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, cons
   return *path ? STATUS_OK : usage_error(error);
 }
 
+static void add_lanes(Compiler *c, const IrUnit *u, const char *name, const char *file, int lanes, Texts *texts) {
+  StrBuf b = strbuf(c->arena);
+  emit_lanes(u, name, file, lanes, &b);
+  vec_push(c->arena, texts, ((SourceText){arena_printf(c->arena, "lanes_%d_%s", lanes, file), sb_text(&b)}));
+}
+
 /* A text for each unit, the last of them with the program: a file less to compile. */
-Texts simulator_texts(Compiler *c, const Units *units, int gsl) {
+Texts simulator_texts(Compiler *c, const Units *units, ProgramKind kind) {
   Texts texts = {0};
   const char **names = ARENA_ARRAY(c->arena, const char *, units->n);
   for (uint32_t i = 0; i < units->n; i++) {
     names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units->at[i]->name), i);
     StrBuf b = strbuf(c->arena);
+    const char *file = arena_printf(c->arena, "model_%u.c", i);
     emit_model(units->at[i], names[i], &b);
-    if (i + 1 == units->n) emit_program((const IrUnit *const *)units->at, names, units->n, gsl, &b);
-    vec_push(c->arena, &texts, ((SourceText){arena_printf(c->arena, "model_%u.c", i), sb_text(&b)}));
+    if (i + 1 == units->n) emit_program((const IrUnit *const *)units->at, names, units->n, kind, &b);
+    for (int lanes = 4; lanes <= 8 && kind & PROGRAM_WITH_LANES; lanes *= 2) add_lanes(c, units->at[i], names[i], file, lanes, &texts);
+    vec_push(c->arena, &texts, ((SourceText){file, sb_text(&b)}));
   }
   return texts;
+}
+
+/* The file's name without folder, suffix and "lib". */
+static const char *file_stem(Compiler *c, const char *path) {
+  const char *name = file_name(path);
+  if (strncmp(name, "lib", 3) == 0) name += 3;
+  return arena_strndup(c->arena, name, strcspn(name, "."));
+}
+
+/* Whether a word of the simulator's command line names a file with this suffix. */
+static int names_file(const Compiler *c, const char *suffix) {
+  for (uint32_t i = 0; i < c->picture.argv.n && c->picture.argv.at[i]; i++) {
+    const char *word = c->picture.argv.at[i];
+    size_t n = strlen(word), k = strlen(suffix);
+    if (n > k && strcmp(word + n - k, suffix) == 0) return 1;
+  }
+  return 0;
+}
+
+int simulator_is_later_rank(const Compiler *c) {
+  static const char *const ranks[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
+  int later = 0;
+  for (size_t i = 0; i < sizeof ranks / sizeof *ranks; i++) later |= getenv(ranks[i]) && atoi(getenv(ranks[i])) > 0;
+  return later && c->o.command == CMD_SWEEP;
+}
+
+/* Whether a sweep has several processes: by --mpi, or because mpirun or srun started this one with others. */
+static int asks_ranks(const Compiler *c) {
+  static const char *const sizes[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}; /* of Open MPI; of srun, which sets PMIX_RANK beside the last one */
+  if (c->o.command != CMD_SWEEP) return 0;
+  for (uint32_t i = 0; i < c->picture.argv.n && c->picture.argv.at[i]; i++)
+    if (strncmp(c->picture.argv.at[i], "--mpi", 5) == 0) return 1;
+  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+    const char *n = i == 2 && !getenv("PMIX_RANK") ? NULL : getenv(sizes[i]);
+    if (n && atoi(n) > 1) return 1;
+  }
+  return 0;
+}
+
+/* Links the parts of the runtime that the command line asks for: those that write its files, and MPI. Returns PROGRAM_WITH_..., or -1 with *error. */
+static int find_parts(Compiler *c, Toolchain *t, const char **error) {
+  static const struct {
+    const char *suffix, *part, *needs;
+    int kind;
+  } rows[] = {{".png", "png", "a picture as PNG needs librsvg, which this lagc was built without: `apt-get install librsvg2-dev`, then `make`; .svg needs nothing", PROGRAM_WITH_PNG},
+              {".h5", "hdf5", "HDF5 needs libhdf5, which this lagc was built without: `apt-get install libhdf5-dev`, then `make`; .csv and .npy need nothing", PROGRAM_WITH_HDF5},
+              {NULL, "mpi", "several processes (--mpi, mpirun) need Open MPI, which this lagc was built without: `apt-get install libopenmpi-dev openmpi-bin`, then `make`; --threads needs nothing", PROGRAM_WITH_MPI}};
+  int kind = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    if (rows[i].suffix ? !names_file(c, rows[i].suffix) : !asks_ranks(c)) continue;
+    t->parts[i] = toolchain_part(c->arena, t, rows[i].part);
+    if (!t->parts[i]) return fail_with(error, rows[i].needs) - 1;
+    kind |= rows[i].kind;
+  }
+  return kind;
 }
 
 int simulator_of_units(Compiler *c, const Units *units, const char *output, const char **path) {
   if (output && compiler_is_source(c, output)) return STATUS_USAGE;
   Toolchain tools;
   const char *error = NULL;
-  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl, &tools, &error)) return usage_error(error);
+  if (!toolchain_find(c->arena, c->argv0, !c->o.no_gsl && !c->o.shared, &tools, &error)) return usage_error(error);
   if (c->o.precision && !toolchain_precision(c->arena, &tools, c->o.precision, &error)) return usage_error(error);
   if (c->o.command == CMD_MODES) tools.optimise = "-O0";
-  Texts texts = simulator_texts(c, units, tools.gsl);
+  tools.soname = c->o.shared ? arena_printf(c->arena, "lib%s.so", file_stem(c, output ? output : c->o.file)) : NULL;
+  tools.lanes = units->at[0]->lanes;
+  int parts = find_parts(c, &tools, &error);
+  if (parts < 0) return usage_error(error);
+  ProgramKind kind = c->o.shared ? PROGRAM_LIBRARY : (ProgramKind)((tools.gsl ? PROGRAM_WITH_GSL : 0) | parts | (tools.lanes ? PROGRAM_WITH_LANES : 0));
+  Texts texts = simulator_texts(c, units, kind);
   return simulator_make(c, &tools, &texts, output, path);
 }
 
-const char *simulator_precise(Compiler *c, const Units *units) {
+static const char *simulator_in(Compiler *c, const Units *units, const char *precision) {
   Toolchain tools;
   const char *error = NULL;
-  const char *precision = LDBL_MANT_DIG > DBL_MANT_DIG ? "long" : "quad";
   if (!toolchain_find(c->arena, c->argv0, 0, &tools, &error) || !toolchain_precision(c->arena, &tools, precision, &error)) return NULL;
-  Texts texts = simulator_texts(c, units, 0);
+  Texts texts = simulator_texts(c, units, PROGRAM_PLAIN);
   return toolchain_simulator(c->arena, &tools, texts.at, texts.n, &error);
 }
+
+const char *simulator_precise(Compiler *c, const Units *units) { return simulator_in(c, units, LDBL_MANT_DIG > DBL_MANT_DIG ? "long" : "quad"); }
+
+const char *simulator_quad(Compiler *c, const Units *units) { return LDBL_MANT_DIG > DBL_MANT_DIG ? simulator_in(c, units, "quad") : NULL; }
 
 OptionTexts simulator_values(Compiler *c) {
   OptionTexts words = {0};
@@ -167,8 +272,11 @@ static const char *words_given(Compiler *c) {
 int simulator_prepare(Compiler *c) {
   const char *error = NULL;
   c->given_words = words_given(c);
-  if (c->o.scene && !model_has_scene(c->ast, c->o.scene)) return STATUS_MODEL;
-  if (!settings_compiled(c->ast, &c->o, &c->given, &error)) return error ? usage_error(error) : STATUS_MODEL;
+  for (uint32_t i = 0; i < c->o.scenes.n; i++)
+    if (!model_has_scene(c->ast, c->o.scenes.at[i])) return STATUS_MODEL;
+  if (!settings_compiled(c->ast, &c->o, 0, &c->given, &error)) return error ? usage_error(error) : STATUS_MODEL;
+  if (!const_range_variants(c->arena, &c->o, &error)) return usage_error(error);
+  if (c->o.consts.n) vec_push(c->arena, &c->o.rest, arena_printf(c->arena, "--consts=%s", const_range_names(c->arena, &c->o)));
   if (!settings_units(c->ast, &c->o)) return STATUS_USAGE;
   if (!run_request_prepare(&c->picture, c->ast, &c->o, &error)) return error ? usage_error(error) : STATUS_MODEL;
   return STATUS_OK;

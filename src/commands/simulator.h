@@ -2,6 +2,7 @@
 #pragma once
 
 #include "commands/compiler.h"
+#include "emit/emit_model.h"
 #include "toolchain/toolchain.h"
 
 /* The scenes of a file as units: scenes with the same effects and inputs share one. */
@@ -15,7 +16,7 @@ int simulator_prepare(Compiler *c);
 int simulator_lower(Compiler *c, Units *units);
 
 /* The C texts of a program of these units. */
-Texts simulator_texts(Compiler *c, const Units *units, int gsl);
+Texts simulator_texts(Compiler *c, const Units *units, ProgramKind kind);
 
 /* Makes a program from the texts at `output`, or in the cache (NULL), and gives its path. Returns a STATUS. */
 int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, const char *output, const char **path);
@@ -23,9 +24,14 @@ int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, cons
 /* The same from units, with the precision and the libraries that the command line asks for. */
 int simulator_of_units(Compiler *c, const Units *units, const char *output, const char **path);
 
+/* Whether mpirun or srun started this sweep as another process than the first one, which prints the warnings. */
+int simulator_is_later_rank(const Compiler *c);
+
 /* The words of the command line that say which motion is run: scene, name=value, --until. */
 OptionTexts simulator_values(Compiler *c);
 
 /* A simulator with more digits than doubles have, in the cache: long double, or quadruple precision where that is no more than a double; NULL where
  * there is neither. */
 const char *simulator_precise(Compiler *c, const Units *units);
+/* One with quadruple precision where the one above has long doubles; NULL elsewhere. */
+const char *simulator_quad(Compiler *c, const Units *units);

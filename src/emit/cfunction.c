@@ -8,7 +8,7 @@
 /* In all texts below LAG_ and lag_ stand for the prefix in upper and lower case. */
 static const char *const logic =
   "#ifndef LAG_SELECT\n"
-  "#define LAG_SELECT(c, a, b) ((c) ? (a) : (b))\n"
+  "#define LAG_SELECT(c, a, b) ((c) ? (LAG_REAL)(a) : (LAG_REAL)(b))\n"
   "#define LAG_NOT(c) (!(c))\n"
   "#define LAG_AND(a, b) ((a) && (b))\n"
   "#define LAG_OR(a, b) ((a) || (b))\n"
@@ -29,7 +29,9 @@ static const char *const positive =
   "#define LAG_POSITIVE(d) LAG_PIVOT(!((d) <= LAG_C(0.0))) /* NaN passes: the caller finds its cause */\n"
   "#endif\n";
 static const char *const positive_of_header =
-  "#ifndef LAG_POSITIVE\n"
+  "#ifdef LAG_COMPLEX /* has no order */\n"
+  "#define LAG_POSITIVE(d) LAG_PIVOT((d) != LAG_C(0.0))\n"
+  "#elif !defined(LAG_POSITIVE)\n"
   "#define LAG_POSITIVE(d) LAG_PIVOT((d) > LAG_C(0.0))\n"
   "#endif\n";
 
@@ -69,25 +71,26 @@ static const char *const solver =
 
 /* Cubic spline. Lanes in different intervals are evaluated one interval after the other. */
 static const char *const spline =
+  "\n#define LAG_ROW(t, y, m) {(LAG_LANE)(t), (LAG_LANE)(y), (LAG_LANE)(m)}\n"
   "\n/* The cubic between two rows of time, value and second derivative; outside of them the nearest value. */\n"
-  "static LAG_REAL lag_cubic(LAG_REAL t, const double *a, const double *b) {\n"
-  "  const LAG_LANE h = (LAG_LANE)(b[0] - a[0]);\n"
-  "  const LAG_REAL part = (t - (LAG_LANE)a[0])/h, zero = LAG_C(0.0), one = LAG_C(1.0);\n"
+  "static LAG_REAL lag_cubic(LAG_REAL t, const LAG_LANE *a, const LAG_LANE *b) {\n"
+  "  const LAG_LANE h = b[0] - a[0];\n"
+  "  const LAG_REAL part = (t - a[0])/h, zero = LAG_C(0.0), one = LAG_C(1.0);\n"
   "  const LAG_REAL x = LAG_SELECT(part < zero, zero, LAG_SELECT(part > one, one, part)), rest = one - x;\n"
-  "  return rest*(LAG_LANE)a[1] + x*(LAG_LANE)b[1]\n"
-  "       - x*rest*(h*h/(LAG_LANE)6)*((one + rest)*(LAG_LANE)a[2] + (one + x)*(LAG_LANE)b[2]);\n"
+  "  return rest*a[1] + x*b[1]\n"
+  "       - x*rest*(h*h/(LAG_LANE)6)*((one + rest)*a[2] + (one + x)*b[2]);\n"
   "}\n"
   "\n/* The curve through n rows. Between the first and the last row it has two continuous derivatives. */\n"
-  "static LAG_REAL lag_spline(LAG_REAL t, int n, const double (*row)[3]) {\n"
+  "static LAG_REAL lag_spline(LAG_REAL t, int n, const LAG_LANE (*row)[3]) {\n"
   "  int k = 0;\n"
   "  for (int end = n - 1; end - k > 1;) {\n"
   "    const int mid = (k + end)/2;\n"
-  "    if (LAG_ANY(t < LAG_C(0.0) + (LAG_LANE)row[mid][0])) end = mid;\n"
+  "    if (LAG_ANY(t < LAG_C(0.0) + row[mid][0])) end = mid;\n"
   "    else k = mid;\n"
   "  }\n"
   "  LAG_REAL y = lag_cubic(t, row[k], row[k + 1]);\n"
   "  for (k++; k < n - 1; k++) { /* lanes that are further on */\n"
-  "    const LAG_MASK later = t >= LAG_C(0.0) + (LAG_LANE)row[k][0];\n"
+  "    const LAG_MASK later = t >= LAG_C(0.0) + row[k][0];\n"
   "    if (!LAG_ANY(later)) break;\n"
   "    y = LAG_SELECT(later, lag_cubic(t, row[k], row[k + 1]), y);\n"
   "  }\n"

@@ -21,7 +21,8 @@ static const char *const reserved[] = {
   "cosh", "tanh", "exp", "log", "cbrt", "fabs", "sqrt", "pow", "hypot", "NULL", "INFINITY", "NAN", "EOF", "OVERFLOW",
   "UNDERFLOW", "DOMAIN", "SING", "PLOSS", "TLOSS", "I", "HUGE", "HUGE_VAL", "HUGE_VALF", "HUGE_VALL", "MAXFLOAT",
   "M_E", "M_LOG2E", "M_LOG10E", "M_LN2", "M_LN10", "M_PI", "M_PI_2", "M_PI_4", "M_1_PI", "M_2_PI", "M_2_SQRTPI",
-  "M_SQRT2", "M_SQRT1_2", "math_errhandling", "near", "far", "unix", "linux",
+  "M_SQRT2", "M_SQRT1_2", "FP_NAN", "FP_INFINITE", "FP_ZERO", "FP_SUBNORMAL", "FP_NORMAL", "FP_ILOGB0", "FP_ILOGBNAN",
+  "FP_FAST_FMA", "FP_FAST_FMAF", "FP_FAST_FMAL", "MATH_ERRNO", "MATH_ERREXCEPT", "math_errhandling", "near", "far", "unix", "linux",
 };
 
 /* Functions of the C library that a compiler or <math.h> declares: allowed as names of locals, not of objects with external linkage. */
@@ -73,7 +74,7 @@ const char *cname_letters(Arena *a, const char *name) {
     } else {
       char c = (char)*s++;
       int plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-      sb_putc(&b, plain ? c : '_');
+      if (plain || !b.n || sb_text(&b)[b.n - 1] != '_') sb_putc(&b, plain ? c : '_'); /* C++ reserves names with __ */
     }
   }
   return sb_text(&b);

@@ -132,6 +132,7 @@ static CExpr macro(Writer *w, const char *name, const Ins *i, int n) { return ca
 /* A function of the C library; sin and cos may be embedded in the file. */
 static CExpr function(Writer *w, const char *fn, const Ins *i, int n) {
   int is_own = w->style->math && (strcmp(fn, "sin") == 0 || strcmp(fn, "cos") == 0);
+  if (w->style->params && strcmp(fn, "fabs") == 0) return macro(w, "ABS", i, n);
   return call(w, is_own ? arena_printf(w->a, "%s_%s", w->style->math, fn) : arena_printf(w->a, "%s_FN(%s)", w->style->prefix, fn), i, n);
 }
 
@@ -280,17 +281,18 @@ void cwriter_pivot(Writer *w, const Ins *i) {
 }
 
 /* Rows of a table, as many on a line as fit. */
-void cwrite_rows(const IrTable *table, const char *name, const char *indent, Arena *a, StrBuf *out) {
+void cwrite_rows(const IrTable *table, const char *name, const char *prefix, const char *indent, Arena *a, StrBuf *out) {
   const Spline *c = table->curve;
   sb_printf(out, "%s/* %s: time, value, second derivative. */\n", indent, comment_text(a, table->file));
-  sb_printf(out, "%sstatic const double %s[%u][3] = {", indent, name, c->n);
+  sb_printf(out, "%sstatic const %s_LANE %s[%u][3] = {", indent, prefix, name, c->n);
   size_t column = WRAP_COLUMNS;
   for (uint32_t k = 0; k < c->n; k++) {
-    char t[32], y[32], m[32], row[128];
+    char t[32], y[32], m[32];
     num_format_double(t, c->row[k][0]);
     num_format_double(y, c->row[k][1]);
     num_format_double(m, c->row[k][2]);
-    size_t n = (size_t)snprintf(row, sizeof row, " {%s, %s, %s}%s", t, y, m, k + 1 < c->n ? "," : "");
+    const char *row = arena_printf(a, " %s_ROW(%s, %s, %s)%s", prefix, t, y, m, k + 1 < c->n ? "," : "");
+    const size_t n = strlen(row);
     if (column + n > WRAP_COLUMNS) {
       sb_printf(out, "\n%s ", indent);
       column = strlen(indent) + 1;
@@ -304,7 +306,7 @@ void cwrite_rows(const IrTable *table, const char *name, const char *indent, Are
 static void write_table(Writer *w, Slot s, const Ins *i) {
   const IrTable *table = &w->p->tables.at[i->index];
   const char *name = w->style->rows ? w->style->rows[i->index] : cnames_take(&w->names, arena_printf(w->a, "%s_rows", table->name));
-  if (!w->style->rows) cwrite_rows(table, name, "  ", w->a, w->out);
+  if (!w->style->rows) cwrite_rows(table, name, w->style->prefix, "  ", w->a, w->out);
   w->piece[s] = (CExpr){arena_printf(w->a, "%s(%s, %u, %s)", w->style->spline, cwriter_operand(w, i->a).text, table->curve->n, name), C_ATOM, 0};
 }
 

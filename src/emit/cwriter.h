@@ -30,8 +30,8 @@ typedef struct {
 /* Appends the body, without braces, indented by two spaces. */
 void cwrite_body(const Prog *p, const CStyle *style, Arena *a, StrBuf *out);
 
-/* Appends `static const double NAME[n][3] = {...};` with the rows of a table. */
-void cwrite_rows(const IrTable *table, const char *name, const char *indent, Arena *a, StrBuf *out);
+/* Appends `static const PREFIX_LANE NAME[n][3] = {...};` with the rows of a table. */
+void cwrite_rows(const IrTable *table, const char *name, const char *prefix, const char *indent, Arena *a, StrBuf *out);
 
 /* "36 operations: 12 additions, 18 multiplications, 2 divisions, 4 calls of sin, cos, ..." */
 const char *op_count_text(const Prog *p, Arena *a);

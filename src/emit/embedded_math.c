@@ -29,11 +29,12 @@ void math_kkt_solver(const IrUnit *u, const char *prefix, const char *lower, Str
 static int calls(const Prog *p, const char *name) {
   for (uint32_t k = 0; k < prog_parts(p); k++)
     for (Slot s = 1; s < prog_part(p, k)->ins.n; s++)
-      if (prog_part(p, k)->ins.at[s].op == IR_FN1 && strcmp(prog_part(p, k)->ins.at[s].text, name) == 0) return 1;
+      if ((prog_part(p, k)->ins.at[s].op == IR_FN1 || prog_part(p, k)->ins.at[s].op == IR_FN2) && strcmp(prog_part(p, k)->ins.at[s].text, name) == 0)
+        return 1;
   return 0;
 }
 
-static int unit_calls(const IrUnit *u, const char *name) {
+int unit_calls(const IrUnit *u, const char *name) {
   ProgList all = unit_programs(u);
   int some = 0;
   for (uint32_t i = 0; i < all.n; i++) some |= calls(all.at[i], name);
@@ -55,8 +56,12 @@ void math_functions(const IrUnit *u, const char *prefix, const char *lower, StrB
   if (sincos) section("sincos", prefix, lower, out);
   if (e) section("exp", prefix, lower, out);
   if (l) section("log", prefix, lower, out);
+  if (u->lanes && (e || l)) sb_printf(out, "#ifndef LAG_LANES\n%s%s#endif\n", e ? "#define exp lag_exp\n" : "", l ? "#define log lag_log\n" : "");
+  if (unit_calls(u, "floor")) section("floor", prefix, lower, out);
   sb_puts(out, "/* ---- the model ---- */\n");
 }
+
+void math_power(const char *prefix, const char *lower, StrBuf *out) { section("power", prefix, lower, out); }
 
 const char *math_prefix(const IrUnit *u, const char *lower) { return u->libm ? NULL : lower; }
 

@@ -4,8 +4,31 @@
 #include "emit/cfunction.h"
 #include "ir/unit.h"
 
-/* Series -> the functions that compute a model's Taylor coefficients, and the const lag_taylor called `taylor`. globals, math: as in CStyle. */
-void emit_taylor(const Series *s, const char *const *globals, const char *math, StrBuf *out);
+/* Series -> the functions that compute a model's Taylor coefficients, and the const lag_taylor called `taylor`. base: all but in, out and own; lanes: for a text that is
+ * compiled for lanes. */
+void emit_taylor(const Series *s, const CStyle *base, int lanes, StrBuf *out);
+
+/* The same in plain C for a header, without lag_taylor: sizes and the type lower_taylor_work; functions lower_taylor_first, _rest and _at. */
+void emit_taylor_types(const Series *s, const CStyle *base, const char *lower, StrBuf *out);
+void emit_taylor_functions(const Series *s, const CStyle *base, const char *lower, StrBuf *out);
+
+/* Operations of order 0, of each other order, and sums of k - 1 products in order k. */
+typedef struct {
+  uint32_t first, next, sums;
+} TaylorCosts;
+TaylorCosts taylor_costs(const Series *s);
+
+enum { TAYLOR_INLINE_MAX = 300 }; /* most operations of taylor_next that are inlined several times */
+
+/* emit_lanes.c, for a text that is compiled for lanes: columns of factors of its convolution sums; functions for these and for the step of an order; the loop over orders. */
+uint32_t emit_lane_factors(const Series *s);
+void emit_lane_sums(const Series *s, StrBuf *out);
+void emit_lane_orders(const Series *s, StrBuf *out);
+/* The scenes of lag_extras.lanes_4 or lanes_8, of n units with these names. */
+void emit_lane_scenes(const IrUnit *const *units, const char *const *names, uint32_t n, int lanes, StrBuf *out);
+
+/* The C identifier of scene k. */
+const char *scene_id(const IrUnit *u, uint32_t k);
 
 /* Whether a table of variables (names, units, factors) is written with macros, as runs of numbered names (u[1], u[2], ...) are, so that the
  * text does not grow with the length of families; if so, table_macros must precede it. */

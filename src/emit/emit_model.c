@@ -1,4 +1,4 @@
-/* The emitted model file: functions in the order of their use, then tables, then scenes; and the main file of a simulator. */
+/* The emitted model file: functions in the order of their use, then tables, then scenes. */
 #include "emit/emit_model.h"
 
 #include <string.h>
@@ -29,14 +29,14 @@ static const char *const abi_names[] = {
   "taylor_squares", "TAYLOR_SQUARES", "taylor_four", "TAYLOR_WIDE", "TAYLOR_INLINE", "taylor_sums_wide", "taylor_squares_wide",
   "taylor_rest_wide", "taylor_at_wide", "taylor_part", "taylor_part_wide", "taylor_rest_any", "taylor_at_any", "q_table", "z_table",
   "p_table", "u_table", "ev_table", "dr_table", "mass_table", "second_table", "linear", "curves", "singular", "constraint_table",
-  "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "switch_table",
+  "jacobian_table", "inertia_table", "constraints", "contact_table", "charge_table", "charges", "switch_table", "taylor_far", "taylor_add",
 };
 enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 
 /* --- identifiers --- */
 
 /* Unique identifier of scene i: names that C spells alike get suffixes. */
-static const char *scene_id(const IrUnit *u, uint32_t i) {
+const char *scene_id(const IrUnit *u, uint32_t i) {
   CNames ids = cnames_new(u->arena);
   const char *id = "";
   for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, u->scenes.at[k].name);
@@ -53,8 +53,8 @@ static const char *const *rows_names(const IrUnit *u) {
 }
 
 const char *model_id(Arena *a, const char *name) {
-  static const char *const taken[] = {"accel", "derive", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "inputs", "params", "start", "observe",
-                                      "outputs", "forces", "options", "monitors", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "switch_values", "correct_positions", "correct_velocities"};
+  static const char *const taken[] = {"accel", "derive", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "impact", "strike", "inputs", "params", "start", "observe",
+                                      "outputs", "forces", "options", "monitors", "measures", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws", "correct_positions", "correct_velocities"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -63,13 +63,13 @@ const char *model_id(Arena *a, const char *name) {
 }
 
 static const char *const *globals_of(const IrUnit *u, const char *name) {
-  uint32_t n = N_ABI_NAMES, tables = u->inputs->tables.n, max = n + 7 * u->scenes.n + tables + 2;
+  uint32_t n = N_ABI_NAMES, tables = u->inputs->tables.n, max = n + 8 * u->scenes.n + tables + 2;
   const char **all = ARENA_ARRAY(u->arena, const char *, max);
   memcpy(all, abi_names, sizeof abi_names);
   if (!name) return all;
   all[n++] = name;
   for (uint32_t i = 0; i < tables; i++) all[n++] = rows_names(u)[i];
-  static const char *const lists[] = {"outputs", "forces", "options", "monitors", "exact_of", "given"};
+  static const char *const lists[] = {"outputs", "forces", "options", "monitors", "measures", "exact_of", "given"};
   for (uint32_t i = 0; i < u->scenes.n; i++) {
     const char *id = scene_id(u, i);
     all[n++] = arena_printf(u->arena, "%s_%s", name, id);
@@ -96,7 +96,7 @@ static CStyle style_for(const File *f, const char *const *own, const char *const
 
 /* Whether the function is called once a step, or once a row of output. */
 static int is_seldom_called(const IrUnit *u, const Prog *p) {
-  int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values;
+  int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values || p == u->switch_rates || p == u->switch_grips || p == u->contact_laws;
   for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe;
   return seldom;
 }
@@ -136,29 +136,48 @@ static void emit_variation(const File *f) {
   state_function(f, u->second, "second", arena_printf(f->a, "Their nonzero derivatives: %s.", op_count_text(u->second, f->a)), NULL, derivatives);
 }
 
+/* Newton's law of impact for the contact whose constraint is `row`, which its input closes. */
+static void emit_strike(const File *f) {
+  static const char *const written[] = {"v1", NULL};
+  const IrUnit *u = f->u;
+  if (!u->impact) return;
+  state_function(f, u->impact, "impact", "Velocities after the impact of the contact whose entry of g is 1.", "g", written);
+  sb_printf(f->out, "\nstatic int strike(int row, int input, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
+                    "  LAG_REAL g[%u], with[%u];\n"
+                    "  for (int i = 0; i < %u; i++) g[i] = LAG_C(0.0);\n  for (int i = 0; i < %u; i++) with[i] = u[i];\n"
+                    "  g[row] = with[input] = LAG_C(1.0);\n  return impact(t, q, v, z, p, with, g, v1, w);\n}\n",
+            u->constraints.of.n, u->u.n, u->constraints.of.n, u->u.n);
+}
+
 static void emit_events(const File *f) {
   static const char *const written[] = {"q1", "v1", "z1", NULL};
   const IrUnit *u = f->u;
   if (!u->events.n) return;
   state_function(f, u->event_values, "events", "An event happens where its function changes sign.", NULL, one_out);
+  emit_strike(f);
   for (uint32_t i = 0; i < u->events.n; i++)
-    state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", cname_of_event(u, i)),
-                   arena_printf(f->a, "What the event %s does.", u->events.at[i].name), NULL, written);
+    if (!unit_striking_contact(u, i))
+      state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", cname_of_event(u, i)), arena_printf(f->a, "What the event %s does.", u->events.at[i].name), NULL, written);
   sb_puts(f->out, "\nstatic int act(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u,\n"
                   "    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n  switch (k) {\n");
-  for (uint32_t i = 0; i < u->events.n; i++)
-    sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
+  for (uint32_t i = 0; i < u->events.n; i++) {
+    const IrContact *c = unit_striking_contact(u, i);
+    if (c) sb_printf(f->out, "    case %u: return strike(%u, %u, t, q, v, z, p, u, v1, w);\n", i, c->constraint, c->input);
+    else sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
+  }
   sb_puts(f->out, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
 }
 
 static void emit_switches(const File *f) {
   const IrUnit *u = f->u;
   if (!u->switches.n) return;
-  state_function(f, u->switch_values, "switch_values", "Switching functions: forces jump where one of them is 0.", NULL, one_out);
+  state_function(f, u->switch_values, "switch_values", "Switching functions: forces jump, or have a corner, where one of them is 0.", NULL, one_out);
+  state_function(f, u->switch_rates, "switch_rates", "Their rates.", NULL, one_out);
+  state_function(f, u->switch_grips, "switch_grips", "Static limits, relative to the force on a sliding body.", NULL, one_out);
   sb_puts(f->out, "\nstatic const lag_switch switch_table[] = {\n");
   for (uint32_t i = 0; i < u->switches.n; i++) {
     const IrSwitch *s = &u->switches.at[i];
-    sb_printf(f->out, "  {%s, %s, %u, %d},\n", c_string(f->a, s->surface), c_string(f->a, s->text), u->lines ? s->line : 0, s->nonnegative);
+    sb_printf(f->out, "  {%s, %s, %u, %d, %d, %d, %d},\n", c_string(f->a, s->surface), c_string(f->a, s->text), u->lines ? s->line : 0, s->jumps, s->is_floor, s->is_timed, s->nonnegative);
   }
   sb_puts(f->out, "};\n");
 }
@@ -181,8 +200,8 @@ static void emit_charges(const File *f) {
     flag_text(c->flags, flags, CHARGE_FLAGS, f->out);
     sb_puts(f->out, "},\n");
   }
-  sb_printf(f->out, "};\n\nstatic const lag_charges charges = {\n  .n = %u, .of = charge_table, .values = %s, .powers = %s,\n};\n", u->charges.n,
-            u->charge_values ? "charge_values" : "NULL", u->charge_powers ? "charge_powers" : "NULL");
+  sb_printf(f->out, "};\n\nstatic const lag_charges charges = {\n  .n = %u, .of = charge_table, .values = %s, .powers = %s,%s\n};\n", u->charges.n,
+            u->charge_values ? "charge_values" : "NULL", u->charge_powers ? "charge_powers" : "NULL", u->dry_friction ? " .dry_friction = 1," : "");
 }
 
 /* --- parameters and inputs --- */
@@ -243,7 +262,7 @@ static void emit_inputs(const File *f) {
   st.rows = rows_names(f->u);
   for (uint32_t i = 0; i < p->tables.n; i++) {
     sb_putc(f->out, '\n');
-    cwrite_rows(&p->tables.at[i], st.rows[i], "", f->a, f->out);
+    cwrite_rows(&p->tables.at[i], st.rows[i], "LAG", "", f->a, f->out);
   }
   CFunction c = {.comment = p->tables.n ? "Inputs, by their formulas and tables." : "Inputs that have a formula.",
                  .head = "static int inputs(LAG_REAL t, const LAG_REAL *p, LAG_REAL *u)", .returns = 1};
@@ -270,10 +289,13 @@ static void emit_jumps(const File *f) {
   sb_puts(f->out, "\n};\n");
 }
 
+/* With constraints the derivatives are those of headers: see WANT_CONSTRAINED. */
+static int has_linear(const IrUnit *u) { return u->linear && !u->constraints.of.n; }
+
 static void emit_linear(const File *f) {
   static const char *const written[] = {"dr", "M", NULL};
   const IrUnit *u = f->u;
-  if (!u->linear) return;
+  if (!has_linear(u)) return;
   const char *comment = arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.", op_count_text(u->linear, f->a));
   state_function(f, u->linear, "linearise", comment, "a", written);
   entries("dr_table", u->linear_dr.at, u->linear_dr.n, f->out);
@@ -320,9 +342,10 @@ static void emit_constraints(const File *f) {
   sb_puts(f->out, "\nstatic const lag_contact contact_table[] = {\n");
   for (uint32_t i = 0; i < f->u->contacts.n; i++) {
     const IrContact *c = &f->u->contacts.at[i];
-    sb_printf(f->out, "  {%u, %u, %u, %u},\n", c->input, c->constraint, c->impact, c->release);
+    sb_printf(f->out, "  {%u, %u, %u, %u, %d, %u, %d, %d},\n", c->input, c->constraint, c->impact, c->release, c->is_tangent, c->force, c->conditional, c->law);
   }
   sb_puts(f->out, "};\n");
+  state_function(f, f->u->contact_laws, "contact_laws", "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL, one_out);
 }
 
 /* --- a scene's functions --- */
@@ -423,7 +446,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->events.n) {
     sb_puts(out, "\nstatic const lag_event ev_table[] = {\n");
     for (uint32_t i = 0; i < u->events.n; i++)
-      sb_printf(out, "  {%s, %d},\n", c_string(u->arena, u->events.at[i].name), u->events.at[i].direction);
+      sb_printf(out, u->events.at[i].direction == EVENT_KICK ? "  {%s, LAG_KICK},\n" : "  {%s, %d},\n", c_string(u->arena, u->events.at[i].name), u->events.at[i].direction);
     sb_puts(out, "};\n");
   }
   emit_curves(u, out);
@@ -442,13 +465,16 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->inputs->tables.n) sb_printf(out, "  .ntables = %u, .tables = curves,\n", u->inputs->tables.n);
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
+  if (u->contact_laws) sb_puts(out, "  .contact_laws = contact_laws,\n");
   if (u->charges.n) sb_puts(out, "  .charges = &charges,\n");
   if (u->switches.n) sb_printf(out, "  .nswitch = %u, .switches = switch_table, .switch_values = switch_values,\n", u->switches.n);
+  if (u->nmodes) sb_printf(out, "  .nmodes = %u, .switch_rates = switch_rates,\n", u->nmodes);
+  if (u->switch_grips) sb_puts(out, "  .switch_grips = switch_grips,\n");
   if (u->variation)
     sb_printf(out, "  .variation = variation, .second = second,\n  .second_at = %s, .nsecond = %u,\n",
               or_null(u->second_at.n, "second_table"), u->second_at.n);
   if (u->taylor) sb_puts(out, "  .taylor = &taylor,\n");
-  if (u->linear) sb_puts(out, "  .linear = &linear,\n");
+  if (has_linear(u)) sb_puts(out, "  .linear = &linear,\n");
   sb_puts(out, "  .math = LAG_OWN ? \"sin and cos: lag_math.h\" : \"sin and cos: the C library's\",\n");
   if (u->fixed[0]) sb_printf(out, "  .fixed = %s,\n", c_string(u->arena, u->fixed));
   sb_puts(out, "};\n");
@@ -472,6 +498,16 @@ static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, 
     }
     sb_puts(out, "};\n");
   }
+}
+
+static void emit_measures(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
+  if (!s->measures.n) return;
+  sb_printf(out, "\nstatic const lag_measure measures_%s[] = {\n", id);
+  for (uint32_t i = 0; i < s->measures.n; i++) {
+    const IrMeasure *m = &s->measures.at[i];
+    sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, m->name), c_string(u->arena, m->text), c_string(u->arena, m->unit));
+  }
+  sb_puts(out, "};\n");
 }
 
 static void emit_flags(const char *stem, const char *id, const unsigned char *flags, uint32_t n, StrBuf *out) {
@@ -507,6 +543,7 @@ static void emit_scene(const File *f, const char *name, uint32_t index) {
   state_function(f, s->observe, arena_printf(f->a, "observe_%s", id), arena_printf(f->a, "Outputs of the scene %s.", s->name), NULL, one_out);
   emit_exact(f, s, id);
   emit_scene_lists(u, s, id, out);
+  emit_measures(u, s, id, out);
   emit_given(u, s, id, out);
   if (has_forces(s)) emit_flags("forces", id, s->forces.at, s->forces.n, out);
   sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
@@ -522,6 +559,7 @@ static void emit_scene(const File *f, const char *name, uint32_t index) {
   sb_printf(out, "  .every = %s, .observe = observe_%s,\n", table_number(u->arena, s->every, NULL), id);
   sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
   if (s->exact_of.n) sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
+  if (s->measures.n) sb_printf(out, "  .nmeasures = %u, .measures = measures_%s,\n", s->measures.n, id);
   sb_puts(out, "};\n");
 }
 
@@ -539,6 +577,7 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
 void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   File f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
+  if (u->lanes) sb_puts(out, "#ifndef LAG_AS_LANES\n#define LAG_AS_LANES 1 /* the same bits as in a lane */\n#endif\n");
   math_lanes("LAG", "lag", out);
   sb_puts(out, prelude);
   csupport_logic("LAG", out);
@@ -559,33 +598,8 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_charges(&f);
   emit_switches(&f);
   emit_linear(&f); /* after the digest: a saved state depends on the equations, not on the methods' derivatives of them */
-  if (u->taylor) emit_taylor(u->taylor, f.globals, math_prefix(u, "lag"), out);
+  if (u->taylor) emit_taylor(u->taylor, &(CStyle){.prefix = "LAG", .globals = f.globals, .solve = "lag_solve", .math = math_prefix(u, "lag")}, u->lanes, out);
   emit_variation(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, name, i);
-}
-
-static void emit_main(int gsl, StrBuf *out) {
-  sb_puts(out, "int main(int argc, char **argv) {\n");
-  sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", gsl ? "&lag_gsl" : "NULL");
-}
-
-void emit_program(const IrUnit *const *units, const char *const *names, uint32_t n, int gsl, StrBuf *out) {
-  const IrUnit *first = units[0];
-  Arena *a = first->arena;
-  sb_puts(out, "\n#include \"lag.h\"\n\n");
-  uint32_t scenes = 0;
-  for (uint32_t i = 0; i < n; i++)
-    for (uint32_t k = 0; k < units[i]->scenes.n; k++, scenes++)
-      sb_printf(out, "extern const lag_scene %s_%s;\n", names[i], scene_id(units[i], k));
-  sb_puts(out, "\n#ifndef LAG_BUILD /* compiler and flags */\n#define LAG_BUILD NULL\n#endif\n");
-  sb_puts(out, "\nstatic const lag_scene *const scenes[] = {\n");
-  for (uint32_t i = 0; i < n; i++)
-    for (uint32_t k = 0; k < units[i]->scenes.n; k++)
-      sb_printf(out, "  &%s_%s,\n", names[i], scene_id(units[i], k));
-  sb_puts(out, "};\n\n");
-  const char *name = c_string(a, first->name), *doc = c_string(a, first->doc), *source = c_string(a, first->source);
-  sb_printf(out, "static const lag_program program = {\n  .name = %s,\n  .doc = %s,\n  .source = %s,\n  .effects = %s,\n  .build = LAG_BUILD,\n  .nscenes = %u, .scenes = scenes,\n};\n\n",
-            name, doc, source, c_string(a, first->all_effects), scenes);
-  emit_main(gsl, out);
 }

@@ -1,5 +1,4 @@
 /* Declarations of an emitted header: options, indices, structs, prototypes. */
-#include <math.h>
 #include <string.h>
 
 #include "emit/header_impl.h"
@@ -11,6 +10,8 @@ static const char *const options =
   "#else\n#define LAG_REAL double\n#endif\n#endif\n\n"
   "/* Linkage. */\n"
   "#ifndef LAG_API\n#ifdef LAG_STATIC\n#define LAG_API static inline\n#else\n#define LAG_API\n#endif\n#endif\n\n"
+  "/* Number of the interface of headers: it changes with functions and structs. */\n"
+  "enum { LAG_ABI = 1 };\n\n"
   "/* Status codes of functions. */\n"
   "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1 /* the mass matrix is singular at this state, or not positive definite as elsewhere */\n};\n";
 
@@ -28,12 +29,14 @@ static void size(const Header *h, const char *name, uint32_t n) { sb_printf(h->o
 
 static void sizes(const Header *h) {
   const IrUnit *u = h->u;
-  sb_puts(h->out, "\n/* Sizes: coordinates, states, parameters, inputs, events, outputs. */\nenum {\n");
+  sb_puts(h->out, "\n/* Sizes: coordinates, states, both with velocities, parameters, inputs, events, constraints, outputs. */\nenum {\n");
   size(h, "NQ", u->q.n);
   size(h, "NZ", u->z.n);
+  size(h, "NY", 2 * u->q.n + u->z.n);
   size(h, "NP", u->p.n);
   size(h, "NU", u->u.n);
   size(h, "NEV", u->events.n);
+  if (u->constraints.of.n) size(h, "NC", u->constraints.of.n), size(h, "NHOLONOMIC", u->constraints.nholonomic);
   sb_printf(h->out, "  %s_NOUT = %u\n};\n", h->upper, h->scene->plain.n);
 }
 
@@ -53,7 +56,7 @@ static void event_indices(const Header *h) {
   sb_puts(h->out, "\n/* Events: where their function, from _events, changes sign. */\nenum {\n");
   for (uint32_t i = 0; i < n; i++) {
     const IrEvent *ev = &h->u->events.at[i];
-    const char *way = ev->direction > 0 ? "rising" : ev->direction < 0 ? "falling" : "crossing";
+    const char *way = ev->direction == EVENT_KICK ? "a kick; its function is the time between two" : ev->direction > 0 ? "rising" : ev->direction < 0 ? "falling" : "crossing";
     sb_printf(h->out, "  %s = %u%s /* %s, %s%s */\n", h->ev[i], i, i + 1 < n ? "," : "", ev->name, way, ev->stop ? ", ends the run" : "");
   }
   sb_puts(h->out, "};\n");
@@ -61,21 +64,12 @@ static void event_indices(const Header *h) {
 
 /* --- structs --- */
 
-/* Values of the parameters in the scene; NaN where a formula has none. */
-static long double *param_values(const Header *h) {
-  uint32_t n = h->u->p.n;
-  long double *p = ARENA_ARRAY(h->a, long double, n + 1), zero = 0;
-  const long double *in[ARR_COUNT] = {&zero, NULL, NULL, NULL, p, NULL};
-  long double *out[] = {p};
-  for (uint32_t i = 0; i < n; i++)
-    if (prog_eval(h->scene->params[i], in, out) != 0) p[i] = (long double)NAN;
-  return p;
-}
-
 static const char *sign_text(int sign) { return sign == 1 ? " > 0" : sign == 2 ? " >= 0" : sign == -1 ? " < 0" : sign == -2 ? " <= 0" : ""; }
 
 static void params_struct(const Header *h) {
-  const long double *value = param_values(h);
+  const IrUnit *u = h->u;
+  long double *value = ARENA_ARRAY(h->a, long double, u->p.n + 1), *y = ARENA_ARRAY(h->a, long double, 2 * u->q.n + u->z.n + 1);
+  scene_values(u, h->scene, value, y, ARENA_ARRAY(h->a, long double, u->u.n + 1));
   sb_printf(h->out, "\n/* Parameters, with the values of scene %s. */\ntypedef struct %s_params {\n", h->scene->name, h->lower);
   if (!h->u->p.n) sb_puts(h->out, "  char none; /* C has no empty struct */\n");
   for (uint32_t i = 0; i < h->u->p.n; i++) {
@@ -97,6 +91,8 @@ static void state_struct(const Header *h) {
   sb_printf(h->out, "\ntypedef struct %s_state {\n  %s_REAL t; /* time [s] */\n", h->lower, h->upper);
   if (h->u->q.n) sb_printf(h->out, "  %s_REAL q[%s_NQ]; /* coordinates */\n  %s_REAL v[%s_NQ]; /* their time derivatives */\n", h->upper, h->upper, h->upper, h->upper);
   if (h->u->z.n) sb_printf(h->out, "  %s_REAL z[%s_NZ]; /* states */\n", h->upper, h->upper);
+  sb_printf(h->out, "  %s_REAL lost[1 + %s_NY]; /* rounding of t, q, v, z that the steps to here have lost; 0 at the start */\n", h->upper, h->upper);
+  if (header_has_method(h, "moreau")) header_moreau_members(h);
   sb_printf(h->out, "} %s_state;\n", h->lower);
 }
 
@@ -142,6 +138,15 @@ int header_has(const Header *h, HeaderFn f) {
     case FN_OBSERVE: return h->scene->plain.n > 0;
     case FN_EVENTS: case FN_ACT: return u->events.n > 0;
     case FN_HOLD: return u->constraints.of.n > 0;
+    case FN_UNTIL_EVENT: return (h->parts.parts & PART_EVENTS) != 0;
+    case FN_RHS: return (h->parts.parts & PART_RHS) != 0;
+    case FN_MASS: case FN_BIAS: return u->mass != NULL;
+    case FN_INVERSE: return u->inverse != NULL;
+    case FN_JAC: case FN_JVP: case FN_VJP: return (h->parts.parts & PART_JAC) != 0;
+    case FN_LINEARIZE: return (h->parts.parts & PART_LINEAR) != 0;
+    case FN_DPARAMS: return (h->parts.parts & PART_PARAMS) != 0;
+    case FN_CONSTRAINTS: case FN_CONSTRAINT_JACOBIAN: return (h->parts.parts & PART_CONSTRAINTS) != 0;
+    case FN_MULTIPLIERS: return u->constraints.of.n && (h->parts.parts & (PART_CONSTRAINTS | PART_JAC | PART_LINEAR | PART_PARAMS)) != 0;
     case FN_DEFAULTS: case FN_PARAM: case FN_START: case FN_ACCEL: case FN_RK4_STEP: case FN_COUNT: break;
   }
   return 1;
@@ -170,6 +175,19 @@ const char *header_prototype(const Header *h, HeaderFn f) {
     case FN_RK4_STEP: return arena_printf(a, "int %s_rk4_step(const %s_params *p, %s_state *s, %s_REAL h%s)", m, m, m, R, u);
     case FN_RK4_STEP_WITH:
       return arena_printf(a, "int %s_rk4_step_with(const %s_params *p, %s_state *s, %s_REAL h, %s_input_fn *input, void *context)", m, m, m, R, m);
+    case FN_UNTIL_EVENT: return arena_printf(a, "int %s_step_until_event(const %s_params *p, %s_state *s, %s_REAL h%s, int *event)", m, m, m, R, u);
+    case FN_RHS: return arena_printf(a, "int %s_rhs(%s_REAL t, const %s_REAL *y, const %s_params *p%s, %s_REAL *dydt)", m, R, R, m, u, R);
+    case FN_MASS: return arena_printf(a, "int %s_mass(%s, %s_REAL *M)", m, state, R);
+    case FN_BIAS: return arena_printf(a, "int %s_bias(%s, %s_REAL *b)", m, state, R);
+    case FN_INVERSE: return arena_printf(a, "int %s_inverse_dynamics(%s, const %s_REAL *a, %s_REAL *force)", m, state, R, R);
+    case FN_JAC: return arena_printf(a, "int %s_jac(%s, %s_REAL *J)", m, state, R);
+    case FN_JVP: return arena_printf(a, "int %s_jvp(%s, const %s_REAL *x, %s_REAL *out)", m, state, R, R);
+    case FN_VJP: return arena_printf(a, "int %s_vjp(%s, const %s_REAL *x, %s_REAL *out)", m, state, R, R);
+    case FN_LINEARIZE: return arena_printf(a, "int %s_linearize(%s, %s_REAL *A%s)", m, state, R, h->u->u.n ? arena_printf(a, ", %s_REAL *B", R) : "");
+    case FN_DPARAMS: return arena_printf(a, "int %s_dparams(%s, %s_REAL *P)", m, state, R);
+    case FN_CONSTRAINTS: return arena_printf(a, "int %s_constraints(%s, %s_REAL *c, %s_REAL *r)", m, state, R, R);
+    case FN_CONSTRAINT_JACOBIAN: return arena_printf(a, "int %s_constraint_jacobian(%s, %s_REAL *A)", m, state, R);
+    case FN_MULTIPLIERS: return arena_printf(a, "int %s_multipliers(%s, %s_REAL *lambda)", m, state, R);
     case FN_COUNT: break;
   }
   return "";
@@ -189,6 +207,22 @@ static const char *const docs[FN_COUNT] = {
   [FN_ACT] = "Applies the action of an event to the state; *stop becomes 1 if the event ends the run.",
   [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, by the metric of the mass matrix; _rk4_step does so itself.",
   [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was. Events, and contacts, are the caller's.",
+  [FN_UNTIL_EVENT] = "As _rk4_step, to the first event in the step: *event is its index, and *s the state just behind it, where _act applies; -1: none.\n"
+                     " * Signs are compared at the ends of the step: no function may cross 0 twice in it. A function that is 0 at the start, or whose event has just\n"
+                     " * acted, has the sign with which it leaves 0. Of events at the same time the first is told.\n"
+                     " * LAG_ENAN: an event function is not a number; LAG_EZENO: events follow each other without time between them. *s is as it was then.",
+  [FN_RHS] = "dydt[LAG_NY]: the rates of y = (q, v, z), for integrators of first order.",
+  [FN_MASS] = "The mass matrix M[LAG_NQ*LAG_NQ], row by row.",
+  [FN_BIAS] = "b[LAG_NQ] of M q'' + b = 0: Coriolis and centrifugal terms, weight and the forces of the model, with their signs changed.",
+  [FN_INVERSE] = "The generalised forces M a + b that are needed besides those of the model for the accelerations a.",
+  [FN_JAC] = "J[LAG_NY*LAG_NY], row by row: derivatives of the rates of y = (q, v, z) by y, at held inputs.",
+  [FN_JVP] = "out[LAG_NY] = J x, without J.",
+  [FN_VJP] = "out[LAG_NY] = J^T x, without J.",
+  [FN_LINEARIZE] = "The linearisation: A[LAG_NY*LAG_NY] of the rates of y = (q, v, z) by y; B[LAG_NY*LAG_NU] by the inputs.",
+  [FN_DPARAMS] = "P[LAG_NY*LAG_NP], row by row: derivatives of the rates of y = (q, v, z) by the parameters, each as if it were free.",
+  [FN_CONSTRAINTS] = "Residuals of the constraints: c of those on positions, r of all on velocities (rates of the former first).",
+  [FN_CONSTRAINT_JACOBIAN] = "A[LAG_NC*LAG_NQ], row by row: derivatives of r by the velocities; M q'' = f + A^T lambda.",
+  [FN_MULTIPLIERS] = "The multipliers lambda[LAG_NC] of the constraints: their forces are A^T lambda.",
   [FN_RK4_STEP_WITH] = "The same with inputs that change during the step: input(context, t, u) finds the model's own in u.",
 };
 
@@ -201,6 +235,7 @@ static const char *charge_names(const Header *h) {
 
 void header_declarations(const Header *h) {
   const IrUnit *u = h->u;
+  header_callbacks_include(h);
   csupport_expand(options, h->upper, h->lower, h->out);
   sizes(h);
   indices(h, "Coordinates: q[...], and their time derivatives v[...].", h->q, u->q.at, u->q.n);
@@ -211,6 +246,7 @@ void header_declarations(const Header *h) {
   indices(h, outputs, h->outputs, h->scene->outputs.at, h->scene->plain.n);
   event_indices(h);
   indices(h, "Parameters, for _param.", h->p, u->p.at, u->p.n);
+  if (header_has_method(h, "moreau")) header_moreau_indices(h);
   params_struct(h);
   state_struct(h);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
@@ -222,12 +258,16 @@ void header_declarations(const Header *h) {
     if (f == FN_START && u->constraints.of.n)
       doc = "The state at the start of the scene, on the constraints, as `lagc run` finds it with the parameters of _defaults; with others, _hold\n"
             " * leads from there to the nearest one that obeys them.";
+    if (f == FN_UNTIL_EVENT) csupport_expand("\nenum { LAG_ENAN = -4, LAG_EZENO = -5 };\n", h->upper, h->lower, h->out);
     sb_puts(h->out, "\n/* ");
     csupport_expand(doc, h->upper, h->lower, h->out);
     if (f == FN_CHARGES) sb_printf(h->out, "\n * Symmetries: %s.", charge_names(h));
-    if (f == FN_RK4_STEP && u->u.n) sb_puts(h->out, "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
+    if ((f == FN_RK4_STEP || f == FN_UNTIL_EVENT || f == FN_RHS) && u->u.n) sb_puts(h->out, "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
     const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, (HeaderFn)f));
     sb_printf(h->out, " */\n%s\n", header_wrapped(h, text));
   }
+  header_steps_declare(h);
+  header_name_tables(h);
+  header_callbacks_declare(h);
   sb_puts(h->out, "\n#ifdef __cplusplus\n}\n#endif\n");
 }

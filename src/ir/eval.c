@@ -13,7 +13,7 @@ static const struct {
   Real (*f)(Real);
 } functions[] = {
   {"sin", sinl}, {"cos", cosl}, {"tan", tanl}, {"asin", asinl}, {"acos", acosl}, {"atan", atanl}, {"sinh", sinhl},
-  {"cosh", coshl}, {"tanh", tanhl}, {"exp", expl}, {"log", logl}, {"cbrt", cbrtl}, {"fabs", fabsl},
+  {"cosh", coshl}, {"tanh", tanhl}, {"exp", expl}, {"log", logl}, {"cbrt", cbrtl}, {"fabs", fabsl}, {"floor", floorl},
 };
 
 long double prog_call1(const char *name, long double x) {

@@ -42,7 +42,9 @@ static Slot factored_sum(Factor *f, const Ins *i) {
 }
 
 static Prog *factor_once(const Prog *p) {
-  Factor f = {.from = p, .to = prog_new_like(p), .map = ARENA_ARRAY(p->arena, Slot, p->ins.n), .uses = prog_uses(p)};
+  Factor f = {.from = p, .to = prog_new_like(p), .map = ARENA_ARRAY(p->arena, Slot, p->ins.n)};
+  uint32_t *uses = prog_uses(p);
+  f.uses = uses;
   for (Slot s = 1; s < p->ins.n; s++) {
     const Ins *i = &p->ins.at[s];
     Slot sum = i->op == IR_ADD || i->op == IR_SUB ? factored_sum(&f, i) : 0;
@@ -50,14 +52,22 @@ static Prog *factor_once(const Prog *p) {
     prog_name(f.to, f.map[s], i->name);
   }
   prog_copy_stores(f.to, p, f.map);
-  return prog_tidy(f.to);
+  arena_release(p->arena, f.map, p->ins.n * sizeof *f.map);
+  arena_release(p->arena, uses, p->ins.n * sizeof *uses);
+  Prog *tidy = prog_tidy(f.to);
+  prog_release(f.to);
+  return tidy;
 }
 
-Prog *prog_factor(Prog *p) {
+Prog *prog_factor(Prog *given) {
   enum { TURNS = 3, LONG = 100000 };
+  Prog *p = given;
   for (int turn = 0; turn < (p->ins.n < LONG ? TURNS : 1); turn++) {
     Prog *next = factor_once(p);
-    if (ops_total(prog_count(next)) >= ops_total(prog_count(p))) return p;
+    int is_better = ops_total(prog_count(next)) < ops_total(prog_count(p));
+    Prog *worse = is_better ? p : next;
+    if (worse != given) prog_release(worse);
+    if (!is_better) return p;
     p = next;
   }
   return p;

@@ -175,7 +175,7 @@ static int is_nested(const Rebuild *r, Slot term) {
 }
 
 static void push_needed(Rebuild *r, uint32_t item) {
-  if (item && !r->done[item]) vec_push(r->to->arena, &r->open, item);
+  if (item && !r->done[item]) vec_push(r->s->c.a, &r->open, item);
 }
 
 /* The terms of a hub that no nest adds. */
@@ -259,8 +259,8 @@ static void rebuild(Rebuild *r, uint32_t item) {
 static Prog *with_nests(const Search *s) {
   const Prog *p = s->c.p;
   uint32_t items = p->ins.n + s->found.n;
-  Rebuild r = {.s = s, .from = p, .to = prog_new(p->arena), .map = ARENA_ARRAY(p->arena, Slot, items)};
-  r.done = ARENA_ARRAY(p->arena, unsigned char, items);
+  Rebuild r = {.s = s, .from = p, .to = prog_new(p->arena), .map = ARENA_ARRAY(s->c.a, Slot, items)};
+  r.done = ARENA_ARRAY(s->c.a, unsigned char, items);
   number_cells(&r);
   for (Slot x = 1; x < p->ins.n; x++) {
     uint32_t piece = s->c.piece[x];
@@ -273,7 +273,9 @@ static Prog *with_nests(const Search *s) {
     rebuild(&r, st.slot);
     prog_store(r.to, st.array, st.index, r.map[st.slot], st.comment);
   }
-  return prog_tidy(r.to);
+  Prog *tidy = prog_tidy(r.to);
+  prog_release(r.to);
+  return tidy;
 }
 
 /* Number of instructions that nests replace; 0 where all nests are single loops, which are left to ir/roll.h: there they share values with
@@ -292,9 +294,8 @@ static uint32_t instructions_replaced(const Search *s) {
   return deep ? inside : 0;
 }
 
-static Search search(const Prog *p, unsigned ends) {
-  Arena *a = p->arena;
-  Search s = {.c = nest_partition(p, ends)};
+static Search search(Arena *a, const Prog *p, unsigned ends) {
+  Search s = {.c = nest_partition(a, p, ends)};
   s.local = ARENA_ARRAY(a, Local, p->ins.n);
   s.nested = ARENA_ARRAY(a, uint32_t, s.c.pieces.n + 1);
   s.terms = ARENA_ARRAY(a, uint32_t, p->ins.n);
@@ -303,21 +304,28 @@ static Search search(const Prog *p, unsigned ends) {
   return s;
 }
 
-Prog *prog_find_nests(Prog *p, uint32_t from) {
+/* The program, replaced by one with nests where they are worth it. */
+static void nest_work(Arena *scratch, void *data) {
   static const unsigned tried[] = {0, CUT_COMMON_TERMS, CUT_COMMON_TERMS | CUT_STORES};
-  if (p->ins.n < from || p->solves.n || p->nests.n) return p;
+  Prog **p = data;
+  uint32_t n = (*p)->ins.n, most = n / 2; /* nests of less than half of the program are not worth it */
   Search best = {0};
-  uint32_t most = p->ins.n / 2; /* nests of less than half of the program are not worth it */
-  for (size_t k = 0; k < sizeof tried / sizeof *tried && most < p->ins.n - p->ins.n / 8; k++) {
-    ArenaMark before = arena_mark(p->arena);
-    Search s = search(p, tried[k]);
+  for (size_t k = 0; k < sizeof tried / sizeof *tried && most < n - n / 8; k++) {
+    ArenaMark before = arena_mark(scratch);
+    Search s = search(scratch, *p, tried[k]);
     uint32_t inside = instructions_replaced(&s);
     if (inside > most) {
       most = inside;
       best = s;
     } else {
-      arena_forget(p->arena, before);
+      arena_forget(scratch, before);
     }
   }
-  return best.found.n ? with_nests(&best) : p;
+  if (best.found.n) *p = with_nests(&best);
+}
+
+Prog *prog_find_nests(Prog *p, uint32_t from) {
+  if (p->ins.n < from || p->solves.n || p->nests.n) return p;
+  arena_with_scratch(p->arena, nest_work, &p);
+  return p;
 }

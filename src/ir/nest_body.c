@@ -102,7 +102,7 @@ static void store_gives(BodyBuilder *m) {
 const Prog *nest_body(const Partition *c, const CanonicalForm *t, const Fit *f, const Slot **outer, uint32_t *nouter) {
   Arena *a = c->a;
   uint32_t n = t->nodes.n;
-  BodyBuilder m = {.c = c, .t = t, .f = f, .body = prog_new(a)};
+  BodyBuilder m = {.c = c, .t = t, .f = f, .body = prog_new(c->p->arena)};
   m.slot = ARENA_ARRAY(a, Slot, n);
   m.often = ARENA_ARRAY(a, unsigned char, n);
   find_changes(&m);

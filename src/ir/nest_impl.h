@@ -59,8 +59,8 @@ int nest_is_sum(IrOp op);
 /* Additional hubs: sums that share terms, stored values. */
 enum { CUT_COMMON_TERMS = 1, CUT_STORES = 2 };
 
-/* Partitions the program into hubs and pieces; `celled` is left 0. ends: CUT_... bits. */
-Partition nest_partition(const Prog *p, unsigned ends);
+/* Partitions the program into hubs and pieces, in `a`; `celled` is left 0. ends: CUT_... bits. */
+Partition nest_partition(Arena *a, const Prog *p, unsigned ends);
 
 /* Appends the terms of a sum, through joined partial sums; hub is the sum. */
 void nest_terms(const Partition *c, Slot sum, HubTerms *terms);

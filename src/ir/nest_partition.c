@@ -358,8 +358,7 @@ static void number_hubs(Partition *c) {
     if (c->hub[c->p->stores.at[k].slot] == HUB_STORED) c->number[c->p->stores.at[k].slot] = k;
 }
 
-Partition nest_partition(const Prog *p, unsigned ends) {
-  Arena *a = p->arena;
+Partition nest_partition(Arena *a, const Prog *p, unsigned ends) {
   uint32_t n = p->ins.n;
   Partition c = {.p = p, .a = a, .uses = prog_uses(p), .open = ARENA_NEW(a, HubTerms), .terms = ARENA_NEW(a, HubTerms)};
   c.joined = ARENA_ARRAY(a, unsigned char, n);

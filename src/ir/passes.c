@@ -5,7 +5,7 @@
 
 enum { PAGE = 200 }; /* instructions; shorter programs fit a processor's window in any order, and keep the readable one */
 
-/* Takes p for the program after the pass `name`. Returns whether it is sound; if not, the program has the fault. */
+/* Takes p for the program after the pass `name`, and releases the one before. Returns whether p is sound; if not, it has the fault. */
 static int take(Prog **to, Prog *p, const char *name, StrBuf *trace) {
   const char *wrong = prog_verify(p);
   if (trace) {
@@ -13,6 +13,7 @@ static int take(Prog **to, Prog *p, const char *name, StrBuf *trace) {
     prog_dump(p, trace);
   }
   if (wrong && !p->fault) p->fault = arena_printf(p->arena, "after %s: %s", name, wrong);
+  if (*to != p) prog_release(*to);
   *to = p;
   return !wrong;
 }

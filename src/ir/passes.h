@@ -11,6 +11,6 @@ typedef struct {
   int libm;            /* with every_step: sin and cos are calls, and are scheduled first */
 } PassPlan;
 
-/* The program after its passes. A program that a pass leaves malformed is returned with its fault, which prog_verify reports. trace: gets
+/* The program after its passes; p itself is released. A program that a pass leaves malformed is returned with its fault, which prog_verify reports. trace: gets
  * each pass with the program after it; or NULL. */
 Prog *passes_run(Prog *p, const PassPlan *plan, StrBuf *trace);

@@ -11,17 +11,26 @@ Prog *prog_new(Arena *a) {
   return p;
 }
 
-Prog *prog_new_like(const Prog *p) {
+/* An empty program with room for `more` instructions than p has. */
+static Prog *with_room(const Prog *p, uint32_t more) {
   Prog *r = ARENA_NEW(p->arena, Prog);
   r->arena = p->arena;
   r->folds_constants = p->folds_constants;
-  r->ins.cap = p->ins.n + 1;
+  r->ins.cap = p->ins.n + more + 1;
   r->ins.at = ARENA_ARRAY(p->arena, Ins, r->ins.cap);
   r->stores.cap = p->stores.n + 1;
   r->stores.at = ARENA_ARRAY(p->arena, Store, r->stores.cap);
   vec_push(p->arena, &r->ins, ((Ins){0}));
   r->table = idtable(p->arena, p->ins.n + 1);
   return r;
+}
+
+Prog *prog_new_like(const Prog *p) { return with_room(p, 0); }
+
+void prog_release(Prog *p) {
+  arena_release(p->arena, p->ins.at, p->ins.cap * sizeof *p->ins.at);
+  arena_release(p->arena, p->stores.at, p->stores.cap * sizeof *p->stores.at);
+  arena_release(p->arena, p->table.slots, p->table.cap * sizeof *p->table.slots);
 }
 
 /* --- value numbering --- */
@@ -230,13 +239,15 @@ uint32_t *prog_uses(const Prog *p) {
 
 Prog *prog_tidy(const Prog *p) {
   Arena *arena = p->arena;
-  Prog *r = prog_new_like(p);
   unsigned char *need = ARENA_ARRAY(arena, unsigned char, p->ins.n);
   uint32_t *divisions = ARENA_ARRAY(arena, uint32_t, p->ins.n);
   Slot *map = ARENA_ARRAY(arena, Slot, p->ins.n);
   mark_needed(p, need);
   for (Slot s = 1; s < p->ins.n; s++)
     if (need[s] && p->ins.at[s].op == IR_DIV && p->ins.at[p->ins.at[s].b].op != IR_CONST) divisions[p->ins.at[s].b]++;
+  uint32_t inverses = 1; /* and the number 1 */
+  for (Slot s = 1; s < p->ins.n; s++) inverses += divisions[s] > 1;
+  Prog *r = with_room(p, inverses);
   Slot one = 0;
   for (Slot s = 1; s < p->ins.n; s++) {
     if (!need[s]) continue;
@@ -253,6 +264,9 @@ Prog *prog_tidy(const Prog *p) {
     }
   }
   prog_copy_stores(r, p, map);
+  arena_release(arena, need, p->ins.n * sizeof *need);
+  arena_release(arena, divisions, p->ins.n * sizeof *divisions);
+  arena_release(arena, map, p->ins.n * sizeof *map);
   return r;
 }
 

@@ -154,6 +154,9 @@ Prog *prog_new(Arena *a);
 /* An empty program with room for as many instructions as p has: growing would take twice the memory. */
 Prog *prog_new_like(const Prog *p);
 
+/* Gives up the memory of a program from which all that is needed was copied. Its solves, tables, nests and texts stay: copies have them. */
+void prog_release(Prog *p);
+
 /* Appends an instruction, or returns an equal earlier one; operands of a sum or product match in either order. Simplifies x + 0, 1*x and the like. */
 Slot prog_ins(Prog *p, Ins i);
 Slot prog_op(Prog *p, IrOp op, Slot a, Slot b);

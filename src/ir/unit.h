@@ -25,11 +25,15 @@ typedef struct {
   double offset;
   Num ratio;    /* the factor is ratio*pi^pi_power, exact where ratio is exact */
   int pi_power;
+  const char *si;       /* name of the SI unit, "N*m"; "" for pure numbers */
+  signed char base[7];  /* its powers of m, kg, s, A, K, mol, cd; all 0 where one is no integer */
 } IrVar;
+
+enum { EVENT_KICK = 2 }; /* LAG_KICK of lag_model.h: an event at equal times, whose function is the period */
 
 typedef struct {
   const char *name;
-  int direction;
+  int direction; /* 1 rising, -1 falling, 0 both, EVENT_KICK */
   const Prog *action;
   int stop;
 } IrEvent;
@@ -45,6 +49,10 @@ typedef struct {
   double limit;
   int absolute;
 } IrMonitor;
+
+typedef struct {
+  const char *name, *text, *unit;
+} IrMeasure;
 
 /* A component of [q|v] that constraints move at the start, and its new value. */
 typedef struct {
@@ -69,9 +77,11 @@ typedef struct {
   VEC(unsigned char) forces;    /* by output, in models with constraints: whether it contains multipliers or accelerations */
   const Prog *observe_plain; /* outputs without closed forms, for programs that know no start, */
   VEC(IrVar) plain;          /* and their descriptions */
+  const Prog *observe_held;  /* the same with modes, as held_accel; NULL: no motion sticks */
   const Prog *exact;
   VEC(uint32_t) exact_of;    /* component of [q|v|z] that each closed form describes */
   VEC(IrMonitor) monitors;
+  VEC(IrMeasure) measures;
 } IrScene;
 
 /* Position of an entry of a sparse matrix. */
@@ -86,8 +96,9 @@ typedef struct {
   uint32_t col;
 } IrJump;
 
-/* Programs that only some methods of integration need; made on request. */
-enum { WANT_VARIATION = 1, WANT_TAYLOR = 2, WANT_LINEAR = 4 };
+/* Programs that only some methods of integration, or headers, need; made on request. */
+enum { WANT_VARIATION = 1, WANT_TAYLOR = 2, WANT_LINEAR = 4, WANT_MASS = 8, WANT_INVERSE = 16, WANT_BY_INPUTS = 32, WANT_BY_PARAMS = 64, WANT_MULTIPLIERS = 128, WANT_OUTPUTS = 256,
+       WANT_CONSTRAINED = 512 /* derivatives also of models with constraints, which simulators take by differences */, WANT_HELD = 1024 };
 
 /* Position of a second derivative of L or of a force; part: SECOND_... of mech/variation.h. */
 typedef struct {
@@ -108,17 +119,22 @@ typedef struct {
   const Prog *residuals, *matrices, *position, *velocity;
 } IrConstraints;
 
-/* Indices: of the input that says whether the contact is closed, of its constraint, of its two events. */
+/* Indices: of the input that says whether the contact is closed, of its constraint, of its two events; of a tangent: of the input of its force.
+ * conditional: a constraint with `while`; of a tangent, law: of impact, holds: more friction while it sticks. */
 typedef struct {
-  uint32_t input, constraint, impact, release;
+  uint32_t input, constraint, impact, release, force;
+  int is_tangent, conditional, law, holds;
 } IrContact;
 
-/* A switching function of mech/discontinuity.h. */
+/* A switching function of mech/switches.h. */
 typedef struct {
   const char *surface, *text;
   uint32_t line;
-  int nonnegative;
+  int jumps, is_floor, is_timed, nonnegative;
 } IrSwitch;
+
+/* Modes from here on are not held: the state decides. As LAG_FREE in lag_model.h. */
+#define HELD_MOST 1e30
 
 /* flags: bits CHARGE_CONSERVED, CHARGE_BALANCED (its balance is known), CHARGE_BY_FORMULAS (only while inputs follow their formulas), CHARGE_JUMPS. */
 typedef struct {
@@ -155,20 +171,29 @@ typedef struct {
   uint32_t nderived;
   VEC(IrCharge) charges;        /* the energy first; empty where the energy is the only one, conserved, without unit */
   const Prog *charge_values, *charge_powers; /* NULL: the energy is the only charge; all charges are conserved */
+  int dry_friction;             /* charge_powers has its power, too, behind those of the charges */
   VEC(IrSwitch) switches;
-  const Prog *switch_values;    /* NULL: no switches */
+  uint32_t nmodes;              /* switches that a run holds; their modes are inputs behind those of the model */
+  const Prog *switch_values, *switch_rates, *switch_grips, *contact_laws; /* NULL: no switches; none that is held; no static limits; no contact with friction */
+  const Prog *held_accel; /* of headers: accel with modes; NULL: no motion sticks */
+  const Prog *contact_coefficients; /* of headers: friction and tangential restitution of each contact; NULL: none has friction */
   IrConstraints constraints;
   VEC(IrContact) contacts;
+  const Prog *impact;           /* Newton's law of impact of one contact, see lower_impact; NULL: no contact strikes */
   unsigned wants;
   const Prog *variation, *second; /* NULL unless WANT_VARIATION */
   VEC(IrSecond) second_at;        /* positions of the outputs of `second` */
   const Series *taylor;         /* NULL unless WANT_TAYLOR, and where the model has no series: not analytic, constraints, tables */
   const Prog *linear;           /* NULL: not requested */
-  VEC(IrEntry) linear_dr, linear_mass; /* positions of its outputs 0 and 1 */
+  VEC(IrEntry) linear_dr, linear_mass; /* positions of its outputs 0 and 1; output 2: constraints.jacobian */
+  const Prog *mass, *bias, *inverse, *multipliers, *by_inputs, *by_params, *outputs; /* of headers; NULL: not requested */
+  VEC(IrEntry) by_inputs_dr, by_params_dr; /* as linear_dr */
+  VEC(IrEntry) outputs_at; /* of the derivatives of outputs, formulas of parameters and inputs: columns q, v, z, inputs, q'', z', parameters */
   const Prog *jumps;            /* NULL: not requested, or no event changes the state */
   VEC(IrJump) jump_at;          /* positions of its outputs */
   VEC(IrScene) scenes;
   int libm;                     /* emitted code calls the C library's sin and cos */
+  int lanes;                    /* emitted to be compiled for lanes, too, and for a double with the same bits */
   int lines;                    /* messages on constraints and switches give their source lines: simulators name their file */
 } IrUnit;
 
@@ -179,6 +204,13 @@ ProgList unit_programs(const IrUnit *u);
 
 /* NULL, or what is wrong with one of its programs: an internal error. */
 const char *unit_verify(const IrUnit *u);
+/* The name of the first kick; NULL: the unit has none. */
+const char *unit_kick(const IrUnit *u);
+/* The contact that strikes at event i, by u->impact; NULL: none. A constraint with `while`, and a tangent, have no law of impact of their own. */
+const IrContact *unit_striking_contact(const IrUnit *u, uint32_t i);
+
+/* Values of a scene: parameters p[np] (NaN where a formula has none), the start y[2*nq + nz] on the constraints, inputs in[nu] at its time. */
+void scene_values(const IrUnit *u, const IrScene *s, long double *p, long double *y, long double *in);
 
 /* hoist.c: moves values that depend on parameters alone from the programs that a step calls to u->derived, and leaves loads of parameters u->p.n,
  * u->p.n + 1, ... in their place; a constant mass matrix that is eliminated in straight-line code is factored then, too. Only for emitted models,

@@ -75,7 +75,7 @@ static void add_multipliers(const Check *c, BoundedSum *r) {
   const Constraints *k = &c->e->constraints;
   for (uint32_t i = 0; i < k->n; i++) {
     uint32_t place = (uint32_t)(k->of[i] - c->m->constraints.at);
-    if (k->of[i]->inside) continue; /* displacements satisfy it: keep_rotations */
+    if (k->of[i]->inside) continue; /* displacements satisfy it: check_keep_rotations */
     bounded_sum_add(r, -1, bounded_mul((Bounded){c->lambda[place], c->lambda_error[place]}, check_coefficient(c->dynamics->tape, c->at, c->dynamics->constraints[place], i < k->nholonomic ? 1 : 2, 0)));
   }
 }
@@ -116,8 +116,7 @@ static CheckVerdict check_direction(Check *c, const char *name, Span span, const
   return worse(v, check_compare(c, &force, of[2], span, "the force on", name));
 }
 
-/* Projects displacements of rotations orthogonal to q, so that |q| stays 1. */
-static void keep_rotations(Check *c) {
+void check_keep_rotations(Check *c) {
   const Declarations *b = c->m->declared;
   for (uint32_t i = 0; i < b->rotations.n; i++) {
     Real *d = c->c + b->rotations.at[i], *q = c->q + b->rotations.at[i], along = 0;
@@ -132,7 +131,7 @@ static CheckVerdict check_coordinate(Check *c, uint32_t i, const Real *const *va
   const Model *m = c->m;
   if (m->first_order && !m->states.at[i].coordinate) return AGREES;
   for (uint32_t k = 0; k < check_components(c); k++) c->c[k] = k == i;
-  if (!m->first_order) keep_rotations(c);
+  if (!m->first_order) check_keep_rotations(c);
   return check_direction(c, m->first_order ? m->states.at[i].name : m->coords.at[i].name, m->lagrangian_span, variation);
 }
 
@@ -141,7 +140,7 @@ static CheckVerdict check_combination(Check *c, const Real *const *variation) {
   for (uint32_t k = 0; k < check_components(c); k++) c->c[k] = check_random(c, 0.3L, 1) * (check_random(c, 0, 1) < 0.5L ? -1 : 1);
   if (c->m->first_order)
     for (uint32_t k = 0; k < check_components(c); k++) c->c[k] *= c->m->states.at[k].coordinate;
-  else keep_rotations(c);
+  else check_keep_rotations(c);
   uint32_t errors = c->m->diags->errors;
   Diags *heard = c->m->diags;
   Model *m = (Model *)c->m; /* only its diags: the combination's message is dropped */

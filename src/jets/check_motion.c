@@ -1,5 +1,4 @@
-/* Programs of derivatives (rates of charges, linearisation, Taylor coefficients), against finite differences of values that were compared
- * with the text before. */
+/* Rates of charges and Taylor coefficients, against finite differences of values that were compared with the text before. */
 #include <math.h>
 
 #include "jets/self_check_impl.h"
@@ -45,7 +44,7 @@ static Real short_time(const Check *c) {
 
 /* Derivative by Richardson extrapolation of central differences, at = f(-h), f(h), f(-2h), f(2h). Error: a quarter of their difference,
  * plus 1/h times the known error `rounding` and the rounding of values of magnitude `size`. */
-static BoundedSum derivative(const Real at[4], Real h, Real size, Real rounding) {
+BoundedSum check_derivative(const Real at[4], Real h, Real size, Real rounding) {
   Real near = (at[1] - at[0]) / (2 * h), far = (at[3] - at[2]) / (4 * h), spread = fabsl(near - far);
   Real error = spread / 4 + (1024 * jet_unit * size + rounding) / h;
   return (BoundedSum){{near + (near - far) / 3, error}, size, fabsl(near) + 1};
@@ -71,58 +70,11 @@ static CheckVerdict check_charges(Check *c) {
   restore_state(c, &kept);
   for (uint32_t i = 1; i < n; i++) {
     if (!(u->charges.at[i].flags & 2) || u->charges.at[i].flags & 8) continue;
-    BoundedSum t = derivative(at[i], h, size[i], 0);
+    BoundedSum t = check_derivative(at[i], h, size[i], 0);
     t.sum.e /= 64; /* an estimate, not a rounding bound: takes part of the factor SLACK of check_compare back */
     v = worse(v, check_compare(c, &t, power[i], c->m->span, "the rate of the charge", u->charges.at[i].name));
   }
   return v;
-}
-
-/* The text's residual along c->c at a perturbed state, with the unperturbed accelerations; 0: not finite or unsure. */
-static int residual_beside(Check *c, Real *out, Real *size, Real *rounding) {
-  const TextDynamics *d = c->dynamics;
-  if (!check_run_text(c)) return 0;
-  for (uint32_t i = 0; i < c->m->states.n; i++) c->zd[i] = check_coefficient(d->tape, c->at, d->flows[i], 0, 0).v;
-  if (!check_run_text(c)) return 0;
-  BoundedSum r = check_residual(c);
-  *out = r.sum.v;
-  *size += r.size + r.inner_magnitude;
-  *rounding += r.sum.e;
-  return isfinite(r.sum.v);
-}
-
-/* Linearisation: sum c_i dr_i/dy_j d_j for random c, d, against finite differences of the text's residual c.r along d. */
-static CheckVerdict check_linear(Check *c) {
-  const IrUnit *u = c->u;
-  uint32_t n = c->n, nz = c->m->states.n;
-  Real *dr = ARENA_ARRAY(c->arena, Real, u->linear_dr.n + 1), *M = ARENA_ARRAY(c->arena, Real, u->linear_mass.n + 1);
-  Real *d = ARENA_ARRAY(c->arena, Real, 2 * n + nz + 1), at[4], h = 1e-5L, said = 0, size = 0, inner_magnitude = 0, rounding = 0;
-  if (!n || !check_run(c, u->linear, (Real *const[]){dr, M})) return AGREES;
-  for (uint32_t i = 0; i < n; i++) c->c[i] = check_random(c, -1, 1);
-  for (uint32_t i = 0; i < 2 * n + nz; i++) {
-    Real y = i < n ? c->q[i] : i < 2 * n ? c->v[i - n] : c->z[i - 2 * n];
-    int angle = i < n && c->m->coords.at[i].periodic;
-    d[i] = check_random(c, -1, 1) * (y != 0 && !angle ? fabsl(y) : 1);
-    if (fabsl(y) * jet_unit > 1e-6L * h) return AGREES; /* rounding of y would swamp the difference */
-  }
-  for (uint32_t k = 0; k < u->linear_dr.n; k++) {
-    IrEntry e = u->linear_dr.at[k];
-    if (e.row >= n) continue;
-    said -= c->c[e.row] * dr[k] * d[e.col];
-    size += fabsl(c->c[e.row] * dr[k] * d[e.col]);
-  }
-  SavedState kept = copy_state(c);
-  int ran = 1;
-  for (int k = 0; k < 4 && ran; k++) {
-    move_to(c, &kept, (k % 2 ? h : -h) * (k < 2 ? 1 : 2), d, d + n, d + 2 * n, 0);
-    ran = residual_beside(c, &at[k], &inner_magnitude, &rounding);
-  }
-  restore_state(c, &kept);
-  if (!ran) return AGREES;
-  BoundedSum t = derivative(at, h, inner_magnitude, rounding);
-  t.size = size;
-  t.sum.e /= 64;
-  return check_compare(c, &t, said, c->m->lagrangian_span, "the linearisation", NULL);
 }
 
 /* --- Taylor coefficients --- */
@@ -225,7 +177,7 @@ static CheckVerdict check_taylor(Check *c) {
 
 CheckVerdict check_motion(Check *c) {
   CheckVerdict v = c->far ? AGREES : check_charges(c);
-  if (v != DISAGREES && !c->far && c->u->linear && c->dynamics->lagrangian && !c->m->first_order) v = worse(v, check_linear(c));
+  if (v != DISAGREES && !c->far) v = worse(v, check_matrices(c));
   if (v != DISAGREES && !c->far && c->u->taylor && c->e->smooth && c->n <= LONG_TAPE / 100) v = worse(v, check_taylor(c));
   return v == DISAGREES ? v : AGREES;
 }

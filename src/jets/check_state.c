@@ -108,7 +108,27 @@ static int project_constraints(Check *c, int velocities) {
   return 0;
 }
 
-int check_choose_state(Check *c, int attempt) {
+/* side[switches]: values of the switching functions, with the modes of the state itself. */
+static int switch_sides(Check *c, Real *side) {
+  for (uint32_t i = 0; i < c->u->nmodes; i++) c->signal[c->m->inputs.n + i] = HELD_MOST;
+  return !c->u->nmodes || check_run(c, c->u->switch_values, (Real *const[]){side});
+}
+
+/* Modes of switches: in every second state those of the state itself, which must give what no mode gives. Refuses a state that constraints hold on the edge of a switch, where rounding decides;
+ * free[switches]: values before constraints. */
+static int hold_switches(Check *c, int attempt, const Real *free) {
+  const IrUnit *u = c->u;
+  Real *mode = c->signal + c->m->inputs.n, *side = ARENA_ARRAY(c->arena, Real, u->switches.n + 1);
+  if (!switch_sides(c, side)) return 0;
+  for (uint32_t i = 0; i < u->nmodes; i++) {
+    if (u->constraints.of.n && fabsl(side[i]) < 1e-9L * fabsl(free[i])) return 0;
+    if (attempt % 2) mode[i] = u->switches.at[i].is_floor ? floorl(side[i]) : side[i] < 0 ? -1 : 1;
+  }
+  return 1;
+}
+
+/* free[switches]: see hold_switches. */
+static int choose_state(Check *c, int attempt, Real *free) {
   const Model *m = c->m;
   const IrUnit *u = c->u;
   c->far = attempt % 3 == 2 && c->reach == 1;
@@ -122,11 +142,17 @@ int check_choose_state(Check *c, int attempt) {
   for (uint32_t i = 0; i < m->inputs.n; i++) c->signal[i] += check_random(c, -0.5L, 0.5L);
   for (uint32_t i = 0; i < u->contacts.n; i++) c->signal[u->contacts.at[i].input] = uniform(c) < 0.5L;
   project_rotations(c);
+  if (!switch_sides(c, free)) return 0;
   Real before = largest(c->q, c->n);
   if (!u->constraints.of.n) return 1;
   int obeys = project_constraints(c, 0) && project_constraints(c, 1) && largest(c->q, c->n) > 1e-6L * before; /* refuses collapse to 0 */
   if (!obeys && !c->far) c->reach /= 16; /* long chains of constraints converge from nearby only */
   return obeys;
+}
+
+int check_choose_state(Check *c, int attempt) {
+  Real *free = ARENA_ARRAY(c->arena, Real, c->u->switches.n + 1);
+  return choose_state(c, attempt, free) && hold_switches(c, attempt, free);
 }
 
 static int solve(Check *c, Real *a, Real *zd, Real *lambda) {
@@ -190,7 +216,7 @@ void check_prepare(Check *c) {
   for (size_t k = 0; k < sizeof of_states / sizeof *of_states; k++) *of_states[k] = alloc_reals(c, nz);
   c->p = alloc_reals(c, m->params.n + c->u->nderived);
   c->given = alloc_reals(c, m->params.n);
-  c->signal = alloc_reals(c, m->inputs.n + m->scene.exacts.n);
+  c->signal = alloc_reals(c, m->inputs.n + c->u->nmodes + m->scene.exacts.n);
   c->lambda = alloc_reals(c, m->constraints.n);
   c->lambda_error = alloc_reals(c, m->constraints.n);
   c->a_error = alloc_reals(c, n + nz);
@@ -201,7 +227,7 @@ void check_prepare(Check *c) {
   c->outputs = text_outputs(m, c->e->outputs, c->e->noutputs, c->arena);
   c->at = ARENA_ARRAY(c->arena, Jet, c->dynamics->tape->slots + 1);
   c->at_outputs = ARENA_ARRAY(c->arena, Jet, c->outputs->tape->slots + 1);
-  c->multipliers = c->e->constraints.n ? lower_multipliers(c->e) : NULL;
+  c->multipliers = !c->e->constraints.n ? NULL : c->u->multipliers ? c->u->multipliers : lower_multipliers(c->e);
   choose_parameters(c);
   check_run(c, c->u->scenes.at[c->scene].start, (Real *const[]){c->q0, c->v0, c->z0});
 }

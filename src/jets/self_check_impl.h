@@ -78,5 +78,10 @@ CheckVerdict check_failure(Check *c);
 CheckVerdict check_dynamic_values(Check *c);
 CheckVerdict check_other_values(Check *c);
 
-/* check_motion.c: charges, linearisation, Taylor coefficients, against finite differences. */
+/* check_motion.c: charges, matrices, Taylor coefficients. Derivative of a function from its values at -h, h, -2h, 2h, with an error bound. */
 CheckVerdict check_motion(Check *c);
+BoundedSum check_derivative(const Real at[4], Real h, Real size, Real rounding);
+
+/* check_matrices.c: mass matrix, bias, inverse dynamics; derivatives by state, inputs and parameters, against finite differences of the text. */
+CheckVerdict check_matrices(Check *c);
+void check_keep_rotations(Check *c); /* makes c->c a displacement that keeps rotations of unit length */

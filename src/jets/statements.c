@@ -108,30 +108,58 @@ static void push_constraint(Walk *w, Ref c) {
   if (w->constraint < m->constraints.n) w->dynamics->constraints[w->constraint++] = c;
 }
 
-static void read_constraint(Walk *w, const AstStmt *st, Name effect) {
+static Ref contact_signal(const Walk *w, SymId s) { return tape_input(w->text->tape, INPUT_SIGNAL, expr_symbol(w->text->m->g, s)->index); }
+
+/* The tangent of a contact as a constraint, `sticks` times the slip, and the power of its force. */
+static void read_tangent(Walk *w, const Contact *tangent, Ref slip) {
   Tape *t = w->text->tape;
-  TextValue l = value(w, st->lhs, effect), r = value(w, st->rhs, effect);
-  uint32_t n = l.n ? l.n : r.n;
-  for (uint32_t k = 0; k < (n ? n : 1); k++) push_constraint(w, tape_op(t, TAPE_SUB, l.at[k], r.at[k], 0));
+  push_constraint(w, tape_op(t, TAPE_MUL, contact_signal(w, tangent->closed), slip, 0));
+  w->dynamics->dissipation = added(w, w->dynamics->dissipation, TAPE_SUB, tape_op(t, TAPE_MUL, contact_signal(w, tangent->force), slip, 0));
 }
 
-/* A contact as a constraint: its input `closed` times the gap. */
-static void read_contact(Walk *w, const AstStmt *st, Name effect) {
+/* Stores a contact, or a constraint with `while`: its input `closed` times c. Returns it; NULL: there is none here. */
+static const Contact *push_switched(Walk *w, Ref c) {
   const Model *m = w->text->m;
-  TextValue gap = value(w, st->lhs, effect);
   for (uint32_t i = 0; i < m->contacts.n; i++) {
     uint32_t place_of = m->contacts.at[i].constraint;
     while (w->constraint < m->constraints.n && m->constraints.at[w->constraint].inside) w->constraint++;
     if (place_of != w->constraint) continue;
-    Ref closed = tape_input(w->text->tape, INPUT_SIGNAL, expr_symbol(m->g, m->contacts.at[i].closed)->index);
-    push_constraint(w, tape_op(w->text->tape, TAPE_MUL, closed, gap.at[0], 0));
-    return;
+    push_constraint(w, tape_op(w->text->tape, TAPE_MUL, contact_signal(w, m->contacts.at[i].closed), c, 0));
+    return &m->contacts.at[i];
+  }
+  return NULL;
+}
+
+static TextValue slip_value(Walk *w, const AstStmt *st, Name effect) { return value(w, ast_option_value(w->text->b->ast, st, "slip"), effect); }
+
+static void read_contact(Walk *w, const AstStmt *st, Name effect) {
+  const Contact *c = push_switched(w, value(w, st->lhs, effect).at[0]);
+  TextValue slip = c && st->args ? slip_value(w, st, effect) : (TextValue){0};
+  for (uint32_t k = 0; c && st->args && k < text_components(&slip); k++) read_tangent(w, c + 1 + k, slip.at[k]);
+}
+
+/* Adds p*q' of a momentum, or -H, to L of a model that gives its Hamiltonian. */
+static Ref with_phase_space_action(Walk *w, Ref L, const AstStmt *st, Name effect) {
+  if (!w->text->m->hamiltonian) return L;
+  int is_momentum = st->kind == STMT_MOMENTUM;
+  return added(w, L, is_momentum ? TAPE_ADD : TAPE_SUB, value(w, is_momentum ? st->args : st->rhs, effect).at[0]);
+}
+
+static void read_constraint(Walk *w, const AstStmt *st, Name effect) {
+  Tape *t = w->text->tape;
+  TextValue l = value(w, st->lhs, effect), r = value(w, st->rhs, effect);
+  uint32_t n = l.n ? l.n : r.n;
+  for (uint32_t k = 0; k < (n ? n : 1); k++) {
+    Ref c = tape_op(t, TAPE_SUB, l.at[k], r.at[k], 0);
+    if (st->args) push_switched(w, c);
+    else push_constraint(w, c);
   }
 }
 
 static void read_dynamics(Walk *w, const AstStmt *st, Name effect) {
   TextDynamics *d = w->dynamics;
   switch (st->kind) {
+    case STMT_MOMENTUM: case STMT_HAMILTONIAN: d->lagrangian = with_phase_space_action(w, d->lagrangian, st, effect); return;
     case STMT_LAGRANGIAN: case STMT_KINETIC: d->lagrangian = added(w, d->lagrangian, TAPE_ADD, value(w, st->rhs, effect).at[0]); return;
     case STMT_POTENTIAL: d->lagrangian = added(w, d->lagrangian, TAPE_SUB, value(w, st->rhs, effect).at[0]); return;
     case STMT_DISSIPATION: d->dissipation = added(w, d->dissipation, TAPE_ADD, value(w, st->rhs, effect).at[0]); return;
@@ -195,7 +223,11 @@ static void read_event(Walk *w, const AstStmt *st, Name effect) {
 
 static void read_output_statement(Walk *w, const AstStmt *st, Name effect) {
   if (st->kind == STMT_EVENT) read_event(w, st, effect);
-  else if (st->kind == STMT_CONTACT) w->event += 2; /* impact and release, added by model/constraint.c */
+  else if (st->kind == STMT_CONTACT) { /* events added by model/constraint.c */
+    TextValue slip = st->args ? slip_value(w, st, effect) : (TextValue){0};
+    w->event += 2 + (st->args ? 2 * text_components(&slip) : 0);
+  }
+  else if (st->kind == STMT_CONSTRAINT && st->args) w->event += 2; /* the same */
 }
 
 static Ref signal_value(Walk *w, const Input *in) {
@@ -221,6 +253,7 @@ static int is_energy(const TextEval *t, const OutputText *o) {
 
 static void read_energies(Walk *w, const AstStmt *st, Name effect) {
   TextEval *t = w->text;
+  if (st->kind == STMT_MOMENTUM || st->kind == STMT_HAMILTONIAN) t->lagrangian = with_phase_space_action(w, t->lagrangian, st, effect);
   int plus = st->kind == STMT_LAGRANGIAN || st->kind == STMT_KINETIC;
   if (!plus && st->kind != STMT_POTENTIAL) return;
   Ref term = value(w, st->rhs, effect).at[0];

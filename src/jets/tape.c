@@ -56,7 +56,7 @@ static int fold_exact(TapeOp op, Num x, Num y, Num *r) {
   return num_is_exact(*r);
 }
 
-static int is_unary(TapeOp op) { return op == TAPE_NEG || op == TAPE_NOT || op == TAPE_RATE || op == TAPE_SIGN; }
+static int is_unary(TapeOp op) { return op == TAPE_NEG || op == TAPE_NOT || op == TAPE_RATE || op == TAPE_SIGN || op == TAPE_FLOOR; }
 
 Ref tape_op(Tape *t, TapeOp op, Ref a, Ref b, Ref c) {
   Num x, y = num_int(0), r;
@@ -150,6 +150,12 @@ static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, 
     case TAPE_AND: near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e); *out = jet_of_bool(value(x) != 0 && value(y) != 0); break;
     case TAPE_OR: near = isinf(x->c[0][0].e) || isinf(y->c[0][0].e); *out = jet_of_bool(value(x) != 0 || value(y) != 0); break;
     case TAPE_SIGN: near = is_near(x, &zero); *out = jet_exact((value(x) > 0) - (value(x) < 0)); break;
+    case TAPE_FLOOR: {
+      Jet whole = jet_exact(roundl(value(x)));
+      near = is_near(x, &whole);
+      *out = jet_exact(floorl(value(x)));
+      break;
+    }
     case TAPE_MIN: near = is_near(x, y); *out = value(x) < value(y) ? *x : *y; break;
     case TAPE_MAX: near = is_near(x, y); *out = value(x) > value(y) ? *x : *y; break;
     case TAPE_LT: near = is_near(x, y); *out = jet_of_bool(value(x) < value(y)); break;

@@ -18,7 +18,7 @@ typedef enum {
   TAPE_POWER,    /* a^number */
   TAPE_POW,      /* a^b */
   TAPE_FUNCTION, /* text(a) */
-  TAPE_ATAN2, TAPE_HYPOT, TAPE_MIN, TAPE_MAX, TAPE_SIGN,
+  TAPE_ATAN2, TAPE_HYPOT, TAPE_MIN, TAPE_MAX, TAPE_SIGN, TAPE_FLOOR,
   TAPE_LT, TAPE_LE, TAPE_EQ, TAPE_NOT, TAPE_AND, TAPE_OR,
   TAPE_SELECT    /* a ? b : c */
 } TapeOp;

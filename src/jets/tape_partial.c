@@ -88,7 +88,7 @@ static Ref derivative(const Partial *p, Ref r, uint32_t level) {
     case TAPE_MIN: return chosen(t, tape_op(t, TAPE_LT, i.a, i.b, 0), da, db);
     case TAPE_MAX: return chosen(t, tape_op(t, TAPE_LT, i.b, i.a, 0), da, db);
     case TAPE_SELECT: return chosen(t, i.a, db, dc);
-    case TAPE_NUMBER: case TAPE_PI: case TAPE_INPUT: case TAPE_RATE: case TAPE_SIGN: case TAPE_LT: case TAPE_LE: case TAPE_EQ: case TAPE_NOT:
+    case TAPE_NUMBER: case TAPE_PI: case TAPE_INPUT: case TAPE_RATE: case TAPE_SIGN: case TAPE_FLOOR: case TAPE_LT: case TAPE_LE: case TAPE_EQ: case TAPE_NOT:
     case TAPE_AND: case TAPE_OR: break; /* piecewise constant */
   }
   return 0;

@@ -288,23 +288,36 @@ static TextValue select_value(TextEval *t, const TextValue *c, const TextValue *
   return r;
 }
 
-/* Multiplier of a constraint: lambda(rod), lambda(rod[2]), lambda(drag.rod). */
-static TextValue multiplier(TextEval *t, const Frame *f, AstId id) {
+/* The name of a constraint or a contact: rod, rod[2], drag.rod; owner: the effect that is named. NULL: its index has no value. */
+static Name constraint_name(TextEval *t, const Frame *f, AstId id, Name *owner) {
   const Ast *ast = t->b->ast;
   const AstExpr *x = ast_expr(ast, id);
-  Name effect = f->effect;
   int64_t at[2] = {0};
   uint32_t n = 0;
-  int ambiguous;
   if (x->kind == AST_INDEX) {
     for (AstId i = x->args; i && n < 2; i = ast_expr(ast, i)->next, n++)
-      if (!whole(t, operand(f, i), &at[n])) return NOTHING;
+      if (!whole(t, operand(f, i), &at[n])) return NULL;
     x = ast_expr(ast, x->a);
   }
-  if (x->kind == AST_MEMBER) effect = ast_expr(ast, x->a)->name;
-  const Entity *e = scope_find(&t->b->constraints, member_name(t->b->ast, x->name, at, n), effect, &ambiguous);
+  if (x->kind == AST_MEMBER) *owner = ast_expr(ast, x->a)->name;
+  return member_name(ast, x->name, at, n);
+}
+
+/* Multiplier of a constraint: lambda(rod), lambda(rod[2]), lambda(drag.rod), or of the slip of a contact: lambda(floor.slip), lambda(feet[2].slip). */
+static TextValue multiplier(TextEval *t, const Frame *f, AstId id) {
+  const AstExpr *x = ast_expr(t->b->ast, id);
+  int of_family = x->kind == AST_MEMBER && ast_expr(t->b->ast, x->a)->kind == AST_INDEX, ambiguous;
+  Name owner = NULL, name = of_family ? x->name : constraint_name(t, f, id, &owner);
+  if (of_family) owner = constraint_name(t, f, x->a, &owner);
+  if (!name || (of_family && !owner)) return NOTHING;
+  const Entity *e = owner ? scope_own(&t->b->constraints, name, owner) : scope_find(&t->b->constraints, name, f->effect, &ambiguous);
   TextValue r = {.n = e ? e->parts : 0};
   for (uint32_t k = 0; e && k < text_components(&r); k++) r.at[k] = tape_input(t->tape, INPUT_MULTIPLIER, e->index + k);
+  for (uint32_t i = 0; e && i < t->m->contacts.n; i++) { /* friction of a contact that slips */
+    const Contact *c = &t->m->contacts.at[i];
+    uint32_t k = c->constraint - e->index;
+    if (c->is_tangent && c->constraint >= e->index && k < text_components(&r)) r.at[k] = plus(t, r.at[k], tape_input(t->tape, INPUT_SIGNAL, expr_symbol(t->m->g, c->force)->index));
+  }
   return r;
 }
 
@@ -349,6 +362,7 @@ static TextValue call_unary(TextEval *t, Name name, const TextValue *x) {
   if (strcmp(name, "cbrt") == 0) return scalar(tape_power(t->tape, x->at[0], num_ratio(1, 3)), x->bare);
   if (strcmp(name, "abs") == 0) return scalar(tape_function(t->tape, "fabs", x->at[0]), x->bare);
   if (strcmp(name, "sign") == 0) return scalar(tape_op(t->tape, TAPE_SIGN, x->at[0], 0, 0), x->bare);
+  if (strcmp(name, "floor") == 0) return scalar(tape_op(t->tape, TAPE_FLOOR, x->at[0], 0, 0), x->bare);
   return is_one_of(name, functions) ? scalar(tape_function(t->tape, name, x->at[0]), x->bare) : NOTHING;
 }
 

@@ -20,9 +20,9 @@ typedef struct {
   Slot *A, *g;  /* [m*n], [m] */
 } Block;
 
-/* Right-hand sides: f[n] (0: zero), and g[nrows] of the first nrows constraints. */
+/* Right-hand sides: f[n] (0: zero), and g[nrows] of the first nrows constraints. factor[nrows]: of rows of A, 0: 1; or NULL: all are 1. */
 typedef struct {
-  const Slot *f, *g;
+  const Slot *f, *g, *factor;
   uint32_t nrows;
   int coarse; /* as in Solve */
 } RightHandSides;
@@ -98,7 +98,8 @@ static void fill_constraints(Lower *l, const RightHandSides *s, const BlockLayou
   for (uint32_t k = 0; k < A->n && A->at[k].row < s->nrows; k++) {
     uint32_t row = A->at[k].row;
     Block *b = &y->blocks[y->row_block[row]];
-    b->A[y->row_place[row] * b->n + y->place[A->at[k].col]] = lower_slot(l, A->at[k].e);
+    Slot entry = lower_slot(l, A->at[k].e), factor = s->factor ? s->factor[row] : 0;
+    b->A[y->row_place[row] * b->n + y->place[A->at[k].col]] = factor ? prog_op(l->p, IR_MUL, entry, factor) : entry;
     b->rows[y->row_place[row]] = row;
     b->g[y->row_place[row]] = s->g[row];
   }
@@ -253,14 +254,14 @@ void lower_solution(Lower *l, Slot *acc) {
   if (is_straight_line(e)) {
     (e->squares.n ? lower_gram_schmidt : lower_elimination)(l, acc);
   } else {
-    RightHandSides sides = {slots_of(l, s->f, e->n), slots_of(l, k->demand, k->n), k->n, l->coarse};
+    RightHandSides sides = {slots_of(l, s->f, e->n), slots_of(l, k->demand, k->n), NULL, k->n, l->coarse};
     prog_title(l->p, k->n ? "M q'' = f + A^T lambda" : "M q'' = f");
     solve_blocks(l, &sides, acc, l->multipliers);
   }
   for (uint32_t i = 0; i < e->n; i++) prog_name(l->p, acc[i], expr_symbol(e->g, e->m->coords.at[i].a)->name);
 }
 
-void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, Slot *d, Slot *force) {
+void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, const Slot *factor, Slot *d, Slot *force) {
   const Eqns *e = l->e;
   const Entries *A = &e->constraints.A;
   Arena *a = l->p->arena;
@@ -269,10 +270,10 @@ void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, Slot 
   push_entries(l, &roots, A);
   lower_roots(l, roots.at, roots.n);
   Slot *multipliers = ARENA_ARRAY(a, Slot, nrows + 1);
-  RightHandSides sides = {ARENA_ARRAY(a, Slot, e->n + 1), g, nrows, coarse};
+  RightHandSides sides = {ARENA_ARRAY(a, Slot, e->n + 1), g, factor, nrows, coarse};
   solve_blocks(l, &sides, d, multipliers);
-  for (uint32_t i = 0; i < e->n; i++) force[i] = 0;
-  for (uint32_t k = 0; k < A->n && A->at[k].row < nrows; k++) {
+  for (uint32_t i = 0; i < e->n && force; i++) force[i] = 0;
+  for (uint32_t k = 0; force && k < A->n && A->at[k].row < nrows; k++) {
     Slot *sum = &force[A->at[k].col];
     *sum = prog_add_product(l->p, *sum, lower_slot(l, A->at[k].e), multipliers[A->at[k].row]);
   }

@@ -1,5 +1,6 @@
 /* Programs of charges and of their time derivatives, as functions of the state. */
 #include "lower/lower_impl.h"
+#include "mech/switches.h"
 #include "symmetry/charges.h"
 
 Prog *lower_charges(const Eqns *e) {
@@ -29,15 +30,17 @@ static Expr power_of(const Eqns *e, uint32_t i) {
 Prog *lower_charge_rates(const Eqns *e) {
   Lower l = lower_new(e);
   Arena *a = l.p->arena;
-  Expr *roots = ARENA_ARRAY(a, Expr, e->ncharges + 1);
+  Expr *roots = ARENA_ARRAY(a, Expr, e->ncharges + 2);
   int some = 0;
   for (uint32_t i = 0; i < e->ncharges; i++) {
     roots[i] = power_of(e, i);
     some |= !expr_is_zero(e->g, roots[i]);
   }
   if (!some) return NULL;
-  lower_with_accelerations(&l, roots, e->ncharges);
+  Expr dry = roots[e->ncharges] = switch_power(e);
+  lower_with_accelerations(&l, roots, e->ncharges + 1);
   for (uint32_t i = 0; i < e->ncharges; i++)
     prog_store(l.p, 0, i, lower_slot(&l, roots[i]), arena_printf(a, "d(%s)/dt", e->charges[i].name));
+  if (!expr_is_zero(e->g, dry)) prog_store(l.p, 0, e->ncharges, lower_slot(&l, dry), "power of dry friction");
   return lower_finish_seldom(&l);
 }

@@ -1,6 +1,6 @@
 /* Programs of models with constraints: residuals, matrices A and M, projections, impacts, multipliers. */
-#include "ir/passes.h"
 #include "lower/lower_impl.h"
+#include "mech/constrain.h"
 
 Prog *lower_residuals(const Eqns *e) {
   const Constraints *k = &e->constraints;
@@ -11,7 +11,7 @@ Prog *lower_residuals(const Eqns *e) {
   for (uint32_t i = 0; i < k->nkept; i++) prog_store(l.p, 0, i, lower_slot(&l, k->c[i]), k->of[i]->name);
   for (uint32_t i = 0; i < k->n; i++)
     prog_store(l.p, 1, i, lower_slot(&l, k->r[i]), i < k->nkept ? arena_printf(a, "%s'", k->of[i]->name) : k->of[i]->name);
-  return passes_run(l.p, &(PassPlan){0}, NULL);
+  return lower_finish(&l, &(PassPlan){0}, NULL);
 }
 
 static void store_entries(Lower *l, uint32_t array, const Entries *x) {
@@ -27,7 +27,7 @@ Prog *lower_matrices(const Eqns *e) {
   Lower l = lower_new(e);
   store_entries(&l, 0, &e->constraints.A);
   store_entries(&l, 1, &e->mass);
-  return passes_run(l.p, &(PassPlan){0}, NULL);
+  return lower_finish(&l, &(PassPlan){0}, NULL);
 }
 
 Prog *lower_projection(const Eqns *e, uint32_t nrows) {
@@ -37,46 +37,72 @@ Prog *lower_projection(const Eqns *e, uint32_t nrows) {
   Slot *g = ARENA_ARRAY(a, Slot, nrows + 1), *d = ARENA_ARRAY(a, Slot, e->n + 1), *force = ARENA_ARRAY(a, Slot, e->n + 1);
   for (uint32_t i = 0; i < nrows; i++)
     g[i] = prog_ins(l.p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = e->constraints.of[i]->name});
-  lower_correction(&l, nrows, 1, g, d, force);
+  lower_correction(&l, nrows, 1, g, NULL, d, force);
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, d[i], m->coords.at[i].name);
   for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 1, i, force[i], m->coords.at[i].name);
-  return passes_run(l.p, &(PassPlan){0}, NULL);
+  return lower_finish(&l, &(PassPlan){0}, NULL);
 }
 
-/* Newton's law of restitution for the contact, J v1 + g_t = -e (J v + g_t), with the impulse M (v1 - v) = A^T Lambda that keeps all other
- * constraints and closed contacts; the contact's own row of A is made active by setting its input `closed` to 1. */
-Prog *lower_impact(const Eqns *e, const Contact *contact) {
+/* The contact of row i of A, if it has a law of impact of its own, or NULL. */
+static const Contact *striking_contact(const Eqns *e, uint32_t i) {
+  const Contact *c = contact_of_constraint(e->m, e->constraints.of[i]);
+  return c && !c->margin && !c->is_tangent ? c : NULL;
+}
+
+/* x of a constraint that is closed. */
+static Expr as_closed(const Eqns *e, const Contact *c, Expr x) {
+  Expr *with = ARENA_ARRAY(e->m->arena, Expr, c->closed + 1);
+  with[c->closed] = expr_int(e->g, 1);
+  return expr_substitute(e->g, x, with, c->closed + 1, "");
+}
+
+/* e with the rows of A of contacts that strike as if all were closed. */
+static Eqns with_closed_rows(const Eqns *e) {
+  Eqns to = *e;
+  to.constraints.A = (Entries){0};
+  for (uint32_t i = 0; i < e->constraints.A.n; i++) {
+    MassEntry x = e->constraints.A.at[i];
+    const Contact *c = striking_contact(e, x.row);
+    if (c) x.e = as_closed(e, c, x.e);
+    vec_push(e->m->arena, &to.constraints.A, x);
+  }
+  return to;
+}
+
+/* The change of the rate of contact c by its impact, where g names it. */
+static Slot impact_change(Lower *l, const Eqns *e, const Contact *c, uint32_t row) {
+  ExprGraph *g = e->g;
+  Expr speed = as_closed(e, c, e->constraints.r[row]), one = expr_int(g, 1), both = expr_add(g, one, c->restitution), change = expr_mul(g, both, speed), back = expr_neg(g, change);
+  lower_roots(l, &back, 1);
+  Slot named = prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = row, .name = e->constraints.of[row]->name});
+  return prog_op(l->p, IR_MUL, lower_slot(l, back), named);
+}
+
+/* Newton's law of restitution for the contact that g names by a 1, J v1 + g_t = -e (J v + g_t), with the impulse M (v1 - v) = A^T Lambda that keeps
+ * all other constraints and closed contacts; its own row of A is active, as its input `closed` is 1. One program serves all contacts. */
+Prog *lower_impact(const Eqns *e) {
   const Model *m = e->m;
   const Constraints *k = &e->constraints;
-  ExprGraph *g = e->g;
-  Arena *a = m->arena;
-  Eqns closed = *e;
-  Expr *with = ARENA_ARRAY(a, Expr, expr_symbol_count(g) + 1), back;
-  with[contact->closed] = expr_int(g, 1);
-  closed.constraints.A = (Entries){0};
-  for (uint32_t i = 0; i < k->A.n; i++) {
-    MassEntry x = k->A.at[i];
-    x.e = expr_substitute(g, x.e, with, expr_symbol_count(g) + 1, "");
-    vec_push(a, &closed.constraints.A, x);
-  }
+  Eqns closed = with_closed_rows(e);
   Lower l = lower_new(&closed);
-  Slot *demand = ARENA_ARRAY(a, Slot, k->n + 1), *d = ARENA_ARRAY(a, Slot, e->n + 1), *force = ARENA_ARRAY(a, Slot, e->n + 1);
+  Slot *change = ARENA_ARRAY(m->arena, Slot, k->n + 1), *factor = ARENA_ARRAY(m->arena, Slot, k->n + 1), *d = ARENA_ARRAY(m->arena, Slot, e->n + 1);
+  uint32_t some = 0;
   for (uint32_t i = 0; i < k->n; i++) {
-    if (k->of[i] != &m->constraints.at[contact->constraint]) continue;
-    Expr speed = expr_substitute(g, k->r[i], with, expr_symbol_count(g) + 1, ""), one = expr_int(g, 1);
-    Expr both = expr_add(g, one, contact->restitution), change = expr_mul(g, both, speed);
-    back = expr_neg(g, change);
-    lower_roots(&l, &back, 1);
-    demand[i] = lower_slot(&l, back);
+    const Contact *c = striking_contact(e, i);
+    if (!c) continue;
+    change[i] = impact_change(&l, e, c, i);
+    factor[i] = lower_load(&l, ARR_U, expr_symbol(e->g, c->closed));
+    some++;
   }
-  lower_correction(&l, k->n, 0, demand, d, force);
+  if (!some) return NULL;
+  lower_correction(&l, k->n, 0, change, factor, d, NULL);
   for (uint32_t i = 0; i < e->n; i++) {
-    Expr v = expr_symbol(g, m->coords.at[i].v)->node;
+    Expr v = expr_symbol(e->g, m->coords.at[i].v)->node;
     lower_roots(&l, &v, 1);
     Slot after = d[i] ? prog_op(l.p, IR_ADD, lower_slot(&l, v), d[i]) : 0;
-    if (after) prog_store(l.p, 1, i, after, expr_symbol(g, m->coords.at[i].v)->name);
+    if (after) prog_store(l.p, 0, i, after, expr_symbol(e->g, m->coords.at[i].v)->name);
   }
-  return passes_run(l.p, &(PassPlan){0}, NULL);
+  return lower_finish(&l, &(PassPlan){0}, NULL);
 }
 
 Prog *lower_multipliers(const Eqns *e) {
@@ -84,5 +110,5 @@ Prog *lower_multipliers(const Eqns *e) {
   Slot *acc = ARENA_ARRAY(e->m->arena, Slot, e->n + 1);
   lower_solution(&l, acc);
   for (uint32_t k = 0; k < e->constraints.n; k++) prog_store(l.p, 0, k, l.multipliers[k], e->constraints.of[k]->name);
-  return passes_run(l.p, &(PassPlan){0}, NULL);
+  return lower_finish(&l, &(PassPlan){0}, NULL);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ir/factorization_record.h"
+#include "ir/passes.h"
 #include "lower/lower.h"
 
 typedef struct {
@@ -10,6 +11,7 @@ typedef struct {
   Prog *p;
   ExprMap slots;   /* node -> slot + 1 */
   ExprMap circular; /* u -> 1 where sin u or cos u occurs among the roots */
+  int by_text;      /* switches follow the state, as the text says, never a held mode: events, actions, closed forms */
   int direct;       /* no addition theorem for sin(a - b): a series of its own is cheaper */
   FactorRecord *factored; /* receives the factors of the linear system, and x its solution [n + ndefs]; NULL: not recorded */
   Slot *x;
@@ -23,8 +25,17 @@ Lower lower_new(const Eqns *e);
 void lower_roots(Lower *l, const Expr *roots, uint32_t n);
 Slot lower_slot(const Lower *l, Expr e);
 
+/* The element of an array that holds the value of a symbol. */
+Slot lower_load(Lower *l, IrArray array, const Symbol *s);
+
+/* held_branch.c: a switching node on the branch that a run holds; NOT_A_SLOT: it has no mode. */
+Slot lower_held_branch(Lower *l, Expr e);
+
 /* lower_roots for expressions that may contain q'', z' and multipliers, which are computed first. */
 void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n);
+
+/* The program after its passes; the memory of the lowering is given up. */
+Prog *lower_finish(const Lower *l, const PassPlan *plan, StrBuf *trace);
 
 /* The finished program of a function that is called once a step, or once a row of output. */
 Prog *lower_finish_seldom(const Lower *l);
@@ -32,8 +43,9 @@ Prog *lower_finish_seldom(const Lower *l);
 /* Lowers M q'' = f and its solution; acc[n] receives the slots of q''. */
 void lower_solution(Lower *l, Slot *acc);
 
-/* The change d[n] with A d = g for the first nrows constraints that is least in the metric M, and A^T mu = M d. coarse: as in Solve. */
-void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, Slot *d, Slot *force);
+/* The change d[n] with A d = g for the first nrows constraints that is least in the metric M, and force = A^T mu = M d, or NULL. coarse: as in Solve;
+ * factor[nrows]: of rows of A, 0: 1; or NULL. */
+void lower_correction(Lower *l, uint32_t nrows, int coarse, const Slot *g, const Slot *factor, Slot *d, Slot *force);
 
 /* eliminate.c: q'' by elimination without pivoting; entries of H and C and forces must be lowered. */
 void lower_elimination(Lower *l, Slot *acc);

@@ -4,11 +4,18 @@
 #include <string.h>
 
 #include "lower/lower.h"
+#include "mech/lagrange.h"
+#include "mech/switches.h"
 #include "symmetry/charges.h"
 
-static IrVar ir_var(Name name, const Unit *u, int periodic, AstSign sign) {
+static IrVar ir_var(const Model *m, Name name, const Unit *u, int periodic, AstSign sign) {
   static const int signs[] = {[SIGN_ANY] = 0, [SIGN_GT] = 1, [SIGN_GE] = 2, [SIGN_LT] = -1, [SIGN_LE] = -2};
-  return (IrVar){name, u->text, unit_factor(u), periodic, signs[sign], num_value(u->offset), u->factor, u->pi_power};
+  Dim d = dim_resolved(m->dims, u->dim);
+  IrVar v = {name, u->text, unit_factor(u), periodic, signs[sign], num_value(u->offset), u->factor, u->pi_power, unit_of_dim(m->dims, d).text, {0}};
+  int whole = v.si[0] != '\0';
+  for (int i = 0; i < DIM_BASES && whole; i++) whole = num_is_int(dim_exponent(m->dims, d, (DimBase)i));
+  for (int i = 0; i < DIM_BASES && whole; i++) v.base[i] = (signed char)num_value(dim_exponent(m->dims, d, (DimBase)i));
+  return v;
 }
 
 static const char *joined(Arena *a, const Name *names, uint32_t n) {
@@ -22,7 +29,7 @@ static unsigned flags_of(const Eqns *e) {
     [UNIT_CONSERVES_ENERGY] = e->conserves_energy, [UNIT_CONSTANT_MASS] = e->constant_mass, [UNIT_AUTONOMOUS] = e->autonomous,
     [UNIT_SMOOTH] = e->smooth, [UNIT_SEPARABLE] = e->separable, [UNIT_TIMELESS] = e->timeless, [UNIT_LOSES_ENERGY] = e->loses_energy,
     [UNIT_FIRST_ORDER] = e->first.n != 0, [UNIT_CONSTANT_FORM] = e->first.n && e->first.constant && e->first.closed,
-    [UNIT_MASSLESS] = e->singular_mass,
+    [UNIT_MASSLESS] = e->singular_mass, [UNIT_SUM_HAMILTONIAN] = e->sum_hamiltonian,
   };
   unsigned flags = 0;
   for (unsigned i = 0; i < UNIT_FLAGS; i++) flags |= set[i] ? 1u << i : 0;
@@ -45,29 +52,25 @@ static void add_fixed(IrUnit *u, const Model *m) {
   u->fixed_values = sb_text(&values);
 }
 
-/* The contact whose impact is event i, or NULL. */
-static const Contact *impact_of(const Eqns *e, uint32_t i) {
-  for (uint32_t k = 0; k < e->m->contacts.n; k++)
-    if (e->m->contacts.at[k].impact == i) return &e->m->contacts.at[k];
-  return NULL;
-}
-
 static void add_contacts(IrUnit *u, const Eqns *e) {
   const Model *m = e->m;
   for (uint32_t k = 0; k < m->contacts.n; k++) {
     const Contact *c = &m->contacts.at[k];
-    IrContact one = {expr_symbol(e->g, c->closed)->index, 0, c->impact, c->release};
+    IrContact one = {expr_symbol(e->g, c->closed)->index, 0, c->impact, c->release, 0, c->is_tangent, c->margin != 0, c->law, c->is_tangent && c->hold != c->friction};
+    if (c->is_tangent) one.force = expr_symbol(e->g, c->force)->index;
     while (e->constraints.of[one.constraint] != &m->constraints.at[c->constraint]) one.constraint++;
     vec_push(u->arena, &u->contacts, one);
   }
+  u->contact_laws = lower_contact_laws(e);
+  u->impact = lower_impact(e);
+  u->contact_coefficients = lower_contact_coefficients(e);
 }
 
 static void add_events(IrUnit *u, const Eqns *e) {
-  static const int directions[] = {[CROSS_BOTH] = 0, [CROSS_RISING] = 1, [CROSS_FALLING] = -1};
+  static const int directions[] = {[CROSS_BOTH] = 0, [CROSS_RISING] = 1, [CROSS_FALLING] = -1, [AT_EQUAL_TIMES] = EVENT_KICK};
   for (uint32_t i = 0; i < e->m->events.n; i++) {
     const Event *ev = &e->m->events.at[i];
-    const Contact *contact = impact_of(e, i);
-    IrEvent one = {ev->name, directions[ev->direction], contact ? lower_impact(e, contact) : lower_action(e, i), ev->stop};
+    IrEvent one = {ev->name, directions[ev->direction], lower_action(e, i), ev->stop};
     vec_push(u->arena, &u->events, one);
   }
   u->event_values = lower_events(e);
@@ -105,16 +108,20 @@ static void add_charges(IrUnit *u, const Eqns *e) {
   }
   u->charge_values = e->ncharges > 1 ? lower_charges(e) : NULL;
   u->charge_powers = powers;
+  u->dry_friction = powers && !expr_is_zero(e->g, switch_power(e));
 }
 
 static void add_switches(IrUnit *u, const Eqns *e) {
-  SwitchingSurfaces all = switching_surfaces(e);
-  if (!all.n) return;
-  for (uint32_t i = 0; i < all.n; i++) {
-    Place place = source_place(e->m->ast->sources, all.at[i].span.begin);
-    vec_push(u->arena, &u->switches, ((IrSwitch){all.at[i].surface, all.at[i].text, place.file ? place.line : 0, all.at[i].nonnegative}));
+  const Switches *all = &e->switches;
+  for (uint32_t i = 0; i < all->n; i++) {
+    const Switch *s = &all->at[i];
+    Place place = source_place(e->m->ast->sources, s->span.begin);
+    vec_push(u->arena, &u->switches, ((IrSwitch){s->surface, s->text, place.file ? place.line : 0, s->jumps, s->kind == SWITCH_FLOOR, (expr_kinds(e->g, s->side) & 1u << SYM_TIME) != 0, s->kind == SWITCH_SPEED}));
   }
-  u->switch_values = lower_switches(e, all);
+  u->nmodes = all->nmodes;
+  if (all->n) u->switch_values = lower_switches(e);
+  if (all->nmodes) u->switch_rates = lower_switch_rates(e);
+  if (all->nmodes) u->switch_grips = lower_switch_grips(e);
 }
 
 static void add_variation(IrUnit *u, const Eqns *e) {
@@ -137,7 +144,7 @@ static void add_taylor(IrUnit *u, const Eqns *e) {
   u->taylor = series_new(&system, &why);
 }
 
-IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
+IrUnit *unit_head(const Eqns *e, const char *source, int libm) {
   const Model *m = e->m;
   IrUnit *u = ARENA_NEW(m->arena, IrUnit);
   *u = (IrUnit){.arena = m->arena, .name = m->name, .doc = m->doc ? m->doc : "", .source = source, .flags = flags_of(e),
@@ -146,21 +153,30 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
   u->all_effects = joined(m->arena, m->all_effects.at, m->all_effects.n);
   add_fixed(u, m);
   for (uint32_t i = 0; i < m->coords.n; i++)
-    vec_push(m->arena, &u->q, ir_var(m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
+    vec_push(m->arena, &u->q, ir_var(m, m->coords.at[i].name, &m->coords.at[i].unit, m->coords.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->states.n; i++)
-    vec_push(m->arena, &u->z, ir_var(m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
+    vec_push(m->arena, &u->z, ir_var(m, m->states.at[i].name, &m->states.at[i].unit, m->states.at[i].periodic, SIGN_ANY));
   for (uint32_t i = 0; i < m->params.n; i++)
-    if (!m->params.at[i].fixed) vec_push(m->arena, &u->p, ir_var(m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
+    if (!m->params.at[i].fixed) vec_push(m->arena, &u->p, ir_var(m, m->params.at[i].name, &m->params.at[i].unit, 0, m->params.at[i].sign));
   for (uint32_t i = 0; i < m->inputs.n; i++)
-    vec_push(m->arena, &u->u, ir_var(m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
-  u->accel = lower_accel(e, libm);
-  u->energy = e->energy ? lower_energy(e) : NULL;
+    vec_push(m->arena, &u->u, ir_var(m, m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
   u->inputs = lower_inputs(e);
+  return u;
+}
+
+void unit_add_programs(IrUnit *u, const Eqns *e) {
+  u->accel = lower_accel(e, u->libm);
+  u->energy = e->energy ? lower_energy(e) : NULL;
   add_events(u, e);
   add_constraints(u, e);
   add_contacts(u, e);
   add_charges(u, e);
   add_switches(u, e);
+}
+
+IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
+  IrUnit *u = unit_head(e, source, libm);
+  unit_add_programs(u, e);
   return u;
 }
 
@@ -182,6 +198,14 @@ static void add_implied(IrScene *s, const Model *m) {
   }
 }
 
+/* Outputs with held modes, beside accelerations with them. */
+static void add_held_outputs(IrScene *s, const IrUnit *u, const Eqns *e) {
+  Eqns held = *e;
+  if (!u->held_accel || !s->plain.n) return;
+  switches_find(&held);
+  s->observe_held = lower_plain_outputs(&held);
+}
+
 static void add_exact(IrScene *s, const Eqns *e) {
   const Model *m = e->m;
   const Scene *sc = &m->scene;
@@ -194,11 +218,53 @@ static void add_exact(IrScene *s, const Eqns *e) {
   }
 }
 
+/* Positions of the entries of M that programs of derivatives compute. */
+static void note_mass(IrUnit *u, const Eqns *e) {
+  for (uint32_t k = u->linear_mass.n; k < e->mass.n; k++) vec_push(u->arena, &u->linear_mass, ((IrEntry){e->mass.at[k].row, e->mass.at[k].col}));
+}
+
 static void add_linear(IrUnit *u, Eqns *e) {
   Partials dr = eqns_linearise(e);
-  u->linear = lower_linear(e, dr);
+  u->linear = lower_linear(e, dr, BY_STATE);
   for (uint32_t k = 0; k < dr.n; k++) vec_push(u->arena, &u->linear_dr, ((IrEntry){dr.at[k].row, dr.at[k].col}));
-  for (uint32_t k = 0; k < e->mass.n; k++) vec_push(u->arena, &u->linear_mass, ((IrEntry){e->mass.at[k].row, e->mass.at[k].col}));
+  note_mass(u, e);
+}
+
+/* Functions of headers. */
+static void add_mass(IrUnit *u, Eqns *e) {
+  Expr *bias = ARENA_ARRAY(u->arena, Expr, e->n + 1);
+  const Expr *f = eqns_forces(e);
+  eqns_derive_mass(e);
+  for (uint32_t i = 0; i < e->n; i++) bias[i] = expr_neg(e->g, f[i]);
+  u->mass = lower_mass(e);
+  u->bias = lower_forces(e, bias);
+}
+
+static void add_outputs(IrUnit *u, const Eqns *e) {
+  Partials d;
+  u->outputs = lower_output_partials(e, &d);
+  for (uint32_t k = 0; k < d.n; k++) vec_push(u->arena, &u->outputs_at, ((IrEntry){d.at[k].row, d.at[k].col}));
+}
+
+/* Whether no output contains multipliers, whose derivatives are not known. */
+static int outputs_derive(const Eqns *e) {
+  unsigned kinds = 0;
+  for (uint32_t i = 0; i < e->noutputs; i++) kinds |= expr_kinds(e->g, e->outputs[i].value);
+  return !(kinds & 1u << SYM_MULTIPLIER);
+}
+
+static void add_by_inputs(IrUnit *u, Eqns *e) {
+  Partials dr = eqns_partials(e, BY_INPUTS);
+  u->by_inputs = lower_linear(e, dr, BY_INPUTS);
+  for (uint32_t k = 0; k < dr.n; k++) vec_push(u->arena, &u->by_inputs_dr, ((IrEntry){dr.at[k].row, dr.at[k].col}));
+  note_mass(u, e);
+}
+
+static void add_by_params(IrUnit *u, Eqns *e) {
+  Partials dr = eqns_partials(e, BY_PARAMS);
+  u->by_params = lower_linear(e, dr, BY_PARAMS);
+  for (uint32_t k = 0; k < dr.n; k++) vec_push(u->arena, &u->by_params_dr, ((IrEntry){dr.at[k].row, dr.at[k].col}));
+  note_mass(u, e);
 }
 
 static void add_jumps(IrUnit *u, const Eqns *e) {
@@ -208,15 +274,32 @@ static void add_jumps(IrUnit *u, const Eqns *e) {
   for (uint32_t k = 0; k < jumps.n; k++) vec_push(u->arena, &u->jump_at, ((IrJump){jumps.at[k].event, jumps.at[k].row, jumps.at[k].col}));
 }
 
+/* Switches of equations that otherwise follow the text: where a motion may stick, accelerations with held modes, too. */
+static void add_held(IrUnit *u, const Eqns *e) {
+  Eqns held = *e;
+  int some = 0;
+  if (u->switches.n) return;
+  switches_find(&held);
+  add_switches(u, &held);
+  for (uint32_t k = 0; k < u->nmodes; k++) some |= u->switches.at[k].jumps;
+  if (some) u->held_accel = lower_accel(&held, u->libm);
+}
+
 void unit_require(IrUnit *u, Eqns *e, unsigned wants) {
   unsigned fresh = wants & ~u->wants;
   u->wants |= wants;
   if (fresh & WANT_VARIATION && e->n) add_variation(u, e);
   if (fresh & WANT_TAYLOR) add_taylor(u, e);
-  if (fresh & WANT_LINEAR && !e->constraints.n) { /* multipliers would change, too */
-    add_linear(u, e);
-    add_jumps(u, e);
-  }
+  if (fresh & WANT_MASS && e->n) add_mass(u, e);
+  if (fresh & WANT_INVERSE && e->n) u->inverse = lower_forces(e, eqns_inverse_dynamics(e));
+  int derives = !e->constraints.n || (wants & WANT_CONSTRAINED && !e->m->contacts.n);
+  if (fresh & WANT_BY_INPUTS && e->m->inputs.n && derives) add_by_inputs(u, e);
+  if (fresh & WANT_BY_PARAMS && u->p.n && derives) add_by_params(u, e);
+  if (fresh & WANT_OUTPUTS && derives && outputs_derive(e)) add_outputs(u, e);
+  if (fresh & WANT_MULTIPLIERS && e->constraints.n) u->multipliers = lower_multipliers(e);
+  if (fresh & WANT_LINEAR && derives) add_linear(u, e);
+  if (fresh & WANT_LINEAR && !e->constraints.n) add_jumps(u, e);
+  if (fresh & WANT_HELD) add_held(u, e);
 }
 
 void unit_add_scene(IrUnit *u, const Eqns *e) {
@@ -236,15 +319,20 @@ void unit_add_scene(IrUnit *u, const Eqns *e) {
     vec_push(m->arena, &s.options, o);
   }
   for (uint32_t i = 0; i < e->noutputs; i++) {
-    IrVar v = ir_var(e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
+    IrVar v = ir_var(m, e->outputs[i].name, &e->outputs[i].unit, 0, SIGN_ANY);
     vec_push(m->arena, &s.outputs, v);
     if (e->constraints.n) vec_push(m->arena, &s.forces, (expr_kinds(e->g, e->outputs[i].value) & (1u << SYM_ACC | 1u << SYM_MULTIPLIER)) != 0);
     if (output_is_plain(e, i)) vec_push(m->arena, &s.plain, v);
   }
   add_exact(&s, e);
+  add_held_outputs(&s, u, e);
   for (uint32_t i = 0; i < sc->monitors.n; i++) {
     IrMonitor mon = {sc->monitors.at[i].name, sc->monitors.at[i].output, sc->monitors.at[i].limit, sc->monitors.at[i].absolute};
     vec_push(m->arena, &s.monitors, mon);
+  }
+  for (uint32_t i = 0; i < sc->measures.n; i++) {
+    IrMeasure x = {sc->measures.at[i].name, sc->measures.at[i].text, sc->measures.at[i].unit.text};
+    vec_push(m->arena, &s.measures, x);
   }
   vec_push(m->arena, &u->scenes, s);
 }

@@ -82,7 +82,8 @@ static int derive_row(Eqns *e, const Constraint *k, ConstraintRow *to) {
   to->row = expr_gradient_sparse(e->g, k->c, holonomic ? SYM_COORD : SYM_VEL, e->n);
   if (!check_contains(e, k, &to->row) || (!holonomic && !check_linear(e, k, &to->row))) return 0;
   if (e->m->constraints.n <= COMPARE_MAX && !check_contradiction(e, k)) return 0;
-  to->kept = holonomic ? k->c : frobenius_leaf(e, k->c);
+  const Contact *contact = contact_of_constraint(e->m, k);
+  to->kept = holonomic ? k->c : contact && contact->is_tangent ? 0 : frobenius_leaf(e, k->c); /* what sticks may slip on */
   return 1;
 }
 

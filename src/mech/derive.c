@@ -164,6 +164,31 @@ static unsigned kinds_of_lagrangian(const Eqns *e) {
   return e->first.n && !expr_contains(e->g, m->lagrangian, is_no_coordinate, m->states.at) ? kinds & ~bit(SYM_STATE) : kinds;
 }
 
+typedef struct {
+  uint32_t from, to; /* states [from, to) */
+  int with_time;
+} StateRange;
+
+static int is_in_range(const Symbol *s, const void *data) {
+  const StateRange *r = data;
+  if (s->kind == SYM_STATE) return s->index >= r->from && s->index < r->to;
+  return r->with_time && (s->kind == SYM_TIME || s->kind == SYM_INPUT);
+}
+
+/* Whether no rate of the states [from, to) contains what the range has. */
+static int rates_lack(const Eqns *e, uint32_t from, uint32_t to, StateRange what) {
+  for (uint32_t i = from; i < to; i++)
+    if (expr_contains(e->g, e->flow[i], is_in_range, &what)) return 0;
+  return 1;
+}
+
+/* H = T(p) + V(q, t): rates of q do not contain q or t. With forces of q and t, rates of p do not contain p: a splitting method can take both. */
+static void find_splitting(Eqns *e) {
+  uint32_t n = e->m->pairs.n;
+  e->sum_hamiltonian = n && e->m->states.n == 2 * n && rates_lack(e, 0, n, (StateRange){0, n, 1});
+  e->separable |= e->sum_hamiltonian && rates_lack(e, n, 2 * n, (StateRange){n, 2 * n, 0});
+}
+
 /* Facts that hold at every state, read off the graph. */
 static void classify(Eqns *e) {
   const Model *m = e->m;
@@ -178,14 +203,15 @@ static void classify(Eqns *e) {
   unsigned mass = kinds_in(e, entries.at, entries.n), rest = kinds_in(e, roots.at, roots.n);
   e->constant_mass = !(mass & (bit(SYM_COORD) | bit(SYM_VEL) | bit(SYM_TIME) | bit(SYM_STATE)));
   e->separable = e->n && e->constant_mass && !m->states.n && !(rest & bit(SYM_VEL)) && !k->n;
+  find_splitting(e);
   e->autonomous = e->timeless = !((mass | rest) & bit(SYM_TIME));
-  int inputs = (rest & bit(SYM_INPUT)) != 0 && m->inputs.n > m->contacts.n; /* those of contacts do no work */
+  int inputs = (rest & bit(SYM_INPUT)) != 0 && m->inputs.n > model_contact_inputs(m); /* those of contacts do no work */
   e->smooth = 1;
   if (inputs) add_input_formulas(e, &roots);
   ExprList l = expr_topo(e->g, roots.at, roots.n);
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(e->g, l.at[i]);
-    e->smooth &= op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_MIN && op != EX_MAX;
+    e->smooth &= op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_FLOOR && op != EX_MIN && op != EX_MAX;
   }
   unsigned lagrangian = kinds_of_lagrangian(e);
   e->energy_jumps = e->energy && discontinuities_of(e, e->energy).n > 0;

@@ -31,17 +31,19 @@ void entries_collect(ExprGraph *g, Entries *t, Expr (*rule)(ExprGraph *, Expr)) 
   }
 }
 
-Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) {
-  uint32_t row = i > j ? i : j, col = i > j ? j : i, lo = 0, hi = e->mass.n;
+Expr entries_at(ExprGraph *g, const Entries *t, uint32_t i, uint32_t j) {
+  uint32_t row = i > j ? i : j, col = i > j ? j : i, lo = 0, hi = t->n;
   while (lo < hi) {
     uint32_t mid = lo + (hi - lo) / 2;
-    const MassEntry *x = &e->mass.at[mid];
+    const MassEntry *x = &t->at[mid];
     if (x->row < row || (x->row == row && x->col < col)) lo = mid + 1;
     else hi = mid;
   }
-  int found = lo < e->mass.n && e->mass.at[lo].row == row && e->mass.at[lo].col == col;
-  return found ? e->mass.at[lo].e : expr_int(e->g, 0);
+  int found = lo < t->n && t->at[lo].row == row && t->at[lo].col == col;
+  return found ? t->at[lo].e : expr_int(g, 0);
 }
+
+Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j) { return entries_at(e->g, &e->mass, i, j); }
 
 uint32_t eqns_coordinates(const Eqns *e) { return e->n ? e->n : e->first.n; }
 
@@ -61,4 +63,10 @@ Expr eqns_at_rest(const Eqns *e, Expr x) {
   Expr *rest = ARENA_ARRAY(e->m->arena, Expr, n);
   for (uint32_t i = 0; i < e->n; i++) rest[e->m->coords.at[i].v] = expr_int(e->g, 0);
   return simplify(e->g, expr_substitute(e->g, x, rest, n, "_at_rest"));
+}
+
+int eqns_has_forces(const Eqns *e) {
+  for (uint32_t i = 0; e->Q && i < eqns_coordinates(e); i++)
+    if (!expr_is_zero(e->g, e->Q[i])) return 1;
+  return 0;
 }

@@ -26,6 +26,9 @@ typedef VEC(MassEntry) Entries;
 /* Sorts entries by row and column, sums those at one place in their order, applies `rule` (or NULL) to the sums, and drops zeros. */
 void entries_collect(ExprGraph *g, Entries *t, Expr (*rule)(ExprGraph *, Expr));
 
+/* Element (i, j) of a symmetric matrix given by its lower triangle, row by row; the zero node where there is none. */
+Expr entries_at(ExprGraph *g, const Entries *t, uint32_t i, uint32_t j);
+
 /* M q'' = f as the program solves it. Variables 0 .. n-1 are the accelerations; variable n + k is the rate of
  * definition k, which contains velocities: C_k times the variables before it (mech/augmented_system.h). Without definitions H = M. */
 typedef struct {
@@ -63,6 +66,7 @@ typedef struct {
   Entries form;          /* row by row, columns ascending: the two-form omega, less dQ/dq' */
   const Expr *rhs;       /* [n] right-hand side of form q' = rhs: dH/dq + dtheta/dt - Q at q' = 0 */
   const Expr *rates;     /* [n] q' as solved; Eqns.flow has the forms that are shortest together */
+  const Expr *velocity;  /* [Model.pairs] q' in q and p of a model that gives its Hamiltonian; the rate itself where forces on p contain rates */
   const uint32_t *block; /* [n] block number; the form couples coordinates of one block only */
   const Expr *divisors;  /* [ndivisors] divisors of the rates that may be 0 */
   uint32_t ndivisors;
@@ -70,7 +74,25 @@ typedef struct {
   int constant;          /* the form is free of coordinates, states and time */
 } FirstOrder;
 
+/* A switching function: mech/switches.h. SPEED: nowhere negative, as |v|, and not followed. */
+typedef enum { SWITCH_SIDE, SWITCH_FLOOR, SWITCH_SPEED } SwitchKind;
+typedef struct {
+  Expr side;                  /* 0 on the surface; SWITCH_FLOOR: a whole number there */
+  SwitchKind kind;
+  int jumps;                  /* a force jumps there with the velocities or states: a motion may slide */
+  Expr grip;                  /* a sliding motion ends where its mode is this large; 0: where it is 1 */
+  Span span;                  /* of the expression in the text, or of its statement */
+  const char *text, *surface; /* "sign(x')", "x'" */
+} Switch;
+
+typedef struct {
+  const Switch *at;
+  const ExprMap *by_text; /* nodes that follow the state: a branch of theirs has no value past the surface; or NULL */
+  uint32_t n, nmodes; /* the first nmodes have a mode: an input behind those of the model */
+} Switches;
+
 typedef struct Charge Charge; /* symmetry/charges.h */
+struct BracketValue; /* symmetry/expression_brackets.h */
 
 typedef struct {
   const Model *m;
@@ -93,6 +115,9 @@ typedef struct {
   Expr energy_scale;     /* |p q'| + |L|: scale for drifts of the energy */
   const Charge *charges; /* [ncharges] the energy, then the charges of the symmetries in order; none without L */
   uint32_t ncharges;
+  const struct BracketValue *brackets; /* [nbrackets] of Model.brackets */
+  uint32_t nbrackets;
+  Switches switches;     /* none before switches_find */
   const Output *outputs; /* the scene's outputs, with the energy and charges filled in */
   uint32_t noutputs;
   const Expr *definitions; /* by symbol: expressions substituted for parameters that others define; or NULL */
@@ -101,7 +126,8 @@ typedef struct {
   int energy_jumps;      /* the energy is discontinuous somewhere, as L is; the facts about it hold between such places */
   int loses_energy;      /* energy less the work of constant forces cannot rise while inputs stay as they are, and is not conserved */
   int timeless;          /* t occurs in the formulas of inputs only */
-  int separable;         /* constant mass, no velocity in f, no states: a splitting method can integrate it */
+  int separable;         /* constant mass, no velocity in f, no states, or H = T(p) + V(q, t): a splitting method can integrate it */
+  int sum_hamiltonian;   /* H = T(p) + V(q, t) is given, whatever the forces */
 } Eqns;
 
 /* Coordinates, those of a Lagrangian of first order included: how many, and their symbols. */
@@ -113,6 +139,9 @@ SymId *eqns_symbols(const Eqns *e, int velocities);
 
 /* Momenta of L as the user wrote it: without the term that makes the mass matrix of rotations regular. */
 const Expr *eqns_momenta(const Eqns *e);
+
+/* Whether a generalised force stands outside L, or H. */
+int eqns_has_forces(const Eqns *e);
 
 /* M[i][j]; the zero node where the entry is zero. */
 Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j);

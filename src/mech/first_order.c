@@ -95,20 +95,50 @@ static int add_form(FirstOrderBuilder *w) {
   return 1;
 }
 
+/* Velocities of a model that gives its Hamiltonian, q' = dH/dp - Q_p, in place of q' in Q: so Q may depend on them in any way. */
+static void replace_velocities(FirstOrderBuilder *w, Expr *Q) {
+  const Model *m = w->m;
+  SymId *rates = ARENA_ARRAY(w->arena, SymId, m->pairs.n + 1);
+  Expr *velocity = ARENA_ARRAY(w->arena, Expr, m->pairs.n + 1);
+  for (uint32_t k = 0; k < m->pairs.n; k++) {
+    uint32_t p = m->pairs.at[k].p;
+    Expr Qp = Q[w->place[p] - 1], rate = expr_sub(w->g, expr_diff(w->g, w->e->energy, m->states.at[p].z), Qp);
+    rates[k] = m->states.at[m->pairs.at[k].q].rate;
+    velocity[k] = has_rates(w, Qp) ? expr_symbol(w->g, rates[k])->node : simplify(w->g, rate);
+  }
+  for (uint32_t i = 0; i < w->n; i++)
+    if (has_rates(w, Q[i])) Q[i] = expr_replace(w->g, Q[i], rates, velocity, m->pairs.n);
+  w->to->velocity = velocity;
+}
+
+/* Whether x jumps with a velocity, as dry friction does: its derivatives do not show that. */
+static int jumps_with_rates(const FirstOrderBuilder *w, Expr x) {
+  ExprList nodes = expr_topo(w->g, &x, 1);
+  for (uint32_t i = 0; i < nodes.n; i++) {
+    ExprOp op = expr_op(w->g, nodes.at[i]);
+    if ((op == EX_SIGN || op == EX_FLOOR || expr_is_bool(w->g, nodes.at[i])) && has_rates(w, nodes.at[i])) return 1;
+  }
+  return 0;
+}
+
+static int report_force(const FirstOrderBuilder *w, uint32_t i) {
+  diag_error(w->m->diags, w->m->lagrangian_span, "the force on `%s` is not linear in the velocities, and L has no inertia", state_of(w, i)->name);
+  diag_help(w->m->diags, "the velocities follow from a linear system where L is linear in them: write forces of q and t, or linear in q'");
+  return 0;
+}
+
 /* Adds dQ/dq' to the form, and subtracts Q at q' = 0 from the right-hand side. */
 static int add_forces(FirstOrderBuilder *w) {
   Expr *of = generalised_forces(w->m, SYM_STATE, SYM_RATE, w->m->states.n), *Q = ARENA_ARRAY(w->arena, Expr, w->n);
   w->e->Q = Q;
+  for (uint32_t i = 0; i < w->n; i++) Q[i] = of[w->to->at[i]];
+  if (w->m->hamiltonian) replace_velocities(w, Q);
   for (uint32_t i = 0; i < w->n; i++) {
-    Q[i] = of[w->to->at[i]];
+    if (jumps_with_rates(w, Q[i])) return report_force(w, i);
     ExprPartials d = has_rates(w, Q[i]) ? expr_gradient_sparse(w->g, Q[i], SYM_RATE, w->m->states.n) : (ExprPartials){0};
     for (uint32_t k = 0; k < d.n; k++) {
       Expr part = simplify(w->g, d.at[k].e);
-      if (has_rates(w, part)) {
-        diag_error(w->m->diags, w->m->lagrangian_span, "the force on `%s` is not linear in the velocities, and L has no inertia", state_of(w, i)->name);
-        diag_help(w->m->diags, "the velocities follow from a linear system where L is linear in them: write forces of q and t, or linear in q'");
-        return 0;
-      }
+      if (has_rates(w, part)) return report_force(w, i);
       add_part(w, i, w->place[d.at[k].index] - 1, part);
       w->to->closed = 0;
     }
@@ -274,6 +304,9 @@ static void put_flows(FirstOrderBuilder *w, const Model *m, const Expr *rate) {
     }
     ev->actions.at = actions;
   }
+  own->grips.at = ARENA_ARRAY(w->arena, Grip, m->grips.n + 1);
+  for (uint32_t i = 0; i < m->grips.n; i++)
+    own->grips.at[i] = (Grip){expr_substitute(w->g, m->grips.at[i].velocity, with, nsymbols, ""), expr_substitute(w->g, m->grips.at[i].ratio, with, nsymbols, "")};
   w->e->m = own;
   w->e->flow = flow;
 }

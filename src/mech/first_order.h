@@ -6,7 +6,8 @@
  *
  * (G. D. Birkhoff, Dynamical Systems (1927), II.10; L. Faddeev, R. Jackiw, Phys. Rev. Lett. 60 (1988) 1692, DOI
  * 10.1103/PhysRevLett.60.1692). There is no mass matrix; the coordinates determine the velocities where the antisymmetric matrix omega is
- * regular. Forces may be linear in velocities, Q = Q0 + B q': then omega + B replaces omega, and Q0 replaces Q. */
+ * regular. Forces may be linear in velocities, Q = Q0 + B q': then omega + B replaces omega, and Q0 replaces Q. In a model that gives its
+ * Hamiltonian q' is dH/dp, and forces may depend on velocities in any way, as dry friction does. */
 #pragma once
 
 #include "mech/eqns.h"

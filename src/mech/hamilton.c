@@ -13,6 +13,7 @@ typedef struct {
   ExprGraph *g;
   Arena *arena;
   uint32_t n;
+  const Entries *form; /* the matrix to invert: M, or d2H/dp2 */
   SymId *q, *v, *p;
   Expr *inverse, *a, *rate, *force;
 } LegendreTransform;
@@ -39,7 +40,7 @@ static int invert_block(LegendreTransform *w, const uint32_t *at, uint32_t n) {
   ExprGraph *g = w->g;
   Expr m[BLOCK_MOST * BLOCK_MOST], det = expr_int(g, 0);
   for (uint32_t i = 0; i < n; i++)
-    for (uint32_t j = 0; j < n; j++) m[i * n + j] = simplify(g, eqns_mass(w->e, at[i], at[j]));
+    for (uint32_t j = 0; j < n; j++) m[i * n + j] = simplify(g, entries_at(g, w->form, at[i], at[j]));
   for (uint32_t j = 0; j < n; j++) det = expr_add(g, det, expr_mul(g, m[j], cofactor(w, m, n, 0, j)));
   det = simplify(g, det);
   if (expr_is_zero(g, det)) return 0;
@@ -52,20 +53,20 @@ static int invert_block(LegendreTransform *w, const uint32_t *at, uint32_t n) {
   return 1;
 }
 
-static const char *invert(LegendreTransform *w) {
-  uint32_t *block = union_find_new(w->arena, w->n); /* connected components of M */
-  if (w->e->singular_mass) return "the mass matrix is singular";
-  for (uint32_t k = 0; k < w->e->mass.n; k++) union_find_join(block, w->e->mass.at[k].row, w->e->mass.at[k].col);
+/* what: "the mass matrix", for messages. */
+static const char *invert(LegendreTransform *w, const char *what) {
+  uint32_t *block = union_find_new(w->arena, w->n); /* connected components of the matrix */
+  for (uint32_t k = 0; k < w->form->n; k++) union_find_join(block, w->form->at[k].row, w->form->at[k].col);
   for (size_t i = 0; i < (size_t)w->n * w->n; i++) w->inverse[i] = expr_int(w->g, 0);
   for (uint32_t i = 0; i < w->n; i++) {
     uint32_t at[BLOCK_MOST], n = 0;
     if (union_find_root(block, i) != i) continue;
     for (uint32_t k = i; k < w->n; k++) {
       if (union_find_root(block, k) != i) continue;
-      if (n == BLOCK_MOST) return "the mass matrix couples more than three velocities, too many for an inverse in closed form";
+      if (n == BLOCK_MOST) return arena_printf(w->arena, "%s couples more than three coordinates, too many for an inverse in closed form", what);
       at[n++] = k;
     }
-    if (!invert_block(w, at, n)) return "the inverse of the mass matrix is too long in closed form";
+    if (!invert_block(w, at, n)) return arena_printf(w->arena, "the inverse of %s is too long in closed form", what);
   }
   return NULL;
 }
@@ -140,9 +141,94 @@ Hamilton hamilton_derive(Eqns *e) {
   w.q = eqns_symbols(e, 0), w.v = eqns_symbols(e, 1), w.p = ARENA_ARRAY(a, SymId, n + 1);
   w.a = ARENA_ARRAY(a, Expr, n + 1), w.rate = ARENA_ARRAY(a, Expr, n + 1), w.force = ARENA_ARRAY(a, Expr, n + 1);
   w.inverse = ARENA_ARRAY(a, Expr, nn + 1);
+  w.form = &e->mass;
   for (uint32_t i = 0; i < e->n; i++) w.p[i] = expr_declare(e->g, SYM_LOCAL, i, arena_printf(a, "p_%s", e->m->coords.at[i].name), SIGN_UNKNOWN);
   Hamilton open = {.p = w.p, .why_not = is_quadratic(e) ? NULL : "L is not quadratic in velocities"};
   if (e->m->across) open.why_not = "the components of a rotation are not independent";
-  if (!open.why_not) open.why_not = invert(&w);
+  if (e->singular_mass && !open.why_not) open.why_not = "the mass matrix is singular";
+  if (!open.why_not) open.why_not = invert(&w, "the mass matrix");
   return open.why_not ? open : hamilton_equations(&w);
+}
+
+/* --- back from H to L --- */
+
+static int is_one_of(const Symbol *s, const void *data) {
+  const LegendreTransform *w = data;
+  for (uint32_t i = 0; i < w->n; i++)
+    if (expr_symbol(w->g, w->p[i]) == s) return 1;
+  return 0;
+}
+
+/* x at p = 0. */
+static Expr without_momenta(const LegendreTransform *w, Expr x) {
+  Expr *zero = ARENA_ARRAY(w->arena, Expr, w->n + 1);
+  for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
+  return simplify(w->g, expr_replace(w->g, x, w->p, zero, w->n));
+}
+
+/* Determinant of the form, of up to three coordinates. */
+static Expr determinant(const LegendreTransform *w) {
+  ExprGraph *g = w->g;
+  Expr m[BLOCK_MOST * BLOCK_MOST], det = expr_int(g, 0);
+  for (uint32_t i = 0; i < w->n; i++)
+    for (uint32_t j = 0; j < w->n; j++) m[i * w->n + j] = entries_at(g, w->form, i, j);
+  for (uint32_t j = 0; j < w->n; j++) det = expr_add(g, det, expr_mul(g, m[j], cofactor(w, m, w->n, 0, j)));
+  return simplify(g, det);
+}
+
+/* d2H/dp2, and the rates dH/dp. */
+static Entries momentum_hessian(LegendreTransform *w, Expr H) {
+  Entries W = {0};
+  expr_gradient(w->g, H, w->p, w->n, w->rate);
+  for (uint32_t i = 0; i < w->n; i++)
+    for (uint32_t j = 0; j <= i; j++) {
+      Expr x = simplify(w->g, expr_diff(w->g, w->rate[i], w->p[j]));
+      if (!expr_is_zero(w->g, x)) vec_push(w->arena, &W, ((MassEntry){i, j, x}));
+    }
+  return W;
+}
+
+/* p = W^-1 (q' - b), L = (q' - b) W^-1 (q' - b)/2 - H(q, 0, t), by degree in q'. */
+static void put_lagrangian(const LegendreTransform *w, Expr H, InverseLegendre *out) {
+  ExprGraph *g = w->g;
+  Expr *b = ARENA_ARRAY(w->arena, Expr, w->n + 1), *p = ARENA_ARRAY(w->arena, Expr, w->n + 1), parts[3];
+  for (int k = 0; k < 3; k++) parts[k] = expr_int(g, 0);
+  for (uint32_t i = 0; i < w->n; i++) b[i] = without_momenta(w, w->rate[i]);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr sum = expr_int(g, 0), vi = node(w, w->v[i]);
+    for (uint32_t j = 0; j < w->n; j++) {
+      Expr x = w->inverse[i * w->n + j], vj = node(w, w->v[j]), u = expr_sub(g, vj, b[j]);
+      sum = expr_add(g, sum, expr_mul(g, x, u));
+      parts[0] = expr_add(g, parts[0], expr_scale(g, num_ratio(1, 2), mul3(w, x, vi, vj)));
+      parts[1] = expr_sub(g, parts[1], mul3(w, x, b[i], vj));
+      parts[2] = expr_add(g, parts[2], expr_scale(g, num_ratio(1, 2), mul3(w, x, b[i], b[j])));
+    }
+    p[i] = short_form(w, sum);
+  }
+  parts[2] = expr_sub(g, parts[2], without_momenta(w, H));
+  for (int k = 0; k < 3; k++) parts[k] = short_form(w, parts[k]);
+  out->p = p;
+  out->L = expr_add_n(g, parts, 3);
+}
+
+InverseLegendre lagrangian_derive(Eqns *e) {
+  Arena *a = e->m->arena;
+  LegendreTransform w = {.e = e, .g = e->g, .arena = a, .n = e->m->pairs.n};
+  InverseLegendre out = {0};
+  w.p = ARENA_ARRAY(a, SymId, w.n + 1), w.v = ARENA_ARRAY(a, SymId, w.n + 1), w.rate = ARENA_ARRAY(a, Expr, w.n + 1);
+  w.inverse = ARENA_ARRAY(a, Expr, (size_t)w.n * w.n + 1);
+  for (uint32_t i = 0; i < w.n; i++) {
+    w.p[i] = e->m->states.at[e->m->pairs.at[i].p].z;
+    w.v[i] = e->m->states.at[e->m->pairs.at[i].q].rate;
+  }
+  Expr H = expr_expand_defs(e->g, e->energy);
+  Entries W = momentum_hessian(&w, H);
+  w.form = &W;
+  if (w.n <= BLOCK_MOST) out.det = determinant(&w);
+  if (out.det && expr_is_zero(e->g, out.det)) out.why_not = "det d2H/dp2 = 0 in every state: velocities do not determine the momenta";
+  for (uint32_t k = 0; k < W.n && !out.why_not; k++)
+    if (expr_contains(e->g, W.at[k].e, is_one_of, &w)) out.why_not = "H is not quadratic in the momenta";
+  if (!out.why_not) out.why_not = invert(&w, "d2H/dp2");
+  if (!out.why_not) put_lagrangian(&w, H, &out);
+  return out;
 }

@@ -3,7 +3,9 @@
  * Symbolic where L is quadratic in velocities, L = q'Mq'/2 + a q' - V, and M has a short inverse in closed form, in blocks of at most three
  * coordinates. Then
  *   H = (p - a) M^-1 (p - a)/2 + V,   q' = dH/dp,   p' = -dH/dq + Q + A^T lambda
- * with Q the generalised forces outside L, and lambda the multipliers of constraints. */
+ * with Q the generalised forces outside L, and lambda the multipliers of constraints.
+ *
+ * Back from H(q, p, t): q' = dH/dp = W p + b with W = d2H/dp2, and L = (q' - b) W^-1 (q' - b)/2 - H(q, 0, t), where H is quadratic in p. */
 #pragma once
 
 #include "mech/eqns.h"
@@ -16,6 +18,16 @@ typedef struct {
   const Expr *rate;    /* [n] q' in q, p, t */
   const Expr *force;   /* [n] p' in q, p, z, t, inputs and multipliers */
 } Hamilton;
+
+typedef struct {
+  const char *why_not; /* reason for no closed form; NULL: there is one */
+  Expr det;            /* det d2H/dp2 of up to three coordinates, 0 node where it vanishes everywhere; 0: not computed */
+  Expr L;
+  const Expr *p;       /* [pairs] momenta in q, q', t */
+} InverseLegendre;
+
+/* Lagrangian of a model that gives its Hamiltonian. */
+InverseLegendre lagrangian_derive(Eqns *e);
 
 /* Needs coordinates with accelerations: for an L of first order the Legendre transformation is singular. May derive e->mass. */
 Hamilton hamilton_derive(Eqns *e);

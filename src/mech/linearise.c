@@ -8,7 +8,7 @@
 
 typedef VEC(Partial) PartialList;
 
-/* --- the residuals f - M q'' --- */
+/* --- the residuals f - M q'', and demand - A q'' of constraints --- */
 
 /* M q'' from the entries of M. */
 static Expr *inertia_of_mass(const Eqns *e) {
@@ -41,6 +41,19 @@ static Expr *inertia_of_momenta(const Eqns *e) {
 
 /* --- their derivatives --- */
 
+/* Derivatives of x by inputs, or by parameters, columns ascending. */
+static ExprPartials by_others(const Eqns *e, Expr x, PartialsBy by) {
+  const Model *m = e->m;
+  VEC(ExprPartial) all = {0};
+  ExprPartials d = by == BY_INPUTS ? expr_gradient_sparse(e->g, x, SYM_INPUT, m->inputs.n) : expr_gradient_sparse(e->g, x, SYM_PARAM, m->params.n);
+  for (uint32_t k = 0; k < d.n; k++) {
+    if (by == BY_PARAMS && m->params.at[d.at[k].index].fixed) continue;
+    uint32_t col = by == BY_PARAMS ? m->params.at[d.at[k].index].place : d.at[k].index;
+    vec_push(m->arena, &all, ((ExprPartial){col, d.at[k].e}));
+  }
+  return (ExprPartials){all.at, all.n};
+}
+
 /* Derivatives of x by the components of y = (q, q', z), columns ascending. */
 static ExprPartials by_state(const Eqns *e, Expr x) {
   const Model *m = e->m;
@@ -56,10 +69,26 @@ static ExprPartials by_state(const Eqns *e, Expr x) {
   return (ExprPartials){all.at, all.n};
 }
 
-static PartialList differentiate(const Eqns *e, const Expr *inertia) {
+/* Residuals of the constraints, demand - A q''. */
+static const Expr *constraint_residuals(const Eqns *e) {
+  const Constraints *k = &e->constraints;
+  Expr *r = ARENA_ARRAY(e->m->arena, Expr, k->n + 1);
+  for (uint32_t i = 0; i < k->n; i++) r[i] = k->demand[i];
+  for (uint32_t i = 0; i < k->A.n; i++) {
+    const MassEntry *x = &k->A.at[i];
+    Expr part = expr_mul(e->g, x->e, expr_symbol(e->g, e->m->coords.at[x->col].a)->node);
+    r[x->row] = expr_sub(e->g, r[x->row], part);
+  }
+  return r;
+}
+
+static PartialList differentiate(const Eqns *e, const Expr *inertia, PartialsBy by) {
   PartialList found = {0};
-  for (uint32_t i = 0; i < e->n + e->m->states.n; i++) {
-    ExprPartials d = by_state(e, i < e->n ? expr_sub(e->g, e->f[i], inertia[i]) : e->flow[i - e->n]);
+  uint32_t nz = e->m->states.n;
+  const Expr *constraints = constraint_residuals(e);
+  for (uint32_t i = 0; i < e->n + nz + e->constraints.n; i++) {
+    Expr x = i < e->n ? expr_sub(e->g, e->f[i], inertia[i]) : i < e->n + nz ? e->flow[i - e->n] : constraints[i - e->n - nz];
+    ExprPartials d = by == BY_STATE ? by_state(e, x) : by_others(e, x, by);
     for (uint32_t k = 0; k < d.n; k++) vec_push(e->m->arena, &found, ((Partial){i, d.at[k].index, d.at[k].e}));
   }
   return found;
@@ -83,13 +112,37 @@ static void try_form(const Eqns *e, const PartialList *from, Expr (*rule)(ExprGr
   *ops = mine;
 }
 
-Partials eqns_linearise(Eqns *e) {
+Partials eqns_linearise(Eqns *e) { return eqns_partials(e, BY_STATE); }
+
+const Expr *eqns_forces(const Eqns *e) {
+  uint32_t n = expr_symbol_count(e->g) + 1;
+  Expr *with = ARENA_ARRAY(e->m->arena, Expr, n), *f = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
+  for (uint32_t k = 0; k < e->constraints.n; k++) with[e->constraints.of[k]->multiplier] = expr_int(e->g, 0);
+  for (uint32_t i = 0; i < e->n; i++) f[i] = e->constraints.n ? expr_substitute(e->g, e->f[i], with, n, "") : e->f[i];
+  return f;
+}
+
+const Expr *eqns_inverse_dynamics(Eqns *e) {
+  const Expr *f = eqns_forces(e);
+  const Expr *best = NULL;
+  uint64_t least = UINT64_MAX;
+  eqns_derive_mass(e);
+  for (int by_momenta = 0; by_momenta <= 1; by_momenta++) {
+    Expr *x = by_momenta ? inertia_of_momenta(e) : inertia_of_mass(e);
+    for (uint32_t i = 0; i < e->n; i++) x[i] = simplify_shallow(e->g, expr_sub(e->g, x[i], f[i]));
+    uint64_t ops = expr_ops(e->g, x, e->n);
+    if (ops < least) best = x, least = ops;
+  }
+  return best;
+}
+
+Partials eqns_partials(Eqns *e, PartialsBy by) {
   enum { SIMPLIFY_MAX_ENTRIES = 300 };
   PartialList best = {0};
   uint64_t ops = UINT64_MAX;
   eqns_derive_mass(e);
   for (int by_momenta = 0; by_momenta <= 1; by_momenta++) {
-    PartialList raw = differentiate(e, by_momenta ? inertia_of_momenta(e) : inertia_of_mass(e));
+    PartialList raw = differentiate(e, by_momenta ? inertia_of_momenta(e) : inertia_of_mass(e), by);
     if (raw.n <= SIMPLIFY_MAX_ENTRIES) {
       try_form(e, &raw, simplify, &best, &ops);
       try_form(e, &raw, simplify_shallow, &best, &ops);
@@ -97,6 +150,28 @@ Partials eqns_linearise(Eqns *e) {
     try_form(e, &raw, NULL, &best, &ops);
   }
   return (Partials){best.at, best.n};
+}
+
+Partials eqns_output_partials(const Eqns *e, const Expr *x, uint32_t n) {
+  const Model *m = e->m;
+  uint32_t ny = 2 * e->n + m->states.n;
+  const struct {
+    SymKind kind;
+    uint32_t n, first; /* first column */
+  } blocks[] = {{SYM_INPUT, m->inputs.n, ny}, {SYM_ACC, e->n, ny + m->inputs.n}, {SYM_RATE, m->states.n, ny + m->inputs.n + e->n}};
+  uint32_t first_param = ny + m->inputs.n + e->n + m->states.n;
+  PartialList found = {0};
+  for (uint32_t i = 0; i < n; i++) {
+    ExprPartials d = by_state(e, x[i]);
+    for (uint32_t k = 0; k < d.n; k++) vec_push(m->arena, &found, ((Partial){i, d.at[k].index, simplify_shallow(e->g, d.at[k].e)}));
+    for (int b = 0; b < 3; b++) {
+      d = expr_gradient_sparse(e->g, x[i], blocks[b].kind, blocks[b].n);
+      for (uint32_t k = 0; k < d.n; k++) vec_push(m->arena, &found, ((Partial){i, blocks[b].first + d.at[k].index, simplify_shallow(e->g, d.at[k].e)}));
+    }
+    d = by_others(e, x[i], BY_PARAMS);
+    for (uint32_t k = 0; k < d.n; k++) vec_push(m->arena, &found, ((Partial){i, first_param + d.at[k].index, simplify_shallow(e->g, d.at[k].e)}));
+  }
+  return (Partials){found.at, found.n};
 }
 
 /* --- events and their actions, for saltation matrices (runtime/core/tangent.c) --- */

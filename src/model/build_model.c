@@ -19,16 +19,16 @@ typedef struct {
 
 typedef struct {
   VEC(Expr) terms[4]; /* of L, T, V and dissipation, in the order of their kinds of statement */
-  Span base[3]; /* the model's own statements of L, T, V */
+  Span base[4]; /* the model's own statements of L, T, V, H */
   Span first;   /* the first nonzero energy */
   int failed;   /* an energy has no value: the dimension of L is unknown */
   VEC(UnitCheck) later;
 } Energies;
 
 /* All parts of L must have one dimension, not necessarily that of an energy. */
-static void check_energy_unit(Builder *b, const AstStmt *st, const Value *v, Energies *en) {
+static void check_energy_unit(Builder *b, const AstStmt *st, AstId id, const Value *v, Energies *en) {
   if (expr_is_zero(b->g, v->e)) return;
-  Span span = ast_expr(b->ast, st->rhs)->span;
+  Span span = ast_expr(b->ast, id)->span;
   if (!en->first.end) en->first = st->span;
   if (dim_equate(b->dims, b->energy, v->dim, span)) return;
   diag_error(b->diags, span, "units do not match: this is %s, another part of the Lagrangian %s", in_dim(b, v->dim), in_dim(b, b->energy));
@@ -68,6 +68,7 @@ static int is_first_energy(Builder *b, const AstStmt *st, Energies *en) {
 }
 
 static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en) {
+  if (!adds_to_hamiltonian(b, st)) return;
   if (!effect && st->kind != STMT_DISSIPATION && !is_first_energy(b, st, en)) return;
   b->m->lagrangian_span = span_join(b->m->lagrangian_span, st->span);
   if (!effect || !b->m->lagrangian_span.end) b->m->lagrangian_span = st->span;
@@ -85,9 +86,23 @@ static void add_energy(Builder *b, const AstStmt *st, Name effect, Energies *en)
     }
     check_later(b, en, st->rhs, &v, dim_base(b->dims, DIM_TIME), "a dissipation function");
   } else {
-    check_energy_unit(b, st, &v, en);
+    check_energy_unit(b, st, st->rhs, &v, en);
   }
   vec_push(b->arena, &en->terms[st->kind - STMT_LAGRANGIAN], v.e);
+}
+
+/* Adds -H, or the action p*q' of a momentum, to L. */
+static void add_phase_space(Builder *b, const AstStmt *st, Name effect, Energies *en) {
+  int is_momentum = st->kind == STMT_MOMENTUM;
+  AstId id = is_momentum ? st->args : st->rhs;
+  if (is_momentum ? !b->m->hamiltonian : !gives_hamiltonian(b, st, effect, &en->base[3])) return;
+  if (!is_momentum && (!effect || !b->m->lagrangian_span.end)) b->m->lagrangian_span = st->span;
+  Value v = is_momentum ? action_of_momentum(b, st, effect) : value_of_hamiltonian(b, st, effect);
+  en->failed |= !v.e;
+  if (!v.e) return;
+  check_energy_unit(b, st, id, &v, en);
+  Expr term = is_momentum ? v.e : expr_neg(b->g, v.e);
+  vec_push(b->arena, &en->terms[0], term);
 }
 
 static Expr sum_of_terms(Builder *b, const Energies *en, AstStmtKind kind) {
@@ -99,6 +114,11 @@ static void finish_energies(Builder *b, const Energies *en) {
   check_units_of_forces(b, en);
   Expr l = sum_of_terms(b, en, STMT_LAGRANGIAN), kinetic = sum_of_terms(b, en, STMT_KINETIC), potential = sum_of_terms(b, en, STMT_POTENTIAL);
   if (en->terms[3].n) m->dissipation = sum_of_terms(b, en, STMT_DISSIPATION);
+  for (uint32_t i = 0; i < m->contacts.n; i++) { /* friction is the force on the slip */
+    const Contact *c = &m->contacts.at[i];
+    Expr power = c->is_tangent ? expr_mul(b->g, expr_symbol(b->g, c->force)->node, c->gap) : 0;
+    if (power) m->dissipation = expr_sub(b->g, m->dissipation ? m->dissipation : expr_int(b->g, 0), power);
+  }
   if (!en->terms[0].n && !en->terms[1].n && !en->terms[2].n) return;
   if (!en->terms[0].n) {
     m->kinetic = kinetic;
@@ -160,6 +180,27 @@ static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) 
   else add_forces(b, st->lhs, st->rhs, &point, &f, en);
 }
 
+/* The size of a friction, and its static limit: how many times its size it holds a body that sticks. */
+static void add_grip(Builder *b, const AstStmt *st, Name effect) {
+  AstId rate = st->args, size = ast_expr(b->ast, rate)->next, most = ast_expr(b->ast, size)->next;
+  Value f = resolve(b, size, IN_DYNAMICS, effect);
+  if (f.e && !f.n) vec_push(b->arena, &b->friction_sizes, ((FrictionSize){f.e, ast_expr(b->ast, size)->span}));
+  if (!most) return;
+  Value v = resolve(b, rate, IN_DYNAMICS, effect), g = resolve(b, most, IN_DYNAMICS, effect);
+  Span span = ast_expr(b->ast, most)->span;
+  if (!v.e || !f.e || !g.e) return;
+  if (!dims_agree(b, &g, &f, span)) {
+    diag_error(b->diags, span, "the static limit is %s, and the friction %s", in_dim(b, g.dim), in_dim(b, f.dim));
+    return;
+  }
+  Grip grip = {v.e, expr_div(b->g, g.e, f.e)};
+  if (expr_is_num(b->g, grip.ratio) && num_value(expr_number(b->g, grip.ratio)) < 1) {
+    diag_error(b->diags, span, "the static limit is smaller than the friction of a sliding body" HELP "static friction is at least as large: `static = mu_s*N` with mu_s >= mu");
+    return;
+  }
+  vec_push(b->arena, &b->m->grips, grip);
+}
+
 /* flow z' = ...: the left side must be the rate of a state. */
 static void add_flow(Builder *b, const AstStmt *st, Name effect) {
   const AstExpr *l = ast_expr(b->ast, st->lhs);
@@ -193,10 +234,12 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
   AstId sides[2] = {st->lhs, st->rhs};
   Expr *nodes[2];
   Value v[2];
+  b->brackets = 1;
   for (int k = 0; k < 2; k++) {
     nodes[k] = ARENA_ARRAY(b->arena, Expr, sides[k] - ast_expr(b->ast, sides[k])->first + 1);
     v[k] = resolve_nodes(b, sides[k], IN_OBSERVE, effect, nodes[k]);
   }
+  b->brackets = 0;
   Value l = v[0], r = v[1];
   if (!l.e || !r.e) return;
   if (l.n != r.n) {
@@ -247,10 +290,14 @@ void finish_observe(Builder *b, uint32_t index, Value v) {
 static void apply_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
   Energies *en = data;
   switch (st->kind) {
+    case STMT_MOMENTUM: case STMT_HAMILTONIAN: add_phase_space(b, st, effect, en); return;
     case STMT_LAGRANGIAN: case STMT_KINETIC: case STMT_POTENTIAL: case STMT_DISSIPATION:
       add_energy(b, st, effect, en);
       return;
-    case STMT_FORCE: add_force(b, st, effect, en); return;
+    case STMT_FORCE:
+      add_force(b, st, effect, en);
+      if (st->args) add_grip(b, st, effect);
+      return;
     case STMT_FLOW: add_flow(b, st, effect); return;
     case STMT_INPUT: fill_input(b, st, effect); return;
     case STMT_EVENT: add_event(b, st, effect); return;
@@ -258,10 +305,10 @@ static void apply_statement(Builder *b, const AstStmt *st, Name effect, void *da
     case STMT_CONTACT: add_contact(b, st, effect); return;
     case STMT_LET: case STMT_FUNCTION: case STMT_EXPECT: case STMT_OBSERVE: /* once L is known: build() */
     case STMT_COORD: case STMT_STATE: case STMT_PARAM: case STMT_CONST:
-    case STMT_SYMMETRY: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
+    case STMT_SYMMETRY: case STMT_CANONICAL: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE:
     case STMT_MAP: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
     case STMT_START: case STMT_EXACT: case STMT_SET: case STMT_USE: case STMT_SPAN: case STMT_METHOD:
-    case STMT_TOLERANCE: case STMT_OUTPUT: case STMT_MONITOR: case STMT_LIKE: case STMT_STOP: return;
+    case STMT_TOLERANCE: case STMT_OUTPUT: case STMT_MONITOR: case STMT_MEASURE: case STMT_LIKE: case STMT_STOP: return;
   }
 }
 
@@ -278,7 +325,15 @@ static void apply_unused_lets(Builder *b) {
 /* Statement callbacks for the passes after L is known. */
 static void expect(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
-  if (st->kind == STMT_EXPECT) add_expect(b, st, effect);
+  int claim = st->kind == STMT_HAMILTONIAN && !effect && !b->m->hamiltonian; /* energy = H */
+  if (claim && !is_free_of_velocities(b, st, NULL)) return;
+  if (claim || st->kind == STMT_EXPECT) add_expect(b, st, effect);
+}
+
+static void canonical(Builder *b, const AstStmt *st, Name effect, void *data) {
+  (void)effect;
+  (void)data;
+  if (st->kind == STMT_CANONICAL) add_canonical(b, st);
 }
 
 static void symmetry(Builder *b, const AstStmt *st, Name effect, void *data) {
@@ -320,9 +375,9 @@ static void check_whole(Builder *b) {
   }
   if (m->coords.n && !m->lagrangian) {
     diag_error(b->diags, m->coords.at[0].span, "there are coordinates but no Lagrangian");
-    diag_help(b->diags, "give `lagrangian = ...`, or `kinetic = ...` and `potential = ...`");
+    diag_help(b->diags, "give `lagrangian = ...`, or `kinetic = ...` and `potential = ...`, or `hamiltonian = ...`");
   }
-  if (m->coords.n && m->lagrangian) check_coords_in_lagrangian(b);
+  if (m->coords.n && m->lagrangian && !m->hamiltonian) check_coords_in_lagrangian(b);
   for (uint32_t i = 0; i < m->states.n; i++)
     if (!m->states.at[i].flow && !m->states.at[i].coordinate) {
       diag_error(b->diags, m->states.at[i].span, "the state `%s` has no flow", m->states.at[i].name);
@@ -352,7 +407,7 @@ static Builder *builder_new(Ast *ast, const ModelChoice *choice) {
   b->scope.arena = b->members.arena = b->outputs.arena = b->constraints.arena = a;
   b->defines = choice->defines;
   b->ndefines = choice->ndefines;
-  b->domains = choice->bare; /* claims are judged on models without a scene */
+  b->domains = choice->bare || choice->domains; /* claims are judged on models without a scene */
   Model *m = b->m = ARENA_NEW(a, Model);
   m->ast = ast;
   m->diags = ast->diags;
@@ -413,6 +468,7 @@ static uint8_t degree_of(const ExprGraph *g, Expr x, const ExprMap *degrees) {
 
 /* 1 if L contains velocities and is linear in them as written. Creates no node, as nodes are numbered in text order. */
 static int is_first_order(const Model *m) {
+  if (m->hamiltonian) return 1;
   if (!m->coords.n || !m->lagrangian || !(expr_kinds(m->g, m->lagrangian) & 1u << SYM_VEL)) return 0;
   ExprMap degrees = expr_map(m->arena);
   ExprList l = expr_topo(m->g, &m->lagrangian, 1);
@@ -430,7 +486,10 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   b->m->first_order = first_order;
   scene_select(b, choice);
   find_units(b);
+  find_hamiltonian(b);
+  if (!first_order) check_momenta(b);
   each_active(b, declare_statement, NULL);
+  each_active(b, declare_momentum, NULL); /* after all coordinates: the states are [q|p] */
   check_defines(b);
   Energies en = {0};
   each_active(b, apply_statement, &en);
@@ -440,6 +499,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   each_active(b, symmetry, NULL); /* before outputs use charges: fixes their units */
   for (uint32_t i = 0; i < b->observes.n; i++) resolve_observe(b, i);
   each_active(b, expect, NULL);
+  each_active(b, canonical, NULL);
   check_whole(b);
   return b;
 }
@@ -452,19 +512,29 @@ static const Declarations *declarations_of(const Builder *b) {
   return d;
 }
 
+/* The expression of `derive --bracket`. */
+static void ask_bracket(Builder *b, AstId id) {
+  b->brackets = 1;
+  Value v = id && !b->diags->errors ? resolve(b, id, IN_OBSERVE, NULL) : (Value){0};
+  b->brackets = 0;
+  b->m->asked_bracket = v.e;
+}
+
 Model *model_build(Ast *ast, const ModelChoice *choice) {
   Builder *b = build(ast, choice, 0);
   if (!ast->diags->errors && is_first_order(b->m)) {
     if (b->m->constraints.n)
-      diag_error(b->diags, b->m->constraints.at[0].span, "not yet: constraints and contacts where L is linear in the velocities" HELP
-                 "lagc understands the syntax but cannot give it meaning in this version");
+      diag_error(b->diags, b->m->constraints.at[0].span, "not yet: constraints and contacts where %s" HELP
+                 "lagc understands the syntax but cannot give it meaning in this version", no_inertia(b->m));
     else b = build(ast, choice, 1);
   }
+  ask_bracket(b, choice->bracket);
   add_section(b, &choice->section);
   scene_build(b, choice);
   fill_inferred_units(b);
   if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
+  check_friction_sizes(b);
   command_values(b, choice->values, choice->nvalues);
   b->m->declared = declarations_of(b);
   return ast->diags->errors ? NULL : b->m;

@@ -54,6 +54,12 @@ typedef struct {
   Value value; /* e is 0 after an error; unused for a function: see Instance */
 } Evaluated;
 
+/* The size of a friction, as it is written. */
+typedef struct {
+  Expr size;
+  Span span;
+} FrictionSize;
+
 /* Instance of a user function for given argument shapes. Its body is evaluated once, with symbols as arguments and unknown
  * dimensions; each call substitutes its own. */
 typedef struct {
@@ -82,6 +88,12 @@ typedef struct {
   Span span;
 } SpinStart;
 
+/* A name that only the statement being read knows. */
+typedef struct {
+  Name name;
+  SymId sym;
+} BoundName;
+
 typedef struct Builder Builder;
 struct Builder {
   Ast *ast;
@@ -95,6 +107,7 @@ struct Builder {
   VEC(SpinStart) spins; /* start values of angular velocities */
   Scope *named; /* names of events, constraints and expectations; NULL: none yet */
   IndexVars index; /* indices of the `for` around the current statement */
+  VEC(FrictionSize) friction_sizes; /* check_friction_sizes */
   VEC(struct Eval *) idle; /* free list of evaluations */
   VEC(Expr) scratch;
   uint32_t *start_index; /* [SymId] index into Scene.starts + 1; 0: no start value */
@@ -119,9 +132,12 @@ struct Builder {
   uint32_t ndefines;
   const AstStmt **chain; /* the scene after its `like` ancestors, oldest first; NULL-terminated */
   int is_variant;  /* ModelChoice.only is given */
+  int is_giving;   /* ModelChoice.given is being applied */
   int unitless;    /* no name of the model has a unit: dimensions are not checked */
-  Name group;      /* group parameter of the symmetry being read, or NULL */
-  SymId group_symbol;
+  const BoundName *bound; /* [nbound] the group parameter of the symmetry being read; the new variables of a canonical transformation */
+  uint32_t nbound;
+  int gives_lagrangian; /* the model itself has L, T or V */
+  int brackets;    /* {f, g} in an expression is a Poisson bracket */
   int domains;     /* compute Value.domain, for claims */
 };
 
@@ -129,6 +145,7 @@ struct Builder {
 Value resolve(Builder *b, AstId id, Context where, Name effect);
 
 /* The same, with the values of its nodes, nodes[i] for node ast_expr(id)->first + i; 0: a vector, or none of its own (part of a chain). */
+Value resolve_condition(Builder *b, AstId id, Name effect); /* a value of the dynamics that may be a condition */
 Value resolve_nodes(Builder *b, AstId id, Context where, Name effect, Expr *nodes);
 
 /* Value assigned to a name with a unit: a bare number is multiplied by the unit, any other value must have its
@@ -264,11 +281,16 @@ int add_outputs_as(Builder *b, AstId id, Name label);
 /* monitor.c: reads `monitor q limit`. */
 void set_monitor(Builder *b, const AstStmt *st);
 
+/* measure.c: reads `measure NAME = EXPR`; a second one of the name replaces the first. */
+void set_measure(Builder *b, const AstStmt *st);
+
 /* input_table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without the effect. */
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
 
 /* declare.c: enters the names that a statement declares into scope and model; a StatementFn. */
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data);
+/* Likewise, of momenta alone. */
+void declare_momentum(Builder *b, const AstStmt *st, Name effect, void *data);
 
 /* Declares a name; 0, with a message, when it is taken. */
 int declare_entity(Builder *b, const AstStmt *st, Entity e);
@@ -323,6 +345,8 @@ void check_sign(Builder *b, const Param *p, Span span);
 
 /* Warns of parameters whose value, computed from others, contradicts their declared sign: a run refuses them. */
 void warn_signs(Builder *b);
+/* An error where the size of a friction follows from parameters, and is negative. */
+void check_friction_sizes(Builder *b);
 
 /* name_hints.c: adds a hint to the message about an unknown name. */
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare);
@@ -390,6 +414,26 @@ int spin_target(Builder *b, AstId place, Name effect);
 /* Generalised force along the four quaternion coordinates of a torque in the body frame. */
 Value torque_force(Builder *b, const Value *q, const Value *torque);
 
+/* hamiltonian.c: decides whether the text gives L (gives_lagrangian), or H and not L (Model.hamiltonian); reports coordinates without a momentum. */
+void find_hamiltonian(Builder *b);
+void check_momenta(Builder *b);
+/* Whether people call a momentum so: p, px, p1, p_th. */
+int is_momentum_name(Name name);
+
+/* 1 if a statement adds to H; 0, reported, if the model, or an effect of it, may not give H here. *first: the model's own statement. */
+int gives_hamiltonian(Builder *b, const AstStmt *st, Name effect, Span *first);
+/* 1 unless a term of L stands beside H; reported. */
+int adds_to_hamiltonian(Builder *b, const AstStmt *st);
+/* 1 if H has no velocity, as written or through a let (v, or NULL); otherwise reported. */
+int is_free_of_velocities(Builder *b, const AstStmt *st, const Value *v);
+/* The first velocity in an expression, as written or through a let (v, or NULL); empty: none. */
+Span velocity_in(const Builder *b, AstId id, const Value *v);
+/* 1 if momentum p has the shape of its coordinate q, which has no other; otherwise reported. */
+int pair_fits(Builder *b, const AstStmt *st, const Entity *p, const Entity *q);
+/* H, and the term p*q' of a momentum, which is paired with its coordinate; e = 0 after an error. */
+Value value_of_hamiltonian(Builder *b, const AstStmt *st, Name effect);
+Value action_of_momentum(Builder *b, const AstStmt *st, Name effect);
+
 /* constraint.c: adds a constraint statement, or a contact statement, to the model. */
 void add_constraint(Builder *b, const AstStmt *st, Name effect);
 void add_contact(Builder *b, const AstStmt *st, Name effect);
@@ -397,6 +441,9 @@ void add_contact(Builder *b, const AstStmt *st, Name effect);
 /* symmetry.c: declares a symmetry and its charge; reads its maps, once L is known. */
 void declare_symmetry(Builder *b, const AstStmt *st, Name effect);
 void add_symmetry(Builder *b, const AstStmt *st, Name effect);
+
+/* canonical.c: reads a canonical transformation, once L is known. */
+void add_canonical(Builder *b, const AstStmt *st);
 
 /* redeclarations.c: reports repeated names of scenes, effects, events, constraints and expectations, and settings that a scene or
  * event gives twice. */
@@ -419,6 +466,9 @@ Unit spin_unit(const Builder *b);
 
 /* name_hints.c: reports an unknown `effect.name`. */
 void report_no_member(Builder *b, Span span, Name effect, Name name);
+
+/* new_coordinates.c: the active statements in the new coordinates of a point transformation. */
+void change_coordinates(Builder *b, Name to);
 
 /* scene.c: selects the active statements (Builder.active); then reads the scene's statements into Model.scene. */
 void scene_select(Builder *b, const ModelChoice *choice);

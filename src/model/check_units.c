@@ -73,7 +73,7 @@ int need_pure(Eval *ev, AstId arg, const char *what) {
   if (strcmp(what, "an exponent") == 0 && ast_expr(b->ast, arg)->kind == AST_UNIT)
     diag_help(b->diags, "a unit belongs to the operand directly before it, here to the exponent: write `5 [N/s^2]*t^2`, or `(5*t^2) [...]`");
   else if (!dim_is_open(b->dims, dim_resolved(b->dims, v->dim)))
-    diag_help(b->diags, "where a number in it has a unit, write it: `[%s]`", dim_text(b->dims, dim_pow(b->dims, v->dim, num_int(-1))));
+    diag_help(b->diags, "a factor with a unit makes it one: `2 [%s]`", dim_text(b->dims, dim_pow(b->dims, v->dim, num_int(-1))));
   explain_dims(b, v->dim, DIM_ANY);
   return 0;
 }
@@ -139,6 +139,7 @@ void fill_inferred_units(Builder *b) {
   m->energy_unit = unit_of_dim(b->dims, b->unitless ? DIM_ANY : b->energy);
   for (uint32_t i = 0; i < m->observes.n; i++) fill_unit(b, &m->observes.at[i].unit);
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) fill_unit(b, &m->scene.outputs.at[i].unit);
+  for (uint32_t i = 0; i < m->scene.measures.n; i++) fill_unit(b, &m->scene.measures.at[i].unit);
   for (uint32_t i = 0; i < b->undeclared.n; i++) {
     Dim d = dim_resolved(b->dims, b->undeclared.at[i].dim);
     if (dim_is_open(b->dims, d)) continue;

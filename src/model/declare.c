@@ -132,7 +132,7 @@ int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts) {
   return 0;
 }
 
-static int declares_motion(const AstStmt *st) { return st->kind == STMT_COORD || st->kind == STMT_STATE; }
+static int declares_motion(const AstStmt *st) { return st->kind == STMT_COORD || st->kind == STMT_MOMENTUM || st->kind == STMT_STATE; }
 
 /* Name of a coordinate or state in outputs: "EFFECT.NAME" if the model or another effect in use declares NAME as well. */
 static Name plain_name(Builder *b, const AstStmt *st, Name effect) {
@@ -147,7 +147,7 @@ static Name plain_name(Builder *b, const AstStmt *st, Name effect) {
 static void add_state(Builder *b, const AstStmt *st, Name name, Unit unit) {
   Model *m = b->m;
   uint32_t i = m->states.n;
-  State z = {.name = name, .span = st->name_span, .unit = unit, .coordinate = st->kind == STMT_COORD, .periodic = st->periodic};
+  State z = {.name = name, .span = st->name_span, .unit = unit, .coordinate = st->kind != STMT_STATE, .periodic = st->periodic};
   z.z = declare_symbol(b, SYM_STATE, i, name, SIGN_UNKNOWN, unit.dim);
   z.rate = declare_symbol(b, SYM_RATE, i, intern_printf(b, "%s'", name), SIGN_UNKNOWN, dim_per_second(b->dims, unit.dim));
   vec_push(b->arena, &m->states, z);
@@ -307,6 +307,31 @@ static void declare_observe(Builder *b, const AstStmt *st, Name effect) {
   add_definition(b, ENT_OBSERVE, (Definition){.stmt = st, .name = o.name, .effect = effect, .around = around, .naround = b->index.n});
 }
 
+/* 1 if a momentum beside L has the size of its coordinate; otherwise reported. */
+static int names_a_momentum(Builder *b, const AstStmt *st, Name effect) {
+  const AstExpr *of = ast_expr(b->ast, st->lhs);
+  const Entity *q = resolve_name(b, of->name, of->span, effect, "coord");
+  Entity p = {.name = st->name};
+  return q && read_type(b, st, effect, &p.parts) && pair_fits(b, st, &p, q);
+}
+
+/* A coordinate of the phase space where the model gives H; where it gives L, an observable dL/dq'. */
+void declare_momentum(Builder *b, const AstStmt *st, Name effect, void *data) {
+  (void)data;
+  if (st->kind != STMT_MOMENTUM) return;
+  if (b->m->hamiltonian) {
+    declare_motion(b, st, effect);
+  } else if (st->dims) {
+    diag_error(b->diags, st->name_span, "not yet: names for the momenta of a family whose Lagrangian is given" HELP "they are called `%s[1]` and so on",
+               ast_expr(b->ast, st->rhs)->name);
+    declare_refused(b, st, effect);
+  } else if (b->gives_lagrangian && names_a_momentum(b, st, effect)) {
+    declare_observe(b, st, effect);
+  } else {
+    declare_refused(b, st, effect);
+  }
+}
+
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
   (void)data;
   switch (st->kind) {
@@ -318,10 +343,10 @@ void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
     case STMT_FUNCTION: declare_function(b, st, effect); return;
     case STMT_OBSERVE: declare_observe(b, st, effect); return;
     case STMT_SYMMETRY: declare_symmetry(b, st, effect); return;
-    case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE: case STMT_LAGRANGIAN: case STMT_CONSTRAINT: case STMT_CONTACT: case STMT_KINETIC: case STMT_POTENTIAL:
+    case STMT_CANONICAL: case STMT_FOR: case STMT_MODEL: case STMT_INCLUDE: case STMT_MOMENTUM: case STMT_HAMILTONIAN: case STMT_LAGRANGIAN: case STMT_CONSTRAINT: case STMT_CONTACT: case STMT_KINETIC: case STMT_POTENTIAL:
     case STMT_DISSIPATION: case STMT_FORCE: case STMT_FLOW: case STMT_MAP: case STMT_EXPECT:
     case STMT_EVENT: case STMT_EFFECT: case STMT_REQUIRES: case STMT_EXCLUDES: case STMT_SCENE:
     case STMT_START: case STMT_EXACT: case STMT_SET: case STMT_USE: case STMT_SPAN: case STMT_METHOD:
-    case STMT_TOLERANCE: case STMT_OUTPUT: case STMT_MONITOR: case STMT_LIKE: case STMT_STOP: return;
+    case STMT_TOLERANCE: case STMT_OUTPUT: case STMT_MONITOR: case STMT_MEASURE: case STMT_LIKE: case STMT_STOP: return;
   }
 }

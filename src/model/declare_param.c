@@ -32,6 +32,18 @@ void warn_signs(Builder *b) {
   }
 }
 
+void check_friction_sizes(Builder *b) {
+  long double *x = model_constants(b->m), f;
+  for (uint32_t i = 0; i < b->m->params.n; i++)
+    if (b->m->params.at[i].value) expr_eval(b->g, &b->m->params.at[i].value, 1, x, &x[b->m->params.at[i].sym]);
+  for (uint32_t i = 0; i < b->friction_sizes.n; i++) {
+    const FrictionSize *one = &b->friction_sizes.at[i];
+    if (expr_kinds(b->g, one->size) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) continue;
+    expr_eval(b->g, &one->size, 1, x, &f);
+    if (f < 0) diag_error(b->diags, one->span, "this friction has a size of %s, and would drive the motion" HELP "it acts against the velocity by itself: let its size be at least 0, `param mu = 0.3 >= 0`", arena_printf(b->arena, "%.6Lg", f));
+  }
+}
+
 /* The value must have the declared sign: the simplifier relies on it. */
 void check_sign(Builder *b, const Param *p, Span span) {
   if (p->sign == SIGN_ANY || !p->value) return;

@@ -48,7 +48,7 @@ EffectList model_unused_effects(const Ast *ast) {
 /* Recursion is bounded by the parser's limit on nested blocks. */
 static int contains_claim(const AstStmt *list) {
   for (const AstStmt *s = list; s; s = s->next)
-    if (s->kind == STMT_EXPECT || s->kind == STMT_SYMMETRY || (s->kind == STMT_FOR && contains_claim(s->body))) return 1;
+    if (s->kind == STMT_EXPECT || s->kind == STMT_SYMMETRY || s->kind == STMT_CANONICAL || s->kind == STMT_HAMILTONIAN || (s->kind == STMT_FOR && contains_claim(s->body))) return 1;
   return 0;
 }
 

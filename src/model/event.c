@@ -1,4 +1,4 @@
-/* Events: a switching function, a direction of crossing, and actions (new values); and sections, which have no actions. */
+/* Events: a switching function, a direction of crossing, and actions (new values); kicks, whose function is their period; and sections, which have no actions. */
 #include "model/resolve_impl.h"
 
 Value resolve_for(Builder *b, AstId id, Name effect, SymId target, const Unit *unit) {
@@ -60,7 +60,7 @@ static void add_action(Builder *b, const AstStmt *st, Name effect, Event *ev) {
     SymKind kind = expr_op(b->g, target.at[k]) == EX_SYM ? expr_sym_of(b->g, target.at[k])->kind : SYM_LOCAL;
     if (kind == SYM_COORD || kind == SYM_VEL || kind == SYM_STATE) continue;
     diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "an event can set a coordinate, a velocity or a state");
-    if (kind == SYM_RATE && b->m->first_order) diag_help(b->diags, "L is linear in the velocities: `%s` follows from the coordinates", ast_text(b, st->lhs));
+    if (kind == SYM_RATE && b->m->first_order) diag_help(b->diags, "%s: `%s` follows from the coordinates", no_inertia(b->m), ast_text(b, st->lhs));
     else diag_help(b->diags, "declare a value that an event changes as a `state`: `state k`, with `flow k' = 0` where nothing else changes it");
     return;
   }
@@ -91,6 +91,20 @@ static void add_actions(Builder *b, const AstStmt *event, Name effect, Event *ev
     if (s->kind != STMT_STOP && ast_expr(b->ast, s->lhs)->kind == AST_CALL) add_spin_action(b, s, effect, ev);
 }
 
+/* The period of a kick: a time of parameters alone; 0 after a mistake. */
+static Expr period_of(Builder *b, const AstStmt *st, Name effect) {
+  Span span = ast_expr(b->ast, st->lhs)->span;
+  Unit s = unit_si(dim_base(b->dims, DIM_TIME), "s");
+  Value T = values_in(b, resolve(b, st->lhs, IN_DYNAMICS, effect), span, &s);
+  unsigned fixed = 1u << SYM_PARAM | 1u << SYM_CONST;
+  if (T.n) diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, T.n));
+  if (!T.e || T.n) return 0;
+  if (!(expr_kinds(b->g, T.e) & ~fixed)) return T.e;
+  diag_error(b->diags, span, "the period of a kick is a time of parameters and numbers alone");
+  diag_help(b->diags, "what happens at times that depend on the motion is an event: `event NAME: g rising { ... }`");
+  return 0;
+}
+
 void add_event(Builder *b, const AstStmt *st, Name effect) {
   Event ev = {.name = st->name, .span = st->span, .direction = st->direction};
   IndexRange r = {0};
@@ -98,7 +112,8 @@ void add_event(Builder *b, const AstStmt *st, Name effect) {
   ev.name = member_name(b->ast, st->name, r.lo, r.n);
   check_name_is_new(b, "event", ev.name, effect, st->name_span);
   check_set_once(b, st);
-  Value g = resolve(b, st->lhs, IN_DYNAMICS, effect);
+  int kick = st->direction == AT_EQUAL_TIMES;
+  Value g = kick ? (Value){.e = period_of(b, st, effect)} : resolve(b, st->lhs, IN_DYNAMICS, effect);
   if (g.n) diag_error(b->diags, ast_expr(b->ast, st->lhs)->span, "this is %s, but a number is needed here", shape_text(b, g.n));
   ev.g = g.e;
   add_actions(b, st, effect, &ev);

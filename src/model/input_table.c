@@ -313,7 +313,7 @@ static const Spline *read_table(Builder *b, const Input *in, Name stem, AstId id
   Table t = {.b = b, .id = id, .in = in, .stem = stem, .value = 1};
   const AstExpr *x = ast_expr(b->ast, id);
   Place from = source_place(b->ast->sources, x->span.begin);
-  if (!find_table_file(&t, path_relative_to(b->arena, from.file ? from.file->path : "", x->name))) return NULL;
+  if (!find_table_file(&t, source_locate(b->ast->sources, from.file ? from.file->path : "", x->name))) return NULL;
   read_lines(&t);
   return t.mistakes ? NULL : fit(&t);
 }

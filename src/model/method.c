@@ -72,9 +72,11 @@ void scene_method(Builder *b, const AstStmt *st) {
   sc->method_span = st->name_span;
   sc->options.n = 0;
   int flows_alone = m && (m->flags & METHOD_FLOWS) && !b->m->coords.n;
-  if (m && (m->flags & METHOD_NO_STATES) && b->m->states.n && !flows_alone) {
+  int may_split = m && (m->flags & METHOD_SPLITS) && b->m->hamiltonian; /* the runtime judges whether H separates */
+  if (m && (m->flags & METHOD_NO_STATES) && b->m->states.n && !flows_alone && !may_split) {
     if (b->m->first_order) {
-      diag_error(b->diags, st->name_span, "the method `%s` needs momenta beside coordinates, and L is linear in the velocities", m->name);
+      diag_error(b->diags, st->name_span, "the method `%s` needs %s", m->name,
+                 b->m->hamiltonian ? "velocities, and the model gives its Hamiltonian" : "momenta beside coordinates, and L is linear in the velocities");
       diag_help(b->diags, "`gauss` is symplectic there; `rk45` and `dop853` can, too");
       return;
     }

@@ -36,6 +36,7 @@ typedef struct {
   Expr value;  /* of pi and earlier parameters */
   Name stem;   /* name without index and component: drag.w for drag.w[2] */
   int fixed;   /* compiled in as a number (ModelChoice.fix) */
+  int given;   /* the value is one of ModelChoice.given */
   Num number;  /* the value of a fixed parameter, from the scene */
   uint32_t place; /* index into the programs' parameter array: counts parameters that are not fixed */
 } Param;
@@ -57,6 +58,11 @@ typedef struct {
   Expr point, f;
   Span span;
 } Force;
+
+/* A friction with a static limit: a body at rest, velocity 0, is held by up to `ratio` times the force of a sliding one. */
+typedef struct {
+  Expr velocity, ratio;
+} Grip;
 
 typedef struct {
   Name name; /* or NULL */
@@ -93,13 +99,22 @@ typedef struct {
   int inside; /* made by the compiler: unit length of a rotation */
 } Constraint;
 
-/* Unilateral contact, gap >= 0. While the gap is closed it is the constraint c = closed*gap. */
+/* Unilateral contact, gap >= 0. While the gap is closed it is the constraint c = closed*gap. A constraint with `while` is another: it is closed
+ * where `margin` is positive, and has neither gap nor restitution.
+ *
+ * A contact with friction is followed by its tangent, an entry of its own: the constraint closed*slip = 0 on the velocity of slipping, which holds
+ * while the contact sticks, and the force of friction while it slips. */
 typedef struct {
   Name name;
-  Expr gap, restitution;
-  SymId closed;                  /* input set by the runtime: 1 while the gap is closed, else 0 */
+  Expr gap, restitution;         /* of a tangent: the velocity of slipping, and the tangential restitution or 0 */
+  Expr margin;                   /* 0: a contact */
+  SymId closed;                  /* input set by the runtime: 1 while the gap is closed, or the contact sticks, else 0 */
   uint32_t constraint;           /* index into Model.constraints */
-  uint32_t impact, release;      /* indices into Model.events */
+  uint32_t impact, release;      /* indices into Model.events; of a tangent: the slip ends; the force reaches its limit */
+  int is_tangent;                /* of the contact before it */
+  Expr friction, hold;           /* of a tangent: its coefficients while it slips, and while it sticks */
+  int law;                       /* of a tangent: the law of impact, as LAG_IMPACT_STRONGE of runtime/numeric/planar_impact.h and its neighbours */
+  SymId force;                   /* of a tangent: input set by the runtime, the force of friction along the slip while the contact slips */
 } Contact;
 
 /* Origin of an output in the text: component `component` of the value of `id`; where `id` names a family, of its
@@ -110,6 +125,37 @@ typedef struct {
   int is_member;
   int64_t member[2];
 } OutputText;
+
+/* A Poisson bracket {f, g} in an expectation or of the command line. */
+typedef struct {
+  SymId sym; /* placeholder in expressions, which symmetry/ replaces */
+  Expr f, g; /* may contain brackets before this one */
+  Span span;
+} ExpressionBracket;
+
+/* A canonical transformation from z = (q, p) to Z = (Q, P), claimed by its maps, by a generating function, or by several of these. Of a model that gives
+ * its Lagrangian: the forward map alone, or a point transformation. */
+typedef struct {
+  Name name;
+  Span span;
+  const AstStmt *stmt;
+  uint32_t n;              /* degrees of freedom */
+  const SymId *old, *fresh; /* [2n] z and Z; old: coordinates alone where the model gives L */
+  const Span *spans;       /* [2n] places that define Z, for messages */
+  const Expr *forward;     /* [2n] Z(z, t); NULL: not given */
+  const Expr *inverse;     /* [2n] z(Z, t); NULL: not given; of a point transformation [n] q(Q, t) */
+  int is_point;            /* in a model that gives L */
+  int kind;                /* F1(q, Q), F2(q, P), F3(p, Q), F4(p, P); 0: no generating function */
+  Expr generator;
+  Expr K;                  /* the new Hamiltonian, in Z and t, as claimed; 0: no claim */
+  Span K_span;
+  Expr domain;             /* of all that is given; 0: wherever the nodes have values */
+} Canonical;
+
+/* A coordinate and its momentum, by index into Model.states. */
+typedef struct {
+  uint32_t q, p;
+} CanonicalPair;
 
 /* A named quantity: an output column of a scene, or an observe statement. */
 typedef struct {
@@ -173,6 +219,13 @@ typedef struct {
   int absolute; /* 1: limit on the size of the output; 0: on its change */
 } Monitor;
 
+/* A number that one keeps of a run. */
+typedef struct {
+  Name name;
+  const char *text; /* in the notation of runtime/analysis/measure.h */
+  Unit unit;        /* of the value in SI */
+} Measure;
+
 typedef struct {
   Name name;
   const char *doc;
@@ -188,6 +241,7 @@ typedef struct {
   VEC(Output) outputs;
   double every;
   VEC(Monitor) monitors;
+  VEC(Measure) measures;
   VEC(Exact) exacts;
 } Scene;
 
@@ -206,6 +260,8 @@ typedef struct {
   VEC(Coord) coords;
   VEC(State) states;
   int first_order;         /* L is linear in all velocities: coordinates are held in `states`, velocities are their rates */
+  int hamiltonian;         /* the text gives H and not L: L = sum p q' - H, of first order */
+  VEC(CanonicalPair) pairs; /* of such a model */
   VEC(Param) params;
   uint32_t nfixed;         /* number of parameters with `fixed` set */
   VEC(Input) inputs;
@@ -218,10 +274,14 @@ typedef struct {
   Expr dissipation;        /* sum of Rayleigh functions, or 0 */
   Expr domain;             /* where L, forces, flows and constraints have real values: see Expect.domain */
   VEC(Force) forces;
+  VEC(Grip) grips;
   VEC(Constraint) constraints;
   VEC(Contact) contacts;
   VEC(Symmetry) symmetries;
   VEC(Expect) expects;
+  VEC(Canonical) canonicals;
+  VEC(ExpressionBracket) brackets;
+  Expr asked_bracket;      /* ModelChoice.bracket */
   VEC(Event) events;
   VEC(Output) observes;
   Scene scene;
@@ -260,7 +320,8 @@ typedef struct {
   Name name;
 } CommandOutput;
 
-/* An input, or the start of a rotation R or of omega(R), and its value from the command line: a formula, or the name of a table. */
+/* A parameter, an input, or a start (of a coordinate, a velocity, a state; of omega(R)), and its value from the command line: a formula; of an input also
+ * the name of a table. */
 typedef struct {
   AstId what, value;
 } CommandInput;
@@ -300,13 +361,22 @@ typedef struct {
   uint32_t ngiven;
   CommandValue *values; /* model_build evaluates them; an error is reported when a run cannot set a target, or a value does not fit it */
   uint32_t nvalues;
+  AstId bracket;   /* an expression with brackets, to print; or 0 */
   Section section;
   const char *fix; /* parameters to compile in as numbers, with the scene's values: "g,drag.c", "all"; NULL: none */
+  Name coordinates; /* the point transformation (Canonical.is_point) in whose new coordinates the model is built; or NULL */
+  int domains;     /* Model.domain is wanted; without a scene it always is */
   int unfixed;     /* set by callers that ignore the command line's --fix */
 } ModelChoice;
 
+/* Reason against coordinates and momenta as in brackets, with a way out; or NULL. */
+const char *reason_against_brackets(const Model *m);
+
 /* Names of all coordinates, in order of declaration, whether L is of first order or not. */
 CoordList model_coordinates(const Model *m);
+
+/* Reason why a model of first order has no accelerations, for messages. */
+static inline const char *no_inertia(const Model *m) { return m->hamiltonian ? "the model gives its Hamiltonian" : "L is linear in the velocities"; }
 
 /* Builds the model; NULL after errors, all of which are in ast->diags. Memory is ast->arena's. */
 Model *model_build(Ast *ast, const ModelChoice *choice);
@@ -314,11 +384,25 @@ Model *model_build(Ast *ast, const ModelChoice *choice);
 /* Source text of a span on one line, without comments, its middle left out where it is long. */
 const char *short_text(const Ast *ast, Span s);
 
-/* Whether a symbol is the input that says whether a contact is closed. */
+/* The first constraint with `while`, or NULL. */
+static inline Name model_conditional(const Model *m) {
+  for (uint32_t i = 0; i < m->contacts.n; i++)
+    if (m->contacts.at[i].margin) return m->contacts.at[i].name;
+  return NULL;
+}
+
+/* Whether a symbol is an input of a contact, which only the runtime sets. */
 static inline int model_is_contact_switch(const Model *m, SymId sym) {
   for (uint32_t i = 0; i < m->contacts.n; i++)
-    if (m->contacts.at[i].closed == sym) return 1;
+    if (m->contacts.at[i].closed == sym || m->contacts.at[i].force == sym) return 1;
   return 0;
+}
+
+/* Inputs that only the runtime sets: one for each contact, two for a tangent. */
+static inline uint32_t model_contact_inputs(const Model *m) {
+  uint32_t n = m->contacts.n;
+  for (uint32_t i = 0; i < m->contacts.n; i++) n += (uint32_t)m->contacts.at[i].is_tangent;
+  return n;
 }
 
 /* Values by symbol: pi, and 0 for all others. */

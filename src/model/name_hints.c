@@ -191,6 +191,10 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
     diag_help(b->diags, "the effect `%s` declares it, but is not in use here: `use %s`", owner->name, owner->name);
     return;
   }
+  if (b->m->hamiltonian && is_momentum_name(name)) {
+    diag_help(b->diags, "a momentum is declared with its coordinate: `momentum %s of x`", name);
+    return;
+  }
   if (advise_index(b, name, span) || advise_rate(b, name) || advise_momentum(b, name) || advise_function(b, name)) return;
   Name *known = ARENA_ARRAY(b->arena, Name, b->scope.all.n + 2);
   uint32_t n = 0;

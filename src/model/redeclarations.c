@@ -40,6 +40,7 @@ static Name setting_key(Builder *b, const AstStmt *st, const char *owner) {
     case STMT_OUTPUT: return intern_printf(b, "output");
     case STMT_LIKE: return intern_printf(b, "like");
     case STMT_MONITOR: return intern_printf(b, "monitor %s", st->lhs ? ast_text(b, st->lhs) : st->name);
+    case STMT_MEASURE: return intern_printf(b, "measure %s", st->name);
     case STMT_START: return intern_printf(b, "start %s", ast_text(b, st->lhs));
     case STMT_EXACT: return intern_printf(b, "exact %s", ast_text(b, st->lhs));
     case STMT_SET: return intern_printf(b, "%s%s = ...", owner, ast_text(b, st->lhs));

@@ -36,12 +36,14 @@ static void mark_name(Eval *ev, const AstExpr *x) {
   if (of->kind == AST_NAME || effects) ev->by_parent[x->a - ev->first] = 1;
 }
 
-/* Marks names of constraints, which have no value: lambda(rod), lambda(rod[2]), lambda(drag.rod). */
+/* Marks names of constraints, which have no value: lambda(rod), lambda(rod[2]), lambda(drag.rod), lambda(feet[2].slip). */
 static void mark_constraint(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "lambda") != 0 || !x->args || own_function(ev, x)) return;
   for (AstId i = x->args; i; i = ast_expr(ev->b->ast, i)->next) {
     AstKind kind = ast_expr(ev->b->ast, i)->kind;
     if (kind == AST_NAME || kind == AST_INDEX || kind == AST_MEMBER) ev->by_parent[i - ev->first] = 1;
+    AstId of = kind == AST_MEMBER ? ast_expr(ev->b->ast, i)->a : 0;
+    if (of && ast_expr(ev->b->ast, of)->kind == AST_INDEX) ev->by_parent[of - ev->first] = 1;
   }
 }
 
@@ -83,6 +85,7 @@ static Value node_value(Eval *ev, AstId id) {
     case AST_LE: case AST_GT: case AST_GE: case AST_EQ: case AST_NE: case AST_NOT: case AST_AND: case AST_OR:
     case AST_TUPLE: return operator_value(ev, id);
     case AST_LIST:
+      if (b->brackets) return bracket_value(ev, x);
       return refuse(b, x->span, "a list gives the members of a family their values, and stands alone" HELP
                     "`param m[3] = {1, 3, 1/2}`, `start th = {0.1, 0.2}`; a vector is written `(a, b, c)`");
     case AST_STRING:
@@ -329,7 +332,8 @@ void resolve_observe(Builder *b, uint32_t index) {
   if (b->state[ENT_OBSERVE].at[index].progress == TODO) resolve_definition(b, ENT_OBSERVE, index);
 }
 
-Value resolve_nodes(Builder *b, AstId id, Context where, Name effect, Expr *nodes) {
+/* As resolve_nodes; the value may be a condition. */
+static Value evaluate(Builder *b, AstId id, Context where, Name effect, Expr *nodes) {
   if (!id) return FAILED;
   EvalStack stack = {0};
   Eval *ev = begin(b, id, where, effect);
@@ -338,10 +342,17 @@ Value resolve_nodes(Builder *b, AstId id, Context where, Name effect, Expr *node
   Value v = *value_of(ev, id); /* valid: ev is on the free list, but not reused yet */
   for (AstId i = ev->first; nodes && i <= id; i++) nodes[i - ev->first] = value_of(ev, i)->n ? 0 : value_of(ev, i)->e;
   if (!v.e) report_missing_message(b, id);
+  return v;
+}
+
+Value resolve_nodes(Builder *b, AstId id, Context where, Name effect, Expr *nodes) {
+  Value v = evaluate(b, id, where, effect, nodes);
   if (!v.e || !v.condition) return v;
   report_condition(b, id);
   return FAILED;
 }
+
+Value resolve_condition(Builder *b, AstId id, Name effect) { return evaluate(b, id, IN_DYNAMICS, effect, NULL); }
 
 Value resolve(Builder *b, AstId id, Context where, Name effect) { return resolve_nodes(b, id, where, effect, NULL); }
 

@@ -173,7 +173,7 @@ static const struct {
 } functions[] = {
   {"sin", NULL, EX_SIN, 0}, {"cos", NULL, EX_COS, 0}, {"tan", NULL, EX_TAN, 0}, {"asin", NULL, EX_ASIN, 0}, {"acos", NULL, EX_ACOS, 0}, {"atan", NULL, EX_ATAN, 0},
   {"sinh", NULL, EX_SINH, 0}, {"cosh", NULL, EX_COSH, 0}, {"tanh", NULL, EX_TANH, 0}, {"exp", NULL, EX_EXP, 0}, {"log", NULL, EX_LOG, 0}, {"cbrt", NULL, EX_CBRT, 0},
-  {"abs", NULL, EX_ABS, 0}, {"sign", NULL, EX_SIGN, 0},
+  {"abs", NULL, EX_ABS, 0}, {"sign", NULL, EX_SIGN, 0}, {"floor", NULL, EX_FLOOR, 0},
   {"atan2", NULL, EX_ATAN2, 0}, {"hypot", NULL, EX_HYPOT, 0}, {"min", NULL, EX_MIN, 0}, {"max", NULL, EX_MAX, 0},
   {"sqrt", call_sqrt, 0, 0}, {"pow", call_pow, 0, 0}, {"if", call_if, 0, 1}, {"d", call_d, 0, 1}, {"dot", call_dot, 0, 1}, {"cross", call_cross, 0, 1},
   {"norm", call_norm, 0, 1}, {"lambda", multiplier_value, 0, 1}, {"omega", omega_value, 0, 1}, {"turn", turn_value, 0, 1}, {"transpose", transpose_value, 0, 1},

@@ -67,6 +67,9 @@ int same_shape(Eval *ev, Span span, AstId x, AstId y);
 /* Returns e, the value of x, and records x in Model.written the first time a node that may jump appears. */
 Expr record_jump(Eval *ev, const AstExpr *x, Expr e);
 
+/* resolve_bracket.c: value of {f, g} where Builder.brackets. */
+Value bracket_value(Eval *ev, const AstExpr *x);
+
 /* Value of a number, an operator, or a tuple. */
 Value operator_value(Eval *ev, AstId id);
 Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id);

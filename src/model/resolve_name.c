@@ -158,7 +158,8 @@ Value name_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   const IndexVar *index = find_index(ev, x->name);
   if (index) return a_value(expr_int(b->g, index->at), DIM_NONE, 1);
-  if (b->group == x->name && ev->in_statement) return a_value(expr_symbol(b->g, b->group_symbol)->node, b->dim_of.at[b->group_symbol], 0);
+  for (uint32_t i = 0; i < b->nbound && ev->in_statement; i++)
+    if (b->bound[i].name == x->name) return a_value(expr_symbol(b->g, b->bound[i].sym)->node, b->dim_of.at[b->bound[i].sym], 0);
   const Value *argument = function_argument(b, ev->function, x->name);
   if (argument) return *argument;
   if (strcmp(x->name, "pi") == 0) return a_value(expr_symbol(b->g, b->m->pi)->node, DIM_NONE, 1);

@@ -219,7 +219,7 @@ Value power_value(Eval *ev, const AstExpr *x, AstId base_id, AstId exp_id) {
 Expr record_jump(Eval *ev, const AstExpr *x, Expr e) {
   const Builder *b = ev->b;
   ExprOp op = expr_op(b->g, e);
-  int may_jump = op == EX_LT || op == EX_LE || op == EX_SIGN || op == EX_TAN || op == EX_ATAN2;
+  int may_jump = op == EX_LT || op == EX_LE || op == EX_SIGN || op == EX_FLOOR || op == EX_TAN || op == EX_ATAN2;
   if (may_jump && !expr_map_get(&b->m->written, e)) expr_map_set(&b->m->written, e, (AstId)(x - b->ast->exprs.at));
   return e;
 }

@@ -53,7 +53,9 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
                   "a velocity has a closed form of its own: `exact x' = ...`, and then `error(x')`");
   if (kinds & 1u << SYM_INPUT) return refuse(b, span, "an input has no time derivative" HELP "declare the derivative as an input of its own");
   if (kinds & second && !(kinds & 1u << SYM_ACC))
-    return refuse(b, span, b->m->first_order ? "L is linear in the velocities: they follow from the coordinates, and there is no second derivative" HELP
+    return refuse(b, span, b->m->hamiltonian ? "the model gives its Hamiltonian, and there is no second derivative" HELP
+                                               "write the derivative of the right side of Hamilton's equation"
+                         : b->m->first_order ? "L is linear in the velocities: they follow from the coordinates, and there is no second derivative" HELP
                                                "write the derivative of the right side of its equation of motion"
                                              : "a state has a rate, and no second one" HELP "write the derivative of the right side of its flow");
   if (kinds & second) return refuse(b, span, "third derivatives do not occur in mechanics");

@@ -120,6 +120,7 @@ void scene_select(Builder *b, const ModelChoice *choice) {
   }
   b->m->effects.at = in_order.at;
   b->m->effects.n = in_order.n;
+  if (choice->coordinates) change_coordinates(b, choice->coordinates);
 }
 
 /* --- the scene's contents --- */
@@ -183,6 +184,7 @@ static void give_param(Builder *b, uint32_t i, Expr e, Span span, void *data) {
     return;
   }
   p->value = e;
+  p->given = b->is_giving;
   check_sign(b, p, span);
 }
 
@@ -252,7 +254,7 @@ static void scene_statement(Builder *b, const AstStmt *st) {
     case STMT_METHOD: scene_method(b, st); return;
     case STMT_TOLERANCE: set_tolerance(b, st); return;
     case STMT_OUTPUT: set_output(b, st); return;
-    case STMT_EXACT: case STMT_MONITOR: case STMT_LIKE: return; /* see scene_build, scene_chain */
+    case STMT_EXACT: case STMT_MONITOR: case STMT_MEASURE: case STMT_LIKE: return; /* see scene_build, scene_chain */
     default: diag_error(b->diags, st->span, "this does not belong in a scene"); return;
   }
 }
@@ -359,13 +361,20 @@ static void set_monitors(Builder *b) {
     }
 }
 
-/* Applies a value from the command line: the start of a rotation or of its omega, or an input. */
+/* Measures accumulate along the chain, and may add outputs. */
+static void set_measures(Builder *b) {
+  for (const AstStmt **s = b->chain; *s; s++)
+    for (const AstStmt *x = (*s)->body; x; x = x->next)
+      if (x->kind == STMT_MEASURE) apply_in_chain(b, s, x, set_measure);
+}
+
+/* Applies a value from the command line: a start, a parameter or an input. */
 static void give(Builder *b, const CommandInput *x) {
   int ambiguous;
   AstStmt st = {.lhs = x->what, .rhs = x->value, .span = ast_expr(b->ast, x->value)->span};
   const AstExpr *name = ast_expr(b->ast, read_target(b, x->what).stem);
   const Entity *e = name->kind == AST_NAME ? scope_find(&b->scope, name->name, NULL, &ambiguous) : NULL;
-  int starts = ast_expr(b->ast, x->what)->kind == AST_CALL || (e && e->kind == ENT_COORD);
+  int starts = ast_expr(b->ast, x->what)->kind == AST_CALL || (e && (e->kind == ENT_COORD || e->kind == ENT_STATE));
   st.kind = starts ? STMT_START : STMT_SET;
   if (starts) set_motion(b, &st);
   else set_value(b, &st, NULL);
@@ -378,9 +387,12 @@ void scene_build(Builder *b, const ModelChoice *choice) {
   each_effective(b, scene_statement);
   for (const AstStmt **s = b->chain; *s; s++)
     if ((*s)->doc) sc->doc = (*s)->doc;
+  b->is_giving = 1;
   for (uint32_t i = 0; i < choice->ngiven; i++) give(b, &choice->given[i]);
+  b->is_giving = 0;
   complete_rotation_starts(b);
   if (!sc->outputs.n) default_outputs(b);
   if (!b->is_variant) set_monitors(b);
+  if (!b->is_variant) set_measures(b);
   for (uint32_t i = 0; i < choice->nextra_outputs; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
 }

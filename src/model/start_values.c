@@ -80,7 +80,8 @@ void set_motion(Builder *b, const AstStmt *st) {
   }
   if (p.primes && e->kind == ENT_STATE) {
     int is_coord = b->m->states.at[e->index].coordinate;
-    if (is_coord) diag_error(b->diags, x->span, "`%s'` follows from the coordinates: L is linear in the velocities, and the motion of first order", name->name);
+    if (is_coord) diag_error(b->diags, x->span, "`%s'` follows from the coordinates%s: %s, and the motion of first order", name->name,
+                             b->m->hamiltonian ? " and momenta" : "", no_inertia(b->m));
     else diag_error(b->diags, x->span, "the rate of a state follows from its flow");
     diag_help(b->diags, exact ? "give the closed form of the %s itself: `exact %s = ...`" : "give the start of the %s itself: `start %s = ...`",
               is_coord ? "coordinate" : "state", name->name);

@@ -117,7 +117,7 @@ static int has_rate(const Mapping *p, Expr to, Expr rate) {
   ExprList l = expr_topo(g, &to, 1);
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(g, l.at[i]);
-    int corner = op == EX_ABS || op == EX_SIGN || op == EX_MIN || op == EX_MAX || op == EX_SELECT;
+    int corner = op == EX_ABS || op == EX_SIGN || op == EX_FLOOR || op == EX_MIN || op == EX_MAX || op == EX_SELECT;
     if (corner && expr_contains_sym(g, l.at[i], p->of->parameter)) return 0;
   }
   long double *symbols = ARENA_ARRAY(p->b->arena, long double, expr_symbol_count(g) + 1), value;
@@ -237,9 +237,10 @@ void add_symmetry(Builder *b, const AstStmt *st, Name effect) {
     diag_error(b->diags, st->span, "a symmetry needs a Lagrangian, and the model has none");
     return;
   }
-  b->group = parameter_name(b, st, effect);
-  b->group_symbol = y->parameter;
-  for (const AstStmt *map = st->body; map && b->group; map = map->next) each_statement(b, map, effect, add_map, y);
-  if (b->group) check_moves(b, y);
-  b->group = NULL;
+  BoundName group = {parameter_name(b, st, effect), y->parameter};
+  b->bound = &group;
+  b->nbound = group.name != NULL;
+  for (const AstStmt *map = st->body; map && group.name; map = map->next) each_statement(b, map, effect, add_map, y);
+  if (group.name) check_moves(b, y);
+  b->nbound = 0;
 }

@@ -122,12 +122,26 @@ static void motion(Text *t) {
   const Eqns *e = t->e;
   const Model *m = e->m;
   if (e->n && !e->mass_known) lifted_motion(t);
-  else text_heading(t, "equations of motion");
+  else text_heading(t, m->hamiltonian ? "Hamilton's equations" : "equations of motion");
   const Expr *rows = e->mass_known ? mass_rows(t) : NULL;
   for (uint32_t i = 0; rows && i < e->n; i++) text_equation(t, rows[i], shown(t, e->f[i]), i + 1 == e->n && !m->states.n);
   if (e->first.n) first_order_motion(t);
   for (uint32_t i = 0; i < m->states.n; i++)
     if (!m->states.at[i].coordinate) text_equation(t, expr_symbol(t->g, m->states.at[i].rate)->node, m->states.at[i].flow, i + 1 == m->states.n);
+  text_end(t);
+}
+
+/* When constraints with `while` hold. */
+static void while_conditions(Text *t) {
+  const Model *m = t->e->m;
+  if (!model_conditional(m)) return;
+  text_heading(t, "constraints with a condition");
+  Expr zero = expr_int(t->g, 0), one = expr_int(t->g, 1);
+  for (uint32_t i = 0; i < m->contacts.n; i++) {
+    if (!m->contacts.at[i].margin) continue;
+    Expr holds = expr_fn2(t->g, EX_LT, zero, m->contacts.at[i].margin), closed = expr_select(t->g, holds, one, zero);
+    text_equation(t, expr_symbol(t->g, m->contacts.at[i].closed)->node, shown(t, closed), i + 1 == m->contacts.n);
+  }
   text_end(t);
 }
 
@@ -138,6 +152,7 @@ static void constraints(Text *t) {
   Expr zero = expr_int(t->g, 0);
   if (!k->n) return;
   text_constraints(t);
+  while_conditions(t);
   Expr *rows = ARENA_ARRAY(e->m->arena, Expr, k->n);
   for (uint32_t i = 0; i < k->n; i++) rows[i] = zero;
   for (uint32_t i = 0; i < k->A.n; i++) add_product(t, &rows[k->A.at[i].row], shown(t, k->A.at[i].e), expr_symbol(t->g, e->m->coords.at[k->A.at[i].col].a)->node);
@@ -148,10 +163,12 @@ static void constraints(Text *t) {
 
 /* E and its balance. */
 static void energy(Text *t, const Charge *c) {
-  text_heading(t, t->e->energy_jumps ? "energy; its balance holds between jumps of L" : "energy");
+  const char *title = t->e->m->hamiltonian ? "Hamiltonian" : "energy";
+  text_heading(t, t->e->energy_jumps ? arena_printf(t->e->m->arena, "%s; its balance holds between jumps of L", title) : title);
   int moves = !t->e->conserves_energy && !c->proof.power_unknown;
-  text_named(t, "E", "E", t->e->energy, !moves);
-  if (moves) text_named(t, "dE/dt", "\\dot{E}", c->proof.power, 1);
+  const char *name = t->e->m->hamiltonian ? "H" : "E";
+  text_named(t, name, name, t->e->energy, !moves);
+  if (moves) text_named(t, arena_printf(t->e->m->arena, "d%s/dt", name), arena_printf(t->e->m->arena, "\\dot{%s}", name), c->proof.power, 1);
   text_end(t);
 }
 
@@ -166,10 +183,19 @@ static const char *pole_text(const Eqns *e) {
   return arena_printf(e->m->arena, "%s singular at %s = %s", e->definite_by_values ? ", but" : ",", e->m->coords.at[pole.coordinate].name, at[pole.quarters + 1]);
 }
 
+/* Whether events, kicks or impacts change the motion, and so the energy. */
+static int motion_jumps(const Model *m) {
+  for (uint32_t i = 0; i < m->events.n; i++)
+    if (m->events.at[i].actions.n) return 1;
+  return m->contacts.n > 0;
+}
+
 void show_facts(const Eqns *e, StrBuf *out) {
-  const char *energy = e->conserves_energy ? "conserved" : e->energy_jumps ? "not conserved (L jumps, and the energy with it)" : e->constraints.n ? "not conserved (force, dissipation, input, explicit time, or a constraint that moves)"
+  const char *energy = e->conserves_energy ? motion_jumps(e->m) ? "conserved between events" : "conserved" : e->energy_jumps ? "not conserved (L jumps, and the energy with it)" : e->constraints.n ? "not conserved (force, dissipation, input, explicit time, or a constraint that moves)"
                                            : "not conserved (force, dissipation, input or explicit time)";
-  if (e->first.n)
+  if (e->m->hamiltonian)
+    sb_printf(out, "Hamiltonian, %u coordinate%s and as many momenta; energy is %s\n", e->first.n / 2, plural(e->first.n / 2), energy);
+  else if (e->first.n)
     sb_printf(out, "first-order Lagrangian, %u coordinates, %s degree%s of freedom; two-form %s; energy is %s\n", e->first.n, half(e, e->first.n),
               e->first.n == 2 ? "" : "s", e->first.constant ? "constant" : "variable", energy);
   if (!e->n) return;
@@ -183,14 +209,16 @@ static void facts(Text *t, const char *cost) {
   sb_puts(t->out, text_latex(t) ? "" : "\n");
   if (t->e->m->lagrangian) sb_puts(t->out, c);
   show_facts(t->e, t->out);
-  sb_printf(t->out, "%s%s: %s\n", c, t->e->first.n ? "rates" : "accelerations", cost);
+  if (cost) sb_printf(t->out, "%s%s: %s\n", c, t->e->first.n ? "rates" : "accelerations", cost);
 }
 
 void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *out) {
   Text t = {.e = e, .g = e->g, .style = style, .out = out};
   const Model *m = e->m;
   text_title(&t);
-  if (m->lagrangian) {
+  if (m->hamiltonian) {
+    energy(&t, &e->charges[0]);
+  } else if (m->lagrangian) {
     text_heading(&t, "Lagrangian");
     text_named(&t, "L", "L", m->lagrangian, 1);
     text_end(&t);
@@ -213,7 +241,7 @@ void show_equations(const Eqns *e, const char *cost, PrintStyle style, StrBuf *o
   for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(m->arena, &roots, shown(&t, e->constraints.demand[i]));
   if (e->energy) {
     vec_push(m->arena, &roots, e->energy);
-    energy(&t, &e->charges[0]);
+    if (!m->hamiltonian) energy(&t, &e->charges[0]);
   }
   text_charges(&t);
   for (uint32_t i = 0; i < e->ncharges; i++) {

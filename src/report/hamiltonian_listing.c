@@ -67,6 +67,54 @@ static void open_form(Text *t, Exprs *roots) {
   text_end(t);
 }
 
+void show_bracket(const Eqns *e, const char *name, Expr value, PrintStyle style, StrBuf *out) {
+  Text t = {.e = e, .g = e->g, .style = style, .out = out};
+  Expr shown = simplify(t.g, value);
+  if (text_latex(&t)) sb_printf(out, "%% %s\n", name);
+  else sb_printf(out, "%s = ", name);
+  text_expr(&t, shown);
+  sb_putc(out, '\n');
+}
+
+/* Whether a product may be 0: at some state, or for some values of parameters. Divisors, as m in 1/m, cannot make it so. */
+static int may_vanish(ExprGraph *g, Expr x) {
+  Num c;
+  if (expr_pairs(g, x, EX_SUM) == 1) x = expr_pair(g, x, EX_SUM, 0, &c);
+  for (uint32_t i = 0; i < expr_pairs(g, x, EX_PROD); i++) {
+    Expr base = expr_pair(g, x, EX_PROD, i, &c);
+    if (num_sign(c) > 0 && !expr_is_nonzero(g, base)) return 1;
+  }
+  return 0;
+}
+
+void show_lagrangian(Eqns *e, PrintStyle style, StrBuf *out) {
+  Text t = {.e = e, .g = e->g, .style = style, .out = out};
+  const Model *m = e->m;
+  InverseLegendre back = lagrangian_derive(e);
+  Exprs roots = {0};
+  text_title(&t);
+  if (!back.why_not) {
+    text_heading(&t, "momenta");
+    for (uint32_t i = 0; i < m->pairs.n; i++) {
+      text_equation(&t, expr_symbol(t.g, m->states.at[m->pairs.at[i].p].z)->node, back.p[i], i + 1 == m->pairs.n);
+      keep(&t, &roots, back.p[i]);
+    }
+    text_end(&t);
+    text_heading(&t, "Lagrangian");
+    text_named(&t, "L", "L", back.L, 1);
+    keep(&t, &roots, back.L);
+    text_end(&t);
+  }
+  if (back.det && (expr_kinds(t.g, back.det) & 1u << SYM_STATE || (!back.why_not && may_vanish(t.g, back.det)))) {
+    text_heading(&t, "velocities determine the momenta where this is not 0");
+    text_named(&t, "det d2H/dp2", "\\det \\partial^2 H/\\partial p^2", back.det, 1);
+    keep(&t, &roots, back.det);
+    text_end(&t);
+  }
+  text_definitions(&t, roots.at, roots.n);
+  if (back.why_not) sb_printf(out, "%sno Lagrangian in closed form: %s\n", text_latex(&t) ? "% " : "\n", back.why_not);
+}
+
 void show_hamiltonian(Eqns *e, PrintStyle style, StrBuf *out) {
   Text t = {.e = e, .g = e->g, .style = style, .out = out};
   Hamilton h = hamilton_derive(e);

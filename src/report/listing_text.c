@@ -58,7 +58,7 @@ void text_definitions(Text *t, const Expr *roots, uint32_t n) {
 
 void text_title(Text *t) {
   const Model *m = t->e->m;
-  sb_printf(t->out, text_latex(t) ? "%% %s: %s\n%% scene %s" : "%s: %s\nscene %s", m->name, m->doc, m->scene.name);
+  sb_printf(t->out, text_latex(t) ? "%% %s%s%s\n%% scene %s" : "%s%s%s\nscene %s", m->name, *m->doc ? ": " : "", m->doc, m->scene.name);
   for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(t->out, "%s%s", i ? ", " : ", with ", m->effects.at[i]);
   sb_putc(t->out, '\n');
 }

@@ -99,6 +99,40 @@ static void put_effect(StrBuf *out, const NoetherReport *r, const EffectVerdict 
   sb_puts(out, "]}");
 }
 
+/* Charges of higher degree in the momenta, if they were asked for. */
+static void put_polynomial_charges(StrBuf *out, const NoetherReport *r) {
+  const PolynomialCharges *f = r->polynomial;
+  if (!f) return;
+  sb_printf(out, ",\n \"degree\": {\"searched_to\": %u, \"not_proved\": %u, \"certain\": %s, \"why_not\": \"%s\", \"ansatz\": [", f->ansatz.n ? f->ansatz.n + 1 : 0, f->unproved,
+            f->doubtful ? "false" : "true", f->why_not ? f->why_not : "");
+  for (uint32_t k = 0; k < f->ansatz.n; k++) sb_printf(out, "%s\"%s\"", comma(k), f->ansatz.at[k]);
+  sb_puts(out, "], \"charges\": [");
+  for (uint32_t k = 0; k < f->all.n; k++) {
+    sb_printf(out, "%s{\"degree\": %u, \"charge\": ", k ? ",\n  " : "\n  ", f->all.at[k].degree);
+    put_expr(out, r->e->g, f->all.at[k].charge);
+    sb_putc(out, '}');
+  }
+  sb_puts(out, "]}");
+}
+
+static void put_involution(StrBuf *out, const NoetherReport *r) {
+  const Involution *v = r->involution;
+  if (!v) return;
+  sb_printf(out, ",\n \"involution\": {\"degrees_of_freedom\": %u, \"integrable\": %s, \"independent\": %u, \"search_ended_early\": %s, \"why_not\": \"%s\", \"charges\": [", v->n,
+            !v->why_not && v->all.n == v->n ? "true" : "false", v->independent, v->steps || v->left_out ? "true" : "false", v->why_not ? v->why_not : "");
+  for (uint32_t k = 0; k < v->all.n; k++) {
+    const InvolutionCharge *x = &v->all.at[k];
+    sb_puts(out, k ? ",\n  {" : "\n  {");
+    if (x->kind == INVOLUTION_LISTED) sb_printf(out, "\"number\": %u, ", x->number + 1);
+    if (x->kind == INVOLUTION_SQUARES) sb_printf(out, "\"squares_of\": [%u, %u, %u], ", x->of[0] + 1, x->of[1] + 1, x->of[2] + 1);
+    if (x->name) sb_printf(out, "\"declared\": \"%s\", ", x->name);
+    sb_puts(out, "\"charge\": ");
+    put_expr(out, r->e->g, x->charge);
+    sb_putc(out, '}');
+  }
+  sb_puts(out, "]}");
+}
+
 void show_noether_json(const NoetherReport *r, StrBuf *out) {
   const Model *m = r->e->m;
   const FoundSymmetries *f = &r->found;
@@ -119,7 +153,10 @@ void show_noether_json(const NoetherReport *r, StrBuf *out) {
     sb_puts(out, k ? ",\n  " : "\n  ");
     put_bracket(out, r, &r->algebra.all.at[k]);
   }
-  sb_puts(out, "],\n \"effects\": [");
+  sb_putc(out, ']');
+  put_polynomial_charges(out, r);
+  put_involution(out, r);
+  sb_puts(out, ",\n \"effects\": [");
   for (uint32_t k = 0; k < r->effects.n; k++) {
     sb_puts(out, k ? ",\n  " : "\n  ");
     put_effect(out, r, &r->effects.at[k]);

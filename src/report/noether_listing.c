@@ -247,6 +247,77 @@ static void effect(Page *p, const EffectVerdict *v) {
   impacts(p, v);
 }
 
+/* --- charges of higher degree in the momenta --- */
+
+static void polynomial_charges(Page *p) {
+  const PolynomialCharges *f = p->r->polynomial;
+  Text *t = &p->text;
+  Arena *a = t->e->m->arena;
+  if (!f) return;
+  sb_putc(t->out, '\n');
+  for (uint32_t k = 0; k < f->ansatz.n; k++) say(p, arena_printf(a, "looked for: %s", f->ansatz.at[k]));
+  if (f->why_not) say(p, arena_printf(a, "not searched to degree %u in the momenta: %s", f->degree, f->why_not));
+  if (f->ansatz.n && f->all.n) say(p, arena_printf(a, "found: %u charge%s, each proved, beside products of charges", f->all.n, plural(f->all.n)));
+  else if (f->ansatz.n) say(p, f->unproved || f->doubtful || !p->r->found.all.n ? "found: none" : "found: none but products of the charges above");
+  if (f->unproved) say(p, arena_printf(a, "%u more candidate%s not written in closed form, or not proved: not listed", f->unproved, plural(f->unproved)));
+  if (f->doubtful) say(p, "  a rank was not certain: there may be more");
+  Expr *roots = ARENA_ARRAY(a, Expr, f->all.n + 1);
+  for (uint32_t k = 0; k < f->all.n; k++) {
+    uint32_t number = p->r->found.all.n + k;
+    text_heading(t, arena_printf(a, "%s: of degree %u in the momenta", named(p, "", number, ""), f->all.at[k].degree));
+    text_named(t, named(p, "", number, ""), named_latex(p, number, 0), roots[k] = f->all.at[k].charge, 1);
+    text_end(t);
+  }
+  text_definitions(t, roots, f->all.n);
+}
+
+/* --- charges in involution --- */
+
+/* Q3, Q2^2 + Q3^2 + Q4^2, or the declared name; NULL: it has none. */
+static const char *charge_name(const Page *p, const InvolutionCharge *x) {
+  if (x->kind == INVOLUTION_LISTED) return named(p, "", x->number, "");
+  if (x->kind == INVOLUTION_DECLARED) return x->name;
+  return arena_printf(p->text.e->m->arena, "%s^2 + %s^2 + %s^2", named(p, "", x->of[0], ""), named(p, "", x->of[1], ""), named(p, "", x->of[2], ""));
+}
+
+static const char *charge_names_text(const Page *p, const Involution *v) {
+  StrBuf b = strbuf(p->text.e->m->arena);
+  for (uint32_t k = 0; k < v->all.n; k++) {
+    const char *name = charge_name(p, &v->all.at[k]);
+    if (k) sb_puts(&b, ", ");
+    if (name) sb_puts(&b, name);
+    else expr_print(p->text.g, v->all.at[k].charge, PRINT_TEXT, &b);
+  }
+  return sb_text(&b);
+}
+
+/* Where further charges might be. */
+static const char *not_looked_for(const Page *p) {
+  const PolynomialCharges *f = p->r->polynomial;
+  if (!f || f->why_not) return f ? "higher degrees in the momenta were not searched" : "higher degrees in the momenta were not searched: --degree 2, 3, 4";
+  return arena_printf(p->text.e->m->arena, "none is left within the coefficients above up to degree %u in the momenta; others may exist", f->degree);
+}
+
+static void involution(Page *p) {
+  const Involution *v = p->r->involution;
+  Arena *a = p->text.e->m->arena;
+  if (!v) return;
+  sb_putc(p->text.out, '\n');
+  if (v->why_not) {
+    say(p, arena_printf(a, "no charges in involution: %s", v->why_not));
+    return;
+  }
+  say(p, arena_printf(a, v->all.n == v->n ? "in involution: %s%s%u of %u: Liouville-integrable" : "in involution: %s%s%u of the %u that integrability needs", charge_names_text(p, v),
+                      v->all.n ? ": " : "", v->all.n, v->n));
+  if (v->all.n > 1) say(p, "  all their Poisson brackets are 0, proved");
+  say(p, arena_printf(a, "  %u independent charge%s in all, by the rank of gradients at random states%s", v->independent, plural(v->independent),
+                      v->all.n == v->n && v->independent > v->n ? v->independent == 2 * v->n - 1 ? ": maximally superintegrable" : ": superintegrable" : ""));
+  if (v->all.n == v->n) return;
+  say(p, arena_printf(a, "  %s", not_looked_for(p)));
+  if (v->steps) say(p, arena_printf(a, "  the search for sets ended after %u tries: there may be a larger one", v->steps));
+  if (v->left_out) say(p, arena_printf(a, "  %u further charges were not looked at: there may be a larger set", v->left_out));
+}
+
 /* --- the page --- */
 
 void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out) {
@@ -259,4 +330,6 @@ void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out) {
   scaling(&p);
   algebra(&p);
   for (uint32_t k = 0; k < r->effects.n; k++) effect(&p, &r->effects.at[k]);
+  polynomial_charges(&p);
+  involution(&p);
 }

@@ -29,7 +29,9 @@ static Expr make_pairs(ExprGraph *g, ExprOp op, const Pairs *p) {
     args[2 * i] = p->at[i].node;
     args[2 * i + 1] = expr_num(g, p->at[i].number);
   }
-  return expr_make(g, op, args, 2 * p->n);
+  Expr e = expr_make(g, op, args, 2 * p->n);
+  if (args != room) arena_release(g->arena, args, 2 * p->n * sizeof *args);
+  return e;
 }
 
 /* --- sums --- */
@@ -120,7 +122,7 @@ static void renormalise(ExprGraph *g, Pairs *p) {
   collect(p);
 }
 
-static Expr finish_sum(ExprGraph *g, Pairs *p) {
+static Expr collected_sum(ExprGraph *g, Pairs *p) {
   collect(p);
   while (p->n > 1 && p->n <= 4096 && use_pythagoras(g, p)) renormalise(g, p);
   if (p->n == 0) return g->zero;
@@ -129,6 +131,13 @@ static Expr finish_sum(ExprGraph *g, Pairs *p) {
     if (num_is_one(p->at[0].number)) return p->at[0].node;
   }
   return make_pairs(g, EX_SUM, p);
+}
+
+/* The sum of the pairs, which are given up. */
+static Expr finish_sum(ExprGraph *g, Pairs *p) {
+  Expr sum = collected_sum(g, p);
+  if (p->cap > ROOM) arena_release(g->arena, p->at, p->cap * sizeof *p->at);
+  return sum;
 }
 
 Expr expr_add_n(ExprGraph *g, const Expr *terms, uint32_t n) {
@@ -243,7 +252,7 @@ void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e) {
       return;
     case EX_SYM: case EX_DEF: case EX_POW: case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN:
     case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH: case EX_TANH: case EX_EXP: case EX_LOG:
-    case EX_CBRT: case EX_SIGN: case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT:
+    case EX_CBRT: case EX_SIGN: case EX_FLOOR: case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT:
     case EX_LE: case EX_EQ: case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: case EX_COUNT: break;
   }
   push_factor(g, r, base, e);
@@ -385,6 +394,10 @@ static Expr fold_fn(ExprGraph *g, ExprOp op, Expr a) {
     if (op == EX_ABS && s == SIGN_NONNEGATIVE) return a;
     if (op == EX_ABS && s == SIGN_NONPOSITIVE) return expr_neg(g, a);
   }
+  if (op == EX_FLOOR && expr_is_num(g, a) && num_is_exact(expr_number(g, a))) {
+    Num x = expr_number(g, a);
+    return expr_num(g, num_int(x.num / x.den - (x.num < 0 && x.num % x.den)));
+  }
   if (op == EX_LOG && expr_op(g, a) == EX_EXP) return expr_arg(g, a, 0);
   if (op == EX_EXP && expr_op(g, a) == EX_LOG) return expr_arg(g, a, 0);
   if (op == EX_NOT && expr_op(g, a) == EX_NOT) return expr_arg(g, a, 0);
@@ -428,7 +441,7 @@ static Expr fold_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b) {
     case EX_ATAN2: return a == g->zero && expr_sign(g, b) == SIGN_POSITIVE ? g->zero : 0;
     case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_POW: case EX_SIN:
     case EX_COS: case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH:
-    case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_NOT:
+    case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT:
     case EX_SELECT: case EX_COUNT: break;
   }
   return 0;
@@ -477,7 +490,7 @@ Expr expr_rebuild(ExprGraph *g, Expr e, const Expr *args) {
     case EX_POW: return expr_pow(g, args[0], args[1]);
     case EX_SELECT: return expr_select(g, args[0], args[1], args[2]);
     case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH:
-    case EX_COSH: case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN:
+    case EX_COSH: case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_FLOOR:
     case EX_NOT: return expr_fn(g, expr_op(g, e), args[0]);
     case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
     case EX_AND: case EX_OR: return expr_fn2(g, expr_op(g, e), args[0], args[1]);

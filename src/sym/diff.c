@@ -47,7 +47,7 @@ static Expr partial_unary(ExprGraph *g, Expr e, Expr x) {
     case EX_LOG: return one_over(g, x);
     case EX_CBRT: { Expr p = expr_pow_num(g, e, num_int(-2)); return expr_scale(g, num_ratio(1, 3), p); }
     case EX_ABS: return expr_fn(g, EX_SIGN, x);
-    case EX_SIGN: case EX_NOT: return g->zero;
+    case EX_SIGN: case EX_FLOOR: case EX_NOT: return g->zero;
     case EX_NUM: case EX_SYM: case EX_SUM: case EX_PROD: case EX_POW: case EX_ATAN2: case EX_HYPOT:
     case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ: case EX_AND: case EX_OR:
     case EX_SELECT: case EX_COUNT: break;
@@ -79,18 +79,9 @@ static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
     case EX_POW: return partial_pow(g, e, a, b, i);
     case EX_ATAN2: return partial_atan2(g, a, b, i);
     case EX_HYPOT: return expr_div(g, i == 0 ? a : b, e);
-    case EX_MIN: case EX_MAX: {
-      Expr less = expr_fn2(g, EX_LT, a, b);
-      int first = (expr_op(g, e) == EX_MIN) == (i == 0);
-      return expr_select(g, less, first ? g->one : g->zero, first ? g->zero : g->one);
-    }
-    case EX_SELECT: { /* i = 1: the value if true, 2: if false */
-      if (i == 0) return g->zero;
-      return expr_select(g, a, i == 1 ? g->one : g->zero, i == 1 ? g->zero : g->one);
-    }
-    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_SIN: case EX_COS:
+    case EX_NUM: case EX_MIN: case EX_MAX: case EX_SELECT: /* choices, see below */ case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_SIN: case EX_COS:
     case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH: case EX_TANH:
-    case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_LT: case EX_LE:
+    case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_LT: case EX_LE:
     case EX_EQ: case EX_NOT: case EX_AND: case EX_OR: case EX_COUNT: break;
   }
   return g->zero;
@@ -113,6 +104,47 @@ static Expr partial(ExprGraph *g, Expr e, uint32_t i) {
   return expr_nargs(g, e) == 1 ? partial_unary(g, e, expr_arg(g, e, 0)) : partial_binary(g, e, i);
 }
 
+/* --- choices: if, min, max. Their derivative is that of the side that holds; a factor of 0 would not do, as the other side's may have no value there. --- */
+
+/* A choice of two sides among the inputs of e. */
+typedef struct {
+  Expr condition;
+  uint32_t yes, no;
+} Choice;
+
+/* Whether e is one; then *c. */
+static int is_choice(ExprGraph *g, Expr e, Choice *c) {
+  ExprOp op = expr_op(g, e);
+  if (op == EX_SELECT) *c = (Choice){expr_arg(g, e, 0), 1, 2};
+  else if (op == EX_MIN) *c = (Choice){expr_fn2(g, EX_LT, expr_arg(g, e, 0), expr_arg(g, e, 1)), 0, 1};
+  else if (op == EX_MAX) *c = (Choice){expr_fn2(g, EX_LT, expr_arg(g, e, 0), expr_arg(g, e, 1)), 1, 0};
+  else return 0;
+  return 1;
+}
+
+enum { NESTED_CHOICES = 16 };
+
+/* p*x, inside the sides of a choice x that is 0 on the other side, or of such terms of a sum; deeper than `depth` choices in one another, a product. */
+static Expr times_chosen(ExprGraph *g, Expr p, Expr x, int depth) {
+  Num k;
+  if (depth == 0) return expr_mul(g, p, x);
+  if (expr_op(g, x) == EX_SELECT && (expr_arg(g, x, 1) == g->zero || expr_arg(g, x, 2) == g->zero)) {
+    Expr condition = expr_arg(g, x, 0), yes = times_chosen(g, p, expr_arg(g, x, 1), depth - 1);
+    Expr no = times_chosen(g, p, expr_arg(g, x, 2), depth - 1);
+    return expr_select(g, condition, yes, no);
+  }
+  uint32_t n = expr_pairs(g, x, EX_SUM);
+  int chosen = 0;
+  for (uint32_t i = 0; i < n; i++) chosen |= expr_op(g, expr_pair(g, x, EX_SUM, i, &k)) == EX_SELECT;
+  if (!chosen || (n == 1 && expr_op(g, x) == EX_SELECT)) return expr_mul(g, p, x);
+  Expr sum = g->zero;
+  for (uint32_t i = 0; i < n; i++) {
+    Expr term = expr_pair(g, x, EX_SUM, i, &k), product = times_chosen(g, p, term, depth - 1), scaled = expr_scale(g, k, product);
+    sum = expr_add(g, sum, scaled);
+  }
+  return sum;
+}
+
 /* Makes a sum or a long product a definition named after the definition it belongs to, so that the derivative of a
  * chain of lets stays as long as the chain. */
 static Expr name_long_expr(ExprGraph *g, Name name, Expr body) {
@@ -127,6 +159,17 @@ static Expr name_long_expr(ExprGraph *g, Name name, Expr body) {
 /* --- forward --- */
 
 typedef VEC(Expr) Terms;
+
+/* Adds a term; to the choice before it, if both have one condition: if(c, a, 0) + if(c, 0, b) is if(c, a, b). */
+static void push_term(ExprGraph *g, Terms *t, Expr term) {
+  Expr last = t->n ? t->at[t->n - 1] : g->zero;
+  if (expr_op(g, last) != EX_SELECT || expr_op(g, term) != EX_SELECT || expr_arg(g, last, 0) != expr_arg(g, term, 0)) {
+    vec_push(g->arena, t, term);
+    return;
+  }
+  Expr yes = expr_add(g, expr_arg(g, last, 1), expr_arg(g, term, 1)), no = expr_add(g, expr_arg(g, last, 2), expr_arg(g, term, 2));
+  t->at[t->n - 1] = expr_select(g, expr_arg(g, term, 0), yes, no);
+}
 
 static Expr add_terms(ExprGraph *g, const Terms *t) { return t->n ? expr_add_n(g, t->at, t->n) : g->zero; }
 
@@ -148,13 +191,19 @@ void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed,
       expr_map_set(dot, e, before);
       continue;
     }
+    Choice c;
+    int chooses = is_choice(g, e, &c);
     terms.n = 0;
-    for (uint32_t i = 0; i < inputs(g, e); i++) {
+    if (chooses) {
+      Expr yes = expr_map_get(dot, input(g, e, c.yes)), no = expr_map_get(dot, input(g, e, c.no));
+      if (yes || no) vec_push(g->arena, &terms, expr_select(g, c.condition, yes ? yes : g->zero, no ? no : g->zero));
+    }
+    for (uint32_t i = 0; i < inputs(g, e) && !chooses; i++) {
       Expr d = expr_map_get(dot, input(g, e, i));
       if (!d || d == g->zero) continue;
       Expr p = partial(g, e, i);
-      Expr term = expr_mul(g, p, d);
-      vec_push(g->arena, &terms, term);
+      Expr term = times_chosen(g, p, d, NESTED_CHOICES);
+      push_term(g, &terms, term);
     }
     int definition = expr_op(g, e) == EX_DEF;
     if (!terms.n) {
@@ -204,7 +253,7 @@ static void contribute(Adjoints *a, Expr node, Expr value) {
 static Expr adjoint_of(Adjoints *a, Expr node) {
   a->terms.n = 0;
   for (uint32_t i = expr_map_get(a->head, node); i; i = a->g->pool.at[i].next)
-    vec_push(a->g->arena, &a->terms, a->g->pool.at[i].value);
+    push_term(a->g, &a->terms, a->g->pool.at[i].value);
   return add_terms(a->g, &a->terms);
 }
 
@@ -239,8 +288,11 @@ static Adjoints sweep(ExprGraph *g, Expr e, const Wanted *w, ExprList *l) {
     if (expr_op(g, x) == EX_DEF) bar = name_long_expr(g, expr_def_name(g, x), bar);
     for (uint32_t i = 0; i < inputs(g, x); i++) {
       if (!expr_map_get(live, input(g, x, i))) continue;
-      Expr p = partial(g, x, i);
-      Expr term = expr_mul(g, p, bar);
+      Choice c;
+      Expr term = g->zero;
+      if (!is_choice(g, x, &c)) term = times_chosen(g, partial(g, x, i), bar, NESTED_CHOICES);
+      else if (i == c.yes) term = expr_select(g, c.condition, bar, g->zero);
+      else if (i == c.no) term = expr_select(g, c.condition, g->zero, bar);
       contribute(&a, input(g, x, i), term);
     }
   }

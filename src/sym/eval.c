@@ -75,6 +75,7 @@ static long double step_value(const EvalTape *t, const TapeStep *o, const long d
     case EX_CBRT: return cbrtl(x);
     case EX_ABS: return fabsl(x);
     case EX_SIGN: return (long double)((x > 0) - (x < 0));
+    case EX_FLOOR: return floorl(x);
     case EX_ATAN2: return atan2l(x, y);
     case EX_HYPOT: return hypotl(x, y);
     case EX_MIN: return x < y ? x : y;

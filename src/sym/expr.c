@@ -239,7 +239,7 @@ ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32
     case EX_SELECT:
       return expr_sign(g, args[1]) == expr_sign(g, args[2]) ? expr_sign(g, args[1]) : SIGN_UNKNOWN;
     case EX_NUM: case EX_SYM: case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_LOG:
-    case EX_ATAN2: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ: case EX_NOT:
+    case EX_FLOOR: case EX_ATAN2: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ: case EX_NOT:
     case EX_AND: case EX_OR: case EX_COUNT: break;
   }
   return SIGN_UNKNOWN;

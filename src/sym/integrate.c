@@ -193,7 +193,7 @@ static void integrate_work(Arena *scratch, void *data) {
 
 Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without) {
   Task t = {.g = g, .e = e, .x = x, .without = without, .result = expr_int(g, 0)};
-  normal_with_scratch(g, integrate_work, &t);
+  arena_with_scratch(expr_arena(g), integrate_work, &t);
   return t.result;
 }
 

@@ -60,6 +60,13 @@ static void add_divisors(const Search *s, Sources *to, Expr product) {
   }
 }
 
+/* The node of pi; 0: the model has none. */
+static Expr pi_of(const ExprGraph *g) {
+  for (SymId i = 1; i <= expr_symbol_count(g); i++)
+    if (expr_symbol(g, i)->kind == SYM_CONST) return expr_symbol(g, i)->node;
+  return 0;
+}
+
 static Sources sources_of(const Search *s, Expr x) {
   ExprGraph *g = s->g;
   Sources all = {0};
@@ -74,6 +81,9 @@ static Sources sources_of(const Search *s, Expr x) {
       add(s, &all, e, expr_sub(g, b, a));
     } else if (op == EX_SIGN || op == EX_ATAN2) {
       add(s, &all, e, expr_arg(g, e, 0));
+    } else if (op == EX_FLOOR && pi_of(g)) {
+      Expr turns = expr_mul(g, pi_of(g), expr_arg(g, e, 0));
+      add(s, &all, e, expr_fn(g, EX_SIN, turns));
     } else if (op == EX_TAN) {
       add(s, &all, e, expr_fn(g, EX_COS, expr_arg(g, e, 0)));
     } else if (op == EX_PROD && poles) {

@@ -225,7 +225,7 @@ static Frac convert(Normal *n, Expr e) {
     case EX_ASIN: case EX_ATAN: case EX_SIGN: return signed_opaque(n, e, u, 1);
     case EX_LOG: return log_frac(n, e, u);
     case EX_MIN: case EX_MAX: return n->proof ? min_max_frac(n, op, u, value_of(n, expr_arg(g, e, 1))) : opaque_fn(n, e);
-    case EX_ACOS: case EX_ATAN2: case EX_LT: case EX_LE: case EX_EQ:
+    case EX_ACOS: case EX_FLOOR: case EX_ATAN2: case EX_LT: case EX_LE: case EX_EQ:
     case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: return opaque_fn(n, e);
     case EX_COUNT: break;
   }
@@ -288,25 +288,4 @@ Expr normal_expr(Normal *n, Frac a) {
     e = expr_mul(n->g, e, power);
   }
   return e;
-}
-
-/* --- scratch memory --- */
-
-static int run_guarded(Arena *a, Arena *b, void (*work)(Arena *scratch, void *data), void *data, jmp_buf **before) {
-  jmp_buf here;
-  *before = arena_guard(a, &here);
-  arena_guard(b, &here);
-  if (setjmp(here)) return 0;
-  work(b, data);
-  return 1;
-}
-
-void normal_with_scratch(ExprGraph *g, void (*work)(Arena *scratch, void *data), void *data) {
-  Arena *outer = expr_arena(g), *scratch = arena_new(NULL);
-  if (!scratch) arena_fail(outer);
-  jmp_buf *before;
-  int ok = run_guarded(outer, scratch, work, data, &before);
-  arena_guard(outer, before);
-  arena_free(scratch);
-  if (!ok) arena_fail(outer);
 }

@@ -93,7 +93,3 @@ Circular normal_multiple(Normal *n, uint32_t angle, int32_t k);
 Expr normal_mono_expr(Normal *n, MonoId m);
 Expr normal_poly_expr(Normal *n, Poly p);
 Expr normal_expr(Normal *n, Frac a);
-
-/* Runs work(scratch, data) with an arena that is freed afterwards, also when memory runs out in it or in the
- * graph's arena; that failure is passed on to the graph's handler. */
-void normal_with_scratch(ExprGraph *g, void (*work)(Arena *scratch, void *data), void *data);

@@ -265,7 +265,7 @@ static void expand(Printer *p, Expr e) {
     case EX_LOG: call(p, e, "log", "\\ln"); return;
     case EX_MIN: call(p, e, "min", "\\min"); return;
     case EX_MAX: call(p, e, "max", "\\max"); return;
-    case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_ATAN2: case EX_HYPOT: case EX_SELECT: {
+    case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_ATAN2: case EX_HYPOT: case EX_SELECT: {
       const char *name = expr_op_text(op);
       const char *upright = arena_printf(g->arena, "\\operatorname{%s}", name);
       call(p, e, name, upright);

@@ -51,10 +51,10 @@ static void zero_work(Arena *scratch, void *data) {
 static Verdict zero_by_form(ExprGraph *g, Expr e, const NormalLimits *limits) {
   if (e == 0 || expr_is_zero(g, e)) return PROVED_ZERO;
   ZeroTask t = {.g = g, .e = e, .limits = limits ? *limits : prove_limits()};
-  normal_with_scratch(g, zero_work, &t);
+  arena_with_scratch(expr_arena(g), zero_work, &t);
   if (t.overflowed) {
     t.limits.residues = 1;
-    normal_with_scratch(g, zero_work, &t);
+    arena_with_scratch(expr_arena(g), zero_work, &t);
   }
   return t.verdict;
 }
@@ -309,6 +309,6 @@ Verdict prove_solves(ExprGraph *g, uint32_t n, const Expr *M, const Expr *f, con
   if (s.n == 0) return zero_by_form(g, e, limits);
   s.limits = limits ? *limits : prove_limits();
   s.verdict = diagonal_verdict(&s);
-  if (s.verdict == NOT_DECIDED && s.n <= MAX_BLOCK) normal_with_scratch(g, solves_work, &s);
+  if (s.verdict == NOT_DECIDED && s.n <= MAX_BLOCK) arena_with_scratch(expr_arena(g), solves_work, &s);
   return s.verdict;
 }

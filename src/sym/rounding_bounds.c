@@ -121,7 +121,7 @@ static Real slope(ExprOp op, Real x, Real f) {
     case EX_EXP: return fabsl(f);
     case EX_LOG: return 1 / fabsl(x);
     case EX_CBRT: return 1 / (3 * f * f);
-    case EX_SIGN: case EX_NOT: case EX_NUM: case EX_SYM: case EX_SUM: case EX_PROD: case EX_POW:
+    case EX_SIGN: case EX_FLOOR: case EX_NOT: case EX_NUM: case EX_SYM: case EX_SUM: case EX_PROD: case EX_POW:
     case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
     case EX_AND: case EX_OR: case EX_SELECT: case EX_COUNT: break;
   }
@@ -149,7 +149,7 @@ static Real binary_bound(const Bounds *b, Expr e, Real f) {
     case EX_SELECT: return dx > 0 ? INFINITY : x != 0 ? dy : bound_of(b, expr_arg(b->g, e, 2));
     case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_SIN: case EX_COS:
     case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH: case EX_TANH:
-    case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_NOT: case EX_COUNT: break;
+    case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT: case EX_COUNT: break;
   }
   return INFINITY;
 }
@@ -160,6 +160,7 @@ static Real unary_bound(const Bounds *b, Expr e, Real f) {
   Real x = value_of(b, arg), dx = bound_of(b, arg);
   if (op == EX_NOT) return dx;
   if (op == EX_SIGN) return fabsl(x) > dx || dx == 0 ? 0 : INFINITY;
+  if (op == EX_FLOOR) return fabsl(x - roundl(x)) > dx || dx == 0 ? 0 : INFINITY;
   if (op == EX_DEF) return dx;
   return (dx > 0 ? slope(op, x, f) * dx : 0) + 8 * LDBL_EPSILON * fabsl(f);
 }
@@ -176,7 +177,7 @@ static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) 
     case EX_EQ: case EX_AND: case EX_OR: case EX_SELECT: return binary_bound(b, e, value);
     case EX_DEF: case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN:
     case EX_SINH: case EX_COSH: case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS:
-    case EX_SIGN: case EX_NOT: return unary_bound(b, e, value);
+    case EX_SIGN: case EX_FLOOR: case EX_NOT: return unary_bound(b, e, value);
     case EX_COUNT: break;
   }
   return INFINITY;
@@ -185,7 +186,7 @@ static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) 
 /* Underflow error: LDBL_MIN for an inexact operation whose value is subnormal, else 0. */
 static Real underflow(const ExprGraph *g, Expr e, Real value) {
   ExprOp op = expr_op(g, e);
-  int exact = op == EX_NUM || op == EX_SYM || op == EX_SUM || op == EX_DEF || op == EX_ABS || op == EX_SIGN || op == EX_MIN || op == EX_MAX ||
+  int exact = op == EX_NUM || op == EX_SYM || op == EX_SUM || op == EX_DEF || op == EX_ABS || op == EX_SIGN || op == EX_FLOOR || op == EX_MIN || op == EX_MAX ||
               op == EX_SELECT || expr_is_bool(g, e);
   return exact || fabsl(value) >= LDBL_MIN ? 0 : LDBL_MIN;
 }

@@ -333,7 +333,7 @@ static int keeps_range(ExprGraph *g, Expr before, Expr after) {
 static Expr rewritten(ExprGraph *g, Expr e, int shallow) {
   if (!e || expr_nargs(g, e) == 0) return e;
   Task t = {.g = g, .e = e, .result = e, .shallow = shallow};
-  normal_with_scratch(g, work, &t);
+  arena_with_scratch(expr_arena(g), work, &t);
   return t.result;
 }
 

@@ -28,6 +28,7 @@ static void map_grow(ExprMap *m) {
   m->at = ARENA_ARRAY(m->arena, ExprMapEntry, m->cap);
   for (uint32_t i = 0; i < old.cap; i++)
     if (old.at[i].stamp == m->epoch) m->at[map_slot(m, old.at[i].key)] = old.at[i];
+  if (old.cap) arena_release(m->arena, old.at, old.cap * sizeof *old.at);
 }
 
 void expr_map_set(ExprMap *m, Expr e, uint32_t value) {
@@ -273,7 +274,7 @@ static uint32_t count_ops(const ExprGraph *g, ExprList l) {
       case EX_POW: case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN:
       case EX_SINH: case EX_COSH: case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ATAN2:
       case EX_HYPOT: ops += 20; break;
-      case EX_ABS: case EX_SIGN: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
+      case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
       case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: ops += 1; break;
     }
   }

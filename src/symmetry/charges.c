@@ -3,6 +3,7 @@
 
 #include "mech/derive.h"
 #include "mech/lagrange.h"
+#include "symmetry/expression_brackets.h"
 #include "sym/simplify.h"
 
 /* --- generators and charges --- */
@@ -48,29 +49,37 @@ static void charges_derive(Eqns *e) {
   e->ncharges = m->symmetries.n + 1;
 }
 
-Expr charges_substitute(const Eqns *e, Expr x) {
+static ChargeNames charge_names(const Eqns *e) {
   const Model *m = e->m;
-  if (!m->symmetries.n || !(expr_kinds(e->g, x) & 1u << SYM_LOCAL)) return x;
-  SymId *syms = ARENA_ARRAY(m->arena, SymId, m->symmetries.n);
-  Expr *with = ARENA_ARRAY(m->arena, Expr, m->symmetries.n);
+  SymId *syms = ARENA_ARRAY(m->arena, SymId, m->symmetries.n + 1);
+  Expr *with = ARENA_ARRAY(m->arena, Expr, m->symmetries.n + 1);
   for (uint32_t i = 0; i < m->symmetries.n; i++) {
     syms[i] = m->symmetries.at[i].charge;
     with[i] = e->charges[i + 1].value;
   }
-  return expr_replace(e->g, x, syms, with, m->symmetries.n);
+  return (ChargeNames){syms, with, m->symmetries.n};
 }
 
-/* The scene's outputs, with the energy and charges that they name filled in. */
+Expr charges_substitute(const Eqns *e, Expr x) {
+  if (!(expr_kinds(e->g, x) & 1u << SYM_LOCAL)) return x;
+  ChargeNames names = charge_names(e);
+  if (names.n) x = expr_replace(e->g, x, names.sym, names.value, names.n);
+  return expression_brackets_substitute(e, x, 0);
+}
+
+/* The scene's outputs, with the energy and charges that they name filled in, and velocities of a Hamiltonian as in its forces, so that both stick together. */
 static void fill_outputs(Eqns *e) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
   Output *out = ARENA_ARRAY(m->arena, Output, m->scene.outputs.n + 1);
-  Expr *with = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(g) + 1);
+  uint32_t nsymbols = expr_symbol_count(g) + 1;
+  Expr *with = ARENA_ARRAY(m->arena, Expr, nsymbols);
   with[m->energy_sym] = e->energy_stable;
+  for (uint32_t k = 0; k < m->pairs.n && m->hamiltonian; k++) with[m->states.at[m->pairs.at[k].q].rate] = e->first.velocity[k];
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) {
     out[i] = m->scene.outputs.at[i];
     out[i].value = charges_substitute(e, out[i].value);
-    if (e->energy) out[i].value = expr_substitute(g, out[i].value, with, m->energy_sym + 1, "");
+    if (e->energy) out[i].value = expr_substitute(g, out[i].value, with, nsymbols, "");
     out[i].value = simplify_stable(g, out[i].value);
   }
   e->outputs = out;
@@ -223,6 +232,8 @@ void charges_show_broken(const Eqns *e, StrBuf *out) {
 static Eqns *complete(Eqns *e) {
   if (!e) return NULL;
   charges_derive(e);
+  ChargeNames names = charge_names(e);
+  if (!expression_brackets_derive(e, &names)) return NULL;
   fill_outputs(e);
   if (!e->m->effects.n && !charges_judge(e, NULL)) return NULL; /* with effects it may be broken on purpose */
   lagrange_squares(e);

@@ -19,7 +19,7 @@ Eqns *equations_of(const Model *m);
 /* The complete equations of the same model with a regular mass matrix (eqns_derive_regularised). */
 Eqns *equations_regularised(const Eqns *singular);
 
-/* x with the symbols of declared charges replaced by their expressions. */
+/* x with the symbols of declared charges and of brackets replaced by their expressions. */
 Expr charges_substitute(const Eqns *e, Expr x);
 
 /* Whether the symmetries declared in `effect` (NULL: outside effects) hold. Others are reported in the model's diagnostics, with the remainder of

@@ -309,6 +309,7 @@ static void search_work(Arena *scratch, void *data) {
 
 const char *noether_note_on_impacts(const Model *m) {
   uint32_t setting = 0;
+  if (model_conditional(m)) return "constraints with `while` change charges where they begin, and while they hold, if their symmetry moves them: the charges are those of the motion without them";
   if (m->contacts.n) return "impacts and contacts change charges: the balances hold between them";
   for (uint32_t i = 0; i < m->events.n; i++) setting += m->events.at[i].actions.n > 0;
   return setting ? "events change charges: the balances hold between them" : NULL;
@@ -317,7 +318,7 @@ const char *noether_note_on_impacts(const Model *m) {
 static FoundSymmetries search(Eqns *e) {
   FoundSymmetries out = {0};
   SymmetrySearch s = {.e = e, .g = e->g, .out = &out};
-  normal_with_scratch(e->g, search_work, &s);
+  arena_with_scratch(expr_arena(e->g), search_work, &s);
   return out;
 }
 

@@ -392,7 +392,7 @@ static Expr power_of_constraints(ProofWork *w, Noether *to) {
       to->breaks = moved;
     }
     Expr force = expr_mul(g, node(w, k->of[i]->multiplier), moved);
-    if (contact) force = expr_mul(g, node(w, contact->closed), force);
+    if (contact && !contact->is_tangent) force = expr_mul(g, node(w, contact->closed), force); /* a tangent has it in its row */
     sum = expr_add(g, sum, force);
   }
   return sum;

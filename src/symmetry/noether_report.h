@@ -1,7 +1,9 @@
 /* Contents of `lagc noether`: symmetries, charges, their algebra, and the symmetries that effects break. */
 #pragma once
 
+#include "symmetry/involution.h"
 #include "symmetry/poisson_brackets.h"
+#include "symmetry/polynomial_charges.h"
 #include "sym/print.h"
 
 typedef VEC(uint32_t) Indices;
@@ -20,6 +22,8 @@ typedef struct {
   int scales;          /* there is a scaling */
   Scaling scaling;
   Indices cyclic;      /* coordinates that L does not contain */
+  const PolynomialCharges *polynomial; /* of degree 2 and more in the momenta; NULL: not asked for */
+  const Involution *involution;        /* NULL: not asked for */
   VEC(EffectVerdict) effects;
 } NoetherReport;
 

@@ -301,6 +301,6 @@ Algebra brackets_find(Eqns *e, const FoundSymmetries *of) {
   if (e->n && !e->mass_known) eqns_derive_mass(e);
   w.q = eqns_symbols(e, 0);
   w.v = eqns_symbols(e, 1);
-  normal_with_scratch(e->g, compute_brackets, &w);
+  arena_with_scratch(expr_arena(e->g), compute_brackets, &w);
   return out;
 }

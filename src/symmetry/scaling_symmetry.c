@@ -105,6 +105,6 @@ int noether_scaling(const Eqns *e, Scaling *found) {
   if (!e->n || e->constraints.n || e->m->states.n || expr_kinds(e->g, e->m->lagrangian) & 1u << SYM_INPUT) return 0;
   for (uint32_t i = 0; i < e->n; i++)
     if (!expr_is_zero(e->g, e->Q[i])) return 0;
-  normal_with_scratch(e->g, scaling_work, &w);
+  arena_with_scratch(expr_arena(e->g), scaling_work, &w);
   return w.found;
 }

@@ -5,6 +5,8 @@
  * builds bottom-up), so passes are loops. Statements are structs in lists. Id 0 means "absent". */
 #pragma once
 
+#include <string.h>
+
 #include "base/diag.h"
 #include "base/intern.h"
 #include "base/num.h"
@@ -80,24 +82,27 @@ typedef enum {
   STMT_MODEL,       /* name, doc */
   STMT_INCLUDE,     /* doc = the path */
   STMT_COORD,       /* from here to STMT_FUNCTION: declarations of names. name, dims, type (vec2, vec3, rotation or NULL), unit, periodic */
+  STMT_MOMENTUM,    /* name, dims, type, unit, lhs = coordinate, rhs = its name p_x, args = the action p*x' */
   STMT_PARAM,       /* name, dims, type (vec2, vec3 or NULL), unit (of the name, or its value), rhs, sign */
   STMT_CONST,       /* name, unit, rhs */
   STMT_INPUT,       /* name, unit, rhs */
   STMT_STATE,       /* name, dims, type, unit */
   STMT_LET,         /* name, dims (numbers, or AST_BINDs), rhs */
   STMT_FUNCTION,    /* name, args (AST_NAMEs), rhs */
+  STMT_HAMILTONIAN, /* rhs; lhs: `energy`, which a model that also gives L claims to be rhs */
   STMT_LAGRANGIAN,  /* rhs; likewise the next three */
   STMT_KINETIC,
   STMT_POTENTIAL,
   STMT_DISSIPATION,
-  STMT_FORCE,       /* lhs, rhs */
+  STMT_FORCE,       /* lhs, rhs; of a friction also args: its velocity, size, and static limit, if it has one */
   STMT_FLOW,        /* lhs, rhs */
-  STMT_CONSTRAINT,  /* name, lhs, rhs */
+  STMT_CONSTRAINT,  /* name, lhs, rhs; args = the condition while which it holds, or 0 */
   STMT_SYMMETRY,    /* name, args (AST_NAMEs), doc, body of STMT_MAP and STMT_FOR */
+  STMT_CANONICAL,   /* name, args (AST_NAMEs of the new variables, or 0), doc, body of STMT_SET and STMT_FUNCTION */
   STMT_MAP,         /* lhs -> rhs */
   STMT_EXPECT,      /* name or NULL, lhs, rhs */
   STMT_EVENT,       /* name, lhs, direction, body of STMT_SET and STMT_STOP */
-  STMT_CONTACT,     /* name, lhs (>= 0), rhs = restitution */
+  STMT_CONTACT,     /* name, lhs (>= 0), rhs = restitution; with friction also args: options, see ast_option_value */
   STMT_OBSERVE,     /* name, unit, rhs */
   STMT_FOR,         /* name, lhs = lo, rhs = hi, body */
   STMT_EFFECT,      /* name, doc, body */
@@ -114,13 +119,14 @@ typedef enum {
   STMT_TOLERANCE,   /* rhs */
   STMT_OUTPUT,      /* args = expressions, rhs = every (0: absent) */
   STMT_MONITOR,     /* lhs = quantity, rhs = limit */
+  STMT_MEASURE,     /* name, rhs */
   STMT_LIKE,        /* name */
   /* inside an event */
   STMT_STOP
 } AstStmtKind;
 
 typedef enum { SIGN_ANY, SIGN_GT, SIGN_GE, SIGN_LT, SIGN_LE } AstSign; /* param ... > 0 */
-typedef enum { CROSS_BOTH, CROSS_RISING, CROSS_FALLING } AstDirection;
+typedef enum { CROSS_BOTH, CROSS_RISING, CROSS_FALLING, AT_EQUAL_TIMES } AstDirection; /* the last: a kick, whose lhs is its period */
 
 typedef struct AstStmt AstStmt;
 struct AstStmt {
@@ -153,6 +159,13 @@ typedef struct {
 Ast *ast_new(Arena *a, Interner *names, Sources *sources, Diags *diags);
 
 static inline const AstExpr *ast_expr(const Ast *ast, AstId id) { return &ast->exprs.at[id]; }
+
+/* The value of the option `word = value` of a contact; 0: there is none. */
+static inline AstId ast_option_value(const Ast *ast, const AstStmt *st, const char *word) {
+  for (AstId i = st->args; i; i = ast_expr(ast, i)->next)
+    if (strcmp(ast_expr(ast, i)->name, word) == 0) return ast_expr(ast, i)->args;
+  return 0;
+}
 
 /* Number of arguments or elements in the list that begins with `first`. */
 static inline uint32_t ast_list_length(const Ast *ast, AstId first) {

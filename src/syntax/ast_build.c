@@ -120,6 +120,10 @@ AstId ast_call(Ast *ast, Span span, Ident function, AstList args) {
                                .args = args.first});
 }
 
+AstId ast_option(Ast *ast, Span span, const char *word, AstId value) {
+  return ast_call(ast, span, (Ident){intern(ast->names, word), span}, ast_list(value));
+}
+
 AstId ast_at(Ast *ast, Span span, AstId a, AstId time) {
   return append(ast, (AstExpr){.kind = AST_AT, .span = span, .op_span = span, .a = a, .b = time});
 }

@@ -34,6 +34,7 @@ AstId ast_member(Ast *ast, Span span, AstId a, Ident member);
 AstId ast_prime(Ast *ast, Span span, Span op, AstId a);
 AstId ast_unit(Ast *ast, Span span, AstId a, AstUnit unit);
 AstId ast_call(Ast *ast, Span span, Ident function, AstList args);
+AstId ast_option(Ast *ast, Span span, const char *word, AstId value); /* word = value, a call of that name */
 AstId ast_at(Ast *ast, Span span, AstId a, AstId time);
 AstId ast_reduce(Ast *ast, AstKind kind, Span span, Ident index, AstId lo, AstId hi, AstId body, Span op);
 AstId ast_collect(Ast *ast, AstKind kind, Span span, AstList items); /* AST_LIST */
@@ -61,14 +62,25 @@ AstStmt *stmt_include(Ast *ast, Span span, AstText path);
 AstStmt *stmt_name(Ast *ast, AstStmtKind kind, Span span, Ident name);
 AstStmt *stmt_titled(Ast *ast, AstStmtKind kind, Span span, Ident name, AstText doc, StmtList body);
 AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, Ident type, AstUnit unit, int periodic);
+/* `momentum p of q`: a coordinate with the term p*q' of the action, or, where L is given, a name of dL/dq'. */
+AstStmt *stmt_momentum(Ast *ast, Span span, Ident name, AstList dims, Ident type, Ident coord, AstUnit unit);
+AstStmt *stmt_hamiltonian(Ast *ast, Span span, AstId rhs);
 AstStmt *stmt_valued(Ast *ast, AstStmtKind kind, Span span, Ident name, AstUnit unit, AstId value);
 AstStmt *stmt_param(Ast *ast, Span span, Ident name, AstList dims, Ident type, AstUnit unit, AstId value, AstSign sign);
 AstStmt *stmt_define(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstUnit unit, AstId rhs);
 AstStmt *stmt_function(Ast *ast, Span span, Ident name, AstList args, AstId rhs);
 AstStmt *stmt_value(Ast *ast, AstStmtKind kind, Span span, AstId rhs);
+AstStmt *stmt_measure(Ast *ast, Span span, Ident name, AstId rhs);
 AstStmt *stmt_pair(Ast *ast, AstStmtKind kind, Span span, AstId lhs, AstId rhs);
+AstStmt *stmt_constraint(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstId condition);
 AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstId lhs, AstId rhs);
+/* rubbing: options. */
+AstStmt *stmt_contact(Ast *ast, Span span, Ident name, AstList dims, AstId gap, AstId restitution, AstList rubbing);
+/* `friction NAME on q: f, static = most`: the force -f*sign(q') on q, and its value, the observable NAME. most: 0 where there is none. */
+StmtList stmts_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most);
 AstStmt *stmt_symmetry(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList maps);
+/* `canonical NAME(args): maps`: items `Q = ...` and `F2(q, P) = ...`. */
+AstStmt *stmt_canonical(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList items);
 AstStmt *stmt_event(Ast *ast, Span span, Ident name, AstList dims, AstId when, AstDirection way, StmtList body);
 AstStmt *stmt_for(Ast *ast, Span span, Ident index, AstId lo, AstId hi, StmtList body);
 AstStmt *stmt_for_map(Ast *ast, Span span, Ident index, AstId lo, AstId hi, AstStmt *map);

@@ -26,10 +26,10 @@ static const char *const kind_texts[] = {AST_EXPR_KINDS(KIND_TEXT_)};
 #undef KIND_TEXT_
 
 static const char *const stmt_names[] = {
-    "model", "include", "coord", "param", "const", "input", "state", "let", "function", "lagrangian", "kinetic",
-    "potential", "dissipation", "force", "flow", "constraint", "symmetry", "map", "expect", "event", "contact",
+    "model", "include", "coord", "momentum", "param", "const", "input", "state", "let", "function", "hamiltonian", "lagrangian", "kinetic",
+    "potential", "dissipation", "force", "flow", "constraint", "symmetry", "canonical", "map", "expect", "event", "contact",
     "observe", "for", "effect", "requires", "excludes", "scene", "start", "exact", "set", "use", "span", "method",
-    "tolerance", "output", "monitor", "like", "stop"};
+    "tolerance", "output", "monitor", "measure", "like", "stop"};
 _Static_assert(sizeof stmt_names / sizeof *stmt_names == STMT_STOP + 1, "a name for each statement");
 
 static void indent(Dump *d, uint32_t level) {
@@ -104,7 +104,7 @@ static void drain(Dump *d) {
 
 static void dump_head(Dump *d, const AstStmt *s) {
   static const char *const signs[] = {"", " > 0", " >= 0", " < 0", " <= 0"};
-  static const char *const ways[] = {" crossing", " rising", " falling"};
+  static const char *const ways[] = {" crossing", " rising", " falling", " every"};
   sb_puts(d->out, stmt_names[s->kind]);
   if (s->name) sb_printf(d->out, " %s", s->name);
   if (s->doc) sb_printf(d->out, " \"%s\"", s->doc);

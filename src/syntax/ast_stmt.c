@@ -95,6 +95,37 @@ AstStmt *stmt_coord(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList d
   return s;
 }
 
+/* A name, or its member [_i]. */
+static AstId member_of(Ast *ast, Ident name, const Ident *index) {
+  AstId id = ast_name(ast, name);
+  return index ? ast_index(ast, name.span, id, ast_list(ast_name(ast, *index))) : id;
+}
+
+/* p*q', dot(p, q') of vectors, summed over the members of a family of `size`. */
+static AstId action_term(Ast *ast, Span span, Ident p, Ident q, AstId size, int is_vector) {
+  Ident i = {intern(ast->names, "_i"), span}, dot = {intern(ast->names, "dot"), span};
+  AstId lo = size ? ast_number(ast, span, num_int(1)) : 0;
+  AstId momentum = member_of(ast, p, size ? &i : NULL), coord = member_of(ast, q, size ? &i : NULL), rate = ast_prime(ast, q.span, q.span, coord), term;
+  if (is_vector) term = ast_call(ast, span, dot, ast_list_add(ast, ast_list(momentum), rate));
+  else term = ast_binary(ast, AST_MUL, span, span, momentum, rate);
+  return size ? ast_reduce(ast, AST_SUM, span, i, lo, size, term, span) : term;
+}
+
+AstStmt *stmt_momentum(Ast *ast, Span span, Ident name, AstList dims, Ident type, Ident coord, AstUnit unit) {
+  AstStmt *s = stmt_coord(ast, STMT_MOMENTUM, span, name, dims, type, unit, 0);
+  s->args = action_term(ast, span, name, coord, dims.first, type.name != NULL); /* first: an expression's nodes follow one another */
+  s->lhs = ast_name(ast, coord);
+  s->rhs = ast_name(ast, (Ident){intern(ast->names, arena_printf(ast->arena, "p_%s", coord.name)), coord.span});
+  return s;
+}
+
+AstStmt *stmt_hamiltonian(Ast *ast, Span span, AstId rhs) {
+  AstStmt *s = stmt_value(ast, STMT_HAMILTONIAN, span, rhs);
+  span.end = span.begin + (uint32_t)strlen("hamiltonian");
+  s->lhs = ast_name(ast, (Ident){intern(ast->names, "energy"), span});
+  return s;
+}
+
 AstStmt *stmt_define(Ast *ast, AstStmtKind kind, Span span, Ident name, AstList dims, AstUnit unit, AstId rhs) {
   AstStmt *s = declare(ast, kind, span, name);
   s->dims = dims.first;
@@ -146,9 +177,37 @@ AstStmt *stmt_equation(Ast *ast, AstStmtKind kind, Span span, Ident name, AstLis
   return s;
 }
 
+AstStmt *stmt_contact(Ast *ast, Span span, Ident name, AstList dims, AstId gap, AstId restitution, AstList rubbing) {
+  AstStmt *s = stmt_equation(ast, STMT_CONTACT, span, name, dims, gap, restitution);
+  s->args = rubbing.first;
+  return s;
+}
+
+AstStmt *stmt_constraint(Ast *ast, Span span, Ident name, AstList dims, AstId lhs, AstId rhs, AstId condition) {
+  AstStmt *s = stmt_equation(ast, STMT_CONSTRAINT, span, name, dims, lhs, rhs);
+  s->args = condition;
+  return s;
+}
+
+StmtList stmts_friction(Ast *ast, Span span, Ident name, AstList dims, AstId place, AstId f, AstId most) {
+  AstId rate = ast_prime(ast, span, span, place), side = ast_call(ast, span, (Ident){intern(ast->names, "sign"), span}, ast_list(rate));
+  AstId product = ast_binary(ast, AST_MUL, span, span, f, side), value = ast_unary(ast, AST_NEG, span, span, product);
+  AstStmt *force = stmt_pair(ast, STMT_FORCE, span, place, value);
+  AstStmt *shown = stmt_define(ast, STMT_OBSERVE, span, name, dims, (AstUnit){0}, value);
+  AstList grip = ast_list_add(ast, ast_list(ast_prime(ast, span, span, place)), f);
+  force->args = (most ? ast_list_add(ast, grip, most) : grip).first;
+  return stmts_add(stmts_one(force), shown);
+}
+
 AstStmt *stmt_symmetry(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList maps) {
   AstStmt *s = stmt_titled(ast, STMT_SYMMETRY, span, name, doc, maps);
   s->args = args.first;
+  return s;
+}
+
+AstStmt *stmt_canonical(Ast *ast, Span span, Ident name, AstList args, AstText doc, StmtList items) {
+  AstStmt *s = stmt_symmetry(ast, span, name, args, doc, items);
+  s->kind = STMT_CANONICAL;
   return s;
 }
 
@@ -189,6 +248,12 @@ AstStmt *stmt_options(Ast *ast, AstStmtKind kind, Span span, Ident name, StmtLis
 AstStmt *stmt_output(Ast *ast, Span span, AstList what, AstId every) {
   AstStmt *s = stmt_value(ast, STMT_OUTPUT, span, every);
   s->args = what.first;
+  return s;
+}
+
+AstStmt *stmt_measure(Ast *ast, Span span, Ident name, AstId rhs) {
+  AstStmt *s = stmt_name(ast, STMT_MEASURE, span, name);
+  s->rhs = rhs;
   return s;
 }
 

@@ -114,7 +114,7 @@ static int seen_before(const Includes *in, const AstStmt *s, const char *path) {
 /* The statements of the file that s includes; none when it was included before or cannot be read. */
 static StmtList included(Includes *in, AstStmt *s) {
   Ast *ast = in->ast;
-  const char *path = path_relative_to(ast->arena, in->files.at[file_of(in, s->span.begin)].path, s->doc);
+  const char *path = source_locate(ast->sources, in->files.at[file_of(in, s->span.begin)].path, s->doc);
   if (seen_before(in, s, path)) return (StmtList){NULL, NULL};
   const char *error = NULL;
   const Source *source = source_read(ast->sources, path, &error);

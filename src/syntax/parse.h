@@ -10,7 +10,7 @@ int parse(Ast *ast, const Source *source);
 /* Parses one expression, such as a value on the command line; 0 after an error. */
 AstId parse_expression(Ast *ast, const Source *source);
 
-/* Advice for a word that begins statements in other languages or on paper ("friction"), but not here; or NULL. */
+/* Advice for a word that begins statements in other languages or on paper ("damping"), but not here; or NULL. */
 const char *parse_advice(const char *word);
 
 /* Appends a listing of the whole Ast, one node a line, for `--dump=ast` and golden tests. */

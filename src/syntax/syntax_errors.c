@@ -127,7 +127,8 @@ static void report_word(Parse *cx, const Token *t) {
     if (where == W_SCENE && (elsewhere == TOK_PARAM || elsewhere == TOK_CONST))
       diag_help(d, "it belongs in a model or an effect; in a scene a parameter gets another value by `NAME = …`");
     else diag_help(d, "it belongs in %s%s", place_name(token_flags(elsewhere)),
-                   where != W_FILE && (token_flags(elsewhere) & W_FILE) ? "; is a `}` missing above?" : "");
+                   where != W_FILE && (token_flags(elsewhere) & W_FILE) ? "; is a `}` missing above?"
+                   : (token_flags(elsewhere) & W_ANY) == W_SCENE ? ": `scene s { start x = 1; span 20 [s] }`" : "");
     return;
   }
   diag_error(d, t->span, "unknown statement `%s`", t->name);

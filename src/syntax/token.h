@@ -73,22 +73,27 @@ enum {
   X(MODEL, "model", W_FILE)                        \
   X(INCLUDE, "include", W_FILE)                    \
   X(COORD, "coord", W_DECL)                        \
+  X(MOMENTUM, "momentum", W_DECL)                  \
   X(PARAM, "param", W_DECL)                        \
   X(CONST, "const", W_DECL)                        \
   X(INPUT, "input", W_DECL)                        \
   X(STATE, "state", W_DECL)                        \
   X(LET, "let", W_DECL)                            \
   X(FUNCTION, "function", W_DECL)                  \
+  X(HAMILTONIAN, "hamiltonian", W_DECL)            \
   X(LAGRANGIAN, "lagrangian", W_DECL)              \
   X(KINETIC, "kinetic", W_DECL)                    \
   X(POTENTIAL, "potential", W_DECL)                \
   X(DISSIPATION, "dissipation", W_EACH)            \
   X(FORCE, "force", W_EACH)                        \
+  X(FRICTION, "friction", W_EACH)                  \
   X(FLOW, "flow", W_EACH)                          \
   X(CONSTRAINT, "constraint", W_EACH)              \
   X(SYMMETRY, "symmetry", W_DECL)                  \
+  X(CANONICAL, "canonical", W_FILE)                \
   X(EXPECT, "expect", W_EACH)                      \
   X(EVENT, "event", W_EACH | T_BLOCK)              \
+  X(KICK, "kick", W_EACH | T_BLOCK)                \
   X(CONTACT, "contact", W_EACH)                    \
   X(OBSERVE, "observe", W_EACH)                    \
   X(FOR, "for", W_EACH | T_BLOCK)                  \
@@ -104,6 +109,7 @@ enum {
   X(TOLERANCE, "tolerance", W_SCENE)               \
   X(OUTPUT, "output", W_SCENE)                     \
   X(MONITOR, "monitor", W_SCENE)                   \
+  X(MEASURE, "measure", W_SCENE)                   \
   X(LIKE, "like", W_SCENE)                         \
   X(STOP, "stop", W_EVENT)                         \
   /* words of a fixed slot */                      \
@@ -112,8 +118,15 @@ enum {
   X(FALLING, "falling", 0)                         \
   X(CROSSING, "crossing", 0)                       \
   X(RESTITUTION, "restitution", 0)                 \
+  X(ON, "on", 0)                                   \
+  X(OF, "of", 0)                                   \
+  X(STATIC, "static", 0)                           \
+  X(SLIP, "slip", 0)                               \
+  X(TANGENTIAL, "tangential", 0)                   \
+  X(LAW, "law", 0)                                 \
   X(EXACTLY, "exactly", 0)                         \
-  X(EVERY, "every", 0)
+  X(EVERY, "every", 0)                             \
+  X(WHILE, "while", 0)
 
 #define TOKEN_ENUM_(name, word, flags) TOK_##name,
 typedef enum { TOKENS(TOKEN_ENUM_) TOK_COUNT } TokKind;

@@ -17,7 +17,7 @@
  *     otherwise it is a keyword.
  *   - A first name where a keyword must stand, but that is none of this block, becomes BADWORD.
  *   - `periodic`, `rising`, `falling`, `crossing` and `every` are keywords directly after an
- *     operand, in the statements that take them; `restitution` after the `,` of a contact, `exactly`
+ *     operand, in the statements that take them, and so is `while` in a constraint; `restitution` after the `,` of a contact, `on` and `static` of a friction, `exactly`
  *     after `start` when a name follows; `for` after the `:` or `,` of a symmetry when a name
  *     follows; `sum` and `product` before `(`.
  * Everywhere else a name is a name: a coordinate may be called `force`, `every` or `sum`.
@@ -127,16 +127,26 @@ static Token first_name(Filter *f, Token t) {
   return t;
 }
 
+/* A word after a comma of a contact. */
+static TokKind contact_word(const char *name) {
+  static const TokKind words[] = {TOK_RESTITUTION, TOK_FRICTION, TOK_STATIC, TOK_SLIP, TOK_TANGENTIAL, TOK_LAW};
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+    if (strcmp(name, token_word(words[i])) == 0) return words[i];
+  return TOK_IDENT;
+}
+
 /* Classifies a name inside a statement: a keyword in its slot, otherwise IDENT. */
 static TokKind slot_word(Filter *f, const Token *t) {
   static const struct {
     TokKind statement, word;
   } slots[] = {{TOK_COORD, TOK_PERIODIC}, {TOK_EVENT, TOK_RISING}, {TOK_EVENT, TOK_FALLING},
-               {TOK_EVENT, TOK_CROSSING}, {TOK_OUTPUT, TOK_EVERY}};
+               {TOK_EVENT, TOK_CROSSING}, {TOK_OUTPUT, TOK_EVERY}, {TOK_KICK, TOK_EVERY}, {TOK_FRICTION, TOK_ON}, {TOK_MOMENTUM, TOK_OF}, {TOK_CONSTRAINT, TOK_WHILE}};
   if (f->prev == TOK_START && peek(f)->kind == TOK_IDENT)
     return strcmp(t->name, "exactly") == 0 ? TOK_EXACTLY : TOK_IDENT;
   if (f->word == TOK_CONTACT && f->prev == TOK_COMMA && !f->brackets.n)
-    return strcmp(t->name, "restitution") == 0 ? TOK_RESTITUTION : TOK_IDENT;
+    return contact_word(t->name);
+  if (f->word == TOK_FRICTION && f->prev == TOK_COMMA && !f->brackets.n)
+    return strcmp(t->name, "static") == 0 ? TOK_STATIC : TOK_IDENT;
   if (f->word == TOK_SYMMETRY && peek(f)->kind == TOK_IDENT && (f->prev == TOK_COLON || f->prev == TOK_COMMA))
     return strcmp(t->name, "for") == 0 ? TOK_FOR : TOK_IDENT;
   if (peek(f)->kind == TOK_LPAREN && !token_ends_operand(f->prev)) {
@@ -176,7 +186,7 @@ static unsigned place_of(const Filter *f) {
   switch (f->word) { /* only words with a block, and BADWORD as IDENT, come here */
     case TOK_EFFECT: return W_EFFECT;
     case TOK_SCENE: return W_SCENE;
-    case TOK_EVENT: return W_EVENT;
+    case TOK_EVENT: case TOK_KICK: return W_EVENT;
     default: return W_FOR;
   }
 }

@@ -1,15 +1,7 @@
 /* The cache of simulators: finds a safe folder, makes locked folders for builds there, removes the least recently used entries. */
 #include "toolchain/cache.h"
 
-#include <dirent.h>
-#include <errno.h>
-#include <fcntl.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
+#include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "base/vec.h"
 
 enum { LIMIT_MIB = 1024, NAME = 32, SUFFIX = 9 }; /* digits of an entry's name; those of a reference follow after a dot */
@@ -54,14 +46,14 @@ static const char *own_folder(Arena *a, const char *path) {
 
 static const char *folder_of(Arena *a, const char *variable, const char *below) {
   const char *value = getenv(variable);
-  return value && value[0] == '/' ? own_folder(a, arena_printf(a, "%s/%s", value, below)) : NULL;
+  return value && lag_is_absolute(value) ? own_folder(a, arena_printf(a, "%s/%s", value, below)) : NULL;
 }
 
 const char *cache_folder(Arena *a) {
   const char *own = arena_printf(a, "lagc-%ld", (long)geteuid()), *dir = folder_of(a, "XDG_CACHE_HOME", "lagc");
   const char *cache = getenv("XDG_CACHE_HOME");
-  if (!dir && !(cache && cache[0] == '/')) dir = folder_of(a, "HOME", ".cache/lagc");
-  if (!dir) dir = folder_of(a, "TMPDIR", own);
+  if (!dir && !(cache && lag_is_absolute(cache))) dir = folder_of(a, CACHE_VARIABLE, CACHE_FOLDER);
+  if (!dir) dir = folder_of(a, TEMPORARY_FOLDER, own);
   return dir ? dir : own_folder(a, arena_printf(a, "/tmp/%s", own));
 }
 
@@ -69,19 +61,16 @@ const char *cache_folder(Arena *a) {
 
 /* Locks the file; 0 also where another process has removed it meanwhile. */
 static int take_lock(int fd) {
-  struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
   struct stat st;
-  return fcntl(fd, F_SETLK, &all) == 0 && fstat(fd, &st) == 0 && st.st_nlink > 0;
+  return lag_file_lock(fd) == 0 && fstat(fd, &st) == 0 && st.st_nlink > 0;
 }
 
 void build_folder_remove(BuildFolder *f) {
-  int fd = open(f->path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-  DIR *d = fd >= 0 ? fdopendir(fd) : NULL;
-  for (struct dirent *e; d && (e = readdir(d));) unlinkat(fd, e->d_name, 0);
+  DIR *d = lag_opendir(f->path);
+  for (struct dirent *e; d && (e = readdir(d));) lag_unlink_in(d, e->d_name);
   if (d) closedir(d);
-  else if (fd >= 0) close(fd);
+  if (f->lock >= 0) close(f->lock); /* before, since Windows removes a file when it is closed */
   rmdir(f->path);
-  if (f->lock >= 0) close(f->lock);
 }
 
 static int try_folder(Arena *a, const char *base, BuildFolder *f) {
@@ -112,11 +101,22 @@ static void remove_if_stale(Arena *a, const char *path) {
   else if (f.lock >= 0) close(f.lock);
 }
 
+/* Removes the lock of an entry whose process was killed. */
+static void remove_lock_if_stale(const char *path) {
+  int fd = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0) return;
+  if (take_lock(fd)) unlink(path);
+  close(fd);
+}
+
 void cache_remove_stale_builds(Arena *a) {
   const char *base = cache_folder(a);
   DIR *d = base ? opendir(base) : NULL;
-  for (struct dirent *e; d && (e = readdir(d));)
-    if (strncmp(e->d_name, "lagc-build-", 11) == 0 && strlen(e->d_name) == 17) remove_if_stale(a, arena_printf(a, "%s/%s", base, e->d_name));
+  for (struct dirent *e; d && (e = readdir(d));) {
+    const char *path = arena_printf(a, "%s/%s", base, e->d_name);
+    if (strncmp(e->d_name, "lagc-build-", 11) == 0 && strlen(e->d_name) == 17) remove_if_stale(a, path);
+    else if (strspn(e->d_name, "0123456789abcdef") == NAME && strcmp(e->d_name + NAME, ".lock") == 0) remove_lock_if_stale(path);
+  }
   if (d) closedir(d);
 }
 
@@ -137,6 +137,20 @@ int cache_has_data(const char *path) {
   int whole = file_is_own(path);
   if (whole) utimensat(AT_FDCWD, path, NULL, 0);
   return whole;
+}
+
+static const char *lock_of(Arena *a, const char *path) { return arena_printf(a, "%s.lock", path); }
+
+int cache_take(Arena *a, const char *path) {
+  int fd = open(lock_of(a, path), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600);
+  if (fd >= 0) lag_file_wait(fd);
+  return fd;
+}
+
+void cache_give(Arena *a, const char *path, int lock) {
+  if (lock < 0) return;
+  unlink(lock_of(a, path));
+  close(lock);
 }
 
 typedef struct {

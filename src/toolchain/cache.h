@@ -23,6 +23,9 @@ void build_folder_remove(BuildFolder *f);
 int cache_has(const char *path);
 /* The same for a reference, beside its simulator with a suffix of eight digits. */
 int cache_has_data(const char *path);
+/* Waits while another process builds this entry, as ranks of mpirun do together; then others wait, until cache_give. A descriptor; -1: locks do not work there. */
+int cache_take(Arena *a, const char *path);
+void cache_give(Arena *a, const char *path, int lock);
 /* Removes the entries used longest ago, except `keep`, until the cache is within its limit. */
 void cache_limit(Arena *a, const char *keep);
 

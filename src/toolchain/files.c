@@ -3,9 +3,9 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 
 #include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
@@ -51,9 +51,31 @@ int file_install(const char *path, const char *from, const char **error) {
   return ok;
 }
 
+int file_append(const char *path, StrBuf *out, const char **error) {
+  char block[65536];
+  FILE *f = fopen(path, "rb");
+  if (!f) return fail_with(error, strerror(errno));
+  for (size_t n; (n = fread(block, 1, sizeof block, f)) > 0;) sb_putn(out, block, n);
+  int ok = !ferror(f);
+  fclose(f);
+  return ok ? 1 : fail_with(error, strerror(EIO));
+}
+
 int file_same(const char *a, const char *b) {
   struct stat x, y;
   return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino && S_ISREG(x.st_mode);
 }
 
+const char *file_name(const char *path) {
+  const char *slash = lag_last_slash(path);
+  return slash ? slash + 1 : path;
+}
+
 int file_exists(const char *path) { return access(path, F_OK) == 0; }
+
+const char *file_absolute(Arena *a, const char *path) {
+  char *found = realpath(path, NULL);
+  const char *copy = found ? arena_strdup(a, found) : NULL;
+  free(found);
+  return copy;
+}

@@ -12,7 +12,11 @@ int process_run(Arena *a, const char *path, char *const *argv, char **said);
 /* Runs the program at path with its standard output to a file; its messages are dropped. Returns its exit status, or -1. */
 int process_to_file(const char *path, char *const *argv, FILE *out);
 
-/* Begins work(data) in a child process, whose exit status is what work returns. Returns the process, or -1. */
+/* Becomes the program at path, which takes over the standard streams. Returns only where that fails. */
+void process_become(const char *path, char *const *argv);
+
+/* Begins work(data) in a child process, whose exit status is what work returns. Returns the process, or -1, as
+ * on Windows, which has no fork. */
 long process_begin(int (*work)(void *data), void *data);
 /* Waits for its end; its exit status, or -1. */
 int process_end(long process);
@@ -21,5 +25,5 @@ int process_read_from(FILE *f);
 
 /* Forks a listener beside the simulator that lagc becomes by exec: it keeps the compiled model, and waits for the state at which a run ended for
  * want of a finite value. Returns in the process that becomes the simulator, which finds the pipe's descriptor in $LAG_LAST_STATE. The listener calls
- * tell(data, number, n) when n numbers have arrived, and ends with the simulator. If fork or pipe fails, there is no listener. */
+ * tell(data, number, n) when n numbers have arrived, and ends with the simulator. If fork or pipe fails, as on Windows, there is no listener. */
 void last_state_listen(Arena *a, void (*tell)(void *data, const double *number, uint32_t n), void *data);

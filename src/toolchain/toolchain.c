@@ -4,13 +4,9 @@
 #include <errno.h>
 #include <limits.h>
 #include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/hash.h"
+#include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "base/vec.h"
 #include "toolchain/cache.h"
 #include "toolchain/files.h"
@@ -22,12 +18,14 @@
  * compiler fault of compiler_probe.in. */
 #define TOOLCHAIN_SCALAR "-fno-tree-slp-vectorize"
 
+/* The program that the compiler makes. Compilers for Windows would append .exe to a name without it. */
+#define SIMULATOR "simulator.exe"
+
 /* --- finding the runtime --- */
 
-/* The folder of the running executable. */
-static const char *own_folder(Arena *a, const char *argv0) {
+const char *toolchain_own_folder(Arena *a, const char *argv0) {
   char path[PATH_MAX];
-  ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
+  long n = lag_own_path(path, sizeof path - 1);
   if (n > 0) path[n] = '\0';
   else if (!realpath(argv0, path)) return ".";
   char *slash = strrchr(path, '/');
@@ -44,7 +42,7 @@ static int try_place(Arena *a, const char *lib, const char *include, Toolchain *
 
 /* The path of an installed folder, which the Makefile gives from lagc's own folder on, or whole. */
 static const char *installed(Arena *a, const char *own, const char *folder) {
-  return folder[0] == '/' ? folder : arena_printf(a, "%s/%s", own, folder);
+  return lag_is_absolute(folder) ? folder : arena_printf(a, "%s/%s", own, folder);
 }
 
 /* $LAGC_OPTIMISE, -O0 to -O3; -O2 when it is not set; NULL when it is something else. */
@@ -54,12 +52,18 @@ static const char *optimisation(void) {
   return o[0] == '-' && o[1] == 'O' && o[2] >= '0' && o[2] <= '3' && !o[3] ? o : NULL;
 }
 
-int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error) {
-  const char *cc = getenv("CC"), *home = getenv("LAG_HOME"), *own = own_folder(a, argv0);
+int toolchain_compiler(Arena *a, Toolchain *t, const char **error) {
+  const char *cc = getenv("CC");
   static const char *const none[] = {NULL};
-  *t = (Toolchain){.cc = cc && cc[0] ? cc : "cc", .optimise = optimisation(), .library = "lag", .flags = none};
+  *t = (Toolchain){.cc = cc && cc[0] ? cc : DEFAULT_CC, .optimise = optimisation(), .flags = none};
+  return t->optimise ? 1 : fail_with(error, arena_printf(a, "LAGC_OPTIMISE is %s; it takes -O0, -O1, -O2 or -O3", getenv("LAGC_OPTIMISE")));
+}
+
+int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, const char **error) {
+  const char *home = getenv("LAG_HOME"), *own = toolchain_own_folder(a, argv0);
   int found = 0;
-  if (!t->optimise) return fail_with(error, arena_printf(a, "LAGC_OPTIMISE is %s; it takes -O0, -O1, -O2 or -O3", getenv("LAGC_OPTIMISE")));
+  if (!toolchain_compiler(a, t, error)) return 0;
+  t->library = "lag";
   if (home && home[0]) {
     found = try_place(a, arena_printf(a, "%s/lib", home), arena_printf(a, "%s/include", home), t);
     if (!found) return fail_with(error, arena_printf(a, "LAG_HOME is %s, where lib/liblag.a and include/lag.h are not found", home));
@@ -71,21 +75,32 @@ int toolchain_find(Arena *a, const char *argv0, int want_gsl, Toolchain *t, cons
   return 1;
 }
 
-int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const char **error) {
+const char *toolchain_part(Arena *a, const Toolchain *t, const char *part) {
+  StrBuf words = strbuf(a);
+  const char *error;
+  if (!file_append(arena_printf(a, "%s/liblag_%s.libs", t->lib, part), &words, &error)) return NULL;
+  return arena_printf(a, "-llag_%s %.*s", part, (int)strcspn(sb_text(&words), "\n"), sb_text(&words));
+}
+
+void toolchain_scalar(Toolchain *t, const char *precision) {
   static const char *const of_long[] = {"-DLAG_REAL=long double", "-DLAG_FN(x)=x##l", "-DLAG_C(x)=x##L", "-DLAG_NUMBER(x)=x##L",
                                         "-DLAG_TAYLOR_ORDER=48", NULL};
   static const char *const of_quad[] = {"-std=gnu11", "-include", "quadmath.h", "-DLAG_REAL=__float128", "-DLAG_FN(x)=x##q", "-DLAG_C(x)=x##Q",
                                         "-DLAG_NUMBER(x)=x##Q", "-DLAG_TAYLOR_ORDER=64", NULL};
   int quad = strcmp(precision, "quad") == 0;
-  if (strcmp(precision, "double") == 0) return 1;
-  t->library = arena_printf(a, "lag_%s", precision);
   t->flags = quad ? of_quad : of_long;
   t->needs = quad ? "-lquadmath" : NULL;
   t->gsl = 0;
+}
+
+int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const char **error) {
+  if (strcmp(precision, "double") == 0) return 1;
+  toolchain_scalar(t, precision);
+  t->library = arena_printf(a, "lag_%s", precision);
   t->include = arena_printf(a, "%s/lag-%s", t->lib, precision);
   if (file_exists(arena_printf(a, "%s/lib%s.a", t->lib, t->library))) return 1;
   return fail_with(error, arena_printf(a, "--precision %s: %s/lib%s.a is not there: this lagc was built without it%s", precision, t->lib, t->library,
-                                       quad ? ", as where the C compiler has no libquadmath" : ""));
+                                       t->needs ? ", as where the C compiler has no libquadmath" : ""));
 }
 
 /* --- the probe for compilers that store wrong numbers --- */
@@ -135,7 +150,37 @@ static const char *probe_flag(Arena *a, const char *cc, const char *optimise, co
   return NULL;
 }
 
-/* --- running the compiler --- */
+/* --- running the compiler; a toolchain without the runtime makes shared libraries --- */
+
+/* A library of the text alone, without the runtime. */
+static int is_alone(const Toolchain *t) { return t->soname && !t->library; }
+
+/* File that the compiler makes in a build folder. */
+static const char *made_in(Arena *a, const Toolchain *t, const char *dir) { return arena_printf(a, "%s/%s", dir, t->soname ? "library.so" : SIMULATOR); }
+
+/* Without a name gold writes the path of the build folder into the library. */
+#ifdef __APPLE__
+#define SONAME_FLAG(a, name) ""
+#else
+#define SONAME_FLAG(a, name) arena_printf(a, "-Wl,-soname,%s", name)
+#endif
+
+/* Flags that keep the time and a hash of the build folder's path out of a library for Windows. */
+static const char *steady_flags(Arena *a, const Toolchain *t) {
+  return strstr(toolchain_machine(a, t), "mingw") ? "-Wl,--no-insert-timestamp,--disable-auto-image-base" : "";
+}
+
+/* Of models that are also compiled for lanes: all of a program has them, so that a double gets the bits of a lane. */
+#ifdef __x86_64__
+static const char *const lane_flags[] = {"-mavx2", "-mfma", NULL};
+int toolchain_has_lanes(void) { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+#elif defined(__aarch64__)
+static const char *const lane_flags[] = {NULL};
+int toolchain_has_lanes(void) { return 1; }
+#else
+static const char *const lane_flags[] = {NULL};
+int toolchain_has_lanes(void) { return 0; }
+#endif
 
 /* Compiles and links with the flags that the simulator reports as LAG_BUILD: no contraction (same bits with and without fused multiply-add),
  * no vector stores, and the flag of the probe. */
@@ -145,15 +190,31 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   char *build = arena_printf(a, "-DLAG_BUILD=\"%s %s -std=c11 -ffp-contract=off " TOOLCHAIN_SCALAR "%s%s\"", t->cc, t->optimise, *safe ? " " : "", safe);
   for (char *c = build + strlen("-DLAG_BUILD=\""); c[1]; c++)
     if (*c == '"' || *c == '\\') *c = ' ';
-  const char *first[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, build, "-I", t->include, "-o", arena_printf(a, "%s/simulator", dir)};
-  const char *last[] = {arena_printf(a, "-L%s", t->lib), t->gsl ? "-llag_gsl" : "", arena_printf(a, "-l%s", t->library), t->gsl ? "-lgsl" : "",
+  int alone = is_alone(t);
+  const char *first[] = {t->optimise, "-std=c11", "-ffp-contract=off", TOOLCHAIN_SCALAR, "-o", made_in(a, t, dir)};
+  const char *runtime[] = {build, "-I", t->include};
+  const char *library[] = {"-shared", "-fPIC", SONAME_FLAG(a, t->soname ? t->soname : "")}, *hidden[] = {"-fvisibility=hidden", "-s", alone ? steady_flags(a, t) : ""};
+  const char *whole[] = {"-Wl,-Bsymbolic", arena_printf(a, "-Wl,--version-script=%s/exports.map", dir), "-Wl,--whole-archive",
+                         arena_printf(a, "%s/lib%s.a", t->lib, t->library), "-Wl,--no-whole-archive"};
+  const char *last[] = {alone ? "" : arena_printf(a, "-L%s", t->lib), t->gsl ? "-llag_gsl" : "", t->soname ? "" : arena_printf(a, "%s/lib%s.a", t->lib, t->library), t->gsl ? "-lgsl" : "",
                         t->gsl ? "-lgslcblas" : "", t->needs ? t->needs : "", "-lm", NULL};
-  VEC(const char *) words = {0};
+  VEC(const char *) words = {0}, parts = {0};
   for (size_t i = 0; i < sizeof first / sizeof *first; i++) vec_push(a, &words, first[i]);
+  for (size_t i = 0; i < sizeof runtime / sizeof *runtime && !alone; i++) vec_push(a, &words, runtime[i]);
+  for (size_t i = 0; i < sizeof library / sizeof *library && t->soname; i++) vec_push(a, &words, library[i]);
+  for (size_t i = 0; i < sizeof hidden / sizeof *hidden && alone; i++) vec_push(a, &words, hidden[i]);
   for (const char *const *f = t->flags; *f; f++) vec_push(a, &words, *f);
+  for (const char *const *f = lane_flags; t->lanes && *f; f++) vec_push(a, &words, *f);
   vec_push(a, &words, safe);
-  for (size_t i = 0; i < n; i++) vec_push(a, &words, arena_printf(a, "%s/%s", dir, texts[i].name));
-  for (size_t i = 0; i < sizeof last / sizeof *last; i++) vec_push(a, &words, last[i]);
+  for (size_t i = alone ? n - 1 : 0; i < n; i++) vec_push(a, &words, arena_printf(a, "%s/%s", dir, texts[i].name));
+  for (size_t i = 0; i < sizeof whole / sizeof *whole && t->soname && !alone; i++) vec_push(a, &words, whole[i]);
+  for (int i = 0; i < 3; i++)
+    for (char *w = t->parts[i] ? strtok(arena_strdup(a, t->parts[i]), " ") : NULL; w; w = strtok(NULL, " ")) vec_push(a, &parts, w);
+  for (size_t i = 0; i < sizeof last / sizeof *last; i++) {
+    vec_push(a, &words, last[i]);
+    if (i == 0)
+      for (uint32_t k = 0; k < parts.n; k++) vec_push(a, &words, parts.at[k]);
+  }
   char *said = NULL;
   int status = run_compiler(a, t->cc, words.at, &said);
   if (status == 0) return 1;
@@ -164,30 +225,31 @@ static int compile(Arena *a, const Toolchain *t, const char *dir, const SourceTe
   return 0;
 }
 
-/* Compiles with TMPDIR set to the build folder, so that the compiler's temporary files are removed with it. */
+/* Compiles with the variable of temporary files set to the build folder, so that the compiler's temporary files are removed with it. */
 static int compile_with_tmpdir(Arena *a, const Toolchain *t, const char *dir, const SourceText *texts, size_t n, const char **error) {
-  const char *was = getenv("TMPDIR"), *before = was ? arena_strdup(a, was) : NULL;
-  setenv("TMPDIR", dir, 1);
+  const char *was = getenv(TEMPORARY_FOLDER), *before = was ? arena_strdup(a, was) : NULL;
+  setenv(TEMPORARY_FOLDER, dir, 1);
   int ok = compile(a, t, dir, texts, n, error);
-  if (before) setenv("TMPDIR", before, 1);
-  else unsetenv("TMPDIR");
+  if (before) setenv(TEMPORARY_FOLDER, before, 1);
+  else unsetenv(TEMPORARY_FOLDER);
   return ok;
 }
 
-/* Compiles in a new build folder, which stays only on success: f->path/simulator. */
+/* Compiles in a new build folder, which stays only on success, with made_in of f->path. */
 static int build(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, BuildFolder *f, const char **error) {
   const char *base = cache_folder(a);
   if (!base) return fail_with(error, "there is no folder to build in that only you can write: set XDG_CACHE_HOME to one");
   if (!build_folder_make(a, base, f)) return fail_with(error, arena_printf(a, "cannot write in %s: %s", base, strerror(errno)));
-  int ok = 1;
+  static const char exports[] = "{ global: lag_*; local: *; };\n"; /* a shared library shows the functions of lag.h only */
+  const char *why;
+  int ok = !t->soname || is_alone(t) || file_write(arena_printf(a, "%s/exports.map", f->path), exports, strlen(exports), &why);
   for (size_t i = 0; i < n && ok; i++) {
-    const char *why;
     ok = file_write(arena_printf(a, "%s/%s", f->path, texts[i].name), texts[i].text, strlen(texts[i].text), &why);
-    if (!ok) *error = arena_printf(a, "cannot write in %s: %s", f->path, why);
   }
+  if (!ok) *error = arena_printf(a, "cannot write in %s: %s", f->path, why);
   ok = ok && compile_with_tmpdir(a, t, f->path, texts, n, error);
-  if (ok && !file_exists(arena_printf(a, "%s/simulator", f->path))) {
-    *error = arena_printf(a, "cannot write %s/simulator: the C compiler `%s` wrote no file", f->path, t->cc);
+  if (ok && !file_exists(made_in(a, t, f->path))) {
+    *error = arena_printf(a, "cannot write %s: the C compiler `%s` wrote no file", made_in(a, t, f->path), t->cc);
     ok = 0;
   }
   if (!ok) build_folder_remove(f);
@@ -200,8 +262,33 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
   const char *why;
   if (stat(output, &st) == 0 && !S_ISREG(st.st_mode)) return fail_with(error, arena_printf(a, "cannot write %s: it is not an ordinary file", output));
   if (!build(a, t, texts, n, &f, error)) return 0;
-  int ok = file_install(output, arena_printf(a, "%s/simulator", f.path), &why);
+  int ok = file_install(output, made_in(a, t, f.path), &why);
   if (!ok) *error = arena_printf(a, "cannot write %s: %s", output, why);
+  build_folder_remove(&f);
+  return ok;
+}
+
+int toolchain_run_once(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, FILE *in, FILE *out, int *status, const char **error) {
+  BuildFolder f;
+  if (!build(a, t, texts, n, &f, error)) return 0;
+  char *path = arena_printf(a, "%s/" SIMULATOR, f.path), *argv[] = {path, NULL};
+  *status = process_read_from(in) ? process_to_file(path, argv, out) : -1;
+  build_folder_remove(&f);
+  return 1;
+}
+
+const char *toolchain_machine(Arena *a, const Toolchain *t) {
+  const char *const more[] = {"-dumpmachine", NULL};
+  char *said = NULL;
+  return run_compiler(a, t->cc, more, &said) == 0 ? said : "";
+}
+
+int toolchain_library(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, StrBuf *out, const char **error) {
+  BuildFolder f;
+  const char *why;
+  if (!build(a, t, texts, n, &f, error)) return 0;
+  int ok = file_append(made_in(a, t, f.path), out, &why);
+  if (!ok) *error = arena_printf(a, "cannot read %s: %s", made_in(a, t, f.path), why);
   build_folder_remove(&f);
   return ok;
 }
@@ -221,6 +308,9 @@ static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceT
   h = hash_bytes(h, t->cc, strlen(t->cc) + 1);
   h = hash_bytes(h, t->optimise, strlen(t->optimise) + 1);
   h = hash_library(a, h, arena_printf(a, "%s/lib%s.a", t->lib, t->library));
+  static const char *const parts[] = {"png", "hdf5", "mpi"};
+  for (int i = 0; i < 3; i++)
+    if (t->parts[i]) h = hash_library(a, h, arena_printf(a, "%s/liblag_%s.a", t->lib, parts[i]));
   return t->gsl ? hash_library(a, h, arena_printf(a, "%s/liblag_gsl.a", t->lib)) : h;
 }
 
@@ -234,11 +324,14 @@ const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *
   const char *cache = cache_folder(a), *path = cache ? arena_printf(a, "%s/%s", cache, name_of(a, t, texts, n)) : NULL;
   BuildFolder f;
   if (path && cache_has(path)) return path;
-  if (!build(a, t, texts, n, &f, error)) return NULL;
-  const char *made = arena_printf(a, "%s/simulator", f.path);
-  int ok = chmod(made, 0700) == 0 && rename(made, path) == 0;
-  if (!ok) *error = arena_printf(a, "cannot write %s: %s", path, strerror(errno));
-  build_folder_remove(&f);
-  if (ok) cache_limit(a, path);
+  int lock = path ? cache_take(a, path) : -1, there = lock >= 0 && cache_has(path), ok = there;
+  if (!there && build(a, t, texts, n, &f, error)) {
+    const char *made = made_in(a, t, f.path);
+    ok = chmod(made, 0700) == 0 && rename(made, path) == 0;
+    if (!ok) *error = arena_printf(a, "cannot write %s: %s", path, strerror(errno));
+    build_folder_remove(&f);
+    if (ok) cache_limit(a, path);
+  }
+  if (path) cache_give(a, path, lock);
   return ok ? path : NULL;
 }

@@ -55,7 +55,7 @@ unknown() {
       print w
     }' "$TMP/list" RS= "$TMP/judged"
 }
-equals='lagrangian\|kinetic\|potential\|dissipation'
+equals='hamiltonian\|lagrangian\|kinetic\|potential\|dissipation'
 empty "statements" "$(words statement | grep -v -x "$equals" | unknown 'storage.type|keyword.control' '  WORD name')"
 empty "statements with =" "$(words statement | grep -x "$equals" | unknown 'keyword.control' 'WORD = x')"
 empty "statements are words only where they begin one" "$(words statement | grep -v -x lagrangian | unknown 'variable.other' 'let a = 2*WORD')"
@@ -70,6 +70,12 @@ slots() {
       periodic) line='coord th [rad] periodic' ;;
       rising | falling | crossing) line="event e: x $w { stop }" ;;
       restitution) line='contact floor: y >= 0, restitution = 1' ;;
+      slip) line="contact floor: y >= 0, restitution = 1, friction = 1, slip = x'" ;;
+      tangential) line="contact floor: y >= 0, restitution = 1, friction = 1, slip = x', tangential = 1" ;;
+      law) line="contact floor: y >= 0, restitution = 1, friction = 1, slip = x', law = newton" ;;
+      on) line='friction rub on x: mu*N' ;;
+      static) line='friction rub on x: mu*N, static = mu_s*N' ;;
+      of) line='momentum p of x [kg*m/s]' ;;
       exactly) line='start exactly q = 1' ;;
       every) line='output x every 0.1 [s]' ;;
       *) line="no sample for $w" ;;

@@ -52,6 +52,37 @@ static void ramp(void *context, double t, double *u)
   u[CART_IN_U] = ((const Ramp *)context)->rate * t;
 }
 
+/* Methods of order 4 and more are exact for a cubic, too. */
+static void other_methods(Ramp *grows)
+{
+  cart_params p;
+  cart_state s;
+  cart_variational w;
+  cart_adaptive a;
+  double u[CART_NU], rate[CART_NQ];
+  cart_defaults(&p);
+  cart_start(&p, &s);
+  ramp(grows, 0, u);
+  bad |= cart_accel(0, s.q, s.v, &p, u, rate) != CART_OK;
+  for (int i = 0; i < 8; i++) {
+    bad |= cart_verlet4_step_with(&p, &s, 0.25, ramp, grows, rate) != CART_OK;
+  }
+  near("verlet4", s.q[CART_X], 3 * 8.0 / 12, 1e-14);
+  near("it leaves the acceleration", rate[0], 3 * 2.0 / 2, 1e-14);
+  cart_start(&p, &s);
+  bad |= cart_variational_begin(&w, 4) != CART_OK;
+  for (int i = 0; i < 8; i++) {
+    bad |= cart_variational_step_with(&p, &s, &w, 0.25, ramp, grows) != CART_OK;
+  }
+  near("variational", s.q[CART_X], 3 * 8.0 / 12, 1e-14);
+  cart_start(&p, &s);
+  cart_adaptive_begin(&a, 1e-9);
+  while (s.t < 2 && !bad) {
+    bad |= cart_dop853_step_with(&p, &s, &a, 2, ramp, grows) != CART_OK;
+  }
+  near("dop853", s.q[CART_X], 3 * 8.0 / 12, 1e-14);
+}
+
 int main(void)
 {
   cart_params p;
@@ -67,6 +98,7 @@ int main(void)
     }
   }
   near("a function, inside the steps too", s.q[CART_X], 3 * 8.0 / 12, 1e-14); /* RK4 is exact for a cubic */
+  other_methods(&grows);
   cart_start(&p, &s);
   for (int i = 0; i < 8; i++) {
     cart_rk4_step_with(&p, &s, 0.25, 0, 0);

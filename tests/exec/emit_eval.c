@@ -1,6 +1,7 @@
 /* Prints what the functions of emitted models compute at the same random states in every LAG_REAL:
  * a line a state and function, `scene function status values...`. Linked with scenes.c, which
  * lists the models' scenes, all compiled for one LAG_REAL. */
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -8,7 +9,7 @@
 
 extern const lag_scene *const all_scenes[];
 
-enum { MAX = 64, PARAMS = 512, STATES = 8 }; /* parameters with derived ones */
+enum { MAX = 128, PARAMS = 512, STATES = 8, WORK = 1 << 14 }; /* parameters with derived ones */
 
 static uint64_t seed;
 static double next(void) { /* in (-0.75, 0.75), a multiple of 2^-20: exact in every precision */
@@ -17,7 +18,7 @@ static double next(void) { /* in (-0.75, 0.75), a multiple of 2^-20: exact in ev
 }
 
 typedef struct {
-  LAG_REAL t, q[MAX], v[MAX], z[MAX], p[PARAMS], u[MAX], w[1024], out[MAX];
+  LAG_REAL t, q[MAX], v[MAX], z[MAX], p[PARAMS], u[MAX], w[WORK], out[MAX];
 } Work;
 static Work k;
 
@@ -46,11 +47,15 @@ int main(void) {
   static const unsigned char none[MAX];
   for (int i = 0; all_scenes[i]; i++) {
     const lag_scene *s = all_scenes[i];
-    if (s->model->np + s->model->nderived > PARAMS) return 1;
+    if (s->model->np + s->model->nderived > PARAMS || s->model->nw > WORK) return 1;
     s->params(k.p, none);
     seed = 1;
+    for (int i = 0; i < s->model->nu; i++) k.u[i] = 0; /* contacts are open */
+    for (int i = 0; i < s->model->nmodes; i++) k.u[s->model->nu + i] = (LAG_REAL)LAG_FREE;
+    int halvings = 0; /* of the second, to the span where that is shorter: the phase of a fast field has no digits in floats after a second */
+    while (halvings < 60 && ldexp(1, -halvings) > fabs(s->t1 - s->t0)) halvings++;
     for (int state = 0; state < STATES; state++) {
-      k.t = (LAG_REAL)next();
+      k.t = (LAG_REAL)ldexp(next(), -halvings);
       fill(k.q, s->model->nq);
       fill(k.v, s->model->nq);
       fill(k.z, s->model->nz);

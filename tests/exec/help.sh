@@ -31,11 +31,11 @@ is "a base unit" 'unit:
   [s] of the SI, a base unit; takes the SI prefixes' "$(chapter s)"
 is "a unit with a prefix" 'unit:
   [kN], with an SI prefix; `lagc help units` has the table' "$(chapter kN)"
-is "an option" 'option of run, plot, animate, lyapunov, effects:
+is "an option" 'option of run, plot, animate, lyapunov, cost, sweep, effects:
   --tol X               tolerance, absolute and relative' "$(chapter tol)"
 is "an option with its dashes" "$(chapter tol)" "$(chapter --tol)"
 check "a value of an option" sh -c '"$0" help latex | grep -q "^  --format text|latex|c$" && "$0" help long | grep -q -- "--precision"' "$LAGC"
-is "a word of paper" "losses are a Rayleigh function, \`dissipation = c/2*x'^2\`, or a \`force\`" "$(chapter friction)"
+is "a word of paper" "losses are a Rayleigh function, \`dissipation = c/2*x'^2\`, or a \`force\`" "$(chapter damping)"
 check "a word that is a function and a unit" sh -c '"$0" help min | grep -q "smaller" && "$0" help min | grep -q "60 s"' "$LAGC"
 check "embedding is what header does" sh -c '"$0" help embedding | cmp - "$1"' "$LAGC" /dev/stdin <<END
 $(chapter header)
@@ -55,8 +55,8 @@ not_listed() {
 empty "functions and units of the reference" "$(not_listed)"
 
 # Options that lagc passes on are options of simulators: two tables in two programs that share no header.
-taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --effects -e --modes -e --lyapunov -e --cost -e --reference -e --against -e --error -e --given -e --seconds -e --section | sort; } # lagc passes these itself: --modes, --cost, --lyapunov for its commands, --seconds for what is left of the time, --section for an event that it makes
-handed() { { words 'passed run'; words 'passed animate'; words 'passed cost'; words 'passed lyapunov'; } | grep -e -- | sort -u; }
+taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --effects -e --modes -e --lyapunov -e --cost -e --reference -e --against -e --error -e --given -e --seconds -e --section -e --portrait -e --potential -e --cloud -e --distance -e --energy-error -e --sweep -e --consts | sort -u; } # lagc passes these itself: --modes, --cost, --lyapunov, --sweep for its commands, --seconds for what is left of the time, --section for an event that it makes, --portrait, --potential and --cloud with their axes, --consts for constants that vary
+handed() { { words 'passed run'; words 'passed plot'; words 'passed animate'; words 'passed modes'; words 'passed cost'; words 'passed lyapunov'; words 'passed sweep'; } | grep -e -- | sort -u; }
 check "a simulator has options" [ "$(taken | wc -l)" -gt 10 ]
 is "options of a simulator" "$(taken)" "$(handed)"
 untold() { for o in $(taken | grep -v -x -e --output); do grep -qF -e "$o" runtime/app/help.c || echo "$o"; done; } # --output: there as -o
@@ -120,7 +120,7 @@ check "an option that is none of this command" says '`--format` is an option of 
 check "a value is missing" says '--until needs a value: --until T' run $m --until
 check "a value too many" says '--json takes no value' run $m --json=1
 check "a wrong choice" says '--format takes text, latex, c, not `html`' derive $m --format html
-check "a wrong stage" says '--dump takes ast, eqns, passes, prog, with commas between several, not `ast,asm`' derive $m --dump ast,asm
+check "a wrong stage" says '--dump takes ast, eqns, passes, prog, with commas between several, not `asm`' derive $m --dump ast,asm
 check "a definition that is none" says '-D takes CONST=VALUE, for example -D N=50' derive $m -D N
 check "completion for no shell" says 'which shell? write `lagc completion bash`' completion
 check "-DN=3, -D N=3, --define N=3" sh -c '

@@ -7,7 +7,7 @@ says_nothing() { ! run "$TMP/long.lag" | grep "warning:.* number"; }
 no_doubles() {
   gen=$BUILD/gen/quad
   "$CC" -std=gnu11 -fsyntax-only -Werror=float-conversion -Werror=unsuffixed-float-constants \
-    -D_XOPEN_SOURCE=700 -DLAG_REAL=__float128 '-DLAG_PRECISION="quad"' -include quadmath.h -I"$gen/include" -I"$gen" -I"$BUILD/gen" "$gen"/*/*.c
+    -D_GNU_SOURCE -DLAG_REAL=__float128 '-DLAG_PRECISION="quad"' -include quadmath.h -I"$gen/include" -I"$gen" -I"$BUILD/gen" "$gen"/*/*.c
 }
 check "no doubles are left in the runtime" no_doubles
 check "in a table" begins $cos10 "$(quad "$TMP/osc.lag" --method taylor --tol 1e-33 -o - --quiet | tail -1 | cut -d , -f 2)"

@@ -4,8 +4,7 @@
 . tests/exec/lib_precision.sh
 has_precision quad || skip_all "there is no gcc with libquadmath"
 for m in models/pendulum models/double_pendulum models/kepler tests/exec/models/magnet tests/exec/models/shaken; do
-  sed '/^scene .*{/a\
-  method gauss' $m.lag >"$TMP/model.lag" # gauss needs other derivatives than those requested here
+  sed 's/^\(scene .*{\)/\1 method gauss;/' $m.lag >"$TMP/model.lag" # gauss needs other derivatives than those requested here
   "$LAGC" emit "$TMP/model.lag" --method taylor --with linear -o "$TMP/$(basename $m).c" || exit 1
 done
 precise quad tests/exec/quad_methods.c >"$TMP/methods.c"

@@ -47,6 +47,7 @@ static const Kind kinds[] = {
     {&lag_gauss, "gauss 4", {{"stages", 2, NULL}}, 1, 4, 8},
     {&lag_gauss, "gauss 6", {{"stages", 3, NULL}}, 1, 6, 8},
     {&lag_gauss, "gauss 8", {{"stages", 4, NULL}}, 1, 8, 8},
+    {&lag_euler, "euler", {{0}}, 0, 1, 1024},
     {&lag_rk4, "rk4", {{0}}, 0, 4, 128},
     {&lag_rk45, "rk45", {{"adapt", 0, "off"}}, 1, 5, 64, {[4] = 256}},
     {&lag_dop853, "dop853", {{"adapt", 0, "off"}}, 1, 8, 64, {[0] = 256}},

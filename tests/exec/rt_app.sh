@@ -20,7 +20,7 @@ no_part() { ! ls ./*.part* 2>/dev/null | grep -q .; }
 
 # --- report, rows
 check "a name that says another kind of file" says 2 "-o x.h5: it writes CSV, or NumPy where the name ends in .npy; write -o x.csv" -o x.h5
-check "of a picture" says 2 "--svg x.png: it writes SVG; write --svg x.svg" --svg x.png
+check "of a picture" says 2 "x.png: this program writes pictures as SVG;" --svg x.png
 check "default scene" status 0
 check "report names scene, method and energy" grep -q "scene drop, method dop853" out
 check "a model with losses has no energy drift" grep -q "not conserved" out
@@ -65,6 +65,20 @@ check "landing, before and after" awk -F, 'NR == 2 { t = sqrt(2/9.81); v = sqrt(
 check "an event without action changes nothing" sh -c "grep apex ev.csv | awk -F, '{ n++; if (\$3 != \$5 || \$4 != \$6) exit 1 } END { exit n != 8 }'"
 check "json counts, with times" sh -c './sim drop --json | grep -qE "\"events\": \{\"ground\": \{\"count\": 8, \"first\": 0.4515236409857"'
 check "json: never" sh -c './sim drop --until 0.1 --json | grep -qF "\"ground\": {\"count\": 0, \"first\": null, \"last\": null}"'
+# --- measures: the same closed forms; y is 0.81 m at the top of the first flight
+check "measures" status 0 drop --measure 'hit(ground, 2)' --measure 'count(ground)' --measure 'top=y((hit(ground) + hit(ground,2))/2)' --measure 'hit(ground, 9)'
+check "the time of an event" grep -Eq '^  hit\(ground, 2\)  *1\.2642661947[0-9]* s$' out
+check "a number of events" grep -Eq '^  count\(ground\)  *8$' out
+check "a value at a time that is a measure, by its name" grep -Eq '^  top  *0\.8(1|1000000000[0-9]*|0999999999[0-9]*) m$' out
+check "a measure without a value" grep -Eq '^  hit\(ground, 9\)  *none: ground happens 8 times$' out
+check "measures in json" sh -c './sim drop --measure "n=count(ground)" --measure "hit(ground, 9)" --json | grep -qF "\"measures\": {\"n\": 8, \"hit(ground, 9)\": null}"'
+check "rows and pictures with measures are those without" sh -c './sim drop -o plain.csv --svg plain.svg --events plain_ev.csv --quiet && ./sim drop -o m.csv --svg m.svg --events m_ev.csv --measure "max(y)" --measure "count(ground)" | grep -Eq "count\(ground\) *8" &&
+  cmp plain.csv m.csv && cmp plain.svg m.svg && cmp plain_ev.csv m_ev.csv'
+check "a wrong measure, before anything is written" says 2 "--measure hit(grund): character 5: no event is called grund; did you mean ground?" drop --measure 'hit(grund)' -o no.csv
+check "leaves nothing" sh -c '! [ -e no.csv ]'
+check "two measures of one name" says 2 "another measure is called a" drop --measure a=end --measure 'a=max(y)'
+check "a measure without a name" says 2 "a name is missing before" drop --measure '=end'
+check "measures of an analysis" says 2 "--measure has no meaning for --cost" drop --cost --measure end
 check "a log needs events" says 2 "has no events" swing --events none.csv
 check "a log on standard output" sh -c './sim drop --events - 2>err | cmp - ev.csv && grep -q "reached t = 5" err'
 check "two logs on standard output" says 2 "written twice" drop --events - -o -
@@ -119,7 +133,8 @@ check "empty span" says 2 "nothing to compute" --until 0
 check "bad every" says 2 "must be positive" --every 0
 check "unknown option" says 2 "did you mean --method?" --methd rk4
 check "unknown method" says 2 "unknown method rk9; did you mean rk4?" --method rk9
-check "a method that is near none lists methods" says 2 "rk4 " --method simpson
+check "a method that is near none has a list, which does not hide the message" says 2 "unknown method simpson; --method help lists them" --method simpson
+check "in one line" [ "$(wc -l <err)" = 1 ]
 check "method that does not fit" says 2 "lagc build MODEL --method verlet" drop --method verlet
 check "unknown option of a method" says 2 "no option" --method "rk4(stp=1)"
 check "unknown scene says how to build it" says 2 "lagc run models/rt_sim.lag workshop" workshop
@@ -143,6 +158,7 @@ for o in "rk4(step=nan)" "rk4(step=inf)" "rk4(step=0x1p3)" "rk45(atol=nan)"; do
 done
 check "a tolerance beyond all numbers" says 2 "must be finite" --method "rk45(atol=1e400)"
 check "one file for two results" says 2 "written twice" fixed -o same --svg same
+check "one file for two results, spelled otherwise" says 2 "written twice" fixed -o same --svg ./same
 check "a device is no state" says 2 "is not a regular file" fixed --resume /dev/zero
 if [ -w /dev/full ]; then
   check "a full disk" says 2 "cannot write" drop -o /dev/full

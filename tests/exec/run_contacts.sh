@@ -5,7 +5,7 @@
 
 model() { cat >"$TMP/$1.lag"; }
 run() { "$LAGC" run "$TMP/$1.lag" "$2" --quiet -o "$TMP/out.csv" --json >"$TMP/out.json" 2>"$TMP/err" || { cat "$TMP/err"; return 1; }; }
-near() { awk -v got="$1" -v want="$2" -v tol="$3" 'BEGIN { d = got - want; print got, want, d; exit !(d <= tol && -d <= tol) }'; }
+near() { close_to "$@"; }
 cell() { awk -F, -v t="$1" -v c="$2" '$1 == t { print $c }' "$TMP/out.csv"; } # TIME COLUMN
 
 # A ball of restitution 0.8 from 1 m, and one that is pulled up by 15 N sin t after it has come to rest.

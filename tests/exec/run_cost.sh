@@ -6,7 +6,8 @@
 export TMP
 . tests/tap.sh
 . tests/exec/lib_precision.sh
-unset LAGC_OPTIMISE # the runs that a sweep reaches depend on the speed of the simulator
+sweep=0.5 # seconds of a sweep of one method
+[ -z "${SLOW:-}" ] || { sweep=1 && unset LAGC_OPTIMISE; }
 
 # cost ARGS...: rows of `method knob error seconds front cheapest order`
 cost() {
@@ -18,29 +19,29 @@ cost() {
 
 # RK4 on x'' = -w^2 x multiplies x + i x'/w by R(-i w h) a step, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24; the motion is
 # cos(w t). k = 4, m = 1: w = 2; 16 times up to 20 s. Rounding is 1e-16 a step, of errors that are 1e-9 and more.
-check "a spring by rk4" cost models/spring.lag free --methods rk4 --seconds 2
+check "a spring by rk4" cost models/spring.lag free --methods rk4 --seconds 1
 rk4_by_hand() {
   [ "$(wc -l <"$TMP/runs")" -gt 8 ] || return 1
   awk '$3 > 1e-9 {
     n = 20/$2; wh = 2*$2; a = 1 - wh^2/2 + wh^4/24; b = -(wh - wh^3/6)
-    re = 1; im = 0; worst = 0; X = 1; V = 0 # the start counts for the scales
+    re = 1; im = 0; worst = 0
     for (i = 1; i <= n; i++) {
       x = re*a - im*b; im = re*b + im*a; re = x
       if (i % (n/16) == 0) {
         t = i*$2; c = cos(2*t); s = -sin(2*t)
-        if (c^2 > X) X = c^2; if (s^2 > V) V = s^2
         dx[i] = (re - c)^2; dv[i] = (im - s)^2
       }
     }
-    for (i in dx) { e = sqrt(dx[i]/X); if (e > worst) worst = e; e = sqrt(dv[i]/V); if (e > worst) worst = e }
+    for (i in dx) { e = sqrt(dx[i]); if (e > worst) worst = e; e = sqrt(dv[i]); if (e > worst) worst = e }
     delete dx; delete dv
-    if ((worst - $3)^2 > (1e-6*worst + 1e-13)^2) { printf "step %s: error %s, not %.6e\n", $2, $3, worst; bad = 1 }
+    if ((worst - $3)^2 > (3e-3*worst + 1e-13)^2) { # scales are 1 and w, as 8 places of each step of the reference show them: 1 - cos(h/16)
+      printf "step %s: error %s, not %.6e\n", $2, $3, worst; bad = 1 }
   } END { exit bad }' "$TMP/runs"
 }
 check "its errors are those of the recursion" rk4_by_hand
 
 # 0.15: contribution of higher terms where rounding does not show yet.
-check "a pendulum by methods of fixed steps" cost models/pendulum.lag --until 4 --methods "rk4,verlet4${SLOW:+,symplectic_euler,verlet,variational,gauss}" --seconds ${SLOW:+1}2
+check "a pendulum by methods of fixed steps" cost models/pendulum.lag --until 4 --methods "rk4,verlet4${SLOW:+,symplectic_euler,verlet,variational,gauss}" --seconds ${SLOW:+1}3
 order() { awk -v m="$1" '$1 == m { print $7; exit }' "$TMP/runs"; }
 has_order() { check "$1 has order $2" awk -v got="$(order "$1")" -v want="$2" 'BEGIN { exit !(got != "" && got != "null" && (got - want)^2 < 0.15^2) }'; }
 has_order rk4 4
@@ -97,6 +98,9 @@ says '^no setting has an error of 1e-12 or less; the smallest found is'
 check "a flow" text models/lorenz.lag --until 1 --methods rk45,verlet,taylor --seconds 1 --runs
 says '^not in the table: verlet: .*states'
 says '^. taylor(tol=1e-09)'
+check "methods that are left out for one reason, in one line" text models/lorenz.lag --until 1 --methods verlet,variational,verlet4,rk45 --seconds 0.3
+says '^not in the table: verlet, verlet4, variational(order=2), .*: cannot integrate a model with states'
+check "and no other" [ "$(grep -c "^not in the table" "$TMP/text")" = 1 ]
 
 check "a picture" text models/pendulum.lag --until 1 --seconds 1 --methods rk4,rk45,verlet,verlet4 -o "$TMP/cost.svg" --quiet
 check "is whole" grep -q '</svg>' "$TMP/cost.svg"
@@ -119,17 +123,51 @@ refused() { # NAME PATTERN ARGS...
   check "with advice" grep -q -e "$pattern" "$TMP/err"
 }
 # The error of something else. The energy of a spring by rk4 falls as its recursion does: |R(i w h)|^2 a step, 1 - (w h)^6/72 for small steps.
-check "the error of the energy" cost models/spring.lag free --methods rk4 --seconds 1 --error energy
+check "the error of the energy" cost models/spring.lag free --methods rk4 --seconds $sweep --error energy
 check "as its recursion" awk '$2 < 0.05 && $3 > 1e-11 { n = 20/$2; want = n*(2*$2)^6/72; if ((want - $3)^2 > (0.05*want)^2) { print $2, $3, want; bad = 1 }; k++ } END { exit bad || k < 2 }' "$TMP/runs"
-check "the error at the end" cost models/spring.lag free --methods rk4 --seconds 1 --error final
+check "the error at the end" cost models/spring.lag free --methods rk4 --seconds $sweep --error final
 check "is a run" [ "$(wc -l <"$TMP/runs")" -gt 5 ]
+# The residual of rk4 in the middle of a step: its motion there is the quintic of positions, velocities and accelerations at both ends, and for velocities the
+# cubic (runtime/core/hermite.c): written out here for x'' = -4 x, with rates of up to 2 and 4.
+check "the residual of the equations" cost models/spring.lag free --methods rk4 --seconds $sweep --error residual
+residual_by_hand() {
+  awk 'function size(x) { return x < 0 ? -x : x }
+  $3 > 1e-9 {
+    h = $2; n = 20/h; a = 1 - (2*h)^2/2 + (2*h)^4/24; b = -(2*h - (2*h)^3/6); q = 1; v = 0; worst = 0 # q + i v/2 is multiplied by a + i b
+    for (i = 1; i <= n; i++) {
+      p = q*a - v/2*b; u = 2*(q*b + v/2*a); A = -4*q; B = -4*p
+      middle = (q + p)/2 + 5*h/32*(v - u) + h^2/64*(A + B); rate = (15/8*(p - q) - 7*h/16*(v + u) + h^2/32*(B - A))/h
+      speed = (v + u)/2 + h/8*(A - B); force = (1.5*(u - v) - h/4*(A + B))/h
+      if (i < n) { x = size(rate - speed)/2; y = size(force + 4*middle)/4; if (x > worst) worst = x; if (y > worst) worst = y }
+      q = p; v = u
+    }
+    k++
+    if ($3 > 1.02*worst || $3 < 0.98*worst) { print h, $3, worst; bad = 1 } # the largest rates at the ends of steps of an accurate run are 2 and 4 to 2 %
+  }
+  END { exit bad || k < 5 }' "$TMP/runs"
+}
+check "is that of its interpolant" residual_by_hand
 nothing() { text models/spring.lag free --error nothing; [ $? = 1 ] && grep -q 'unknown name' "$TMP/err"; }
 check "an error of nothing is refused" nothing
+
+# How errors grow on Kepler's orbit, e = 0.6, twenty turns and more: phases of geometric methods in proportion to time and their energies not at all; phases of
+# others as its square, and their energies in proportion to it (Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), table I.2.1).
+growths() { # of a method's runs with errors of 1e-10 to 0.03: the law that most of them have
+  sed 's/{"method"/\n&/g; s/{"\(tolerance\|step\)"/\n&/g' "$TMP/json" | awk -v m="\"$1\"" '/^{"method"/ { on = index($0, m) } on && /"growth"/ { e = $0; sub(/.*"error": /, "", e); g = $0; sub(/.*"growth": "?/, "", g); sub(/["}].*/, "", g)
+    if (e + 0 < 0.03 && e + 0 > 1e-10) n[g]++ } END { for (g in n) if (n[g] > most) { most = n[g]; best = g } print best }'
+}
+methods=verlet4,rk45 phases='t t^2' energies='bounded t' turns=20
+[ -z "${SLOW:-}" ] || methods=verlet4,rk45,rk4,dop853 turns=100 phases='t t^2 t^2 t^2' energies='bounded t t t'
+each_growth() { echo $(for m in $(echo "$methods" | tr , ' '); do growths "$m"; done); }
+check "Kepler's orbit" cost tests/exec/kepler.lag --until "$turns*2*pi" --methods $methods --seconds ${SLOW:+1}6
+is "the growth of its errors" "$phases" "$(each_growth)"
+check "and of its energy's" cost tests/exec/kepler.lag --until "$turns*2*pi" --methods $methods --seconds ${SLOW:+1}6 --error energy
+is "is one power less" "$energies" "$(each_growth)"
 
 # Steps of a program's own: the error is that of a run with this step; Verlet's method, whose phase error is w t (w h)^2/24, here 6.7 h^2, follows
 # to within 0.3 up to 0.21 s, found in factors of sqrt(2).
 of_method() { sed 's/{"method"/\n&/g' "$TMP/json" | grep "\"method\": \"$1\"" | sed "s/.*\"$2\": \([^,}]*\).*/\1/"; }
-check "runs with a step" cost models/spring.lag free --methods rk4 --seconds 1
+check "runs with a step" cost models/spring.lag free --methods rk4 --seconds $sweep
 expected=$(awk '$2 == 0.01953125 { print $3 }' "$TMP/runs")
 check "steps of 0.02 s" cost models/spring.lag free --realtime 0.01953125 --seconds 3
 check "rk4: the same error" awk -v a="$(of_method rk4 error)" -v b="$expected" 'BEGIN { print a, b; exit !(a > 0 && (a - b)^2 < (1e-9*b)^2) }'
@@ -139,16 +177,16 @@ check "with its command" text models/spring.lag free --realtime 0.02 --seconds 2
 says '^best: '
 says '^  lagc run .*--method ".*step=0.02)"'
 refused "a step of nothing" 'example --realtime 1e-3' models/spring.lag --realtime 0
-hopeless() { text models/spring.lag free k=1e6 --realtime 0.5 --seconds 2; [ $? = 3 ] && grep -q 'take shorter steps' "$TMP/text"; }
+hopeless() { text models/spring.lag free k=1e6 --until 1 --realtime 0.5 --seconds 1; [ $? = 3 ] && grep -q 'take shorter steps' "$TMP/text"; }
 check "steps that are too long are said" hopeless
 
-check "with -D" text models/chain.lag -D N=3 g=5 --until 1 --methods rk4 --seconds 1
+check "with -D" text models/chain.lag -D N=3 g=5 --until 1 --methods rk4 --seconds $sweep
 says '^  lagc run models/chain.lag swing -D N=3 g=5 --until 1 --method rk4 --step '
-check "with words that a shell reads otherwise" text models/pendulum.lag "th=30[deg]" --until 1 --methods rk4 --seconds 1
+check "with words that a shell reads otherwise" text models/pendulum.lag "th=30[deg]" --until 1 --methods rk4 --seconds $sweep
 says "^  lagc run models/pendulum.lag small 'th=30\[deg\]' --until 1 --method rk4 --step "
 
 # What the time allows: coarse settings first, and what was left out is said.
-check "in a short time" text models/double_pendulum.lag --seconds 2
+check "in a short time" text models/double_pendulum.lag --seconds 1
 says '^left out, as three times slower than others or for want of time: '
 splitting() { # NUMBER OPTION...: rows of the table of times
   number=$1
@@ -184,6 +222,41 @@ interrupted() { # Ctrl-C: what is known is printed
 }
 slow check "an interrupted sweep prints what it knows" interrupted
 
+# A scene's monitor is a demand: no answer is stopped by it. rk4 loses (w h)^6/72 of the energy a step, so 1e-6 of it in 20 s at steps of 0.023 s at most.
+watched() {
+  sed 's/^scene free.*/&\n  monitor energy 1e-6/' models/spring.lag >"$TMP/watched.lag"
+  text "$TMP/watched.lag" free --methods rk4 --seconds $sweep --target 1 || return 1
+  h=$(sed -n 's/^  lagc run .* --step //p' "$TMP/text")
+  echo "step $h"
+  awk -v h="$h" 'BEGIN { exit !(h > 0.01 && h < 0.024) }' && grep -q "^.lagc run. refuses cheaper settings: monitor energy" "$TMP/text"
+}
+check "answers keep the scene's monitors" watched
+
+# How far each precision carries: against the time at which motions of this precision and of the next one part by 0.3 of their size. The growth is known from
+# doubles alone, and varies along chaos: hence 20 %.
+parts() { # TIME BETWEEN ROWS, PRECISIONS AND TOLERANCES...
+  every=$1 coarse=$2 fine=$4
+  "$LAGC" run "$model" $scene --until "$until" --every "$every" --precision "$coarse" --method taylor --tol "$3" --quiet -o "$TMP/a.csv" 2>"$TMP/err" &&
+    "$LAGC" run "$model" $scene --until "$until" --every "$every" --precision "$fine" --method taylor --tol "$5" --quiet -o "$TMP/b.csv" 2>"$TMP/err" || return 1
+  paste -d , "$TMP/a.csv" "$TMP/b.csv" | awk -F , 'NR > 1 { h = NF/2; for (i = 2; i <= 3; i++) { v = $i < 0 ? -$i : $i; if (v > s) s = v
+    d = $i - $(i + h); if (d < 0) d = -d; if (d > 0.3*s) { print $1; exit } } }'
+}
+carries() { sed 's/{"precision"/\n&/g' "$TMP/json" | sed -n "s/.*\"precision\": \"$1\", \"horizon\": \([^,]*\).*/\1/p"; }
+precisions() {
+  model=models/$1.lag scene=$2 until=$3
+  "$LAGC" cost "$model" "$scene" --until "$until" --methods rk45 --seconds 5 --json >"$TMP/json" || return 1
+  set -- "$(carries double)" "$(parts "$4" double 2e-15 long 1e-18)" "$(carries long)" "$(parts "$4" long 1e-18 quad 1e-26)" "$(carries quad)"
+  echo "$*"
+  awk -v a="$1" -v b="$2" -v c="$3" -v d="$4" -v e="$5" 'BEGIN { exit !(b > 0 && a > 0.8*b && a < 1.2*b && d > 0 && c > 0.8*d && c < 1.2*d && e > c) }'
+}
+if has_precision long && has_precision quad; then
+  slow check "the precisions of the double pendulum" precisions double_pendulum chaos 60 0.05
+  slow check "of the Lorenz attractor" precisions lorenz butterfly 80 0.05
+  slow check "of Henon and Heiles" precisions henon_heiles chaos 2000 1
+fi
+check "what a regular motion loses" cost models/spring.lag free --methods rk4 --seconds $sweep
+check "is little" awk -v h="$(carries double)" 'BEGIN { print h; exit !(h == "null" || h > 1e9) }'
+
 refused "an unknown method" 'did you mean verlet' models/pendulum.lag --methods verlet5
 check "a method at one value of its option" text models/pendulum.lag --until 2 --methods "gauss(stages=2),rk4" --seconds 1 --all
 check "is that one" [ "$(grep -c '^  gauss' "$TMP/text")" = 1 ]
@@ -191,9 +264,9 @@ refused "a value that is not tried" 'gauss(stages=1) to 4' models/pendulum.lag -
 refused "a target of zero" 'example --target 1e-8' models/pendulum.lag --target 0
 refused "no time to spend" 'example --seconds 60' models/pendulum.lag --seconds 0
 refused "a time in words" 'is not a number' models/pendulum.lag --seconds long
-refused "a picture of another kind" 'cost writes SVG' models/pendulum.lag -o cost.png
+refused "a picture of another kind" 'cost writes SVG' models/pendulum.lag -o cost.jpg
 refused "no time to run" 'nothing to compute' models/pendulum.lag --until 0
-refused "a tolerance" 'is an option of .lagc run' models/pendulum.lag --tol 1e-9
+refused "a tolerance" '--where takes one' models/pendulum.lag --tol 1e-9
 echo garbage >"$TMP/garbage"
 "$LAGC" build models/pendulum.lag --method taylor -o "$TMP/sim" >"$TMP/out" 2>&1
 bad_reference() { "$TMP/sim" --cost --against "$TMP/garbage" 2>"$TMP/err"; [ $? = 2 ] && grep -q 'holds no reference' "$TMP/err"; }

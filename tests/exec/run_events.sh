@@ -35,6 +35,9 @@ for method in rk45 dop853 'verlet8 --step 0.3' taylor; do
     sed 's/.*"up": {"count": \([0-9]*\).*/\1/')"
 done
 
+printf '%s\n' 'model m' 'coord x [m]' "kinetic = x'^2/2 * 1 [kg]" 'event down: 1/2 [s] - t falling {}' 'event up: t - 1/2 [s] rising {}' 'scene s { span 1 [s] }' >"$TMP/end.lag"
+is "at the end of a step" "0.5 0.5" "$("$LAGC" run "$TMP/end.lag" --method rk4 --step 0.125 --json | sed 's/.*"down": {"count": 1, "first": \([^,]*\).*"up": {"count": 1, "first": \([^,]*\).*/\1 \2/')"
+
 piles_up() { # METHOD
   "$LAGC" run models/bouncing_ball.lag drop --until 4.2 --method "$1" >"$TMP/out" 2>&1
   [ $? = 3 ] && grep -q 'event floor repeats in ever shorter intervals: .* at t = 4.0637' "$TMP/out"

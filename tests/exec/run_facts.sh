@@ -12,13 +12,15 @@ fi
 warn='-std=c11 -Wall -Wextra -Wpedantic -Wshadow -Wconversion'
 
 # shellcheck disable=SC2086 # lists of words
-$CC $warn -D_XOPEN_SOURCE=700 -O1 ${SAN:-} -I"$INC" $gsl_flags -c tests/exec/facts.c -o "$dir/facts.o" || { echo "Bail out! facts.c does not compile"; exit 1; }
+$CC $warn -D_XOPEN_SOURCE=700 -O1 ${SAN:-} -Iruntime -I"$INC" $gsl_flags -c tests/exec/facts.c -o "$dir/facts.o" || { echo "Bail out! facts.c does not compile"; exit 1; }
 
 # build MODEL FACTS: the checker of this model with the scenes that the facts name, as $dir/MODEL
 build() {
-  objects='' declared='' listed=''
+  objects='' declared='' listed='' with=''
+  ! grep -q '^[^#].*lyapunov' "$2" || with='--with linear'
   for s in $(sed -n 's/^\([^#| ][^| ]*\).*|.*|.*/\1/p' "$2" | sort -u); do
-    "$LAGC" emit "models/$1.lag" "$s" -o "$dir/$1_$s.c" || return 1
+    # shellcheck disable=SC2086 # words
+    "$LAGC" emit "models/$1.lag" "$s" $with -o "$dir/$1_$s.c" || return 1
     symbol=$(sed -n 's/^const lag_scene \([A-Za-z0-9_]*\) = {.*/\1/p' "$dir/$1_$s.c")
     model=$(sed -n 's/^const lag_model \([A-Za-z0-9_]*\) = {.*/\1/p' "$dir/$1_$s.c")
     # Scenes with different effects have different models of one name: rename them, to link all into one program.
@@ -39,7 +41,7 @@ const lag_scene *const facts_scenes[] = {$listed NULL};" >"$dir/$1_scenes.c"
 for facts in models/*.facts; do
   name=$(basename "$facts" .facts)
   case " ${*:-$name} " in *" $name "*) ;; *) continue ;; esac
-  [ $# -gt 0 ] || one_of 6 || continue
+  [ $# -gt 0 ] || one_of 10 || continue
   if build "$name" "$facts" 2>"$dir/err"; then relay "$dir/$name" "$name" "$facts"; else empty "$name: its scenes compile" "$(cat "$dir/err")"; fi
 done
 

@@ -114,12 +114,12 @@ done <<'END'
 run -o x.json: run writes CSV, or NumPy where the name ends in .npy; --json prints the report as JSON; write -o x.csv
 run -o x.h5: write -o x.csv
 run --output=x.svg: --svg FILE draws
-run --svg a.png: write --svg a.svg
+run --svg a.jpg: write --svg a.svg
 run --html a.svg: write --html a.html
 run --events e.json: write --events e.csv
 plot -o x.html: `lagc animate` writes HTML
 animate -o x.mp4: write -o x.html
-cost -o x.png: write -o x.svg
+cost -o x.html: write -o x.svg
 lyapunov -o x.json: write -o x.csv
 derive -o x.svg: derive writes text; write -o x
 derive --format latex -o x.c: write -o x.tex

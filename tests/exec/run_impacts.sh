@@ -17,7 +17,7 @@ fails() { # fails STATUS WORDS MODEL ARGS...
   run "$@" >/dev/null
   [ $? != 0 ] && cat "$TMP/log" "$TMP/err" && grep -qF -e "$words" "$TMP/log" "$TMP/err"
 }
-near() { awk -v got="$1" -v want="$2" -v tol="$3" 'BEGIN { d = got - want; print got, want, d; exit !(got != "" && d <= tol && -d <= tol) }'; }
+near() { close_to "$@"; }
 calc() { awk "BEGIN { printf \"%.17g\", $1 }"; }
 cell() { awk -F, -v t="$1" -v c="$2" '$1 == t { print $c }' "$TMP/out.csv"; }         # TIME COLUMN
 after() { awk -F, -v e="$1" -v c="$2" '$2 == e { x = $(NF - c) } END { print x }' "$TMP/ev.csv"; } # EVENT COLUMN-FROM-THE-END, of the last one

@@ -136,7 +136,7 @@ is "a choice is not" "LAG_CONSTANT_MASS | LAG_SEPARABLE | LAG_TIMELESS | LAG_LOS
 # ---- functions of the program around the model
 strict='-std=c11 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror -O1'
 embedded() { # HEADER|LIBLAG
-  "$LAGC" header "$m" -o "$dir/cart.h" && "$LAGC" emit "$m" -o "$dir/cart.c" || return 1
+  "$LAGC" header "$m" --with verlet4,variational,dop853 -o "$dir/cart.h" && "$LAGC" emit "$m" -o "$dir/cart.c" || return 1
   case $1 in
     # shellcheck disable=SC2086 # lists of words
     HEADER) $CC $strict -DHEADER -I"$dir" tests/exec/embed_inputs.c -lm -o "$dir/embedded" ;;
@@ -162,6 +162,10 @@ near "a jump at the first row" 1e-12 9 "$(last "$m" push u="$dir/data/first.csv"
 near "a jump, backwards" 1e-12 4 "$(last "$m" push u="$dir/data/back.csv" --until=-3)"
 rejected() { "$LAGC" run "$m" push u="$dir/data/jump.csv" --until 3 --json 2>"$dir/err" | sed 's/.*"rejected": \([0-9]*\).*/\1/'; }
 is "no step is tried across a jump" 0 "$(rejected)"
+# Measures go over the jump: x = (t - 1)^2 from there on, so that max(x) = 4 at 3, and the mean of u is 4*2/3.
+measured() { "$LAGC" run "$m" push u="$dir/data/jump.csv" --until 3 "$@" --measure 'max(x)' --measure 'mean(u)' | awk '$1 == "max(x)" { a = $2 - 4 } $1 == "mean(u)" { b = $2 - 8/3 } END { print a, b; exit !(NR && a*a + b*b < 1e-18 && b != "") }'; }
+check "measures over a jump" measured --method rk45
+check "by another method" measured --method dop853
 printf '0,0\n1,0\n1.000001,1\n2,1\n' >"$dir/data/steep.csv"
 check "lagc run shows the model's warnings" says 0 "warning: between its rows the curve goes from" "$LAGC" run "$m" push u="$dir/data/steep.csv" --quiet
 tap_end

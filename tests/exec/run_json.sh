@@ -6,16 +6,19 @@ fields() { # COMMAND MODEL ARGS...: names, with [ or { where a list or an object
   "$LAGC" "$@" --json 2>"$TMP/err" | grep -o '"[^"]*": [[{]\{0,1\}' | sed 's/^"//; s/": *//' | awk '!seen[$0]++' | tr '\n' ' ' | sed 's/ $//'
 }
 head="model scene method chosen status message t_end steps rejected rhs_calls form newton_systems newton_iterations wall_s energy_drift error error_growth error_seen_to horizon energy_drift_absolute"
-charge="is initial final work drift drift_absolute unit slope slope_error trend"
+charge="is initial final work at_events drift drift_absolute unit slope slope_error trend"
 is "run" "$head unresolved_period rows_without_value charges{ energy{ $charge monitors{ events{ floor{ count first last tangent{ y{ y y' y'{ math build \
 constraint_residual constraint_rate_residual final{ energy" "$(fields run models/bouncing_ball.lag --until 2 --tangent)"
 is "run with constraints" "$head unresolved_period rows_without_value charges{ energy{ $charge monitors{ events{ math build constraint_residual \
 constraint_rate_residual constraints rank redundant[ rank_beside start_moved{ final{ q x p q' x' p' push lambda(across)" "$(fields run models/slider_crank.lag --until 0.5)"
-is "lyapunov" "model scene method chosen status from until steps blocks exponents[ spread[ errors[ at_half[ sum sum_spread divergence sum_error dimension \
+is "lyapunov" "model scene method chosen status from until steps blocks phase_space exponents[ spread[ errors[ at_half[ minus_infinity sum sum_spread divergence sum_error dimension \
 dimension_error entropy entropy_error chaotic" "$(fields lyapunov models/lorenz.lag --until 20)"
 is "modes" "model scene status verdict reason note steps start{ x y equilibrium{ pairs modes[ re im free repeats shape{ x[ y[" "$(fields modes models/spring_pendulum.lag)"
-is "cost" "model scene until reference uncertainty target interrupted methods[ method order best_of_family left_out_from refused runs[ step error seconds spread steps calls front cheapest" \
+is "modes --steady" "model scene status verdict reason note steps start{ x y steady_motion{ velocity{ pairs modes[ re im free repeats shape{ x[ y[" \
+  "$(fields modes models/kepler.lag circle --steady)"
+is "cost" "model scene until reference uncertainty target interrupted precisions[ precision horizon seconds methods[ method order best_of_family left_out_from refused runs[ step error spread steps calls front cheapest growth" \
   "$(fields cost models/pendulum.lag --until 0.2 --seconds 0.5 --methods rk4)"
 is "effects" "model scene method span_s integration_error limit operations base shared time_s base_time_s effects[ name on verdict weight difference together_with[" \
   "$(fields effects models/projectile_world.lag --until 0.5)"
+is "sweep" "model scene method chosen status runs failed until seconds threads lanes processes measures{ max(th){ unit mean deviation least q5 q50 q95 largest none none_why failures{" "$(fields sweep models/pendulum.lag th=1,2 --measure 'max(th)' -o "$TMP/rows.csv")"
 tap_end

@@ -79,4 +79,22 @@ sed -i.bak -e '/^symmetry shift/d' -e "s/^lagrangian = /input u = if(t > 1, 1, 0
 check "an input that is switched" lagc check "$TMP/jump.lag"
 check "draws no warning of it" sh -c "! grep -q 'warning: .*jumps' '$TMP/err'"
 check "its energy jumps with it" grep -q 'symmetry later: proved between jumps' "$TMP/out"
+# The side of an if that does not hold may have no value: a Hertz contact, whose force is that of the root of a negative depth outside. The ball comes back as fast
+# as it came, and is in contact for 2.9432 (d/v), d = (5 m v^2/4K)^(2/5) (Johnson, Contact Mechanics (1985), eq. 11.24): here K = 2.5, so that d = 0.5^0.4, and v = 1.
+cat >"$TMP/hertz.lag" <<'END'
+model hertz
+coord x, y
+lagrangian = x'^2/2 + y'^2/2 - if(x < 0, (-x)^2.5, 0) - if(y < 0, max(0, log(1 - y)), min(y^2, sqrt(y)))
+expect x'' = if(x < 0, 2.5*(-x)^1.5, 0)
+scene bounce { start x = 1, x' = -1, y = 0.5; span 8; method dop853; tolerance 1e-12; output x, x' }
+event touch: x falling { x' = x' }
+event leave: x rising { x' = x' }
+END
+check "sides without a value" lagc check "$TMP/hertz.lag"
+bounced() {
+  "$LAGC" run "$TMP/hertz.lag" bounce --json --events "$TMP/events.csv" >"$TMP/json" || return 1
+  awk -F, 'NR > 1 { t[$2] = $1; v = $NF; print } END { d = 0.5^0.4; dt = t["leave"] - t["touch"]; print dt, 2.9432*d; exit !(dt > 2.9432*d*0.9999 && dt < 2.9432*d*1.0001) }' "$TMP/events.csv" &&
+    grep -q "\"x'\": 0.99999999" "$TMP/json"
+}
+check "a Hertz contact lasts as long as it should" bounced
 tap_end

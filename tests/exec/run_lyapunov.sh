@@ -168,6 +168,111 @@ X
 find_them "$TMP/rough.lag" --until 200 --method 'rk4(step=0.01)' # the trapezoidal rule over steps: 0.01^2/12 of the second derivative of 0.03 v^2
 close "the sum is the divergence" "$(number divergence)" "$(number sum)" 1e-5
 
+# ---- constraints: vectors lie in their tangent space, whose dimension is the number of exponents
+cat >"$TMP/rods.lag" <<'X'
+model rods "A double pendulum in x and y, upside down at rest: rates sqrt(g (2 +- sqrt(2))), from det(K - s^2 M) = 0 in angles"
+coord x1, y1, x2, y2
+param g = 9.81
+lagrangian = (x1'^2 + y1'^2 + x2'^2 + y2'^2)/2 - g*(y1 + y2)
+constraint upper: x1^2 + y1^2 = 1
+constraint lower: (x2 - x1)^2 + (y2 - y1)^2 = 1
+scene up { start x1 = 0, y1 = 1, x2 = 0, y2 = 2; span 20; tolerance 1e-10 }
+scene chaos { start x1 = sin(2), y1 = -cos(2), x2 = sin(2) + sin(2.5), y2 = -cos(2) - cos(2.5); span 20; tolerance 1e-10 }
+X
+for method in dop853 radau; do # of radau longer steps are allowed; others vectors have decayed by exp(-3.4 15)
+  find_them "$TMP/rods.lag" up --transient 15 --until 30 --method $method
+  close "first" "sqrt(9.81*(2 + sqrt(2)))" "$(list exponents 1)" 1e-7
+  close "second" "sqrt(9.81*(2 - sqrt(2)))" "$(list exponents 2)" 1e-7
+  close "third" "-sqrt(9.81*(2 - sqrt(2)))" "$(list exponents 3)" 1e-7
+  close "fourth" "-sqrt(9.81*(2 + sqrt(2)))" "$(list exponents 4)" 1e-7
+done
+is "four, not eight" 4 "$(number phase_space)"
+says_dimension() { "$LAGC" lyapunov "$TMP/rods.lag" up --until 20 | grep -q 'phase space: 4 dimensions, the 8 coordinates, velocities and states less 4 that constraints fix'; }
+check "the report says so" says_dimension
+as_angles() { # in the mean over 600 s, within the errors of both
+  find_them "$TMP/rods.lag" chaos --until 600
+  rods="$(list exponents 1) $(list errors 1)"
+  find_them models/double_pendulum.lag chaos --until 600 --tol 1e-10 --method dop853
+  check "a double pendulum by rods is as chaotic as by angles" awk -v a="$rods $(list exponents 1) $(list errors 1)" 'BEGIN { split(a, x); d = x[1] - x[3]; exit !(x[1] > 1 && d*d < 9*(x[2]^2 + x[4]^2)) }'
+}
+slow as_angles
+cat >"$TMP/sleigh.lag" <<'X'
+model sleigh "Chaplygin's sleigh, its blade behind the centre of mass: w' = -m a u w/(I + m a^2), u' = a w^2 (Neimark, Fufaev, Dynamics of Nonholonomic Systems, 1972)"
+coord x, y, th
+param m = 2, I = 3, a = 0.5
+lagrangian = m/2*(x'^2 + y'^2) + I/2*th'^2
+constraint blade: -x'*sin(th) + y'*cos(th) = a*th'
+scene straight { start x = 0, y = 0, th = 0.3, x' = 0.7*cos(0.3), y' = 0.7*sin(0.3); span 20; tolerance 1e-10; method dop853 }
+X
+find_them "$TMP/sleigh.lag" --transient 100 --until 300 # vectors turn as 1/t
+is "a constraint on velocities takes one dimension" 5 "$(number phase_space)"
+close "turning decays" "-2*0.5*0.7/(3 + 2*0.25)" "$(list exponents 5)" 1e-3
+close "as volumes do" "-2*0.5*0.7/(3 + 2*0.25)" "$(number sum)" 1e-3
+close "by the divergence, too" "-2*0.5*0.7/(3 + 2*0.25)" "$(number divergence)" 1e-7
+zeros() { awk -v a="$(list exponents 1-"$1")" -v e="$(list errors 1-"$1")" 'BEGIN { n = split(a, x, ","); split(e, d, ","); for (i = 1; i <= n; i++) if (x[i]^2 > 9*d[i]^2) { print x[i], d[i]; bad = 1 } exit bad || !n }'; }
+check "the other four are 0" zeros 4
+cat >"$TMP/damped.lag" <<'X'
+model damped "A pendulum by a rod, damped, hanging at rest: both exponents -c/2, their sum -c"
+coord x, y
+param c = 0.3
+lagrangian = (x'^2 + y'^2)/2 - 9.81*y
+dissipation = c/2*(x'^2 + y'^2)
+constraint rod: x^2 + y^2 = 1
+scene s { start x = 0, y = -1; span 20; tolerance 1e-10; method dop853 }
+X
+find_them "$TMP/damped.lag" --until 200
+close "damping" -0.15 "$(list exponents 1)" 0.02 # log(w)/180 of the ellipse
+close "the sum" -0.3 "$(number sum)" 1e-7
+find_them models/free_body.lag --until 100
+is "a rotation has six dimensions" 6 "$(number phase_space)"
+check "and a free body six zeros" zeros 6
+find_them models/turntable.lag --until 200
+check "a ball on a turntable, too" zeros 6
+turned() { # an angle of thousands: differences are taken over 1 rad all the same
+  find_them models/sphere.lag bowl --until 200
+  check "a spherical pendulum has zeros only" zeros 8
+}
+slow turned
+bicycle() { # J.P. Meijaard et al., Proc. R. Soc. A 463 (2007) 1955, table 2, v = 5 m/s
+  find_them models/bicycle.lag straight --until 100 --method 'rk4(step=0.02)' # (14 0.02)^4/120 of the fastest
+  close "castering" -14.0783896927 "$(list exponents 10)" 0.02 # one factor of e in 90 s
+  close "weave" -0.7753413822 "$(list exponents 9)" 0.02
+  close "weave" -0.7753413822 "$(list exponents 8)" 0.02
+  close "capsize" -0.3228664290 "$(list exponents 7)" 0.02
+}
+slow bicycle
+
+# ---- dry friction: a block on a belt sticks and slips; where it begins to stick neighbouring motions become one
+cat >"$TMP/belt.lag" <<'X'
+model belt
+coord x
+param v = 0.2, mu = 0.25, mu_s = 0.4
+let slip = x - v*t
+lagrangian = x'^2/2 - x^2/2
+friction rub on slip: mu, static = mu_s
+scene squeak { start x = 0.5; span 20 }
+X
+find_them "$TMP/belt.lag"
+close "along the motion nothing grows" 0 "$(list exponents 1)" 1e-3
+is "the other exponent is minus infinity" "null 1" "$(list exponents 2 | tr -d ' ') $(number minus_infinity)"
+find_them "$TMP/belt.lag" "x'=0.2"
+is "a start that sticks" "null 1" "$(list exponents 2 | tr -d ' ') $(number minus_infinity)"
+is "of dimension 1: a closed path" 1 "$(number dimension)"
+joined() { "$LAGC" lyapunov "$TMP/belt.lag" | grep -q 'minus infinity: where the motion begins to slide, or a body to stick, neighbouring motions become one'; }
+check "the report says why" joined
+cat >"$TMP/rubs.lag" <<'X'
+model rubs "Steady swing by Den Hartog (1931), that crosses v = 0 without a stop"
+coord x
+param F = 3, w = 2, k = 10, R = 1
+lagrangian = x'^2/2 - k*x^2/2
+friction rub on x: R
+force x = F*cos(w*t)
+scene s { start x = 0.8, x' = 0.1; span 40; tolerance 1e-10 }
+X
+find_them "$TMP/rubs.lag" # S = diag(1, a+/a-): volumes change by the ratio of the accelerations beside the stop
+close "the sum is the divergence, with that of crossings" "$(number divergence)" "$(number sum)" 1e-6
+check "$title: it decays" awk -v s="$(number sum)" 'BEGIN { exit !(s < -0.1) }'
+
 # ---- printed report
 "$LAGC" lyapunov models/lorenz.lag --until 100 --tol 1e-9 -o "$TMP/rows.csv" --svg "$TMP/it.svg" >"$TMP/out"
 check "a table" grep -q '^ *exponent \[1/s\] *error *at half the time$' "$TMP/out"
@@ -187,6 +292,9 @@ if [ -n "${GSL:-}" ] || [ -e "${BUILD:-build}/liblag_gsl.a" ]; then
 else
   skip "a method without" "GSL is not installed"
 fi
+check "contacts" refused 2 "no tangent of a motion with contact ball: its impacts have no derivatives yet" models/sliding_off.lag
+check "methods that vary the action, with constraints" refused 2 "method verlet has no derivative of its steps with constraints; dop853, rk45, rk4 and radau have" "$TMP/damped.lag" --method verlet
+check "too many with constraints" refused 2 "from 1 to 2, the coordinates, velocities and states of the model that constraints leave free" "$TMP/damped.lag" --exponents 3
 check "an event that accumulates" refused 3 "event floor repeats in ever shorter intervals" models/bouncing_ball.lag drop
 check "an event that stops" refused 3 "an event stopped the run at t = 50.88" models/henon_heiles.lag free
 check "too many" refused 2 "from 1 to 3" models/lorenz.lag --exponents 4

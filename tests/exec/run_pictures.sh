@@ -207,7 +207,7 @@ check "keep their unit" grep -q '\.\.\. \[1/s\]<' label.svg
 touching() { awk '/>[-0-9.e]* \+<\/text>/ { match($0, "y=\"[0-9.]*"); y = substr($0, RSTART + 3, RLENGTH - 3); if (y - 11 < 30) exit 1; n++ } END { exit !n }' "$1"; }
 check "what labels leave out" runs plot "$p" wide --y 'x/1e7 + 1 [m]' --until 3 -o offset.svg
 check "is said below the title" touching offset.svg
-check "a picture that plot does not write" says 2 'plot writes SVG' plot "$p" -o path.png
+check "a picture that plot does not write" says 2 'plot writes SVG' plot "$p" -o path.jpg
 check "a page that animate does not write" says 2 'animate writes HTML' animate "$p" -o path.pdf
 
 # ---- families ----
@@ -304,6 +304,10 @@ scene s { start r' = (1, 2); span 1 }
 END
 check "vectors among the coordinates are points" says 0 'points r.x,r.y b[1].x,b[1].y b[2].x,b[2].y;' animate vectors.lag
 check "as many as there are" says 0 'points r.x,r.y b[1].x,b[1].y;' animate vectors.lag -D N=1
+printf 'model hangs\ncoord a [deg]\nparam l = 1 [m] > 0, g = 9.81 [m/s^2]\nlagrangian = a%s^2/2 + g/l*cos(a)\n' "'" >hangs.lag
+check "an angle that is not declared periodic is a rod, too" says 0 'points sin(a),-cos(a), joined by rods from the origin' animate hangs.lag
+sed 's/\[deg\]/[m]/; s/cos(a)/cos(a\/l)/; s/g\/l/g*l/' hangs.lag >slides.lag
+check "a length is a point on a line" says 0 'points a,0;' animate slides.lag
 check "which points?" says 2 'no points to draw' animate two.lag
 check "half a point" says 2 'each point is x,y' animate "$p" --points 'x,y l' -o none.html
 check "three numbers" says 2 'each point is x,y' animate "$p" --points 'x,y,l' -o none.html
@@ -321,6 +325,48 @@ is "has no grey" 0 "$(grep -c '#bbb' section.svg)"
 check "a page of it" "$LAGC" animate "$d" chaos --until 40 -o chaos.html --quiet
 check "knows the horizon" grep -q '"horizon": 1[0-9]\.' chaos.html
 check "a regular motion has none" sh -c '"$0" plot "$1" -o regular.svg --quiet && ! grep -q "#bbb" regular.svg' "$LAGC" "$d"
+
+# ---- animate: marks of contacts, friction and events ----
+# marks FILE: a line for each mark: time, name, word
+marks() {
+  awk '/^\{"t0"/ { t0 = $0; sub(/^.*"t0": /, "", t0); tick = $0; sub(/^.*"tick": /, "", tick)
+    names = $0; if (!sub(/^.*"marks": \{"names": \["/, "", names)) next
+    at = names; sub(/"\], "at": .*/, "", names); sub(/^.*"at": \[/, "", at); sub(/\].*/, "", at)
+    split(names, name, "\", \""); split("ends slips sticks acts event", word, " "); n = split(at, x, ", ")
+    for (i = 1; i < n; i += 3) printf "%.9f %s %s\n", t0 + x[i]*tick, name[x[i + 1] + 1], word[x[i + 2] + 1] }' "$1"
+}
+# marked FILE LINE NAME WORD: the time of a mark, if it is this one
+marked() { marks "$1" | sed -n "$2p" | grep -F " $3 $4" | cut -d' ' -f 1; }
+# Times by closed forms; in the file they are rounded to 1e-9 of the span.
+check "a ball that slides until it rolls" a "$models/sliding_ball.lag" pushed -o sliding.html
+check "slips at first" near "$(marked sliding.html 1 table slips)" 0 1e-8
+check "sticks from 2 v0/(7 mu g) on" near "$(marked sliding.html 2 table sticks)" 0.4368719965 1e-8
+is "and has no other mark" 2 "$(marks sliding.html | wc -l | tr -d ' ')"
+check "a ball that bounces" a "$models/bouncing_ball.lag" -o bounce.html
+check "the first impact, after sqrt(2 h/g)" near "$(marked bounce.html 1 floor event)" 0.4515236410 1e-8
+check "the second one, 2 e sqrt(2 h/g) later" near "$(marked bounce.html 2 floor event)" 1.1739614665 1e-8
+cat >belt.lag <<'END'
+model belt "A block on a belt, held by a spring, without a place to draw"
+coord s [m]
+param m = 1 [kg] > 0, k = 1 [N/m] > 0, N = 1 [N] > 0, v = 0.2 [m/s]
+kinetic = m/2*s'^2
+potential = k/2*s^2
+let slip = s - v*t
+friction rub on slip: 0.25*N, static = 0.4*N
+scene squeak { start s' = v; span 10 [s] }
+END
+check "a block that sticks and slips" a belt.lag -o belt.html
+check "breaks loose after mu_s N/(k v)" near "$(marked belt.html 2 "slip'" slips)" 2 1e-7
+check "slips for pi + 2 atan(v/(0.15 m/s)) seconds" near "$(marked belt.html 3 "slip'" sticks)" 6.9961830896 1e-7
+check "a rope that becomes taut" a "$models/rope_catch.lag" -o rope.html
+check "acts then" sh -c 'grep -q "rope acts"' <<END
+$(marks rope.html)
+END
+check "balls of time-stepping" a "$models/room.lag" bounce --method 'moreau(step=0.001)' --until 1 -o room.html
+check "touch as steps say" sh -c 'grep -q acts' <<END
+$(marks room.html)
+END
+empty "a pendulum has no marks" "$(marks double_pendulum_swing.html)"
 
 # ---- animate: the page in a browser ----
 for name in chromium chromium-browser google-chrome; do
@@ -349,6 +395,13 @@ at() { row "$1" rows.csv | awk '{ print $7, $8, $4, $5 }'; }
 check "it opens at t = 1.5" near "$(places 'double.html#t=1.5')" "$(at 152)" 4e-5
 check "nothing on the console" quiet_console
 is "as many frames as rows" "$(($(wc -l <rows.csv) - 1))" "$(frames)"
+# said FILE: the marks in words at the time in the URL
+said() { visit "$1" && sed -n 's/.* data-marks="\([^"]*\)".*/\1/p' dom; }
+is "the page says that the ball slips" "table slips" "$(said 'sliding.html#t=0.3')"
+[ -z "${SLOW:-}" ] || is "that it sticks" "table sticks" "$(said 'sliding.html#t=0.6')"
+is "and of an impact just now" "floor: now" "$(said 'bounce.html#t=0.5')"
+check "with nothing on the console" quiet_console
+[ -z "${SLOW:-}" ] || is "and not long before" "" "$(said 'bounce.html#t=0.4')"
 between=$(echo "$(at 152) $(at 153)" | awk '{ print ($1 + $5)/2, ($2 + $6)/2, ($3 + $7)/2, ($4 + $8)/2 }')
 [ -z "${SLOW:-}" ] || check "between two rows it is between them" near "$(places 'double.html#t=1.505')" "$between" 4e-5
 [ -z "${SLOW:-}" ] || check "at the start" near "$(places 'double.html#t=0')" "$(at 2)" 4e-5

@@ -6,7 +6,7 @@ reference=0.150472840499319940839
 model=tests/exec/models/euler_pole.lag
 
 number() { sed -n "s/.*\"$1\": \([^,}]*\).*/\1/p" "$TMP/json"; }
-near() { awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(d <= t && -d <= t) }' || { echo "$1, not $2 within $3"; return 1; }; }
+near() { close_to "$@"; }
 run() { "$LAGC" run "$@" --json >"$TMP/json" 2>"$TMP/err" || { cat "$TMP/err"; return 1; }; }
 
 # With factors of W relative errors of accelerations are 1e-16/9e-4 at the pole, not 1e-16/9e-4^2; 1e-9 is between the errors at 20 s, 4e-11, 2e-8.

@@ -16,7 +16,7 @@ unset LAG_HOME LAGC_CACHE_MIB
 cache=$dir/cache/lagc
 here=$(pwd)
 cd "$dir" || exit 2
-entry() { find "$cache" -maxdepth 1 -type f | head -n 1; }
+entry() { find "$cache" -maxdepth 1 -type f ! -name '*.lock' | head -n 1; }
 mode() { stat -c %a "$1"; }
 
 # ---- outputs
@@ -120,7 +120,7 @@ start() { # in the background, as a user's shell would
   command=$!
   for _ in $(seq 100); do [ -s "$PID_FILE" ] && break; sleep 0.1; done
 }
-leftovers() { find "$cache" "$dir/tmp" -mindepth 1 -name 'lagc-build*'; find "$dir" -maxdepth 1 -name 'made*'; find "$dir/tmp" -name of_the_compiler; }
+leftovers() { find "$cache" "$dir/tmp" -mindepth 1 \( -name 'lagc-build*' -o -name '*.lock' \); find "$dir" -maxdepth 1 -name 'made*'; find "$dir/tmp" -name of_the_compiler; }
 for signal in TERM HUP; do # background commands of a script ignore INT
   start build "$model" -o made
   kill -$signal $command; wait $command; got=$?

@@ -33,7 +33,7 @@ taken() {
   says "${4:+scene $4: }" "$TMP/check" && says "$2 constraint$([ "$2" = 1 ] || echo s), of rank $1 at the start" "$TMP/check" && says "constraints: $2, $1 independent" "$TMP/run"
 }
 value() { sed -n "s/^  $1  *\\([-+0-9.e]*\\) .*/\\1/p" "$TMP/run"; }
-near() { awk -v got="$1" -v want="$2" -v tol="$3" 'BEGIN { d = got - want; print got, want; exit !(got != "" && d <= tol && -d <= tol) }'; }
+near() { close_to "$@"; }
 
 # ---- constraints that cannot be held
 one 'constraint c: x^2 = 0 [m^2]' 'scene s { start x = 1 [m]; span 2 [s] }'

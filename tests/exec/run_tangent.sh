@@ -115,6 +115,103 @@ differences() {
 }
 check "two events that depend on everything, against differences" differences
 
+# ---- constraints: columns are changes of the start projected onto the constraints
+cat >"$TMP/rod.lag" <<'X'
+model rod "A pendulum by a rod"
+coord x, y
+lagrangian = (x'^2 + y'^2)/2 - 9.81*y
+constraint rod: x^2 + y^2 = 1
+scene s { start x = sin(2), y = -cos(2), x' = cos(2), y' = sin(2); span 3; tolerance 1e-13; output x every 3 }
+X
+cat >"$TMP/angle.lag" <<'X'
+model angle "The same by its angle"
+coord th
+lagrangian = th'^2/2 + 9.81*cos(th)
+scene s { start th = 2, th' = 1; span 3; tolerance 1e-13; method dop853; output th, th' every 3 }
+X
+last "$TMP/angle.lag"
+cp "$TMP/last" "$TMP/angle"
+as_angle() { # q = (sin th, -cos th), v = th' (cos th, sin th): both sides of dy(3)/dy(0) Dy(0) = Dy(3) Dth(3)/Dth(0); along the rod nothing changes
+  paste -d, "$TMP/angle" "$TMP/last" | awk -F, -v tolerance="$1" 'function embed(th, w, dth, dw, e) {
+      e[1] = cos(th)*dth; e[2] = sin(th)*dth; e[3] = cos(th)*dw - w*sin(th)*dth; e[4] = sin(th)*dw + w*cos(th)*dth }
+    { for (c = 0; c < 4; c++) {
+        for (i = 1; i <= 4; i++) want[i] = 0
+        if (c < 2) { embed(2, 1, c == 0, c == 1, from); embed($2, $3, $(4 + c), $(6 + c), want) }
+        else { from[1] = from[2] = from[3] = from[4] = 0; from[2*c - 3] = sin(2); from[2*c - 2] = -cos(2) }
+        for (i = 1; i <= 4; i++) { got = 0
+          for (j = 1; j <= 4; j++) got += $(9 + 4*(i - 1) + j)*from[j]
+          if ((got - want[i])^2 > tolerance^2) { print c, i, got, want[i]; bad = 1 } } } }
+    END { exit bad || NF != 25 }'
+}
+for method in "dop853 1e-10" "rk45 1e-9" "radau 1e-8" "rk4(step=1e-3) 1e-7"; do # entries of 10; of radau the steps are for y; of rk4 (g h^2)^2 with h = 1e-3
+  last "$TMP/rod.lag" --method "${method% *}"
+  check "$title: as by the angle" as_angle "${method#* }"
+done
+last "$TMP/rod.lag" --method 'rk4(step=0.05)' --observe y # steps leave the circle by 1e-5, and are projected
+check "$title: columns are tangent to the circle" awk -v a="$(entry x)" -v b="$(entry y)" -v c="$(entry 'dx/dx(0)')" -v d="$(entry 'dy/dx(0)')" 'BEGIN { e = a*c + b*d; exit !(c*c > 1e-4 && e*e < 1e-26) }'
+# A ball on a turntable: its centre circles at 2/7 W = w from any start. By Gauss, a velocity 1 of the centre loses 2/7 to the spin, as I/(m R^2) = 2/5; one of x needs y' = w.
+last models/turntable.lag --until 3 --tol 1e-12
+close "dx/dx" "cos(18/7)" "$(entry 'dx/dx(0)')" 1e-9
+close "dy/dx" "sin(18/7)" "$(entry 'dy/dx(0)')" 1e-9
+close "dx/dx'" "5/7*sin(18/7)*7/6" "$(entry "dx/dx'(0)" 'm/(m/s)')" 1e-9
+close "dx/db'" "0.05*2/7*sin(18/7)*7/6" "$(entry "dx/db'(0)" 'm/(rad/s)')" 1e-9
+
+# ---- dry friction: around the centres +-R/w^2 the phase goes on, and the amplitude falls by 2 R/w^2 at each stop
+cat >"$TMP/rub.lag" <<'X'
+model rub
+coord x
+param w = 3, R = 0.9
+lagrangian = x'^2/2 - w^2*x^2/2
+friction table on x: R
+scene s { start x = 1, x' = -0.5; span 2; tolerance 1e-12; output x every 10 }
+X
+rub="c0 = 0.1; a0 = sqrt(0.81 + 1/36); p0 = atan2(0.5/3, 0.9); by = by_v ? -sin(p0)/3 : cos(p0); bp = (by_v ? -cos(p0)/3 : -sin(p0))/a0; p = p0 + 3*T; n = int(p/3.14159265358979); a = a0 - 0.2*n"
+swung() { awk "BEGIN { by_v = $1; T = $2; $rub; printf \"%.17g\", $3 }"; }
+for method in dop853 rk45 radau 'rk4(step=1e-3)'; do # stops are found to 1e-10
+  last "$TMP/rub.lag" --method "$method" --until 3.5
+  close "dx/dx, after three stops" "$(swung 0 3.5 'by*cos(p) - a*sin(p)*bp')" "$(entry 'dx/dx(0)')" 2e-9
+  close "dx'/dx" "$(swung 0 3.5 '-3*(by*sin(p) + a*cos(p)*bp)')" "$(entry "dx'/dx(0)" 1/s)" 2e-9
+  close "dx/dx'" "$(swung 1 3.5 'by*cos(p) - a*sin(p)*bp')" "$(entry "dx/dx'(0)" s)" 2e-9
+  close "dx'/dx'" "$(swung 1 3.5 '-3*(by*sin(p) + a*cos(p)*bp)')" "$(entry "dx'/dx'(0)")" 2e-9
+done
+last "$TMP/rub.lag" --until 8 # it stays where its fifth half-swing would begin
+close "dx/dx, at rest" "-cos(atan2(0.5/3, 0.9))" "$(entry 'dx/dx(0)')" 1e-9
+close "dx'/dx" 0 "$(entry "dx'/dx(0)" 1/s)" 1e-12
+check "the report says that a rank is lost" sh -c "'$LAGC' run '$TMP/rub.lag' --tangent --until 8 | grep -q 'rank of the tangent falls by 1 where a slide begins: 1 time'"
+# Sticking and slipping, broken loose by static friction: the flow takes its own rate along, dy(t)/dy(0) y'(0) = y'(t).
+cat >"$TMP/belt.lag" <<'X'
+model belt
+coord x
+let slip = x - 0.2*t
+lagrangian = x'^2/2 - x^2/2
+friction rub on slip: 0.25, static = 0.4
+scene squeak { start x = 0.5; span 19; tolerance 1e-11; output x, x', x'' every 19 }
+X
+last "$TMP/belt.lag"
+rides() { awk -F, '{ for (i = 0; i < 2; i++) { d = -0.25*$(6 + 2*i) - $(3 + i); if (d*d > 1e-18) { print i, d; bad = 1 } } det = $5*$8 - $6*$7; exit bad || det*det > 1e-18 || NF != 8 }' "$TMP/last"; }
+check "the flow takes its rate along, and has one rank left" rides
+cp "$TMP/belt.lag" "$TMP/stuck.lag" # from x' = 0.2 it sticks at once: x = x(0) + t/5, as for velocities beside it
+last "$TMP/stuck.lag" "x=-0.3" "x'=0.2" --until 3
+sticks() { awk -F, '{ exit !(NF == 8 && ($5 - 1)^2 + $6^2 + $7^2 + $8^2 < 1e-20) }' "$TMP/last"; }
+check "a start that sticks" sticks
+last models/falling_cat.lag --until 1 --method dop853 # surfaces of time alone, two at once, where the rates jump: all motions meet them together
+close "a start that is turned stays so" 1 "$(entry 'dpsi/dpsi(0)')" 1e-9
+# A bounce turns the friction, too: the acceleration is -0.8 down and -1.2 up.
+cat >"$TMP/drop.lag" <<'X'
+model drop
+coord y
+lagrangian = y'^2/2 - y
+friction rub on y: 0.2
+event floor: y falling { y' = -0.5*y' }
+scene s { start y = 1, y' = -1; span 1.1; tolerance 1e-12; output y every 2 }
+X
+last "$TMP/drop.lag" # W = sqrt(v^2 + 1.6 y) at the floor, after (W + v)/0.8 s; y = W s/2 - 0.6 s^2 after s more
+drop="W = sqrt(2.6); s = 1.1 - (W - 1)/0.8; V = W/2 - 1.2*s; dW = by_v ? -1/W : 0.8/W; ds = -(dW + by_v)/0.8"
+dropped() { awk "BEGIN { by_v = $1; $drop; printf \"%.17g\", $2 }"; }
+close "dy/dy, up from a floor" "$(dropped 0 'dW*s/2 + V*ds')" "$(entry 'dy/dy(0)')" 1e-9
+close "dy'/dy" "$(dropped 0 'dW/2 - 1.2*ds')" "$(entry "dy'/dy(0)" 1/s)" 1e-9
+close "dy/dy'" "$(dropped 1 'dW*s/2 + V*ds')" "$(entry "dy/dy'(0)" s)" 1e-9
+
 # ---- printed report
 "$LAGC" run models/spring.lag free --tangent --until 1 >"$TMP/out"
 check "the report has the matrix" sh -c "grep -q \"x(0) *x'(0)\" '$TMP/out' && grep -q '^  x  *-0.416146' '$TMP/out'"
@@ -150,7 +247,19 @@ scene go { start x = 0.3; span 4 }
 scene both { like go
   start x = 1 }
 X
+sed -e 's/^constraint/event knock: x rising { x'"'"' = 2*x'"'"' }\nconstraint/' "$TMP/rod.lag" >"$TMP/knocked.lag"
 check "an event that depends on an input" refused 3 'event wall changes the state at t = .*: it depends on an input' "$TMP/driven.lag"
+cat >"$TMP/corner.lag" <<'X'
+model corner "Two surfaces at once"
+coord x, y
+lagrangian = (x'^2 + y'^2)/2
+force x = 0.1*if(x > 0, 1, 2)
+force y = 0.1*if(y > 0, 1, 2)
+scene s { start x = -1, y = -1, x' = 1, y' = 1; span 3 }
+X
+check "a linkage that lies in one line" refused 3 "constraint .* nearly depends on the others: neighbouring motions part there" tests/exec/models/four_bars.lag turn --method 'rk4(step=1e-4)' --until 4
+check "two surfaces at once" refused 3 "a force jumps, and two surfaces are met at once" "$TMP/corner.lag"
+check "an event with constraints" refused 3 "event knock changes the state at t = .*: what constraints make of its effect has no derivative yet" "$TMP/knocked.lag"
 check "two at once" refused 3 'event other changes the state at t = .*: another event does so at the same time' "$TMP/driven.lag" both
 cat >"$TMP/touch.lag" <<'X'
 model touch

@@ -2,6 +2,8 @@
 # Every compilation compares its programs with the text. Here wrong rewrites are planted in sym/, and wrong steps after it, one at a time:
 # the compiler that results must refuse one of tests/exec/self_check/*.lag with an internal error, and write nothing.
 . tests/tap.sh
+zip= # what lagc is linked with
+grep -q "^ZIP_FOUND := yes" "$BUILD/config.mk" && zip="-lminizip -lz"
 
 models=$(echo tests/exec/self_check/*.lag models/chain.lag models/turntable.lag models/rattleback.lag models/guiding_centre.lag tests/exec/models/euler_pole.lag)
 
@@ -15,7 +17,7 @@ build_with() {
     return 1
   fi
   "${CC%% *}" -std=c11 -w -O1 -D_XOPEN_SOURCE=700 -Isrc -I"$BUILD/gen" -c -o "$TMP/wrong.o" "$TMP/$1" &&
-    "${CC%% *}" -o "$TMP/lagc" "$BUILD/obj/src/main.o" "$TMP/wrong.o" "$BUILD/liblagc.a" -lm
+    "${CC%% *}" -o "$TMP/lagc" "$BUILD/obj/src/main.o" "$TMP/wrong.o" "$BUILD/liblagc.a" $zip -lm
 }
 
 # caught FILE PATTERN: a compiler with this mistake refuses one of the models.
@@ -121,6 +123,20 @@ ROWS
 linearisation() { build_with "$1" "$2" && ! "$TMP/lagc" modes models/double_pendulum.lag >"$TMP/said" 2>&1 && grep 'internal error: the linearisation: the text gives' "$TMP/said"; }
 check "the linearisation" linearisation src/mech/linearise.c 's/expr_sub(e->g, e->f\[i\], inertia\[i\])/expr_add(e->g, e->f[i], inertia[i])/'
 check "the columns of its entries" linearisation src/lower/lower_unit.c 's/((IrEntry){dr.at\[k\].row, dr.at\[k\].col})/((IrEntry){dr.at[k].row, dr.at[k ? k - 1 : 0].col})/'
+
+# Programs of headers.
+of_header() { # MODEL WORDS FILE PATTERN
+  build_with "$3" "$4" && ! "$TMP/lagc" header "$1" --with all -o "$TMP/out.h" >"$TMP/said" 2>&1 && grep "internal error: $2: the text gives" "$TMP/said" && [ ! -e "$TMP/out.h" ]
+}
+check "a header's mass matrix" of_header models/double_pendulum.lag 'the mass matrix and the bias' src/lower/lower_programs.c 's/prog_store(l.p, 0, M->col \* e->n + M->row, lower_slot(&l, M->e), name)/prog_store(l.p, 0, M->col * e->n + M->row, lower_slot(\&l, e->mass.at[0].e), name)/'
+slow check "its bias" of_header models/double_pendulum.lag 'the mass matrix and the bias' src/lower/lower_unit.c 's/bias\[i\] = expr_neg(e->g, f\[i\])/bias[i] = f[i]/'
+check "the bias with constraints" of_header models/slider_crank.lag 'the mass matrix and the bias' src/mech/linearise.c 's/e->constraints.n ? expr_substitute(e->g, e->f\[i\], with, n, "") : e->f\[i\]/e->Q[i]/'
+check "inverse dynamics" of_header models/double_pendulum.lag 'inverse dynamics' src/mech/linearise.c 's/expr_sub(e->g, x\[i\], f\[i\])/expr_add(e->g, x[i], f[i])/'
+check "derivatives by inputs" of_header tests/exec/callbacks/driven.lag 'the derivatives by inputs' src/mech/linearise.c 's/by == BY_PARAMS ? m->params.at\[d.at\[k\].index\].place : d.at\[k\].index;/d.at[k].index; if (by == BY_INPUTS) continue;/'
+check "derivatives by parameters" of_header models/double_pendulum.lag 'the derivatives by parameters' src/lower/lower_unit.c 's/vec_push(u->arena, &u->by_params_dr, ((IrEntry){dr.at\[k\].row,/vec_push(u->arena, \&u->by_params_dr, ((IrEntry){dr.at[0].row,/'
+check "rows of constraints" of_header models/slider_crank.lag 'the linearisation' src/mech/linearise.c 's/r\[i\] = k->demand\[i\];/r[i] = expr_int(e->g, 0);/'
+check "multipliers of a header" of_header models/slider_crank.lag 'the residual of the equation of motion of [a-z]*' src/lower/lower_constraints.c 's/l.multipliers\[k\], e->constraints.of\[k\]->name/l.multipliers[0], e->constraints.of[k]->name/'
+check "the linearisation of a flow" of_header models/lorenz.lag 'the linearisation' src/lower/lower_unit.c 's/((IrEntry){dr.at\[k\].row, dr.at\[k\].col})/((IrEntry){dr.at[k].row, dr.at[k ? k - 1 : 0].col})/'
 
 # Derivatives by the argument of a function are reported as not compared.
 printf 'model m\ncoord x\nfunction f(s) = d(s^3, s)\nlagrangian = x'"'"'^2/2 - f(x)\n' >"$TMP/argument.lag"

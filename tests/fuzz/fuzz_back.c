@@ -151,17 +151,21 @@ static void verify_all(const IrUnit *u) {
 }
 
 static void emit(Ast *ast, Eqns *e) {
+  static const char *const everything = "all,gsl,cvode,arkode,ida,casadi";
   Arena *a = ast->arena;
   StrBuf text = strbuf(a), c = strbuf(a), header = strbuf(a);
   long double *found = ARENA_ARRAY(a, long double, 2 * (size_t)e->n + 1);
   unsigned char *moved = ARENA_ARRAY(a, unsigned char, 2 * (size_t)e->n + 1);
   start_of_scene(e, found, moved);
   IrUnit *u = unit_new(e, "fuzz.lag", 0);
-  unit_require(u, e, (e->singular_mass ? 0 : WANT_VARIATION) | WANT_TAYLOR | WANT_LINEAR);
+  unit_require(u, e, (e->singular_mass ? 0 : WANT_VARIATION) | WANT_TAYLOR | header_wants(everything));
   unit_add_scene(u, e);
   verify_all(u);
   show_equations(e, op_count_text(u->accel, a), PRINT_TEXT, &text);
-  emit_header(u, u->name, sb_text(&text), &header);
+  HeaderParts parts = {0};
+  const char *error;
+  if (header_parts(u, everything, &parts, &error)) emit_header(u, u->name, parts, sb_text(&text), &header);
+  emit_header(u, u->name, (HeaderParts){0}, sb_text(&text), &header);
   unit_hoist(u);
   verify_all(u);
   emit_model(u, model_id(a, u->name), &c);

@@ -37,7 +37,7 @@ static void write_everything(Arena *a, Eqns *e) {
   const char *cost = op_count_text(u->accel, a);
   show_equations(e, cost, PRINT_TEXT, &text);
   show_equations(e, cost, PRINT_LATEX, &latex);
-  emit_header(u, u->name, sb_text(&text), &c);
+  emit_header(u, u->name, (HeaderParts){0}, sb_text(&text), &c);
 }
 
 /* One scene, or one effect on top of the first scene. */

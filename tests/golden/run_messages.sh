@@ -10,6 +10,8 @@ elsewhere='internal error
 --precision
 no Hamiltonian
 no symmetries to look for
+the model has no canonical transformation
+the inverse of
 lagc effects
 effects to compare
 this does not belong in a scene

@@ -22,7 +22,8 @@ static Verdict judge(Arena *a, Diags *diags, Sources *sources, const char *text)
   Eqns *e = m ? equations_of(m) : NULL;
   if (!e) return REFUSED;
   IrUnit *u = unit_new(e, "random.lag", 0);
-  unit_require(u, e, WANT_TAYLOR | (e->singular_mass ? 0 : WANT_VARIATION | WANT_LINEAR));
+  unsigned of_headers = WANT_MASS | WANT_INVERSE | WANT_BY_INPUTS | WANT_BY_PARAMS | WANT_MULTIPLIERS | WANT_CONSTRAINED;
+  unit_require(u, e, WANT_TAYLOR | of_headers | (e->singular_mass ? 0 : WANT_VARIATION | WANT_LINEAR));
   unit_add_scene(u, e);
   unit_hoist(u);
   SelfCheck told;

@@ -73,6 +73,7 @@ static void write_rest(Cutter *c, const Source *source) {
 static int run(Arena *a, int argc, char **argv) {
   const char *why;
   Sources *sources = sources_new(a);
+  sources->library = "models/lib";
   Diags *diags = diags_new(a, sources);
   Ast *ast = ast_new(a, interner_new(a), sources, diags);
   const Source *source = source_read(sources, argv[1], &why);

@@ -204,6 +204,7 @@ typedef struct {
 static int read_text(Reading *r, Arena *a, const char *path, const char *text) {
   r->arena = a;
   r->sources = sources_new(a);
+  r->sources->library = "models/lib";
   r->diags = diags_new(a, r->sources);
   r->ast = ast_new(a, interner_new(a), r->sources, r->diags);
   r->source = source_add(r->sources, path, text, strlen(text));

@@ -300,6 +300,60 @@ static void test_forget(void **state) {
   arena_free(a);
 }
 
+/* Chunks that are in use. */
+static void *counted_alloc(void *user, size_t n) {
+  ++*(int *)user;
+  return malloc(n);
+}
+
+static void counted_dealloc(void *user, void *p) {
+  --*(int *)user;
+  free(p);
+}
+
+/* A block larger than a chunk, wherever it stands among the chunks, and the latest block are free at once; others stay. A block that is not of
+ * the arena changes nothing, and a mark stays good when the chunk that it names is gone. */
+static void test_release(void **state) {
+  (void)state;
+  int chunks = 0;
+  char outside[16], far_outside[256];
+  Arena *a = arena_new(&(ArenaConfig){.alloc = counted_alloc, .dealloc = counted_dealloc, .user = &chunks, .chunk = 128});
+  char *kept = arena_strdup(a, "kept"), *large = arena_alloc(a, 1000);
+  size_t used = arena_used(a);
+  ArenaMark after_large = arena_mark(a);
+  char *later = arena_strdup(a, "later"), *latest = arena_alloc(a, 16);
+  assert_int_equal(chunks, 4); /* the arena itself, and three */
+  size_t all = arena_used(a);
+  arena_release(a, latest, 16);
+  assert_true(all - arena_used(a) >= 16);
+  assert_ptr_equal(arena_alloc(a, 16), latest);
+  arena_release(a, later, 6); /* not the latest */
+  arena_release(a, outside, sizeof outside);
+  arena_release(a, far_outside, sizeof far_outside);
+  assert_int_equal(arena_used(a), all);
+  arena_release(a, large, 1000);
+  assert_int_equal(chunks, 3);
+  assert_true(arena_used(a) + 1000 <= all);
+  arena_forget(a, after_large); /* all that came after the large block, which is gone */
+  assert_int_equal(chunks, 2);
+  assert_true(arena_used(a) + 1000 <= used);
+  assert_string_equal(kept, "kept");
+  arena_free(a);
+  assert_int_equal(chunks, 0);
+}
+
+/* A vector that grows holds one block, not those before it, and keeps its elements. */
+static void test_vec_gives_up(void **state) {
+  (void)state;
+  enum { MANY = 100000 };
+  Arena *a = arena_new(&(ArenaConfig){.chunk = 1024});
+  VEC(uint32_t) v = {0};
+  for (uint32_t i = 0; i < MANY; i++) vec_push(a, &v, i);
+  for (uint32_t i = 0; i < MANY; i++) assert_int_equal(v.at[i], i);
+  assert_true(arena_used(a) < v.cap * sizeof *v.at + 4 * 1024); /* blocks of less than a chunk stay: together less than two chunks, and their gaps */
+  arena_free(a);
+}
+
 static void test_intern(void **state) {
   (void)state;
   Arena *a = arena_new(NULL);
@@ -490,7 +544,9 @@ int main(void) {
     cmocka_unit_test(test_intern),
     cmocka_unit_test(test_strbuf),       cmocka_unit_test(test_diag_layout),    cmocka_unit_test(test_diag_utf8),
     cmocka_unit_test(test_diag_long_line), cmocka_unit_test(test_diag_edges),   cmocka_unit_test(test_diag_many),
-    cmocka_unit_test(test_forget),       cmocka_unit_test(test_num_inexact),  cmocka_unit_test(test_suggest),
+    cmocka_unit_test(test_forget),
+    cmocka_unit_test(test_release),
+    cmocka_unit_test(test_vec_gives_up),       cmocka_unit_test(test_num_inexact),  cmocka_unit_test(test_suggest),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

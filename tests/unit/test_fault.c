@@ -65,7 +65,7 @@ static void emit_all(Arena *a, Eqns *e) {
   const char *cost = op_count_text(u->accel, a);
   show_equations(e, cost, PRINT_TEXT, &text);
   show_equations(e, cost, PRINT_LATEX, &out);
-  emit_header(u, u->name, sb_text(&text), &out);
+  emit_header(u, u->name, (HeaderParts){0}, sb_text(&text), &out);
 }
 
 static void compile_all(Arena *a, const char *lag, int errors) {

@@ -27,7 +27,7 @@ static void linearise(Moment *s) {
   Eqns *e = s->e;
   Arena *a = e->m->arena;
   Partials dr = eqns_linearise(e);
-  Prog *p = lower_linear(e, dr);
+  Prog *p = lower_linear(e, dr, BY_STATE);
   assert_null(prog_verify(p));
   Real *out0 = ARENA_ARRAY(a, Real, dr.n + 1), *out1 = ARENA_ARRAY(a, Real, e->mass.n + 1);
   assert_int_equal(run_prog(e, p, s->v, out0, out1), 0);

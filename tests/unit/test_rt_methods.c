@@ -124,6 +124,26 @@ static void rk4_dense_output_has_order_4(void **state)
   check_order(&kepler, &lag_rk4, 1.0 / 256, 0.37, 4);
 }
 
+/* The oscillator, whose closed form is exact for every step: y(n h) = (1 - i h)^n, and on the tangent between. */
+static void euler_is_its_closed_form(void **state)
+{
+  double h = 1.0 / 64, gain = pow(1 + h * h, 128), angle = 256 * atan(h);
+  lag_sim *s = equal_steps(&osc, &lag_euler, h);
+  double q0 = lag_sim_q(s)[0], v0 = lag_sim_v(s)[0], between[2];
+  (void)state;
+  check_order(&osc, &lag_euler, 1.0 / 1024, 0, 1);
+  assert_int_equal(lag_sim_advance(s, 256 * h), LAG_OK);
+  assert_close(lag_sim_q(s)[0], gain * (q0 * cos(angle) + v0 * sin(angle)), 1e-12);
+  assert_close(lag_sim_v(s)[0], gain * (v0 * cos(angle) - q0 * sin(angle)), 1e-12);
+  double q = lag_sim_q(s)[0], v = lag_sim_v(s)[0];
+  assert_int_equal(lag_sim_advance(s, 256.25 * h), LAG_OK);
+  between[0] = lag_sim_q(s)[0];
+  between[1] = lag_sim_v(s)[0];
+  assert_close(between[0], q + 0.25 * h * v, 1e-13);
+  assert_close(between[1], v - 0.25 * h * q, 1e-13);
+  lag_sim_free(s);
+}
+
 static void rk45_has_order_5(void **state)
 {
   (void)state;
@@ -234,7 +254,7 @@ static void backwards_undoes_forwards(void **state)
     lag_sim *s = sim_with(&kepler, lag_methods[i], 1e-12, 1, opt);
     assert_int_equal(lag_sim_advance(s, -2.5), LAG_OK);
     kepler_exact(-2.5, y);
-    assert_close(distance(4, lag_sim_q(s), y), 0, lag_methods[i]->order > 2 ? 1e-8 : lag_methods[i]->order == 2 ? 1e-4 : 0.02);
+    assert_close(distance(4, lag_sim_q(s), y), 0, lag_methods[i]->order > 2 ? 1e-8 : lag_methods[i]->order == 2 ? 1e-4 : 0.05);
     assert_int_equal(lag_sim_advance(s, -2), LAG_EINVAL);
     lag_sim_free(s);
   }
@@ -310,6 +330,7 @@ int main(void)
       cmocka_unit_test(dopri5_satisfies_the_order_conditions),
       cmocka_unit_test(rk4_has_order_4),
       cmocka_unit_test(rk4_dense_output_has_order_4),
+      cmocka_unit_test(euler_is_its_closed_form),
       cmocka_unit_test(rk45_has_order_5),
       cmocka_unit_test(rk45_dense_output_has_order_4),
       cmocka_unit_test(rk45_error_follows_the_tolerance),

@@ -104,7 +104,9 @@ static void indices_out_of_range_are_refused(void **state)
 
 static void null_is_refused(void **state)
 {
-  double saved[SIZE], x[2];
+  double saved[SIZE], x[2] = {0, 0};
+  char why[400];
+  int done;
   lag_stats st;
   lag_sim *s = lag_sim_new(&scene);
 
@@ -118,10 +120,16 @@ static void null_is_refused(void **state)
       lag_sim_set_input(s, NULL, NULL, NULL), lag_sim_set_method(s, lag_sim_method(s), NULL, 1), lag_sim_set_method(s, lag_sim_method(s), NULL, -1),
       lag_sim_advance(NULL, 1), lag_sim_ensure_step(NULL, 1, x), lag_sim_eval(NULL, 1, x), lag_sim_outputs(NULL, x), lag_sim_outputs_at(NULL, 1, x, x),
       lag_sim_set_tangent(NULL, 1, x), lag_sim_tangent(NULL, x), lag_sim_save(NULL, x), lag_sim_load(NULL, x), lag_sim_set_method(NULL, NULL, NULL, 0),
-      lag_sim_set_tolerance(NULL, 1), lag_sim_set(NULL, "x", 1), lag_sim_set_input(NULL, "x", NULL, NULL), lag_sim_balance(NULL), lag_sim_judge(NULL)};
+      lag_sim_set_tolerance(NULL, 1), lag_sim_set(NULL, "x", 1), lag_sim_set_input(NULL, "x", NULL, NULL), lag_sim_balance(NULL), lag_sim_judge(NULL),
+      lag_sim_choose_method(NULL, 1, 0, NULL, 0, why, sizeof why), lag_sim_choose_method(s, 1, 0, NULL, 0, NULL, 0), lag_sim_rhs(NULL, 1, x, x, x),
+      lag_sim_rhs(s, -1, x, x, x), lag_sim_rhs(s, 1, x, x, NULL), lag_sim_rows(NULL, 1, x, x, x, &done), lag_sim_rows(s, 1, NULL, x, x, &done),
+      lag_sim_rows(s, 1, x, x, x, NULL), lag_sim_rows(s, -1, x, x, x, &done), lag_sim_batch(NULL, 1, x, NULL, 1, x, x, &done),
+      lag_sim_batch(s, -1, x, NULL, 1, x, x, &done), lag_sim_batch(s, 1, x, NULL, -1, x, x, &done), lag_sim_batch(s, 1, x, NULL, 1, x, NULL, &done)};
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
     assert_int_equal(refused[i], LAG_EINVAL);
   }
+  assert_true(!lag_sim_like(NULL) && !lag_library_scene(NULL, 0) && !lag_scene_span(NULL, x, x, x) && !lag_scene_method(NULL) && !lag_find_method(NULL));
+  assert_true(!lag_item(NULL, 'q', 0, NULL, NULL, NULL) && !lag_item(&scene, 'q', -1, NULL, NULL, NULL) && !lag_item(&scene, 'p', 0, NULL, NULL, NULL));
   lag_sim_stats(s, NULL);
   lag_sim_stats(NULL, &st);
   lag_sim_charge(NULL, 0, NULL);
@@ -134,6 +142,25 @@ static void null_is_refused(void **state)
   check_state(s, saved);
   lag_sim_free(s);
   lag_sim_free(NULL);
+}
+
+/* A batch leaves the simulation that it is like as it was, in the middle of its run. */
+static void a_batch_leaves_its_model_alone(void **state)
+{
+  const double y0[4] = {1, 0, 0, 2}, t[2] = {1, 2};
+  double saved[SIZE], y[8];
+  int status[2];
+  lag_sim *s = lag_sim_new(&scene);
+
+  (void)state;
+  assert_int_equal(lag_sim_advance(s, 1.5), LAG_OK);
+  assert_int_equal(lag_sim_save(s, saved), LAG_OK);
+  assert_int_equal(lag_sim_batch(s, 2, y0, NULL, 2, t, y, status), LAG_OK);
+  for (int i = 0; i < 2; i++) {
+    assert_true(status[i] == LAG_OK && fabs(y[2 * i] - cos(t[i])) < 1e-10 && fabs(y[4 + 2 * i] - 2 * sin(t[i])) < 1e-10);
+  }
+  check_state(s, saved);
+  lag_sim_free(s);
 }
 
 /* A scene's method that liblag.a has not is refused until one is set. */
@@ -155,7 +182,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(times_that_are_none_are_refused),
       cmocka_unit_test(indices_out_of_range_are_refused),
-      cmocka_unit_test(null_is_refused),
+      cmocka_unit_test(null_is_refused), cmocka_unit_test(a_batch_leaves_its_model_alone),
       cmocka_unit_test(a_method_is_never_replaced),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

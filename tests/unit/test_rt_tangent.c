@@ -7,7 +7,7 @@ enum { MOST = 16 };
 
 static const lag_method *const symplectic[] = {&lag_symplectic_euler, &lag_verlet, &lag_verlet4, &lag_verlet6, &lag_verlet8,
                                                &lag_variational,      &lag_gauss};
-static const lag_method *const others[] = {&lag_rk4, &lag_rk45, &lag_dop853, &lag_radau};
+static const lag_method *const others[] = {&lag_euler, &lag_rk4, &lag_rk45, &lag_dop853, &lag_radau};
 enum { SYMPLECTIC = sizeof symplectic / sizeof *symplectic, OTHERS = sizeof others / sizeof *others, ALL = SYMPLECTIC + OTHERS };
 
 static const lag_method *method_at(int i)
@@ -91,6 +91,7 @@ static void matrices_of_linear_steps(void **state)
       {&lag_symplectic_euler, {1 - h * h, h, -h, 1}},
       {&lag_variational, {(1 - h * h / 4) / d, h / d, -h / d, (1 - h * h / 4) / d}},
       {&lag_rk4, {even, odd, -odd, even}},
+      {&lag_euler, {1, h, -h, 1}},
   };
   (void)state;
   for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {

@@ -166,6 +166,7 @@ static void check_file(const char *path) {
   if (!arena || setjmp(no_memory)) fail_msg("out of memory");
   arena_guard(arena, &no_memory);
   Sources *sources = sources_new(arena);
+  sources->library = "models/lib";
   Ast *ast = ast_new(arena, interner_new(arena), sources, diags_new(arena, sources));
   const char *why = NULL;
   const Source *source = source_read(sources, path, &why);

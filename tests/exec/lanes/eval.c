@@ -135,7 +135,11 @@ int main(void) {
         fill(q, m->nq, lane, scale);
         fill(v, m->nq, lane, 1);
         fill(z, m->nz, lane, 1);
-        fill(u + m->nu, s->nexact, lane, 1); /* closed forms, as observe has them */
+        for (int k = 0; k < m->nmodes; k++) { /* free, or held */
+          const double held = next();
+          put(&u[m->nu + k], lane, held < 0 ? LAG_FREE : held - 1.5);
+        }
+        fill(u + m->nu + m->nmodes, s->nexact, lane, 1); /* closed forms, as observe has them */
         for (int k = 0; k < m->np; k++) put(&p[k], lane, get(&p[k], lane) * (1 + next() / 16));
       }
       if (m->derive) m->derive(p);

@@ -22,14 +22,15 @@ static Real next(void) { /* in (-1/8, 1/8) */
   return (Real)((double)(seed >> 11) / 9007199254740992.0 - 0.5) / 4;
 }
 
-/* Near the start, by an eighth of what it is at most; what is zero is moved by an eighth of a declared unit. */
+/* Near the start, by an eighth of what it is at most; what is zero is moved by an eighth of a declared unit. Time by an eighth of a second, or of
+ * the span where that is shorter: the phase of a fast field would have no digits after a second. */
 static void place(const lag_scene *s, Point *at) {
   const lag_model *m = s->model;
   static const unsigned char none[MOST];
   if (m->np + m->nderived > MOST) exit(1);
   s->params(at->p, none);
   s->start(at->p, at->q, at->v, at->z);
-  at->t = (Real)s->t0 + next();
+  at->t = (Real)s->t0 + next() * (fabs(s->t1 - s->t0) < 1 ? (Real)fabs(s->t1 - s->t0) : 1);
   for (int i = 0; i < m->nq; i++) {
     Real unit = at->q[i] == 0 ? (Real)m->q[i].factor : at->q[i], unit_v = at->v[i] == 0 ? (Real)m->q[i].factor : at->v[i];
     at->q[i] += next() * unit;

@@ -2,9 +2,9 @@
  * Holds: the choice depends on the model, the values and the tolerance, never on measured times. Stiffness is the dominant eigenvalue of the
  * Jacobian by the power method, compared with a method's bound of stability at the steps of a trial run. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
-#include "app/app.h"
 #include "core/core.h"
 #include "numeric/workspace.h"
 
@@ -96,23 +96,23 @@ static int examine_step(void *context, const lag_sim *sim) {
   return s->steps >= STEPS_OF_TRIAL;
 }
 
-/* Runs a trial by `method` with the values of app->sim for at most STEPS_OF_TRIAL steps, and compares each with an explicit method's `bound` of
+/* Runs a trial by `method` with the values of sim for at most STEPS_OF_TRIAL steps, and compares each with an explicit method's `bound` of
  * stability on the negative real axis. A mode that grows in the direction of the run does not count: backwards, a stiff model is not stiff. Needs
  * the model's linearisation. 0: no trial is possible. Source of the criterion, and of the bounds 3.3 of rk45 and 6.1 of dop853: Hairer, Wanner,
  * Solving Ordinary Differential Equations II (1996), DOI 10.1007/978-3-642-05221-7, IV.2. */
-static int run_trial(App *app, const lag_method *method, double bound, Stiffness *s) {
-  lag_sim *trial = lag_app_fresh_sim(app);
-  size_t n = (size_t)app->sim->pb.n, rows = n - (size_t)app->sim->pb.nq;
-  Look l = {.s = s, .bound = bound, .last = app->scene->t0, .n = (int)n, .every = n <= 40 ? 1 : 5};
+static int run_trial(const lag_sim *sim, double until, const lag_method *method, double bound, Stiffness *s) {
+  lag_sim *trial = lag_sim_like(sim);
+  size_t n = (size_t)sim->pb.n, rows = n - (size_t)sim->pb.nq;
+  Look l = {.s = s, .bound = bound, .last = sim->scene->t0, .n = (int)n, .every = n <= 40 ? 1 : 5};
   double **const parts[] = {&l.J, &l.x, &l.y, &l.z, &l.work};
-  const size_t sizes[] = {rows * n, n, n, n, lag_linear_work(app->scene->model)};
+  const size_t sizes[] = {rows * n, n, n, n, lag_linear_work(sim->scene->model)};
   double *block = lag_workspace(sizeof parts / sizeof *parts, parts, sizes);
-  int ready = trial && block && lag_sim_set_tolerance(trial, lag_sim_tolerance(app->sim)) == 0 && lag_sim_set_method(trial, method, NULL, 0) == 0;
+  int ready = trial && block && lag_sim_set_method(trial, method, NULL, 0) == 0;
   *s = (Stiffness){0};
   if (ready) {
     for (size_t i = 0; i < n; i++) l.x[i] = 1 + 0.1 * (double)(i % 7); /* unlikely to be an eigenvector of a model */
     lag_sim_on_step(trial, examine_step, &l);
-    s->unfinished = lag_sim_advance(trial, app->until) == LAG_INTERRUPTED;
+    s->unfinished = lag_sim_advance(trial, until) == LAG_INTERRUPTED;
   }
   free(block);
   lag_sim_free(trial);
@@ -127,43 +127,39 @@ static int exceeds_stability(const Stiffness *s, int n) { return STAGES * s->nee
 /* ---- The choice */
 
 /* Whether the model is stiff, by a trial of `method`, and if needed of radau; why[size] := the reason. */
-static int is_stiff(App *app, const lag_method *method, char *why, size_t size) {
-  const lag_model *m = app->scene->model;
+static int is_stiff(const lag_sim *sim, double until, const lag_method *method, char *why, size_t size) {
+  const lag_model *m = sim->scene->model;
   int n = 2 * m->nq + m->nz;
   double bound = method == &lag_rk45 ? 3.3 : 6.1;
   Stiffness s, radau;
-  if (!m->linear || m->constraints || n > MOST_OF_TRIAL || !run_trial(app, method, bound, &s)) return 0;
+  if (!m->linear || m->constraints || n > MOST_OF_TRIAL || !run_trial(sim, until, method, bound, &s)) return 0;
   if (s.looked >= LEAST_STEPS && s.limited * 2 > s.looked) {
     snprintf(why, size, "radau, since the model is stiff: stability, not the tolerance, would limit %.0f %% of the first steps of %s",
              100.0 * s.limited / s.looked, method->name);
     return 1;
   }
-  if (!s.unfinished || n > MOST_OF_RADAU || !run_trial(app, &lag_radau, bound, &radau) || !exceeds_stability(&radau, n)) return 0;
+  if (!s.unfinished || n > MOST_OF_RADAU || !run_trial(sim, until, &lag_radau, bound, &radau) || !exceeds_stability(&radau, n)) return 0;
   snprintf(why, size, "radau, since the model is stiff: stability alone would demand %.2g steps of %s to t = %.3g s, and radau takes %d",
            radau.needed, method->name, radau.until, radau.steps);
   return 1;
 }
 
-/* Sets the method; 0 if it refuses this model or these options. */
-static int set(App *app, const lag_method *method, const lag_option *opt, int n) { return lag_sim_set_method(app->sim, method, opt, n) == 0; }
-
-int lag_app_choose_automatically(App *app, const lag_option *opt, int n) {
-  double tol = lag_sim_tolerance(app->sim);
+int lag_sim_choose_method(lag_sim *sim, double until, int exponents, const lag_option *opt, int n, char *why, size_t size) {
+  if (!sim || !why) return LAG_EINVAL;
+  double tol = lag_sim_tolerance(sim);
   const lag_method *plain = tol > above_rk45 ? &lag_rk45 : &lag_dop853;
-  char *why = app->why;
-  size_t size = sizeof app->why;
-  int exponents = app->args.lyapunov; /* taylor integrates tangent vectors by dop853, so dop853 alone is cheaper */
-  if (is_stiff(app, plain, why, size) && set(app, &lag_radau, opt, n)) return 0;
-  if (tol < below_taylor && !exponents && set(app, &lag_taylor_method, opt, n)) {
+  if (is_stiff(sim, until, plain, why, size) && lag_sim_set_method(sim, &lag_radau, opt, n) == 0) return LAG_OK;
+  if (tol < below_taylor && !exponents && lag_sim_set_method(sim, &lag_taylor_method, opt, n) == 0) {
     snprintf(why, size, "taylor, since the tolerance is below %g", below_taylor);
-    return 0;
+    return LAG_OK;
   }
-  if (!set(app, plain, opt, n)) return lag_app_error(&app->args, "%s", lag_sim_message(app->sim));
+  int rc = lag_sim_set_method(sim, plain, opt, n);
+  if (rc) return rc;
   if (plain == &lag_rk45) snprintf(why, size, "rk45, since the tolerance is above %g", above_rk45);
   else if (tol >= below_taylor) snprintf(why, size, "dop853, since the tolerance is at most %g", above_rk45);
   else if (exponents) snprintf(why, size, "dop853, since tangent vectors cost less with dop853 than with taylor");
-  else if (app->scene->model->constraints)
+  else if (sim->scene->model->constraints)
     snprintf(why, size, "dop853, since taylor cannot hold constraints, with the tolerance below %g", below_taylor);
   else snprintf(why, size, "dop853, since taylor cannot take this run, with its tolerance below %g", below_taylor);
-  return 0;
+  return LAG_OK;
 }

@@ -1,0 +1,90 @@
+/* Measures as nodes: written by measure_text.c, evaluated along a run by measure_run.c. Holds: the nodes of an expression stand together, arguments before
+ * their node, so an evaluation is a loop over node[begin .. root]. */
+#pragma once
+
+#include "analysis/measure.h"
+
+typedef enum MeasureKind {
+  MEASURE_NUMBER,
+  MEASURE_QUANTITY, /* its present value */
+  MEASURE_ONE, MEASURE_TWO, /* a function of node a; of nodes a and b */
+  MEASURE_TRACK,    /* number `index` of the tracks */
+  MEASURE_AT,       /* quantity a at the time b */
+  MEASURE_HIT,      /* firing number a of event `index` */
+  MEASURE_FIRINGS,  /* of event `index` */
+  MEASURE_END,
+  MEASURE_LYAPUNOV
+} MeasureKind;
+
+typedef enum QuantityKind { QUANTITY_TIME, QUANTITY_STATE, QUANTITY_OUTPUT, QUANTITY_CHARGE, QUANTITY_PARAMETER, QUANTITY_INPUT, QUANTITY_KINDS } QuantityKind;
+
+typedef enum TrackKind { TRACK_MAX, TRACK_MIN, TRACK_MEAN, TRACK_RMS, TRACK_DRIFT, TRACK_PERIOD, TRACK_KINDS } TrackKind;
+
+/* Unit in which a value is shown: SI = shown*factor + offset. */
+typedef struct MeasureUnit {
+  enum { UNIT_NONE, UNIT_KNOWN, UNIT_MIXED, UNIT_SI } kind; /* a pure number; the unit `text`; several units, SI; a number of any unit, in SI */
+  char text[48];
+  double factor, offset;
+} MeasureUnit;
+
+/* MEASURE_STATIC: known before the run; else the number of the run after which the value is known, 0 for all but values at times that are measures. */
+enum { MEASURE_STATIC = -1 };
+
+typedef struct MeasureNode {
+  MeasureKind kind;
+  int begin, a, b;
+  int index;            /* of the quantity, track or event */
+  QuantityKind of;
+  double (*one)(double);
+  double (*two)(double, double);
+  MeasureUnit unit;
+  int literal;          /* 1: made of numbers alone */
+  int measured;         /* 1: contains a value of the run as a whole */
+  int known;
+  int taken;            /* MEASURE_AT: 1 once the run has come there */
+  double value;         /* at the last evaluation */
+  double result;        /* of a number, and of a run so far; NaN: not known */
+} MeasureNode;
+
+/* A value that is followed along the run. */
+typedef struct Track {
+  TrackKind kind;
+  int node, arg;        /* its node, and the node of the expression that is followed */
+  double first, last;   /* value at the start, and at the end of the last part */
+  double least, most;
+  double sum, lost;     /* the integral, and its rounding error (Kahan) */
+  double passage, latest; /* first and last upward passage of 0, */
+  int passages;         /* and their number */
+  double bad;           /* the first time at which the value is not finite; NaN: none */
+} Track;
+
+enum { MEASURE_SAMPLES = 16 };
+
+struct Measures {
+  const lag_scene *scene;
+  MeasureDialect dialect;
+  int n, nnodes, room, ntracks;
+  int *root;            /* [n] */
+  char **text;          /* [n] */
+  char (*why)[200];     /* [n] */
+  MeasureNode *node;
+  Track *track;
+  int uses[QUANTITY_KINDS]; /* 1: an expression contains such a quantity */
+  int integrates, samples; /* 1: some track is an integral; some track needs samples */
+  double *y, *out;      /* the state and outputs of the present evaluation */
+  double *sampled;      /* [ntracks][MEASURE_SAMPLES + 1] of the present part */
+  double *firings;      /* [nev] so far */
+  int exponent;         /* 1: an expression contains the Lyapunov exponent, */
+  char no_exponent[200]; /* and why the last run has none */
+  int status;           /* of the run under way, as lag_measures_advance returned it last */
+  lag_sim *sim;         /* the run under way */
+  double t0, t;         /* its start; time of the present evaluation */
+  lag_event_fn *on_event; /* the caller's hook */
+  void *on_event_context;
+};
+
+/* measure_text.c: reads expression k, m->text[k]; m->root[k] := its node. 0, or -1 after a message in why. */
+int lag_measure_parse(Measures *m, int k, char *why, size_t size);
+
+/* measure_lyapunov.c: the largest exponent of a run that has come to `until`; NaN with the reason in m->no_exponent. */
+double lag_measure_lyapunov(Measures *m, const lag_sim *first, double until);

@@ -1,0 +1,464 @@
+/* Measures of a run. Enters: a run, part by part; leaves: the value of each expression. Holds: the run does not depend on it.
+ *
+ * Each part of the run, a step or what an event leaves of it, is sampled at equal times by dense output: at a few of them, and at the rest where the few
+ * leave room for a larger value or a zero. Where the parabola through three samples has its top between two of them, the top is found by golden section
+ * (R.P. Brent, Algorithms for Minimization without Derivatives, 1973, ch. 5); where samples change their sign, the zero by numeric/root.h. Integrals are sums of quadratures over the parts, by the nodes that balances of charges take
+ * (core/charges.c): of the order of the method, so that the error of a mean falls with the step as that of the motion does; in methods of long steps,
+ * Taylor's, over halves of halves of them. Both sides of a jump count. */
+#include "analysis/measure.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/measure_nodes.h"
+#include "core/core.h"
+#include "numeric/root.h"
+
+/* ---- Memory */
+
+static int allocate(Measures *m) {
+  const lag_model *model = m->scene->model;
+  size_t n = 2 * (size_t)model->nq + (size_t)model->nz, samples = (size_t)m->ntracks * (MEASURE_SAMPLES + 1);
+  m->y = calloc(n + (size_t)m->scene->nout + (size_t)model->nev + samples + 1, sizeof *m->y);
+  if (!m->y) return LAG_ENOMEM;
+  m->out = m->y + n;
+  m->firings = m->out + m->scene->nout;
+  m->sampled = m->firings + model->nev;
+  return LAG_OK;
+}
+
+Measures *lag_measures_new_dialect(const lag_scene *scene, int n, const char *const *text, const MeasureDialect *dialect, char *why, size_t size) {
+  Measures *m = calloc(1, sizeof *m);
+  size_t count = n > 0 ? (size_t)n : 1;
+  snprintf(why, size, "out of memory");
+  if (!m) return NULL;
+  *m = (Measures){.scene = scene, .n = n, .dialect = dialect ? *dialect : (MeasureDialect){0}};
+  m->root = calloc(count, sizeof *m->root);
+  m->text = calloc(count, sizeof *m->text);
+  m->why = calloc(count, sizeof *m->why);
+  int rc = m->root && m->text && m->why ? 0 : -1;
+  for (int k = 0; k < n && rc == 0; k++) {
+    m->text[k] = malloc(strlen(text[k]) + 1);
+    if (m->text[k]) strcpy(m->text[k], text[k]);
+    rc = m->text[k] ? lag_measure_parse(m, k, why, size) : -1;
+  }
+  if (rc == 0 && allocate(m) == LAG_OK) return why[0] = '\0', m;
+  lag_measures_free(m);
+  return NULL;
+}
+
+Measures *lag_measures_new(const lag_scene *scene, int n, const char *const *text, char *why, size_t size) {
+  return lag_measures_new_dialect(scene, n, text, NULL, why, size);
+}
+
+void lag_measures_free(Measures *m) {
+  if (!m) return;
+  for (int k = 0; k < m->n && m->text; k++) free(m->text[k]);
+  free(m->root);
+  free(m->text);
+  free(m->why);
+  free(m->node);
+  free(m->track);
+  free(m->y);
+  free(m);
+}
+
+int lag_measures_count(const Measures *m) { return m->n; }
+
+const char *lag_measures_unit(const Measures *m, int k) {
+  const MeasureUnit *u = &m->node[m->root[k]].unit;
+  return u->kind == UNIT_KNOWN && !m->dialect.si ? u->text : "";
+}
+
+const char *lag_measures_why(const Measures *m, int k) { return m->why[k]; }
+
+/* ---- Evaluation */
+
+/* y, out and charges at t, within the present part of the run. */
+static void take_row(Measures *m, double t) {
+  lag_sim *s = m->sim;
+  double calls = s->pb.rhs_calls; /* of the run: dense output may take more */
+  int rc = lag_sim_eval(s, t, m->y);
+  s->pb.rhs_calls = calls;
+  m->t = t;
+  for (int i = 0; i < s->pb.n && rc; i++) m->y[i] = NAN;
+  if (m->uses[QUANTITY_OUTPUT] && (rc || lag_observe(s, t, m->y, m->out)))
+    for (int i = 0; i < m->scene->nout; i++) m->out[i] = NAN;
+  if (m->uses[QUANTITY_CHARGE]) lag_charges_at(s, t, m->y);
+  if (m->uses[QUANTITY_INPUT]) lag_inputs(&s->pb, t);
+}
+
+/* A quantity in the row taken last. */
+static double quantity(const Measures *m, const MeasureNode *n) {
+  switch (n->of) {
+    case QUANTITY_TIME: return m->t;
+    case QUANTITY_STATE: return m->y[n->index];
+    case QUANTITY_OUTPUT: return m->out[n->index];
+    case QUANTITY_CHARGE: return m->sim->charge_now[2 * n->index];
+    case QUANTITY_PARAMETER: return m->sim->p[n->index];
+    case QUANTITY_INPUT: return m->sim->u[n->index];
+    case QUANTITY_KINDS: break;
+  }
+  return NAN;
+}
+
+/* The expression of node `root` at the row taken last. */
+static double evaluate(Measures *m, int root) {
+  for (int i = m->node[root].begin; i <= root; i++) {
+    MeasureNode *n = &m->node[i];
+    if (n->kind == MEASURE_QUANTITY) n->value = quantity(m, n);
+    else if (n->kind == MEASURE_ONE) n->value = n->one(m->node[n->a].value);
+    else if (n->kind == MEASURE_TWO) n->value = n->two(m->node[n->a].value, m->node[n->b].value);
+    else n->value = n->result;
+  }
+  return m->node[root].value;
+}
+
+/* ---- Along a part of the run */
+
+typedef struct Followed {
+  Measures *m;
+  int node;
+  double sign;
+} Followed;
+
+static double value_at(void *context, double t) {
+  const Followed *f = context;
+  take_row(f->m, t);
+  return f->sign * evaluate(f->m, f->node);
+}
+
+static void note(Track *k, double t, double x) {
+  if (!isfinite(x) && isnan(k->bad)) k->bad = t;
+  k->least = fmin(k->least, x);
+  k->most = fmax(k->most, x);
+}
+
+/* The largest value of f in [a, b], where it has one top. */
+static double top(Followed *f, double a, double b) {
+  const double golden = 0.6180339887498948482045868343656381177203, last = 1e-8 * fabs(b - a);
+  double c = b - golden * (b - a), d = a + golden * (b - a), fc = value_at(f, c), fd = value_at(f, d);
+  for (int i = 0; i < 60 && fabs(b - a) > last; i++) {
+    if (fc > fd) b = d, d = c, fd = fc, c = b - golden * (b - a), fc = value_at(f, c);
+    else a = c, c = d, fc = fd, d = a + golden * (b - a), fd = value_at(f, d);
+  }
+  return fmax(fc, fd);
+}
+
+/* Tops of sign*x[n + 1], samples at t[n + 1], that may exceed those known. */
+static void find_tops(Measures *m, Track *track, double sign, int n, const double *t, const double *x) {
+  const double beyond = 1.25; /* the parabola's top may be off by a quarter of an interval */
+  Followed f = {m, track->arg, sign};
+  for (int k = 1; k < n; k++) {
+    double a = sign * x[k - 1], b = sign * x[k], c = sign * x[k + 1], bend = a - 2 * b + c, place = (a - c) / (2 * bend), rise = (a - c) * place / 4;
+    double best = sign > 0 ? track->most : -track->least, here = fmax(fmax(a, b), c);
+    if (!(bend < 0) || !(fabs(place) <= beyond) || (place < -0.5 && k > 1) || (place > 0.5 && k < n - 1)) continue;
+    double gain = b - rise - here;
+    if (here + 2 * fmax(gain, 0) - 0.125 * bend <= best || fabs(bend) <= 8 * DBL_EPSILON * fabs(here)) continue;
+    note(track, t[k], sign * top(&f, t[k - 1], t[k + 1]));
+  }
+}
+
+static void find_passages(Measures *m, Track *track, int n, const double *t, const double *x) {
+  Followed f = {m, track->arg, 1};
+  for (int k = -1; k < n; k++) {
+    double before = k < 0 ? track->last : x[k];
+    if (!(before < 0 && x[k + 1] >= 0)) continue;
+    track->latest = k < 0 || x[k + 1] == 0.0 ? t[k + 1] : lag_root(value_at, &f, t[k], before, t[k + 1], x[k + 1]);
+    track->passage = track->passages++ ? track->passage : track->latest;
+  }
+}
+
+/* Follows a track through samples x[n + 1] at t[n + 1]; n = 0: the two sides of a jump. */
+static void follow(Measures *m, Track *track, int n, const double *t, const double *x) {
+  for (int k = 0; k <= n; k++) note(track, t[k], x[k]);
+  if (track->kind == TRACK_MAX || track->kind == TRACK_DRIFT) find_tops(m, track, 1, n, t, x);
+  if (track->kind == TRACK_MIN || track->kind == TRACK_DRIFT) find_tops(m, track, -1, n, t, x);
+  if (track->kind == TRACK_PERIOD) find_passages(m, track, n, t, x);
+  track->last = x[n];
+}
+
+static int is_integral(const Track *k) { return k->kind == TRACK_MEAN || k->kind == TRACK_RMS; }
+
+/* Parts of a step that are sampled, and for quadrature: methods of high order take long steps. */
+static int places(const lag_method *method) { return method->flags & LAG_METHOD_TAYLOR ? MEASURE_SAMPLES : method->order >= 6 ? MEASURE_SAMPLES / 2 : MEASURE_SAMPLES / 4; }
+
+/* Whether sign*x may exceed `best` and all of its samples x[n + 1] between two of them, which are closer to each other than the bend of x. */
+static int may_have_top(double sign, double best, double bend, int n, const double *x) {
+  for (int k = 0; k <= n; k++) best = fmax(best, sign * x[k]);
+  for (int k = 0; k < n; k++)
+    if (!(fabs(x[k + 1] - x[k]) > bend) && !(fmax(sign * x[k], sign * x[k + 1]) + bend <= best)) return 1;
+  return 0;
+}
+
+/* Whether some of x[n + 1] is not on one side of 0, by more than its bend. */
+static int may_pass(double bend, int n, const double *x) {
+  for (int k = 0; k < n; k++)
+    if (!(fmin(x[k], x[k + 1]) > bend) && !(fmax(x[k], x[k + 1]) < -bend)) return 1;
+  return 0;
+}
+
+/* Whether samples between these x[n + 1] may tell more. The bend is 16 times the way of a parabola from its chord. */
+static int needs_more(const Track *track, int n, const double *x) {
+  double bend = 0;
+  for (int k = 1; k < n; k++) bend = fmax(bend, 2 * fabs(x[k - 1] - 2 * x[k] + x[k + 1]));
+  if (track->kind == TRACK_PERIOD) return may_pass(bend, n, x);
+  return (track->kind != TRACK_MIN && may_have_top(1, track->most, bend, n, x)) || (track->kind != TRACK_MAX && may_have_top(-1, -track->least, bend, n, x));
+}
+
+/* Samples number first, first + stride, ... n of [a, b]: t[k] and the values of each track there. */
+static void take_samples(Measures *m, double a, double b, int n, int first, int stride, double *t) {
+  for (int k = first; k <= n; k += stride) {
+    t[k] = k == n ? b : a + k * (b - a) / n;
+    take_row(m, t[k]);
+    for (int i = 0; i < m->ntracks; i++)
+      if (!is_integral(&m->track[i])) m->sampled[i * (MEASURE_SAMPLES + 1) + k] = evaluate(m, m->track[i].arg);
+  }
+}
+
+/* Follows the tracks over [a, b]: by a few samples, and by all where these leave anything open. */
+static void sample(Measures *m, double a, double b) {
+  enum { FEW = MEASURE_SAMPLES / 4 };
+  int n = a == b ? 0 : places(m->sim->method), stride = n > FEW ? n / FEW : 1, more = 0;
+  double t[MEASURE_SAMPLES + 1], few[FEW + 1];
+  take_samples(m, a, b, n, 0, stride, t);
+  for (int i = 0; i < m->ntracks && stride > 1 && !more; i++) {
+    for (int k = 0; k <= FEW; k++) few[k] = m->sampled[i * (MEASURE_SAMPLES + 1) + k * stride];
+    more = !is_integral(&m->track[i]) && needs_more(&m->track[i], FEW, few);
+  }
+  for (int first = 1; more && first < stride; first++) take_samples(m, a, b, n, first, stride, t);
+  if (more) stride = 1;
+  for (int k = 0; k * stride <= n; k++) t[k] = t[k * stride];
+  for (int i = 0; i < m->ntracks; i++) {
+    double *x = m->sampled + i * (MEASURE_SAMPLES + 1);
+    for (int k = 0; k * stride <= n; k++) x[k] = x[k * stride];
+    if (!is_integral(&m->track[i])) follow(m, &m->track[i], n / stride, t, x);
+  }
+}
+
+/* Adds the integrals over [a, b]: compensated sums, W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723. */
+static void integrate(Measures *m, double a, double b) {
+  lag_sim *s = m->sim;
+  lag_charges_nodes(s);
+  int n = s->method->flags & LAG_METHOD_TAYLOR ? 4 : 1;
+  for (int j = 0; j < n * s->nodes; j++) {
+    double h = (b - a) / n, t = a + (j / s->nodes + s->node[j % s->nodes]) * h, weight = s->weight[j % s->nodes] * h;
+    take_row(m, t);
+    for (Track *k = m->track; k < m->track + m->ntracks; k++) {
+      if (!is_integral(k)) continue;
+      double x = evaluate(m, k->arg), term = weight * (k->kind == TRACK_RMS ? x * x : x) - k->lost, sum = k->sum + term;
+      if (!isfinite(x) && isnan(k->bad)) k->bad = t;
+      k->lost = (sum - k->sum) - term;
+      k->sum = sum;
+    }
+  }
+}
+
+/* ---- The run */
+
+static void note_event(void *context, int k, double t, const double *before, const double *after) {
+  Measures *m = context;
+  m->firings[k]++;
+  for (MeasureNode *n = m->node; n < m->node + m->nnodes; n++)
+    if (n->kind == MEASURE_HIT && n->index == k && m->node[n->a].value == m->firings[k]) n->result = t;
+  if (m->on_event) m->on_event(m->on_event_context, k, t, before, after);
+}
+
+int lag_measures_follow(const Measures *m) { return m->ntracks > 0; }
+
+static int follow_to(Measures *m, double t) {
+  lag_sim *s = m->sim;
+  int rc = LAG_OK;
+  while (rc == 0 && m->ntracks && lag_sim_time(s) != t) {
+    double reach;
+    rc = lag_sim_ensure_step(s, t, &reach);
+    double from = lag_sim_time(s); /* behind the jump of a table, where there is one */
+    if (rc == 0 && reach != from) {
+      if (m->samples) sample(m, from, reach);
+      if (m->integrates) integrate(m, from, reach);
+      rc = lag_sim_advance(s, reach);
+    }
+  }
+  return rc ? rc : lag_sim_advance(s, t);
+}
+
+/* The values at times that are known after run `known`, which lie not before the present time: records those that are now. Returns the node that is
+ * next in the direction to `until`, or NULL. */
+static MeasureNode *next_time(Measures *m, int known, double until) {
+  double now = lag_sim_time(m->sim), dir = until < now ? -1 : 1;
+  MeasureNode *next = NULL;
+  for (MeasureNode *n = m->node; n < m->node + m->nnodes; n++) {
+    if (n->kind != MEASURE_AT || n->known != known || n->taken) continue;
+    double t = m->node[n->b].value;
+    if (t == now) {
+      take_row(m, t);
+      n->result = evaluate(m, n->a);
+      n->taken = 1;
+    } else if ((t - now) * dir > 0 && (until - t) * dir >= 0 && (!next || (m->node[next->b].value - t) * dir > 0)) {
+      next = n;
+    }
+  }
+  return next;
+}
+
+static void take_times(Measures *m, int known) {
+  for (MeasureNode *n = m->node; n < m->node + m->nnodes; n++)
+    if ((n->kind == MEASURE_AT && n->known == known && !n->taken) || (n->kind == MEASURE_HIT && known == 0)) evaluate(m, n->kind == MEASURE_AT ? n->b : n->a);
+}
+
+int lag_measures_begin(Measures *m, lag_sim *sim) {
+  for (const MeasureNode *n = m->node; n < m->node + m->nnodes; n++)
+    if ((n->kind == MEASURE_HIT || n->kind == MEASURE_FIRINGS) && !lag_event_is_located(sim, n->index))
+      return lag_fail(sim, LAG_EMETHOD, "%s does not locate events of contacts, as %s is one; dop853 does, and an event of your own, as `event low: y - 1 falling`, is located by both",
+                      sim->method->name, sim->scene->model->ev[n->index].name);
+  int rc = lag_sim_advance(sim, lag_sim_time(sim)); /* only then is there a state */
+  if (rc < 0) return rc;
+  m->sim = sim;
+  m->on_event = sim->on_event;
+  m->on_event_context = sim->on_event_context;
+  lag_sim_on_event(sim, note_event, m);
+  m->t0 = lag_sim_time(sim);
+  m->status = rc;
+  memset(m->firings, 0, (size_t)m->scene->model->nev * sizeof *m->firings);
+  for (MeasureNode *n = m->node; n < m->node + m->nnodes; n++)
+    if (n->kind != MEASURE_NUMBER) n->result = NAN, n->taken = 0;
+  take_row(m, m->t0);
+  for (Track *k = m->track; k < m->track + m->ntracks; k++) {
+    k->first = k->last = k->least = k->most = evaluate(m, k->arg);
+    k->sum = k->lost = 0;
+    k->passages = 0;
+    k->bad = isfinite(k->first) ? NAN : m->t0;
+  }
+  take_times(m, 0);
+  next_time(m, 0, m->t0);
+  return rc;
+}
+
+/* Advances to t by way of the times of run `known`. */
+static int advance(Measures *m, int known, double t) {
+  int rc = LAG_OK;
+  for (MeasureNode *n; rc == 0 && (n = next_time(m, known, t));) rc = follow_to(m, m->node[n->b].value);
+  rc = rc ? rc : follow_to(m, t);
+  if (rc == 0) next_time(m, known, t);
+  return rc;
+}
+
+int lag_measures_advance(Measures *m, double t) { return m->status = advance(m, 0, t); }
+
+/* ---- Its end */
+
+static double track_value(const Measures *m, const Track *k) {
+  double span = m->t - m->t0;
+  if (!isnan(k->bad)) return NAN;
+  switch (k->kind) {
+    case TRACK_MAX: return k->most;
+    case TRACK_MIN: return k->least;
+    case TRACK_DRIFT: return fmax(k->most - k->first, k->first - k->least);
+    case TRACK_PERIOD: return k->passages > 1 ? fabs(k->latest - k->passage) / (k->passages - 1) : NAN;
+    case TRACK_MEAN: return span == 0.0 ? k->first : k->sum / span;
+    case TRACK_RMS: return span == 0.0 ? fabs(k->first) : sqrt(k->sum / span);
+    case TRACK_KINDS: break;
+  }
+  return NAN;
+}
+
+/* Values at times that are themselves measures, and with past_end those after the end, in runs of their own. */
+static int run_again(Measures *m, lag_sim *sim, double end) {
+  int last = 0, rc = LAG_OK;
+  for (const MeasureNode *n = m->node; n < m->node + m->nnodes; n++) last = n->kind == MEASURE_AT && n->known > last ? n->known : last;
+  for (int known = m->dialect.past_end ? 0 : 1; known <= last && rc != LAG_ENOMEM; known++) {
+    double until = end;
+    int some = 0;
+    take_row(m, end);
+    take_times(m, known);
+    for (const MeasureNode *n = m->node; n < m->node + m->nnodes; n++) {
+      if (n->kind != MEASURE_AT || n->known != known || n->taken) continue;
+      some = 1;
+      double t = m->node[n->b].value;
+      if (m->dialect.past_end && fabs(t - m->t0) > fabs(until - m->t0)) until = t;
+    }
+    if (!some) continue;
+    lag_sim *again = lag_sim_like(sim);
+    if (!again) return LAG_ENOMEM;
+    m->sim = again;
+    int tracks = m->ntracks;
+    m->ntracks = 0; /* they are known */
+    rc = lag_sim_advance(again, lag_sim_time(again));
+    if (rc == 0) advance(m, known, until);
+    m->ntracks = tracks;
+    m->sim = sim;
+    lag_sim_free(again);
+  }
+  return rc == LAG_ENOMEM ? rc : LAG_OK;
+}
+
+/* why[k] of a value that is NaN: the first part of it that is not known. */
+static void explain(Measures *m, int k, double end) {
+  char *why = m->why[k];
+  size_t size = sizeof m->why[k];
+  snprintf(why, size, "no number: 0/0, or a function of a number outside its domain");
+  for (int i = m->node[m->root[k]].begin; i <= m->root[k]; i++) {
+    const MeasureNode *n = &m->node[i];
+    if (n->kind == MEASURE_TRACK && isnan(n->result)) {
+      const Track *track = &m->track[n->index];
+      if (!isnan(track->bad)) snprintf(why, size, "it has no value at t = %s s", LAG_TEXT(track->bad));
+      else snprintf(why, size, "no period: it passes 0 upwards %s", track->passages ? "once" : "never");
+      return;
+    } else if (n->kind == MEASURE_LYAPUNOV && isnan(n->result)) {
+      snprintf(why, size, "%s", m->no_exponent);
+      return;
+    } else if (n->kind == MEASURE_HIT && isnan(n->result)) {
+      double times = m->firings[n->index];
+      if (times == 0.0) snprintf(why, size, "%s never happens", m->scene->model->ev[n->index].name);
+      else snprintf(why, size, "%s happens %s time%s", m->scene->model->ev[n->index].name, LAG_TEXT(times), times == 1 ? "" : "s");
+      return;
+    } else if (n->kind == MEASURE_AT && isnan(n->result) && !isnan(m->node[n->b].value)) {
+      double t = m->node[n->b].value, dir = end < m->t0 ? -1 : 1;
+      if ((t - end) * dir > 0) snprintf(why, size, "the run ends at t = %s s, before %s s", LAG_TEXT(end), LAG_TEXT(t));
+      else if ((t - m->t0) * dir < 0) snprintf(why, size, "the run begins at t = %s s, after %s s", LAG_TEXT(m->t0), LAG_TEXT(t));
+      else snprintf(why, size, "it has no value at t = %s s", LAG_TEXT(t));
+      return;
+    }
+  }
+}
+
+int lag_measures_end(Measures *m, double *value) {
+  lag_sim *sim = m->sim;
+  double end = lag_sim_time(sim);
+  lag_sim_on_event(sim, m->on_event, m->on_event_context);
+  if (m->samples) sample(m, end, end); /* what a last event has changed */
+  double exponent = m->exponent ? lag_measure_lyapunov(m, sim, end) : NAN;
+  m->t = end;
+  for (const Track *k = m->track; k < m->track + m->ntracks; k++) m->node[k->node].result = track_value(m, k);
+  for (MeasureNode *n = m->node; n < m->node + m->nnodes; n++) {
+    if (n->kind == MEASURE_END) n->result = end;
+    if (n->kind == MEASURE_FIRINGS) n->result = m->firings[n->index];
+    if (n->kind == MEASURE_LYAPUNOV) n->result = exponent;
+  }
+  take_row(m, end);
+  for (int k = 0; k < m->n; k++) evaluate(m, m->root[k]);
+  int rc = run_again(m, sim, end);
+  take_row(m, end);
+  for (int k = 0; k < m->n; k++) {
+    const MeasureUnit *u = &m->node[m->root[k]].unit;
+    double x = evaluate(m, m->root[k]);
+    value[k] = m->dialect.si ? x : (x - u->offset) / u->factor;
+    m->why[k][0] = '\0';
+    if (isnan(x)) explain(m, k, end);
+  }
+  return rc;
+}
+
+int lag_measures_run(Measures *m, lag_sim *sim, double until, double *value) {
+  int rc = lag_measures_begin(m, sim);
+  for (int k = 0; k < m->n && rc < 0; k++) {
+    value[k] = NAN;
+    snprintf(m->why[k], sizeof m->why[k], "%s", lag_sim_message(sim));
+  }
+  if (rc < 0) return rc;
+  rc = lag_measures_advance(m, until);
+  return lag_measures_end(m, value) == LAG_OK ? rc : LAG_ENOMEM;
+}

@@ -1,0 +1,105 @@
+/* Measures of a run (analysis/measure.h): those of the scene, and of --measure EXPR or NAME=EXPR. Enters: expressions; leaves: a line each in the
+ * report, a member each in JSON. Holds: a wrong expression is refused before anything runs. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+
+/* Where the expression begins in NAME=EXPR, or EXPR, whose name is its text. */
+static const char *split(const char *text, size_t *name_length) {
+  const char *equals = strchr(text, '=');
+  *name_length = equals ? (size_t)(equals - text) : strlen(text);
+  while (*name_length && text[*name_length - 1] == ' ') --*name_length;
+  return equals ? equals + 1 + strspn(equals + 1, " ") : text;
+}
+
+/* Adds a measure; one of the command line replaces the scene's of its name. Returns its number, -1 after a message. */
+static int add(App *app, int *n, const char *name, size_t length, const char *text, const char **texts) {
+  int k = 0, ofscene = app->scene->nmeasures;
+  while (k < *n && (strlen(app->measure_names[k]) != length || memcmp(app->measure_names[k], name, length) != 0)) k++;
+  if (k < *n && (k >= ofscene || *n < ofscene)) return lag_app_error(&app->args, "--measure %s: another measure is called %s; write NAME=EXPR with another name", name, app->measure_names[k]), -1;
+  texts[k] = text;
+  if (k < *n) return k;
+  app->measure_names[k] = calloc(length + 1, 1);
+  if (!app->measure_names[k]) return lag_app_error(&app->args, "out of memory"), -1;
+  memcpy(app->measure_names[k], name, length);
+  return (*n)++;
+}
+
+/* texts[n] := expressions of the scene, then of the command line. Returns n, -1 after a message. */
+static int collect(App *app, const char **texts) {
+  const lag_scene *scene = app->scene;
+  int n = 0;
+  for (int k = 0; k < scene->nmeasures; k++)
+    if (add(app, &n, scene->measures[k].name, strlen(scene->measures[k].name), scene->measures[k].text, texts) < 0) return -1;
+  for (int k = 0; k < app->args.nmeasures; k++) {
+    size_t length;
+    const char *given = app->args.measures[k], *text = split(given, &length);
+    if (length == 0) return lag_app_error(&app->args, "--measure %s: a name is missing before `=`", given), -1;
+    if (add(app, &n, given, length, text, texts) < 0) return -1;
+  }
+  return n;
+}
+
+int lag_app_measures_open(App *app) {
+  size_t most = (size_t)(app->args.nmeasures + app->scene->nmeasures);
+  char why[400];
+  if (most == 0) return 0;
+  const char **texts = app->measure_texts = calloc(most, sizeof *texts);
+  app->measured = calloc(most, sizeof *app->measured);
+  app->measure_names = calloc(most + 1, sizeof *app->measure_names);
+  int n = texts && app->measured && app->measure_names ? collect(app, texts) : (lag_app_error(&app->args, "out of memory"), -1);
+  if (n >= 0 && !(app->measures = lag_measures_new(app->scene, n, texts, why, sizeof why))) lag_app_error(&app->args, "--measure %s", why);
+  if (!app->measures) return EXIT_USAGE;
+  return lag_measures_refused(app->measures, app->sim, app->until, why, sizeof why) ? lag_app_error(&app->args, "--measure lyapunov: %s", why) : 0;
+}
+
+/* The unit of measure k: that of the runtime, or the compiler's, of a value in SI. */
+const char *lag_app_measure_unit(const App *app, int k) {
+  const char *unit = lag_measures_unit(app->measures, k), *name = app->measure_names[k];
+  const lag_scene *scene = app->scene;
+  int replaced = 0;
+  for (int i = 0; i < app->args.nmeasures; i++) {
+    size_t length;
+    split(app->args.measures[i], &length);
+    replaced |= strlen(name) == length && memcmp(app->args.measures[i], name, length) == 0;
+  }
+  return unit[0] || replaced || k >= scene->nmeasures ? unit : scene->measures[k].unit;
+}
+
+void lag_app_measures_free(App *app) {
+  for (int k = 0; app->measure_names && app->measure_names[k]; k++) free(app->measure_names[k]);
+  free(app->measure_names);
+  free(app->measure_texts);
+  free(app->measured);
+  lag_measures_free(app->measures);
+}
+
+int lag_app_measures_begin(App *app) { return app->measures ? lag_measures_begin(app->measures, app->sim) : LAG_OK; }
+
+int lag_app_advance(App *app, double t) { return app->measures ? lag_measures_advance(app->measures, t) : lag_sim_advance(app->sim, t); }
+
+int lag_app_measures_end(App *app) { return app->measures ? lag_measures_end(app->measures, app->measured) : LAG_OK; }
+
+void lag_report_measures(const App *app, FILE *f) {
+  enum { NARROWEST = 14, WIDEST = 40 };
+  int width = NARROWEST;
+  for (int k = 0; app->measures && k < lag_measures_count(app->measures); k++) {
+    int n = (int)strlen(app->measure_names[k]);
+    width = n > width && n <= WIDEST ? n : width;
+  }
+  for (int k = 0; app->measures && k < lag_measures_count(app->measures); k++) {
+    const char *unit = lag_app_measure_unit(app, k), *why = lag_measures_why(app->measures, k);
+    if (k == 0) fputs("measures\n", f);
+    if (why[0]) fprintf(f, "  %-*s none: %s\n", width, app->measure_names[k], why);
+    else fprintf(f, "  %-*s %.15g%s%s\n", width, app->measure_names[k], app->measured[k], unit[0] ? " " : "", unit);
+  }
+}
+
+void lag_report_measures_json(const App *app, Json *j) {
+  if (!app->measures) return;
+  lag_json_begin(j, "measures", '{');
+  for (int k = 0; k < lag_measures_count(app->measures); k++) lag_json_number(j, app->measure_names[k], app->measured[k]);
+  lag_json_end(j, '}');
+}

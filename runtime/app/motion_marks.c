@@ -1,0 +1,74 @@
+/* Marks of an animation. Enters: a run under way, its events. Leaves: the times at which contacts, constraints with a condition and surfaces of friction begin to act, stick, slip
+ * and let go, and those of impacts and events. Holds: nothing is noted unless an animation is written; noting does not change the run. */
+#include <stdlib.h>
+
+#include "app/app.h"
+#include "core/core.h"
+
+/* Tracks: contacts, surfaces, events. */
+static int ntracks(const lag_model *m) { return m->ncontacts + m->nmodes + m->nev; }
+
+int lag_marks_open(App *app) {
+  const lag_model *m = app->scene->model;
+  Marks *marks = &app->show.marks;
+  if (!app->args.html || !ntracks(m)) return 0;
+  marks->names = calloc((size_t)ntracks(m), sizeof *marks->names);
+  app->marked = calloc((size_t)ntracks(m), sizeof *app->marked);
+  if (!marks->names || !app->marked) return lag_app_error(&app->args, "out of memory");
+  for (int i = 0; i < m->ncontacts; i++) marks->names[i] = m->constraints->of[m->contacts[i].constraint].name;
+  for (int k = 0; k < m->nmodes; k++) marks->names[m->ncontacts + k] = m->switches[k].surface;
+  for (int k = 0; k < m->nev; k++) marks->names[m->ncontacts + m->nmodes + k] = m->ev[k].name;
+  marks->ntracks = ntracks(m);
+  return 0;
+}
+
+void lag_marks_free(App *app) {
+  free(app->show.marks.names);
+  free(app->show.marks.at);
+  free(app->marked);
+}
+
+/* -1: no memory. */
+static int add(Marks *marks, double t, int track, int word) {
+  if ((marks->n & (marks->n + 1)) == 0) { /* 0, 1, 3, 7, ... */
+    Mark *at = realloc(marks->at, 2 * (marks->n + 1) * sizeof *at);
+    if (!at) return -1;
+    marks->at = at;
+  }
+  marks->at[marks->n++] = (Mark){t, track, word};
+  return 0;
+}
+
+/* Contacts that are met by impulses act where the last step pressed them. */
+static int contact_word(const lag_sim *s, int i) {
+  const lag_model *m = s->scene->model;
+  const lag_contact *c = &m->contacts[i];
+  int impulses = s->pb.contacts && s->pb.contacts->length > 0;
+  if (c->is_tangent || !(impulses && !c->conditional ? s->pb.contact_impulse[i] > 0 : lag_contact_is_closed(s, c))) return MARK_NONE;
+  if (impulses || i + 1 == m->ncontacts || !m->contacts[i + 1].is_tangent) return MARK_ACTS;
+  return lag_contact_is_closed(s, c + 1) ? MARK_STICKS : MARK_SLIPS;
+}
+
+static int surface_word(const lag_sim *s, int k) {
+  if (!s->scene->model->switches[k].jumps) return MARK_NONE;
+  for (int i = 0; i < s->pb.nslide; i++)
+    if (s->pb.sliding[i] == k) return MARK_STICKS;
+  return MARK_SLIPS;
+}
+
+int lag_marks_note(App *app) {
+  const lag_model *m = app->scene->model;
+  for (int i = 0; app->marked && i < m->ncontacts + m->nmodes; i++) {
+    int word = i < m->ncontacts ? contact_word(app->sim, i) : surface_word(app->sim, i - m->ncontacts);
+    if (word != app->marked[i] && add(&app->show.marks, lag_sim_time(app->sim), i, word)) return LAG_ENOMEM;
+    app->marked[i] = word;
+  }
+  return LAG_OK;
+}
+
+int lag_marks_event(App *app, int k, double t) {
+  const lag_model *m = app->scene->model;
+  const lag_contact *c = lag_contact_of(m, k);
+  if (!app->marked || (c && (c->is_tangent || c->conditional || k != c->impact))) return 0; /* a track shows these */
+  return add(&app->show.marks, t, m->ncontacts + m->nmodes + k, MARK_EVENT);
+}

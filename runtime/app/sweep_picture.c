@@ -1,0 +1,134 @@
+/* --sweep --svg: the measures over the range of one name, the first measure over those of two, or else a matrix of scatter plots; with --histogram histograms of the measures. Ranges in equal ratios have logarithmic axes. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/sweep.h"
+
+enum { MOST_CELLS = 512 * 512, MOST_COLUMNS = 8, MOST_BARS = 500 };
+
+/* Whether a list has equal steps, as that of a constant from FIRST..LAST:NUMBER. */
+static int has_steps(const Factor *f) {
+  double step = f->n > 1 ? (f->list[f->n - 1] - f->list[0]) / (double)(f->n - 1) : 0;
+  for (long long i = 0; i < f->n; i++)
+    if (!(fabs(f->list[i] - f->list[0] - (double)i * step) < 1e-9 * step)) return 0;
+  return 1;
+}
+
+static int is_even(const Factor *f) { return f->n > 1 && (f->kind != FACTOR_LIST || has_steps(f)); }
+
+static int is_map(const SweepPlan *p) { return p->n == 2 && !p->dimensions && !p->zip && is_even(&p->factor[0]) && is_even(&p->factor[1]); }
+
+static int is_curves(const SweepPlan *p) { return p->n == 1 && !p->dimensions; }
+
+static int is_log(const SweepPlan *p, int k) { return p->factor[k].kind == FACTOR_LOG; }
+
+/* --histogram N: N, or 0 after a message. */
+static long long bars_of(const Args *a) {
+  long long n = 0;
+  if (lag_args_count(a, "--histogram", a->histogram, "--histogram 40", &n)) return 0;
+  if (!a->svg) return lag_app_error(a, "--histogram %lld needs a picture: --svg FILE.svg", n), 0;
+  return n > MOST_BARS ? lag_app_error(a, "--histogram %lld: up to %d bars can be told apart", n, MOST_BARS), 0 : n;
+}
+
+int lag_sweep_picture_check(const SweepApp *s) {
+  const Args *a = &s->app->args;
+  const SweepPlan *p = &s->plan;
+  int columns = p->n + s->sweep.nmeasures;
+  if (a->histogram && !bars_of(a)) return EXIT_USAGE;
+  if (!a->svg || is_curves(p) || a->histogram) return 0;
+  if (is_map(p)) return p->runs > MOST_CELLS ? lag_app_error(a, "--svg: a map of more than %d cells is too large; take fewer values", MOST_CELLS) : 0;
+  return columns > MOST_COLUMNS ? lag_app_error(a, "--svg: a matrix of %d names and measures is too small to read, up to %d fit; name a few measures, --measure EXPR", columns, MOST_COLUMNS) : 0;
+}
+
+/* Rows of a picture, and where they go. */
+typedef struct Drawing {
+  SweepApp *s;
+  char title[300];
+  Table table;   /* of curves, or of a matrix: names that vary, and measures */
+  double *value; /* of a map: the first measure, [ny * nx] */
+} Drawing;
+
+/* The value of name k as a picture has it. */
+static double drawn_value(const SweepPlan *p, int k, double x) { return is_log(p, k) ? log10(x) : x; }
+
+static int take_row(void *drawing, long long run, const double *row) {
+  Drawing *d = drawing;
+  const SweepPlan *p = &d->s->plan;
+  (void)run;
+  if (lag_table_add(&d->table, row)) return -1;
+  double *copy = d->table.data + (d->table.nrows - 1) * (size_t)d->table.ncols;
+  for (int k = 0; k < p->n; k++) copy[k] = drawn_value(p, k, row[k]);
+  return 0;
+}
+
+static int take_cell(void *drawing, long long run, const double *row) {
+  Drawing *d = drawing;
+  long long nx = d->s->plan.factor[0].n, ny = d->s->plan.factor[1].n; /* the second name runs first */
+  d->value[run % ny * nx + run / ny] = row[2];
+  return 0;
+}
+
+/* All rows, but their status. */
+static int read_table(Drawing *d) {
+  const Table *all = &d->s->table;
+  d->table = (Table){.ncols = all->ncols - 1, .cols = all->cols, .keep = 1};
+  return lag_sweep_each_row(d->s, take_row, d);
+}
+
+static int draw_curves(const char *path, void *drawing) {
+  Drawing *d = drawing;
+  int n = d->s->sweep.nmeasures, *columns = calloc(2 * (size_t)n + 1, sizeof *columns);
+  PlottedCurves curves = {.n = n, .x = columns, .y = columns ? columns + n : NULL, .xlog = is_log(&d->s->plan, 0)};
+  int rc = columns ? read_table(d) : -1;
+  for (int k = 0; k < n && columns; k++) curves.y[k] = k + 1;
+  if (rc == 0) rc = lag_svg_write(path, &d->table, d->title, &curves);
+  free(d->table.data);
+  free(columns);
+  return rc;
+}
+
+static int draw_matrix(const char *path, void *drawing) {
+  Drawing *d = drawing;
+  const SweepPlan *p = &d->s->plan;
+  int log[MOST_COLUMNS];
+  for (int k = 0; k < p->n; k++) log[k] = is_log(p, k);
+  int rc = read_table(d);
+  if (rc == 0) rc = lag_matrix_write(path, &(ScatterMatrix){.table = &d->table, .first = p->n, .log = log}, d->title);
+  free(d->table.data);
+  return rc;
+}
+
+static int draw_histograms(const char *path, void *drawing) {
+  Drawing *d = drawing;
+  int rc = read_table(d);
+  if (rc == 0) rc = lag_histograms_write(path, &d->table, d->s->plan.n, (int)bars_of(&d->s->app->args), d->title);
+  free(d->table.data);
+  return rc;
+}
+
+static int draw_map(const char *path, void *drawing) {
+  Drawing *d = drawing;
+  SweepApp *s = d->s;
+  const SweepPlan *p = &s->plan;
+  char label[3][sizeof(Column) + 4];
+  int nx = (int)p->factor[0].n, ny = (int)p->factor[1].n;
+  double *axis = malloc((size_t)(nx + ny) * sizeof *axis), both[2];
+  d->value = malloc((size_t)(nx * ny) * sizeof *d->value);
+  int rc = axis && d->value ? lag_sweep_each_row(s, take_cell, d) : -1;
+  for (int i = 0; i < nx && axis; i++) lag_plan_values(p, (long long)i * ny, both), axis[i] = drawn_value(p, 0, both[0]);
+  for (int i = 0; i < ny && axis; i++) lag_plan_values(p, i, both), axis[nx + i] = drawn_value(p, 1, both[1]);
+  for (int k = 0; k < 3; k++) lag_column_label(&s->table.cols[k], label[k], sizeof label[k]);
+  const ValueMap map = {.nx = nx, .ny = ny, .x = axis, .y = axis + nx, .xlog = is_log(p, 0), .ylog = is_log(p, 1), .value = d->value, .xlabel = label[0], .ylabel = label[1], .label = label[2]};
+  if (rc == 0) rc = lag_map_write(path, &map, d->title);
+  free(axis);
+  free(d->value);
+  return rc;
+}
+
+int lag_sweep_picture(SweepApp *s) {
+  Drawing d = {.s = s};
+  snprintf(d.title, sizeof d.title, "%s: %s", s->app->scene->model->name, s->app->scene->name);
+  const Args *a = &s->app->args;
+  return a->svg ? lag_app_picture(s->app, a->svg, a->histogram ? draw_histograms : is_curves(&s->plan) ? draw_curves : is_map(&s->plan) ? draw_map : draw_matrix, &d) : 0;
+}

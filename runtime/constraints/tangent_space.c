@@ -1,0 +1,83 @@
+/* The tangent space of the constraints: small changes of a state between motions that obey them. Enters: a state on the constraints; leaves: the
+ * dimension of that space, or changes projected onto it, as a start beside the constraints is. Holds: of a constraint on velocities that is the rate of a
+ * function of positions, that function may be another in a neighbouring motion. */
+#include <math.h>
+#include <string.h>
+
+#include "core/core.h"
+
+/* Rank of the constraints; holonomic: of those stated on positions alone. A[n nq] and unit[nq] at the state; A is destroyed. */
+static int rank_of(const lag_constraints *of, int nq, double *A, const double *unit, int holonomic) {
+  const double follows = 1e-9;
+  int r = 0;
+  for (int k = 0; k < of->n; k++)
+    if (!holonomic || of->of[k].holonomic) r += lag_independent_part(nq, r, follows, unit, A, A + k * nq) > follows;
+  return r;
+}
+
+int lag_tangent_dimension(lag_sim *s) {
+  lag_problem *pb = &s->pb;
+  const lag_constraints *of = pb->model->constraints;
+  int d = pb->n, rc = of && s->run->begun == 0.0 ? lag_setup_start(s) : LAG_OK;
+  for (int holonomic = 0; of && holonomic < 2 && rc == LAG_OK; holonomic++) {
+    double *A = lag_independence_scratch(pb), *unit = A + of->n * pb->nq;
+    rc = lag_constraint_jacobian(pb, s->run->t, s->now, A, unit, NULL);
+    if (rc) return lag_fail(s, rc < 0 ? rc : LAG_EDOMAIN, "the constraints have no derivatives at the start");
+    d -= rank_of(of, pb->nq, A, unit, holonomic);
+  }
+  return rc ? rc : d;
+}
+
+/* rate[n] := change of the residuals of velocities along e[n], by central differences of order 4, exact for constraints of degree 4 in q and v. r[n] is scratch. */
+static int residual_change(lag_problem *pb, double t, const double *y, const double *e, double *there, double *c, double *r, double *rate) {
+  const double part = 0x1p-9;
+  int m = pb->model->constraints->n, rc = LAG_OK;
+  double far = 0;
+  for (int i = 0; i < 2 * pb->nq; i++) far = fmax(far, fabs(e[i]) / lag_difference_scale(pb, y, i));
+  memset(rate, 0, (size_t)m * sizeof *rate);
+  if (!(far > 0)) return LAG_OK;
+  for (int j = -2; j <= 2 && rc == LAG_OK; j++) {
+    double h = j * part / far, weight = (j % 2 ? 8 : -1) * (j < 0 ? -1 : 1) / 12.0;
+    for (int i = 0; i < pb->n; i++) there[i] = y[i] + h * e[i];
+    rc = j ? lag_residuals(pb, t, there, c, r) : LAG_OK;
+    for (int k = 0; k < m && j; k++) rate[k] += weight * r[k] * far / part;
+  }
+  return rc;
+}
+
+size_t lag_tangent_projection_size(const lag_problem *pb) {
+  const lag_constraints *of = pb->model->constraints;
+  return of ? (size_t)(2 * pb->n + 2 * pb->nq + 3 * of->n + of->njacobian + of->nmass) : 0;
+}
+
+/* Adds to e the least change by which positions, then velocities, obey the constraints. */
+static int project(lag_problem *pb, double t, const double *y, const double *A, double *e, double *scratch) {
+  const lag_constraints *of = pb->model->constraints;
+  int n = pb->n, nq = pb->nq, rc;
+  double *there = scratch, *d = there + n, *force = d + nq, *c = force + nq, *r = c + of->n, *g = r + of->n;
+  memset(g, 0, (size_t)of->n * sizeof *g);
+  for (int k = 0; k < of->njacobian; k++) {
+    const lag_entry *at = &of->jacobian[k];
+    if (of->of[at->row].holonomic) g[at->row] -= A[k] * e[at->col];
+  }
+  rc = of->nholonomic ? lag_least_change(pb, t, y, 1, g, d, force) : LAG_OK;
+  for (int i = 0; i < nq && of->nholonomic && rc == LAG_OK; i++) e[i] += d[i];
+  rc = rc ? rc : residual_change(pb, t, y, e, there, c, r, g);
+  for (int k = 0; k < of->n; k++) g[k] = -g[k];
+  rc = rc ? rc : lag_least_change(pb, t, y, 0, g, d, force);
+  for (int i = 0; i < nq && rc == LAG_OK; i++) e[nq + i] += d[i];
+  return rc;
+}
+
+int lag_tangent_project(lag_problem *pb, double t, const double *y, int k, double *Y, double *scratch) {
+  const lag_constraints *of = pb->model->constraints;
+  int n = pb->n, rc = of ? lag_inputs_at(pb, t, y) : LAG_OK;
+  double *e = scratch, *A = e + n, *M = of ? A + of->njacobian : NULL, *rest = of ? M + of->nmass : NULL;
+  rc = of && rc == LAG_OK ? of->matrices(t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, A, M, pb->work) : rc;
+  for (int j = 0; of && j < k && rc == LAG_OK; j++) {
+    for (int i = 0; i < n; i++) e[i] = Y[i * k + j];
+    rc = project(pb, t, y, A, e, rest);
+    for (int i = 0; i < n; i++) Y[i * k + j] = e[i];
+  }
+  return rc;
+}

@@ -1,0 +1,127 @@
+/* The interface for other languages: names without structs, many states in one call. Enters: a scene, arrays of the caller; leaves: names, rates, rows. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/core.h"
+
+int lag_library_abi(void) { return LAG_ABI; }
+
+const lag_scene *lag_library_scene(const lag_program *program, int i) { return program && i >= 0 && i < program->nscenes ? program->scenes[i] : NULL; }
+
+const char *lag_scene_span(const lag_scene *scene, double *t0, double *t1, double *every) {
+  if (!scene || !t0 || !t1 || !every) return NULL;
+  *t0 = scene->t0;
+  *t1 = scene->t1;
+  *every = scene->every;
+  return scene->name;
+}
+
+const char *lag_scene_method(const lag_scene *scene) { return scene ? scene->method : NULL; }
+
+const char *lag_item(const lag_scene *scene, int kind, int i, const char **unit, double *factor, double *offset) {
+  const lag_model *m = scene ? scene->model : NULL;
+  const lag_var *vars = !m ? NULL : kind == 'q' ? m->q : kind == 'z' ? m->z : kind == 'p' ? m->p : kind == 'u' ? m->u : NULL;
+  int n = !m ? 0 : kind == 'q' ? m->nq : kind == 'z' ? m->nz : kind == 'p' ? m->np : kind == 'u' ? m->nu : kind == 'e' ? m->nev
+          : kind == 'c' ? (m->charges ? m->charges->n : 0) : kind == 'm' ? lag_nmethods : 0;
+  if (unit) *unit = "";
+  if (factor) *factor = 1;
+  if (offset) *offset = 0;
+  if (i < 0 || i >= n) return NULL;
+  if (kind == 'm') return lag_methods[i]->name;
+  if (kind == 'e') return m->ev[i].name;
+  if (unit) *unit = kind == 'c' ? m->charges->of[i].unit : vars[i].unit;
+  if (kind == 'c') return m->charges->of[i].name;
+  if (factor) *factor = vars[i].factor;
+  if (offset) *offset = vars[i].offset;
+  return vars[i].name;
+}
+
+const lag_method *lag_find_method(const char *name) {
+  for (int i = 0; name && i < lag_nmethods; i++)
+    if (strcmp(lag_methods[i]->name, name) == 0) return lag_methods[i];
+  return NULL;
+}
+
+int lag_sim_rhs(lag_sim *s, int count, const double *t, const double *y, double *dy) {
+  if (!s || count < 0 || !t || !y || !dy) return LAG_EINVAL;
+  const lag_model *m = s->scene->model;
+  size_t n = (size_t)s->pb.n;
+  double *held = s->contact_scratch;
+  lag_switch_set_free(s, 1);
+  int rc = LAG_OK;
+  for (int i = 0; i < m->ncontacts; i++) held[i] = s->hold[m->contacts[i].input];
+  for (int k = 0; k < count && rc == 0; k++) {
+    rc = lag_conditional_place(s, t[k], y + (size_t)k * n);
+    rc = rc ? rc : lag_rhs(&s->pb, t[k], y + (size_t)k * n, dy + (size_t)k * n);
+    if (rc) lag_fail(s, rc, "the equations have no value at t = %s s, state %d", LAG_TEXT(t[k]), k);
+  }
+  lag_switch_set_free(s, 0);
+  for (int i = 0; i < m->ncontacts; i++) s->hold[m->contacts[i].input] = held[i];
+  return rc;
+}
+
+int lag_sim_rows(lag_sim *s, int rows, const double *t, double *y, double *out, int *done) {
+  if (!s || rows < 0 || !t || !done) return LAG_EINVAL;
+  size_t n = (size_t)s->pb.n, nout = (size_t)lag_sim_noutputs(s);
+  for (*done = 0; *done < rows; ++*done) {
+    size_t k = (size_t)*done;
+    int rc = lag_sim_advance(s, t[k]);
+    if (rc == 0 && out) rc = lag_sim_outputs(s, out + k * nout);
+    if (rc) return rc;
+    if (y) memcpy(y + k * n, s->now, n * sizeof *y);
+  }
+  return LAG_OK;
+}
+
+/* The values of `from`: parameters, inputs, start. */
+static void copy_values(const lag_sim *from, lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  memcpy(s->p, from->p, (size_t)m->np * sizeof *s->p);
+  memcpy(s->derived, from->derived, (size_t)m->nderived * sizeof *s->p);
+  memcpy(s->fixed, from->fixed, (size_t)m->np);
+  memcpy(s->start, from->start, (size_t)s->pb.n * sizeof *s->start);
+  memcpy(s->hold, from->hold, (size_t)m->nu * sizeof *s->hold);
+  memcpy(s->signal, from->signal, (size_t)m->nu * sizeof *s->signal);
+}
+
+lag_sim *lag_sim_like(const lag_sim *from) {
+  lag_option opt[64];
+  lag_sim *s = from ? lag_sim_new(from->scene) : NULL;
+  if (!s) return NULL;
+  copy_values(from, s);
+  s->tol = s->pb.tol = from->tol;
+  const lag_method *m = from->method;
+  int n = m->noptions < 64 ? m->noptions : 64;
+  for (int i = 0; from->options && i < n; i++) opt[i] = (lag_option){.name = m->options[i].name, .value = from->options[i]};
+  if (!from->options || lag_sim_set_method(s, m, opt, n) == LAG_OK) return s;
+  lag_sim_free(s);
+  return NULL;
+}
+
+/* One motion; y[rows * n] is NaN already. */
+static int motion(lag_sim *s, const double *y0, const double *p, int rows, const double *t, double *y) {
+  const lag_model *m = s->scene->model;
+  int done;
+  for (int i = 0; p && i < m->np; i++) {
+    if (isnan(p[i])) continue; /* as in `like`, or by its formula of others */
+    s->p[i] = p[i];
+    s->fixed[i] = 1;
+  }
+  if (p && s->scene->params) s->scene->params(s->p, s->fixed);
+  if (y0) memcpy(s->start, y0, (size_t)s->pb.n * sizeof *y0);
+  return lag_sim_rows(s, rows, t, y, NULL, &done);
+}
+
+int lag_sim_batch(const lag_sim *like, int count, const double *y0, const double *p, int rows, const double *t, double *y, int *status) {
+  if (!like || count < 0 || rows < 0 || !t || !y || !status) return LAG_EINVAL;
+  size_t n = (size_t)like->pb.n, np = (size_t)like->scene->model->np, each = (size_t)rows * n;
+  for (size_t k = 0; k < (size_t)count; k++) {
+    lag_sim *s = lag_sim_like(like);
+    if (!s) return LAG_ENOMEM;
+    for (size_t i = 0; i < each; i++) y[k * each + i] = NAN;
+    status[k] = motion(s, y0 ? y0 + k * n : NULL, p ? p + k * np : NULL, rows, t, y + k * each);
+    lag_sim_free(s);
+  }
+  return LAG_OK;
+}

@@ -1,0 +1,377 @@
+/* Switching surfaces: jumps and corners of the equations. Enters: a state on a surface, or a new one; leaves: the branch of each switch, in `hold`
+ * behind the inputs, for the motion from there on. Holds: no step sees a jump, since the branch is fixed until an event of its own ends it.
+ *
+ * A mode is 1 or -1, the sign of the switching function g; 0: the motion slides on g = 0, and the value that keeps it there is found at each state
+ * (the equivalent control); of floor: its value; LAG_FREE: the state decides. The event of a switch is that its mode ceases to fit: mode*g falls
+ * below 0, or grip^2 - mode^2 of a sliding motion does; grip is 1, or more where static friction is.
+ *
+ * Where surfaces meet, rates r = dg/dt are linear in the modes, r = r0 + B m: each m is 1 with r >= 0, -1 with r <= 0, or between with r = 0. For a
+ * P-matrix -B this has one solution, which principal pivoting by least index finds (K.G. Murty, Linear Algebra Appl. 7 (1974) 65, DOI
+ * 10.1016/0024-3795(74)90063-5). A.F. Filippov, Differential Equations with Discontinuous Righthand Sides (1988), DOI 10.1007/978-94-015-7793-9;
+ * L. Dieci, L. Lopez, Numer. Math. 117 (2011) 779, DOI 10.1007/s00211-011-0365-4, for intersections. */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/core.h"
+#include "core/rhs.h"
+#include "numeric/dense.h"
+
+static double *mode(const lag_sim *s, int k) { return &s->hold[s->scene->model->nu + k]; }
+static int slides(const lag_problem *pb, int k) { return pb->hold[pb->model->nu + k] == 0.0 && !pb->model->switches[k].is_floor; }
+
+/* ---- The sliding motion */
+
+/* r[nmodes] := rates of the switching functions at y, t with the modes in pb->u, and with the friction of contacts that slip under these. */
+static int rates_at(lag_problem *pb, double t, const double *y, double *r) {
+  const lag_model *m = pb->model;
+  int rc = m->contact_laws ? lag_rub(pb, t, y) : 0;
+  pb->rhs_calls++;
+  return rc ? rc : m->switch_rates(t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, r, pb->work);
+}
+
+/* B[n n] := derivatives of the rates of the sliding switches by their modes; r: rates now. *size := the largest term. */
+static int rate_matrix(lag_problem *pb, double t, const double *y, const int *of, int n, const double *r, double *other, double *B, double *size) {
+  double *u = pb->u + pb->model->nu;
+  for (int j = 0; j < n; j++) {
+    double before = u[of[j]];
+    u[of[j]] = before + 1;
+    int rc = rates_at(pb, t, y, other);
+    u[of[j]] = before;
+    if (rc) return rc;
+    for (int i = 0; i < n; i++) {
+      B[i * n + j] = other[of[i]] - r[of[i]];
+      *size = fmax(*size, fabs(B[i * n + j]) + fabs(r[of[i]]));
+    }
+  }
+  return 0;
+}
+
+int lag_slide(lag_problem *pb, double t, const double *y) {
+  enum { ROUNDS = 8 };
+  const double enough = 64 * DBL_EPSILON, some = 1e-9; /* of the largest term */
+  int n = pb->nslide, nm = pb->model->nmodes, rc = 0;
+  double *u = pb->u + pb->model->nu, *r = pb->slide, *other = r + nm, *x = other + nm, *B = x + nm, size = 0, left = HUGE_VAL;
+  for (int round = 0; round < ROUNDS && (rc = rates_at(pb, t, y, r)) == 0; round++) {
+    left = 0;
+    for (int i = 0; i < n; i++) left = fmax(left, fabs(r[pb->sliding[i]]));
+    if (round && left <= enough * size) return 0;
+    if ((rc = rate_matrix(pb, t, y, pb->sliding, n, r, other, B, &size)) != 0) return rc;
+    for (int i = 0; i < n; i++) x[i] = -r[pb->sliding[i]];
+    if (lag_solve_dense((size_t)n, 1, B, x)) return LAG_ERETRY;
+    for (int i = 0; i < n; i++) u[pb->sliding[i]] += x[i];
+  }
+  return rc ? rc : left <= some * size ? 0 : LAG_ERETRY;
+}
+
+int lag_inputs_at(lag_problem *pb, double t, const double *y) {
+  int rc = lag_inputs_inline(pb, t);
+  if (rc || pb->nslide) return rc ? rc : lag_slide(pb, t, y);
+  return pb->model->contact_laws ? lag_rub(pb, t, y) : 0;
+}
+
+void lag_switch_count(lag_sim *s) {
+  s->pb.nslide = 0;
+  for (int k = 0; k < s->scene->model->nmodes; k++)
+    if (slides(&s->pb, k)) s->pb.sliding[s->pb.nslide++] = k;
+}
+
+void lag_switch_hold(lag_sim *s, int k, double m) {
+  *mode(s, k) = m;
+  lag_switch_count(s);
+}
+
+void lag_switch_set_free(lag_sim *s, int is_free) {
+  int nm = s->scene->model->nmodes;
+  for (int k = 0; k < nm; k++) {
+    double *kept = &s->left[k];
+    if (is_free) *kept = *mode(s, k);
+    *mode(s, k) = is_free ? LAG_FREE : *kept;
+    if (!is_free) *kept = 0;
+  }
+  lag_switch_count(s);
+}
+
+/* ---- Event functions */
+
+/* g[nswitch] := the switching functions at y, t. */
+static int sides_at(lag_sim *s, double t, const double *y, double *g) {
+  const lag_model *m = s->scene->model;
+  int rc = m->switch_values(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, g, s->work);
+  return rc ? rc : lag_not_finite(m->nmodes, g) >= 0 ? LAG_ENAN : 0;
+}
+
+/* grip[nmodes] := the largest mode of a sliding motion at y, t. */
+static int find_grips(lag_sim *s, double t, const double *y) {
+  const lag_model *m = s->scene->model;
+  int rc = m->switch_grips ? m->switch_grips(t, y, y + m->nq, y + 2 * m->nq, s->p, s->u, s->grip, s->work) : 0;
+  for (int k = 0; k < m->nmodes; k++) s->grip[k] = m->switch_grips && s->grip[k] > 1 ? s->grip[k] : 1;
+  return rc;
+}
+
+int lag_switch_eval(lag_sim *s, double t, const double *y, double *g) {
+  const lag_model *m = s->scene->model;
+  int rc = sides_at(s, t, y, s->sides);
+  if (rc == 0 && s->pb.nslide) rc = find_grips(s, t, y);
+  for (int k = 0; k < m->nmodes && rc == 0; k++) {
+    double held = *mode(s, k), side = s->sides[k], now = s->u[m->nu + k];
+    g[k] = m->switches[k].is_floor ? (side - held) * (held + 1 - side) : held == 0.0 ? s->grip[k] * s->grip[k] - now * now : held * side;
+  }
+  return rc;
+}
+
+double lag_switch_noise(const lag_sim *s, int k) { return slides(&s->pb, k) ? 1e-12 : 2 * s->side_noise[k]; }
+
+/* side_noise[nmodes] := change of the switching functions g[nmodes] when the state at the present time changes in its last digits. */
+static int find_noise(lag_sim *s, const double *g) {
+  const double last = 4 * DBL_EPSILON;
+  const lag_model *m = s->scene->model;
+  double *other = s->sides + m->nswitch;
+  for (int i = 0; i < s->pb.n; i++) s->yc[i] = s->now[i] * (i % 2 ? 1 - last : 1 + last);
+  int rc = sides_at(s, s->run->t * (1 + last), s->yc, other);
+  for (int k = 0; k < m->nmodes && rc == 0; k++) s->side_noise[k] = 2 * fabs(other[k] - g[k]) + 2 * last * (m->switches[k].is_floor ? 1 + fabs(g[k]) : 0);
+  return rc;
+}
+
+/* ---- Failures */
+
+static int fail_at(lag_sim *s, int status, int k, const char *why) {
+  const lag_switch *c = &s->scene->model->switches[k];
+  char line[32] = "";
+  if (c->line) snprintf(line, sizeof line, " in line %d", c->line);
+  return lag_fail(s, status, "at t = %s s the motion meets %s = 0, where `%s`%s switches: %s", LAG_TEXT(s->run->t), c->surface, c->text, line, why);
+}
+
+/* ---- Which branches follow */
+
+/* The switches at their surface: of[n], with r = r0 + B m and the present choice m. */
+typedef struct Meeting {
+  int n, *of;
+  double *r0, *B, *m, *x, *C; /* [n], [n n], [n]; scratch [n], [n n] */
+} Meeting;
+
+static void set_mode(lag_sim *s, int k, double m) {
+  const lag_switch *c = &s->scene->model->switches[k];
+  *mode(s, k) = c->is_floor ? round(s->sides[k]) - (m < 0) : m;
+}
+
+/* Rates with each switch of the meeting at mode m of its own, in s->pb.slide. */
+static int meeting_rates(lag_sim *s, const Meeting *w) {
+  for (int i = 0; i < w->n; i++) set_mode(s, w->of[i], w->m[i]);
+  int rc = lag_inputs(&s->pb, s->run->t);
+  return rc ? rc : rates_at(&s->pb, s->run->t, s->now, s->pb.slide);
+}
+
+/* Fills r0 and B, in the direction of the run. */
+static int linear_rates(lag_sim *s, Meeting *w) {
+  const double *r = s->pb.slide;
+  int n = w->n, rc;
+  for (int i = 0; i < n; i++) w->m[i] = 0;
+  if ((rc = meeting_rates(s, w)) != 0) return rc;
+  for (int i = 0; i < n; i++) w->r0[i] = r[w->of[i]] * s->pb.dir;
+  for (int j = 0; j < n; j++) {
+    for (int end = -1; end <= 1; end += 2) {
+      w->m[j] = end;
+      if ((rc = meeting_rates(s, w)) != 0) return rc;
+      for (int i = 0; i < n; i++) w->B[i * n + j] = (end < 0 ? 0 : w->B[i * n + j]) + end * r[w->of[i]] * s->pb.dir / 2;
+    }
+    w->m[j] = 0;
+  }
+  return 0;
+}
+
+static int can_slide(const lag_sim *s, const Meeting *w, int i) { return s->scene->model->switches[w->of[i]].jumps && w->B[i * w->n + i] < 0; }
+
+static double rate_of(const Meeting *w, int i) {
+  double r = w->r0[i];
+  for (int j = 0; j < w->n; j++) r += w->B[i * w->n + j] * w->m[j];
+  return r;
+}
+
+/* m of the switches that slide (in[i] != 0), the others being given. -1: -B is no P-matrix there, or singular. */
+static int solve_sliding(Meeting *w, const double *in) {
+  int n = w->n, k = 0;
+  for (int i = 0; i < n; i++) w->m[i] = in[i] != 0.0 ? 0 : w->m[i];
+  for (int i = 0; i < n; i++) {
+    if (in[i] == 0.0) continue;
+    w->x[k++] = rate_of(w, i);
+  }
+  for (int i = 0, a = 0; i < n; i++) {
+    if (in[i] == 0.0) continue;
+    for (int j = 0, b = 0; j < n; j++)
+      if (in[j] != 0.0) w->C[a * k + b++] = -w->B[i * n + j];
+    a++;
+  }
+  for (int p = 0; p < k; p++) { /* without pivoting: the pivots of a P-matrix are positive */
+    if (!(w->C[p * k + p] > 0)) return -1;
+    for (int i = p + 1; i < k; i++) {
+      double f = w->C[i * k + p] / w->C[p * k + p];
+      for (int j = p; j < k; j++) w->C[i * k + j] -= f * w->C[p * k + j];
+      w->x[i] -= f * w->x[p];
+    }
+  }
+  for (int p = k - 1; p >= 0; p--) {
+    for (int j = p + 1; j < k; j++) w->x[p] -= w->C[p * k + j] * w->x[j];
+    w->x[p] /= w->C[p * k + p];
+  }
+  for (int i = 0, a = 0; i < n; i++)
+    if (in[i] != 0.0) w->m[i] = w->x[a++];
+  return 0;
+}
+
+/* Rate of switch i after a short time dt on the branches m. */
+static double rate_after(lag_sim *s, const Meeting *w, int i, double dt) {
+  lag_problem *pb = &s->pb;
+  if (meeting_rates(s, w) || lag_rhs(pb, s->run->t, s->now, s->ya)) return NAN;
+  for (int k = 0; k < pb->n; k++) s->yb[k] = s->now[k] + dt * s->ya[k];
+  return rates_at(pb, s->run->t + dt, s->yb, pb->slide) ? NAN : pb->slide[w->of[i]] * pb->dir;
+}
+
+/* Switch i is met at rest: the side to which the acceleration leads; 0: there is none, or both. */
+static double side_from_rest(lag_sim *s, Meeting *w, int i) {
+  double dt = 1e-9 * (s->pb.span > 0 ? s->pb.span : 1) * s->pb.dir, was = w->m[i], up, down;
+  w->m[i] = 1;
+  up = rate_after(s, w, i, dt);
+  w->m[i] = -1;
+  down = rate_after(s, w, i, dt);
+  w->m[i] = was;
+  return up >= 0 && down >= 0 ? 1 : up <= 0 && down <= 0 ? -1 : 0;
+}
+
+/* The first switch whose choice does not fit, after changing it; -1: all fit. */
+static int pivot(lag_sim *s, Meeting *w, double *in) {
+  const double over = 1e-12, back = 1e-9;
+  for (int i = 0; i < w->n; i++) {
+    double r = rate_of(w, i), jump = fabs(w->B[i * w->n + i]);
+    if (in[i] != 0.0) {
+      if (fabs(w->m[i]) <= s->grip[w->of[i]] * (1 + over)) continue;
+      w->m[i] = w->m[i] > 0 ? 1 : -1;
+      in[i] = 0;
+      return i;
+    }
+    if (can_slide(s, w, i) ? w->m[i] * r >= -back * jump : w->m[i] * r >= 0) continue;
+    if (can_slide(s, w, i)) in[i] = 1;
+    else w->m[i] = -w->m[i];
+    return i;
+  }
+  return -1;
+}
+
+/* Finds the choice m of the switches that meet. left: the side to which a switch has just slid off, else 0. */
+static int choose(lag_sim *s, Meeting *w, const double *left, double *in) {
+  int rc = linear_rates(s, w), most = 100 * (w->n + 1), at = -1;
+  rc = rc ? rc : find_grips(s, s->run->t, s->now);
+  if (rc) return fail_at(s, LAG_EMODEL, w->of[0], "the model has no rates there");
+  for (int i = 0; i < w->n; i++) {
+    in[i] = can_slide(s, w, i) && left[w->of[i]] == 0.0;
+    w->m[i] = left[w->of[i]] != 0.0 ? left[w->of[i]] : in[i] != 0.0 ? 0 : w->r0[i] < 0 ? -1 : 1;
+  }
+  for (int i = 0; i < w->n; i++) {
+    if (in[i] != 0.0 || fabs(rate_of(w, i)) > 0 || w->B[i * w->n + i] != 0.0) continue;
+    double side = side_from_rest(s, w, i);
+    if (side == 0.0) return fail_at(s, LAG_ESTALL, w->of[i], "it rests on the surface, or leaves it to either side, and no branch tells which; start beside it");
+    w->m[i] = side;
+  }
+  do {
+    if (solve_sliding(w, in)) return fail_at(s, LAG_ESTALL, w->of[0], "the motions on both sides do not determine one on the surface");
+    at = pivot(s, w, in);
+  } while (at >= 0 && --most);
+  if (at >= 0) return fail_at(s, LAG_ESTALL, w->of[at], "it can neither leave the surface nor slide on it");
+  for (int i = 0; i < w->n; i++) {
+    double r = rate_of(w, i), jump = w->B[i * w->n + i];
+    if (in[i] == 0.0 && r + jump * (1 - w->m[i]) > 0 && r - jump * (1 + w->m[i]) < 0)
+      return fail_at(s, LAG_ESTALL, w->of[i], "it can leave the surface to either side, so that several motions follow; start beside the surface");
+  }
+  return LAG_OK;
+}
+
+/* ---- The run */
+
+/* The mode of switch k becomes m; counts the time of sliding. */
+static void change_mode(lag_sim *s, int k, double m) {
+  int slid = slides(&s->pb, k);
+  set_mode(s, k, m);
+  if (slid) s->slid[k] += fabs(s->run->t - s->slid_since[k]);
+  s->slid_since[k] = s->run->t;
+  if (!slid && slides(&s->pb, k)) s->slips[k]++;
+}
+
+/* Chooses the branches of the switches that meets[k] says are at their surface. *changed, unless NULL: whether any is another than before. */
+static int settle(lag_sim *s, int *changed) {
+  const lag_model *m = s->scene->model;
+  int nm = m->nmodes;
+  double *x = s->meeting, *in = x + nm, *r0 = in + nm, *was = r0 + nm;
+  Meeting w = {0, s->meeting_of, r0, was + nm, was + nm + nm * nm, was + 2 * nm + nm * nm, was + 3 * nm + nm * nm};
+  for (int k = 0; k < nm; k++) {
+    was[k] = *mode(s, k);
+    if (s->meets[k] != 0.0) w.of[w.n++] = k;
+  }
+  int rc = w.n ? choose(s, &w, s->left, in) : LAG_OK;
+  for (int k = 0; k < nm; k++) *mode(s, k) = was[k];
+  for (int i = 0; i < w.n && rc == 0; i++) {
+    int k = w.of[i];
+    change_mode(s, k, in[i] != 0.0 ? 0 : w.m[i]);
+    if (changed) *changed |= *mode(s, k) != was[k];
+    s->crossed[k] += m->switches[k].is_floor ? *mode(s, k) != was[k] : was[k] != 0.0 && *mode(s, k) == -was[k];
+    if (!m->switches[k].is_floor) s->side_noise[k] = fmax(s->side_noise[k], fabs(s->sides[k])); /* a slide has left it a little beside 0 */
+  }
+  lag_switch_count(s);
+  if (rc == 0 && s->pb.nslide && lag_inputs_at(&s->pb, s->run->t, s->now))
+    rc = fail_at(s, LAG_ESTALL, s->pb.sliding[0], "it sticks there, and the force is no sum of the switch and a rest, as in a condition with `and`; write it by sign() or if() of one comparison");
+  memset(s->left, 0, (size_t)nm * sizeof *s->left);
+  memset(s->meets, 0, (size_t)nm * sizeof *s->meets);
+  return rc;
+}
+
+int lag_switch_place(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  if (lag_watched(s) == m->nev) return LAG_OK;
+  double *g = s->sides;
+  int rc = lag_inputs(&s->pb, s->run->t);
+  rc = rc ? rc : sides_at(s, s->run->t, s->now, g);
+  rc = rc ? rc : find_noise(s, g);
+  if (rc) return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "the switching functions have no value at t = %s s", LAG_TEXT(s->run->t));
+  for (int k = 0; k < m->nmodes; k++) {
+    int is_floor = m->switches[k].is_floor, slid = slides(&s->pb, k);
+    double far = is_floor ? fabs(g[k] - round(g[k])) : fabs(g[k]);
+    if (far <= s->side_noise[k] + (slid ? s->slid_off[k] : 0) || s->meets[k] != 0.0) s->meets[k] = 1;
+    else if (is_floor) *mode(s, k) = floor(g[k]);
+    else change_mode(s, k, g[k] > 0 ? 1 : -1);
+  }
+  return settle(s, NULL);
+}
+
+/* Values of the switching functions before events act, for lag_switch_place. */
+int lag_switch_before_events(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  if (lag_watched(s) == m->nev) return LAG_OK;
+  int rc = sides_at(s, s->run->t, s->now, s->sides);
+  for (int k = 0; k < m->nmodes; k++) s->slid_off[k] = 2 * fabs(s->sides[k]);
+  return rc ? lag_fail(s, LAG_ENAN, "the switching functions have no value at t = %s s", LAG_TEXT(s->run->t)) : LAG_OK;
+}
+
+void lag_switch_meet(lag_sim *s, int k) {
+  s->meets[k] = 1;
+  if (slides(&s->pb, k)) s->left[k] = s->u[s->scene->model->nu + k] > 0 ? 1 : -1;
+}
+
+int lag_switch_settle(lag_sim *s, int *changed) {
+  int rc = lag_inputs(&s->pb, s->run->t);
+  rc = rc ? rc : sides_at(s, s->run->t, s->now, s->sides);
+  rc = rc ? rc : find_noise(s, s->sides);
+  if (rc) return lag_fail(s, LAG_ENAN, "the switching functions have no value at t = %s s", LAG_TEXT(s->run->t));
+  for (int i = 0; i < s->pb.nslide; i++) s->meets[s->pb.sliding[i]] = 1;
+  return settle(s, changed);
+}
+
+int lag_switch_fail_zeno(lag_sim *s, int k) {
+  return fail_at(s, LAG_EZENO, k, "it does so again and again in ever shorter time, and does not come to rest; smooth it, as tanh(v/w) for sign(v), or let an event stop the run");
+}
+
+double lag_sim_switch_times(const lag_sim *s, int k, long long *crossings, long long *slides_begun) {
+  if (!s || k < 0 || k >= s->scene->model->nmodes) return NAN;
+  if (crossings) *crossings = (long long)s->crossed[k];
+  if (slides_begun) *slides_begun = (long long)s->slips[k];
+  return s->slid[k] + (slides(&s->pb, k) ? fabs(s->run->t - s->slid_since[k]) : 0);
+}

@@ -1,0 +1,31 @@
+/* Parts that all SVG pictures share. */
+#pragma once
+
+#include "io/io.h"
+
+/* Places in a picture [pixels]. */
+enum { WIDTH = 860, LEFT = 84, RIGHT = 150, TOP = 50, BOTTOM = 52 };
+
+/* Eight colours distinct for all kinds of colour vision (Okabe and Ito), yellow darkened. */
+extern const char *const lag_colour[8];
+
+typedef struct Panel {
+  double x, y, w, h;         /* rectangle in pixels */
+  double x0, x1, y0, y1;     /* ranges of the data */
+  int xlog, ylog;            /* 1: the data are decimal logarithms, and labels their powers of ten */
+  const char *xlabel;
+} Panel;
+
+/* Pixels of a value. */
+double lag_panel_x(const Panel *p, double x);
+double lag_panel_y(const Panel *p, double y);
+
+/* The beginning of a file: size, title, styles. The end is "</svg>". */
+void lag_svg_head(FILE *f, int width, int height, const char *title);
+void lag_svg_text(FILE *f, double x, double y, const char *attributes, const char *s);
+/* svg_levels.c: level curves of a value over the panel; its curve along y = 0; [y0, y1] widened to the latter's lowest value, and by half upwards. */
+void lag_svg_levels(FILE *f, const Panel *p, const Beneath *b);
+void lag_svg_profile(FILE *f, const Panel *p, const Beneath *b);
+void lag_svg_profile_range(const Beneath *b, double x0, double x1, double *y0, double *y1);
+/* The panel's frame, grid and labels; last: with those of x; ylabel NULL: without those of y. */
+void lag_svg_axes(FILE *f, const Panel *p, const char *ylabel, int last);

@@ -1,0 +1,187 @@
+/* taylor over lanes: the steps of methods/taylor.c, whose comments say why, of several runs at once. A lane whose step is rejected keeps its series while the
+ * others go on. */
+#pragma once
+
+#include "lanes/lane_vectors.h"
+#include "methods/taylor.h"
+
+typedef struct TaylorLanes {
+  LaneProblem pb;
+  const lag_taylor *ty;
+  int order, columns, width, now;      /* now: the series of the next step; the other one is of the last step */
+  double reach, floor, h_max, per_order[TAYLOR_WINDOW];
+  LaneMask again;                      /* the last step was rejected; h is the next to try */
+  Lanes h, last, noise, unit, unit_last, dt;
+  Lanes *x[2], *comp, *y1, *comp1, *sum, *slope, *scale, *follows;
+} TaylorLanes;
+
+static void *taylor_open(const lag_sim *like, const void *model) {
+  const lag_taylor *ty = like->pb.model->taylor;
+  size_t series = (size_t)((ty->order + 1) * ty->columns), n = (size_t)like->pb.n, width = (size_t)ty->width;
+  TaylorLanes *b = NULL;
+  LaneRoom room;
+  size_t head = (sizeof *b + sizeof(Lanes) - 1) / sizeof(Lanes), nu = (size_t)like->pb.model->nu;
+  if (!lane_room(&room, head + lane_problem_size(like, model) + 2 * series + 4 * n + 2 * width + nu)) return NULL;
+  b = (TaylorLanes *)(void *)lane_take(&room, head);
+  for (int i = 0; i < 2; i++) b->x[i] = lane_take(&room, series);
+  Lanes **const parts[] = {&b->comp, &b->y1, &b->comp1, &b->scale};
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lane_take(&room, n);
+  b->sum = lane_take(&room, width);
+  b->slope = lane_take(&room, width);
+  b->follows = lane_take(&room, nu);
+  lane_problem_init(&b->pb, &room, like, model);
+  b->ty = b->pb.model->taylor;
+  b->columns = ty->columns;
+  b->width = ty->width;
+  return b;
+}
+
+static int taylor_load(void *batch, int lane, lag_sim *s, int pause) {
+  TaylorLanes *b = batch;
+  Taylor *w = (Taylor *)(void *)s->method_work;
+  int rc = lag_taylor_prepare(w, &s->pb, s->run->t, s->y);
+  if (rc) return rc;
+  lane_problem_load(&b->pb, lane, s, pause, w->limits.t_begin);
+  b->order = (int)w->order;
+  b->reach = w->reach;
+  b->floor = w->floor;
+  b->h_max = w->limits.h_max;
+  memcpy(b->per_order, w->per_order, sizeof b->per_order);
+  b->again[lane] = 0;
+  b->last[lane] = HUGE_VAL;
+  b->noise[lane] = w->noise;
+  b->unit[lane] = w->unit[w->now > 0];
+  lane_put(s->pb.n, b->comp, lane, lag_taylor_array(w, &s->pb, TAYLOR_COMP));
+  lane_put(s->pb.model->nu, b->follows, lane, lag_taylor_follows(w, &s->pb));
+  lane_put((b->order + 1) * b->columns, b->x[b->now], lane, lag_taylor_series(w, &s->pb, w->now));
+  return LAG_OK;
+}
+
+static void taylor_store(void *batch, int lane, lag_sim *s) {
+  TaylorLanes *b = batch;
+  Taylor *w = (Taylor *)(void *)s->method_work;
+  int all = (b->order + 1) * b->columns;
+  lane_problem_store(&b->pb, lane, s);
+  lane_get(all, b->x[b->now], lane, lag_taylor_series(w, &s->pb, 0));
+  lane_get(all, b->x[1 - b->now], lane, lag_taylor_series(w, &s->pb, 1));
+  lane_get(s->pb.n, b->comp, lane, lag_taylor_array(w, &s->pb, TAYLOR_COMP));
+  w->ready = 1;
+  w->now = 0;
+  w->t0 = b->pb.t0[lane];
+  w->dt = b->dt[lane];
+  w->unit[0] = b->unit[lane];
+  w->unit[1] = b->unit_last[lane];
+  w->noise = b->noise[lane];
+  b->pb.steps[lane] = 0;
+}
+
+static int taylor_aim(void *batch, int lane, const lag_sim *s) {
+  ((TaylorLanes *)batch)->pb.to[lane] = s->outside.to;
+  return ((const Taylor *)(const void *)s->method_work)->ready != 0.0;
+}
+
+/* Sizes of steps by the root test. */
+LAG_INLINE Lanes taylor_sizes(int n, TaylorLanes *b) {
+  int columns = b->columns;
+  const Lanes *x = b->x[b->now], none = lane_all(0);
+  Lanes root = none;
+  for (int i = 0; i < n; i++) b->scale[i] = lane_all(1) / (lane_abs(b->pb.y[i]) + lane_abs(x[columns + i]) + lane_all(b->floor));
+  for (int k = b->order; k > b->order - TAYLOR_WINDOW && k > 0; k--) {
+    Lanes most = none;
+    for (int i = 0; i < n; i++) most = lane_max(lane_abs(x[k * columns + i]) * b->scale[i], most);
+    root = lane_max(lane_select(most > lane_all(DBL_MIN), lag_rough_power(most, lane_all(b->per_order[b->order - k])), none), root);
+  }
+  Lanes h = lane_select(root > none, lane_abs(b->unit) * lane_all(b->reach) / root, lane_all(HUGE_VAL)), seen = lane_abs(b->pb.t - b->pb.t_begin);
+  Lanes most = b->h_max > 0 ? lane_all(b->h_max) : lane_select(seen > none, seen, lane_all(HUGE_VAL));
+  h = lane_min(h, most);
+  h = lane_select(lane_abs(h) <= lane_all(DBL_MAX), h, lane_all(1));
+  return lane_select(b->again, b->h, h);
+}
+
+/* y1, comp1 := the states after steps of dt. */
+LAG_INLINE void taylor_ends(int n, TaylorLanes *b, Lanes dt) {
+  b->ty->at(b->order, dt / b->unit, b->x[b->now], b->sum, b->slope);
+  for (int i = 0; i < n; i++) {
+    b->comp1[i] = b->comp[i];
+    b->y1[i] = lane_compensated_sum(b->pb.y[i], b->sum[i], &b->comp1[i]);
+  }
+}
+
+/* Errors of steps of dt that end at y1, in tolerances. */
+LAG_INLINE Lanes taylor_errors(int n, const TaylorLanes *b, Lanes dt) {
+  int nq = b->pb.nq, m = n - nq;
+  const Lanes *rates = b->x[1 - b->now] + n, *slope = b->slope + nq;
+  Lanes per_unit = lane_all(1) / b->unit, worst = lane_all(0), h = lane_abs(dt), to_v = h / lane_all(b->order + 1), to_q = h / lane_all(b->order + 2);
+  for (int i = 0; i < m; i++) {
+    Lanes error = lane_abs(slope[i] * per_unit - rates[i]) * to_v;
+    worst = lane_max(error * b->scale[nq + i], worst);
+    if (i < nq) worst = lane_max(error * to_q * b->scale[i], worst);
+  }
+  return worst / lane_all(b->pb.tol);
+}
+
+/* 2^k <= |x| < 2^(k+1). */
+LAG_INLINE Lanes taylor_power_of_2(Lanes x) { return (Lanes)((LaneMask)x & 0x7ff0000000000000LL); }
+
+/* Lanes other than those in `taken` get back the series of before. */
+static void taylor_keep(TaylorLanes *b, LaneMask taken) {
+  const Lanes *was = b->x[b->now];
+  Lanes *x = b->x[1 - b->now];
+  for (int i = 0; i < (b->order + 1) * b->columns; i++) x[i] = lane_select(taken, x[i], was[i]);
+}
+
+static void taylor_reject(TaylorLanes *b, unsigned lanes, Lanes h, Lanes error) {
+  for (int k = 0; k < LAG_LANES; k++) {
+    if (!(lanes >> k & 1)) continue;
+    b->again[k] = -1;
+    b->last[k] = error[k];
+    b->h[k] = h[k] * fmax(0.5, pow(error[k] * (1 << TAYLOR_AIM), -1.0 / (b->order + 1)));
+  }
+}
+
+/* A step of each lane of `busy`, of n components. Returns those accepted; *bad: those left to taylor.c. */
+LAG_INLINE LaneMask taylor_lane_step(int n, TaylorLanes *b, LaneMask busy, LaneMask *bad) {
+  LaneProblem *pb = &b->pb;
+  Lanes h = taylor_sizes(n, b), end = pb->t + lane_all(pb->dir) * h, dt = end - pb->t, *next = b->x[1 - b->now];
+  *bad = ~((lane_abs(dt) > lane_all(4 * DBL_EPSILON) * lane_abs(pb->t)) & (h >= lane_all(DBL_MIN / DBL_EPSILON)));
+  taylor_ends(n, b, dt);
+  int rc = lane_inputs(pb, end);
+  rc = rc ? 1 : b->ty->first(end, b->y1, b->y1 + pb->nq, b->y1 + 2 * pb->nq, pb->p, pb->u, b->follows, next, pb->work);
+  *bad |= lane_mask(rc > 0 ? ~0u : (unsigned)-rc) | lane_not_finite(n - pb->nq, next + n);
+  Lanes error = taylor_errors(n, b, dt), unit = lane_all(pb->dir) * taylor_power_of_2(dt);
+  Lanes noise = lane_select(error > b->last * lane_all(0.5), error, b->noise);
+  LaneMask taken = busy & ~*bad & ((error <= lane_all(1)) | (error <= lane_all(2) * noise));
+  b->ty->rest(b->order, unit, next, pb->work);
+  *bad = busy & (*bad | (taken & lane_not_finite(n, next + b->order * b->columns)));
+  b->noise = lane_select(taken, noise * lane_all(0.9), lane_select(busy, noise, b->noise));
+  unsigned rejected = (unsigned)lag_lanes_bits(busy & ~taken & ~*bad);
+  if (lag_lanes_any(~taken)) taylor_keep(b, taken);
+  if (rejected) taylor_reject(b, rejected, h, error);
+  pb->from = b->x[b->now]; /* order 0 of the last series is the state there */
+  b->now = 1 - b->now;
+  for (int i = 0; i < n; i++) {
+    pb->y[i] = lane_select(taken, b->y1[i], pb->y[i]);
+    b->comp[i] = lane_select(taken, b->comp1[i], b->comp[i]);
+  }
+  b->unit_last = lane_select(taken, b->unit, b->unit_last);
+  b->unit = lane_select(taken, unit, b->unit);
+  b->dt = lane_select(taken, dt, b->dt);
+  lane_moved(pb, taken, end);
+  b->again &= ~taken;
+  b->last = lane_select(taken, lane_all(HUGE_VAL), b->last);
+  return taken;
+}
+
+static LaneMask taylor_step(void *batch, LaneMask busy, LaneMask *bad) {
+  TaylorLanes *b = batch;
+  switch (b->pb.n) { /* numbers of components that the compiler knows */
+  case 2: return taylor_lane_step(2, b, busy, bad);
+  case 4: return taylor_lane_step(4, b, busy, bad);
+  case 6: return taylor_lane_step(6, b, busy, bad);
+  default: return taylor_lane_step(b->pb.n, b, busy, bad);
+  }
+}
+
+static unsigned taylor_advance(void *batch, unsigned busy, unsigned *bad) { return lane_advance(batch, busy, bad, taylor_step); }
+
+LANE_KERNEL(taylor, taylor)

@@ -1,0 +1,167 @@
+/* moreau: time-stepping with contacts, in velocities and impulses. Enters: t, y; leaves: t + h, y one step later. Holds: where no contact acts it is the symmetric method of order 2
+ * that drifts half a step, kicks with the mean velocity, and drifts again; sums over steps of q, v, z and t are compensated.
+ *
+ * Impacts are not located: all impulses of a step act at its middle, at once (contact_step.c). So impacts may follow each other in ever shorter time, or come in any number; positions at an impact are off by at
+ * most half a step's path, and an error of order 1 follows. Constraints are held by projection, and impulses respect them. J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1, DOI
+ * 10.1007/978-3-7091-2624-0_1; M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235, DOI 10.1016/S0045-7825(98)00383-1. Dense output is the parabola of a step, or two about an impact. */
+#include <float.h>
+#include <string.h>
+
+#include "lag.h"
+#include "methods/contact_step.h"
+#include "methods/steps.h"
+
+static const lag_method_option options[] = {LAG_STEP_OPTION};
+
+/* Head of the saved state; behind it arrays of n, and 2 doubles a contact of the model: friction, tangential restitution. */
+typedef struct Moreau {
+  lag_fixed_step step;
+  double struck; /* the last step had an impact */
+  double x[];
+} Moreau;
+enum { Y0, Y1, RATE, RATE0, MID, COMP, ARRAYS };
+
+static size_t work_size(const lag_problem *pb) { return sizeof(Moreau) / sizeof(double) + ARRAYS * (size_t)pb->n + 2 * (size_t)pb->model->ncontacts; }
+
+static double *law_of(Moreau *w, const lag_problem *pb) { return w->x + ARRAYS * pb->n; }
+
+static void reset(void *work, lag_problem *pb) {
+  Moreau *w = work;
+  w->step.tc = w->struck = 0;
+  memset(w->x + COMP * pb->n, 0, (size_t)pb->n * sizeof(double));
+  if (pb->contacts) pb->contacts->due = 0;
+}
+
+static int init(void *work, lag_problem *pb, const double *opt) {
+  Moreau *w = work;
+  const lag_model *m = pb->model;
+  int rc = 0;
+  w->step.h = lag_step_size(pb, opt[0]);
+  reset(work, pb);
+  if (!m->contact_laws) return LAG_OK;
+  rc = lag_inputs(pb, 0);
+  rc = rc ? rc : m->contact_laws(0, pb->begin, pb->begin + pb->nq, pb->begin + 2 * pb->nq, pb->p, pb->u, pb->rub, pb->work);
+  for (int i = 0; i < 2 * m->ncontacts; i++) law_of(w, pb)[i] = pb->rub[3 * (i / 2) + i % 2];
+  for (int i = 0; i + 1 < m->ncontacts && rc == 0; i++) {
+    if (m->contacts[i].is_tangent || !m->contacts[i + 1].is_tangent || !(pb->rub[3 * i] > pb->rub[3 * i + 3])) continue;
+    pb->detail = "a static friction above that of slipping is not followed by moreau; dop853 follows it";
+    return lag_step_failed(pb, LAG_EMETHOD, 0);
+  }
+  return rc ? lag_step_refused(pb, rc, 0) : LAG_OK;
+}
+
+static const char *refuses(const lag_model *m, const double *opt) {
+  (void)opt;
+  if (m->flags & LAG_MASSLESS) return "some coordinates have no inertia, and impulses would move them by any amount; dop853 takes such a model";
+  for (int i = 0; i < m->ncontacts; i++)
+    if (m->contacts[i].law) return "it has a law of impact of its own, and one contact or more name another; dop853 follows these";
+  for (int i = 0; i < m->ncontacts; i++)
+    if (m->contacts[i].conditional) return "constraints that hold while a condition is true are not followed; dop853 follows them";
+  return NULL;
+}
+
+/* Whether forces depend on no velocity, nor on states. */
+static int is_explicit(const lag_problem *pb) {
+  const lag_model *m = pb->model;
+  return (m->flags & LAG_SEPARABLE) && (!m->constraints || m->constraints->n == m->ncontacts);
+}
+
+/* mid := y + part (y1 - y) for velocities and states. Returns its largest change, in units of rounding: of the largest velocity, or of the state itself. */
+static double set_between(const lag_problem *pb, double dt, double part, const double *y, const double *y1, const double *rate, double *mid) {
+  double most = 0, fastest = 0;
+  for (int i = pb->nq; i < 2 * pb->nq; i++) fastest = fmax(fastest, fmax(fabs(dt * rate[i]), fmax(fabs(y[i]), fabs(y1[i]))));
+  for (int i = pb->nq; i < pb->n; i++) {
+    double next = y[i] + part * (y1[i] - y[i]), size = i < 2 * pb->nq ? fastest : fabs(y[i]) + fabs(y1[i]);
+    most = next == mid[i] ? most : fmax(most, fabs(next - mid[i]) / (DBL_EPSILON * size));
+    mid[i] = next;
+  }
+  return most;
+}
+
+/* Y1: velocities and states at the end of a step from y. Forces are those at the mean velocity; of a step with an impact the mean of those at both ends, since the mean of velocities that jump is none that occurs. */
+static int kick(Moreau *w, lag_problem *pb, double tm, double dt, const double *y, ContactStep *contacts) {
+  enum { TURNS = 100 };
+  int n = pb->n, nq = pb->nq, rc = 0;
+  double *y1 = w->x + Y1 * n, *rate = w->x + RATE * n, *rate0 = w->x + RATE0 * n, *mid = w->x + MID * n, before = HUGE_VAL;
+  for (int turn = 0; turn < TURNS; turn++) {
+    if ((rc = lag_step_rhs(pb, tm, mid, rate)) != 0) return rc;
+    if (turn == 0) memcpy(rate0, rate, (size_t)n * sizeof *rate);
+    for (int i = nq; i < n && contacts->impacts > 0; i++) rate[i] = (rate0[i] + rate[i]) / 2;
+    for (int i = nq; i < n; i++) y1[i] = y[i] + dt * rate[i];
+    if (pb->model->ncontacts && turn == 0) rc = lag_contact_step_find(contacts, pb, tm, dt, mid, y1 + nq, law_of(w, pb));
+    rc = rc || !pb->model->ncontacts ? rc : lag_contact_step_solve(contacts, pb, tm, y1 + nq);
+    if (rc || is_explicit(pb)) return rc;
+    double most = set_between(pb, dt, contacts->impacts > 0 ? 1 : 0.5, y, y1, rate, mid);
+    if (most <= 8 || (most <= 1e4 && most >= before / 2)) return LAG_OK;
+    before = most;
+  }
+  pb->detail = "forces that depend on velocities or states change too much within a step: take smaller steps, or radau";
+  return lag_step_failed(pb, LAG_EMETHOD, tm);
+}
+
+/* y := the end of the step from Y0, with compensated sums. */
+static void drift(Moreau *w, const lag_problem *pb, double dt, double *y) {
+  int n = pb->n, nq = pb->nq;
+  const double *y0 = w->x + Y0 * n, *y1 = w->x + Y1 * n;
+  double *lost = w->x + COMP * n;
+  for (int i = 0; i < n; i++) y[i] = lag_compensated_sum(y0[i], i < nq ? dt / 2 * (y0[nq + i] + y1[nq + i]) : y1[i] - y0[i], &lost[i]);
+}
+
+static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop) {
+  Moreau *w = work;
+  int n = pb->n, nq = pb->nq, rc;
+  double *y0 = w->x + Y0 * n, *y1 = w->x + Y1 * n, *mid = w->x + MID * n;
+  const double *lost = w->x + COMP * n;
+  lag_next_step next;
+  (void)t_stop;
+  if ((rc = lag_fixed_step_begin(&w->step, pb, *t, &next)) != 0) return rc;
+  ContactStep contacts = lag_contact_step(pb);
+  double tm = *t + next.dt / 2;
+  memcpy(mid, y, (size_t)n * sizeof *y);
+  for (int i = 0; i < nq; i++) mid[i] = y[i] + (lost[i] + next.dt / 2 * y[nq + i]);
+  if ((rc = kick(w, pb, tm, next.dt, y, &contacts)) != 0) return rc;
+  memcpy(y0, y, (size_t)n * sizeof *y);
+  drift(w, pb, next.dt, y);
+  pb->bad_index = lag_not_finite(n, y);
+  rc = pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, next.tb) : lag_project_step(pb, next.tb, y0, y, w->x + COMP * n);
+  if (rc) {
+    memcpy(y, y0, (size_t)n * sizeof *y);
+    return rc == LAG_ENAN ? rc : lag_step_not_projected(pb, rc, next.tb);
+  }
+  w->struck = contacts.impacts;
+  if (pb->model->ncontacts) lag_contact_step_note(&contacts, pb, next.dt, contacts.impacts > 0 ? tm : next.tb, y0 + nq, y1 + nq);
+  memcpy(y1, y, (size_t)n * sizeof *y);
+  lag_fixed_step_end(&w->step, &next, t);
+  return LAG_OK;
+}
+
+/* The parabola through both ends; about an impact, those with the acceleration of forces alone, which meet in the middle. */
+static void dense(void *work, lag_problem *pb, double t, double *y) {
+  const Moreau *w = work;
+  int n = pb->n, nq = pb->nq;
+  const double *y0 = w->x + Y0 * n, *y1 = w->x + Y1 * n, *rate = w->x + RATE * n;
+  double dt = w->step.dt, s = t - w->step.t0, left = s - dt;
+  for (int i = 0; i < nq; i++) {
+    double a = w->struck > 0 ? rate[nq + i] : (y1[nq + i] - y0[nq + i]) / dt;
+    int late = w->struck > 0 && s >= dt / 2;
+    y[i] = late ? y1[i] + left * (y1[nq + i] + left / 2 * a) : y0[i] + s * (y0[nq + i] + s / 2 * a);
+    y[nq + i] = late ? y1[nq + i] + left * a : y0[nq + i] + s * a;
+  }
+  for (int i = 2 * nq; i < n; i++) y[i] = y0[i] + s / dt * (y1[i] - y0[i]);
+}
+
+const lag_method lag_moreau = {
+    .name = "moreau",
+    .order = 2,
+    .dense_order = 2,
+    .doc = "time-stepping with contacts and friction by impulses, for many contacts or impacts. DOI 10.1007/978-3-7091-2624-0_1",
+    .flags = LAG_METHOD_CONSTRAINTS | LAG_METHOD_IMPULSES,
+    .noptions = 1,
+    .options = options,
+    .refuses = refuses,
+    .work_size = work_size,
+    .init = init,
+    .step = step,
+    .dense = dense,
+    .reset = reset,
+};

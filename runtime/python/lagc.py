@@ -1,0 +1,550 @@
+"""Models of lagc from Python: compiled as shared libraries, run by ctypes, results as NumPy arrays.
+
+    import lagc
+    m = lagc.load("pendulum.lag")
+    r = m.run("small", th=1.2, until=20)      # values in the units that the model declares
+    r.t, r["th"], r.energy_drift
+    dydt = m.rhs(0, [1.2, 0])                 # y = coordinates, velocities, states, in SI units
+    b = m.batch("small", th=numpy.linspace(0, 3, 10000), times=[10])
+    b.y                                       # (10000, 1, 2), in SI units
+
+This file needs Python 3.8, NumPy, and the program lagc: the one in $LAGC, that of the same source tree or installation, or that in $PATH. Libraries are
+built when a model is loaded, and kept in lagc's cache. While the library computes, other Python threads run.
+"""
+import ctypes
+import difflib
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+import warnings
+import weakref
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+__all__ = ["load", "Model", "Result", "Batch", "Error", "CompileError", "RunError"]
+
+_ABI = 12  # LAG_ABI of lag_model.h
+_STOPPED = 2
+_CHUNK = 4096  # rows of one call: between calls Ctrl-C is heard
+
+
+class Error(Exception):
+    """A wrong name, value or argument; the base of the others."""
+
+
+class CompileError(Error):
+    """The model is wrong: the compiler's text."""
+
+
+class RunError(Error):
+    """A run failed: when, where and why. `result` has the rows before; `status` is the library's."""
+
+    def __init__(self, message, status, result=None):
+        super().__init__(message)
+        self.status, self.result = status, result
+
+
+# ---- the compiler ----
+
+def _compiler():
+    here = os.path.dirname(os.path.abspath(__file__))
+    places = [os.environ.get("LAGC"), os.path.join(here, "../../build/lagc"), os.path.join(here, "../../../bin/lagc"), shutil.which("lagc")]
+    for place in places:
+        if place and os.access(place, os.X_OK):
+            return os.path.normpath(place)
+    raise Error("lagc is not found: set LAGC to its path, or put its folder into PATH")
+
+
+def _lagc(*words):
+    done = subprocess.run([_compiler(), *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+    said = done.stderr.strip()
+    if done.returncode:
+        raise (CompileError if done.returncode == 1 else Error)(said)
+    if said:
+        warnings.warn(said, stacklevel=4)
+    return done.stdout
+
+
+# ---- the library ----
+
+_Pointer = ctypes.c_void_p
+_EventHook = ctypes.CFUNCTYPE(None, _Pointer, ctypes.c_int, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_double))
+_InputHook = ctypes.CFUNCTYPE(ctypes.c_double, _Pointer, ctypes.c_double)
+
+
+class _Option(ctypes.Structure):
+    _fields_ = [("name", ctypes.c_char_p), ("value", ctypes.c_double), ("text", ctypes.c_char_p)]
+
+
+class _Stats(ctypes.Structure):
+    _fields_ = ([("t", ctypes.c_double)] + [(k, ctypes.c_longlong) for k in ("steps", "rejected", "rhs_calls", "events", "systems", "iterations")]
+                + [(k, ctypes.c_double) for k in ("energy", "energy_drift", "constraint", "constraint_rate", "unresolved")])
+
+
+class _Charge(ctypes.Structure):
+    _fields_ = ([("name", ctypes.c_char_p), ("unit", ctypes.c_char_p), ("flags", ctypes.c_uint)]
+                + [(k, ctypes.c_double) for k in ("begin", "now", "work", "dry_friction", "at_events", "drift", "absolute", "slope", "slope_error")] + [("trend", ctypes.c_int)]
+                + [(k, ctypes.c_double) for k in ("energy_jump", "energy_jump_t", "mass_condition")] + [("mass_condition_of", ctypes.c_char_p)])
+
+
+def _open(path):
+    lib = ctypes.CDLL(path)
+    d, i, s, p = ctypes.c_double, ctypes.c_int, ctypes.c_char_p, _Pointer
+    signatures = {
+        "lag_library": (p,), "lag_library_abi": (i,), "lag_library_scene": (p, p, i), "lag_scene_span": (s, p, p, p, p), "lag_scene_method": (s, p),
+        "lag_item": (s, p, i, i, p, p, p), "lag_find_method": (p, s), "lag_sim_new": (p, p), "lag_sim_free": (None, p), "lag_sim_set": (i, p, s, d),
+        "lag_sim_set_input": (i, p, s, _InputHook, p), "lag_sim_set_tolerance": (i, p, d), "lag_sim_set_method": (i, p, p, p, i),
+        "lag_sim_requested_start": (d, p, i), "lag_sim_actual_start": (d, p, i), "lag_sim_choose_method": (i, p, d, i, p, i, s, ctypes.c_size_t), "lag_sim_message": (s, p), "lag_sim_q": (ctypes.POINTER(d), p),
+        "lag_sim_p": (ctypes.POINTER(d), p), "lag_sim_time": (d, p), "lag_sim_noutputs": (i, p), "lag_sim_outputs": (i, p, p),
+        "lag_sim_output_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t), "lag_sim_state_info": (d, p, i, s, ctypes.c_size_t, s, ctypes.c_size_t),
+        "lag_sim_rhs": (i, p, i, p, p, p), "lag_sim_rows": (i, p, i, p, p, p, p), "lag_sim_batch": (i, p, i, p, p, i, p, p, p),
+        "lag_sim_stats": (None, p, p), "lag_sim_ncharges": (i, p), "lag_sim_charge": (None, p, i, p), "lag_sim_balance": (i, p),
+        "lag_sim_set_tangent": (i, p, i, p), "lag_sim_tangent": (i, p, p), "lag_sim_on_event": (None, p, _EventHook, p),
+    }
+    for name, (returns, *takes) in signatures.items():
+        f = getattr(lib, name)
+        f.restype, f.argtypes = returns, takes
+    if lib.lag_library_abi() != _ABI:
+        raise Error(f"{path} has the interface {lib.lag_library_abi()}, lagc.py knows {_ABI}: use the lagc.py of that lagc")
+    return lib
+
+
+def _address(a):
+    return None if a is None else a.ctypes.data
+
+
+def _array(a, shape, what):
+    """`a` as doubles in C order, without a copy where it is so already; -1 in shape: any number."""
+    x = np.ascontiguousarray(a, dtype=np.float64)
+    if len(x.shape) != len(shape) or any(want not in (-1, got) for want, got in zip(shape, x.shape)):
+        raise Error(f"{what} has the shape {x.shape}, not ({', '.join('any' if k < 0 else str(k) for k in shape)})")
+    return x
+
+
+def _number(name, value):
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise Error(f"{name} = {value!r}: not a number") from None
+
+
+def _near(name, names):
+    near = difflib.get_close_matches(name, names, 1)
+    return f"; did you mean {near[0]}?" if near else f"; there are {', '.join(names)}" if names else ""
+
+
+def _grid(t0, end, every):
+    """The rows of `lagc run`: k/n where n = 1/every is whole, so that times are 0.3, not 0.1*3."""
+    if not np.isfinite(end):
+        raise Error(f"until = {end}: not a finite time")
+    if not every > 0:
+        raise Error(f"every = {every}: the time between rows must be positive")
+    whole, k = 1 / every, np.arange(np.floor(abs(end - t0) / every + 1e-9) + 1)
+    n = np.round(whole)
+    times = t0 + np.copysign(1, end - t0) * (k / n if n >= 1 and abs(whole - n) <= 4e-16 * n else k * every)
+    return times if abs(times[-1] - end) <= 1e-9 * every else np.append(times, end)
+
+
+class _Simulation:
+    """A lag_sim of a scene, with the values that the caller gives."""
+
+    def __init__(self, lib, scene, values):
+        self.lib, self.scene, self.hooks, self.raised = lib, scene, [], None
+        self.sim = lib.lag_sim_new(scene.handle)
+        if not self.sim:
+            raise MemoryError
+        weakref.finalize(self, lib.lag_sim_free, self.sim)
+        for name, value in values.items():
+            if callable(value):
+                hook = _InputHook(lambda context, t, f=value: self._call(f, t))
+                self.hooks.append(hook)
+                self.check(lib.lag_sim_set_input(self.sim, name.encode(), hook, None))
+            elif isinstance(value, str):
+                raise Error(f"{name} = {value!r}: give a number, in the unit that the model declares, or a function of t for an input")
+            else:
+                self.check(lib.lag_sim_set(self.sim, name.encode(), _number(name, value)))
+
+    def _call(self, f, t):
+        """f(t); NaN, which ends the run, after an exception, which is raised then."""
+        try:
+            return float(f(t))
+        except BaseException as e:
+            self.raised = self.raised or e
+            return float("nan")
+
+    def raise_what_inputs_raised(self):
+        raised, self.raised = self.raised, None
+        if raised:
+            raise raised
+
+    def check(self, status):
+        if status < 0:
+            raise Error(self.message())
+
+    def message(self):
+        return self.lib.lag_sim_message(self.sim).decode()
+
+    def choose(self, method, options, tol, until, tangent):
+        """Method and tolerance; returns what is known of the choice."""
+        if tol is not None:
+            self.check(self.lib.lag_sim_set_tolerance(self.sim, float(tol)))
+        table = (_Option * max(1, len(options)))(*[_Option(k.encode(), 0 if isinstance(v, str) else v, v.encode() if isinstance(v, str) else None)
+                                                   for k, v in options.items()])
+        if method:
+            handle = self.lib.lag_find_method(method.encode())
+            if not handle:
+                raise Error(f"unknown method {method}" + _near(method, self.scene.items("m")))
+            self.check(self.lib.lag_sim_set_method(self.sim, handle, table, len(options)))
+            return method
+        if self.scene.method and not options:
+            return self.scene.method
+        why = ctypes.create_string_buffer(400)
+        self.check(self.lib.lag_sim_choose_method(self.sim, until, int(tangent), table, len(options), why, 400))
+        return why.value.decode()
+
+    def state(self):
+        return np.array(self.lib.lag_sim_q(self.sim)[:self.scene.n])
+
+    def start_moved(self):
+        """Components of the start that was asked for and does not obey the constraints: (asked, begun), in declared units."""
+        starts = {k: (self.lib.lag_sim_requested_start(self.sim, i), self.lib.lag_sim_actual_start(self.sim, i)) for i, k in enumerate(self.scene.q)}
+        return {k: both for k, both in starts.items() if both[0] != both[1]}
+
+    def info(self, function, count):
+        name, unit, out = ctypes.create_string_buffer(256), ctypes.create_string_buffer(256), {}
+        for i in range(count):
+            function(self.sim, i, name, 256, unit, 256)
+            out[name.value.decode()] = unit.value.decode()
+        return out
+
+
+class _Scene:
+    def __init__(self, lib, handle):
+        self.lib, self.handle = lib, handle
+        t0, t1, every = (ctypes.c_double() for _ in range(3))
+        self.name = lib.lag_scene_span(handle, *map(ctypes.byref, (t0, t1, every))).decode()
+        self.t0, self.t1, self.every = t0.value, t1.value, every.value
+        method = lib.lag_scene_method(handle)
+        self.method = method and method.decode()
+        # unit, factor and offset of each component of y and of each parameter
+        q, z = self.items("q"), self.items("z")
+        self.p = self.items("p")
+        self.q = {**q, **{k + "'": (u and u + "/s", f, 0.0) for k, (u, f, _) in q.items()}}  # what constraints may move
+        self.y = {**self.q, **z}
+        self.n = len(self.y)
+
+    def items(self, kind):
+        found, unit, factor, offset = {}, ctypes.c_char_p(), ctypes.c_double(), ctypes.c_double()
+        while True:
+            name = self.lib.lag_item(self.handle, ord(kind), len(found), *map(ctypes.byref, (unit, factor, offset)))
+            if name is None:
+                return found
+            found[name.decode()] = (unit.value.decode(), factor.value, offset.value)
+
+
+# ---- models ----
+
+def load(path, defines=None):
+    """Compiles a model. defines: values of its constants, {"N": 50}. CompileError: the compiler's text."""
+    return Model(path, defines)
+
+
+class Model:
+    """A compiled model: its scenes, and what they have."""
+
+    def __init__(self, path, defines=None):
+        self.path = os.fspath(path)
+        self._defines = [word for k, v in (defines or {}).items() for word in ("-D", f"{k}={v}")]
+        self._opened, self._simulation = {}, None
+        scenes = self._scenes()
+        self.scenes = list(scenes)
+        self.name = os.path.splitext(os.path.basename(self.path))[0]
+        first = next(iter(scenes.values()))
+        self.coordinates, self.states = list(first.items("q")), list(first.items("z"))
+        self.inputs, self.events, self.charges = list(first.items("u")), list(first.items("e")), list(first.items("c"))
+        self.methods = list(first.items("m"))
+
+    def __repr__(self):
+        return f"<lagc model {self.name}: y = {', '.join(self._scene(None).y)}; scenes {', '.join(self.scenes)}>"
+
+    def _scenes(self, *words):
+        """The scenes in a library with these options of `lagc build`: derivatives that a method or a tangent needs."""
+        if words not in self._opened:
+            lib = _open(_lagc("build", self.path, "--shared", *self._defines, *words).strip())
+            scenes = []
+            while lib.lag_library_scene(lib.lag_library(), len(scenes)):
+                scenes.append(_Scene(lib, lib.lag_library_scene(lib.lag_library(), len(scenes))))
+            self._opened[words] = {s.name: s for s in scenes}
+        return self._opened[words]
+
+    def _scene(self, name, *words):
+        scenes = self._scenes(*words)
+        if name is None:
+            return next(iter(scenes.values()))
+        if name not in scenes:
+            raise Error(f"{self.name} has no scene {name}" + _near(name, list(scenes)))
+        return scenes[name]
+
+    def _simulate(self, scene, values, more, method, tol, step, until, tangent):
+        """A simulation with its method, and the words that describe it. method: "rk4", or "rk4(step=1e-3)"."""
+        name, _, inside = (method or "").partition("(")
+        options = {k.strip(): v.strip() for k, _, v in (part.partition("=") for part in inside.rstrip(") ").split(",") if part.strip())}
+        options = {k: float(v) if re.fullmatch(r"[-+.\deE]+", v) else v for k, v in options.items()}
+        if step is not None and not step > 0:
+            raise Error(f"step={step}: a step is positive")
+        if step is not None:
+            options["step"] = float(step)
+        words = (["--method", name.strip()] if method else []) + (["--with", "linear"] if tangent else [])
+        if tol is not None and tol < 1e-9 and not method:
+            words += ["--method", "taylor"]
+        s = self._scene(scene, *words)
+        sim = _Simulation(s.lib, s, {**(values or {}), **more})
+        return sim, sim.choose(name.strip(), options, tol, s.t1 if until is None else until, tangent)
+
+    def parameters(self, scene=None):
+        """Values of the parameters in a scene, in declared units."""
+        s = self._scene(scene)
+        sim = _Simulation(s.lib, s, {})
+        return {k: (s.lib.lag_sim_p(sim.sim)[i] - offset) / factor for i, (k, (_, factor, offset)) in enumerate(s.p.items())}
+
+    def run(self, scene=None, values=None, *, until=None, every=None, times=None, method=None, tol=None, step=None, tangent=False, **more):
+        """Runs a scene, as `lagc run` does. values, or keywords: parameters, starts ({"th'": 0.5}, th=1.2) and inputs, in declared units; an input may
+        be a function of t. times: the rows, instead of `every`. tangent: also dy(end)/dy(0). RunError, with the rows so far, if it fails. A warning, and
+        start_moved of the result, if the start does not obey the constraints."""
+        until, every = (None if x is None else _number(k, x) for k, x in (("until", until), ("every", every)))
+        sim, chosen = self._simulate(scene, values, more, method, tol, step, until, tangent)
+        s, lib = sim.scene, sim.lib
+        end = s.t1 if until is None else until
+        times = _grid(s.t0, end, (s.every or abs(end - s.t0) / 1000) if every is None else every) if times is None else _array(times, (-1,), "times")
+        if not len(times):
+            raise Error("times is empty: give at least one time")
+        events, names = [], list(s.items("e"))
+
+        def on_event(context, k, t, before, after):
+            events.append((names[k], t, np.array(before[:s.n]), np.array(after[:s.n])))
+
+        hook = _EventHook(on_event)
+        if names:
+            lib.lag_sim_on_event(sim.sim, hook, None)
+        sim.check(lib.lag_sim_balance(sim.sim))
+        if tangent:
+            sim.check(lib.lag_sim_set_tangent(sim.sim, s.n, None))
+        return self._rows(sim, chosen, times, events, tangent)
+
+    def _rows(self, sim, chosen, times, events, tangent):
+        s, lib = sim.scene, sim.lib
+        outputs = sim.info(lib.lag_sim_output_info, lib.lag_sim_noutputs(sim.sim))
+        y, out = np.empty((len(times) + 1, s.n)), np.empty((len(times) + 1, len(outputs)))
+        done, rows, status = ctypes.c_int(), 0, 0
+        while rows < len(times) and status == 0:
+            part = times[rows:rows + _CHUNK]
+            status = lib.lag_sim_rows(sim.sim, len(part), _address(part), y[rows:].ctypes.data, out[rows:].ctypes.data, ctypes.byref(done))
+            rows += done.value
+        times = times[:rows]
+        now = lib.lag_sim_time(sim.sim)
+        if status and (rows == 0 or now != times[-1]) and lib.lag_sim_outputs(sim.sim, out[rows:].ctypes.data) == 0:
+            y[rows] = sim.state()
+            times, rows = np.append(times, now), rows + 1
+        result = Result(self, sim, chosen, times, y[:rows], outputs, out[:rows], events)
+        sim.raise_what_inputs_raised()
+        if status < 0:
+            raise RunError(sim.message(), status, result)
+        if result.start_moved:
+            said = [f"{k} from {asked:.15g} to {begun:.15g} {result.units[k] or ''}".rstrip() for k, (asked, begun) in result.start_moved.items()]
+            warnings.warn("start moved to the constraints: " + ", ".join(said), stacklevel=3)
+        if tangent:
+            result.tangent = np.empty((s.n, s.n))
+            sim.check(lib.lag_sim_tangent(sim.sim, _address(result.tangent)))
+        return result
+
+    def rhs(self, t, y, scene=None, values=None, **more):
+        """dy/dt at one state y[n], or at many, y[k, n]; SI units. values, or keywords: parameters and inputs."""
+        key = (scene, tuple(sorted({**(values or {}), **more}.items())))
+        if not self._simulation or self._simulation[0] != key:
+            s = self._scene(scene)
+            self._simulation = key, _Simulation(s.lib, s, dict(key[1]))
+        sim = self._simulation[1]
+        y = np.ascontiguousarray(y, dtype=np.float64)
+        states = _array(y if y.ndim == 2 else y[None], (-1, sim.scene.n), "y")
+        t = np.ascontiguousarray(np.broadcast_to(np.asarray(t, dtype=np.float64), (len(states),)))
+        dy = np.empty_like(states)
+        status = sim.lib.lag_sim_rhs(sim.sim, len(states), _address(t), _address(states), _address(dy))
+        sim.raise_what_inputs_raised()
+        if status:
+            raise RunError(sim.message(), status)
+        return dy if y.ndim == 2 else dy[0]
+
+    def batch(self, scene=None, values=None, *, times, y0=None, p=None, out=None, method=None, tol=None, step=None, threads=1, **more):
+        """Many motions in one call. values, or keywords: a number, or an array with one number a motion, in declared units; or y0[count, n] and
+        p[count, np], in SI units, in the order of parameters(). times: when states are kept. out: an array [count, len(times), n] to fill. Arrays of doubles are not copied."""
+        given = {**(values or {}), **more}
+        columns = {k: np.asarray(v, dtype=np.float64) for k, v in given.items() if not callable(v) and np.ndim(v)}
+        times = _array(times, (-1,), "times")
+        for k, v in [*columns.items(), ("y0", y0), ("p", p), ("times", times)]:
+            bad = [] if v is None else np.argwhere(~np.isfinite(np.asarray(v, dtype=np.float64)))
+            if len(bad):
+                raise Error(f"{k}: {'row' if v is times else 'motion'} {bad[0][0]} has a value that is not finite")
+        until = times[-1] if len(times) else None
+        sim, chosen = self._simulate(scene, {k: v for k, v in given.items() if k not in columns}, {}, method, tol, step, until, False)
+        s = sim.scene
+        y0, p = self._starts(sim, columns, y0, p)
+        count = len(y0) if y0 is not None else len(p) if p is not None else 1
+        shape = (count, len(times), s.n)
+        if out is None:
+            out = np.empty(shape)
+        elif out.shape != shape or out.dtype != np.float64 or not out.flags.c_contiguous or not out.flags.writeable:
+            raise Error(f"out must be a writable array of doubles in C order of the shape {shape}")
+        status = np.empty(count, dtype=np.intc)
+
+        def part(a, b):
+            return s.lib.lag_sim_batch(sim.sim, b - a, None if y0 is None else y0[a:].ctypes.data, None if p is None else p[a:].ctypes.data, len(times),
+                                       _address(times), out[a:].ctypes.data, status[a:].ctypes.data)
+
+        cuts = np.linspace(0, count, max(1, min(threads, count)) + 1).astype(int)
+        with ThreadPoolExecutor(len(cuts) - 1) as pool:
+            if any(pool.map(part, cuts[:-1], cuts[1:])):
+                raise MemoryError
+        sim.raise_what_inputs_raised()
+        return Batch(times, out, status, list(s.y), chosen)
+
+    def sweep(self, scene=None, values=None, *, measure=None, until=None, method=None, tol=None, step=None, samples=None, sampling=None, seed=None, zip=False, threads=None, **more):
+        """Many runs by `lagc sweep`: a structured array, a row a run, with the columns of its CSV. values, or keywords: a number, a sequence of numbers,
+        or a text: th="-180..180[deg]:512", k="1e-3..1e3:log:7", g="~normal(9.81, 0.01)" with samples=1000. measure: expressions, ["max(x)"] or {"T": "period(th)"}."""
+        words = []
+        for k, v in {**(values or {}), **more}.items():
+            text = v.strip() if isinstance(v, str) else ",".join(repr(float(x)) for x in np.ravel(v))
+            words.append(k + text if text.startswith("~") else f"{k}={text}")
+        for m in measure.items() if isinstance(measure, dict) else [measure] if isinstance(measure, str) else measure or []:
+            words += ["--measure", m if isinstance(m, str) else "=".join(m)]
+        for option, v in (("until", until), ("method", method), ("tol", tol), ("step", step), ("samples", samples), ("sampling", sampling), ("seed", seed), ("threads", threads)):
+            words += [] if v is None else [f"--{option}", str(v)]
+        with tempfile.TemporaryDirectory() as folder:
+            rows = os.path.join(folder, "rows.npy")
+            _lagc("sweep", self.path, *([scene] if scene else []), *words, *(["--zip"] if zip else []), *self._defines, "-o", rows, "--quiet")
+            return np.load(rows)
+
+    @staticmethod
+    def _starts(sim, columns, y0, p):
+        """Arrays of starts and parameters, from columns by name."""
+        s = sim.scene
+        sizes = {len(v) for v in columns.values()} | {len(v) for v in (y0, p) if v is not None}
+        if len(sizes) > 1:
+            raise Error(f"arrays of a batch differ in length: {', '.join(map(str, sorted(sizes)))}")
+        for kind, table, current in (("y0", s.y, sim.state()), ("p", s.p, np.array(sim.lib.lag_sim_p(sim.sim)[:len(s.p)]))):
+            mine = {k: v for k, v in columns.items() if k in table}
+            whole = y0 if kind == "y0" else p
+            if whole is not None and mine:
+                raise Error(f"{', '.join(mine)} and {kind} set the same values: give one of them")
+            if mine: # parameters that are not given stay NaN: they may follow from these by formulas
+                whole = np.tile(current if kind == "y0" else np.full(len(table), np.nan), (len(next(iter(mine.values()))), 1))
+                for k, v in mine.items():
+                    _, factor, offset = table[k]
+                    whole[:, list(table).index(k)] = v * factor + offset
+            if whole is not None:
+                whole = _array(whole, (-1, len(table)), kind)
+            y0, p = (whole, p) if kind == "y0" else (y0, whole)
+        for k in columns:
+            if k in s.items("u"):
+                raise Error(f"{k}: an input takes one value or one function for all motions of a batch")
+            if k not in s.y and k not in s.p:
+                raise Error(f"{k}: no such parameter or coordinate" + _near(k, [*s.y, *s.p]))
+        return y0, p
+
+    # ---- display ----
+
+    @property
+    def equations(self):
+        """The equations of motion as text."""
+        return _lagc("derive", self.path, *self._defines)
+
+    @property
+    def latex(self):
+        """The equations of motion as LaTeX."""
+        return _lagc("derive", self.path, *self._defines, "--format", "latex")
+
+    def _repr_latex_(self):
+        part = re.search(r"% equations of motion\n\\begin\{align\*\}(.*?)\\end\{align\*\}", self.latex, re.S)
+        return "$$\\begin{aligned}" + part.group(1) + "\\end{aligned}$$" if part else None
+
+
+# ---- results ----
+
+class Result:
+    """A run: t[rows], y[rows, n] in SI units; r["th"] is a column of the scene's outputs, or of the state, in declared units."""
+
+    def __init__(self, model, sim, chosen, t, y, outputs, out, events):
+        s, stats = sim.scene, _Stats()
+        self.model, self.scene, self.method, self.t, self.y = model.name, s.name, chosen, t, y
+        self.events = events  # (name, time, state before, state after)
+        self.start_moved = sim.start_moved()  # onto the constraints: {name: (asked, begun)}, in declared units
+        self.units = {**{k: u for k, (u, _, _) in s.y.items()}, **outputs}
+        self._columns = {k: (y[:, i] - offset) / factor for i, (k, (_, factor, offset)) in enumerate(s.y.items())}
+        self._columns.update({k: out[:, i] for i, k in enumerate(outputs)})
+        self.names = list(outputs)
+        sim.lib.lag_sim_stats(sim.sim, ctypes.byref(stats))
+        self.stats = {k: getattr(stats, k) for k, _ in _Stats._fields_}
+        self.energy_drift, self.charges = stats.energy_drift, {}  # drifts: less what forces and inputs explain
+        for k in range(sim.lib.lag_sim_ncharges(sim.sim)):
+            charge = _Charge()
+            sim.lib.lag_sim_charge(sim.sim, k, ctypes.byref(charge))
+            self.charges[charge.name.decode()] = {"begin": charge.begin, "now": charge.now, "drift": charge.drift, "unit": charge.unit.decode()}
+
+    def __getitem__(self, name):
+        if name == "t":
+            return self.t
+        if name not in self._columns:
+            raise Error(f"{name}: no such output" + _near(name, list(self._columns)))
+        return self._columns[name]
+
+    def keys(self):
+        return list(self._columns)
+
+    def __len__(self):
+        return len(self.t)
+
+    def __repr__(self):
+        return f"<lagc run of {self.model}, scene {self.scene}: {len(self.t)} rows to t = {self.t[-1]:g} s, energy drift {self.energy_drift:.3g}>"
+
+    def plot(self, *names, x="t", ax=None):
+        """Draws columns against another, by matplotlib; returns its axes."""
+        if ax is None:
+            import matplotlib.pyplot as plt
+            ax = plt.gca()
+        for name in names or self.names:
+            ax.plot(self[x], self[name], label=name)
+        ax.set_xlabel(f"{x} [{'s' if x == 't' else self.units[x]}]")
+        ax.legend()
+        return ax
+
+    def _repr_svg_(self):
+        """The outputs against time, each scaled to the height of the picture."""
+        wide, high, parts = 640, 240, []
+        rows = np.unique(np.linspace(0, len(self.t) - 1, min(len(self.t), 1500)).astype(int))
+        x = (self.t[rows] - self.t[0]) / ((self.t[-1] - self.t[0]) or 1) * wide
+        for i, name in enumerate(self.names):
+            v, colour = self[name][rows], f"hsl({137 * i % 360},70%,40%)"
+            fine = np.isfinite(v)
+            if not fine.any():
+                continue
+            low, top = v[fine].min(), v[fine].max()
+            line = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x[fine], high - (v[fine] - low) / ((top - low) or 1) * high))
+            label = name.replace("&", "&amp;").replace("<", "&lt;")
+            parts.append(f'<polyline fill="none" stroke="{colour}" points="{line}"/>'
+                         f'<text x="{wide + 8}" y="{16 * i + 16}" fill="{colour}">{label}: {low:.4g} to {top:.4g} {self.units[name]}</text>')
+        return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-4 -4 {wide + 248} {max(high, 16 * len(self.names)) + 24}" font-size="13" font-family="sans-serif">'
+                f'{"".join(parts)}<text x="0" y="{high + 16}">t = {self.t[0]:g} to {self.t[-1]:g} s</text></svg>')
+
+
+class Batch:
+    """Many motions: y[count, times, n] in SI units, status[count] (0: fine; else y is NaN from the failure on)."""
+
+    def __init__(self, t, y, status, names, method):
+        self.t, self.y, self.status, self.names, self.method = t, y, status, names, method
+
+    def __getitem__(self, name):
+        if name not in self.names:
+            raise Error(f"{name}: no such component of y" + _near(name, self.names))
+        return self.y[:, :, self.names.index(name)]

@@ -1,0 +1,547 @@
+/* `lagc verify`: a right-hand side by hand against the derived equations.
+ *
+ * A program with the emitted model in quadruple precision and the function as it is written, in doubles, evaluates both at sample points and at
+ * arguments some roundings beside each. A difference counts if it exceeds what rounding explains: the spread of the difference over these
+ * arguments and the four directions of rounding (Kahan, How futile are mindless assessments of roundoff, 2006), and the change of the derived value. */
+#include <ctype.h>
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
+#include "base/words.h"
+#include "claims/difference_cause.h"
+#include "claims/sample_points.h"
+#include "commands/commands.h"
+#include "commands/simulator.h"
+#include "commands/verify_driver.h" /* static const char *const verify_driver[]: generated from verify_driver.in */
+#include "emit/emit_model.h"
+#include "toolchain/cache.h"
+#include "toolchain/files.h"
+
+typedef long double Real;
+
+enum { BESIDE = 6, ROUNDINGS = 8, MODES = 4, FEWEST = 8 }; /* arguments beside a point, and their largest distance in ulp; directions of rounding; fewest points */
+
+/* Results of one set of arguments; dydt in the order of the function. */
+typedef struct {
+  double status;
+  const double *high, *low;                 /* [na] */
+  double yours_status[MODES];
+  const double *dydt[MODES];                /* [ny] */
+} Evaluation;
+
+/* Findings on one component of dydt, in the model's order. */
+typedef struct {
+  uint32_t points, differs, scattered; /* points compared; those where it differs; those of RANDOM where rounding leaves no digits */
+  int is_rounding;                     /* it is not exact at points where the value is 0 up to roundings */
+  Real ulps;                           /* largest difference in ulp that rounding explains */
+  Real worst;                          /* largest of the relative differences that rounding does not explain, */
+  uint32_t worst_at;                   /* and its point */
+} Component;
+
+typedef struct {
+  Compiler *c;
+  const Eqns *e;
+  const Model *m;
+  ExprGraph *g;
+  Arena *arena;
+  const char *file, *function;
+  const char *given; /* values of the command line */
+  uint32_t nq, ny, na, np;
+  uint32_t *map;                 /* [ny] component of y at each place of the function's y */
+  SamplePoints *points;
+  Real *symbols[POINTS];         /* NULL: outside the domain */
+  uint32_t n, point[POINTS];     /* points that are evaluated */
+  double *results;
+  Component *component;          /* [ny] */
+} Verification;
+
+/* ---- the command line ---- */
+
+static int is_identifier(const char *s) {
+  if (!isalpha((unsigned char)*s) && *s != '_') return 0;
+  while (isalnum((unsigned char)*s) || *s == '_') s++;
+  return !*s;
+}
+
+static int read_target(Verification *v, const char **error) {
+  const char *given = v->c->o.against, *colon = given ? strrchr(given, ':') : NULL;
+  if (!given) return fail_with(error, "which function? write --against FILE.c:FUNCTION");
+  if (!colon || !is_identifier(colon + 1)) return fail_with(error, arena_printf(v->arena, "--against %s names no function: write FILE.c:FUNCTION", given));
+  v->file = arena_strndup(v->arena, given, (size_t)(colon - given));
+  v->function = colon + 1;
+  return 1;
+}
+
+static Name name_of(const Verification *v, uint32_t i) { return expr_symbol(v->g, sample_state_symbols(v->points).at[i])->name; }
+
+/* Index of the component that s[n] names; ny: none. */
+static uint32_t component_named(const Verification *v, const char *s, size_t n) {
+  uint32_t i = 0;
+  while (i < v->ny && (strlen(name_of(v, i)) != n || strncmp(name_of(v, i), s, n) != 0)) i++;
+  return i;
+}
+
+/* Length of the next name of a list with commas; a family's own commas stand in brackets. */
+static size_t name_length(const char *s) {
+  size_t n = 0;
+  for (int depth = 0; s[n] && (depth || s[n] != ','); n++) depth += (s[n] == '[') - (s[n] == ']');
+  return n;
+}
+
+static const char *all_names(const Verification *v, const uint32_t *order) {
+  StrBuf b = strbuf(v->arena);
+  for (uint32_t i = 0; i < v->ny; i++) sb_printf(&b, "%s%s", i ? "," : "", name_of(v, order ? order[i] : i));
+  return sb_text(&b);
+}
+
+static int read_map(Verification *v, const char **error) {
+  const char *s = v->c->o.map;
+  uint32_t n = 0;
+  v->map = ARENA_ARRAY(v->arena, uint32_t, v->ny + 1);
+  for (uint32_t i = 0; i < v->ny; i++) v->map[i] = i;
+  for (; s && *s; n++) {
+    size_t length = name_length(s);
+    const char *word = arena_strndup(v->arena, s, length);
+    uint32_t i = component_named(v, s, length);
+    if (i == v->ny) {
+      Name *names = ARENA_ARRAY(v->arena, Name, v->ny + 1);
+      for (uint32_t k = 0; k < v->ny; k++) names[k] = name_of(v, k);
+      Name near = suggest(word, names, v->ny);
+      const char *help = near ? arena_printf(v->arena, ": did you mean `%s`?", near) : arena_printf(v->arena, "; they are %s", all_names(v, NULL));
+      return fail_with(error, arena_printf(v->arena, "--map: `%s` is no component of y%s", word, help));
+    }
+    for (uint32_t k = 0; k < n && k < v->ny; k++)
+      if (v->map[k] == i) return fail_with(error, arena_printf(v->arena, "--map: `%s` stands twice", word));
+    if (n < v->ny) v->map[n] = i;
+    s += length + (s[length] == ',');
+  }
+  if (v->c->o.map && n != v->ny)
+    return fail_with(error, arena_printf(v->arena, "--map has %u name%s, y has %u components: %s", n, plural(n), v->ny, all_names(v, NULL)));
+  return 1;
+}
+
+/* ---- the program ---- */
+
+/* Text with comments and literals blanked, so that braces and names are those of code. */
+static char *code_only(Arena *a, const char *text) {
+  char *s = arena_strdup(a, text);
+  for (size_t i = 0; s[i];) {
+    size_t n = 1;
+    if (s[i] == '/' && s[i + 1] == '/') n = strcspn(s + i, "\n");
+    else if (s[i] == '/' && s[i + 1] == '*') n = strstr(s + i + 2, "*/") ? (size_t)(strstr(s + i + 2, "*/") - (s + i)) + 2 : strlen(s + i);
+    else if (s[i] == '"' || s[i] == '\'') {
+      while (s[i + n] && s[i + n] != s[i] && s[i + n] != '\n') n += s[i + n] == '\\' && s[i + n + 1] ? 2 : 1;
+      n += s[i + n] != '\0';
+    } else {
+      i++;
+      continue;
+    }
+    for (size_t k = 0; k < n; k++)
+      if (s[i + k] != '\n') s[i + k] = ' ';
+    i += n;
+  }
+  return s;
+}
+
+typedef VEC(Name) Names;
+
+/* Functions that the file defines: a name and a list in parentheses before a brace, outside all braces. */
+static Names functions_of(Arena *a, const char *text) {
+  Names names = {0};
+  const char *s = code_only(a, text), *name = NULL, *end = NULL;
+  int braces = 0, parentheses = 0, listed = 0;
+  for (const char *c = s; *c; c++) {
+    if (*c == '#' && (c == s || c[-1] == '\n')) { /* a directive */
+      while (c[1] && (c[1] != '\n' || *c == '\\')) c++;
+    } else if (braces) {
+      braces += (*c == '{') - (*c == '}');
+    } else if (isalpha((unsigned char)*c) || *c == '_') {
+      const char *from = c;
+      while (isalnum((unsigned char)c[1]) || c[1] == '_') c++;
+      if (!parentheses && !listed) name = from, end = c + 1;
+    } else if (*c == '(' || *c == ')') {
+      parentheses += *c == '(' ? 1 : -1;
+      listed |= name && *c == ')' && !parentheses;
+    } else if (*c == '{') {
+      braces = 1;
+      if (listed && !parentheses) vec_push(a, &names, arena_strndup(a, name, (size_t)(end - name)));
+      listed = 0;
+    } else if (*c == ';') {
+      listed = 0;
+    }
+  }
+  return names;
+}
+
+/* The message for a file that does not have the function; NULL: it seems to have it. */
+static const char *function_missing(Verification *v, const char *text) {
+  Names names = functions_of(v->arena, text);
+  StrBuf b = strbuf(v->arena);
+  for (uint32_t i = 0; i < names.n; i++) {
+    if (strcmp(names.at[i], v->function) == 0) return NULL;
+    sb_printf(&b, "%s%s", i ? ", " : "", names.at[i]);
+  }
+  Name near = suggest(v->function, names.at, names.n);
+  const char *help = near ? arena_printf(v->arena, ": did you mean `%s`?", near) : names.n ? arena_printf(v->arena, "; it has %s", sb_text(&b)) : "";
+  return arena_printf(v->arena, "%s has no function `%s`%s", v->file, v->function, help);
+}
+
+/* The function behind one interface, whether it returns void or a number; names of macros in the file cannot collide with these. */
+static const char *adapter_text(const Verification *v, const char *path) {
+  const char *f = v->function;
+  return arena_printf(v->arena,
+                      "#define main lag_against_main\n#include \"%s\"\n#undef main\n"
+                      "#define LAG_IS(result, Y) __builtin_types_compatible_p(__typeof__(&%s), result (*)(double, Y, const double *, double *))\n"
+                      "_Static_assert(!LAG_IS(void, const double *) && !LAG_IS(int, const double *) && !LAG_IS(void, double *) && !LAG_IS(int, double *),\n"
+                      "               \"its third argument should be dydt, which it writes, and is a pointer to const\");\n"
+                      "int lag_against(double lag_t, double *lag_y, double *lag_dydt, double *lag_p) {\n"
+                      "  return __builtin_choose_expr(__builtin_types_compatible_p(__typeof__(%s(lag_t, lag_y, lag_dydt, lag_p)), void),\n"
+                      "    (%s(lag_t, lag_y, lag_dydt, lag_p), 0), %s(lag_t, lag_y, lag_dydt, lag_p));\n}\n",
+                      path, f, f, f, f);
+}
+
+/* The model for another scalar: flags -D and -include of the toolchain as text, since the function is compiled by the same command. */
+static const char *model_text(const Verification *v, const IrUnit *u, const Toolchain *t) {
+  StrBuf b = strbuf(v->arena);
+  for (const char *const *f = t->flags; *f; f++) {
+    if (strcmp(*f, "-include") == 0) sb_printf(&b, "#include <%s>\n", *++f);
+    const char *equals = strchr(*f, '=');
+    if (strncmp(*f, "-D", 2) == 0 && equals) sb_printf(&b, "#define %.*s %s\n", (int)(equals - *f - 2), *f + 2, equals + 1);
+  }
+  emit_model(u, "lag_derived", &b); /* a function by hand often has the model's name */
+  for (size_t i = 0; i < sizeof verify_driver / sizeof *verify_driver; i++) sb_puts(&b, verify_driver[i]);
+  sb_puts(&b, "\nint main(void) { return lag_compare(&lag_derived); }\n");
+  return sb_text(&b);
+}
+
+/* Builds and runs the program with derived equations in this precision. Returns 0, with *error, if it is not built. */
+static int run_with(Verification *v, const IrUnit *u, const char *precision, const char *path, FILE *in, FILE *out, int *status, const char **error) {
+  static const char *const flags[] = {"-std=gnu11", "-Werror=incompatible-pointer-types", "-Werror=int-conversion", "-Werror=implicit-function-declaration", "-Wfatal-errors", NULL};
+  Toolchain t;
+  if (!toolchain_find(v->arena, v->c->argv0, 0, &t, error)) return 0;
+  toolchain_scalar(&t, precision);
+  SourceText texts[] = {{"model.c", model_text(v, u, &t)}, {"against.c", adapter_text(v, path)}};
+  t.flags = flags;
+  cache_remove_stale_builds(v->arena);
+  return toolchain_run_once(v->arena, &t, texts, 2, in, out, status, error);
+}
+
+/* ---- the points ---- */
+
+/* A whole number from -ROUNDINGS to ROUNDINGS. */
+static int draw_roundings(uint32_t *random) {
+  *random = *random * 1664525u + 1013904223u;
+  return (int)(*random >> 16) % (2 * ROUNDINGS + 1) - ROUNDINGS;
+}
+
+/* Writes one set of arguments: those of the point, or, beside it, each some roundings off. */
+static void write_arguments(Verification *v, const Real *symbols, int beside, uint32_t *random, FILE *in) {
+  SymList y = sample_state_symbols(v->points), p = sample_parameters(v->points);
+  double *x = ARENA_ARRAY(v->arena, double, 2 + 2 * (size_t)v->ny + v->np);
+  x[0] = (double)symbols[v->m->time];
+  for (uint32_t i = 0; i < v->ny; i++) x[1 + i] = (double)symbols[y.at[i]];
+  for (uint32_t i = 0; i < v->np; i++) x[1 + v->ny + i] = (double)symbols[p.at[i]];
+  for (uint32_t i = 0; i < 1 + v->ny + v->np && beside; i++) x[i] *= 1 + draw_roundings(random) * DBL_EPSILON;
+  x[0] = fmax(x[0], v->m->scene.t0);
+  for (uint32_t i = 0; i < v->ny; i++) x[1 + v->ny + v->np + i] = x[1 + v->map[i]];
+  fwrite(x, sizeof *x, 1 + 2 * (size_t)v->ny + v->np, in);
+}
+
+/* Draws the points and writes their arguments; the first point comes once more at the end. */
+static void write_points(Verification *v, FILE *in) {
+  uint32_t random = 1;
+  for (uint32_t k = 0; k < POINTS; k++) {
+    Real *symbols = ARENA_ARRAY(v->arena, Real, expr_symbol_count(v->g) + 1);
+    if (!sample_point(v->points, k, symbols)) continue;
+    v->symbols[k] = symbols;
+    for (int j = 0; j <= BESIDE; j++) write_arguments(v, symbols, j > 0, &random, in);
+    v->point[v->n++] = k;
+  }
+  if (v->n) write_arguments(v, v->symbols[v->point[0]], 0, &random, in);
+}
+
+static size_t result_size(const Verification *v) { return 1 + 2 * (size_t)v->na + MODES * (1 + (size_t)v->ny); }
+
+/* Results of argument set j (0: the point itself) of the i-th point. */
+static Evaluation evaluation(const Verification *v, uint32_t i, uint32_t j) {
+  const double *r = v->results + ((size_t)i * (BESIDE + 1) + j) * result_size(v);
+  Evaluation x = {.status = r[0], .high = r + 1, .low = r + 1 + v->na};
+  r += 1 + 2 * (size_t)v->na;
+  for (int k = 0; k < MODES; k++, r += 1 + v->ny) x.yours_status[k] = r[0], x.dydt[k] = r + 1;
+  return x;
+}
+
+/* ---- judgement ---- */
+
+/* The derived value of the rate of component i at argument set j; q' is exact. */
+static Real derived(const Verification *v, const Evaluation *x, const Real *symbols, uint32_t i, Real *low) {
+  *low = 0;
+  if (i < v->nq) return symbols[sample_state_symbols(v->points).at[v->nq + i]];
+  *low = x->low[i - v->nq];
+  return x->high[i - v->nq];
+}
+
+static Real ulp(Real x) { return x == 0 || !isfinite(x) ? DBL_TRUE_MIN : fmaxl(ldexpl(1, ilogbl(x) - DBL_MANT_DIG + 1), DBL_TRUE_MIN); }
+
+/* Largest acceleration or rate. Values 1e-9 times as large may differ by rounding that no argument moves, as exp(x) - 1 does for tiny x; random points
+ * have none such, and decide. */
+static Real largest_rate(const Verification *v, const Evaluation *x) {
+  Real most = 0;
+  for (uint32_t i = 0; i < v->na; i++) most = fmaxl(most, fabsl(x->high[i]));
+  return most;
+}
+
+/* Larger by more than rounding: the same state is shown with every library of functions. */
+static int is_clearly_larger(Real x, Real than) { return x > than * (1 + 1e-6L) && than < INFINITY; }
+
+/* The difference of a component of dydt from the derived value, and what rounding explains of it. */
+typedef struct {
+  Real value, difference, bound;
+  Real spread, moved; /* of the difference, and of the derived value, over arguments beside the point and directions of rounding */
+} Difference;
+
+/* Component i of dydt, at place `place` of the function, at the k-th point. */
+static Difference difference_at(const Verification *v, uint32_t k, uint32_t i, uint32_t place) {
+  const Real *symbols = v->symbols[v->point[k]];
+  Evaluation x = evaluation(v, k, 0);
+  Real low, value = derived(v, &x, symbols, i, &low), least = INFINITY, most = -INFINITY;
+  Difference d = {.value = value, .difference = (x.dydt[0][place] - value) - low};
+  for (uint32_t j = 0; j <= BESIDE; j++) {
+    Evaluation b = evaluation(v, k, j);
+    Real b_low, b_value = i < v->nq ? value : derived(v, &b, symbols, i, &b_low);
+    if (i < v->nq && j) break; /* q' beside the point is another argument */
+    if (i < v->nq) b_low = 0;
+    if (b.status != 0 || !isfinite(b_value)) continue;
+    d.moved = fmaxl(d.moved, fabsl((b_value - value) + (b_low - low)));
+    for (int r = 0; r < MODES; r++) {
+      Real off = (b.dydt[r][place] - b_value) - b_low;
+      if (isfinite(off)) least = fminl(least, off), most = fmaxl(most, off);
+    }
+  }
+  d.spread = most > least ? most - least : 0;
+  d.bound = 2 * d.spread + d.moved + 8 * ulp(value);
+  return d;
+}
+
+static void judge(Verification *v, uint32_t k, uint32_t i, uint32_t place) {
+  const Real few = 1 << 26; /* a value of which roundings leave fewer is 0, and its ulp says nothing */
+  const Real zero = 1e-17L; /* of the largest rate: a constraint holds this rate at 0, and it is the rounding of others */
+  const Real enough = 1e-9L, condition = 65536; /* fewer than 9 digits may be left only where roundings of the arguments leave no more than 5 digits more */
+  Component *c = &v->component[i];
+  Evaluation x = evaluation(v, k, 0);
+  Difference d = difference_at(v, k, i, place);
+  if (x.status != 0 || !isfinite(d.value)) return;
+  const Real largest = largest_rate(v, &x), size = fabsl(d.value) < zero * largest ? largest : fabsl(d.value);
+  int scatters = d.spread > enough * size && d.spread > condition * d.moved, finite = isfinite(d.difference) && x.yours_status[0] == 0;
+  c->scattered += scatters && sample_is_random(v->point[k]);
+  if (scatters && finite) return;
+  c->points++;
+  Real excess = finite ? fabsl(d.difference) / d.bound : INFINITY, ulps = fabsl(d.difference) / ulp(d.value);
+  if (excess > 1 && !sample_is_random(v->point[k]) && fabsl(d.difference) <= 1e-9L * largest) return;
+  c->differs += excess > 1;
+  Real relative = finite ? fabsl(d.difference) / fmaxl(fabsl(d.value), fabsl((Real)x.dydt[0][place])) : INFINITY;
+  if (excess > 1 && is_clearly_larger(relative, c->worst)) c->worst = relative, c->worst_at = k;
+  if (d.bound >= few * ulp(d.value)) c->is_rounding |= ulps > 0;
+  else if (excess <= 1 && ulps > c->ulps) c->ulps = ulps;
+}
+
+/* ---- reports ---- */
+
+static const char *signature(const Verification *v) {
+  SymList p = sample_parameters(v->points);
+  StrBuf b = strbuf(v->arena);
+  sb_printf(&b, "y = %s; p = ", all_names(v, v->map));
+  for (uint32_t i = 0; i < p.n; i++) sb_printf(&b, "%s%s", i ? "," : "", expr_symbol(v->g, p.at[i])->name);
+  sb_puts(&b, "; SI units");
+  return sb_text(&b);
+}
+
+/* The name of a rate: of component i of dydt. */
+static const char *rate_name(const Verification *v, uint32_t i) { return arena_printf(v->arena, "%s'", name_of(v, i)); }
+
+static int differs(Verification *v, const char *what, uint32_t k, const char *how) {
+  const char *at = sample_text(v->points, v->symbols[v->point[k]]);
+  usage_error(arena_printf(v->arena, "%s:%s %s%s\n  at %s\n  called with %s", v->file, v->function, what, how ? how : "", at, signature(v)));
+  return STATUS_RUN;
+}
+
+/* Mistakes that need no numbers: writes past the end, a status, memory between calls. Returns a STATUS. */
+static int judge_calls(Verification *v) {
+  Evaluation first = evaluation(v, 0, 0), again = evaluation(v, v->n, 0);
+  for (uint32_t k = 0; k < v->n; k++) {
+    Evaluation x = evaluation(v, k, 0);
+    if (isnan(x.yours_status[0])) return differs(v, arena_printf(v->arena, "writes past dydt[%u], the last component", v->ny - 1), k, NULL);
+    if (x.status == 0 && x.yours_status[0] != 0) return differs(v, arena_printf(v->arena, "returns %g, where the derived equations have a value", x.yours_status[0]), k, NULL);
+  }
+  if (memcmp(first.dydt[0], again.dydt[0], v->ny * sizeof(double)) != 0 && !isnan(first.dydt[0][0]))
+    return differs(v, "gives other values when it is called once more with the same arguments: it reads more than them", 0, NULL);
+  return STATUS_OK;
+}
+
+static const char *cause_of(Verification *v) {
+  DifferenceData d = {.points = v->points, .map = v->map};
+  for (uint32_t k = 0; k < v->n && d.n < DIFFERENCE_STATES; k++) {
+    Evaluation x = evaluation(v, k, 0);
+    if (!sample_is_random(v->point[k]) || x.status != 0) continue;
+    d.state[d.n] = v->symbols[v->point[k]];
+    d.rate[d.n] = ARENA_ARRAY(v->arena, Real, v->ny + 1);
+    d.difference[d.n] = ARENA_ARRAY(v->arena, Real, v->ny + 1);
+    d.bound[d.n] = ARENA_ARRAY(v->arena, Real, v->ny + 1);
+    for (uint32_t place = 0; place < v->ny; place++) {
+      uint32_t i = v->map[place];
+      Difference at = difference_at(v, k, i, place);
+      d.rate[d.n][i] = x.dydt[0][place];
+      d.difference[d.n][i] = at.difference;
+      d.bound[d.n][i] = at.bound;
+    }
+    d.n++;
+  }
+  return difference_cause(v->e, &d);
+}
+
+static int report_difference(Verification *v, uint32_t i) {
+  const Component *c = &v->component[i];
+  uint32_t place = 0;
+  while (v->map[place] != i) place++;
+  Evaluation x = evaluation(v, c->worst_at, 0);
+  Real low, value = derived(v, &x, v->symbols[v->point[c->worst_at]], i, &low), yours = x.dydt[0][place];
+  const char *cause = cause_of(v), *a = arena_strdup(v->arena, ""), *b = a;
+  for (int digits = 6; digits <= 21 && strcmp(a, b) == 0; digits += 5) {
+    a = isnan(yours) ? "nan, or not set, or computed from a place outside y or p" : arena_printf(v->arena, "%.*Lg", digits, yours);
+    b = arena_printf(v->arena, "%.*Lg", digits, value);
+  }
+  StrBuf how = strbuf(v->arena);
+  sb_printf(&how, " differs from the derived equations%s%s", cause ? ": " : "", cause ? cause : "");
+  sb_printf(&how, "\n  %s = dydt[%u] is %s, derived %s: not equal at %u of %u states", rate_name(v, i), place, a, b,
+            c->differs, c->points);
+  for (uint32_t k = 0; k < v->ny; k++)
+    if (k != i && v->component[k].differs) sb_printf(&how, "%s%s", k < i || !strstr(sb_text(&how), "; also") ? "; also " : ", ", rate_name(v, k));
+  return differs(v, sb_text(&how) + 1, c->worst_at, NULL);
+}
+
+/* The next of 1, 2, 5, 10, 20, ... from x on: libraries of functions differ in their roundings. */
+static Real round_up(Real x) {
+  Real power = powl(10, floorl(log10l(x))), digit = x / power;
+  return power * (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10);
+}
+
+static int report_agreement(Verification *v, const char *precision) {
+  StrBuf b = strbuf(v->arena);
+  sb_printf(&b, "%s:%s agrees with the derived equations of %s, scene %s%s, at %u states\n  called with %s\n", v->file, v->function, v->m->name, v->m->scene.name,
+            v->given, v->n, signature(v));
+  for (uint32_t i = 0; i < v->ny; i++) {
+    const Component *c = &v->component[i];
+    sb_printf(&b, "  %-10s ", rate_name(v, i));
+    if (c->ulps == 0) sb_puts(&b, c->is_rounding ? "0 up to roundings" : "exact");
+    else sb_printf(&b, "within %.6Lg ulp%s", round_up(c->ulps), c->ulps > 2 * ROUNDINGS ? ", where roundings explain as many" : "");
+    sb_putc(&b, '\n');
+  }
+  sb_printf(&b, "  derived: %s digits", strcmp(precision, "quad") == 0 ? "34" : "19");
+  if (v->m->contacts.n) sb_puts(&b, "; contacts: open");
+  if (v->e->constraints.n > v->m->contacts.n) sb_puts(&b, "; states on the constraints");
+  if (v->m->events.n > 2 * v->m->contacts.n) sb_puts(&b, "; events are not compared");
+  sb_putc(&b, '\n');
+  return compiler_write(v->c, NULL, &b);
+}
+
+static int report(Verification *v, const char *precision) {
+  uint32_t worst = 0, fewest = UINT32_MAX, scattered = 0;
+  for (uint32_t k = 0; k < v->n; k++)
+    for (uint32_t place = 0; place < v->ny; place++) judge(v, k, v->map[place], place);
+  for (uint32_t i = 0; i < v->ny; i++) {
+    const Component *c = &v->component[i];
+    if (is_clearly_larger(c->worst, v->component[worst].worst)) worst = i;
+    if (c->points < fewest) fewest = c->points;
+    if (c->scattered > v->component[scattered].scattered) scattered = i;
+  }
+  if (v->component[worst].differs) return report_difference(v, worst);
+  if (v->component[scattered].scattered > POINTS_RANDOM / 2)
+    return differs(v, arena_printf(v->arena, "has fewer than 9 digits in %s, where the derived value keeps theirs when arguments are rounded: is a float in it?", rate_name(v, scattered)), 0, NULL);
+  if (fewest < FEWEST) {
+    usage_error(arena_printf(v->arena, "not decided: only %u states give the derived equations and %s:%s a value with digits; "
+                             "declare signs of coordinates and parameters, so that states are drawn inside the domain", fewest, v->file, v->function));
+    return STATUS_RUN;
+  }
+  return report_agreement(v, precision);
+}
+
+/* The program did not evaluate all arguments. */
+static int report_break(Verification *v, int status, size_t evaluated) {
+  enum { LATE = 124, NOT_RUN = 127 };
+  uint32_t k = (uint32_t)(evaluated / (BESIDE + 1));
+  if (status == NOT_RUN || k > v->n) {
+    usage_error("the program that compares cannot be run");
+    return STATUS_USAGE;
+  }
+  if (k == v->n) k = 0;
+  return differs(v, status == LATE ? "does not return within 5 s" : status < 0 ? "crashes" : "ends the program", k, NULL);
+}
+
+/* ---- the command ---- */
+
+static int compare(Verification *v, const IrUnit *u, const char *path, FILE *in, FILE *out) {
+  const char *error = NULL, *precision = "quad";
+  int status = 0;
+  write_points(v, in);
+  if (fflush(in) != 0) return usage_error("cannot write a temporary file");
+  if (!v->n) return usage_error("no state inside the model's domain was found: declare signs of coordinates and parameters");
+  int built = run_with(v, u, precision, path, in, out, &status, &error);
+  if (!built) built = run_with(v, u, precision = "long", path, in, out, &status, &error);
+  if (!built && !strstr(error, " failed:\n")) return usage_error(error);
+  if (!built) return usage_error(arena_printf(v->arena, "%s\nthe function is called as %s(t, y, dydt, p), where t is a double, and the others are arrays of doubles; it takes all four, also those that it does not use", error, v->function));
+  size_t want = (size_t)v->n * (BESIDE + 1) + 1, size = result_size(v);
+  v->results = ARENA_ARRAY(v->arena, double, want * size);
+  rewind(out);
+  size_t got = fread(v->results, sizeof(double), want * size, out) / size;
+  if (got < want) return report_break(v, status, got);
+  status = judge_calls(v);
+  return status == STATUS_OK ? report(v, precision) : status;
+}
+
+static int begin(Verification *v, const char **path, const char **error) {
+  const char *why;
+  const Source *text;
+  if (!read_target(v, error) || !read_map(v, error)) return 0;
+  if (!(text = source_read(v->c->sources, v->file, &why))) return fail_with(error, arena_printf(v->arena, "cannot read %s: %s", v->file, why));
+  *error = function_missing(v, text->text);
+  *path = file_absolute(v->arena, v->file);
+  if (!*error && (!*path || strpbrk(*path, "\"\\\n"))) *error = arena_printf(v->arena, "%s: C cannot include a file of such a name", v->file);
+  return !*error;
+}
+
+/* ", g=9.81, th=1" */
+static const char *values_given(Arena *a, const Options *o) {
+  StrBuf b = strbuf(a);
+  for (uint32_t i = 0; i < o->rest.n; i++) sb_printf(&b, ", %s", o->rest.at[i]);
+  return sb_text(&b);
+}
+
+int command_verify(Compiler *c) {
+  if (!HAS_POSIX) return usage_error("`lagc verify` is not for Windows: a function that does not return can be ended on POSIX systems only; WSL is one");
+  const char *error = NULL, *path = NULL, *given = values_given(c->arena, &c->o);
+  if (!settings_compiled(c->ast, &c->o, 1, &c->given, &error)) return error ? usage_error(error) : STATUS_MODEL;
+  if (c->o.rest.n) return usage_error(arena_printf(c->arena, "%s has no value: write name=value", c->o.rest.at[0]));
+  Eqns *e = compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .given = c->given.at, .ngiven = c->given.n, .domains = 1});
+  IrUnit *u = e ? compiler_lower_scene(c, e, 1) : NULL;
+  if (!u) return STATUS_MODEL;
+  Verification v = {.c = c, .given = given, .e = e, .m = e->m, .g = e->g, .arena = c->arena, .points = sample_points_new(e), .nq = e->m->coords.n};
+  v.ny = sample_state_symbols(v.points).n;
+  v.np = sample_parameters(v.points).n;
+  v.na = v.ny - v.nq;
+  v.component = ARENA_ARRAY(c->arena, Component, v.ny + 1);
+  Name conditional = model_conditional(v.m);
+  if (conditional)
+    return usage_error(arena_printf(c->arena, "a function is compared with one set of equations, and those change where `%s` begins to hold: compare models with and "
+                                    "without that constraint", conditional));
+  if (!v.ny) return usage_error("the model has no coordinates and no states: there is nothing to compare");
+  if (!begin(&v, &path, &error)) return usage_error(error);
+  FILE *in = tmpfile(), *out = tmpfile();
+  int status = in && out ? compare(&v, u, path, in, out) : usage_error("cannot write a temporary file");
+  if (in) fclose(in);
+  if (out) fclose(out);
+  return status;
+}

@@ -1,0 +1,513 @@
+/* Parts of an emitted header that `--with` asks for: matrices, inverse dynamics, derivatives, constraints, events, names. */
+#include <string.h>
+
+#include "emit/header_impl.h"
+
+/* --- words --- */
+
+enum { CONSTRAINED = WANT_CONSTRAINED | WANT_MULTIPLIERS, DERIVATIVES = PART_JAC | PART_LINEAR | PART_PARAMS };
+static const struct {
+  const char *name;
+  unsigned part, wants;
+} words[] = {
+  {"mass", PART_MASS, WANT_MASS},
+  {"inverse", PART_INVERSE, WANT_INVERSE},
+  {"jac", PART_JAC, WANT_LINEAR | CONSTRAINED},
+  {"linear", PART_LINEAR, WANT_LINEAR | WANT_BY_INPUTS | CONSTRAINED},
+  {"params", PART_PARAMS, WANT_BY_PARAMS | CONSTRAINED},
+  {"constraints", PART_CONSTRAINTS, WANT_MULTIPLIERS},
+  {"events", PART_EVENTS, 0},
+  {"rhs", PART_RHS, 0},
+  {"names", PART_NAMES, 0},
+};
+enum { WORDS = sizeof words / sizeof *words };
+
+/* Libraries, and the parts that their callbacks call. */
+static const struct {
+  const char *name;
+  unsigned part, parts;
+} libraries[] = {
+  {"gsl", PART_GSL, PART_RHS | PART_JAC},
+  {"cvode", PART_CVODE, PART_RHS | PART_JAC},
+  {"arkode", PART_ARKODE, PART_RHS | PART_JAC},
+  {"ida", PART_IDA, PART_RHS | PART_JAC | PART_INVERSE},
+  {"casadi", PART_CASADI, PART_RHS | PART_LINEAR | PART_PARAMS},
+};
+enum { LIBRARIES = sizeof libraries / sizeof *libraries };
+
+static int is_word(const char *s, size_t n, const char *word) { return strlen(word) == n && strncmp(s, word, n) == 0; }
+
+/* Index of a library, or -1. */
+static int library(const char *s, size_t n) {
+  for (int i = 0; i < LIBRARIES; i++)
+    if (is_word(s, n, libraries[i].name)) return i;
+  return -1;
+}
+
+/* Parts of a word; *some: those that the model lacks are left out. */
+static unsigned parts_of(const char *s, size_t n, int *some) {
+  int lib = library(s, n);
+  *some = lib >= 0 || is_word(s, n, "all");
+  if (*some) return lib >= 0 ? libraries[lib].parts : ~0u;
+  for (size_t i = 0; i < WORDS; i++)
+    if (is_word(s, n, words[i].name)) return words[i].part;
+  return 0;
+}
+
+unsigned header_wants(const char *list) {
+  unsigned wants = 0;
+  int some;
+  for (const char *s = list ? list : ""; *s; s += strcspn(s, ","), s += *s == ',') {
+    int method = header_method(s, strcspn(s, ","));
+    wants |= method >= 0 ? header_method_wants(method) : is_word(s, strcspn(s, ","), "all") ? WANT_VARIATION | WANT_TAYLOR : 0;
+    for (size_t i = 0; i < WORDS; i++)
+      if (words[i].part & parts_of(s, strcspn(s, ","), &some)) wants |= words[i].wants;
+  }
+  return wants;
+}
+
+/* Property that the model lacks for a part, or NULL. */
+static const char *lack(const IrUnit *u, unsigned part) {
+  enum { DENSE = 300 };
+  if (part & DERIVATIVES && u->contacts.n) return "no contacts: they open and close";
+  if (part & (DERIVATIVES | PART_MASS) && 2 * u->q.n + u->z.n > DENSE) return "at most 300 coordinates, velocities and states: the matrices are dense";
+  if (part & (PART_MASS | PART_INVERSE) && !u->q.n) return "coordinates: this model has states alone";
+  if (part & PART_PARAMS && !u->p.n) return "parameters: this model has none that is free";
+  if (part & PART_CONSTRAINTS && !u->constraints.of.n) return "constraints: this model has none";
+  if (part & PART_EVENTS && !u->events.n) return "events: this model has none";
+  return NULL;
+}
+
+int header_parts(const IrUnit *u, const char *list, HeaderParts *parts, const char **error) {
+  for (const char *s = list ? list : ""; *s; s += *s == ',') {
+    size_t n = strcspn(s, ",");
+    int method = header_method(s, n), lib = library(s, n), some;
+    unsigned asked = parts_of(s, n, &some);
+    const char *lacks = method >= 0 ? header_method_refusal(u, method) : NULL;
+    if (method >= 0) parts->methods |= 1u << method;
+    if (lib >= 0) parts->parts |= libraries[lib].part;
+    if (lib >= 0 && u->contacts.n) lacks = "no contacts, which open and close: a header without --for shows the loop of steps that they need";
+    if (lib >= 0 && unit_kick(u)) lacks = "no kicks: a header without --for shows the loop of steps that they need";
+    for (size_t i = 0; i < WORDS && !lacks; i++) {
+      if (!(words[i].part & asked)) continue;
+      lacks = lack(u, words[i].part);
+      if (!lacks) parts->parts |= words[i].part;
+      if (some) lacks = NULL;
+    }
+    if (is_word(s, n, "all")) parts->methods |= header_methods(u);
+    if (lacks) {
+      *error = arena_printf(u->arena, "a header has `%.*s` only of models with %s", (int)n, s, lacks);
+      return 0;
+    }
+    s += n;
+  }
+  return 1;
+}
+
+/* --- derivatives --- */
+
+/* The elimination, for all columns at once, is that of _solve. */
+static const char *const solve_mass =
+  " |\n"
+  " |/* M X = B for the matrix with entries m: B[NQ*columns] becomes X. Gaussian elimination with partial pivoting. */\n"
+  " |static int lag_solve_mass(const LAG_REAL *m, int columns, LAG_REAL *B) {\n"
+  " |  static const unsigned short at[][2] = {ENTRIES};\n"
+  " |  LAG_REAL M[LAG_NQ*LAG_NQ];\n"
+  " |  LAG_PIVOTS;\n"
+  " |  for (int i = 0; i < LAG_NQ*LAG_NQ; i++) M[i] = LAG_C(0.0);\n"
+  " |  for (int k = 0; k < NENTRIES; k++) {\n"
+  " |    M[at[k][0]*LAG_NQ + at[k][1]] = m[k];\n"
+  " |    M[at[k][1]*LAG_NQ + at[k][0]] = m[k];\n"
+  " |  }\n"
+  " |  for (int k = 0; k < LAG_NQ; k++) {\n"
+  " |    for (int i = k + 1; i < LAG_NQ; i++) {\n"
+  " |      const LAG_MASK larger = LAG_FN(fabs)(M[i*LAG_NQ + k]) > LAG_FN(fabs)(M[k*LAG_NQ + k]);\n"
+  " |      for (int j = k; j < LAG_NQ + columns && LAG_ANY(larger); j++) {\n"
+  " |        LAG_REAL *const upper = j < LAG_NQ ? &M[k*LAG_NQ + j] : &B[k*columns + j - LAG_NQ];\n"
+  " |        LAG_REAL *const lower = j < LAG_NQ ? &M[i*LAG_NQ + j] : &B[i*columns + j - LAG_NQ];\n"
+  " |        const LAG_REAL was = *upper;\n"
+  " |        *upper = LAG_SELECT(larger, *lower, was);\n"
+  " |        *lower = LAG_SELECT(larger, was, *lower);\n"
+  " |      }\n"
+  " |    }\n"
+  " |    LAG_PIVOT(LAG_FN(fabs)(M[k*LAG_NQ + k]) > LAG_C(0.0));\n"
+  " |    for (int i = k + 1; i < LAG_NQ; i++) {\n"
+  " |      const LAG_REAL factor = M[i*LAG_NQ + k]/M[k*LAG_NQ + k];\n"
+  " |      for (int j = k + 1; j < LAG_NQ; j++) M[i*LAG_NQ + j] -= factor*M[k*LAG_NQ + j];\n"
+  " |      for (int j = 0; j < columns; j++) B[i*columns + j] -= factor*B[k*columns + j];\n"
+  " |    }\n"
+  " |  }\n"
+  " |  for (int k = LAG_NQ - 1; k >= 0; k--)\n"
+  " |    for (int j = 0; j < columns; j++) {\n"
+  " |      for (int i = k + 1; i < LAG_NQ; i++) B[k*columns + j] -= M[k*LAG_NQ + i]*B[i*columns + j];\n"
+  " |      B[k*columns + j] /= M[k*LAG_NQ + k];\n"
+  " |    }\n"
+  " |  return LAG_PIVOTS_STATUS;\n"
+  " |}\n";
+
+/* The same with constraints, column by column: the elimination destroys its matrices. */
+static const char *const solve_constrained =
+  " |\n"
+  " |/* M X - A^T L = B, A X = G for the matrices with entries m and A: B[NQ*columns] becomes X, G[NC*columns] becomes L. */\n"
+  " |static int lag_solve_mass(const LAG_REAL *m, const LAG_REAL *A, int columns, LAG_REAL *B, LAG_REAL *G) {\n"
+  " |  static const unsigned short at[][2] = {ENTRIES}, of[][2] = {JACOBIAN};\n"
+  " |  LAG_REAL w[2*LAG_NQ*LAG_NQ + 2*LAG_NQ*LAG_NC + LAG_NC*LAG_NC + 3*LAG_NQ + 10*LAG_NC];\n"
+  " |  LAG_REAL *const a = w + LAG_NQ*LAG_NQ, *const x = a + LAG_NC*LAG_NQ, *const l = x + LAG_NQ;\n"
+  " |  LAG_PIVOTS;\n"
+  " |  for (int j = 0; j < columns; j++) {\n"
+  " |    for (int i = 0; i < LAG_NQ*(LAG_NQ + LAG_NC); i++) w[i] = LAG_C(0.0);\n"
+  " |    for (int k = 0; k < NENTRIES; k++) w[at[k][0]*LAG_NQ + at[k][1]] = m[k];\n"
+  " |    for (int k = 0; k < NENTRIES; k++) w[at[k][1]*LAG_NQ + at[k][0]] = m[k];\n"
+  " |    for (int k = 0; k < NJACOBIAN; k++) a[of[k][0]*LAG_NQ + of[k][1]] = A[k];\n"
+  " |    for (int i = 0; i < LAG_NQ; i++) x[i] = B[i*columns + j];\n"
+  " |    for (int k = 0; k < LAG_NC; k++) l[k] = G[k*columns + j];\n"
+  " |    LAG_PIVOT(lag_kkt(LAG_NQ, LAG_NC, 0, w));\n"
+  " |    for (int i = 0; i < LAG_NQ; i++) B[i*columns + j] = x[i];\n"
+  " |    for (int k = 0; k < LAG_NC; k++) G[k*columns + j] = l[k];\n"
+  " |  }\n"
+  " |  return LAG_PIVOTS_STATUS;\n"
+  " |}\n";
+
+/* PARTIALS_by: one column a variable; out[NY*columns] := derivatives of the rates. */
+static const char *const by =
+  " |\n"
+  " |static const unsigned short lag_by_NAME_at[][2] = {ENTRIES};\n"
+  " |static int lag_by_NAME(STATE, LAG_REAL *out) {\n"
+  "q|  LAG_REAL a[LAG_NQ], m[NMASS];\n"
+  "c|  LAG_REAL lambda[LAG_NC], A[NJACOBIAN], G[LAG_NC*COLUMNS];\n"
+  "b|  LAG_REAL zd[LAG_NZ];\n"
+  " |  LAG_REAL d[NALL];\n"
+  "q|  int status = lag_accel(ARGSRATES);\n"
+  "c|  if (status == LAG_OK) status = lag_multipliers(ARGS, lambda);\n"
+  "q|  if (status != LAG_OK) return status;\n"
+  " |  lag_partials_NAME(ARGSWITH, dOUT);\n"
+  " |  for (int i = 0; i < LAG_NY*COLUMNS; i++) out[i] = LAG_C(0.0);\n"
+  "c|  for (int i = 0; i < LAG_NC*COLUMNS; i++) G[i] = LAG_C(0.0);\n"
+  " |  for (int k = 0; k < NENTRIES; k++) {\n"
+  " |    const int row = lag_by_NAME_at[k][0], col = lag_by_NAME_at[k][1];\n"
+  "c|    if (row >= LAG_NQ + LAG_NZ) G[(row - LAG_NQ - LAG_NZ)*COLUMNS + col] = d[k];\n"
+  "c|    else\n"
+  " |    out[(LAG_NQ + row)*COLUMNS + col] = d[k];\n"
+  " |  }\n"
+  "o|  return lag_solve_mass(m, COLUMNS, out + LAG_NQ*COLUMNS);\n"
+  "c|  return lag_solve_mass(m, A, COLUMNS, out + LAG_NQ*COLUMNS, G);\n"
+  "f|  return LAG_OK;\n"
+  " |}\n";
+
+static const char *const jac_body =
+  " | {\n"
+  " |  const int status = lag_by_state(ARGS, J);\n"
+  "q|  for (int i = 0; i < LAG_NQ; i++) J[i*LAG_NY + LAG_NQ + i] = LAG_C(1.0);\n"
+  " |  return status;\n"
+  " |}\n";
+
+static const char *const linearize_body =
+  " | {\n"
+  " |  const int status = lag_by_state(ARGS, A);\n"
+  "q|  for (int i = 0; i < LAG_NQ; i++) A[i*LAG_NY + LAG_NQ + i] = LAG_C(1.0);\n"
+  "u|  if (status != LAG_OK) return status;\n"
+  "u|  return lag_by_inputs(ARGS, B);\n"
+  "n|  return status;\n"
+  " |}\n";
+
+static const char *const products =
+  " | {\n"
+  "q|  LAG_REAL a[LAG_NQ], m[NMASS], w[LAG_NQ];\n"
+  "c|  LAG_REAL lambda[LAG_NC], A[NJACOBIAN], G[LAG_NC];\n"
+  "b|  LAG_REAL zd[LAG_NZ];\n"
+  " |  LAG_REAL d[NALL];\n"
+  "q|  int status = lag_accel(ARGSRATES);\n"
+  "c|  if (status == LAG_OK) status = lag_multipliers(ARGS, lambda);\n"
+  "q|  if (status != LAG_OK) return status;\n"
+  " |  lag_partials_state(ARGSWITH, dOUT);\n";
+
+static const char *const jvp_body =
+  " |  for (int i = 0; i < LAG_NY; i++) out[i] = LAG_C(0.0);\n"
+  "c|  for (int k = 0; k < LAG_NC; k++) G[k] = LAG_C(0.0);\n"
+  "q|  for (int i = 0; i < LAG_NQ; i++) w[i] = LAG_C(0.0);\n"
+  " |  for (int k = 0; k < NENTRIES; k++) {\n"
+  " |    const int row = lag_by_state_at[k][0], col = lag_by_state_at[k][1];\n"
+  "q|    if (row < LAG_NQ) w[row] += d[k]*x[col];\n"
+  "c|    else if (row >= LAG_NQ + LAG_NZ) G[row - LAG_NQ - LAG_NZ] += d[k]*x[col];\n"
+  "q|    else out[LAG_NQ + row] += d[k]*x[col];\n"
+  "f|    out[row] += d[k]*x[col];\n"
+  " |  }\n"
+  "o|  status = lag_solve_mass(m, 1, w);\n"
+  "c|  status = lag_solve_mass(m, A, 1, w, G);\n"
+  "q|  for (int i = 0; i < LAG_NQ; i++) {\n"
+  "q|    out[i] = x[LAG_NQ + i];\n"
+  "q|    out[LAG_NQ + i] = w[i];\n"
+  "q|  }\n"
+  "q|  return status;\n"
+  "f|  return LAG_OK;\n"
+  " |}\n";
+
+static const char *const vjp_body =
+  " |  for (int i = 0; i < LAG_NY; i++) out[i] = LAG_C(0.0);\n"
+  "q|  for (int i = 0; i < LAG_NQ; i++) w[i] = x[LAG_NQ + i];\n"
+  "c|  for (int k = 0; k < LAG_NC; k++) G[k] = LAG_C(0.0);\n"
+  "o|  status = lag_solve_mass(m, 1, w);\n"
+  "c|  status = lag_solve_mass(m, A, 1, w, G); /* the transposed system has -G */\n"
+  "q|  for (int i = 0; i < LAG_NQ; i++) out[LAG_NQ + i] = x[i];\n"
+  " |  for (int k = 0; k < NENTRIES; k++) {\n"
+  " |    const int row = lag_by_state_at[k][0], col = lag_by_state_at[k][1];\n"
+  "c|    if (row >= LAG_NQ + LAG_NZ) out[col] -= d[k]*G[row - LAG_NQ - LAG_NZ];\n"
+  "c|    else\n"
+  "q|    out[col] += d[k]*(row < LAG_NQ ? w[row] : x[LAG_NQ + row]);\n"
+  "f|    out[col] += d[k]*x[row];\n"
+  " |  }\n"
+  "q|  return status;\n"
+  "f|  return LAG_OK;\n"
+  " |}\n";
+
+#define LIST(v) (v).at, (v).n
+
+const char *header_positions(const Header *h, const IrEntry *at, uint32_t n) {
+  StrBuf b = strbuf(h->a);
+  for (uint32_t k = 0; k < n; k++) sb_printf(&b, "%s{%u, %u}", !k ? "" : k % 12 ? ", " : ",\n    ", at[k].row, at[k].col);
+  return n ? sb_text(&b) : "{0, 0}";
+}
+
+/* Chooses lines marked b (coordinates and states), f (states alone), n (no inputs), c (constraints), o (coordinates without), which become plain ones
+ * or go. */
+static void write_marked(const Header *h, const char *text, const HeaderWord *w) {
+  const IrUnit *u = h->u;
+  StrBuf b = strbuf(h->a);
+  for (const char *s = text; *s; s += strcspn(s, "\n") + 1) {
+    int wanted = *s == 'b' ? u->q.n && u->z.n : *s == 'f' ? !u->q.n : *s == 'n' ? !u->u.n : *s == 'c' ? u->constraints.of.n > 0 : *s == 'o' ? u->q.n && !u->constraints.of.n : 1;
+    size_t n = strcspn(s, "\n") + 1;
+    if (wanted) sb_printf(&b, "%c%.*s", strchr("bfnco", *s) ? ' ' : *s, (int)n - 1, s + 1);
+  }
+  header_template(h, sb_text(&b), w);
+}
+
+static HeaderWord number_word(const Header *h, const char *mark, uint32_t n) { return (HeaderWord){mark, arena_printf(h->a, "%u", n)}; }
+
+typedef struct {
+  HeaderWord at[13];
+} Words;
+
+/* Words of the templates for derivatives by one kind of variables. */
+static Words words_of(const Header *h, const char *name, const IrEntry *at, uint32_t n, const char *columns) {
+  const IrUnit *u = h->u;
+  const char *a = u->q.n ? ", a" : "", *rates = u->z.n && u->q.n ? ", a, zd" : a, *q = u->constraints.of.n ? ", a, lambda" : a;
+  const char *out = u->constraints.of.n ? ", m, A" : u->q.n ? ", m" : "";
+  return (Words){{{"NAME", name}, {"ENTRIES", header_positions(h, at, n)}, number_word(h, "NENTRIES", n), number_word(h, "NALL", n ? n : 1),
+                  number_word(h, "NMASS", u->linear_mass.n ? u->linear_mass.n : 1), {"COLUMNS", columns}, {"STATE", header_state_args(h, 1, "")},
+                  number_word(h, "NJACOBIAN", u->constraints.jacobian.n ? u->constraints.jacobian.n : 1),
+                  {"RATES", rates}, {"WITH", q}, {"OUT", out}, {NULL, NULL}}};
+}
+
+/* lag_by_NAME: derivatives of the rates by state, inputs or parameters. */
+static void define_by(const Header *h, const Prog *p, const char *name, const IrEntry *at, uint32_t n, const char *columns) {
+  static const char *const all[] = {"a", "d", "m", NULL}, *const states[] = {"d", NULL}, *const out[] = {"d", "m", "A"}, *const constrained[] = {"a", "g", "d", "m", "A", NULL};
+  const char *R = h->upper, *q = h->u->constraints.of.n ? arena_printf(h->a, ", const %s_REAL *a, const %s_REAL *g, %s_REAL *d, %s_REAL *m, %s_REAL *A", R, R, R, R, R)
+                                 : h->u->q.n ? arena_printf(h->a, ", const %s_REAL *a, %s_REAL *d, %s_REAL *m", R, R, R) : arena_printf(h->a, ", %s_REAL *d", R);
+  const char *head = arena_printf(h->a, "static void %s_partials_%s(%s%s)", h->lower, name, header_state_args(h, 1, ""), q);
+  header_state_function(h, p, NULL, header_wrapped(h, head), h->u->constraints.of.n ? constrained : h->u->q.n ? all : states, out, 0);
+  Words w = words_of(h, name, at, n, columns);
+  write_marked(h, by, w.at);
+}
+
+static void begin(const Header *h, HeaderFn f) { sb_printf(h->out, "\n%s", header_api(h, f)); }
+
+static void derivatives(const Header *h) {
+  const IrUnit *u = h->u;
+  const char *ny = arena_printf(h->a, "%s_NY", h->upper), *nu = arena_printf(h->a, "%s_NU", h->upper), *np = arena_printf(h->a, "%s_NP", h->upper);
+  unsigned parts = h->parts.parts;
+  if (parts & (PART_JAC | PART_LINEAR | PART_PARAMS) && u->q.n) {
+    const HeaderWord w[] = {{"ENTRIES", header_positions(h, LIST(u->linear_mass))}, number_word(h, "NENTRIES", u->linear_mass.n),
+                            {"JACOBIAN", header_positions(h, LIST(u->constraints.jacobian))}, number_word(h, "NJACOBIAN", u->constraints.jacobian.n), {NULL, NULL}};
+    header_template(h, u->constraints.of.n ? solve_constrained : solve_mass, w);
+  }
+  if (parts & (PART_JAC | PART_LINEAR)) define_by(h, u->linear, "state", LIST(u->linear_dr), ny);
+  if (parts & PART_LINEAR && u->u.n) define_by(h, u->by_inputs, "inputs", LIST(u->by_inputs_dr), nu);
+  if (parts & PART_PARAMS) define_by(h, u->by_params, "params", LIST(u->by_params_dr), np);
+  if (parts & PART_JAC) {
+    Words w = words_of(h, "state", LIST(u->linear_dr), ny);
+    begin(h, FN_JAC), write_marked(h, jac_body, NULL);
+    begin(h, FN_JVP), write_marked(h, products, w.at), write_marked(h, jvp_body, w.at);
+    begin(h, FN_VJP), write_marked(h, products, w.at), write_marked(h, vjp_body, w.at);
+  }
+  if (parts & PART_LINEAR) begin(h, FN_LINEARIZE), write_marked(h, linearize_body, NULL);
+  if (parts & PART_PARAMS) begin(h, FN_DPARAMS), header_template(h, " | {\n |  return lag_by_params(ARGS, P);\n |}\n", NULL);
+}
+
+/* --- matrices, constraints --- */
+
+/* A function that zeroes out[size] and fills it by an internal one around p. */
+static void filled(const Header *h, const Prog *p, HeaderFn f, const char *name, const char *out, const char *size) {
+  const char *const own[] = {out, NULL};
+  const char *head = arena_printf(h->a, "static int %s_fill_%s(%s, %s_REAL *%s)", h->lower, name, header_state_args(h, 1, ""), h->upper, out);
+  header_state_function(h, p, NULL, header_wrapped(h, head), own, own, 1);
+  begin(h, f);
+  const HeaderWord w[] = {{"SIZE", size}, {"NAME", name}, {"OUT", out}, {NULL, NULL}};
+  header_template(h, " | {\n |  for (int i = 0; i < SIZE; i++) OUT[i] = LAG_C(0.0);\n |  return lag_fill_NAME(ARGS, OUT);\n |}\n", w);
+}
+
+static void constraints(const Header *h) {
+  const IrConstraints *k = &h->u->constraints;
+  begin(h, FN_CONSTRAINTS), header_template(h, " | {\n |  return lag_residuals(ARGS, c, r);\n |}\n", NULL);
+  const char *head = arena_printf(h->a, "static int %s_matrices(%s, %s_REAL *d, %s_REAL *m)", h->lower, header_state_args(h, 1, ""), h->upper, h->upper);
+  static const char *const out[] = {"d", "m", NULL};
+  header_state_function(h, k->matrices, NULL, header_wrapped(h, head), out, out, 1);
+  const HeaderWord w[] = {{"ENTRIES", header_positions(h, LIST(k->jacobian))}, number_word(h, "NENTRIES", k->jacobian.n), number_word(h, "NMASS", k->mass.n ? k->mass.n : 1), {NULL, NULL}};
+  begin(h, FN_CONSTRAINT_JACOBIAN);
+  header_template(h,
+    " | {\n"
+    " |  static const unsigned short at[][2] = {ENTRIES};\n"
+    " |  LAG_REAL d[NENTRIES + 1], m[NMASS];\n"
+    " |  const int status = lag_matrices(ARGS, d, m);\n"
+    " |  for (int i = 0; i < LAG_NC*LAG_NQ; i++) A[i] = LAG_C(0.0);\n"
+    " |  for (int k = 0; k < NENTRIES; k++) A[at[k][0]*LAG_NQ + at[k][1]] = d[k];\n"
+    " |  return status;\n"
+    " |}\n", w);
+}
+
+/* --- events --- */
+
+static const char *const until_event =
+  " |\n"
+  " |/* The first event whose function changes sign, as its direction wants, from g0 to g1; -1: none. */\n"
+  " |static int lag_crossed(const LAG_REAL *g0, const LAG_REAL *g1) {\n"
+  " |  static const signed char direction[] = {DIRECTIONS};\n"
+  " |  const LAG_REAL zero = LAG_C(0.0);\n"
+  " |  for (int k = 0; k < LAG_NEV; k++) {\n"
+  " |    if (direction[k] >= 0 && g0[k] < zero && !(g1[k] < zero)) return k;\n"
+  " |    if (direction[k] <= 0 && g0[k] > zero && !(g1[k] > zero)) return k;\n"
+  " |  }\n"
+  " |  return -1;\n"
+  " |}\n"
+  " |\n";
+
+/* Where a state is fresh, from _start or _act, an event may have just fired: its sign is the one that it has left zero with, as in
+ * runtime/core/event_location.c. */
+static const char *const until_event_after =
+  " |/* The state after a step h, and its event functions. */\n"
+  " |static int lag_events_after(const lag_params *p, const lag_state *s, LAG_REAL hGIVEN, lag_state *end, LAG_REAL *g) {\n"
+  "u|  LAG_REAL now[LAG_NU];\n"
+  " |  int status = LAG_OK;\n"
+  " |  *end = *s;\n"
+  " |  if (h < LAG_C(0.0) || h > LAG_C(0.0)) status = lag_rk4_step(p, end, hWITH);\n"
+  " |  if (status != LAG_OK) return status;\n"
+  "u|  if (!u) lag_inputs(end->t, p, now);\n"
+  " |  status = lag_events(AFTER, g);\n"
+  " |  for (int k = 0; k < LAG_NEV && status == LAG_OK; k++)\n"
+  " |    if (!(g[k] - g[k] == LAG_C(0.0))) status = LAG_ENAN;\n"
+  " |  return status;\n"
+  " |}\n"
+  " |\n";
+
+static const char *const until_event_body =
+  " | {\n"
+  " |  const LAG_REAL zero = LAG_C(0.0);\n"
+  " |  LAG_REAL g0[LAG_NEV], g1[LAG_NEV], noise[LAG_NEV], from = zero, to = h, part = h*LAG_C(5.42101086242752217e-20);\n"
+  " |  lag_state end, other;\n"
+  " |  int fresh = 1, at_zero = 0, status = lag_events_after(p, s, zeroWITH, &end, g0);\n"
+  " |  if (status == LAG_OK) status = lag_events_after(p, s, hWITH, &end, g1);\n"
+  " |  if (status != LAG_OK) return status;\n"
+  " |  for (int i = 0; i <= LAG_NY; i++)\n"
+  " |    if (s->lost[i] < zero || s->lost[i] > zero) fresh = 0;\n"
+  " |  for (int k = 0; k < LAG_NEV; k++) {\n"
+  " |    noise[k] = LAG_C(2.0)*LAG_FN(fabs)(g0[k]);\n"
+  " |    if (!(noise[k] > zero)) at_zero = 1;\n"
+  " |  }\n"
+  " |  *event = -1;\n"
+  " |  /* Parts 2^-56, 2^-48, ..., 2^-8 of the step: signs with which functions leave zero, and events that follow at once. */\n"
+  " |  for (int i = 0; i < 7 && *event < 0 && (fresh || at_zero); i++) {\n"
+  " |    LAG_REAL g[LAG_NEV];\n"
+  " |    part *= LAG_C(256.0);\n"
+  " |    status = lag_events_after(p, s, partWITH, &other, g);\n"
+  " |    if (status != LAG_OK) return status;\n"
+  " |    for (int k = 0; k < LAG_NEV; k++) {\n"
+  " |      if (noise[k] < zero || (noise[k] > zero && (!fresh || i > 3))) continue; /* the sign is known */\n"
+  " |      g0[k] = g[k];\n"
+  " |      if (LAG_FN(fabs)(g[k]) > noise[k]) noise[k] = -LAG_C(1.0);\n"
+  " |    }\n"
+  " |    *event = lag_crossed(g0, g);\n"
+  " |    if (*event >= 0) to = part, end = other;\n"
+  " |    else from = part;\n"
+  " |  }\n"
+  " |  if (*event < 0) *event = lag_crossed(g0, g1);\n"
+  " |  while (*event >= 0) { /* bisection: the event lies between steps of `from` and `to` */\n"
+  " |    const LAG_REAL mid = LAG_C(0.5)*(from + to);\n"
+  " |    if (!(mid > from && mid < to) && !(mid < from && mid > to)) break;\n"
+  " |    status = lag_events_after(p, s, midWITH, &other, g1);\n"
+  " |    if (status != LAG_OK) return status;\n"
+  " |    const int k = lag_crossed(g0, g1);\n"
+  " |    if (k >= 0) {\n"
+  " |      *event = k;\n"
+  " |      to = mid;\n"
+  " |      end = other;\n"
+  " |    } else {\n"
+  " |      from = mid;\n"
+  " |    }\n"
+  " |  }\n"
+  " |  if (*event >= 0 && fresh && !(end.t < s->t) && !(end.t > s->t)) return LAG_EZENO;\n"
+  " |  *s = end;\n"
+  " |  return LAG_OK;\n"
+  " |}\n";
+
+static void events(const Header *h) {
+  StrBuf d = strbuf(h->a), after = strbuf(h->a);
+  int inputs = h->u->u.n > 0;
+  for (uint32_t i = 0; i < h->u->events.n; i++) sb_printf(&d, "%s%d", i ? ", " : "", h->u->events.at[i].direction);
+  sb_puts(&after, header_state_args(h, 0, "end->"));
+  if (inputs) after.n--, sb_puts(&after, "u ? u : now"); /* in place of the name u */
+  const HeaderWord w[] = {{"DIRECTIONS", sb_text(&d)}, {"AFTER", sb_text(&after)}, {"GIVEN", inputs ? ", const LAG_REAL *u" : ""}, {"WITH", inputs ? ", u" : ""}, {NULL, NULL}};
+  sb_printf(h->out, "\n#if !defined(%s_LANES) && !defined(%s_COMPLEX)", h->upper, h->upper);
+  header_template(h, until_event, w);
+  header_template(h, until_event_after, w);
+  sb_puts(h->out, header_api(h, FN_UNTIL_EVENT));
+  header_template(h, until_event_body, w);
+  sb_puts(h->out, "#endif\n");
+}
+
+/* --- names --- */
+
+static void name_rows(const Header *h, const char *of, const IrVar *v, uint32_t n) {
+  static const char *const least[] = {"-HUGE_VAL", "0"}, *const most[] = {"HUGE_VAL", "0"};
+  if (!n) return;
+  sb_printf(h->out, "static const %s_name %s_names_%s[] = {\n", h->lower, h->lower, of);
+  for (uint32_t i = 0; i < n; i++)
+    sb_printf(h->out, "  {%s, %s, %s, %s, %s, %s}%s\n", c_string(h->a, v[i].name), c_string(h->a, v[i].unit), shortest_double(h->a, v[i].factor),
+              shortest_double(h->a, v[i].offset), least[v[i].sign > 0], most[v[i].sign < 0], i + 1 < n ? "," : "");
+  sb_puts(h->out, "};\n");
+}
+
+void header_name_tables(const Header *h) {
+  const IrUnit *u = h->u;
+  if (!(h->parts.parts & PART_NAMES)) return;
+  sb_printf(h->out, "\n#ifdef %s_WITH_NAMES\n#include <math.h>\n", h->upper);
+  sb_printf(h->out, "/* A name, its unit, the size of the unit in SI (value = factor*number + offset), and bounds of the value in SI. */\n"
+                    "typedef struct %s_name {\n  const char *name, *unit;\n  double factor, offset, least, most;\n} %s_name;\n", h->lower, h->lower);
+  name_rows(h, "q", u->q.at, u->q.n);
+  name_rows(h, "z", u->z.at, u->z.n);
+  name_rows(h, "p", u->p.at, u->p.n);
+  name_rows(h, "u", u->u.at, u->u.n);
+  name_rows(h, "out", h->scene->plain.at, h->scene->plain.n);
+  sb_puts(h->out, "#endif\n");
+}
+
+void header_dynamics_define(const Header *h) {
+  static const char *const b[] = {"b", NULL}, *const force[] = {"a", "force", NULL}, *const out[] = {"force"}, *const lambda[] = {"lambda", NULL};
+  const IrUnit *u = h->u;
+  const HeaderWord inputs[] = {{"INPUTS", u->u.n ? ", u, 0, 0" : ""}, {NULL, NULL}};
+  if (header_has(h, FN_MASS)) {
+    filled(h, u->mass, FN_MASS, "mass", "M", arena_printf(h->a, "%s_NQ*%s_NQ", h->upper, h->upper));
+    header_state_function(h, u->bias, NULL, header_api(h, FN_BIAS), b, b, 1);
+  }
+  if (header_has(h, FN_RHS)) begin(h, FN_RHS), header_template(h, " | {\n |  return lag_rates(p, t, yINPUTS, dydt);\n |}\n", inputs);
+  if (header_has(h, FN_INVERSE)) header_state_function(h, u->inverse, NULL, header_api(h, FN_INVERSE), force, out, 1);
+  if (header_has(h, FN_MULTIPLIERS)) header_state_function(h, u->multipliers, NULL, header_api(h, FN_MULTIPLIERS), lambda, lambda, 1);
+  derivatives(h);
+  if (h->parts.parts & PART_OUTPUTS) {
+    static const char *const d[] = {"d", NULL};
+    const char *head = arena_printf(h->a, "static int %s_partials_outputs(%s, %s_REAL *d)", h->lower, header_state_args(h, 1, ""), h->upper);
+    sb_printf(h->out, "\nstatic const unsigned short %s_by_outputs_at[][2] = {%s};\n", h->lower, header_positions(h, LIST(u->outputs_at)));
+    header_state_function(h, u->outputs, NULL, header_wrapped(h, head), d, d, 1);
+  }
+  if (header_has(h, FN_CONSTRAINTS)) constraints(h);
+  if (header_has(h, FN_UNTIL_EVENT)) events(h);
+  header_callbacks_define(h);
+}

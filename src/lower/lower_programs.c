@@ -1,0 +1,437 @@
+/* Eqns to Progs: one program for each function of an emitted model, other than charges (lower_charges.c) and constraints (lower_constraints.c). */
+#include "lower/lower.h"
+
+#include "ir/roll.h"
+#include "lower/lower_impl.h"
+#include "mech/switches.h"
+
+Lower lower_new(const Eqns *e) {
+  Arena *a = e->m->arena;
+  Prog *p = prog_new(a);
+  p->folds_constants = e->m->nfixed > 0;
+  return (Lower){.e = e, .g = e->g, .p = p, .slots = expr_map(a), .circular = expr_map(a)};
+}
+
+static Lower lower_by_text(const Eqns *e) {
+  Lower l = lower_new(e);
+  l.by_text = 1;
+  return l;
+}
+
+Prog *lower_finish(const Lower *l, const PassPlan *plan, StrBuf *trace) {
+  Prog *p = passes_run(l->p, plan, trace);
+  arena_release(l->slots.arena, l->slots.at, l->slots.cap * sizeof *l->slots.at);
+  return p;
+}
+
+/* With sums over pairs as nests when the program has `from` instructions. */
+static Prog *finished(const Lower *l, uint32_t from) { return lower_finish(l, &(PassPlan){.nests_from = from}, NULL); }
+
+static const char *text_of_symbol(const Lower *l, SymId s) { return expr_symbol(l->g, s)->name; }
+
+/* Whether M is diagonal and there are neither definitions nor constraints: accelerations are not coupled. */
+static int is_diagonal(const Eqns *e) {
+  uint32_t off = e->system.ndefs + e->constraints.n;
+  for (uint32_t k = 0; k < e->system.H.n; k++) off += e->system.H.at[k].row != e->system.H.at[k].col;
+  return off == 0;
+}
+
+Prog *lower_accel_traced(const Eqns *e, int libm, StrBuf *trace) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  Slot *acc = ARENA_ARRAY(m->arena, Slot, e->n + 1);
+  lower_solution(&l, acc);
+  if (m->states.n) lower_roots(&l, e->flow, m->states.n);
+  if (e->first.ndivisors) lower_roots(&l, e->first.divisors, e->first.ndivisors);
+  for (uint32_t i = 0; i < e->first.ndivisors; i++) lower_pivot(&l, lower_slot(&l, e->first.divisors[i]), 0);
+  for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, acc[i], text_of_symbol(&l, m->coords.at[i].a));
+  for (uint32_t i = 0; i < m->states.n; i++)
+    prog_store(l.p, 1, i, lower_slot(&l, e->flow[i]), text_of_symbol(&l, m->states.at[i].rate));
+  return lower_finish(&l, &(PassPlan){.nests_from = ROLL_FROM, .every_step = 1, .uncoupled = is_diagonal(e), .libm = libm}, trace);
+}
+
+Prog *lower_accel(const Eqns *e, int libm) { return lower_accel_traced(e, libm, NULL); }
+
+/* Selects, by the flag ARR_FREE of each input, its formula or the constant at which it is held. */
+static void lower_inputs_along(Lower *l) {
+  const Model *m = l->e->m;
+  for (uint32_t i = 0; i < m->inputs.n; i++) {
+    const Input *in = &m->inputs.at[i];
+    Expr symbol = expr_symbol(l->g, in->sym)->node;
+    lower_roots(l, &in->value, 1);
+    lower_roots(l, &symbol, 1);
+    Slot is_free = prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_FREE, .index = i, .name = in->name});
+    Slot holds = prog_op(l->p, IR_LT, 0, is_free), formula = lower_slot(l, in->value), constant = lower_slot(l, symbol);
+    Slot s = prog_ins(l->p, (Ins){.op = IR_SELECT, .a = holds, .b = formula, .c = constant});
+    expr_map_set(&l->slots, symbol, s + 1);
+  }
+}
+
+static void slot_entries(const Lower *l, const Entries *from, IrEntries *to) {
+  for (uint32_t k = 0; k < from->n; k++)
+    vec_push(l->p->arena, to, ((IrSlotEntry){from->at[k].row, from->at[k].col, lower_slot(l, from->at[k].e)}));
+}
+
+IrSystem lower_system(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  Arena *a = m->arena;
+  Slot *acc = ARENA_ARRAY(a, Slot, e->n + 1), *f = ARENA_ARRAY(a, Slot, e->n + 1), *flow = ARENA_ARRAY(a, Slot, m->states.n + 1);
+  Name *rates = ARENA_ARRAY(a, Name, e->n + m->states.n + 1), *velocities = ARENA_ARRAY(a, Name, e->n + 1);
+  FactorRecord *factored = ARENA_NEW(a, FactorRecord);
+  IrSystem sys = {.p = l.p, .nq = e->n, .ndefs = e->n ? e->system.ndefs : 0, .nz = m->states.n, .f = f, .flow = flow, .rates = rates,
+                  .velocities = velocities, .factored = factored};
+  l.direct = 1;
+  l.factored = factored;
+  lower_inputs_along(&l);
+  lower_solution(&l, acc);
+  lower_roots(&l, e->flow, m->states.n);
+  for (uint32_t i = 0; i < e->n; i++) {
+    f[i] = lower_slot(&l, e->system.f[i]);
+    rates[i] = text_of_symbol(&l, m->coords.at[i].a);
+    velocities[i] = text_of_symbol(&l, m->coords.at[i].v);
+  }
+  for (uint32_t i = 0; i < m->states.n; i++) {
+    flow[i] = lower_slot(&l, e->flow[i]);
+    rates[e->n + i] = text_of_symbol(&l, m->states.at[i].rate);
+  }
+  if (e->n) {
+    slot_entries(&l, &e->system.H, &sys.H);
+    slot_entries(&l, &e->system.C, &sys.C);
+  }
+  sys.x = l.x;
+  return sys;
+}
+
+void lower_with_accelerations(Lower *l, const Expr *roots, uint32_t n) {
+  const Model *m = l->e->m;
+  int needed = 0;
+  for (uint32_t i = 0; i < n; i++) needed |= roots[i] && expr_kinds(l->g, roots[i]) & (1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_MULTIPLIER);
+  if (needed) {
+    Slot *acc = ARENA_ARRAY(m->arena, Slot, l->e->n + 1);
+    l->coarse = 1;
+    lower_solution(l, acc);
+    for (uint32_t i = 0; i < l->e->n; i++) expr_map_set(&l->slots, expr_symbol(l->g, m->coords.at[i].a)->node, acc[i] + 1);
+    for (uint32_t i = 0; i < l->e->constraints.n; i++)
+      expr_map_set(&l->slots, expr_symbol(l->g, l->e->constraints.of[i]->multiplier)->node, l->multipliers[i] + 1);
+    lower_roots(l, l->e->flow, m->states.n);
+    for (uint32_t i = 0; i < m->states.n; i++)
+      expr_map_set(&l->slots, expr_symbol(l->g, m->states.at[i].rate)->node, lower_slot(l, l->e->flow[i]) + 1);
+  }
+  lower_roots(l, roots, n);
+}
+
+Prog *lower_finish_seldom(const Lower *l) { return finished(l, ROLL_SELDOM_FROM); }
+
+/* q'' is an argument of the function: its symbols become loads. */
+static void load_accelerations(Lower *l) {
+  const Model *m = l->e->m;
+  for (uint32_t i = 0; i < l->e->n; i++) {
+    const Symbol *s = expr_symbol(l->g, m->coords.at[i].a);
+    Slot a = lower_load(l, ARR_A, s);
+    expr_map_set(&l->slots, s->node, a + 1);
+  }
+}
+
+/* Multipliers as inputs of the program: ARR_G, in the order of the equations. */
+static void load_multipliers(Lower *l) {
+  const Constraints *k = &l->e->constraints;
+  for (uint32_t i = 0; i < k->n; i++) {
+    Slot lambda = prog_ins(l->p, (Ins){.op = IR_LOAD, .array = ARR_G, .index = i, .name = expr_symbol(l->g, k->of[i]->multiplier)->name});
+    expr_map_set(&l->slots, expr_symbol(l->g, k->of[i]->multiplier)->node, lambda + 1);
+  }
+}
+
+/* Name of component i of y = (q, q', z). */
+static const char *component(const Lower *l, uint32_t i) {
+  const Model *m = l->e->m;
+  uint32_t n = l->e->n;
+  return i < n ? m->coords.at[i].name : i < 2 * n ? text_of_symbol(l, m->coords.at[i - n].v) : m->states.at[i - 2 * n].name;
+}
+
+/* Name of the variable of column `col`. */
+static const char *variable(const Lower *l, PartialsBy by, uint32_t col) {
+  const Model *m = l->e->m;
+  if (by == BY_STATE) return component(l, col);
+  if (by == BY_INPUTS) return m->inputs.at[col].name;
+  uint32_t i = 0;
+  while (m->params.at[i].fixed || m->params.at[i].place != col) i++;
+  return m->params.at[i].name;
+}
+
+Prog *lower_linear(const Eqns *e, Partials dr, PartialsBy by) {
+  Lower l = lower_new(e);
+  Arena *a = e->m->arena;
+  const Entries *A = &e->constraints.A;
+  uint32_t nz = e->m->states.n, n = 0;
+  Expr *roots = ARENA_ARRAY(a, Expr, dr.n + e->mass.n + A->n + 1);
+  for (uint32_t k = 0; k < dr.n; k++) roots[n++] = dr.at[k].e;
+  for (uint32_t k = 0; k < e->mass.n; k++) roots[n++] = e->mass.at[k].e;
+  for (uint32_t k = 0; k < A->n; k++) roots[n++] = A->at[k].e;
+  load_accelerations(&l);
+  load_multipliers(&l);
+  lower_roots(&l, roots, n);
+  for (uint32_t k = 0; k < dr.n; k++) {
+    uint32_t row = dr.at[k].row;
+    const char *of = row < e->n ? component(&l, row) : row < e->n + nz ? text_of_symbol(&l, e->m->states.at[row - e->n].rate) : e->constraints.of[row - e->n - nz]->name;
+    prog_store(l.p, 0, k, lower_slot(&l, roots[k]), arena_printf(a, "%s by %s", of, variable(&l, by, dr.at[k].col)));
+  }
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    const MassEntry *M = &e->mass.at[k];
+    prog_store(l.p, 1, k, lower_slot(&l, M->e), arena_printf(a, "%s, %s", component(&l, M->row), component(&l, M->col)));
+  }
+  for (uint32_t k = 0; k < A->n; k++)
+    prog_store(l.p, 2, k, lower_slot(&l, A->at[k].e), arena_printf(a, "%s, %s", e->constraints.of[A->at[k].row]->name, component(&l, A->at[k].col)));
+  return finished(&l, ROLL_FROM);
+}
+
+Prog *lower_mass(const Eqns *e) {
+  Lower l = lower_new(e);
+  for (uint32_t k = 0; k < e->mass.n; k++) lower_roots(&l, &e->mass.at[k].e, 1);
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    const MassEntry *M = &e->mass.at[k];
+    const char *name = arena_printf(e->m->arena, "%s, %s", component(&l, M->row), component(&l, M->col));
+    prog_store(l.p, 0, M->row * e->n + M->col, lower_slot(&l, M->e), name);
+    if (M->row != M->col) prog_store(l.p, 0, M->col * e->n + M->row, lower_slot(&l, M->e), name);
+  }
+  return finished(&l, ROLL_FROM);
+}
+
+Prog *lower_forces(const Eqns *e, const Expr *x) {
+  Lower l = lower_new(e);
+  load_accelerations(&l);
+  lower_roots(&l, x, e->n);
+  for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, lower_slot(&l, x[i]), component(&l, i));
+  return finished(&l, ROLL_FROM);
+}
+
+Prog *lower_event_derivatives(const Eqns *e, EventPartials jumps) {
+  Lower l = lower_by_text(e);
+  Arena *a = e->m->arena;
+  for (uint32_t k = 0; k < jumps.n; k++) lower_roots(&l, &jumps.at[k].e, 1);
+  for (uint32_t k = 0; k < jumps.n; k++) {
+    const EventPartial *j = &jumps.at[k];
+    const char *event = e->m->events.at[j->event].name, *of = j->row < 0 ? "its function" : component(&l, (uint32_t)j->row);
+    const char *by = j->col < 2 * e->n + e->m->states.n ? component(&l, j->col) : "t";
+    prog_store(l.p, 0, k, lower_slot(&l, j->e), arena_printf(a, "event %s: %s by %s", event, of, by));
+  }
+  return prog_tidy(l.p);
+}
+
+Prog *lower_energy(const Eqns *e) {
+  Lower l = lower_new(e);
+  if (!e->energy) return l.p;
+  Expr roots[2] = {e->energy_stable, e->energy_scale};
+  lower_with_accelerations(&l, roots, 2); /* in first-order models velocities are rates */
+  prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), "energy p q' - L");
+  prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
+  return lower_finish_seldom(&l);
+}
+
+Prog *lower_variation(const Eqns *e, const Variation *x) {
+  Lower l = lower_new(e);
+  const Expr *const parts[] = {x->dLdq, x->momenta, x->forces};
+  static const char *const words[] = {"dL/d%s", "p_%s", "Q_%s"};
+  for (uint32_t k = 0; k < 3; k++) lower_roots(&l, parts[k], e->n);
+  for (uint32_t k = 0; k < 3; k++)
+    for (uint32_t i = 0; i < e->n; i++)
+      prog_store(l.p, k, i, lower_slot(&l, parts[k][i]), arena_printf(l.p->arena, words[k], e->m->coords.at[i].name));
+  return finished(&l, ROLL_FROM);
+}
+
+/* Comment of an entry of the second derivatives: d2L/dx' dx, or dQ_x/dx'. */
+static const char *second_text(const Lower *l, const SecondEntry *s) {
+  const Model *m = l->e->m;
+  int force = s->part == SECOND_FQ || s->part == SECOND_FV;
+  int of_v = s->part == SECOND_VQ || s->part == SECOND_VV, by_v = s->part == SECOND_VV || s->part == SECOND_FV;
+  const char *by = by_v ? text_of_symbol(l, m->coords.at[s->col].v) : m->coords.at[s->col].name;
+  const char *of = of_v ? text_of_symbol(l, m->coords.at[s->row].v) : m->coords.at[s->row].name;
+  return arena_printf(l->p->arena, force ? "dQ_%s/d%s" : "d2L/d%s d%s", of, by);
+}
+
+Prog *lower_second_derivatives(const Eqns *e, const Variation *x) {
+  Lower l = lower_new(e);
+  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, x->second.n + 1);
+  for (uint32_t k = 0; k < x->second.n; k++) roots[k] = x->second.at[k].e;
+  lower_roots(&l, roots, x->second.n);
+  for (uint32_t k = 0; k < x->second.n; k++) prog_store(l.p, 0, k, lower_slot(&l, roots[k]), second_text(&l, &x->second.at[k]));
+  return finished(&l, ROLL_FROM);
+}
+
+Prog *lower_events(const Eqns *e) {
+  Lower l = lower_by_text(e);
+  const Model *m = e->m;
+  Expr *roots = ARENA_ARRAY(m->arena, Expr, m->events.n + 1);
+  for (uint32_t i = 0; i < m->events.n; i++) roots[i] = m->events.at[i].g;
+  lower_with_accelerations(&l, roots, m->events.n);
+  for (uint32_t i = 0; i < m->events.n; i++) prog_store(l.p, 0, i, lower_slot(&l, m->events.at[i].g), m->events.at[i].name);
+  return finished(&l, ROLL_FROM);
+}
+
+Prog *lower_switches(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Switches *all = &e->switches;
+  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, all->n + 1);
+  for (uint32_t i = 0; i < all->n; i++) roots[i] = all->at[i].side;
+  lower_with_accelerations(&l, roots, all->n);
+  for (uint32_t i = 0; i < all->n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), all->at[i].text);
+  return lower_finish_seldom(&l);
+}
+
+/* each: numbers of a contact, 2 or 3. */
+static Prog *lower_contacts(const Eqns *e, uint32_t each) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  uint32_t n = m->contacts.n, some = 0;
+  Expr *law = ARENA_ARRAY(m->arena, Expr, each * (size_t)n + 1);
+  for (uint32_t i = 0; i < n; i++) {
+    const Contact *c = &m->contacts.at[i];
+    some += (uint32_t)c->is_tangent;
+    law[each * i] = c->is_tangent ? c->friction : i + 1 < n && c[1].is_tangent ? c[1].hold : expr_int(e->g, 0);
+    law[each * i + 1] = c->is_tangent ? c->restitution : expr_int(e->g, 0);
+    if (each > 2) law[each * i + 2] = expr_symbol(e->g, m->constraints.at[c->constraint].multiplier)->node;
+  }
+  if (!some) return NULL;
+  lower_with_accelerations(&l, law, each * n);
+  for (uint32_t i = 0; i < each * n; i++) prog_store(l.p, 0, i, lower_slot(&l, law[i]), m->contacts.at[i / each].name);
+  return lower_finish_seldom(&l);
+}
+
+Prog *lower_contact_laws(const Eqns *e) { return lower_contacts(e, 3); }
+
+Prog *lower_contact_coefficients(const Eqns *e) { return lower_contacts(e, 2); }
+
+Prog *lower_switch_grips(const Eqns *e) {
+  Lower l = lower_new(e);
+  uint32_t n = e->switches.nmodes, some = 0;
+  Expr *grips = ARENA_ARRAY(e->m->arena, Expr, n + 1);
+  for (uint32_t i = 0; i < n; i++) {
+    some += e->switches.at[i].grip != 0;
+    grips[i] = e->switches.at[i].grip ? e->switches.at[i].grip : expr_int(e->g, 1);
+  }
+  if (!some) return NULL;
+  lower_roots(&l, grips, n);
+  for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, grips[i]), e->switches.at[i].surface);
+  return lower_finish_seldom(&l);
+}
+
+Prog *lower_switch_rates(const Eqns *e) {
+  Lower l = lower_new(e);
+  const Expr *rates = switch_rates(e);
+  lower_with_accelerations(&l, rates, e->switches.nmodes);
+  for (uint32_t i = 0; i < e->switches.nmodes; i++)
+    prog_store(l.p, 0, i, lower_slot(&l, rates[i]), arena_printf(e->m->arena, "rate of %s", e->switches.at[i].surface));
+  return lower_finish_seldom(&l);
+}
+
+static uint32_t array_of_target(SymKind k) { return k == SYM_COORD ? 0 : k == SYM_VEL ? 1 : 2; }
+
+static void store_target(Lower *l, SymId target, Expr value) {
+  const Symbol *s = expr_symbol(l->g, target);
+  prog_store(l->p, array_of_target(s->kind), s->index, lower_slot(l, value), s->name);
+}
+
+Prog *lower_action(const Eqns *e, uint32_t event) {
+  Lower l = lower_by_text(e);
+  const Event *ev = &e->m->events.at[event];
+  for (uint32_t i = 0; i < ev->actions.n; i++) lower_roots(&l, &ev->actions.at[i].value, 1);
+  for (uint32_t i = 0; i < ev->actions.n; i++) store_target(&l, ev->actions.at[i].target, ev->actions.at[i].value);
+  return prog_tidy(l.p);
+}
+
+static Slot lower_table(Lower *l, const Input *in) {
+  Slot t = lower_load(l, ARR_T, expr_symbol(l->g, l->e->m->time));
+  vec_push(l->p->arena, &l->p->tables, ((IrTable){in->name, in->file, in->table}));
+  return prog_ins(l->p, (Ins){.op = IR_TABLE, .a = t, .index = l->p->tables.n - 1});
+}
+
+Prog *lower_inputs(const Eqns *e) {
+  Lower l = lower_by_text(e);
+  const Model *m = e->m;
+  for (uint32_t i = 0; i < m->inputs.n; i++)
+    if (m->inputs.at[i].value) lower_roots(&l, &m->inputs.at[i].value, 1);
+  for (uint32_t i = 0; i < m->inputs.n; i++) {
+    const Input *in = &m->inputs.at[i];
+    Slot s = in->table ? lower_table(&l, in) : lower_slot(&l, in->value);
+    prog_store(l.p, 0, i, s, in->name);
+  }
+  return prog_tidy(l.p);
+}
+
+/* Closed forms are input symbols numbered behind the model's inputs. */
+static int is_closed_form(const Symbol *s, const void *data) { return s->kind == SYM_INPUT && s->index >= *(const uint32_t *)data; }
+
+int output_is_plain(const Eqns *e, uint32_t i) {
+  return !e->m->scene.exacts.n || !expr_contains(e->g, e->outputs[i].value, is_closed_form, &e->m->inputs.n);
+}
+
+/* Values of the outputs, and the outputs in *of. */
+static Expr *values_of_outputs(const Eqns *e, int plain_only, const Output ***of, uint32_t *n) {
+  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, e->noutputs + 1);
+  *of = ARENA_ARRAY(e->m->arena, const Output *, e->noutputs + 1);
+  *n = 0;
+  for (uint32_t i = 0; i < e->noutputs; i++) {
+    if (plain_only && !output_is_plain(e, i)) continue;
+    (*of)[*n] = &e->outputs[i];
+    roots[(*n)++] = e->outputs[i].value;
+  }
+  return roots;
+}
+
+Prog *lower_output_partials(const Eqns *e, Partials *d) {
+  Lower l = lower_new(e);
+  const Model *m = e->m;
+  const Output **of;
+  VEC(Expr) x = {0};
+  VEC(const char *) names = {0};
+  uint32_t n;
+  const Expr *outputs = values_of_outputs(e, 1, &of, &n);
+  for (uint32_t i = 0; i < n; i++) vec_push(m->arena, &x, outputs[i]), vec_push(m->arena, &names, of[i]->name);
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (!m->params.at[i].fixed) vec_push(m->arena, &x, m->params.at[i].value), vec_push(m->arena, &names, m->params.at[i].name);
+  for (uint32_t i = 0; i < m->inputs.n; i++)
+    vec_push(m->arena, &x, m->inputs.at[i].value ? m->inputs.at[i].value : expr_int(e->g, 0)), vec_push(m->arena, &names, m->inputs.at[i].name);
+  *d = eqns_output_partials(e, x.at, x.n);
+  Expr *roots = ARENA_ARRAY(e->m->arena, Expr, d->n + 1);
+  for (uint32_t k = 0; k < d->n; k++) roots[k] = d->at[k].e;
+  lower_with_accelerations(&l, roots, d->n);
+  for (uint32_t k = 0; k < d->n; k++) prog_store(l.p, 0, k, lower_slot(&l, roots[k]), names.at[d->at[k].row]);
+  return lower_finish_seldom(&l);
+}
+
+static Prog *outputs(const Eqns *e, int plain_only) {
+  Lower l = lower_new(e);
+  const Output **of;
+  uint32_t n;
+  Expr *roots = values_of_outputs(e, plain_only, &of, &n);
+  lower_with_accelerations(&l, roots, n);
+  for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, roots[i]), of[i]->name);
+  return lower_finish_seldom(&l);
+}
+
+Prog *lower_outputs(const Eqns *e) { return outputs(e, 0); }
+Prog *lower_plain_outputs(const Eqns *e) { return outputs(e, 1); }
+
+Prog *lower_closed_forms(const Eqns *e) {
+  Lower l = lower_by_text(e);
+  const Scene *sc = &e->m->scene;
+  for (uint32_t i = 0; i < sc->exacts.n; i++) lower_roots(&l, &sc->exacts.at[i].value, 1);
+  for (uint32_t i = 0; i < sc->exacts.n; i++) prog_store(l.p, 0, i, lower_slot(&l, sc->exacts.at[i].value), sc->exacts.at[i].name);
+  return prog_tidy(l.p);
+}
+
+Prog *lower_param(const Eqns *e, uint32_t i) {
+  Lower l = lower_by_text(e);
+  const Param *p = &e->m->params.at[i];
+  lower_roots(&l, &p->value, 1);
+  prog_store(l.p, 0, p->place, lower_slot(&l, p->value), p->name);
+  return prog_tidy(l.p);
+}
+
+Prog *lower_start(const Eqns *e) {
+  Lower l = lower_by_text(e);
+  const Scene *sc = &e->m->scene;
+  for (uint32_t i = 0; i < sc->starts.n; i++) lower_roots(&l, &sc->starts.at[i].value, 1);
+  for (uint32_t i = 0; i < sc->starts.n; i++) store_target(&l, sc->starts.at[i].target, sc->starts.at[i].value);
+  return prog_tidy(l.p);
+}

@@ -1,0 +1,259 @@
+"""lagc.py against closed forms, against `lagc run`, and against wrong use: prints TAP. run_python.sh calls it."""
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+import warnings
+
+import numpy as np
+
+import lagc
+
+count = 0
+
+
+def ok(name, good, said=""):
+    global count
+    count += 1
+    print(f"{'ok' if good else 'not ok'} {count} - {name}")
+    if not good:
+        print(f"# {said}")
+
+
+def near(name, got, want, within):
+    worst = np.max(np.abs(np.asarray(got) - np.asarray(want)))
+    ok(name, worst <= within, f"off by {worst}, {within} is allowed")
+
+
+def raises(name, kind, words, f):
+    try:
+        f()
+    except lagc.Error as e:
+        ok(name, type(e) is kind and words in str(e), f"{type(e).__name__}: {e}")
+    else:
+        ok(name, False, "nothing is raised")
+
+
+# ---- a spring, m = 1 kg, k = 4 N/m: x = cos 2t ----
+spring = lagc.load("models/spring.lag")
+r = spring.run("free", until=5)
+near("a spring, cos 2t", r["x"], np.cos(2 * r.t), 1e-9)
+near("its velocity", r["x'"], -2 * np.sin(2 * r.t), 1e-9)
+near("rows at the scene's grid", r.t, np.arange(251) * 0.02, 1e-12)
+near("the state", r.y, np.stack([r["x"], r["x'"]], 1), 0)
+near("its energy", r["energy"], 2, 1e-9)
+r = spring.run("free", k=9, x=0.5, until=-1, every=0.25)
+near("values, backwards", r["x"], 0.5 * np.cos(3 * r.t), 1e-9)
+ok("the end of a backward run", r.t[-1] == -1 and len(r) == 5)
+near("times given", spring.run("free", times=[0.1, 0.7], tol=1e-12)["x"], np.cos([0.2, 1.4]), 1e-11)
+near("a method with an option", spring.run("free", until=1, method="rk4(step=1e-3)")["x"][-1], np.cos(2), 1e-11)
+near("a step of 0.1 is coarser", abs(spring.run("free", until=1, method="rk4", step=0.1)["x"][-1] - np.cos(2)), 3e-5, 3e-5)
+ok("... and has errors", abs(spring.run("free", until=1, method="rk4", step=0.1)["x"][-1] - np.cos(2)) > 1e-7)
+c, s = np.cos(10), np.sin(10)
+near("the tangent of the flow", spring.run("free", until=5, tangent=True).tangent, [[c, s / 2], [-2 * s, c]], 1e-9)
+r = spring.run("free", {"x'": 2}, until=1)
+near("a start by its primed name", r["x"], np.cos(2 * r.t) + np.sin(2 * r.t), 1e-9)
+near("rates of many states", spring.rhs(0, [[1, 2], [3, 4]], k=5), [[2, -5], [4, -15]], 1e-14)
+near("the rate of one state", spring.rhs(0, [1, 2]), [2, -4], 0)
+near("values of a later call are its own", spring.rhs(0, [1, 2], k=5), [2, -5], 0)
+ok("parameters", spring.parameters() == {"m": 1, "k": 4}, spring.parameters())
+ok("names", spring.coordinates == ["x"] and "damped" in spring.scenes and spring.charges == ["energy"] and "dop853" in spring.methods)
+
+# ---- the same numbers as lagc run ----
+npy = os.path.join(os.environ["TMP"], "rows.npy")
+
+
+def command(model, *words):
+    done = subprocess.run([os.environ["LAGC"], "run", model, *words, "--json", "-o", npy], stdout=subprocess.PIPE, check=True)
+    return json.loads(done.stdout), np.load(npy)
+
+
+cases = (("models/double_pendulum.lag", "swing", {}, None), ("models/pendulum.lag", "small", {"th": 1.2}, None),
+                                 ("models/bouncing_ball.lag", "drop", {}, None), ("models/lorenz.lag", "butterfly", {}, None), ("models/spring.lag", "damped", {}, 1e-7),
+                                 ("models/motor_pendulum.lag", "lift", {"L": 8}, None), ("models/spring.lag", "free", {}, 1e-11), ("models/lotka_volterra.lag", "long", {}, None), ("models/cart_pendulum.lag", "workshop", {}, 1e-5))
+for model, scene, words, tol in cases if os.environ.get("SLOW") else cases[::3]:
+    report, rows = command(model, scene, *(f"{k}={v}" for k, v in words.items()), "--until", "2", *(["--tol", str(tol)] if tol else []))
+    r = lagc.load(model).run(scene, words, until=2, tol=tol)
+    table = np.stack([rows[k] for k in rows.dtype.names], 1)
+    mine = np.column_stack([r.t] + [r[k] for k in r.names])
+    ok(f"{model}: the rows of lagc run, bit by bit", mine.shape == table.shape and (mine == table).all(), f"{mine.shape} {table.shape}")
+    ok(f"{model}: its method", r.method.split(",")[0] in report["method"], f"{r.method} {report['method']}")
+    drift = report["charges"].get("energy", {}).get("drift")
+    ok(f"{model}: its energy drift", drift == r.energy_drift or drift is None and np.isnan(r.energy_drift), f"{r.energy_drift} {drift}")
+    ok(f"{model}: its steps", r.stats["steps"] == report["steps"], f"{r.stats['steps']} {report['steps']}")
+
+# ---- events: a ball from 1 m bounces at sqrt(2/g) with 0.8 of its speed ----
+ball = lagc.load("models/bouncing_ball.lag")
+r = ball.run("drop", until=1)
+name, t, before, after = r.events[0]
+near("the first bounce", t, np.sqrt(2 / 9.81), 1e-9)
+near("the speed after it", after[1], -0.8 * before[1], 0)
+ok("its name", name == "floor" and len(r.events) == 1)
+
+# ---- batches: 10^4 double pendulums in one call ----
+double = lagc.load("models/double_pendulum.lag")
+angles = np.linspace(1, 90, 10000)
+calls = []
+library = next(iter(double._scenes().values())).lib
+batch_function = library.lag_sim_batch
+library.lag_sim_batch = lambda *a: calls.append(a) or batch_function(*a)
+out = np.empty((10000, 2, 4))
+b = double.batch("swing", th1=angles, times=[0.5, 1], tol=1e-6, out=out)
+library.lag_sim_batch = batch_function
+ok("one call of the library", len(calls) == 1 and calls[0][1] == 10000)
+ok("the caller's array, without a copy", b.y is out and calls[0][6] == out.ctypes.data)
+ok("all of them run", not b.status.any() and np.isfinite(b.y).all())
+single = double.run("swing", th1=angles[777], times=[0.5, 1], tol=1e-6, method="dop853")
+ok("each is the run of its own start, bit by bit", (b.y[777] == single.y).all(), b.y[777] - single.y)
+ok("by name", (b["th2"] == b.y[:, :, 1]).all())
+y0 = np.array([[np.radians(30), 0, 0, 0], [0, 0.1, 0, 0]])
+calls.clear()
+library.lag_sim_batch = lambda *a: calls.append(a) or batch_function(*a)
+b = double.batch("swing", y0=y0, times=[0.0], tol=1e-6)
+library.lag_sim_batch = batch_function
+ok("starts of the caller's array, without a copy", calls[0][2] == y0.ctypes.data and (b.y[:, 0] == y0).all())
+two = double.batch("swing", th1=angles[:999], times=[1], tol=1e-6, threads=2)
+one = double.batch("swing", th1=angles[:999], times=[1], tol=1e-6)
+ok("two threads, the same bits", (one.y == two.y).all())
+k = np.array([1.0, 4, 9])
+b = spring.batch("free", x=1, k=k, times=[1, 2])
+near("parameters of each", b["x"], np.cos(np.sqrt(k)[:, None] * [1, 2]), 1e-9)
+
+b = spring.batch("free", k=9, x=[0.5, 2], times=[1, 2])
+near("a parameter for all", b["x"], np.outer([0.5, 2], np.cos([3, 6])), 1e-9)
+b = spring.batch("free", x=0.5, k=[1.0, 4], times=[1])
+near("a start for all", b["x"], 0.5 * np.cos([[1], [2]]), 1e-9)
+b = double.batch("swing", m2=3, l1=0.5, th1=[20, 40], times=[1], tol=1e-6)
+ok("... and what follows from it", (b.y[1, 0] == double.run("swing", m2=3, l1=0.5, th1=40, times=[1], tol=1e-6).y[0]).all())
+motor = lagc.load("models/motor_pendulum.lag")
+b = motor.batch("lift", L=[5, 8], times=[1])
+ok("values in declared units, [mH]", (b.y[1, 0] == motor.run("lift", L=8, times=[1]).y[0]).all())
+b = spring.batch("free", x=[1, 2], times=[1], method="gauss(stages=3)", step=0.01)
+ok("a method with options", (b.y[0, 0] == spring.run("free", times=[1], method="gauss(stages=3)", step=0.01).y[0]).all())
+
+# ---- other threads run meanwhile ----
+ticks, ended = [], threading.Event()
+
+
+def tick():
+    while not ended.is_set():
+        ticks.append(time.perf_counter())
+        time.sleep(0.001)
+
+
+thread = threading.Thread(target=tick)
+thread.start()
+begin = time.perf_counter()
+double.batch("swing", th1=angles[:1000], times=[5], tol=1e-9, method="dop853")
+end = time.perf_counter()
+ended.set()
+thread.join()
+inside = sum(begin < t < end for t in ticks)
+ok("another thread runs during a batch", inside > 3, f"{inside} times in {end - begin} s")
+
+# ---- errors ----
+raises("a wrong name, with the nearest one", lagc.Error, "did you mean th1?", lambda: double.run("swing", th11=1))
+raises("a wrong name in a batch", lagc.Error, "did you mean th1?", lambda: double.batch("swing", th11=[1, 2], times=[1]))
+raises("a wrong output", lagc.Error, "did you mean energy?", lambda: single["enrgy"])
+raises("a wrong scene", lagc.Error, "did you mean swing?", lambda: double.run("swimg"))
+raises("a wrong method", lagc.Error, "did you mean rk4", lambda: double.run("swing", method="rk44"))
+raises("a wrong option", lagc.Error, "no option", lambda: double.run("swing", method="rk4(stap=1)"))
+raises("a wrong sign", lagc.Error, "declares m1 > 0", lambda: double.run("swing", m1=-1))
+raises("a text as a value", lagc.Error, "give a number", lambda: double.run("swing", th1="90[deg]"))
+raises("a wrong shape", lagc.Error, "not (any, 4)", lambda: double.rhs(0, [1, 2]))
+raises("arrays of different lengths", lagc.Error, "differ in length", lambda: double.batch(th1=[1, 2], th2=[1, 2, 3], times=[1]))
+raises("an array of other numbers", lagc.Error, "array of doubles", lambda: double.batch(th1=[1, 2], times=[1], out=np.empty((2, 1, 4), np.float32)))
+raises("no file", lagc.Error, "none.lag", lambda: lagc.load("none.lag"))
+raises("a wrong model: the compiler's text", lagc.CompileError, "error:", lambda: lagc.load("tests/golden/err/sem_unknown_names.lag"))
+with open(os.path.join(os.environ["TMP"], "fall.lag"), "w") as f:
+    f.write("model fall\ncoord x\nkinetic = x'^2/2\npotential = -1/x\nscene down { start x = 1; span 10 [s] }\n")
+try:
+    fall = lagc.load(os.path.join(os.environ["TMP"], "fall.lag"))
+    fall.run()
+    ok("a failed run", False, "nothing is raised")
+except lagc.RunError as e:
+    # from rest at 1 with x'' = -1/x^2: x = 0 at pi/(2 sqrt 2)
+    ok("a failed run: its reason, and the rows before it", "t =" in str(e) and e.status < 0, str(e))
+    near("... up to the collision", e.result.t[-1], np.pi / np.sqrt(8), 0.02)
+ok("a tolerance brings its method", fall.run(until=0.5, tol=1e-11).method.startswith("taylor") and not fall.run(until=0.5, tol=1e-7).method.startswith("taylor"))
+b = fall.batch(x=[1.0, 100], times=[1, 3])
+ok("in a batch its status, and NaN from there on", b.status[0] < 0 and b.status[1] == 0 and np.isfinite(b.y[0, 0]).all() and np.isnan(b.y[0, 1]).all() and np.isfinite(b.y[1]).all(), b.status)
+
+# A parameter by a formula follows the one that it is made of, in each motion: x'' = -2k x.
+path = os.path.join(os.environ["TMP"], "twice.lag")
+with open(path, "w") as f:
+    f.write("model twice\nparam k = 2, kk = 2*k\ncoord x\nlagrangian = x'^2/2 - kk*x^2/2\nscene a { start x = 1; span 1 [s]; tolerance 1e-11 }\n")
+twice = lagc.load(path)
+near("formulas of parameters in a batch", twice.batch(k=[2, 4.5], times=[1])["x"][:, 0], [np.cos(2), np.cos(3)], 1e-9)
+near("and one that is given itself", twice.batch(k=[2, 4.5], kk=[1, 4], times=[1])["x"][:, 0], [np.cos(1), np.cos(2)], 1e-9)
+raises("a start that is no number", lagc.Error, "motion 1 has a value that is not finite", lambda: twice.batch(x=[1, np.nan], times=[1]))
+raises("nor one of an array", lagc.Error, "y0: motion 1 has a value that is not finite", lambda: twice.batch(y0=[[1, 0], [1, np.inf]], times=[1]))
+raises("nor a parameter", lagc.Error, "p: motion 0 has a value that is not finite", lambda: twice.batch(p=[[np.nan, 1], [1, 2]], times=[1]))
+raises("nor a time", lagc.Error, "times: row 1 has a value that is not finite", lambda: twice.batch(times=[1, np.nan]))
+raises("a start of a run that is no number", lagc.Error, "not a finite number", lambda: twice.run(x=np.nan))
+raises("an end that is no number", lagc.Error, "not a finite time", lambda: twice.run(until=np.nan))
+raises("an end that is a word", lagc.Error, "until = 'soon': not a number", lambda: twice.run(until="soon"))
+raises("rows without a time between them", lagc.Error, "must be positive", lambda: twice.run(every=0))
+raises("no rows", lagc.Error, "times is empty", lambda: twice.run(times=[]))
+b = spring.batch("free", y0=[[1.0, 0], [0, 2]], p=[[1.0, 9], [4, 4]], times=[1])
+near("starts and parameters as arrays: m, k", b["x"][:, 0], [np.cos(3), 2 * np.sin(1)], 1e-9)
+raises("parameters of the wrong number", lagc.Error, "p has the shape (1, 3), not (any, 2)", lambda: spring.batch("free", p=[[1, 2, 3]], times=[1]))
+raises("a name and its array", lagc.Error, "k and p set the same values", lambda: spring.batch("free", k=[1.0], p=[[1.0, 2]], times=[1]))
+raises("a step of nothing", lagc.Error, "a step is positive", lambda: twice.run(method="rk4", step=0))
+
+# ---- a start is moved onto the constraint x^2 + y^2 = 1, here along the radius: (1.1, 0.3)/|(1.1, 0.3)| ----
+with warnings.catch_warnings(record=True) as seen:
+    warnings.simplefilter("always")
+    rod = lagc.load("tests/exec/models/rod.lag")
+    r = rod.run("below", x=1.1, y=0.3, times=[0])
+    near("the start that was asked for", [r.start_moved["x"][0], r.start_moved["y"][0]], [1.1, 0.3], 1e-15)
+    near("and where it went", [r.start_moved["x"][1], r.start_moved["y"][1]], np.array([1.1, 0.3]) / np.hypot(1.1, 0.3), 1e-14)
+    ok("a warning says so", len(seen) == 1 and str(seen[0].message).startswith("start moved to the constraints: x from 1.1 to 0.9647638") and seen[0].filename == __file__, seen)
+    ok("not of a start on it", not rod.run("drop", times=[0]).start_moved and len(seen) == 1, seen)
+
+# ---- the page ----
+with open("runtime/python/README.md") as f:
+    exec(f.read().split("```python")[1].split("```")[0].replace("10000", "100"), page := {})
+ok("the example of README.md", page["b"].y.shape == (100, 2, 4) and abs(page["m"].batch(y0=[[1, 1, 1, 1]], p=page["p"][:1], times=[1]).y[0, 0, 0]) > 0)
+
+# ---- inputs as functions, constants, display ----
+path = os.path.join(os.environ["TMP"], "pushed.lag")
+with open(path, "w") as f:
+    f.write("model pushed\nconst N = 2\ncoord x\ninput u = 0\nkinetic = x'^2/2*N\nforce x = u\nscene rest { start x = 0; span 1 [s] }\n")
+near("a function as input: x'' = 6t/2", lagc.load(path).run(u=lambda t: 6 * t)["x"][-1], 0.5, 1e-9)
+near("the same for each of a batch", lagc.load(path).batch(u=lambda t: 6 * t, x=[0, 1], times=[1])["x"], [[0.5], [1.5]], 1e-9)
+try:
+    lagc.load(path).run(u=lambda t: 1 / 0)
+    ok("an input that raises", False, "nothing is raised")
+except ZeroDivisionError:
+    ok("an input that raises", True)
+for name, call in (("of a batch", lambda m: m.batch(u=lambda t: 1 / 0, x=[0, 1], times=[1])), ("of a rate", lambda m: m.rhs(0, [0, 0], u=lambda t: 1 / 0))):
+    try:
+        call(lagc.load(path))
+        ok(f"an input {name} that raises", False, "nothing is raised")
+    except ZeroDivisionError:
+        ok(f"an input {name} that raises", True)
+raises("an input as an array", lagc.Error, "one value or one function", lambda: lagc.load(path).batch(u=[0, 1], times=[1]))
+near("a constant", lagc.load(path, {"N": 3}).run(u=6)["x"][-1], 1, 1e-9)
+# ---- sweeps: x(1) = x + v t of a free body ----
+with open(path, "w") as f:
+    f.write("model free\ncoord x\nconst N = 1\nlagrangian = N*x'^2/2\nscene run { span 1 [s] }\n")
+free = lagc.load(path, {"N": 2})
+s = free.sweep("run", {"x'": [0, 0.5]}, x="1..3:3", measure={"X": "x"}, method="rk4", step=0.5)
+near("a sweep: all combinations", s["X"], [1, 2, 3, 1.5, 2.5, 3.5], 1e-12)
+near("the values of each", [s["x'"], s["x"]], [[0, 0, 0, 0.5, 0.5, 0.5], [1, 2, 3, 1, 2, 3]], 0)
+near("samples of a distribution", np.mean(free.sweep(x="~uniform(0, 1)", samples=64, sampling="lhs", measure="x", method="rk4", step=0.5)["x(end)"]), 0.5, 0.01)
+raises("a measure that is not there", lagc.Error, "did you mean", lambda: free.sweep(x=[1, 2], measure="xx"))
+ok("LaTeX of the equations", spring._repr_latex_().startswith("$$\\begin{aligned}") and "\\ddot{x}" in spring._repr_latex_())
+ok("a picture", single._repr_svg_().count("<polyline") == 5 and single._repr_svg_().endswith("</svg>"))
+ok("texts", "scenes" in repr(spring) and "energy drift" in repr(single) and "m*x''" in spring.equations)
+with warnings.catch_warnings(record=True) as seen:
+    warnings.simplefilter("always")
+    with open(path, "a") as f:
+        f.write("param unused = 1\n")
+    lagc.load(path)
+ok("a warning of the compiler", any("unused" in str(w.message) for w in seen), seen)
+print(f"1..{count}")
+sys.exit(0)

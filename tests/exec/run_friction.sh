@@ -1,0 +1,303 @@
+#!/bin/sh
+# Dry friction and other switches of the equations: stops, sticking, sliding modes, crossings, and refusals, against closed forms. The models of the gallery
+# have facts of their own (models/block, coulomb_oscillator, stick_slip).
+. tests/tap.sh
+
+model() { cat >"$TMP/$1.lag"; }
+# run MODEL ARGS...: JSON in $TMP/json
+run() {
+  name=$1
+  shift
+  "$LAGC" run "$TMP/$name.lag" "$@" --json >"$TMP/json" 2>"$TMP/err" || { cat "$TMP/json" "$TMP/err"; return 1; }
+}
+number() { sed -n "s/.*\"$1\": \\([-0-9.e+]*\\).*/\\1/p" "$TMP/json"; } # of the last member of this name
+final() { sed 's/.*"final": {//' "$TMP/json" | sed -n "s/.*\"$1\": \\([-0-9.e+]*\\).*/\\1/p"; }
+near() { close_to "$@"; }
+calc() { awk "BEGIN { printf \"%.17g\", $1 }"; }
+most() { awk -v got="$1" -v most="$2" 'BEGIN { print got, most; exit !(got != "" && got <= most) }'; }
+refuses() { # refuses STATUS WORDS MODEL ARGS...
+  status=$1 words=$2 name=$3
+  shift 3
+  "$LAGC" run "$TMP/$name.lag" "$@" >"$TMP/log" 2>&1
+  [ $? = "$status" ] && grep -q -e "$words" "$TMP/log" || { cat "$TMP/log"; return 1; }
+}
+
+# ---- a block: it stops at v0^2/(2 mu g), by every method that can follow it; 2/(2*0.3*9.81)*2 = 0.67957866123003737
+model slide <<'END_OF'
+model slide
+coord x [m]
+param m = 1 [kg] > 0, mu = 0.3 [1], g = 9.81 [m/s^2] > 0
+lagrangian = m/2*x'^2
+force x = -mu*m*g*sign(x')
+observe hold [N] = -mu*m*g*sign(x')
+scene s { start x' = 2 [m/s]; span 10 [s] }
+scene compared { like s; exact x = if(t < 2 [m/s]/(mu*g), x'(0)*t - mu*g*t^2/2, x'(0)^2/(2*mu*g)); output x, exact(x), error(x) every 1 [s] }
+END_OF
+for method in rk45 dop853 radau rk4 'rk4(step=0.1)' 'rk45(adapt=off,step=0.01)'; do
+  check "a block stops, by $method" run slide --method "$method"
+  check "at v0^2/(2 mu g)" near "$(final x)" "$(calc '4/(2*0.3*9.81)')" 1e-13
+  check "and stays" near "$(final "x'")" 0 1e-14
+  check "it sticks once" near "$(number slides)" 1 0
+  check "for the rest of the time" near "$(number sliding_s)" "$(calc '10 - 2/(0.3*9.81)')" 1e-12
+done
+check "beside a closed form" run slide compared
+check "which outputs show" near "$(final 'exact(x)')" "$(calc '4/(2*0.3*9.81)')" 1e-13
+check "with the error" near "$(final 'error(x)')" 0 1e-13
+run slide --method rk45
+check "few steps" most "$(number steps)" 50
+for method in verlet variational symplectic_euler ${GSL:+gsl-rk8pd gsl-msadams}; do
+  check "refused: $method" refuses 2 "method $method cannot follow a motion that sticks or slides where .sign(x'). jumps; rk45, dop853, radau and rk4 can" slide --method $method
+done
+check "check names the surface" sh -c "$LAGC check $TMP/slide.lag | grep -qx \"switching surface: .x'. = 0 (line 5), where a motion may stick\""
+
+# ---- its work is a line of its own: -m v^2/2 here; -4 R x0 a period of Den Hartog's oscillator, x0 = 0.48483893978808 (models/coulomb_oscillator.facts)
+run slide --method dop853
+check "friction does the work" near "$(number dry_friction)" -2 1e-13
+check "and the balance closes" near "$(number drift)" 0 1e-13
+cp models/coulomb_oscillator.lag "$TMP/driven.lag"
+run driven driven --until "$(calc '10*3.14159265358979324')" --tol 1e-12
+check "ten driven swings" near "$(number dry_friction)" "$(calc '-10*4*0.48483893978808')" 1e-9
+check "cost what the shaker gives" near "$(number work)" 0 1e-9
+
+# ---- at rest on an edge: where the force on both sides leads away, several motions follow
+model away <<'END_OF'
+model away
+coord x [m]
+lagrangian = 1 [kg]/2*x'^2 - k/2*x^2
+param k = 0 [N/m], F = 1 [N]
+force x = F*sign(x')
+scene s { span 2 [s] }
+END_OF
+check "two motions from one start: the run says so" refuses 3 "FAILED: at t = 0 s the motion meets x' = 0, where .sign(x'). in line 5 switches: it can leave the surface to either side" away
+check "and goes on from beside it" run away "x'=0.5"
+check "along the one" near "$(final x)" 3 1e-12
+model valley <<'END_OF'
+model valley
+coord x [m]
+param F = 1 [N], c = 0 [N*s/m]
+lagrangian = 1 [kg]/2*x'^2 - F*abs(x)
+force x = -c*x'
+scene s { start x = 1 [m]; span 2 [s] }
+END_OF
+# a quarter period sqrt(2 m x/F)
+check "a valley with an edge: crossed" run valley --until "$(calc '4*sqrt(2)')" --tol 1e-12
+check "every half period" near "$(number crossings)" 2 0
+check "and back after a whole one" near "$(final x)" 1 1e-10
+check "with the energy kept" near "$(number drift)" 0 1e-12
+check "by verlet, whose steps end at the edge" run valley --until "$(calc '4*sqrt(2)')" --method verlet --step 0.01
+check "exactly, as the pieces are parabolas" near "$(final x)" 1 1e-10
+check "at rest on the edge" refuses 3 "it rests on the surface, or leaves it to either side" valley x=0
+
+# ---- two surfaces at once: blocks joined by a spring, both at rest. A force F on x moves none while F < 1, x alone while k x + 1 < F and k x < 0.7
+model pair <<'END_OF'
+model pair
+coord x [m], y [m]
+param F = 0.9 [N], k = 3 [N/m]
+lagrangian = 1 [kg]/2*(x'^2 + y'^2) - k/2*(y - x)^2
+force x = F - 1 [N]*sign(x')
+force y = -0.7 [N]*sign(y')
+observe hx [N] = -1 [N]*sign(x')
+observe hy [N] = -0.7 [N]*sign(y')
+scene s { span 5 [s]; output x, y, hx, hy every 1 [s] }
+END_OF
+for method in rk45 dop853 radau rk4; do
+  [ $method = radau ] && tol=1e-6 || tol=1e-8 # errors of a tolerance of 1e-9
+  check "both stick, by $method" run pair --method $method
+  check "x" near "$(final x)" 0 1e-13
+  check "held by what is needed" near "$(final hx)" -0.9 1e-12
+  check "as nothing pulls at y" near "$(final hy)" 0 1e-12
+  # x swings from 0 to 2 (F - 1)/k and stays there, as k x - F = -0.8 is less than 1; y is pulled by k x = 0.4
+  check "x moves alone by $method" run pair --method $method F=1.2
+  check "half a swing" near "$(final x)" "$(calc '2*0.2/3')" $tol
+  check "and is held" near "$(final hx)" "$(calc '0.4 - 1.2')" $tol
+  check "y is held, too" near "$(final hy)" -0.4 $tol
+done
+
+run pair F=0 k=0 "x'=2" "y'=1"
+check "the work of both frictions is counted" near "$(number dry_friction)" -2.5 1e-12
+
+# ---- a relay: x'' = -sign(x + x'), a slide along x + x' = 0 as exp(-t), from the point where the parabola meets the line
+model relay <<'END_OF'
+model relay
+state x, y
+flow x' = y
+flow y' = -sign(x + y)
+scene s { start x = 0.5, y = -0.5; span 3 }
+END_OF
+for method in rk45 dop853 radau rk4; do
+  check "a relay by $method" run relay --method $method
+  check "slides home as exp(-t)" near "$(final x)" "$(calc '0.5*exp(-3)')" 1e-8
+  check "on the line" near "$(calc "$(final x) + $(final y)")" 0 1e-8
+done
+
+# ---- functions of time: a square wave and a sawtooth. x'' = sign(sin(pi t)): after n periods of 2 s at rest, 1 m a period on
+model wave <<'END_OF'
+model wave
+coord x [m], y [m]
+lagrangian = 1 [kg]/2*(x'^2 + y'^2)
+force x = 1 [N]*sign(sin(pi*t/1 [s]))
+force y = 1 [N]*(t/1 [s] - floor(t/1 [s]) - 1/2)
+scene s { span 10 [s] }
+END_OF
+for method in rk45 dop853 radau 'rk4(step=0.3)' 'verlet(step=0.3)'; do
+  check "a square wave by $method" run wave --method "$method" --tol 1e-10
+  check "is integrated piece by piece" near "$(final x)" 5 1e-9
+  check "and ends at rest" near "$(final "x'")" 0 1e-9
+  # a saw tooth of mean 0: each second adds -1/12 m, from a velocity that is 0 at whole seconds
+  case $method in verlet*) ;; *) check "a sawtooth, too" near "$(final y)" "$(calc '-10/12')" 1e-9 ;; esac
+done
+
+# a wave of 2/3 up and 1/3 down, by steps of whole periods, which see the same value at each end and in the middle
+model uneven <<'END_OF'
+model uneven
+coord x [m]
+lagrangian = 1 [kg]/2*x'^2
+force x = 1 [N]*sign(1/2 + sin(2*pi*t/1 [s]))
+scene s { span 4 [s] }
+END_OF
+for method in 'rk4(step=1)' rk45; do
+  check "steps of whole periods by $method" run uneven --method "$method"
+  check "miss no crossing" near "$(final "x'")" "$(calc 4/3)" 1e-9
+done
+
+# ---- bilinear springs: half periods pi/w1 and pi/w2
+model bilinear <<'END_OF'
+model bilinear
+coord x [m]
+lagrangian = 1 [kg]/2*x'^2 - if(x > 0, 1 [N/m], 9 [N/m])/2*x^2
+scene s { start x = 1 [m]; span 20 [s] }
+END_OF
+for method in rk45 dop853 radau rk4; do
+  check "a spring of two stiffnesses by $method" run bilinear --until "$(calc '3*(3.14159265358979324 + 3.14159265358979324/3)')" --tol 1e-11 --method $method
+  check "comes back" near "$(final x)" 1 1e-8
+done
+check "with its corner crossed" near "$(number crossings)" 6 0
+# the period is the same for all amplitudes and phases, so that after one period each neighbouring motion is where it was
+tangent() { sed -n 's/.*"tangent": {\([^}]*}[^}]*\)}.*/\1/p' "$TMP/json" | grep -o ': -\{0,1\}[0-9][-0-9.e+]*' | awk '{ d = $2 - (NR == 1 || NR == 4); print $2; bad = bad || d > 1e-8 || d < -1e-8 } END { exit bad || NR != 4 }'; }
+check "its tangent goes over the corners" run bilinear --until "$(calc '3.14159265358979324 + 3.14159265358979324/3')" --tol 1e-11 --tangent
+check "to the identity after a period" tangent
+model large <<'END_OF'
+model large
+const n = 70
+coord x[n] [m]
+lagrangian = sum(i in 1..n, 1 [kg]/2*x[i]'^2) - sum(i in 1..n-1, 1 [N/m]/2*(x[i+1] - x[i])^2)
+for i in 1..n { friction rub[i] on x[i]: 1 [N] }
+scene s { start x[1]' = 2 [m/s]; span 0.5 [s]; output rub[70] every 0.1 [s] }
+END_OF
+check "a model of 70 bodies that stick" run large
+
+# ---- stiff but smooth: tanh(v/vs). While |v| >> vs it is Coulomb's friction; on a slope the block then creeps at vs*atanh(tan a/mu)
+model smooth <<'END_OF'
+model smooth
+coord s [m]
+param m = 1 [kg] > 0, g = 10 [m/s^2] > 0, mu = 0.5, a = 0.2 [rad], vs = 1e-3 [m/s]
+lagrangian = m/2*s'^2 - m*g*s*sin(a)
+force s = -mu*m*g*cos(a)*tanh(s'/vs)
+scene x { start s' = 1 [m/s]; span 10 [s] }
+END_OF
+for vs in 1e-3 1e-6 1e-9; do
+  check "tanh(v/$vs) by radau" run smooth vs=$vs --method radau
+  check "creeps at the speed of its balance, r = tan a/mu" near "$(final "s'")" "$(awk "BEGIN { r = sin(0.2)/cos(0.2)/0.5; printf \"%.12g\", -$vs*log((1 + r)/(1 - r))/2 }")" 1e-10
+  check "in few steps" most "$(number steps)" 400
+done
+
+# ---- sticking that ends by itself: the shaken oscillator at rest 19 times, and the belt's period (digits: the facts of these models), by every method
+cp models/stick_slip.lag models/coulomb_oscillator.lag "$TMP"
+for method in rk45 dop853 radau rk4; do
+  case $method in rk45) tol=1e-7 ;; radau) tol=1e-6 ;; rk4) tol=1e-5 ;; *) tol=1e-8 ;; esac # of radau its error at 1e-9; of rk4 that of Hermite's path beside a tangent surface
+  check "a shaken mass by $method" run coulomb_oscillator stick_slip --method $method
+  check "is where it should be" near "$(final x)" -0.1474563757205878 $tol
+  check "after 19 rests" near "$(number slides)" 19 0
+  check "of together 4.518 s" near "$(number sliding_s)" 4.518110764755514 $tol
+  check "a belt by $method" run stick_slip --method $method --measure 'T=hit(lets_go, 5) - hit(lets_go)'
+  check "has its period" near "$(number T)" "$(calc '4*8.42029357870480441')" $tol
+done
+run stick_slip --method radau
+check "radau has the Jacobian of the slide" most "$(number rhs_calls)" 3400
+
+# ---- a friction that differs by direction, as an if: held by any force between -2 and 1
+model ratchet <<'END_OF'
+model ratchet
+coord x [m]
+param F = 0.5 [N]
+lagrangian = 1 [kg]/2*x'^2
+force x = -F + if(x' > 0, -2 [N], 1 [N])
+observe hold [N] = if(x' > 0, -2 [N], 1 [N])
+scene s { start x' = 1 [m/s]; span 4 [s]; output x, hold every 1 [s] }
+END_OF
+for method in rk45 radau; do
+  check "a ratchet by $method" run ratchet --method $method
+  check "stops at v^2/(2 (2 + F))" near "$(final x)" 0.2 1e-12
+  check "and is held by F" near "$(final hold)" 0.5 1e-12
+  check "it slips back where F is more than 1 N" run ratchet --method $method F=1.5
+  check "from its far end, at 0.5 m/s^2" near "$(final x)" "$(calc '1/7 - 0.25*(4 - 1/3.5)^2')" 1e-9
+  check "and never where F is 1 N less a little" run ratchet --method $method F=0.999999
+  check "at rest" near "$(final "x'")" 0 1e-14
+done
+model condition <<'END_OF'
+model condition
+coord x [m]
+lagrangian = 1 [kg]/2*x'^2
+force x = if(x' > 0 and x < 10 [m], -2 [N], 1 [N])
+scene s { start x' = 1 [m/s]; span 4 [s] }
+END_OF
+check "of two conditions at once no mean is taken" refuses 3 "at t = 0.5[0-9]* s the motion meets x' = 0, .* the force is no sum of the switch and a rest" condition
+
+# ---- static friction above that of motion. On the belt: carried to k x = mu_s N; then with A = (mu_s - mu) N/k, B = v/w an oscillation about mu N/k, until x' is v
+# again, 2 (pi - atan(A/B)) later and 2 A back: here A = 0.15, B = 0.1
+model static <<'END_OF'
+model static
+const n = 1
+coord x[n] [m]
+param m = 1 [kg] > 0, k = 1 [N/m] > 0, N = 1 [N] > 0, v = 0.1 [m/s], mu_s = 0.4, mu = 0.25
+kinetic = sum(i in 1..n, m/2*x[i]'^2)
+potential = sum(i in 1..n, k/2*x[i]^2)
+let slip[i in 1..n] = x[i] - v*t
+for i in 1..n { friction rub[i] on slip[i]: mu*N, static = mu_s*N }
+expect m*x[1]'' = rub[1] - k*x[1]
+scene s { start x' = 0.1 [m/s]; span 60 [s]; output x, rub[1] every 0.1 [s] }
+END_OF
+check "its expectation is proved" "$LAGC" check "$TMP/static.lag"
+slip=$(awk 'BEGIN { printf "%.17g", 2*(3.14159265358979324 - atan2(0.15, 0.1)) }')
+for method in rk45 dop853 radau rk4; do
+  case $method in radau | rk4) tol=1e-6 ;; *) tol=1e-7 ;; esac
+  check "a belt with static friction by $method" run static --method $method
+  check "is where it should be" near "$(final 'x\[1\]')" "$(calc "0.1 + 0.1*(60 - 4 - 7*($slip + 3) - $slip)")" $tol
+  check "and sticks as long" near "$(number sliding_s)" "$(calc "60 - 8*$slip")" $tol
+done
+run static --until 3.9
+check "held by more than mu N" near "$(final 'rub\[1\]')" 0.39 1e-12
+run static mu_s=0.1
+check "a static limit below mu N counts as that" near "$(number slides)" "$(run static mu_s=0.25 && number slides)" 0
+
+# ---- saved in the middle of a slide, and resumed: the same bits
+split() {
+  "$LAGC" run "$TMP/coulomb_oscillator.lag" stick_slip --until 3.6262 --save-state "$TMP/s.state" --quiet &&
+    "$LAGC" run "$TMP/coulomb_oscillator.lag" stick_slip --resume "$TMP/s.state" --until 20 --json >"$TMP/b.json" &&
+    "$LAGC" run "$TMP/coulomb_oscillator.lag" stick_slip --until 20 --json >"$TMP/a.json"
+}
+check "a run that is split while it sticks" split
+
+same() { [ "$(sed 's/.*"final"//' "$TMP/a.json")" = "$(sed 's/.*"final"//' "$TMP/b.json")" ] || { cat "$TMP/a.json" "$TMP/b.json"; return 1; }; }
+check "is the same run" same
+
+# ---- events act on switches: a block that is struck while it sticks, and one that bounces
+model struck <<'END_OF'
+model struck
+coord x [m]
+param R = 1 [N]
+lagrangian = 1 [kg]/2*x'^2
+force x = -R*sign(x')
+event blow: t - 3 [s] rising { x' = 2 [m/s] }
+scene s { span 10 [s] }
+END_OF
+check "a blow sets it free" run struck
+check "and it stops again after v^2/(2 R)" near "$(final x)" 2 1e-12
+check "having stuck twice" near "$(number slides)" 2 0
+blown() { "$LAGC" run "$TMP/struck.lag" --tangent --json | grep -q "\"tangent\": {\"x\": {\"x\": 1, \"x'\": 0}, \"x'\": {\"x\": 0, \"x'\": 0}}"; }
+check "its place follows from the start, its velocities do not" blown
+sed "s/x' = 2 .m.s./x = x + 1 [m]/" "$TMP/struck.lag" >"$TMP/shifted.lag"
+check "no tangent over an event under which it goes on sticking" refuses 3 "an event changes the state where the motion meets a surface or slides" shifted --tangent
+stops() { "$LAGC" run "$TMP/slide.lag" --tangent --json | grep -q "\"tangent\": {\"x\": {\"x\": 1, \"x'\": 0.6795786[0-9]*}, \"x'\": {\"x\": 0, \"x'\": 0}}"; }
+check "where it stops, v^2/(2 mu g), has one: v/(mu g), with x = v^2/(2 mu g) = x/(v/2)" stops
+tap_end

@@ -1,0 +1,124 @@
+#!/bin/sh
+# `measure` statements and `lagc run --measure`: values against closed forms, their place in report and JSON, and what is refused.
+. tests/tap.sh
+cd "$TMP" || exit 1
+case $LAGC in /*) ;; *) LAGC=$OLDPWD/$LAGC ;; esac
+cat >hop.lag <<'LAG'
+model hop "A ball that bounces, and a drop that is drawn sideways"
+coord y [cm], x [m], th [deg] periodic
+param m = 2 [kg] > 0, g = 9.81 [m/s^2] > 0, e = 0.8, w = 3 [rad/s] > 0
+let height = y/1 [m]
+kinetic = m/2*(y'^2 + x'^2 + th'^2*1 [m^2])
+potential = m*g*y + m/2*w^2*(x^2 + th^2*1 [m^2])
+event floor: y falling { y' = -e*y' }
+event half: y - 0.5 [m] falling { stop }
+scene drop {
+  start y = 1 [m], x = 20 [cm], th = 30 [deg]
+  span 10 [s]
+  tolerance 1e-12
+  measure end_time = end
+  measure high = max(height)
+  measure fall = (max(y) - min(y))*g*m
+  measure turn = max(th)
+  measure speed = max(hypot(x', y'))
+  measure mean_th = mean(th)
+  measure radian = max(th) - 1
+  measure straight = pi - max(th)
+  measure ratio = end*w/(2*pi)
+}
+scene low {
+  like drop
+  start y = 50 [cm]
+  use none
+  measure high = hit(floor, 2)
+}
+LAG
+# values SCENE OPTIONS...: NAME VALUE lines of the measures, in vals
+values() {
+  "$LAGC" run hop.lag "$@" >out 2>err || return 1
+  sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
+}
+# near NAME EXPECTED UNIT TOLERANCE
+near() { awk -v n="$1" -v e="$2" -v u="$3" -v tol="$4" '$1 == n && $3 == u && ($2 - e <= tol) && (e - $2 <= tol) { ok = 1 } END { exit !ok }' vals; }
+
+# The ball falls from 1 m to half of it: sqrt(2*0.5/9.81) s; x and th oscillate with 3 rad/s, and begin at their amplitude.
+T=0.319275428407050 # sqrt(1/9.81)
+check "a scene with measures runs" values drop
+check "the run ends where an event stops it" near end_time $T s 1e-9
+check "a let of pure numbers" near high 1 '' 1e-12
+check "several units: SI, named by the compiler" near fall 9.81 J 1e-9
+check "a declared unit" near turn 30 deg 1e-10
+# the fastest is the end: y' = g T, x' = 0.2*3*sin(3 T)
+check "an expression of the model" near speed "$(awk -v t=$T 'BEGIN { a = 9.81*t; b = 0.6*sin(3*t); printf "%.15g", sqrt(a*a + b*b) }')" m/s 1e-9
+check "a mean" near mean_th "$(awk -v t=$T 'BEGIN { printf "%.15g", 30*sin(3*t)/(3*t) }')" deg 1e-9
+check "a pure number beside an angle is in radians" near radian "$(awk 'BEGIN { printf "%.15g", 30 - 45/atan2(1, 1) }')" deg 1e-9
+check "as pi is" near straight 150 deg 1e-9
+check "a ratio of measures" near ratio "$(awk -v t=$T 'BEGIN { printf "%.15g", 3*t/8/atan2(1, 1) }')" '' 1e-10
+# from 0.5 m the event of half is not met again before the floor: the second time at T (1 + 2*0.8)
+check "a scene by like replaces a measure" values low --until 1.5
+check "and keeps the others" near high "$(awk -v t=$T 'BEGIN { printf "%.15g", t*2.6 }')" s 1e-9
+check "a measure of the command line replaces the scene's" values drop --measure 'high=max(y) - 10' --measure "v=y'(0.2)"
+check "a plain number is in the unit beside it" near high 90 cm 1e-9
+check "an option adds measures" near v -196.2 cm/s 1e-9
+check "a let in an option" values drop --measure 'max(2*height)'
+check "is known" grep -Eq '^  max\(2\*height\)  *2$' vals
+check "an expression by --observe, in quotes" values drop --observe 'hypot(x, y)' --measure 'least=min("hypot(x, y)")'
+check "is known, too" near least "$(awk -v t=$T 'BEGIN { x = 0.2*cos(3*t); printf "%.15g", sqrt(x*x + 0.25) }')" m 1e-9
+"$LAGC" run hop.lag drop --json >json 2>err
+check "JSON has them" grep -q '"measures": {"end_time": 0.3192754284.*"turn": \(30\|29.99999999999\)' json
+# y' = -sqrt(2*9.81*0.5) m/s before the floor, 0.8 of it after
+check "values at the times of events" values low --until 1.5 --measure "before=y'(hit(floor))" --measure "after=y'(hit(floor) + 1e-12)"
+check "are those before" near before "$(awk 'BEGIN { printf "%.15g", -100*sqrt(9.81) }')" cm/s 1e-9
+check "and change there" near after "$(awk 'BEGIN { printf "%.15g", 80*sqrt(9.81) }')" cm/s 1e-7
+check "quiet has none" sh -c "'$LAGC' run hop.lag drop --quiet >out 2>&1 && ! [ -s out ]"
+check "rows and measures together" sh -c "'$LAGC' run hop.lag low --until 1.5 -o rows.csv --svg p.svg | grep -q '^  high *0.830116113858'"
+
+# --- the largest Lyapunov exponent: that of `lagc lyapunov`; x'' = w^2 x: w, up to the turning of the vector until t = 2 s, exp(-2 w 2)/(18 s) = 2e-5
+printf 'model ridge\ncoord x [m]\nparam w = 2 [rad/s]\nlagrangian = (x'"'"'^2 + w^2*x^2)/2*1 [kg]\nevent far: x - 1 [m] rising { stop }\nscene run { start x = 1e-30; span 20; tolerance 1e-11; measure rate = lyapunov; measure doubling = log(2)/lyapunov }\n' >ridge.lag
+"$LAGC" run ridge.lag >out 2>err
+sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
+check "an exponent" near rate 2 1/s 3e-5
+check "in arithmetic" near doubling 0.34657359 s 5e-6
+own() { "$LAGC" lyapunov "$OLDPWD/models/lorenz.lag" --until 40 --exponents 1 --json | sed 's/.*"exponents": \[\([^]]*\)\].*/\1/'; }
+measured() { "$LAGC" run "$OLDPWD/models/lorenz.lag" --until 40 --measure lyapunov --json | sed 's/.*"lyapunov": \([^}]*\)}.*/\1/'; }
+is "the one of lagc lyapunov, bit by bit" "$(own)" "$(measured)"
+state() { "$LAGC" run "$OLDPWD/models/lorenz.lag" --until 40 --json "$@" | sed 's/.*"final": \({[^}]*}\).*/\1/'; }
+is "the run is the one without it" "$(state)" "$(state --measure lyapunov)"
+"$LAGC" run ridge.lag x=1e-4 >out 2>err
+check "none of a run that an event stops" grep -q '^  rate *none: an event stops the run at t = 4.951' out # log(2/x)/w
+
+# --- refused, exit status 2, nothing written
+refused() {
+  want=$1
+  shift
+  "$LAGC" run hop.lag "$@" -o no.csv >out 2>err
+  [ $? = 2 ] && grep -qF -e "$want" err && ! [ -e no.csv ]
+}
+check "an unknown name" refused 'no output, coordinate, parameter or charge is called mth; did you mean th?' --measure 'max(mth)'
+check "an unknown event" refused 'character 5: no event is called flor; did you mean floor?' --measure 'hit(flor)'
+check "a time before the first" refused 'hit(floor, n): n is 1 for the first time' --measure 'hit(floor, 0)'
+check "half a time" refused 'hit(floor, n): n is 1 for the first time' --measure 'hit(floor, 1.5)'
+check "no expression" refused 'expected a name at the end' --measure 'a='
+check "an exponent of a method without tangent" says 2 'measure lyapunov: method gsl-rk8pd has no derivative of its steps' "$LAGC" run "$OLDPWD/models/lorenz.lag" --measure lyapunov --method gsl-rk8pd
+saved() { "$LAGC" run "$OLDPWD/models/lorenz.lag" --until 1 --save-state state --quiet && says 2 "a saved state holds no tangent" "$LAGC" run "$OLDPWD/models/lorenz.lag" --resume state --until 2 --measure lyapunov; }
+check "an exponent of a resumed run" saved
+check "an exponent backwards" refused 'a mean over a long time, forwards' --measure lyapunov --until=-3
+check "an extreme of an extreme" refused 'a value of the whole run stands outside' --measure 'max(max(y))'
+
+# ---- contacts: a body on a table that is lifted by 20 t newtons leaves when that is its weight; it falls before from 0.5 m ----
+cat >lift.lag <<'LAG'
+model lift
+coord y [m]
+param m = 1 [kg] > 0, g = 10 [m/s^2] > 0
+kinetic = m/2*y'^2
+potential = m*g*y
+force y = 20 [N/s]*t
+contact table: y >= 0, restitution = 0
+scene s { start y = 0; span 1; tolerance 1e-11 }
+LAG
+"$LAGC" run lift.lag --measure 'a=hit(table opens)' --measure 'n=count( table  opens )' --until 0.9 >out 2>err
+sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
+check "a contact opens" near a 0.5 s 1e-9
+check "once" grep -q '^ *n  *1' vals
+check "an event that does not" refused 'no event is called half opens' --measure 'hit(half opens)'
+tap_end

@@ -1,0 +1,282 @@
+#!/bin/sh
+# Method moreau: contacts by impulses at each step, against closed forms: rest, friction, rolling, rows of balls, towers, constraints, balances, and refusals.
+. tests/exec/lib_motion.sh
+
+refuses() { # refuses STATUS WORDS COMMAND MODEL ARGS...
+  status=$1 words=$2 command=$3 name=$4
+  shift 4
+  "$LAGC" "$command" "$TMP/$name.lag" "$@" >"$TMP/log" 2>&1
+  [ $? = "$status" ] && grep -q -e "$words" "$TMP/log" || { cat "$TMP/log"; return 1; }
+}
+m3='moreau(step=0.001)'
+
+# ---- a ball that bounces ever faster: infinitely many impacts until t = 4.06 s, and rest after that
+model ball <<'END_OF'
+model ball
+coord x [m], y [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0, e = 0.8, r = 0.1 [m], c = 0 [N*s/m]
+lagrangian = m/2*(x'^2 + y'^2) - m*g*y
+force x = -c*x'
+contact floor: y >= r, restitution = e
+contact wall: 3 [m] - x >= r, restitution = 1
+event marks: x - 1 [m] rising { }
+scene drop { start y = 1.1 [m], x' = 1 [m/s]; span 6 [s]; measure marked = hit(marks); output x, y, y', lambda(floor) every 0.5 [s] }
+scene swing { start y = 10 [m], x = -5 [m], x' = 4 [m/s]; c = 2 [N*s/m]; span 1 [s] }
+END_OF
+for h in 0.01 0.001; do
+  check "a ball, h = $h" run ball drop --method "moreau(step=$h)"
+  check "comes to rest" near "$(final "y'")" 0 0
+  check "from t = 4.1 s on" near "$(cell 4.5 4)" 0 0
+  check "on the floor, within half a step of the fall" near "$(final y)" 0.1 "$(calc "$h*4.5/2")"
+  check "where the floor carries it" near "$(cell 5 5)" 9.81 1e-12
+  check "its energy is lost in impacts" near "$(number at_events)" -9.81 "$(calc "$h*4.5/2*9.81")"
+  check "and nowhere else" near "$(number drift)" 0 1e-12
+  check "no contact brings energy in" near "$(number energy_gained)" 0 0
+done
+check "an event of the model is located as ever" near "$(number marked)" 1 1e-12
+check "e = 1" run ball drop e=1 --method $m3
+check "it bounces on" near "$(number drift)" 0 1e-12
+check "without loss" near "$(number at_events)" 0 1e-12
+step_error() { run ball swing --method "moreau(step=$1)" && calc "$(final "x'") - 4*exp(-2)"; } # x'' = -2 x', until the wall is near
+check "drag" run ball swing --method 'moreau(step=0.01)'
+check "order 2: a half of the step makes a quarter of the error" near "$(calc "$(step_error 0.02)/($(step_error 0.01))")" 4 0.02
+
+# ---- a block on an incline
+model slope <<'END_OF'
+model slope
+coord x [m], y [m]
+param m = 2 [kg] > 0, g = 9.81 [m/s^2] > 0, mu = 0.3, a = 0 [deg], e = 0, k = 0 [N/s], et = 0, c = 0 [N*s/m]
+kinetic = m/2*(x'^2 + y'^2)
+potential = m*g*(x*sin(a) + y*cos(a))
+force x = k*t - c*x'
+contact plane: y >= 0, restitution = e, friction = mu, slip = x', tangential = et
+scene s { start x' = 3 [m/s]; span 4 [s]; output x, x', lambda(plane), lambda(plane.slip) every 0.5 [s] }
+scene rests { like s; start x' = 0; a = 16 [deg] }
+scene pulled { like rests; a = 0; k = 3 [N/s] }
+scene thrown { like s; start y = 1 [m]; span 0.5 [s] }
+scene drag { like s; c = 4 [N*s/m]; span 0.2 [s] }
+END_OF
+check "a block stops" run slope s --method $m3
+check "at v0^2/(2 mu g), to h^2 mu g/8" near "$(final x)" "$(calc '9/(2*0.3*9.81)')" 4e-7
+check "and stays" near "$(final "x'")" 0 0
+check "its energy is heat, m v0^2/2" near "$(number dry_friction)" -9 1e-11
+check "which the balance contains" near "$(number drift)" 0 1e-12
+check "friction is mu m g while it slides" near "$(cell 0.5 5)" "$(calc '-0.3*2*9.81')" 1e-10
+check "and 0 at rest" near "$(cell 4 5)" 0 1e-10
+check "tan 16 deg < mu: it sticks" run slope rests --method $m3
+check "where it is" near "$(final x)" 0 0
+check "held by the weight along the plane" near "$(cell 4 5)" "$(calc '2*9.81*sin(16*atan2(0,-1)/180)')" 1e-10
+check "a growing pull" run slope pulled --method $m3
+t=$(calc '4 - 0.3*2*9.81/3')
+check "breaks it loose: k t^3/(6 m), h v/2 for the step in which it does" near "$(final x)" "$(calc "3*$t^3/12")" 1e-4
+v=$(calc 'sqrt(2*9.81)')
+check "a throw, e = 0.5" run slope thrown e=0.5 --method $m3
+check "mu (1 + e) v is lost along the plane; v is known to h g, and friction acts in one step more" near "$(final "x'")" "$(calc "3 - 0.3*1.5*$v")" "$(calc '0.3*2.5*9.81*0.001')"
+check "elastic along the plane" run slope thrown e=0.5 mu=2 et=0.8 --method $m3
+check "it comes back" near "$(final "x'")" "$(calc '-0.8*3')" 1e-12
+slip_error() { run slope drag --method "moreau(step=$1)" && calc "$(final "x'") - ((3 + 0.3*9.81/2)*exp(-0.4) - 0.3*9.81/2)"; } # v' = -mu g - 2 v
+check "order 2 also while it slides" near "$(calc "$(slip_error 0.02)/($(slip_error 0.01))")" 4 0.05
+
+# ---- a ball that slides, and rolls: its angular momentum about the lane leaves it 5/7 of its speed
+model bowling <<'END_OF'
+model bowling
+coord x [m], y [m], th [rad]
+param m = 6 [kg] > 0, r = 0.108 [m] > 0, g = 9.81 [m/s^2] > 0, mu = 0.1 >= 0, e = 0.3
+kinetic = m/2*(x'^2 + y'^2) + m*r^2/5*th'^2
+potential = m*g*y
+contact lane: y >= r, restitution = e, friction = mu, slip = x' + r*th'
+scene throw { start x' = 8 [m/s], y = 0.2 [m]; span 5 [s]; output x, x', lambda(lane.slip) every 0.1 [s] }
+END_OF
+check "a ball on a lane" run bowling throw --method $m3
+check "rolls with 5/7 of its speed" near "$(final "x'")" "$(calc '40/7')" 1e-10
+check "without friction then" near "$(cell 5 4)" 0 1e-9
+
+# ---- a rod that strikes the floor with its end, slipping: friction may turn the slip round; energy is never gained, and Newton's law with the slip at the end alone would gain here
+model rod <<'END_OF'
+model rod
+coord x [m], y [m], th [rad]
+param m = 1 [kg] > 0, l = 1 [m] > 0, mu = 0.8 >= 0, e = 0.9
+kinetic = m/2*(x'^2 + y'^2) + m*l^2/24*th'^2
+let fx = x + l/2*cos(th)
+let fy = y - l/2*sin(th)
+contact floor: fy >= 0, restitution = e, friction = mu, slip = fx'
+scene s { start th = 1 [rad], y = 0.43 [m], y' = -1 [m/s]; span 0.05 [s] }
+END_OF
+loses() { awk -v a="$(number at_events)" -v b="$(number dry_friction)" -v gained="$(number energy_gained)" -v drift="$(number drift_absolute)" 'BEGIN { print a, b, gained, drift; exit !(a + b < 0 && gained == 0 && drift < 1e-4) }'; }
+for v in -2 -0.5 0 0.2 0.5 1 2; do
+  check "a rod strikes, slipping at $v m/s" run rod s "x'=$v" --method 'moreau(step=1e-4)'
+  check "and loses energy" loses
+done
+
+# ---- a bead inside a hoop: along a curve the gap closes at a rate of v^2/R a second, which is no impact. Closed forms: v = v0 without friction, v = v0/(1 + mu v0 t/R) with it
+model hoop <<'END_OF'
+model hoop
+coord x [m], y [m]
+param m = 1 [kg] > 0, R = 1 [m] > 0, mu = 0 >= 0, e = 0.5, g = 0 [m/s^2], v = 3 [m/s]
+kinetic = m/2*(x'^2 + y'^2)
+potential = m*g*y
+contact wall: R - hypot(x, y) >= 0, restitution = e, friction = mu, slip = (x*y' - y*x')/hypot(x, y)
+observe speed [m/s] = hypot(x', y')
+scene s { start x = R, y' = v; span 5 [s]; output speed, lambda(wall) every 2.5 [s] }
+scene swings { start x = 0.8 [m], y = -0.6 [m]; g = 9.81 [m/s^2]; span 100 [s] }
+scene lands { like s; start x = 0.9 [m]; e = 0; span 2 [s]; output lambda(wall) every 0.001 [s] }
+END_OF
+check "a bead inside a hoop" run hoop s --method $m3
+check "no impact" near "$(number impacts)" 0 0
+check "its angle is v t/R, to t R (v h/R)^2 v/(24 R)" near "$(final x)" "$(calc 'cos(15)')" 1.2e-5
+check "it keeps its speed" near "$(cell 5 2)" 3 1e-12
+check "the hoop presses with m v^2/R" near "$(cell 5 3)" 9 1e-11
+check "it is inside by (v h)^2/(8 R), as a chord is" near "$(number deepest)" "$(calc '9e-6/8')" 1e-10
+hoop_error() { run hoop s mu=0.2 --method "moreau(step=$1)" && calc "$(final x) - cos(5*log(4))"; }
+check "with friction: order 2" near "$(calc "$(hoop_error 0.01)/($(hoop_error 0.005))")" 4 0.1
+check "the speed is v0/(1 + mu v0 t/R)" near "$(cell 5 2)" 0.75 2e-6
+check "it swings, 100 s" run hoop swings --method 'moreau(step=0.01)'
+check "inside by no more than (v h)^2/(8 R), v^2 = 2 g 0.4 m, and as much again while it becomes faster: it is led out no faster than it sinks" near "$(number deepest)" "$(calc '1.5*2*9.81*0.4*1e-4/8')" "$(calc '0.51*2*9.81*0.4*1e-4/8')"
+check "with its energy, to order 4" near "$(number at_events)" 0 1e-6
+check "it lands" run hoop lands --method $m3
+check "once" near "$(number impacts)" 1 0
+check "with x v/R of its speed, m (x v)^2/R^3 presses, to the step's path" near "$(cell 2 2)" 7.29 0.01
+check "evenly, from step to step" near "$(cell 1.999 2)" "$(cell 2 2)" 1e-11
+
+# ---- a row of balls: struck at the same time, or one after the other
+model cradle <<'END_OF'
+model cradle
+coord x[4] [m]
+param e = 1, d = 0 [m] >= 0, r = 0.1 [m] > 0
+kinetic = sum(i in 1..4, 1 [kg]/2*x[i]'^2)
+for i in 1..3 { contact c[i]: x[i+1] - x[i] >= 2*r, restitution = e }
+scene hit { start x[i in 1..4] = i*(2*r + d), x[1] = 0, x[1]' = 1 [m/s]; span 0.5 [s] }
+END_OF
+check "a row that touches" run cradle hit --method $m3
+check "throws the ball back with half its speed" near "$(final "x\[1\]'")" -0.5 1e-12
+check "and leaves as one" near "$(final "x\[4\]'")" 0.5 1e-12
+check "with gaps of 1 cm" run cradle hit d=0.01 --method $m3
+check "the ball stops" near "$(final "x\[1\]'")" 0 1e-12
+check "and the last one goes" near "$(final "x\[4\]'")" 1 1e-12
+
+# ---- a pendulum on a rod, against a wall 0.2 m from the line below its pivot
+model pendulum <<'END_OF'
+model pendulum
+coord x [m], y [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2], l = 1 [m] > 0, e = 1
+kinetic = m/2*(x'^2 + y'^2)
+potential = m*g*y
+constraint rod: x^2 + y^2 = l^2
+contact wall: x >= 0.2 [m], restitution = e
+scene swing { start x = 1 [m]; span 10 [s]; output x, lambda(rod) every 1 [s] }
+END_OF
+check "a pendulum against a wall, e = 1" run pendulum swing --method $m3
+check "keeps its energy, to h^2" near "$(number drift)" 0 1e-4
+check "and its rod" near "$(number constraint_residual)" 0 1e-14
+check "e = 0.3" run pendulum swing e=0.3 --method $m3
+check "it hangs at the wall" near "$(final x)" 0.2 5e-3
+check "at rest" near "$(final "x'")" 0 1e-14
+check "with a pull of m g/cos(a) at the rod, -2 lambda l; x is known to 2 mm" near "$(cell 10 3)" "$(calc '-9.81/2/sqrt(1 - 0.2^2)')" 3e-3
+
+# ---- a tower of blocks
+model tower <<'END_OF'
+model tower
+const N = 12
+coord x[N] [m], y[N] [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2] > 0, h = 0.1 [m] > 0, mu = 0.5 >= 0, e = 0.2, a = 0
+kinetic = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2))
+potential = sum(i in 1..N, m*g*(y[i] - a*x[i]))
+let X[0] = 0 [m]
+let X[i in 1..N] = x[i]
+let Y[0] = 0 [m]
+let Y[i in 1..N] = y[i]
+for i in 1..N { contact c[i]: Y[i] - Y[i-1] >= h, restitution = e, friction = mu, slip = X[i]' - X[i-1]' }
+scene rest { start y[i in 1..N] = i*h; span 0.5 [s]; output lambda(c[1]) every 0.5 [s] }
+scene drop { like rest; start y[i in 1..N] = i*h + i*0.01 [m]; span 2 [s] }
+END_OF
+N=12
+if [ -n "${SLOW:-}" ]; then N=50; fi
+check "a tower of $N blocks" run tower rest -D N=$N --method $m3
+check "stays as high" near "$(final "y\[$N\]")" "$(calc "$N*0.1")" 1e-12
+check "at rest" near "$(final "y\[$N\]'")" 0 1e-12
+check "its weight is on the floor" near "$(cell 0.5 2)" "$(calc "$N*9.81")" 1e-9
+check "a slope of 0.4 < mu" run tower rest -D N=$N a=0.4 --method $m3
+check "does not move it" near "$(final "x\[$N\]")" 0 1e-12
+check "a slope of 0.6" run tower rest -D N=$N a=0.6 --method $m3
+check "lets it slide as one body" near "$(final "x\[1\]'")" "$(calc '(0.6 - 0.5)*9.81*0.5')" 1e-9
+check "with its top" near "$(final "x\[$N\]'")" "$(calc '(0.6 - 0.5)*9.81*0.5')" 1e-9
+check "dropped with gaps between" run tower drop -D N=$N --method $m3
+check "it comes to rest" near "$(final "y\[$N\]'")" 0 1e-12
+check "no energy comes in" near "$(number energy_gained)" 0 0
+check "and the balance holds" near "$(number drift)" 0 1e-11
+
+# ---- in space: a puck, and a ball with spin; the start is turned by 0, 30, 90 and 200 degrees, and the motion with it
+model puck <<'END_OF'
+model puck
+coord x [m], y [m], z [m], a [rad], b [rad]
+param m = 2 [kg] > 0, r = 0.1 [m] > 0, g = 9.81 [m/s^2] > 0, mu = 0.2 >= 0, k = 0, turn = 0 [deg], e = 0.3
+kinetic = m/2*(x'^2 + y'^2 + z'^2) + m*r^2/5*(a'^2 + b'^2)
+potential = m*g*z
+contact floor: z >= 0, restitution = e, friction = mu, slip = (x' - k*r*b', y' + k*r*a')
+observe along [m] = x*cos(turn) + y*sin(turn)
+observe across [m] = -x*sin(turn) + y*cos(turn)
+observe v_along [m/s] = x'*cos(turn) + y'*sin(turn)
+observe v_across [m/s] = -x'*sin(turn) + y'*cos(turn)
+scene slides { start x' = 5 [m/s]*cos(turn), y' = 5 [m/s]*sin(turn); span 3 [s]; method moreau(step = 0.001); output along, across, v_along, v_across, lambda(floor.slip) every 1 [s] }
+scene rolls { like slides; k = 1; start a' = 20 [rad/s]*cos(turn), b' = 20 [rad/s]*sin(turn) }
+scene falls { like rolls; start z = 0.3 [m] }
+END_OF
+for turn in 0 30 90 200; do
+  check "a puck, turned by $turn degrees" run puck slides turn=$turn
+  check "stops at v0^2/(2 mu g), to h^2 mu g/8" near "$(final along)" "$(calc '25/(2*0.2*9.81)')" 3e-7
+  check "on a straight line" near "$(final across)" 0 1e-12
+  check "friction is mu m g" near "$(awk -F, '$1 == 1 { print sqrt($6^2 + $7^2) }' "$TMP/csv")" "$(calc '0.2*2*9.81')" 1e-10
+  check "a ball with side spin" run puck rolls turn=$turn
+  check "rolls on with 5/7 of its speed" near "$(final v_along)" "$(calc '25/7')" 1e-10
+  check "and 2/7 of that of its spin across" near "$(final v_across)" "$(calc '-2*0.1*20/7')" 1e-10
+done
+check "thrown on the floor" run puck falls turn=30
+check "the same 5/7" near "$(final v_along)" "$(calc '25/7')" 1e-10
+check "and 2/7" near "$(final v_across)" "$(calc '-4/7')" 1e-10
+check "no energy comes in" near "$(number energy_gained)" 0 0
+check "others refuse" refuses 2 'dop853 follows friction in a plane, and the slip of a contact has two components here (floor.slip.y); --method "moreau(step=1e-3)" follows it' run puck slides --method dop853
+three() { sed "s/slip = (x' - k\*r\*b', y' + k\*r\*a')/slip = (x', y', z')/" "$TMP/puck.lag" >"$TMP/three.lag" && refuses 1 'a number or two are needed here' check three; }
+check "three components" three
+
+# ---- reports, sweeps, saved runs
+check "the report counts" sh -c "$LAGC run $TMP/ball.lag drop --method '$m3' >$TMP/log && grep -q 'contacts: at most [12] acts\{0,1\} at once, [0-9]* impacts, 1[.0-9]* iterations a step with contacts; the deepest is 0.004[0-9]* inside (in SI)' $TMP/log"
+check "events of contacts are left out" sh -c "! grep -q 'event floor' $TMP/log"
+run ball drop --method $m3
+x=$(final y)
+check "a sweep has the same end" sh -c "$LAGC sweep $TMP/ball.lag drop e=0.7..0.8:2 --method '$m3' -o $TMP/sweep.csv --measure y >/dev/null && tail -n 1 $TMP/sweep.csv | grep -q ',$x,ok'"
+split() {
+  "$LAGC" run "$TMP/ball.lag" drop --method $m3 --until 1.0005 --save-state "$TMP/s.state" --quiet &&
+    "$LAGC" run "$TMP/ball.lag" drop --method $m3 --resume "$TMP/s.state" --until 6 --json >"$TMP/b.json" && "$LAGC" run "$TMP/ball.lag" drop --method $m3 --json >"$TMP/a.json" &&
+    [ "$(sed 's/.*"contacts"//' "$TMP/a.json")" = "$(sed 's/.*"contacts"//' "$TMP/b.json")" ]
+}
+check "a run in two parts is the same run" split
+check "a picture" sh -c "$LAGC plot $TMP/ball.lag drop --method '$m3' -o $TMP/ball.svg >/dev/null && grep -q '<svg' $TMP/ball.svg"
+
+# ---- refusals, and the way out of other methods
+check "backwards" refuses 2 'moreau does not follow contacts backwards in time' run ball drop --method $m3 --until -1
+check "a start inside" refuses 2 'the start is inside the contact floor: its gap is -0.1 m' run ball drop --method $m3 y=0
+check "a restitution above 1" refuses 2 'the contact floor has a restitution of 1.5' run ball drop --method $m3 e=1.5
+check "hit(floor)" refuses 3 'moreau does not locate events of contacts, as floor is one' run ball drop --method $m3 --measure 'hit(floor)'
+check "--accuracy" refuses 2 'moreau meets impacts at its steps' run ball drop --method $m3 --accuracy 1e-6
+check "lagc cost" refuses 2 'lagc cost leaves it out' cost ball drop --methods moreau
+check "drag that is too strong for the step" refuses 3 'change too much within a step: take smaller steps, or radau' run ball swing c=5000 --method $m3
+check "more contacts at once than others follow" refuses 3 'more than 6 contacts touch at once, some of them with friction, which only moreau follows' run tower rest -D N=$N --method dop853
+check "verlet names it" refuses 2 'rk45, dop853, radau, rk4 and moreau can' run slope s --method verlet
+model clutch <<'END_OF'
+model clutch
+coord a [rad], b [rad]
+kinetic = 1 [kg*m^2]/2*(a'^2 + b'^2)
+constraint clutch: a' = b' while t > 1 [s]
+scene s { span 2 [s] }
+END_OF
+check "constraints with a condition" refuses 2 'constraints that hold while a condition is true are not followed; dop853' run clutch s --method $m3
+model dry <<'END_OF'
+model dry
+coord x [m], y [m]
+kinetic = 1 [kg]/2*(x'^2 + y'^2)
+force x = -sign(x')*1 [N]
+contact floor: y >= 0, restitution = 0
+scene s { span 2 [s] }
+END_OF
+check "forces that jump with a velocity" refuses 2 'method moreau cannot follow a motion that sticks or slides' run dry s --method $m3
+tap_end

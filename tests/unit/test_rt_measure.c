@@ -1,0 +1,372 @@
+/* Measures of a run against closed forms, by each method; their units; the messages for wrong expressions; the run itself, which they leave as it is. */
+#include "test_rt_systems.h"
+
+#include "analysis/measure.h"
+
+enum { MOST = 12 };
+
+/* Runs `sim` with n expressions; frees it. Returns the status. */
+static int measure(lag_sim *sim, double until, int n, const char *const *text, double *value)
+{
+  char why[300];
+  Measures *m = lag_measures_new(lag_sim_scene(sim), n, text, why, sizeof why);
+  if (!m) {
+    fail_msg("%s", why);
+  }
+  int rc = lag_measures_run(m, sim, until, value);
+  for (int k = 0; k < n; k++) {
+    assert_int_equal(isnan(value[k]), lag_measures_why(m, k)[0] != '\0');
+  }
+  lag_measures_free(m);
+  lag_sim_free(sim);
+  return rc;
+}
+
+/* x = cos t, x' = -sin t to t = 20: extremes inside steps, means and the period. */
+static void an_oscillator_by_every_method(void **state)
+{
+  static const char *const text[] = {"max(x')", "min(x)", "mean(x)", "rms(x)", "period(x)", "drift(x)", "x(3)", "x", "max(x^2 + x'^2)", "2*x(1) + x(2)^2", "x(end/2)", "end"};
+  const double T = 20, expected[] = {1, -1, sin(T)/T, sqrt(0.5 + sin(2*T)/(4*T)), 2*PI, 2, cos(3), cos(T), 1, 2*cos(1) + cos(2)*cos(2), cos(T/2), T};
+  double value[MOST];
+  (void)state;
+  for (int i = 0; i < lag_nmethods + lag_gsl_nmethods; i++) {
+    const lag_method *m = i < lag_nmethods ? lag_methods[i] : lag_gsl_methods[i - lag_nmethods];
+    int adaptive = m->flags & LAG_METHOD_ADAPTIVE;
+    /* Phase error of a method with equal steps: T h^2/12 of the midpoint rule, T h/2 of Euler's,
+     * whose energy explicit steps change by T h; Hermite's
+     * interpolation in GSL's steps, a third of a period with gsl-bsimp, but for values at times, to which these methods step. */
+    double within = !adaptive ? 1e-10 + T*pow(0.002, m->order)/(m == &lag_euler ? 0.9 : m->order == 1 ? 2 : 12) : 1e-7, between = m->flags & LAG_METHOD_STEPS_TO ? 0.03 : within;
+    lag_option step[] = {{"step", 0.002, NULL}};
+    lag_sim *s = sim_with(&osc, m, 1e-10, adaptive ? 0 : 1, step);
+    assert_int_equal(measure(s, T, MOST, text, value), LAG_OK);
+    for (int k = 0; k < MOST; k++) {
+      int at_time = strchr(text[k], '(') == NULL || text[k][0] == 'x' || text[k][0] == '2';
+      if (!(fabs(value[k] - expected[k]) <= (at_time ? within : between))) {
+        fail_msg("%s: %s = %.15g, expected %.15g within %.2g", m->name, text[k], value[k], expected[k], at_time ? within : between);
+      }
+    }
+  }
+}
+
+/* 2 pi/agm(1, cos(a/2)), the period of a pendulum with g/l = 1 released at the angle a. */
+static double pendulum_period(double a)
+{
+  double x = 1, y = cos(a/2);
+  while (fabs(x - y) > 1e-15) {
+    double mean = (x + y)/2;
+    y = sqrt(x*y);
+    x = mean;
+  }
+  return 2*PI/x;
+}
+
+static double amplitude;
+
+static void released(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = amplitude;
+  v[0] = 0;
+}
+
+static void the_period_of_a_pendulum_over_its_amplitude(void **state)
+{
+  static const char *const text[] = {"period(x)", "max(x')"};
+  lag_scene scene = pendulum;
+  double value[2];
+  (void)state;
+  scene.start = released;
+  for (amplitude = 0.3; amplitude < 3; amplitude += 0.6) {
+    measure(sim_with(&scene, &lag_dop853, 1e-13, 0, NULL), 100, 2, text, value);
+    assert_close(value[0], pendulum_period(amplitude), 1e-9);
+    assert_close(value[1], 2*sin(amplitude/2), 1e-10);
+  }
+}
+
+static double phase;
+
+static void begun_at_phase(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = sin(phase);
+  v[0] = cos(phase);
+}
+
+/* One top and one bottom, wherever they lie in a step. */
+static void an_extreme_anywhere_in_a_step(void **state)
+{
+  static const char *const text[] = {"max(x)", "min(x)", "period(x - 0.5)"};
+  static const lag_method *const methods[] = {&lag_rk45, &lag_dop853, &lag_radau, &lag_taylor_method};
+  lag_scene scene = osc;
+  double value[3];
+  (void)state;
+  scene.start = begun_at_phase;
+  for (int i = 0; i < 4; i++) {
+    for (phase = 0.01; phase < 0.5; phase += 0.03) {
+      measure(sim_with(&scene, methods[i], 1e-8, 0, NULL), 6.9, 3, text, value);
+      assert_close(value[0], 1, 3e-7); /* the error of these methods at this tolerance */
+      assert_close(value[1], -1, 3e-7);
+      assert_close(value[2], 2*PI, 1e-6);
+    }
+  }
+}
+
+/* x'' = -x - x'/5 + cos 2 t in its steady state A cos(2 t - phi). */
+static int forced_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  a[0] = -q[0] - 0.2*v[0] + cos(2*t);
+  return 0;
+}
+
+static void forced_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  double A = 1/hypot(3, 0.4), phi = atan2(0.4, -3);
+  q[0] = A*cos(phi);
+  v[0] = 2*A*sin(phi);
+}
+
+static const lag_model forced_model = {MODEL("forced"), .flags = LAG_SMOOTH | LAG_CONSTANT_MASS, .nq = 1, .q = names_q, .accel = forced_accel};
+static const lag_scene forced = {.name = "steady", .doc = "", .model = &forced_model, .start = forced_start, .t1 = 10, .has_span = 1};
+
+static void a_driven_oscillator_in_its_steady_state(void **state)
+{
+  static const char *const text[] = {"max(x)", "min(x)", "mean(x)", "rms(x)", "period(x)", "max(x')/max(x)", "mean(x*x')"};
+  const double A = 1/hypot(3, 0.4), expected[] = {A, -A, 0, A/sqrt(2), PI, 2, 0};
+  double value[MOST];
+  (void)state;
+  measure(sim_with(&forced, &lag_rk45, 1e-12, 0, NULL), 10*PI, 7, text, value); /* ten periods */
+  for (int k = 0; k < 7; k++) {
+    assert_close(value[k], expected[k], 1e-9);
+  }
+}
+
+/* A ball that falls from 1 m onto the ground and keeps 0.9 of its speed: fall T, flights of 2 T 0.9^n. */
+static void a_ball_that_bounces(void **state)
+{
+  static const char *const text[] = {"hit(ground)", "hit(ground, 3)", "count(ground)", "y((hit(ground, 1) + hit(ground, 2))/2)", "min(y)", "max(y')", "min(y')",
+                                     "hit(ground, 9)", "end", "y(7)", "mean(y')"};
+  const double T = sqrt(2/9.81), until = 1.5, g = 9.81;
+  double value[MOST];
+  (void)state;
+  double since = until - T*(1 + 2*0.9), y = 0.81*g*T*since - g/2*since*since;
+  const double expected[] = {T, NAN, 2, 0.81, 0, 0.9*g*T, -g*T, NAN, until, NAN, (y - 1)/until};
+  for (int i = 0; i < 2; i++) {
+    measure(sim_with(&ball, i ? &lag_taylor_method : &lag_rk45, 1e-12, 0, NULL), until, 11, text, value);
+    for (int k = 0; k < 11; k++) {
+      if (isnan(expected[k])) {
+        assert_true(isnan(value[k]));
+      } else {
+        assert_close(value[k], expected[k], 1e-10);
+      }
+    }
+  }
+}
+
+/* At the ground the ball is thrown up with 100 m/s, and the run ends. */
+static int throw_up(UNUSED int k, ARGS, UNUSED double *q1, double *v1, UNUSED double *z1, int *stop, UNUSED double *w)
+{
+  v1[0] = 100;
+  *stop = 1;
+  return 0;
+}
+
+static void an_event_that_ends_the_run(void **state)
+{
+  static const char *const text[] = {"max(y')", "y'", "end", "count(ground)", "y'(1)", "drift(y')"};
+  lag_model model = ball_model;
+  lag_scene scene = ball;
+  double value[6];
+  (void)state;
+  model.act = throw_up;
+  scene.model = &model;
+  assert_int_equal(measure(sim_with(&scene, &lag_rk45, 1e-12, 0, NULL), 5, 6, text, value), LAG_STOPPED);
+  const double expected[] = {100, 100, sqrt(2/9.81), 1, NAN, 100};
+  for (int k = 0; k < 6; k++) {
+    if (k == 4) {
+      assert_true(isnan(value[k]));
+    } else {
+      assert_close(value[k], expected[k], 1e-10);
+    }
+  }
+}
+
+/* Times that are values at times: by a third run; those that lie before the run, or behind its end, have no value. Backwards in time. */
+static void times_that_are_measures(void **state)
+{
+  static const char *const text[] = {"x(t - 19 + 0*x(t/2))", "x(x(t/2)^2)", "x(-1)", "x(21)"};
+  static const char *const back[] = {"x(-2)", "max(x')", "mean(x)", "end", "x(2)"};
+  double value[5];
+  (void)state;
+  measure(sim_with(&osc, &lag_dop853, 1e-12, 0, NULL), 20, 4, text, value);
+  assert_close(value[0], cos(1), 1e-9);
+  assert_close(value[1], cos(cos(10)*cos(10)), 1e-9);
+  assert_true(isnan(value[2]) && isnan(value[3]));
+  measure(sim_with(&osc, &lag_dop853, 1e-12, 0, NULL), -3, 5, back, value);
+  assert_close(value[0], cos(2), 1e-10);
+  assert_close(value[1], 1, 1e-10);
+  assert_close(value[2], sin(3)/3, 1e-10);
+  assert_close(value[3], -3, 0);
+  assert_true(isnan(value[4]));
+}
+
+/* rk4 multiplies the energy of x'' = -x by 1 - h^6/72 + h^8/576 in each step; between the ends of steps Hermite's cubic of x' is off by h^4/384. */
+static void the_drift_of_rk4(void **state)
+{
+  static const char *const text[] = {"energy", "drift(energy)"};
+  const double h = 0.25, factor = 1 - pow(h, 6)/72 + pow(h, 8)/576;
+  double value[2];
+  (void)state;
+  measure(equal_steps(&osc, &lag_rk4, h), 500*h, 2, text, value);
+  assert_close(value[0], 0.5*pow(factor, 500), 1e-13);
+  assert_close(value[1], 0.5 - value[0], pow(h, 4)/384);
+}
+
+/* A run with measures ends in the same bits, after as many steps. */
+static void the_run_stays_as_it_is(void **state)
+{
+  static const char *const text[] = {"max(x)", "mean(y)", "x(1.5)", "period(y)", "rms(x^2)", "y(7.25)"};
+  double value[MOST];
+  char why[200];
+  (void)state;
+  for (int i = 0; i < lag_nmethods; i++) {
+    lag_option step[] = {{"step", 0.01, NULL}};
+    int adaptive = lag_methods[i]->flags & LAG_METHOD_ADAPTIVE;
+    lag_sim *plain = sim_with(&kepler, lag_methods[i], 1e-8, adaptive ? 0 : 1, step), *measured = sim_with(&kepler, lag_methods[i], 1e-8, adaptive ? 0 : 1, step);
+    Measures *m = lag_measures_new(&kepler, 6, text, why, sizeof why);
+    lag_stats a, b;
+    assert_int_equal(lag_sim_advance(plain, 10), LAG_OK);
+    assert_int_equal(lag_measures_run(m, measured, 10, value), LAG_OK);
+    lag_sim_stats(plain, &a);
+    lag_sim_stats(measured, &b);
+    assert_memory_equal(lag_sim_q(plain), lag_sim_q(measured), 4*sizeof(double));
+    assert_int_equal(a.steps, b.steps);
+    lag_measures_free(m);
+    lag_sim_free(plain);
+    lag_sim_free(measured);
+  }
+}
+
+/* The same Measures for another run; a run that fails has the values up to there. */
+static void a_second_run_and_one_that_fails(void **state)
+{
+  static const char *const text[] = {"count(ground)", "max(y)", "y(0)"};
+  double value[3];
+  char why[200];
+  (void)state;
+  Measures *m = lag_measures_new(&ball, 3, text, why, sizeof why);
+  for (int i = 1; i <= 2; i++) {
+    lag_sim *s = lag_sim_new(&ball);
+    assert_int_equal(lag_sim_set(s, "h", 100*i), LAG_OK);
+    lag_measures_run(m, s, 0.9, value);
+    assert_close(value[0], 1, 0);
+    assert_close(value[1], i, 0);
+    assert_close(value[2], i, 0);
+    lag_sim_free(s);
+  }
+  lag_sim *s = lag_sim_new(&ball);
+  assert_int_equal(lag_sim_set(s, "h", 1e-6), LAG_OK); /* comes to rest, and never gets to t = 5 */
+  assert_int_equal(lag_measures_run(m, s, 5, value), LAG_EZENO);
+  assert_true(value[0] > 10);
+  lag_sim_free(s);
+  lag_measures_free(m);
+}
+
+/* ---- Units */
+
+static const lag_var turn_q[] = {{"th", "deg", 3.14159265358979323846/180, 1, 0, 0}};
+static const lag_model turn_model = {MODEL("turn"), .flags = LAG_CONSTANT_MASS, .nq = 1, .np = 3, .nev = 0, .q = turn_q, .p = ball_p, .accel = osc_accel, .energy = osc_energy};
+
+static void turn_start(UNUSED const double *p, double *q, double *v, UNUSED double *z)
+{
+  q[0] = PI/2;
+  v[0] = 0;
+}
+
+static const lag_scene turn = {.name = "turn", .doc = "", .model = &turn_model, .params = ball_params, .start = turn_start, .t1 = 10, .has_span = 1};
+
+static void values_are_in_declared_units(void **state)
+{
+  static const struct {
+    const char *text, *unit;
+    double value;
+  } of[] = {
+      {"max(th)", "deg", 90}, {"max(th')", "deg/s", 90}, {"max(th) - 80", "deg", 10}, {"max(th) - 80*deg", "deg", 10}, {"80 - max(th)", "deg", -10}, {"sin(max(th))", "", 1}, {"pi - max(th)", "", 1.5707963267948966}, {"max(th) + 0.5[SI]", "deg", 118.64788975654115}, {"\"h\" - 1", "cm", 99}, {"2[SI]*h", "", 2},
+      {"period(th)/(2*pi)", "s", 1},
+      {"2*max(th)", "deg", 180}, {"max(th)/min(th)", "", -1}, {"max(th)^2", "", 2.4674011002723395}, {"h", "cm", 100}, {"h + 5", "cm", 105}, {"h + g", "", 10.81},
+      {"max(2*th - 100)", "deg", 80}, {"drift(th)", "deg", 180}, {"atan(1)", "rad", 0.78539816339744828}, {"period(th)", "s", 6.2831853071795862}, {"-h", "cm", -100}, {"abs(-h)", "cm", 100},
+      {"ground.e", "", 0.9}, {"e*h", "cm", 90}, {"t", "s", 20}, {"2^3^2", "", 512}, {"-2^2", "", -4}, {"7 - 2 - 1", "", 4}, {"8/4/2", "", 1},
+  };
+  char why[300];
+  (void)state;
+  for (size_t i = 0; i < sizeof of/sizeof *of; i++) {
+    double value;
+    Measures *m = lag_measures_new(&turn, 1, &of[i].text, why, sizeof why);
+    lag_sim *s = sim_with(&turn, &lag_dop853, 1e-12, 0, NULL);
+    if (!m) {
+      fail_msg("%s", why);
+    }
+    assert_string_equal(lag_measures_unit(m, 0), of[i].unit);
+    lag_measures_run(m, s, 20, &value);
+    if (!(fabs(value - of[i].value) <= 1e-8)) {
+      fail_msg("%s = %.15g, expected %.15g", of[i].text, value, of[i].value);
+    }
+    lag_measures_free(m);
+    lag_sim_free(s);
+  }
+}
+
+static void wrong_expressions_get_a_message(void **state)
+{
+  static const struct {
+    const char *text, *why;
+  } of[] = {
+      {"max(z)", "character 5: no output, coordinate, parameter or charge is called z"},
+      {"mxa(y)", "character 1: no function, output or coordinate is called mxa; did you mean max?"},
+      {"hit(grund)", "character 5: no event is called grund; did you mean ground?"},
+      {"enregy", "did you mean energy?"},
+      {"max(y", "character 6: expected `)` at the end"},
+      {"max(y))", "character 7: `)` is too much"},
+      {"max(y(1))", "character 1: max takes quantities"},
+      {"max(max(y))", "max takes quantities"},
+      {"max(3)", "max takes something that changes along the run"},
+      {"hit(ground, y)", "n is a number"},
+      {"sin(1, 2)", "sin takes one number"},
+      {"atan2(1)", "atan2 takes two numbers"},
+      {"", "character 1: expected a name at the end"},
+      {"y + ", "expected a name at the end"},
+      {"y ; 3", "`; 3` is too much"},
+      {"max(\"y)", "a quoted name ends with"},
+      {"1.5.2", "is too much"},
+      {"((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((1", "too many parentheses"},
+      {"2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2^2", "too deep"},
+      {"this_name_is_so_long_that_nobody_would_ever_write_it_and_no_model_has_it_for_it_has_more_than_a_hundred_and_twenty_seven_characters", "too long"},
+  };
+  (void)state;
+  for (size_t i = 0; i < sizeof of/sizeof *of; i++) {
+    char why[300];
+    const char *two[] = {"y(1)", of[i].text};
+    assert_null(lag_measures_new(&ball, 2, two, why, sizeof why));
+    if (!strstr(why, of[i].why) || strncmp(why, of[i].text, strlen(of[i].text)) != 0) {
+      fail_msg("\"%s\" does not say \"%s\"", why, of[i].why);
+    }
+    char cut[8]; /* a small buffer is not overrun */
+    assert_null(lag_measures_new(&ball, 2, two, cut, sizeof cut));
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(an_oscillator_by_every_method),
+      cmocka_unit_test(the_period_of_a_pendulum_over_its_amplitude),
+      cmocka_unit_test(an_extreme_anywhere_in_a_step),
+      cmocka_unit_test(a_driven_oscillator_in_its_steady_state),
+      cmocka_unit_test(a_ball_that_bounces),
+      cmocka_unit_test(an_event_that_ends_the_run),
+      cmocka_unit_test(times_that_are_measures),
+      cmocka_unit_test(the_drift_of_rk4),
+      cmocka_unit_test(the_run_stays_as_it_is),
+      cmocka_unit_test(a_second_run_and_one_that_fails),
+      cmocka_unit_test(values_are_in_declared_units),
+      cmocka_unit_test(wrong_expressions_get_a_message),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
