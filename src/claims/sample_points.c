@@ -72,13 +72,42 @@ void sample_follow(SamplePoints *s, long double *symbols) {
   for (uint32_t i = 0; i < m->contacts.n; i++) symbols[m->contacts.at[i].closed] = symbols[m->contacts.at[i].force] = 0;
 }
 
+static int is_open(SamplePoints *s, const Contact *c, const long double *symbols) {
+  return c->margin || c->is_tangent || value_of(s, c->gap, symbols) >= 0;
+}
+
+/* Reflects coordinates in contacts that are passed, one after the other, until none is: a tower of blocks has no open state among random ones.
+ * S. Agmon, The relaxation method for linear inequalities, Canad. J. Math. 6 (1954) 382, doi:10.4153/CJM-1954-037-2. */
+static void open_contacts(SamplePoints *s, long double *symbols) {
+  enum { SWEEPS = 50 };
+  uint32_t nq = s->m->coords.n, passed = 1;
+  long double *slope = ARENA_ARRAY(s->m->arena, long double, nq + 1);
+  for (int sweep = 0; sweep < SWEEPS && passed; sweep++) {
+    passed = 0;
+    for (uint32_t i = 0; i < s->m->contacts.n; i++) {
+      const Contact *c = &s->m->contacts.at[i];
+      if (is_open(s, c, symbols)) continue;
+      long double gap = value_of(s, c->gap, symbols), square = 0;
+      passed++;
+      for (uint32_t k = 0; k < nq; k++) {
+        long double at = symbols[s->y[k]], step = 1e-9L * (1 + fabsl(at));
+        symbols[s->y[k]] = at + step;
+        slope[k] = (value_of(s, c->gap, symbols) - gap) / step;
+        symbols[s->y[k]] = at;
+        square += slope[k] * slope[k];
+      }
+      for (uint32_t k = 0; k < nq && square > 0; k++) symbols[s->y[k]] -= 2 * gap / square * slope[k];
+    }
+  }
+}
+
 /* Whether the equations have real values, and no contact is passed. */
 static int is_inside(SamplePoints *s, const long double *symbols) {
   eval_run(s->equations, symbols, s->values);
   for (uint32_t i = 0; i < s->nvalues; i++)
     if (!isfinite(s->values[i])) return 0;
   for (uint32_t i = 0; i < s->m->contacts.n; i++)
-    if (!s->m->contacts.at[i].margin && !s->m->contacts.at[i].is_tangent && !(value_of(s, s->m->contacts.at[i].gap, symbols) >= 0)) return 0;
+    if (!is_open(s, &s->m->contacts.at[i], symbols)) return 0;
   return !s->m->domain || value_of(s, s->m->domain, symbols) != 0;
 }
 
@@ -96,6 +125,7 @@ static int draw(SamplePoints *s, uint32_t k, uint32_t seed, long double *symbols
     for (uint32_t i = 0; i < s->ny; i++) symbols[s->y[i]] = 0;
     for (uint32_t i = 0; i < m->scene.starts.n; i++) symbols[m->scene.starts.at[i].target] = value_of(s, m->scene.starts.at[i].value, symbols);
   }
+  if (k) open_contacts(s, symbols);
   if (s->solver && !states_project(s->solver, symbols)) return 0;
   round_symbols(s->y, s->ny, symbols);
   round_symbols(&m->time, 1, symbols);

@@ -85,7 +85,7 @@ check "of a ball with spin in space" digits "$TMP/puck.lag" falls
 check "of a tower that falls together, its masses coupled" digits "$TMP/tower.lag" drop
 check "of a bead inside a hoop that breathes" digits "$TMP/hoop.lag" s
 check "with a state and an input, without friction" digits "$TMP/gate.lag" s
-slow check "of a superball" digits models/superball.lag
+slow check "of a superball" digits models/superball.lag thrown
 near=200 # _hold ends its iteration by a simpler rule than the runtime
 check "beside a constraint, to rounding" digits "$TMP/wall.lag" bounces
 

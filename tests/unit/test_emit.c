@@ -57,6 +57,7 @@ static Real *random_symbols(const Eqns *e, uint64_t *seed) {
     if (sym->kind == SYM_VEL) v[s] *= 0.3L;        /* below the speed of light, which is a parameter */
     if (sym->kind == SYM_CONST) v[s] = 3.14159265358979323846264338327950288L;
   }
+  for (uint32_t i = e->n; i < e->m->contacts.n; i++) v[e->m->contacts.at[i].closed] = 0; /* more of them at once hold no motion */
   Name first = model_conditional(e->m); /* of constraints with `while`, which contradict each other, it alone holds */
   for (uint32_t i = 0; i < e->m->contacts.n; i++)
     if (e->m->contacts.at[i].margin) v[e->m->contacts.at[i].closed] = e->m->contacts.at[i].name == first;
