@@ -2,8 +2,9 @@
  *
  * A contact takes part where its gap is closed at the middle of the step, and where it may close until the end at a rate that forces cause in a step, its pace: so that what lies stays where it is. Its rate
  * afterwards, u, is bounded by Newton's law u >= -e u0 where it was closing faster than its pace, by u >= 0 (or what is left of a gap) where slower, and by u >= -u0 where it was opening; so P (u0 + u) <= 0. Where the gap is curved, its rate is 0 at the end of the step, not at the middle, and curvature belongs to the pace: a bead in a hoop does not strike it. Friction
- * opposes the mean of the slip velocities at both ends: it drives the slip s into the ball whose diameter goes from -s0 to 0 (in an impact to -e_t s0), so F (s0 + s) <= 0, too, also where the impulse turns the
- * slip round, which with Newton's law and the slip at the end alone may add energy (T.R. Kane, D.A. Levinson, Dynamics (1985), 5.8). J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1,
+ * opposes the mean of the slip velocities at both ends: it drives the slip s into the ball whose diameter goes from -s0 to 0, so F (s0 + s) <= 0. In an impact it opposes the slip at the end, driven to 0, or with
+ * tangential restitution to -e_t s0, as in the papers below; at a contact where this would add energy, as it may where the impulse turns the slip round (T.R. Kane, D.A. Levinson, Dynamics (1985), 5.8), the mean
+ * of both, too, so P (u0 + u) + F (s0 + s) <= 0 always. J.J. Moreau, in: Nonsmooth Mechanics and Applications (1988), 1,
  * DOI 10.1007/978-3-7091-2624-0_1; D.E. Stewart, J.C. Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673, DOI 10.1002/(SICI)1097-0207(19960815)39:15<2673::AID-NME972>3.0.CO;2-I. */
 #include "methods/contact_step.h"
 

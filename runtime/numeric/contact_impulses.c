@@ -19,15 +19,18 @@ int lag_contact_strikes(double r0, double pace) { return r0 < -pace; }
 /* Half a gap is left by its rate -gap/h, and the next middle has none. On a curve that bends towards the body the rate is that which curvature takes away until the end; the middle lies inside
  * by h/4 of it, and a body deeper than that is led out, no faster than the gap closed. */
 void lag_contact_law(lag_pressing *c, double gap, double r0, double bend, double h, double e, double back, int strikes, const double *slip) {
-  double size = 0, down = fmin(bend, 0), left = gap - down * (h / 4);
+  double size = 0, down = fmin(bend, 0), part = strikes ? back : (1 + back) / 2, left = gap - down * (h / 4);
   c->least = left > 0 || down < 0 ? -down - left / h : 0;
   if (r0 > 0 || down < 0) c->least = fmin(-r0, c->least);
   if (strikes) c->least = fmax(-down, -fmin(fmax(e, 0), 1) * r0);
   for (int j = 0; j < (int)c->tangents; j++) {
-    c->centre[j] = -(1 + back) / 2 * slip[j];
+    c->slip[j] = slip[j];
+    c->centre[j] = -part * slip[j];
     size = hypot(size, slip[j]);
   }
-  c->radius = (1 - back) / 2 * size;
+  c->radius = strikes ? 0 : (1 - back) / 2 * size;
+  c->strikes = strikes ? 1 : 0;
+  c->rate = r0;
 }
 
 /* Changes impulse r by dP. */
@@ -65,7 +68,23 @@ static double turn(const lag_pressing *c, const lag_sparse_rows *A, const lag_sp
   return change;
 }
 
-int lag_contact_impulses(int n, const lag_pressing *of, const lag_sparse_rows *A, const lag_sparse_rows *D, const double *response, const double *b, double enough, int most, double *P, double *v) {
+/* Whether friction by the slip at the end brings in energy in an impact; then its ball becomes that of the mean slip. */
+static int soften(lag_pressing *c, const lag_sparse_rows *A, const double *b, double enough, const double *P, const double *v) {
+  int r = (int)c->row, n = (int)c->tangents;
+  double work = P[r] * (c->rate + lag_row_product(A, r, v) + b[r]), size = P[r], width = 0;
+  if (!(c->strikes > 0) || c->radius > 0) return 0;
+  for (int k = 0; k < n; k++) {
+    work += P[r + 1 + k] * (c->slip[k] + lag_row_product(A, r + 1 + k, v) + b[r + 1 + k]);
+    size += fabs(P[r + 1 + k]);
+    width = hypot(width, c->slip[k] + c->centre[k]);
+  }
+  if (!(work > enough * size && width > 0)) return 0;
+  for (int k = 0; k < n; k++) c->centre[k] = (c->centre[k] - c->slip[k]) / 2;
+  c->radius = width / 2;
+  return 1;
+}
+
+int lag_contact_impulses(int n, lag_pressing *of, const lag_sparse_rows *A, const lag_sparse_rows *D, const double *response, const double *b, double enough, int most, double *P, double *v) {
   for (int i = 0; i < n; i++)
     for (int k = (int)of[i].row; k <= (int)(of[i].row + of[i].tangents); k++) {
       double guess = response[k] > 0 ? P[k] : 0;
@@ -78,7 +97,9 @@ int lag_contact_impulses(int n, const lag_pressing *of, const lag_sparse_rows *A
       double one = turn(&of[sweep % 2 ? i : n - 1 - i], A, D, response, b, P, v);
       change = one > change || isnan(one) ? one : change;
     }
-    if (!(change > enough)) return sweep;
+    int softer = 0;
+    for (int i = 0; i < n && !(change > enough); i++) softer += soften(&of[i], A, b, enough, P, v);
+    if (!(change > enough) && softer == 0) return sweep;
   }
   return most + 1;
 }

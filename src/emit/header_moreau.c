@@ -15,7 +15,7 @@
 /* Name of the runtime's text, and what a header writes in its place. */
 static const HeaderWord renamed[] = {
   {"double", "LAG_REAL"}, {"fabs", "LAG_FN(fabs)"}, {"hypot", "LAG_FN(hypot)"}, {"fmax", "lag_larger"}, {"fmin", "lag_smaller"}, {"isnan", "!lag_is_number"}, {"isfinite", "lag_is_number"},
-  {"lag_swap", "lag_swap_entries"}, {"row_scales", "lag_row_scales"}, {"add_impulse", "lag_add_impulse"}, {"into_ball", "lag_into_ball"}, {"turn", "lag_contact_turn"}, {"least(", "lag_least("}, {NULL, NULL}};
+  {"lag_swap", "lag_swap_entries"}, {"row_scales", "lag_row_scales"}, {"add_impulse", "lag_add_impulse"}, {"into_ball", "lag_into_ball"}, {"soften", "lag_contact_soften"}, {"turn", "lag_contact_turn"}, {"least(", "lag_least("}, {NULL, NULL}};
 
 static int is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 static int is_digit(char c) { return c >= '0' && c <= '9'; }
