@@ -45,14 +45,20 @@ near "and one that is cyclic" 1e-13 1.95 "$(value kepler s 'Jth(20)')"
 cat >"$TMP/damped.lag" <<'END'
 model damped
 coord x
-param w = 2 > 0, gamma = 0.1
-lagrangian = x'^2/2 - w^2*x^2/2
-force x = -2*gamma*x'
+param w = 2 > 0, gamma = 0.1, mu = 0
+input shift = 0
+let wd = sqrt(w^2 - gamma^2)
+lagrangian = x'^2/2 - w^2*x^2/2 + shift*x
+force x = -2*gamma*x' - mu*sign(x')
 observe J = action(x)
-scene s { start x = 1; span 9.43658106866400514; tolerance 1e-14; method taylor; output J, energy every 1 }
+scene s { start x = 1; span 9.43658106866400514; tolerance 1e-14; method dop853; output J, energy every 1 }
+scene beside "inputs, a mode and closed forms stand before actions" { start x = 1; span 3; exact x = x(0)*exp(-gamma*t)*(cos(wd*t) + gamma/wd*sin(wd*t)); output error(x), J, energy every 1 }
 END
 near "drag is no part of H" 1e-12 0.151477797832447947204 "$(value damped s 'J(end)/J(0)')"
 near "J = E/w" 1e-13 2 "$(value damped s 'energy(3)/J(3)')"
+near "beside inputs, modes and closed forms" 1e-13 2 "$(value damped beside 'energy(3)/J(3)' mu=1e-3)"
+near "inputs are held: about 1, to which the input pulls, it rests" 1e-13 0 "$(value damped s 'J(0)' shift=4)"
+near "and about 2 it swings by 1" 1e-13 1 "$(value damped s 'J(0)' shift=8)"
 
 # ---- adiabatic invariance ----
 # w^2 from w1^2 to w2^2 by tanh(r t): J_out/J_in - 1 is a constant and a function of twice the phase, so four phases, 45 degrees apart, have the mean of all.
