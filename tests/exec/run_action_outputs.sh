@@ -24,6 +24,7 @@ near "p = m l^2 th' + a + b cos(th) is put in for the momentum" 1e-13 5.86192359
 near "going round" 1e-13 18.8941134266863135722 "$(value pendulum round 'J(10)')"
 near "the other way: the mean of p has its sign" 1e-13 -18.8941134266863135722 "$(value pendulum round 'J(10)' "th'=-20")"
 near "the mean of p has that of a + b cos(th)" 1e-13 21.8941134266863135722 "$(value pendulum round 'J(10)' a=3 b=2)"
+near "the way round is that of p - b, where p has the sign of b" 1e-12 -18.8941134266863135722 "$(value pendulum round 'max(J)' b=200 "th'=-20")"
 near "constant along the run" 1e-12 0 "$(value pendulum s 'drift(J)')"
 near "also going round" 1e-12 0 "$(value pendulum round 'drift(J)')"
 near "in an expression" 1e-13 6.86192359470219384785 "$(value pendulum s 'more(0)')"
