@@ -169,7 +169,8 @@ static void integrate(Curve *c, int side, lag_action_integral *out) {
   if (out->why_not) return;
   double J = 0, time = 0, error = INFINITY, centre = (out->low + out->high) / 2, extremum = at_middle(c, centre).H;
   double cancelled = DBL_EPSILON * (fabs(c->E) + fabs(extremum)) / room(c, centre), enough = 1024 * DBL_EPSILON, last; /* the next difference would be its square */
-  for (uint32_t n = LEAST; n <= MOST && !(error <= fmax(enough, n * cancelled)); n *= 2) { /* terms that cancel near the ends leave n times their rounding */
+  /* terms that cancel near the ends leave n times their rounding */
+  for (uint32_t n = LEAST; n <= MOST && !(error <= fmax(enough, n * cancelled)); n *= 2) {
     double before = J, time_before = time;
     midpoint_rule(c, out->low, out->high, side, n, &J, &time);
     last = error;

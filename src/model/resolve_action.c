@@ -10,6 +10,8 @@ static int is_coordinate(const Model *m, const Symbol *s) {
   return 0;
 }
 
+#define PLACES "may stand in `observe`, `output`, `monitor` and `measure`"
+
 Value action_value(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
   Model *m = b->m;
@@ -17,13 +19,13 @@ Value action_value(Eval *ev, const AstExpr *x) {
   const Value *v = value_of(ev, x->args);
   if (!v->e) return FAILED;
   if (ev->where < IN_OBSERVE)
-    return refuse(b, x->span, "an action variable is an integral over a whole motion, and cannot stand in the equations" HELP "`action(x)` may stand in `observe`, `output`, `monitor` and `measure`");
+    return refuse(b, x->span, "an action variable is an integral over a whole motion, and cannot stand in the equations" HELP "`action(x)` " PLACES);
   const char *why = reason_against_brackets(m);
   if (why && !(m->hamiltonian && !m->first_order)) return refuse(b, x->span, "an action variable needs a phase space, as brackets do: %s", why);
   const Symbol *s = !v->n && expr_op(b->g, v->e) == EX_SYM ? expr_sym_of(b->g, v->e) : NULL;
   if (!s || !is_coordinate(m, s))
-    return refuse(b, ast_expr(b->ast, x->args)->span, "`action` takes the name of a coordinate, and `%s` is %s" HELP "write `action(%s)`", ast_short(b, x->args),
-                  v->n ? shape_text(b, v->n) : s ? "none" : "an expression", model_coordinates(m).at[0]);
+    return refuse(b, ast_expr(b->ast, x->args)->span, "`action` takes the name of a coordinate, and `%s` is %s" HELP "write `action(%s)`",
+                  ast_short(b, x->args), v->n ? shape_text(b, v->n) : s ? "none" : "an expression", model_coordinates(m).at[0]);
   SymId sym = 0, of = expr_sym_id(b->g, v->e);
   for (uint32_t i = 0; i < m->actions.n; i++)
     if (m->actions.at[i].coordinate == of) sym = m->actions.at[i].sym;
@@ -36,8 +38,11 @@ Value action_value(Eval *ev, const AstExpr *x) {
 
 int refuse_actions(Builder *b, const Value *v, Span span) {
   for (uint32_t i = 0; i < b->m->actions.n; i++)
-    for (uint32_t k = 0; k < component_count(v); k++)
-      if (expr_contains_sym(b->g, v->at[k], b->m->actions.at[i].sym))
-        return diag_error(b->diags, span, "an action variable has its value in a run only, and nothing is proved of it"), diag_help(b->diags, "`action(%s)` may stand in `observe`, `output`, `monitor` and `measure`", b->m->actions.at[i].name), 1;
+    for (uint32_t k = 0; k < component_count(v); k++) {
+      if (!expr_contains_sym(b->g, v->at[k], b->m->actions.at[i].sym)) continue;
+      diag_error(b->diags, span, "an action variable has its value in a run only, and nothing is proved of it");
+      diag_help(b->diags, "`action(%s)` " PLACES, b->m->actions.at[i].name);
+      return 1;
+    }
   return 0;
 }
