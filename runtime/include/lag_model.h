@@ -344,6 +344,20 @@ typedef struct lag_model {
   const char *fixed; /* names of parameters that are numbers in this program, separated by spaces; NULL: none */
 } lag_model;
 
+#ifndef LAG_LANES
+/* The action variable of a coordinate, J = 1/(2 pi) closed integral of p dq along H(q, p) = constant, all else held. q, p: components of [q|v|z], the momentum in the
+ * place of its velocity where the model gives L. curve: out[4] = H, dH/dp, d2H/dp2, dH/dq at such a state; momenta: out[nq]; NULL: momenta are states. */
+typedef struct lag_action_curve {
+  int nq, nz, q, p, periodic;
+  int (*curve)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  int (*momenta)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+} lag_action_curve;
+
+/* J of the curve through a state; NaN: it has none there. y[2 nq + nz] is work space. Of liblag; emitted `observe` calls it. */
+LAG_REAL lag_action(const lag_action_curve *c, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p, const LAG_REAL *u,
+                    LAG_REAL *y, LAG_REAL *w);
+#endif
+
 /* An option of a method: step = 1e-3; or quadrature = trapezoid, with text set. */
 typedef struct lag_option {
   const char *name;

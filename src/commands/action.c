@@ -16,8 +16,10 @@ static void print_one(const ActionVariables *v, uint32_t i, StrBuf *out) {
   else if (x->rests) sb_puts(out, "J = 0, at rest\n");
   else {
     sb_printf(out, "J = %.*Lg", x->digits, x->J);
-    if (isfinite(x->omega)) sb_printf(out, ", omega = dE/dJ = %.*Lg, period %.*Lg", x->digits, x->omega, x->digits, 2 * acosl(-1) / x->omega);
-    sb_printf(out, ", between %.10Lg and %.10Lg%s\n", x->low, x->high, x->digits < 16 ? "; no more digits are sure, as H is not smooth along the curve, or its terms cancel" : "");
+    if (isfinite(x->omega)) sb_printf(out, ", omega = dE/dJ = %.*Lg, period %.*Lg", x->digits, x->omega, x->digits, 2 * acosl(-1) / fabsl(x->omega));
+    if (x->rotates) sb_puts(out, ", going round: over a turn");
+    else sb_printf(out, ", between %.10Lg and %.10Lg", x->low, x->high);
+    sb_printf(out, "%s\n", x->digits < 16 ? "; no more digits are sure, as H is not smooth along the curve, or its terms cancel" : "");
   }
 }
 
@@ -85,8 +87,8 @@ static void json_action(const ActionVariables *v, uint32_t i, StrBuf *out) {
   json_number("action", x->why_not ? NAN : x->J, out);
   json_number("frequency", turns ? x->omega : NAN, out);
   sb_printf(out, ", \"digits\": %d", turns ? x->digits : 16);
-  json_number("low", turns ? x->low : NAN, out);
-  json_number("high", turns ? x->high : NAN, out);
+  json_number("low", turns && !x->rotates ? x->low : NAN, out);
+  json_number("high", turns && !x->rotates ? x->high : NAN, out);
   json_expr("left", g, s->separates ? s->left[i] : 0, out);
   json_expr("right", g, s->separates ? s->right[i] : 0, out);
   sb_putc(out, '}');

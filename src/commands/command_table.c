@@ -43,7 +43,7 @@ static const CommandRow commands[] = {
    "and its frequency omega = dE/dJ, to about 15 digits. The model has one coordinate, or separates in its coordinates: the momentum of a cyclic angle is its action; "
    "a coordinate whose dH/dq and dH/dp have a ratio free of the others has a curve of its own; the same, then, for those that are left; and all that are left then, "
    "where Levi-Civita's conditions hold for every two of them. The separated equations are printed, or the two coordinates whose condition fails.\n\n"
-   "A coordinate that does not turn has no action variable, and the line says why. Where H depends on t, it is held at the start's t.\n\n"
+   "A coordinate that goes round has the mean of p over a turn as its action; one that does not turn has none, and the line says why. Where H depends on t, it is held at the start's t.\n\n"
    "  name=value            a parameter, or another start\n\n"
    "Exit status 3: there is no action variable."},
   {CMD_RUN, "run", NULL, "MODEL [SCENE] [name=value ...] [options]", "simulate",

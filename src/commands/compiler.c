@@ -144,8 +144,21 @@ static int bake_start(Compiler *c, const Eqns *e, IrUnit *u) {
   return 1;
 }
 
+/* Warns of outputs that headers and FMUs leave out, since liblag computes their action variables. */
+static void warn_of_actions(const Eqns *e) {
+  const Model *m = e->m;
+  for (uint32_t i = 0; i < e->noutputs; i++)
+    for (uint32_t k = 0; k < m->actions.n && !output_is_plain(e, i); k++)
+      if (expr_contains_sym(e->g, m->scene.outputs.at[i].value, m->actions.at[k].sym)) {
+        diag_warning(m->diags, m->scene.outputs.at[i].span, "the output `%s` is left out: liblag computes action variables, and this does without it", e->outputs[i].name);
+        diag_help(m->diags, "a library with all outputs: `lagc build --shared`");
+        break;
+      }
+}
+
 IrUnit *compiler_lower_embedded(Compiler *c, Eqns *e) {
   constraints_keep_none(e);
+  warn_of_actions(e);
   IrUnit *u = compiler_lower_scene(c, e, 0);
   return u && bake_start(c, e, u) ? u : NULL;
 }

@@ -97,7 +97,7 @@ static CStyle style_for(const File *f, const char *const *own, const char *const
 /* Whether the function is called once a step, or once a row of output. */
 static int is_seldom_called(const IrUnit *u, const Prog *p) {
   int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values || p == u->switch_rates || p == u->switch_grips || p == u->contact_laws;
-  for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe;
+  for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe || p == u->scenes.at[i].momenta;
   return seldom;
 }
 
@@ -480,6 +480,36 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   sb_puts(out, "};\n");
 }
 
+/* Outputs with action variables: their curves, and a function that puts their values behind those in u. Rows of output have no lanes. */
+static void emit_observe(const File *f, const IrScene *s, const char *id) {
+  const IrUnit *u = f->u;
+  StrBuf *out = f->out;
+  const char *comment = arena_printf(f->a, "Outputs of the scene %s.", s->name);
+  uint32_t n = u->u.n + u->nmodes + s->exact_of.n;
+  if (!s->actions.n) {
+    state_function(f, s->observe, arena_printf(f->a, "observe_%s", id), comment, NULL, one_out);
+    return;
+  }
+  sb_puts(out, "\n#ifndef LAG_LANES");
+  state_function(f, s->momenta, arena_printf(f->a, "momenta_%s", id), "The momenta dL/dq'.", NULL, one_out);
+  for (uint32_t i = 0; i < s->actions.n; i++) {
+    const IrAction *a = &s->actions.at[i];
+    const char *what = s->momenta ? "H, dH/dp, d2H/dp2, dH/dq for the action of %s; v holds momenta." : "H, dH/dp, d2H/dp2, dH/dq for the action of %s.";
+    state_function(f, a->curve, arena_printf(f->a, "curve_%s_%u", id, i), arena_printf(f->a, what, a->name), NULL, one_out);
+  }
+  state_function(f, s->observe, arena_printf(f->a, "values_%s", id), arena_printf(f->a, "%s Action variables stand behind the inputs.", comment), NULL, one_out);
+  sb_printf(out, "\nstatic int observe_%s(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w) {\n", id);
+  sb_printf(out, "  LAG_REAL with[%u], y[%u];\n", n + s->actions.n, 2 * u->q.n + u->z.n);
+  if (n) sb_printf(out, "  for (int i = 0; i < %u; i++) with[i] = u[i];\n", n);
+  for (uint32_t i = 0; i < s->actions.n; i++) {
+    const IrAction *a = &s->actions.at[i];
+    sb_printf(out, "  static const lag_action_curve of_%u = {%u, %u, %u, %u, %d, curve_%s_%u, %s%s};\n", i, u->q.n, u->z.n, a->q, a->p, a->periodic, id, i, s->momenta ? "momenta_" : "NULL",
+              s->momenta ? id : "");
+    sb_printf(out, "  with[%u] = lag_action(&of_%u, t, q, v, z, p, u, y, w);\n", n + i, i);
+  }
+  sb_printf(out, "  return values_%s(t, q, v, z, p, with, out, w);\n}\n#else\n#define observe_%s NULL\n#endif\n", id, id);
+}
+
 static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
   table_vars(arena_printf(u->arena, "outputs_%s", id), s->outputs.at, s->outputs.n, u->arena, out);
   if (s->options.n) {
@@ -540,7 +570,7 @@ static void emit_scene(const File *f, const char *name, uint32_t index) {
   StrBuf *out = f->out;
   emit_params(f, s, id);
   emit_start(f, s, id);
-  state_function(f, s->observe, arena_printf(f->a, "observe_%s", id), arena_printf(f->a, "Outputs of the scene %s.", s->name), NULL, one_out);
+  emit_observe(f, s, id);
   emit_exact(f, s, id);
   emit_scene_lists(u, s, id, out);
   emit_measures(u, s, id, out);

@@ -14,8 +14,9 @@ ProgList unit_programs(const IrUnit *u) {
   for (uint32_t i = 0; i < u->events.n; i++) vec_push(u->arena, &all, u->events.at[i].action);
   for (uint32_t i = 0; i < u->scenes.n; i++) {
     const IrScene *s = &u->scenes.at[i];
-    const Prog *const of_scene[] = {s->start, s->observe, s->observe_plain, s->observe_held, s->exact};
+    const Prog *const of_scene[] = {s->start, s->observe, s->observe_plain, s->observe_held, s->exact, s->momenta};
     for (size_t j = 0; j < sizeof of_scene / sizeof *of_scene; j++) vec_push(u->arena, &all, of_scene[j]);
+    for (uint32_t j = 0; j < s->actions.n; j++) vec_push(u->arena, &all, s->actions.at[j].curve);
     for (uint32_t j = 0; s->params && j < u->p.n; j++) vec_push(u->arena, &all, s->params[j]);
   }
   uint32_t n = 0;

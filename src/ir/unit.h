@@ -54,6 +54,14 @@ typedef struct {
   const char *name, *text, *unit;
 } IrMeasure;
 
+/* An output `action(x)`, which a run computes on the curve H(q, p) = E; q, p: components of [q|v|z], q of x, and of the momenta in their places. */
+typedef struct {
+  const char *name;  /* x */
+  const Prog *curve; /* H, dH/dp, d2H/dp2, dH/dq; where the model gives L with momenta in the place of velocities */
+  uint32_t q, p;
+  int periodic;
+} IrAction;
+
 /* A component of [q|v] that constraints move at the start, and its new value. */
 typedef struct {
   uint32_t component;
@@ -75,11 +83,13 @@ typedef struct {
   double tolerance, every;
   VEC(IrVar) outputs;
   VEC(unsigned char) forces;    /* by output, in models with constraints: whether it contains multipliers or accelerations */
-  const Prog *observe_plain; /* outputs without closed forms, for programs that know no start, */
+  const Prog *observe_plain; /* outputs without closed forms and actions, for programs that know no start, */
   VEC(IrVar) plain;          /* and their descriptions */
   const Prog *observe_held;  /* the same with modes, as held_accel; NULL: no motion sticks */
   const Prog *exact;
   VEC(uint32_t) exact_of;    /* component of [q|v|z] that each closed form describes */
+  VEC(IrAction) actions;     /* their values stand behind closed forms */
+  const Prog *momenta;       /* dL/dq'[nq], for actions; NULL: there are none, or momenta are states */
   VEC(IrMonitor) monitors;
   VEC(IrMeasure) measures;
 } IrScene;

@@ -216,7 +216,7 @@ void check_prepare(Check *c) {
   for (size_t k = 0; k < sizeof of_states / sizeof *of_states; k++) *of_states[k] = alloc_reals(c, nz);
   c->p = alloc_reals(c, m->params.n + c->u->nderived);
   c->given = alloc_reals(c, m->params.n);
-  c->signal = alloc_reals(c, m->inputs.n + c->u->nmodes + m->scene.exacts.n);
+  c->signal = alloc_reals(c, m->inputs.n + c->u->nmodes + m->scene.exacts.n + c->e->nactions);
   c->lambda = alloc_reals(c, m->constraints.n);
   c->lambda_error = alloc_reals(c, m->constraints.n);
   c->a_error = alloc_reals(c, n + nz);

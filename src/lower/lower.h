@@ -44,7 +44,9 @@ Prog *lower_projection(const Eqns *e, uint32_t nrows);
 Prog *lower_multipliers(const Eqns *e); /* out 0: lambda of each constraint, in the order of e->constraints */
 Prog *lower_impact(const Eqns *e); /* out 0: v1, the velocities after the impact of the contact whose entry of g is 1, the others 0; NULL: no contact strikes */
 Prog *lower_outputs(const Eqns *e); /* out 0: out[nout] */
-Prog *lower_plain_outputs(const Eqns *e); /* out 0: outputs without closed forms, in their order */
+Prog *lower_plain_outputs(const Eqns *e); /* out 0: outputs without closed forms and actions, in their order */
+Prog *lower_action_curve(const Eqns *e, uint32_t i); /* out 0: roots[4] of e->actions[i] */
+Prog *lower_momenta(const Eqns *e); /* out 0: dL/dq'[nq] */
 int output_is_plain(const Eqns *e, uint32_t i);
 Prog *lower_closed_forms(const Eqns *e);   /* out 0: value of each closed form, from the state at the start */
 Prog *lower_param(const Eqns *e, uint32_t i); /* out 0: p[i], from earlier parameters */

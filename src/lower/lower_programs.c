@@ -358,11 +358,11 @@ Prog *lower_inputs(const Eqns *e) {
   return prog_tidy(l.p);
 }
 
-/* Closed forms are input symbols numbered behind the model's inputs. */
-static int is_closed_form(const Symbol *s, const void *data) { return s->kind == SYM_INPUT && s->index >= *(const uint32_t *)data; }
+/* Closed forms, and actions behind them, are input symbols numbered behind the model's inputs. */
+static int is_of_runs(const Symbol *s, const void *data) { return s->kind == SYM_INPUT && s->index >= *(const uint32_t *)data; }
 
 int output_is_plain(const Eqns *e, uint32_t i) {
-  return !e->m->scene.exacts.n || !expr_contains(e->g, e->outputs[i].value, is_closed_form, &e->m->inputs.n);
+  return !(e->m->scene.exacts.n + e->nactions) || !expr_contains(e->g, e->outputs[i].value, is_of_runs, &e->m->inputs.n);
 }
 
 /* Values of the outputs, and the outputs in *of. */
@@ -411,6 +411,21 @@ static Prog *outputs(const Eqns *e, int plain_only) {
 
 Prog *lower_outputs(const Eqns *e) { return outputs(e, 0); }
 Prog *lower_plain_outputs(const Eqns *e) { return outputs(e, 1); }
+
+Prog *lower_action_curve(const Eqns *e, uint32_t i) {
+  static const char *const names[4] = {"H", "dH/dp", "d2H/dp2", "dH/dq"};
+  Lower l = lower_by_text(e);
+  lower_roots(&l, e->actions[i].roots, 4);
+  for (uint32_t k = 0; k < 4; k++) prog_store(l.p, 0, k, lower_slot(&l, e->actions[i].roots[k]), names[k]);
+  return lower_finish_seldom(&l);
+}
+
+Prog *lower_momenta(const Eqns *e) {
+  Lower l = lower_by_text(e);
+  lower_roots(&l, e->p, e->n);
+  for (uint32_t i = 0; i < e->n; i++) prog_store(l.p, 0, i, lower_slot(&l, e->p[i]), e->m->coords.at[i].name);
+  return lower_finish_seldom(&l);
+}
 
 Prog *lower_closed_forms(const Eqns *e) {
   Lower l = lower_by_text(e);

@@ -206,6 +206,15 @@ static void add_held_outputs(IrScene *s, const IrUnit *u, const Eqns *e) {
   s->observe_held = lower_plain_outputs(&held);
 }
 
+static void add_actions(IrScene *s, const Eqns *e) {
+  if (e->nactions && e->n) s->momenta = lower_momenta(e);
+  for (uint32_t i = 0; i < e->nactions; i++) {
+    const ActionCurve *c = &e->actions[i];
+    IrAction a = {c->name, lower_action_curve(e, i), c->coordinate, c->momentum, c->periodic};
+    vec_push(e->m->arena, &s->actions, a);
+  }
+}
+
 static void add_exact(IrScene *s, const Eqns *e) {
   const Model *m = e->m;
   const Scene *sc = &m->scene;
@@ -325,6 +334,7 @@ void unit_add_scene(IrUnit *u, const Eqns *e) {
     if (output_is_plain(e, i)) vec_push(m->arena, &s.plain, v);
   }
   add_exact(&s, e);
+  add_actions(&s, e);
   add_held_outputs(&s, u, e);
   for (uint32_t i = 0; i < sc->monitors.n; i++) {
     IrMonitor mon = {sc->monitors.at[i].name, sc->monitors.at[i].output, sc->monitors.at[i].limit, sc->monitors.at[i].absolute};

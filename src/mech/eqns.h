@@ -91,6 +91,14 @@ typedef struct {
   uint32_t n, nmodes; /* the first nmodes have a mode: an input behind those of the model */
 } Switches;
 
+/* An output `action(x)`: the curve H(q, p) = E whose closed integral of p dq a run computes. */
+typedef struct {
+  Name name;            /* x */
+  Expr roots[4];        /* H, dH/dp, d2H/dp2, dH/dq; of a model that gives L with momenta in the place of velocities */
+  uint32_t coordinate, momentum; /* components of [q|v|z] */
+  int periodic;
+} ActionCurve;
+
 typedef struct Charge Charge; /* symmetry/charges.h */
 struct BracketValue; /* symmetry/expression_brackets.h */
 
@@ -120,6 +128,8 @@ typedef struct {
   Switches switches;     /* none before switches_find */
   const Output *outputs; /* the scene's outputs, with the energy and charges filled in */
   uint32_t noutputs;
+  const ActionCurve *actions; /* [nactions] that outputs contain: inputs numbered behind those of the model and closed forms */
+  uint32_t nactions;
   const Expr *definitions; /* by symbol: expressions substituted for parameters that others define; or NULL */
   int definite_by_values; /* definite_mass, or definite for parameters with the signs of their values; a run checks the pivots */
   int constant_mass, definite_mass, singular_mass, conserves_energy, autonomous, smooth;

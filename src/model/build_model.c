@@ -241,7 +241,7 @@ static void add_expect(Builder *b, const AstStmt *st, Name effect) {
   }
   b->brackets = 0;
   Value l = v[0], r = v[1];
-  if (!l.e || !r.e) return;
+  if (!l.e || !r.e || refuse_actions(b, &l, ast_expr(b->ast, st->lhs)->span) || refuse_actions(b, &r, ast_expr(b->ast, st->rhs)->span)) return;
   if (l.n != r.n) {
     report_shapes(b, st->span, l.n, r.n);
     return;
@@ -517,6 +517,7 @@ static void ask_bracket(Builder *b, AstId id) {
   b->brackets = 1;
   Value v = id && !b->diags->errors ? resolve(b, id, IN_OBSERVE, NULL) : (Value){0};
   b->brackets = 0;
+  if (v.e && refuse_actions(b, &v, ast_expr(b->ast, id)->span)) return;
   b->m->asked_bracket = v.e;
 }
 

@@ -184,6 +184,9 @@ int resolve_indices(Builder *b, AstId list, Name effect, IndexRange *out);
 /* Reports a third index: families have one or two. */
 void report_many_indices(Builder *b, Span span);
 
+/* 1, reported, if v contains action variables, which only outputs may. */
+int refuse_actions(Builder *b, const Value *v, Span span);
+
 /* domain.c: conjunction of two conditions, each 0 where it always holds. */
 Expr domain_and(const Builder *b, Expr p, Expr q);
 

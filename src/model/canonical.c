@@ -159,6 +159,7 @@ static Value map_value(Reader *r, AstId id, int bound) {
   b->nbound = bound ? r->nnew : 0;
   Value x = resolve(b, id, IN_OBSERVE, NULL);
   b->nbound = 0;
+  if (x.e && refuse_actions(b, &x, ast_expr(b->ast, id)->span)) return FAILED;
   if (bound && x.e) v = velocity_in(b, id, &x);
   if (v.end) return refuse(b, v, "a transformation of phase space is made of coordinates, momenta and t, and has no velocities");
   for (uint32_t k = 0; x.e && k < component_count(&x); k++)

@@ -126,6 +126,14 @@ typedef struct {
   int64_t member[2];
 } OutputText;
 
+/* `action(x)` in an output. */
+typedef struct {
+  SymId sym;        /* stands for its value */
+  SymId coordinate; /* x */
+  Name name;
+  Span span;
+} ActionOutput;
+
 /* A Poisson bracket {f, g} in an expectation or of the command line. */
 typedef struct {
   SymId sym; /* placeholder in expressions, which symmetry/ replaces */
@@ -281,6 +289,7 @@ typedef struct {
   VEC(Expect) expects;
   VEC(Canonical) canonicals;
   VEC(ExpressionBracket) brackets;
+  VEC(ActionOutput) actions;
   Expr asked_bracket;      /* ModelChoice.bracket */
   VEC(Event) events;
   VEC(Output) observes;

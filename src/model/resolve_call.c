@@ -177,6 +177,7 @@ static const struct {
   {"atan2", NULL, EX_ATAN2, 0}, {"hypot", NULL, EX_HYPOT, 0}, {"min", NULL, EX_MIN, 0}, {"max", NULL, EX_MAX, 0},
   {"sqrt", call_sqrt, 0, 0}, {"pow", call_pow, 0, 0}, {"if", call_if, 0, 1}, {"d", call_d, 0, 1}, {"dot", call_dot, 0, 1}, {"cross", call_cross, 0, 1},
   {"norm", call_norm, 0, 1}, {"lambda", multiplier_value, 0, 1}, {"omega", omega_value, 0, 1}, {"turn", turn_value, 0, 1}, {"transpose", transpose_value, 0, 1},
+  {"action", action_value, 0, 1},
 };
 
 const char *function_name(size_t i) { return i < sizeof functions / sizeof *functions ? functions[i].name : NULL; }

@@ -69,6 +69,7 @@ Expr record_jump(Eval *ev, const AstExpr *x, Expr e);
 
 /* resolve_bracket.c: value of {f, g} where Builder.brackets. */
 Value bracket_value(Eval *ev, const AstExpr *x);
+Value action_value(Eval *ev, const AstExpr *x);
 
 /* Value of a number, an operator, or a tuple. */
 Value operator_value(Eval *ev, AstId id);

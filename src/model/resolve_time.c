@@ -60,7 +60,7 @@ Value time_derivative(Builder *b, Value of, Span span, Context where) {
                                              : "a state has a rate, and no second one" HELP "write the derivative of the right side of its flow");
   if (kinds & second) return refuse(b, span, "third derivatives do not occur in mechanics");
   if (kinds & 1u << SYM_LOCAL && has_no_rate(b, &of))
-    return refuse(b, span, "not yet: a time derivative of the energy or a charge, or a third one of a function's argument" HELP
+    return refuse(b, span, "not yet: a time derivative of the energy, a charge or an action, or a third one of a function's argument" HELP
                   "the energy changes by the power of forces: `force x = F` adds the power `F*x'`");
   Value r = {.dim = dim_per_second(b->dims, of.dim), .n = of.n};
   const Expr *seed = time_seeds(b);

@@ -2,10 +2,7 @@
  *
  * A coordinate has a curve of its own where H separates (symmetry/separability.h): the other pairs are held at the start. Cyclic coordinates have p constant.
  *
- * q = (a + b)/2 + (b - a)/2 sin(u) between the turning points a, b leaves no square roots at the ends: the integrand is smooth and periodic in u, and the
- * midpoint rule converges exponentially. Long double, about 1e-15.
- * L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed. (1976), 48 to 50; V. I. Arnold, Mathematical Methods of Classical Mechanics, 2nd ed. (1989), 50.
- * L. N. Trefethen, J. A. C. Weideman, SIAM Rev. 56 (2014) 385, doi:10.1137/130932132, on the midpoint rule. */
+ * The integral is numeric/action_integral.h's, which runs use for outputs `action(x)` (symmetry/action_outputs.h). Long double, about 1e-15. */
 #pragma once
 
 #include "symmetry/separability.h"
@@ -14,10 +11,11 @@ typedef struct {
   const char *why_not;     /* reason for no action; NULL: there is one */
   int cyclic;              /* J is the momentum */
   int rests;               /* at an equilibrium: J = 0 */
+  int rotates;              /* it goes round: J is the mean of p over a turn, omega has its sign */
   long double J;           /* SI */
   int digits;              /* of J and omega, up to 16: fewer where H has a corner along the curve */
   long double omega;       /* dE/dJ at fixed other actions; NAN: not computed */
-  long double low, high;   /* turning points */
+  long double low, high;   /* turning points, or ends of a turn */
 } ActionVariable;
 
 typedef struct {
@@ -29,3 +27,8 @@ typedef struct {
 
 /* 0, reported in the diagnostics: H has no closed form in coordinates and momenta. */
 int action_variables(Eqns *e, ActionVariables *out);
+
+/* Of pair i of a phase space, whose H is free of definitions: */
+PairKind pair_with_action(const PhaseSpace *s, uint32_t i, const char **why_not); /* *why_not: NULL, or the reason for no action at any state */
+int pair_is_periodic(const PhaseSpace *s, uint32_t i);
+void action_roots(const PhaseSpace *s, uint32_t i, Expr *roots);                  /* roots[4]: H, dH/dp, d2H/dp2, dH/dq */

@@ -3,6 +3,7 @@
 
 #include "mech/derive.h"
 #include "mech/lagrange.h"
+#include "symmetry/action_outputs.h"
 #include "symmetry/expression_brackets.h"
 #include "sym/simplify.h"
 
@@ -67,14 +68,17 @@ Expr charges_substitute(const Eqns *e, Expr x) {
   return expression_brackets_substitute(e, x, 0);
 }
 
-/* The scene's outputs, with the energy and charges that they name filled in, and velocities of a Hamiltonian as in its forces, so that both stick together. */
-static void fill_outputs(Eqns *e) {
+/* The scene's outputs, with the energy, charges and actions that they name filled in, and velocities of a Hamiltonian as in its forces, so that both stick together. */
+static int fill_outputs(Eqns *e) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
   Output *out = ARENA_ARRAY(m->arena, Output, m->scene.outputs.n + 1);
+  Expr *action = ARENA_ARRAY(m->arena, Expr, m->actions.n + 1);
+  if (!action_outputs(e, action)) return 0;
   uint32_t nsymbols = expr_symbol_count(g) + 1;
   Expr *with = ARENA_ARRAY(m->arena, Expr, nsymbols);
   with[m->energy_sym] = e->energy_stable;
+  for (uint32_t k = 0; k < m->actions.n; k++) with[m->actions.at[k].sym] = action[k];
   for (uint32_t k = 0; k < m->pairs.n && m->hamiltonian; k++) with[m->states.at[m->pairs.at[k].q].rate] = e->first.velocity[k];
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) {
     out[i] = m->scene.outputs.at[i];
@@ -84,6 +88,7 @@ static void fill_outputs(Eqns *e) {
   }
   e->outputs = out;
   e->noutputs = m->scene.outputs.n;
+  return 1;
 }
 
 /* --- verdicts --- */
@@ -234,7 +239,7 @@ static Eqns *complete(Eqns *e) {
   charges_derive(e);
   ChargeNames names = charge_names(e);
   if (!expression_brackets_derive(e, &names)) return NULL;
-  fill_outputs(e);
+  if (!fill_outputs(e)) return NULL;
   if (!e->m->effects.n && !charges_judge(e, NULL)) return NULL; /* with effects it may be broken on purpose */
   lagrange_squares(e);
   return eqns_check_numbers(e) ? e : NULL;

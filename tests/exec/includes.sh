@@ -10,7 +10,7 @@ src/sym       sym/ base/
 src/syntax    syntax/ base/
 src/model     model/ syntax/ sym/ base/
 src/mech      mech/ model/ sym/ base/ numeric/
-src/symmetry  symmetry/ mech/ model/ sym/ base/
+src/symmetry  symmetry/ mech/ model/ sym/ base/ numeric/
 src/claims    claims/ symmetry/ mech/ model/ sym/ base/ numeric/
 src/report    report/ symmetry/ mech/ model/ sym/ base/
 src/ir        ir/ base/

@@ -17,6 +17,7 @@ effects to compare
 this does not belong in a scene
 a run cannot set
 a section is a surface in the space of states
+is left out: liblag computes action variables
 this is not a finite number
 this is nested too deep'
 

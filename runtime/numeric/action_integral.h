@@ -1,0 +1,26 @@
+/* The action variable of one closed curve H(q, p) = E: J = 1/(2 pi) closed integral of p dq, and its period.
+ *
+ * A curve that turns lies between turning points a, b. q = (a + b)/2 + (b - a)/2 sin(u) leaves no square roots at the ends: the integrand is smooth and periodic in
+ * u, and the midpoint rule converges exponentially; so it does over the turn of a curve that goes round a periodic coordinate.
+ * L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed. (1976), 48 to 50; V. I. Arnold, Mathematical Methods of Classical Mechanics, 2nd ed. (1989), 50.
+ * L. N. Trefethen, J. A. C. Weideman, SIAM Rev. 56 (2014) 385, doi:10.1137/130932132, on the midpoint rule. */
+#pragma once
+
+/* H and its derivatives at a point. */
+typedef struct lag_phase_point {
+  double H, slope, bend, force; /* dH/dp, d2H/dp2, dH/dq */
+} lag_phase_point;
+
+typedef lag_phase_point lag_phase_fn(void *context, double q, double p);
+
+typedef struct lag_action_integral {
+  const char *why_not; /* reason for no action; NULL: there is one */
+  int rests;           /* the point is an equilibrium: J = 0 */
+  int rotates;          /* the curve goes round: J is the mean of p over a turn, with its sign; a curve that turns has J > 0 */
+  double J, time;      /* time: the period; < 0 where the curve goes round towards smaller q */
+  double error;        /* of J and time, relative */
+  double low, high;    /* turning points, or the ends of a turn */
+} lag_action_integral;
+
+/* The curve through (q, p). periodic: q is an angle of period 2 pi. */
+lag_action_integral lag_action_of_curve(lag_phase_fn *at, void *context, double q, double p, int periodic);
