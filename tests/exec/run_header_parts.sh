@@ -77,6 +77,8 @@ lanes() { # MODEL LANES METHOD COMPILER OPTIONS...
 check "4 lanes of rk45" lanes models/henon_heiles.lag 4 rk45 gcc -std=c99
 check "8 lanes of taylor, with sines and a solver" lanes models/double_pendulum.lag 8 taylor gcc -std=c99 -DTAYLOR -DSINGULAR
 check "4 lanes of taylor, of powers" lanes models/henon_heiles.lag 4 taylor gcc -std=c99 -DTAYLOR
+check "4 lanes of taylor whose errors are rounding" lanes $here/taylor/offset.lag 4 taylor gcc -std=c99 -DTAYLOR -DTOL=1e-15
+check "4 lanes of taylor that leave the domain, each at its time" lanes $here/taylor/edge.lag 4 taylor gcc -std=c99 -DTAYLOR -DTOL=1e-3
 check "8 lanes of dop853, with sines and a solver" lanes models/double_pendulum.lag 8 dop853 gcc -std=c99 -DSINGULAR
 check "4 lanes on constraints: dop853" lanes models/slider_crank.lag 4 dop853 gcc -std=c99 -DHOLD
 slow check "and rk45" lanes models/slider_crank.lag 4 rk45 gcc -std=c99 -DHOLD
