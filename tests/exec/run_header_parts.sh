@@ -90,6 +90,18 @@ else
   skip "8 lanes in C++" "there is no g++"
   skip "4 lanes of taylor in C++" "there is no g++"
 fi
+# What computes one state has no lanes: the header compiles over lanes, a call does not, and says why.
+one_state() { # MODEL PART CALL
+  "$LAGC" header "$1" --with "$2" --prefix all -o "$TMP/all.h" || return 1
+  printf '#define ALL_LANES 4\n#define ALL_STATIC\n#include "all.h"\nint main(void) { all_params p; all_state s; all_defaults(&p); (void)all_start(&p, &s); %s }\n' 'return 0;' >"$TMP/lanes.c"
+  gcc -std=c99 -O1 -w -iquote "$TMP" "$TMP/lanes.c" -lm -o "$TMP/lanes" || return 1
+  sed "s/return 0;/$3/" "$TMP/lanes.c" >"$TMP/call.c"
+  ! gcc -std=c99 -O0 -w -iquote "$TMP" "$TMP/call.c" -lm -o "$TMP/lanes" 2>"$TMP/err" && grep -q 'computes one state, not ALL_LANES: .* by a second header without ALL_LANES' "$TMP/err"
+}
+check "steps to an event over lanes are refused by the compiler" one_state models/bouncing_ball.lag events 'int e; return all_step_until_event(\&p, \&s, ALL_C(0.1), \&e);'
+check "and variational ones" one_state models/pendulum.lag variational 'all_variational w; return all_variational_step(\&p, \&s, \&w, ALL_C(0.1));'
+check "and Moreau's" one_state models/room.lag moreau 'return all_moreau_step(\&p, \&s, ALL_C(0.1), 0);'
+
 march=
 grep -q ' fma .* avx2 ' /proc/cpuinfo 2>/dev/null && march=-march=x86-64-v3
 grep -q ' avx512dq ' /proc/cpuinfo 2>/dev/null && march=-march=x86-64-v4
