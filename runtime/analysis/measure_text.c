@@ -252,10 +252,29 @@ static int quantity(Reader *r, const char *name) {
   return i;
 }
 
+static const MeasureFunction *find_function(const Reader *r, const char *name) {
+  const MeasureDialect *d = &r->m->dialect;
+  for (int i = 0; i < FUNCTIONS; i++)
+    if (strcmp(functions[i].name, name) == 0) return &functions[i];
+  for (int i = 0; i < d->nfunctions; i++)
+    if (strcmp(d->functions[i].name, name) == 0) return &d->functions[i];
+  return NULL;
+}
+
+/* Whether the name is one of a function, max or sin. */
+static int is_function(const Reader *r, const char *name) {
+  int found = find_function(r, name) != NULL;
+  for (int i = 0; i < TRACK_KINDS; i++) found |= strcmp(name, track_words[i]) == 0;
+  return found;
+}
+
 static int no_name(Reader *r, const char *at, const char *name, int call) {
   const lag_scene *scene = r->m->scene;
   const lag_model *m = scene->model;
   char known[LONGEST_NAME];
+  if (!call && is_function(r, name)) return fail(r, at, "%s is a function, and takes its argument in parentheses, %s(%s)", name, name, m->nq ? m->q[0].name : "t");
+  for (int i = 0; i < 2; i++)
+    if (strcmp(name, event_words[i]) == 0) return fail(r, at, "%s takes an event in parentheses, %s(%s)", name, name, m->nev ? m->ev[0].name : "EVENT");
   lag_nearest near = {.name = name};
   for (int i = 0; i < TRACK_KINDS && call; i++) lag_try_nearest(&near, track_words[i]);
   for (int i = 0; i < 2 && call; i++) lag_try_nearest(&near, event_words[i]);
@@ -265,8 +284,9 @@ static int no_name(Reader *r, const char *at, const char *name, int call) {
   if (m->energy) lag_try_nearest(&near, "energy");
   if (!call) lag_try_nearest(&near, "lyapunov");
   if (!near.best && lag_nearest_name(m, name, known, sizeof known)) near.best = known;
-  return fail(r, at, near.best ? "no %s is called %s; did you mean %s?" : "no %s is called %s", call ? "function, output or coordinate" : "output, coordinate, parameter or charge",
-              name, near.best);
+  const char *what = call ? "function, output or coordinate" : "output, coordinate, parameter or charge";
+  if (near.best) return fail(r, at, "no %s is called %s; did you mean %s?", what, name, near.best);
+  return fail(r, at, call ? "no %s is called %s; of a run there are max, min, mean, rms, drift, period, hit, count, and lyapunov without parentheses" : "no %s is called %s", what, name);
 }
 
 /* ---- Grammar */
@@ -321,7 +341,7 @@ static int read_event(Reader *r, int hit) {
   int k = 0;
   lag_nearest near = {.name = name};
   while (k < m->nev && strcmp(m->ev[k].name, name) != 0) lag_try_nearest(&near, m->ev[k++].name);
-  if (k == m->nev) return fail(r, at, near.best ? "no event is called %s; did you mean %s?" : m->nev ? "no event is called %s" : "no event is called %s: the model has none", name, near.best);
+  if (k == m->nev) return fail(r, at, near.best ? "no event is called %s; did you mean %s?" : m->nev ? "no event is called %s; the model has %s" : "no event is called %s: the model has none", name, near.best ? near.best : m->nev ? m->ev[0].name : "");
   int nth = -1;
   if (hit) {
     nth = take(r, ',') ? read_sum(r) : number(r, 1, none);
@@ -348,15 +368,6 @@ static int read_at(Reader *r, int x) {
   r->m->node[i].measured = 1;
   r->m->node[i].known = r->m->node[t].known + 1; /* the time is known before the run, or after some run */
   return i;
-}
-
-static const MeasureFunction *find_function(const Reader *r, const char *name) {
-  const MeasureDialect *d = &r->m->dialect;
-  for (int i = 0; i < FUNCTIONS; i++)
-    if (strcmp(functions[i].name, name) == 0) return &functions[i];
-  for (int i = 0; i < d->nfunctions; i++)
-    if (strcmp(d->functions[i].name, name) == 0) return &d->functions[i];
-  return NULL;
 }
 
 /* name( is read. */

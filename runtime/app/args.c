@@ -53,7 +53,7 @@ int lag_args_count(const Args *a, const char *option, const char *text, const ch
   double value;
   if (!lag_args_number(a, option, text, example, &value)) return EXIT_USAGE;
   if (value > 1e12) return lag_app_error(a, "%s %s: up to 1e12", option, text);
-  if (value < 1 || value != floor(value)) return lag_app_error(a, "%s %s: a whole number, for example %s", option, text, example);
+  if (value < 1 || value != floor(value)) return lag_app_error(a, "%s %s: a whole number above 0, for example %s", option, text, example);
   *x = (long long)value;
   return 0;
 }

@@ -6,9 +6,10 @@
 
 #include "app/app.h"
 
-/* Where the expression begins in NAME=EXPR, or EXPR, whose name is its text. */
+/* Where the expression begins in NAME=EXPR, or EXPR, whose name is its text; x(t=2) is one of these. */
 static const char *split(const char *text, size_t *name_length) {
-  const char *equals = strchr(text, '=');
+  const char *equals = text + strcspn(text, "=(");
+  if (*equals != '=') equals = NULL;
   *name_length = equals ? (size_t)(equals - text) : strlen(text);
   while (*name_length && text[*name_length - 1] == ' ') --*name_length;
   return equals ? equals + 1 + strspn(equals + 1, " ") : text;

@@ -253,6 +253,7 @@ static int check_unit(const SweepApp *s, const Factor *f) {
 /* The values of the first run, so that wrong names and the method that is chosen show before anything runs. */
 static int set_first_values(SweepApp *s) {
   double *value = malloc((size_t)s->plan.n * sizeof *value);
+  const char *rows = s->app->args.rows;
   char with[200];
   int rc = value ? 0 : lag_app_error(&s->app->args, "out of memory");
   if (value) lag_plan_values(&s->plan, 0, value);
@@ -261,7 +262,7 @@ static int set_first_values(SweepApp *s) {
     for (int v = 0; v < s->sweep.nvariants && rc == 0; v++) {
       lag_sim *sim = s->variants[v].like;
       int bad = lag_sim_set(sim, s->plan.factor[k].name, value[k]);
-      rc = bad ? lag_app_error(&s->app->args, "%s%s", variant_words(s, v, with, sizeof with), bad == LAG_ENOMEM ? "out of memory" : lag_sim_message(sim)) : 0;
+      rc = bad ? lag_app_error(&s->app->args, "%s%s%s%s", rows ? rows : "", rows ? ": " : "", variant_words(s, v, with, sizeof with), bad == LAG_ENOMEM ? "out of memory" : lag_sim_message(sim)) : 0;
     }
     rc = rc || check_unit(s, &s->plan.factor[k]) || check_covered(s, k) ? EXIT_USAGE : 0;
   }

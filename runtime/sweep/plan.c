@@ -48,23 +48,32 @@ static int refuse(char *why, size_t size, const char *word, const char *what) {
   return -1;
 }
 
+static int refuse_empty(char *why, size_t size, const char *word, const Factor *f) {
+  char what[120];
+  snprintf(what, sizeof what, "the range is empty: its first value, %g, is not below its last, %g", (double)f->a, (double)f->b);
+  return refuse(why, size, word, what);
+}
+
+static const char range_form[] = "a range is FIRST..LAST:NUMBER, for example 0..1:11; with a unit 0..180[deg]:19",
+                  list_form[] = "a list is numbers and commas, 1,2,5 or 0,90[deg]; a range is 0..1:11; values at random are NAME~normal(MEAN, DEVIATION)";
+
 /* "A..B", "A..B:N", "A..B:log:N" */
 static int read_interval(Factor *f, const char *s, const char *word, char *why, size_t size) {
   double n = 0;
   f->kind = FACTOR_LINEAR;
-  if (!lag_plan_number(&s, &f->a) || !take(&s, "..") || !lag_plan_number(&s, &f->b)) return refuse(why, size, word, "a range is FIRST..LAST:NUMBER, for example 0..1:11");
+  if (!lag_plan_number(&s, &f->a) || !take(&s, "..") || !lag_plan_number(&s, &f->b)) return refuse(why, size, word, range_form);
   if (!*s) {
     f->kind = FACTOR_UNIFORM;
   } else {
-    if (!take(&s, ":")) return refuse(why, size, word, "a range is FIRST..LAST:NUMBER, for example 0..1:11");
+    if (!take(&s, ":")) return refuse(why, size, word, range_form);
     if (take(&s, "log")) f->kind = FACTOR_LOG;
     if (f->kind == FACTOR_LOG && !take(&s, ":")) return refuse(why, size, word, "the number of values is missing, for example 1e-3..1e3:log:7");
-    if (!lag_plan_number(&s, &n) || *s || n != floor(n) || n < 1) return refuse(why, size, word, "the number of values is a whole number, for example 0..1:11");
+    if (!lag_plan_number(&s, &n) || *s || n != floor(n) || n < 1) return refuse(why, size, word, "the number of values is a whole number above 0, as in 0..1:11, or, in equal ratios, 1..100:log:11");
     if (n > MOST_RUNS) return refuse(why, size, word, "a sweep has up to 1e12 runs: take fewer values");
     f->n = (long long)n;
     if (f->n == 1 && f->a != f->b) return refuse(why, size, word, "one value of a range: write the value alone");
   }
-  if (f->b < f->a || (f->b == f->a && f->n != 1)) return refuse(why, size, word, "the range is empty: the first value is not below the last");
+  if (f->b < f->a || (f->b == f->a && f->n != 1)) return refuse_empty(why, size, word, f);
   if (!isfinite(f->b - f->a)) return refuse(why, size, word, "the range is wider than the largest number");
   if (f->kind == FACTOR_LOG && !(f->a > 0)) return refuse(why, size, word, "a range with equal ratios has positive ends");
   return 0;
@@ -84,10 +93,10 @@ static int read_list(Factor *f, const char *s, const char *word, char *why, size
   double x;
   f->kind = FACTOR_LIST;
   do {
-    if (!lag_plan_number(&s, &x)) return refuse(why, size, word, "a list is numbers and commas, for example 1,2,5");
+    if (!lag_plan_number(&s, &x)) return refuse(why, size, word, list_form);
     if (lag_factor_add(f, x)) return refuse(why, size, word, "out of memory");
   } while (take(&s, ","));
-  return *s ? refuse(why, size, word, "a list is numbers and commas, for example 1,2,5") : 0;
+  return *s ? refuse(why, size, word, list_form) : 0;
 }
 
 static int read_distribution(Factor *f, const char *s, const char *word, char *why, size_t size) {
@@ -97,7 +106,7 @@ static int read_distribution(Factor *f, const char *s, const char *word, char *w
   if (!ok) return refuse(why, size, word, "a distribution is normal(MEAN, DEVIATION) or uniform(FIRST, LAST)");
   if (normal && !(f->b > 0)) return refuse(why, size, word, "the deviation is positive");
   if (!normal && !isfinite(f->b - f->a)) return refuse(why, size, word, "the range is wider than the largest number");
-  if (!normal && !(f->b > f->a)) return refuse(why, size, word, "the range is empty: the first value is not below the last");
+  if (!normal && !(f->b > f->a)) return refuse_empty(why, size, word, f);
   return 0;
 }
 
@@ -166,10 +175,17 @@ static int count_grid(SweepPlan *p, char *why, size_t size) {
 int lag_plan_finish(SweepPlan *p, long long samples, char *why, size_t size) {
   p->dimensions = 0;
   for (int k = 0; k < p->n; k++) {
-    if (p->factor[k].n) continue;
+    const Factor *f = &p->factor[k];
+    if (f->n) continue;
+    if (samples == 0 && f->kind == FACTOR_UNIFORM) {
+      char range[160], ratios[200] = "";
+      snprintf(range, sizeof range, "%s=%g..%g", f->name, (double)f->a, (double)f->b);
+      if (f->a > 0) snprintf(ratios, sizeof ratios, " %s:log:11 in equal ratios,", range);
+      snprintf(why, size, "%s: the number of values is missing: write %s:11,%s or add --samples 1000 for random values", range, range, ratios);
+      return -1;
+    }
     if (samples == 0) {
-      snprintf(why, size, p->factor[k].kind == FACTOR_UNIFORM ? "%s: write a number of values behind the range, FIRST..LAST:NUMBER, or for random values --samples 1000"
-               : "%s has a distribution: write the number of samples, for example --samples 1000", p->factor[k].name);
+      snprintf(why, size, "%s has a distribution: write the number of samples, for example --samples 1000", f->name);
       return -1;
     }
     p->dimensions++;
@@ -179,7 +195,7 @@ int lag_plan_finish(SweepPlan *p, long long samples, char *why, size_t size) {
     return -1;
   }
   if (p->n == 0) {
-    snprintf(why, size, "nothing varies: write a range, NAME=FIRST..LAST:NUMBER, for example th=0..1:11, or a list, th=0,1,2");
+    snprintf(why, size, "nothing varies: no value has two dots or a comma; write a range, NAME=FIRST..LAST:NUMBER, for example th=0..1:11, or a list, th=0,1,2");
     return -1;
   }
   if (count_grid(p, why, size)) return -1;

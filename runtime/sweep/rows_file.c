@@ -115,6 +115,7 @@ static int read_names(Rows *r, SweepPlan *p) {
     if (unit && name[n - 1] == ']') *unit = name[n - 1] = '\0', unit += 2;
     else unit = NULL;
     if (!*name) return refuse(r, "column %d has no name", k + 1);
+    if (isdigit((unsigned char)*name) || *name == '-') return refuse(r, "%.60s is no name: the first line has the names of the columns, as th,l", name);
     if (lag_plan_add_column(p, name, unit ? unit : "", r->why, r->size)) return -1;
   }
   return 0;

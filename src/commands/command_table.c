@@ -119,7 +119,7 @@ static const CommandRow commands[] = {
    "  #define PEND_IMPLEMENTATION\n"
    "  #include \"pend.h\"\n\n"
    "Other files include it without the #define; link with -lm. Its first lines show its use. With PEND_LANES defined as 4 or 8 it computes 4 or 8 "
-   "states at once, by rk45, dop853 and taylor (--with) each with a step size and an end of its own.\n\n"
+   "states at once, by rk45, dop853 and taylor (--with) each with a step size and an end of its own; pend_step_until_event, variational and moreau compute one state: over lanes a call of them does not compile, and says so.\n\n"
    "Contacts are followed by `pend_moreau_step`, with friction and however many they are (--with moreau; models of contacts with friction have it anyway). The state says which of them "
    "press, slip, stick, or were struck in the step. With --with moreau dry friction of joints sticks, too; other steps decide at each state.\n\n"
    "With --for it also has callbacks for solvers, exact Jacobians included, and includes their headers: `gsl_odeiv2_system sys = pend_gsl_system(&data);`, "

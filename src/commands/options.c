@@ -155,7 +155,9 @@ static int read_option(Arena *a, int argc, char **argv, int *i, Options *o, cons
   if (row->takes == TAKES_NOTHING && value) return fail_with(error, arena_printf(a, "%s takes no value", row->name));
   if (row->passed) vec_push(a, &o->rest, arg);
   if (row->takes != TAKES_NOTHING && !value) {
-    if (*i + 1 >= argc) return fail_with(error, arena_printf(a, "%s needs a value: %s %s", arg, arg, row->value));
+    const char *next = *i + 1 < argc ? argv[*i + 1] : NULL, *joined;
+    if (!next || strcmp(next, "-o") == 0 || (strncmp(next, "--", 2) == 0 && option_find(o->command, next, &joined)))
+      return fail_with(error, arena_printf(a, "%s needs a value: %s %s", arg, arg, row->value));
     value = argv[++*i];
     if (row->passed) vec_push(a, &o->rest, value);
   }
@@ -183,6 +185,8 @@ static int read_word(Arena *a, const char *arg, Options *o, const char **error) 
     o->file = arg;
     return 1;
   }
+  const char *last = arg + strlen(arg) - (*arg != '\0');
+  if (sets && (*last == '=' || *last == '~')) return fail_with(error, arena_printf(a, "%s: a value is missing; name and value are one word without spaces, as in k=1", arg));
   if (command_simulates(o->command) || sets) {
     if (!sets) add_scene(a, o, arg);
     vec_push(a, &o->rest, arg);

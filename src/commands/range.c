@@ -35,7 +35,7 @@ static size_t number_length(const char *s) {
 static const char *without_unit(Arena *a, const char *text, Range *r) {
   const char *open = strchr(text, '['), *close = open ? strchr(open, ']') : NULL;
   r->unit = "";
-  if (!close || (close[1] && close[1] != ':')) return text;
+  if (!close || open == text || (close[1] && close[1] != ':')) return text;
   r->unit = arena_strndup(a, open, (size_t)(close + 1 - open));
   return arena_printf(a, "%.*s%s", (int)(open - text), text, close + 1);
 }
@@ -53,7 +53,7 @@ Range *range_split(Arena *a, const char *word) {
   const char *from = text, *at = text + head;
   while (*at && *at != ')') {
     size_t n = number_length(at);
-    if (n == 0) { /* a wrong form */
+    if (n == 0 || *at == '[') { /* a wrong form */
       *r = (Range){.name = r->name};
       vec_push(a, &r->between, word);
       return r;

@@ -233,6 +233,11 @@ static const char *charge_names(const Header *h) {
   return comment_text(h->a, sb_text(&b));
 }
 
+void header_one_state(const Header *h, const char *name, const char *way) {
+  csupport_expand(arena_printf(h->a, "int lag_%s(const void *p, ...) __attribute__((error(\"it computes one state, not LAG_LANES: %s\"\n"
+                                     "  \" by a second header without LAG_LANES, with another --prefix\")));\n", name, way), h->upper, h->lower, h->out);
+}
+
 void header_declarations(const Header *h) {
   const IrUnit *u = h->u;
   header_callbacks_include(h);
@@ -264,7 +269,13 @@ void header_declarations(const Header *h) {
     if (f == FN_CHARGES) sb_printf(h->out, "\n * Symmetries: %s.", charge_names(h));
     if ((f == FN_RK4_STEP || f == FN_UNTIL_EVENT || f == FN_RHS) && u->u.n) sb_puts(h->out, "\n * u: the inputs, constant during the step, as of a digital controller; 0 for the model's formulas.");
     const char *text = arena_printf(h->a, "%s_API %s;", h->upper, header_prototype(h, (HeaderFn)f));
-    sb_printf(h->out, " */\n%s\n", header_wrapped(h, text));
+    sb_puts(h->out, " */\n");
+    if (f == FN_UNTIL_EVENT) {
+      csupport_expand("#ifdef LAG_LANES\n", h->upper, h->lower, h->out);
+      header_one_state(h, "step_until_event", "make steps, look at the signs of _events, and go to an event of a lane");
+      sb_puts(h->out, "#else\n");
+    }
+    sb_printf(h->out, "%s\n%s", header_wrapped(h, text), f == FN_UNTIL_EVENT ? "#endif\n" : "");
   }
   header_steps_declare(h);
   header_name_tables(h);

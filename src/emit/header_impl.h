@@ -112,6 +112,8 @@ int header_has_method(const Header *h, const char *name);
 
 /* Prototype broken into lines at its commas. */
 const char *header_wrapped(const Header *h, const char *prototype);
+/* Declares a function that has no lanes, so that a call of it over lanes does not compile, and says the way out. */
+void header_one_state(const Header *h, const char *name, const char *way);
 
 /* "t, q, v, z, p, u" without arrays that the model lacks: as typed parameters, or as arguments with `from` ("s->")
  * before the members of the state. */

@@ -377,6 +377,13 @@ void header_steps_declare(const Header *h) {
   if (has_single(h)) line(h, guard);
   if (header_has_method(h, "variational")) header_variational_declare(h);
   if (header_has_method(h, "moreau")) header_moreau_declare(h);
+  if (has_single(h)) line(h, "#elif defined(LAG_LANES)\n");
+  if (header_has_method(h, "variational")) {
+    line(h, "typedef struct lag_variational { int order; } lag_variational;\n");
+    header_one_state(h, "variational_begin", "make steps by another method, or variational ones");
+    header_one_state(h, "variational_step", "make steps by another method, or variational ones");
+  }
+  if (header_has_method(h, "moreau")) header_one_state(h, "moreau_step", "make such steps");
   if (has_single(h)) line(h, "#endif\n");
   for (uint32_t i = 1; i < sizeof methods / sizeof *methods; i++) {
     const HeaderMethod *m = &methods[i];

@@ -29,7 +29,7 @@ void report_unnamed(const Ast *ast, AstStmtKind kind, Span span, const char *nam
   Name near = nearest(ast, kind, name);
   if (near) diag_help(ast->diags, "did you mean `%s`?", near);
   else if (kind == STMT_EFFECT) diag_help(ast->diags, "declare it: `effect %s { ... }`", name);
-  else diag_help(ast->diags, "the scenes are %s", all_scenes(ast));
+  else diag_help(ast->diags, "the scenes are %s%s", all_scenes(ast), span.end ? "" : "; a value is one word, name=value, and an option's stands behind it");
 }
 
 EffectList model_unused_effects(const Ast *ast) {

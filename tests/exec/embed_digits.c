@@ -1,5 +1,6 @@
 /* Steps of a header against the runtime's, bit by bit (NEAR 0): model M, header prefixes M and U, scene SCENE; METHOD by
- * name. A step in which the runtime finds an event is the last. Exit status 0 when all are equal; prints how many there were. */
+ * name. TOL: tolerance of adaptive methods; STEPS: at most. A step in which the runtime finds an event is the last. Exit
+ * status 0 when all are equal; prints how many there were. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -8,6 +9,10 @@
 #include HEADER
 #include "lag.h"
 
+#ifndef TOL
+#define TOL 1e-9
+#define STEPS 300
+#endif
 #define JOIN2(a, b) a##b
 #define JOIN(a, b) JOIN2(a, b)
 extern const lag_scene SCENE;
@@ -36,10 +41,10 @@ int main(void) {
   lag_sim *sim = lag_sim_new(&SCENE);
   const lag_method *method = &JOIN(lag_, METHOD);
   if (!sim || lag_sim_set_method(sim, method, opt, options) != LAG_OK) return 2;
-  if (ADAPTIVE && lag_sim_set_tolerance(sim, 1e-9) != LAG_OK) return 2;
+  if (ADAPTIVE && lag_sim_set_tolerance(sim, TOL) != LAG_OK) return 2;
   START
   int n = 0, rc = LAG_OK;
-  for (; n < 300; n++) {
+  for (; n < STEPS; n++) {
     rc = lag_sim_ensure_step(sim, far, &reach);
     if (rc == LAG_OK) rc = lag_sim_advance(sim, reach);
     if (rc == LAG_EMETHOD) return STEP == 0 ? printf("Newton's method of the runtime fails in step %d, the header's does not\n", n), 1 : 0;

@@ -70,6 +70,48 @@ static void taylor(int order, Real tolerance) {
   near("which leaves the time", s.t, before.t, 0);
 }
 
+/* Bits of two states. */
+static Real differs(const pendulum_state *a, const pendulum_state *b) { return a->t != b->t || a->q[0] != b->q[0] || a->v[0] != b->v[0]; }
+
+/* A step of Taylor's method from the start at t, towards `until`; the first try is `first` long, or with 0 by the series. */
+static int taylor_once(Real t, Real until, Real first, pendulum_state *s, pendulum_taylor *w) {
+  pendulum_params p;
+  start(&p, s);
+  s->t = t;
+  pendulum_taylor_begin(w, PENDULUM_FN(sqrt)(EPSILON), 8);
+  w->step = first;
+  w->last = -NUMBER(1.0);
+  return pendulum_taylor_step(&p, s, w, until);
+}
+
+/* Steps beside the caller's time: up to 1e-4 too short they are stretched to it, longer ones end there, and are as if they had been tried so; a way of one rounding is
+ * gone, where the step itself may be four roundings at least. */
+static void taylor_ends(void) {
+  static pendulum_taylor w;
+  pendulum_state free_step, s, same;
+  near("a step", taylor_once(0, 1000, 0, &free_step, &w), PENDULUM_OK, 0);
+  const Real h = free_step.t, unit = w.unit, stretched = h*NUMBER(1.00005);
+  near("a step that is all but long enough", taylor_once(0, stretched, 0, &s, &w), PENDULUM_OK, 0);
+  near("is stretched", s.t, stretched, 0);
+  near("one that is not", taylor_once(0, h*NUMBER(1.0002), 0, &s, &w), PENDULUM_OK, 0);
+  near("is the same as without an end", differs(&s, &free_step), 0, 0);
+  near("a way far too long for a step", taylor_once(0, 8, 8, &s, &w), PENDULUM_OK, 0);
+  near("is tried again, shorter", s.t < 8, 1, 0);
+  near("and so is a try beyond it", taylor_once(0, 8, 64, &same, &w), PENDULUM_OK, 0);
+  near("by the same steps", differs(&s, &same), 0, 0);
+  near("and one of half the way", taylor_once(0, 1000, 4, &same, &w), PENDULUM_OK, 0);
+  near("follows it at once", differs(&s, &same), 0, 0); /* a retry is never shorter than half */
+  pendulum_params p;
+  start(&p, &s);
+  (void)taylor_once(0, 1000, 0, &s, &w);
+  near("a short way", pendulum_taylor_step(&p, &s, &w, s.t + h/64), PENDULUM_OK, 0);
+  near("keeps the unit of time", w.unit, unit, 0);
+  near("a way of one rounding", taylor_once(1, 1 + EPSILON, 0, &s, &w), PENDULUM_OK, 0);
+  near("is gone", s.t, 1 + EPSILON, 0);
+  near("a step of two or three", taylor_once(1, 2, 3*EPSILON, &s, &w), PENDULUM_ESTEP, 0);
+  if (EPSILON < NUMBER(1e-15)) near("or one near the least number", taylor_once(0, 2, NUMBER(1e-306), &s, &w), PENDULUM_ESTEP, 0);
+}
+
 static Real variational_error(int order, int n) {
   pendulum_params p;
   pendulum_state s;
@@ -113,6 +155,7 @@ static void variational(void) {
 int main(void) {
   taylor(0, 2*EPSILON);
   taylor(8, PENDULUM_FN(sqrt)(EPSILON));
+  taylor_ends();
   variational();
   return bad;
 }

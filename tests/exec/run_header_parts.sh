@@ -77,6 +77,8 @@ lanes() { # MODEL LANES METHOD COMPILER OPTIONS...
 check "4 lanes of rk45" lanes models/henon_heiles.lag 4 rk45 gcc -std=c99
 check "8 lanes of taylor, with sines and a solver" lanes models/double_pendulum.lag 8 taylor gcc -std=c99 -DTAYLOR -DSINGULAR
 check "4 lanes of taylor, of powers" lanes models/henon_heiles.lag 4 taylor gcc -std=c99 -DTAYLOR
+check "4 lanes of taylor whose errors are rounding" lanes $here/taylor/offset.lag 4 taylor gcc -std=c99 -DTAYLOR -DTOL=1e-15
+check "4 lanes of taylor that leave the domain, each at its time" lanes $here/taylor/edge.lag 4 taylor gcc -std=c99 -DTAYLOR -DTOL=1e-3
 check "8 lanes of dop853, with sines and a solver" lanes models/double_pendulum.lag 8 dop853 gcc -std=c99 -DSINGULAR
 check "4 lanes on constraints: dop853" lanes models/slider_crank.lag 4 dop853 gcc -std=c99 -DHOLD
 slow check "and rk45" lanes models/slider_crank.lag 4 rk45 gcc -std=c99 -DHOLD
@@ -88,6 +90,18 @@ else
   skip "8 lanes in C++" "there is no g++"
   skip "4 lanes of taylor in C++" "there is no g++"
 fi
+# What computes one state has no lanes: the header compiles over lanes, a call does not, and says why.
+one_state() { # MODEL PART CALL
+  "$LAGC" header "$1" --with "$2" --prefix all -o "$TMP/all.h" || return 1
+  printf '#define ALL_LANES 4\n#define ALL_STATIC\n#include "all.h"\nint main(void) { all_params p; all_state s; all_defaults(&p); (void)all_start(&p, &s); %s }\n' 'return 0;' >"$TMP/lanes.c"
+  gcc -std=c99 -O1 -w -iquote "$TMP" "$TMP/lanes.c" -lm -o "$TMP/lanes" || return 1
+  sed "s/return 0;/$3/" "$TMP/lanes.c" >"$TMP/call.c"
+  ! gcc -std=c99 -O0 -w -iquote "$TMP" "$TMP/call.c" -lm -o "$TMP/lanes" 2>"$TMP/err" && grep -q 'computes one state, not ALL_LANES: .* by a second header without ALL_LANES' "$TMP/err"
+}
+check "steps to an event over lanes are refused by the compiler" one_state models/bouncing_ball.lag events 'int e; return all_step_until_event(\&p, \&s, ALL_C(0.1), \&e);'
+check "and variational ones" one_state models/pendulum.lag variational 'all_variational w; return all_variational_step(\&p, \&s, \&w, ALL_C(0.1));'
+check "and Moreau's" one_state models/room.lag moreau 'return all_moreau_step(\&p, \&s, ALL_C(0.1), 0);'
+
 march=
 grep -q ' fma .* avx2 ' /proc/cpuinfo 2>/dev/null && march=-march=x86-64-v3
 grep -q ' avx512dq ' /proc/cpuinfo 2>/dev/null && march=-march=x86-64-v4

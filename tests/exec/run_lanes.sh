@@ -68,6 +68,7 @@ for method in taylor dop853 rk45 rk4; do
   check "$method: runs that fail" same x "$TMP/fall.lag" fast x=0.5..3:9 "x'=-0.1..2:3" --method $method --until 3
 done
 check "taylor: where only rounding is left" same x "$TMP/encounter.lag" near "y'=0.2..0.9:9" --method taylor --tol 1e-15
+check "taylor: errors that are rounding, and fade" same x tests/exec/taylor/offset.lag far x=10001..10007:7 --method taylor --tol 1e-15
 check "steps of equal size across a pole, without an energy that is kept" same x "$TMP/drag.lag" fast x=0.5..3:9 --until 6 --method rk4
 check "measures along the run" same x "$TMP/wobble.lag" free a=-3..3:11 --method dop853 --measure 'max(a)' --measure 'mean(b)' --measure 'drift(energy)' --measure 'a(2)/a(4)'
 check "monitors" same x "$TMP/wobble.lag" watched a=-3..3:7 --method taylor

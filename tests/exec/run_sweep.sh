@@ -421,7 +421,7 @@ check "a histogram of equal values" sweep "$osc" swing x=1,1,1 --measure 'x(0)' 
 is "has one bar" 1 "$(bars | wc -w)"
 check "without a picture" says 2 "needs a picture: --svg FILE.svg" "$LAGC" sweep "$osc" swing x=1,2 --histogram 3 --measure x -o "$TMP/no.csv"
 check "of too many parts" says 2 "up to 500 bars" "$LAGC" sweep "$osc" swing x=1,2 --histogram 501 --measure x --svg "$TMP/no.svg"
-check "of no part" says 2 "a whole number, for example --histogram 40" "$LAGC" sweep "$osc" swing x=1,2 --histogram 0.5 --measure x --svg "$TMP/no.svg"
+check "of no part" says 2 "a whole number above 0, for example --histogram 40" "$LAGC" sweep "$osc" swing x=1,2 --histogram 0.5 --measure x --svg "$TMP/no.svg"
 check "nothing is written" [ ! -e "$TMP/no.csv" ]
 
 # Kirkwood's gap in ten thousand years (Wisdom 1982): asteroids within 0.01 au of 2.5024 au, the 3:1 resonance, cross Mars' orbit; those 0.03 au away keep an eccentricity below 0.2.
@@ -467,8 +467,34 @@ check "no samples" no "a whole number" "$osc" 'w~uniform(1,2)' --samples 0
 check "too many samples" no "up to 1e12" "$osc" 'w~uniform(1,2)' --samples 1e13
 check "a measure of nothing" no "--measure needs a value" "$osc" w=1,2 --measure ''
 check "a unit of another kind" no "this value is in [s]" "$osc" 'w=1..2[s]:3'
-check "a range without number" no "w: write a number of values behind the range, FIRST..LAST:NUMBER" "$osc" w=1..2
-check "no range" no "nothing varies" "$osc" w=1
+check "a range without number" no "w=1..2: the number of values is missing: write w=1..2:11, w=1..2:log:11 in equal ratios, or add --samples 1000" "$osc" w=1..2
+check "from 0: no equal ratios" no "write w=0..2:11, or add" "$osc" w=0..2
+check "no range" no "nothing varies: no value has two dots or a comma" "$osc" w=1
+check "a step in place of a number" no "a whole number above 0, as in 0..1:11, or, in equal ratios, 1..100:log:11" "$osc" w=1..2:0.5
+check "the word log behind the number" no "in equal ratios, 1..100:log:11" "$osc" w=1..2:5:log
+check "a unit without brackets" no "with a unit 0..180[deg]:19" models/pendulum.lag th=0..360deg:5
+check "a list of them" no "1,2,5 or 0,90[deg]" models/pendulum.lag th=0deg,90deg
+check "three dots" no "its first value, 1, is not below its last, 0.2" "$osc" w=1...2:5
+check "a list in brackets, which are for units" no "w=[1,2,3]: a list is numbers and commas" "$osc" w=[1,2,3]
+check "a range in a function's words" no "a range is 0..1:11" "$osc" 'w=linspace(0,1,11)'
+check "a distribution behind =" no "NAME~normal(MEAN, DEVIATION)" "$osc" 'w=normal(1,2)' --samples 3
+check "an empty value" no "w=: a value is missing; name and value are one word without spaces" "$osc" w= 1..2:5
+check "an equals sign alone" no "=: a value is missing; name and value are one word" "$osc" w = 1..2:5
+check "a list of three words" says 1 "a value is one word, name=value" "$LAGC" sweep "$osc" w=1 2 3 -o "$TMP/no.csv"
+check "a measure beside its option" says 1 "an option's stands behind it" "$LAGC" sweep "$osc" w=1,2 --measure 'max(x)' 'min(x)' -o "$TMP/no.csv"
+check "an option in place of a value" says 2 "--samples needs a value: --samples N" "$LAGC" sweep "$osc" 'w~normal(1,2)' --samples -o "$TMP/no.csv"
+check "and of a file" says 2 "-o needs a value: -o FILE" "$LAGC" sweep "$osc" w=1,2 -o --measure x
+check "a function without its argument" no "max is a function, and takes its argument in parentheses, max(x)" "$osc" w=1,2 --measure max
+check "or with a space" no "max is a function" "$osc" w=1,2 --measure 'max x'
+check "an event without parentheses" no "hit takes an event in parentheses, hit(far)" "$osc" w=1,2 --measure 'hit far'
+check "a function that is not there" no "of a run there are max, min, mean, rms" "$osc" w=1,2 --measure 'final(x)'
+check "a coordinate as event" no "no event is called x; the model has far" "$osc" w=1,2 --measure 'count(x)'
+check "a value at a time, with its name" no 'x(t=2): character 4: expected `)` before `=2)`' "$osc" w=1,2 --measure 'x(t=2)'
+check "no thread" no "--threads 0: a whole number above 0" "$osc" w=1,2 --threads 0
+printf '1,2\n3,4\n' >"$TMP/bare.in.csv"
+printf 'w,zeal\n3,4\n' >"$TMP/zeal.in.csv"
+check "rows without names" no "bare.in.csv:1: 1 is no name: the first line has the names of the columns" "$osc" --rows "$TMP/bare.in.csv"
+check "rows of an unknown name" no "zeal.in.csv: zeal: no such parameter" "$osc" --rows "$TMP/zeal.in.csv"
 check "a range of other programs" no "write a range, NAME=FIRST..LAST:NUMBER" "$osc" w=1:2:5
 check "a value as an option" no "a value of the model has no dashes: w=1" "$osc" --w 1
 check "a name that is not there" no "did you mean stiffer" "$osc" stifer=1,2
