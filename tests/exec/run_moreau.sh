@@ -317,6 +317,18 @@ check "at rest" near "$(final "b'")" 0 1e-12
 check "its energy never grows" awk -F, 'NR > 2 && $4 > was + 1e-12 { bad = 1 } { was = $4 } END { exit bad }' "$TMP/csv"
 leg_drift() { run leg s --method "moreau(step=$1)" --until 0.4 && number drift; }
 check "before the first impact the balance is of order 2" near "$(calc "$(leg_drift 0.01)/($(leg_drift 0.005))")" 4 0.3
+model bump <<'END_OF'
+model bump "A block that rubs strikes a heavier one, and comes back with half its speed"
+coord x [m], y [m]
+kinetic = 1 [kg]/2*x'^2 + 3 [kg]/2*y'^2
+friction rub on x: 1 [N]
+contact hit: y - x >= 0, restitution = 1
+scene s { start x' = 2 [m/s], y = 0.125 [m]; span 0.5 [s]; output x', y', energy every 0.01 [s] }
+END_OF
+check "an impact turns the slip round" run bump s --method 'moreau(step=0.01)'
+check "once" near "$(number impacts)" 1 0
+check "nor then does friction bring energy in" awk -F, 'NR > 2 && $4 > was + 1e-12 { print; bad = 1 } { was = $4 } END { exit bad }' "$TMP/csv"
+check "momentum is what friction leaves, 1 N before and -1 N behind, to the step" near "$(calc "$(final "x'") + 3*($(final "y'"))")" "$(calc '2 - 0.0635 + (0.5 - 0.0635)')" 0.02
 model rubs <<'END_OF'
 model rubs
 coord x [m], y [m]
