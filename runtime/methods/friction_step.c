@@ -17,8 +17,8 @@ static int is_surface(const lag_problem *pb, int k) { return pb->model->switches
 static size_t lay_out(const lag_problem *pb, double *room, FrictionStep *w) {
   const lag_model *m = pb->model;
   size_t nm = (size_t)m->nmodes, ns = (size_t)m->nswitch;
-  double **const parts[] = {&w->mode, &w->sticks, &w->bound, &w->response, &w->before, &w->was, &w->entry, &w->slip, &w->other, &w->d, &w->at};
-  const size_t sizes[] = {nm, nm, nm, nm, nm, nm, nm, ns, ns, nm * (size_t)pb->n, (size_t)pb->n};
+  double **const parts[] = {&w->mode, &w->sticks, &w->bound, &w->response, &w->before, &w->was, &w->entry, &w->change, &w->stride, &w->slip, &w->other, &w->d, &w->at};
+  const size_t sizes[] = {nm, nm, nm, nm, nm, nm, nm, nm, nm, ns, ns, nm * (size_t)pb->n, (size_t)pb->n};
   for (int k = 0; k < m->nmodes; k++) w->n += is_surface(pb, k) != 0;
   return w->n ? lag_cut(room, sizeof sizes / sizeof *sizes, parts, sizes) : 0;
 }
@@ -54,6 +54,7 @@ int lag_friction_step_begin(FrictionStep *w, lag_problem *pb, double t, const do
   if (rc == 0 && m->switch_grips && (rc = m->switch_grips(t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, w->bound, pb->work)) != 0) rc = lag_step_refused(pb, rc, t);
   for (int k = 0; k < m->nmodes && rc == 0; k++) {
     w->before[k] = w->slip[k];
+    w->change[k] = w->stride[k] = 0;
     if (!m->switch_grips || !(w->bound[k] > 1) || !(w->sticks[k] != 0.0 || w->slip[k] == 0.0)) w->bound[k] = 1;
   }
   return rc;
@@ -136,6 +137,18 @@ int lag_friction_step_note(FrictionStep *w, lag_problem *pb, double t, const dou
     if (w->sticks[k] != 0.0 && fabs(w->mode[k]) == 1.0) pb->hold[pb->model->nu + k] *= 1 - DBL_EPSILON; /* 1 is that of a body that slips */
   }
   return rc;
+}
+
+void lag_friction_step_lengthen(FrictionStep *w, lag_problem *pb) {
+  for (int k = 0; k < pb->model->nmodes; k++) {
+    double change = w->mode[k] - w->was[k];
+    int goes_on = change * w->change[k] > 0 && fabs(change) >= fabs(w->change[k]) / 2;
+    w->stride[k] = goes_on ? fmin(2 * w->stride[k] + 1, 1e6) : 0;
+    w->change[k] = change;
+    if (!is_surface(pb, k) || !goes_on) continue;
+    double to = w->mode[k] + w->stride[k] * change;
+    hold(w, pb, k, fabs(to) > w->bound[k] ? copysign(1, to) : to);
+  }
 }
 
 void lag_friction_step_carry(const FrictionStep *w, const lag_problem *pb, double part, double *x) {

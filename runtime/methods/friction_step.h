@@ -7,7 +7,7 @@
 typedef struct FrictionStep {
   int n;                 /* surfaces on which bodies may stick */
   double *mode, *sticks; /* [nmodes] mean of the sign of the slip in the last step: friction in parts of its size; whether that held it */
-  double *bound, *response, *before, *was, *entry; /* [nmodes] the largest mode; change of the slip by a mode of 1; slip at the begin; modes before a round; in pb->hold before the step */
+  double *bound, *response, *before, *was, *entry, *change, *stride; /* [nmodes] the largest mode; change of the slip by a mode of 1; slip at the begin; modes before a round; in pb->hold before the step; change by the last round, and strides in parts of it */
   double *slip, *other;  /* [nswitch] */
   double *d, *at;        /* [nmodes n] rates for a mode of 1; [n] */
 } FrictionStep;
@@ -24,5 +24,8 @@ int lag_friction_step_response(FrictionStep *w, lag_problem *pb, double tm, doub
 int lag_friction_step_solve(FrictionStep *w, lag_problem *pb, double t, double h, int struck, const double *mid, double *x, double *moved);
 /* Beside contacts, once all agree at x: notes the surfaces whose slip is 0 there; friction may be at its limit where contacts hold the body, too. */
 int lag_friction_step_note(FrictionStep *w, lag_problem *pb, double t, const double *mid, const double *x);
-/* x[n] := x + part times what the last call of solve changed. */
+/* Goes on by longer strides on surfaces whose mode changes in the same direction round by round, as where contacts leave a slip that is small beside what friction changes: then friction comes to its limit by
+ * small equal steps. */
+void lag_friction_step_lengthen(FrictionStep *w, lag_problem *pb);
+/* x[n] := x + part times what the last calls of solve and lengthen changed. */
 void lag_friction_step_carry(const FrictionStep *w, const lag_problem *pb, double part, double *x);

@@ -83,7 +83,8 @@ static double set_between(const lag_problem *pb, double dt, double part, const d
 
 /* Y1 := FREE with impulses of contacts and dry friction, which agree: in turns, until friction changes nothing more. */
 static int agree(Moreau *w, lag_problem *pb, double tm, double t, double dt, ContactStep *contacts, FrictionStep *f) {
-  enum { ROUNDS = 10000 };
+  enum { ROUNDS = 500 };
+  const double little = 1e-5; /* of the largest slip, or of what friction changes: friction that follows it to its limit by many small steps */
   int n = pb->n, nq = pb->nq, rc = 0;
   double *y1 = w->x + Y1 * n, *free = w->x + FREE * n, moved = 0, before = 0;
   for (int round = 0; round < ROUNDS; round++) {
@@ -91,10 +92,12 @@ static int agree(Moreau *w, lag_problem *pb, double tm, double t, double dt, Con
     rc = lag_contact_step_solve(contacts, pb, tm, y1 + nq);
     rc = rc ? rc : lag_friction_step_solve(f, pb, t, dt, contacts->impacts > 0, w->x + MID * n, y1, &moved);
     if (rc || moved <= 64 * DBL_EPSILON || (round > 0 && moved <= 1e7 * DBL_EPSILON && moved >= before / 2)) return rc;
+    lag_friction_step_lengthen(f, pb);
     lag_friction_step_carry(f, pb, dt, free);
     lag_friction_step_carry(f, pb, 1, w->x + RATE0 * n);
     before = moved;
   }
+  if (moved <= little) return 0;
   pb->detail = "impulses of contacts and dry friction do not agree: take smaller steps";
   return lag_step_failed(pb, LAG_EMETHOD, tm);
 }
