@@ -1,5 +1,7 @@
 /* Marks of an animation. Enters: a run under way, its events. Leaves: the times at which contacts, constraints with a condition and surfaces of friction begin to act, stick, slip
  * and let go, and those of impacts and events. Holds: nothing is noted unless an animation is written; noting does not change the run. */
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "app/app.h"
@@ -39,31 +41,38 @@ static int add(Marks *marks, double t, int track, int word) {
   return 0;
 }
 
-/* Contacts that are met by impulses act where the last step pressed them. */
-static int contact_word(const lag_sim *s, int i) {
+static int has_impulses(const lag_sim *s) { return s->pb.contacts && s->pb.contacts->length > 0; }
+
+/* Contacts that are met by impulses act where the last step pressed them, and stick where friction was below its limit. */
+static int contact_word(const lag_sim *s, int i, const double *law) {
   const lag_model *m = s->scene->model;
   const lag_contact *c = &m->contacts[i];
-  int impulses = s->pb.contacts && s->pb.contacts->length > 0;
-  if (c->is_tangent || !(impulses && !c->conditional ? s->pb.contact_impulse[i] > 0 : lag_contact_is_closed(s, c))) return MARK_NONE;
-  if (impulses || i + 1 == m->ncontacts || !m->contacts[i + 1].is_tangent) return MARK_ACTS;
-  return lag_contact_is_closed(s, c + 1) ? MARK_STICKS : MARK_SLIPS;
+  const double *P = s->pb.contact_impulse;
+  double rub = 0;
+  if (c->is_tangent || !(has_impulses(s) ? P[i] > 0 : lag_contact_is_closed(s, c))) return MARK_NONE;
+  if (i + 1 == m->ncontacts || !m->contacts[i + 1].is_tangent) return MARK_ACTS;
+  if (!has_impulses(s)) return lag_contact_is_closed(s, c + 1) ? MARK_STICKS : MARK_SLIPS;
+  for (int k = i + 1; k < m->ncontacts && m->contacts[k].is_tangent; k++) rub = hypot(rub, P[k]);
+  return rub < law[3 * (i + 1)] * P[i] * (1 - 64 * DBL_EPSILON) ? MARK_STICKS : MARK_SLIPS;
 }
 
 static int surface_word(const lag_sim *s, int k) {
-  if (!s->scene->model->switches[k].jumps) return MARK_NONE;
-  for (int i = 0; i < s->pb.nslide; i++)
-    if (s->pb.sliding[i] == k) return MARK_STICKS;
-  return MARK_SLIPS;
+  return !s->scene->model->switches[k].jumps ? MARK_NONE : lag_switch_sticks(s, k) ? MARK_STICKS : MARK_SLIPS;
 }
 
 int lag_marks_note(App *app) {
   const lag_model *m = app->scene->model;
-  for (int i = 0; app->marked && i < m->ncontacts + m->nmodes; i++) {
-    int word = i < m->ncontacts ? contact_word(app->sim, i) : surface_word(app->sim, i - m->ncontacts);
-    if (word != app->marked[i] && add(&app->show.marks, lag_sim_time(app->sim), i, word)) return LAG_ENOMEM;
+  lag_sim *s = app->sim;
+  double *law = s->pb.rub, t = lag_sim_time(s); /* the step behind t is known already */
+  int impulses = app->marked && has_impulses(s), struck = impulses && s->pb.contacts->from < s->run->step_t1;
+  int rc = impulses && m->contact_laws ? lag_contact_laws(s, s->now, law) : LAG_OK;
+  for (int i = 0; app->marked && i < m->ncontacts + m->nmodes && rc == 0; i++) {
+    int word = i < m->ncontacts ? contact_word(s, i, law) : surface_word(s, i - m->ncontacts), was = app->marked[i];
+    if (word != was && add(&app->show.marks, t, i, word)) return LAG_ENOMEM;
+    if (struck && i < m->ncontacts && word != was && was == MARK_NONE && add(&app->show.marks, t, m->ncontacts + m->nmodes + m->contacts[i].impact, MARK_EVENT)) return LAG_ENOMEM;
     app->marked[i] = word;
   }
-  return LAG_OK;
+  return rc;
 }
 
 int lag_marks_event(App *app, int k, double t) {

@@ -92,13 +92,11 @@ void lag_charges_nodes(lag_sim *s) {
 /* Number of powers: those of the charges, and that of dry friction. */
 static int npowers(const lag_model *m) { return m->charges->n + m->charges->dry_friction; }
 
-/* gain[npowers] := int P dt over [a, b], within the last step; NaN where P has no value. */
-static void work_over(lag_sim *s, double a, double b, double *gain) {
+/* gain[npowers] += int P dt over [a, b], where dense output is smooth; NaN where P has no value. */
+static void add_piece(lag_sim *s, double a, double b, double *gain) {
   const lag_model *m = s->scene->model;
   int n = npowers(m), nq = m->nq;
   double *y = s->yc;
-  lag_charges_nodes(s);
-  memset(gain, 0, (size_t)n * sizeof *gain);
   for (int i = 0; i < s->nodes && a != b; i++) {
     double t = a + s->node[i] * (b - a);
     s->method->dense(s->method_work, &s->pb, t, y);
@@ -106,6 +104,16 @@ static void work_over(lag_sim *s, double a, double b, double *gain) {
     rc = rc ? rc : m->charges->powers(t, y, y + nq, y + 2 * nq, s->p, s->u, s->charge_power, s->work);
     for (int k = 0; k < n; k++) gain[k] += rc ? NAN : (b - a) * s->weight[i] * s->charge_power[k];
   }
+}
+
+/* gain[npowers] := int P dt over [a, b], within the last step, in whose middle velocities jump where contacts are met by impulses. */
+static void work_over(lag_sim *s, double a, double b, double *gain) {
+  const lag_contact_stats *c = s->pb.contacts;
+  double jump = c && a < c->from && c->from < b ? c->from : a;
+  lag_charges_nodes(s);
+  memset(gain, 0, (size_t)npowers(s->scene->model) * sizeof *gain);
+  add_piece(s, a, jump, gain);
+  add_piece(s, jump, b, gain);
 }
 
 /* *sum += x with compensation: W. Kahan, Commun. ACM 8 (1965) 40, DOI 10.1145/363707.363723. */

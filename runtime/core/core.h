@@ -213,6 +213,9 @@ int lag_switch_eval(lag_sim *sim, double t, const double *y, double *g);
 double lag_switch_noise(const lag_sim *sim, int k);
 int lag_switch_fail_zeno(lag_sim *sim, int k);
 void lag_switch_count(lag_sim *sim);
+/* step: counts for the step from `now` to y at t, where the method finds modes. sticks: whether the motion does on surface k. */
+int lag_switch_step(lag_sim *sim, double t);
+int lag_switch_sticks(const lag_sim *sim, int k);
 /* 1: no branch is held, for right-hand sides at states that are not of the run; 0: those of the run again. */
 void lag_switch_set_free(lag_sim *sim, int free);
 /* Holds switch k at mode m, 0: sliding, for right-hand sides beside the surface. */

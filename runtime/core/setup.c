@@ -252,6 +252,7 @@ static int check_method(lag_sim *s, const lag_method *method) {
   }
   for (int k = 0; k < m->nmodes; k++) {
     if (!m->switches[k].jumps || !(needs & (LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_IMPULSES))) continue;
+    if ((needs & LAG_METHOD_IMPULSES) && !m->switches[k].nonnegative) continue;
     return lag_fail(s, LAG_EMETHOD, "method %s cannot follow a motion that sticks or slides where `%s` jumps; rk45, dop853, radau and rk4 can", method->name,
                     m->switches[k].text);
   }

@@ -69,6 +69,7 @@ static int take(lag_sim *s, double t_stop) {
   rc = rc ? rc : lag_changes_branch(s, t);
   rc = rc ? rc : lag_detect_stall(s, t);
   rc = rc ? rc : lag_crosses_force_pole(s, t);
+  rc = rc ? rc : lag_switch_step(s, t);
   if (rc) return lag_explain(s, rc);
   r->steps++;
   r->have_step = 1;

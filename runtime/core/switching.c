@@ -19,7 +19,9 @@
 #include "numeric/dense.h"
 
 static double *mode(const lag_sim *s, int k) { return &s->hold[s->scene->model->nu + k]; }
-static int slides(const lag_problem *pb, int k) { return pb->hold[pb->model->nu + k] == 0.0 && !pb->model->switches[k].is_floor; }
+/* Whether the method finds the mode of switch k itself, step by step, as friction beside contacts that are met by impulses. */
+static int is_stepped(const lag_sim *s, int k) { return (s->method->flags & LAG_METHOD_IMPULSES) && s->scene->model->switches[k].jumps; }
+static int slides(const lag_sim *s, int k) { return *mode(s, k) == 0.0 && !s->scene->model->switches[k].is_floor && !is_stepped(s, k); }
 
 /* ---- The sliding motion */
 
@@ -74,7 +76,7 @@ int lag_inputs_at(lag_problem *pb, double t, const double *y) {
 void lag_switch_count(lag_sim *s) {
   s->pb.nslide = 0;
   for (int k = 0; k < s->scene->model->nmodes; k++)
-    if (slides(&s->pb, k)) s->pb.sliding[s->pb.nslide++] = k;
+    if (slides(s, k)) s->pb.sliding[s->pb.nslide++] = k;
 }
 
 void lag_switch_hold(lag_sim *s, int k, double m) {
@@ -116,12 +118,12 @@ int lag_switch_eval(lag_sim *s, double t, const double *y, double *g) {
   if (rc == 0 && s->pb.nslide) rc = find_grips(s, t, y);
   for (int k = 0; k < m->nmodes && rc == 0; k++) {
     double held = *mode(s, k), side = s->sides[k], now = s->u[m->nu + k];
-    g[k] = m->switches[k].is_floor ? (side - held) * (held + 1 - side) : held == 0.0 ? s->grip[k] * s->grip[k] - now * now : held * side;
+    g[k] = is_stepped(s, k) ? 1 : m->switches[k].is_floor ? (side - held) * (held + 1 - side) : held == 0.0 ? s->grip[k] * s->grip[k] - now * now : held * side;
   }
   return rc;
 }
 
-double lag_switch_noise(const lag_sim *s, int k) { return slides(&s->pb, k) ? 1e-12 : 2 * s->side_noise[k]; }
+double lag_switch_noise(const lag_sim *s, int k) { return slides(s, k) ? 1e-12 : 2 * s->side_noise[k]; }
 
 /* side_noise[nmodes] := change of the switching functions g[nmodes] when the state at the present time changes in its last digits. */
 static int find_noise(lag_sim *s, const double *g) {
@@ -290,11 +292,11 @@ static int choose(lag_sim *s, Meeting *w, const double *left, double *in) {
 
 /* The mode of switch k becomes m; counts the time of sliding. */
 static void change_mode(lag_sim *s, int k, double m) {
-  int slid = slides(&s->pb, k);
+  int slid = slides(s, k);
   set_mode(s, k, m);
   if (slid) s->slid[k] += fabs(s->run->t - s->slid_since[k]);
   s->slid_since[k] = s->run->t;
-  if (!slid && slides(&s->pb, k)) s->slips[k]++;
+  if (!slid && slides(s, k)) s->slips[k]++;
 }
 
 /* Chooses the branches of the switches that meets[k] says are at their surface. *changed, unless NULL: whether any is another than before. */
@@ -333,7 +335,11 @@ int lag_switch_place(lag_sim *s) {
   rc = rc ? rc : find_noise(s, g);
   if (rc) return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "the switching functions have no value at t = %s s", LAG_TEXT(s->run->t));
   for (int k = 0; k < m->nmodes; k++) {
-    int is_floor = m->switches[k].is_floor, slid = slides(&s->pb, k);
+    if (is_stepped(s, k)) {
+      if (s->slid[k] == 0.0) s->slid_since[k] = NAN; /* the last time at which it stuck */
+      continue;
+    }
+    int is_floor = m->switches[k].is_floor, slid = slides(s, k);
     double far = is_floor ? fabs(g[k] - round(g[k])) : fabs(g[k]);
     if (far <= s->side_noise[k] + (slid ? s->slid_off[k] : 0) || s->meets[k] != 0.0) s->meets[k] = 1;
     else if (is_floor) *mode(s, k) = floor(g[k]);
@@ -353,7 +359,7 @@ int lag_switch_before_events(lag_sim *s) {
 
 void lag_switch_meet(lag_sim *s, int k) {
   s->meets[k] = 1;
-  if (slides(&s->pb, k)) s->left[k] = s->u[s->scene->model->nu + k] > 0 ? 1 : -1;
+  if (slides(s, k)) s->left[k] = s->u[s->scene->model->nu + k] > 0 ? 1 : -1;
 }
 
 int lag_switch_settle(lag_sim *s, int *changed) {
@@ -369,9 +375,32 @@ int lag_switch_fail_zeno(lag_sim *s, int k) {
   return fail_at(s, LAG_EZENO, k, "it does so again and again in ever shorter time, and does not come to rest; smooth it, as tanh(v/w) for sign(v), or let an event stop the run");
 }
 
+int lag_switch_sticks(const lag_sim *s, int k) { return is_stepped(s, k) ? s->slid_since[k] == s->run->step_t1 : slides(s, k); }
+
+int lag_switch_step(lag_sim *s, double t) {
+  const lag_model *m = s->scene->model;
+  const lag_contact_stats *c = s->pb.contacts;
+  int struck = c && c->from > s->run->t && c->from < t, rc = 0;
+  double *before = s->sides, *after = s->sides + m->nswitch;
+  if (!(s->method->flags & LAG_METHOD_IMPULSES) || m->nmodes == 0) return LAG_OK;
+  rc = lag_inputs(&s->pb, s->run->t);
+  rc = rc ? rc : sides_at(s, s->run->t, s->now, before);
+  rc = rc ? rc : lag_inputs(&s->pb, t);
+  rc = rc ? rc : sides_at(s, t, s->y, after);
+  for (int k = 0; k < m->nmodes && rc == 0; k++) {
+    if (!is_stepped(s, k)) continue;
+    int stuck = s->slid_since[k] == s->run->step_t1, sticks = fabs(*mode(s, k)) != 1.0 && !struck;
+    if (sticks) s->slid[k] += t - (stuck ? s->slid_since[k] : s->run->t);
+    if (sticks) s->slid_since[k] = t;
+    s->slips[k] += sticks && !stuck;
+    s->crossed[k] += !sticks && !stuck && before[k] * after[k] < 0;
+  }
+  return rc;
+}
+
 double lag_sim_switch_times(const lag_sim *s, int k, long long *crossings, long long *slides_begun) {
   if (!s || k < 0 || k >= s->scene->model->nmodes) return NAN;
   if (crossings) *crossings = (long long)s->crossed[k];
   if (slides_begun) *slides_begun = (long long)s->slips[k];
-  return s->slid[k] + (slides(&s->pb, k) ? fabs(s->run->t - s->slid_since[k]) : 0);
+  return s->slid[k] + (slides(s, k) ? fabs(s->run->t - s->slid_since[k]) : 0);
 }

@@ -73,7 +73,7 @@ typedef struct lag_problem {
   int n, nq, nz;       /* n = 2 nq + nz */
   const double *p;     /* [np + nderived] parameters */
   double *u;           /* [nu + nmodes] inputs and modes of switches, filled by lag_rhs */
-  const double *hold;  /* [nu + nmodes] constants that replace inputs, NaN where an input is not replaced; modes, 0 where the motion slides */
+  double *hold;        /* [nu + nmodes] constants that replace inputs, NaN where an input is not replaced; modes, 0 where the motion slides, which methods with LAG_METHOD_IMPULSES set where forces jump */
   const lag_signal *signal; /* [nu] functions that replace inputs */
   double *work;        /* [nw] */
   double *held;        /* [lag_constraint_scratch_size] scratch of the constraint functions below */

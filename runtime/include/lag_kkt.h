@@ -523,7 +523,7 @@ static LAG_LANE lag_eliminate(int n, int r, LAG_LANE *M, LAG_LANE *x, LAG_LANE *
  * + 2*n + 9*m] is scratch. Returns whether M is regular on the kernel of A, by more than rounding: pivots and the solution for an arbitrary
  * right-hand side bound the inverse from below (J. D. Dixon, SIAM J. Numer. Anal. 20 (1983) 812, DOI 10.1137/0720053); its norm times the
  * rounding of M is to be below a hundredth. */
-static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
+static int lag_kkt_rows(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
 #ifdef LAG_BAND_LEAST
   if (n + m >= LAG_BAND_LEAST && lag_banded(n, m, M, A, x, l, w, n*n + m*n + m*m + 2*n + 9*m)) return 1;
 #endif
@@ -573,6 +573,27 @@ static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_
   lag_least_multipliers(n, m, r, A, diag, scale, s, mu, S);
   for (int j = 0; j < m; j++) l[(int)order[j]] = mu[j];
   return 1;
+}
+
+/* The same without rows of A that are 0, as of contacts that are open: their multipliers are 0. */
+static int lag_kkt_lane(int n, int m, int coarse, LAG_LANE *M, LAG_LANE *A, LAG_LANE *x, LAG_LANE *l, LAG_LANE *w) {
+  LAG_LANE *const row = w + n*n + m*n + m*m + 2*n + 8*m; /* [m]; fewer rows need less scratch */
+  int kept = 0;
+  for (int j = 0; j < m; j++) {
+    int i = 0;
+    while (i < n && A[j*n + i] == 0) i++;
+    if (i == n) continue;
+    for (i = 0; i < n && kept < j; i++) A[kept*n + i] = A[j*n + i];
+    l[kept] = l[j];
+    row[kept++] = (LAG_LANE)j;
+  }
+  const int regular = lag_kkt_rows(n, kept, coarse, M, A, x, l, w);
+  for (int j = m - 1, k = kept - 1; kept < m && j >= 0; j--) {
+    const int here = k >= 0 && (int)row[k] == j;
+    l[j] = here ? l[k] : 0;
+    k -= here;
+  }
+  return regular;
 }
 
 #ifndef LAG_LANES

@@ -9,21 +9,23 @@
 
 #include "lag.h"
 #include "methods/contact_step.h"
+#include "methods/friction_step.h"
 #include "methods/steps.h"
 
 static const lag_method_option options[] = {LAG_STEP_OPTION};
 
-/* Head of the saved state; behind it arrays of n, and 2 doubles a contact of the model: friction, tangential restitution. */
+/* Head of the saved state; behind it arrays of n, 2 doubles a contact of the model, friction and tangential restitution, and the room of dry friction. */
 typedef struct Moreau {
   lag_fixed_step step;
   double struck; /* the last step had an impact */
   double x[];
 } Moreau;
-enum { Y0, Y1, RATE, RATE0, MID, COMP, ARRAYS };
+enum { Y0, Y1, RATE, RATE0, MID, COMP, FREE, SIZE, ARRAYS };
 
-static size_t work_size(const lag_problem *pb) { return sizeof(Moreau) / sizeof(double) + ARRAYS * (size_t)pb->n + 2 * (size_t)pb->model->ncontacts; }
+static size_t work_size(const lag_problem *pb) { return sizeof(Moreau) / sizeof(double) + ARRAYS * (size_t)pb->n + 2 * (size_t)pb->model->ncontacts + lag_friction_step_size(pb); }
 
 static double *law_of(Moreau *w, const lag_problem *pb) { return w->x + ARRAYS * pb->n; }
+static FrictionStep friction_of(Moreau *w, const lag_problem *pb) { return lag_friction_step(pb, law_of(w, pb) + 2 * pb->model->ncontacts); }
 
 static void reset(void *work, lag_problem *pb) {
   Moreau *w = work;
@@ -37,6 +39,7 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   const lag_model *m = pb->model;
   int rc = 0;
   w->step.h = lag_step_size(pb, opt[0]);
+  memset(law_of(w, pb) + 2 * m->ncontacts, 0, lag_friction_step_size(pb) * sizeof(double));
   reset(work, pb);
   if (!m->contact_laws) return LAG_OK;
   rc = lag_inputs(pb, 0);
@@ -78,20 +81,51 @@ static double set_between(const lag_problem *pb, double dt, double part, const d
   return most;
 }
 
-/* Y1: velocities and states at the end of a step from y. Forces are those at the mean velocity; of a step with an impact the mean of those at both ends, since the mean of velocities that jump is none that occurs. */
-static int kick(Moreau *w, lag_problem *pb, double tm, double dt, const double *y, ContactStep *contacts) {
-  enum { TURNS = 100 };
+/* Y1 := FREE with impulses of contacts and dry friction, which agree: in turns, until friction changes nothing more. */
+static int agree(Moreau *w, lag_problem *pb, double tm, double t, double dt, ContactStep *contacts, FrictionStep *f) {
+  enum { ROUNDS = 500 };
+  const double little = 1e-5; /* of the largest slip, or of what friction changes: friction that follows it to its limit by many small steps */
   int n = pb->n, nq = pb->nq, rc = 0;
-  double *y1 = w->x + Y1 * n, *rate = w->x + RATE * n, *rate0 = w->x + RATE0 * n, *mid = w->x + MID * n, before = HUGE_VAL;
+  double *y1 = w->x + Y1 * n, *free = w->x + FREE * n, moved = 0, before = 0;
+  for (int round = 0; round < ROUNDS; round++) {
+    memcpy(y1 + nq, free + nq, (size_t)(n - nq) * sizeof *y1);
+    rc = lag_contact_step_solve(contacts, pb, tm, y1 + nq);
+    rc = rc ? rc : lag_friction_step_solve(f, pb, t, dt, contacts->impacts > 0, w->x + MID * n, y1, &moved);
+    if (rc || moved <= 64 * DBL_EPSILON || (round > 0 && moved <= 1e7 * DBL_EPSILON && moved >= before / 2)) return rc;
+    lag_friction_step_lengthen(f, pb);
+    lag_friction_step_carry(f, pb, dt, free);
+    lag_friction_step_carry(f, pb, 1, w->x + RATE0 * n);
+    before = moved;
+  }
+  if (moved <= little) return 0;
+  pb->detail = "impulses of contacts and dry friction do not agree: take smaller steps";
+  return lag_step_failed(pb, LAG_EMETHOD, tm);
+}
+
+/* Y1: velocities and states at the end t of a step from y. Forces are those at the mean velocity; of a step with an impact the mean of those at both ends, since the mean of velocities that jump is none that occurs. */
+static int kick(Moreau *w, lag_problem *pb, double tm, double t, double dt, const double *y, ContactStep *contacts, FrictionStep *f) {
+  enum { TURNS = 100 };
+  int n = pb->n, nq = pb->nq, meets = pb->model->ncontacts > 0, rc = 0;
+  double *y1 = w->x + Y1 * n, *rate = w->x + RATE * n, *rate0 = w->x + RATE0 * n, *mid = w->x + MID * n, *size = w->x + SIZE * n, before = HUGE_VAL, moved;
   for (int turn = 0; turn < TURNS; turn++) {
     if ((rc = lag_step_rhs(pb, tm, mid, rate)) != 0) return rc;
     if (turn == 0) memcpy(rate0, rate, (size_t)n * sizeof *rate);
     for (int i = nq; i < n && contacts->impacts > 0; i++) rate[i] = (rate0[i] + rate[i]) / 2;
     for (int i = nq; i < n; i++) y1[i] = y[i] + dt * rate[i];
-    if (pb->model->ncontacts && turn == 0) rc = lag_contact_step_find(contacts, pb, tm, dt, mid, y1 + nq, law_of(w, pb));
-    rc = rc || !pb->model->ncontacts ? rc : lag_contact_step_solve(contacts, pb, tm, y1 + nq);
-    if (rc || is_explicit(pb)) return rc;
-    double most = set_between(pb, dt, contacts->impacts > 0 ? 1 : 0.5, y, y1, rate, mid);
+    if (f->n && turn == 0) rc = lag_friction_step_response(f, pb, tm, t, dt, mid, y1);
+    if (f->n && (turn == 0 || !meets) && rc == 0) {
+      rc = lag_friction_step_solve(f, pb, t, dt, 0, mid, y1, &moved);
+      if (turn == 0) lag_friction_step_carry(f, pb, 1, rate0);
+    }
+    if (meets && turn == 0 && rc == 0) rc = lag_contact_step_find(contacts, pb, tm, dt, mid, y1 + nq, law_of(w, pb));
+    memcpy(w->x + FREE * n, y1, (size_t)n * sizeof *y1);
+    if (meets && rc == 0) rc = f->n ? agree(w, pb, tm, t, dt, contacts, f) : lag_contact_step_solve(contacts, pb, tm, y1 + nq);
+    if (rc || (is_explicit(pb) && !f->n)) return rc;
+    for (int i = nq; i < n; i++) {
+      size[i] = rate[i];
+      for (int k = 0; k < pb->model->nmodes && f->n; k++) size[i] = fabs(size[i]) + fabs(f->d[k * n + i]); /* at rest forces cancel: rounding is that of friction */
+    }
+    double most = set_between(pb, dt, contacts->impacts > 0 ? 1 : 0.5, y, y1, size, mid);
     if (most <= 8 || (most <= 1e4 && most >= before / 2)) return LAG_OK;
     before = most;
   }
@@ -119,13 +153,21 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   double tm = *t + next.dt / 2;
   memcpy(mid, y, (size_t)n * sizeof *y);
   for (int i = 0; i < nq; i++) mid[i] = y[i] + (lost[i] + next.dt / 2 * y[nq + i]);
-  if ((rc = kick(w, pb, tm, next.dt, y, &contacts)) != 0) return rc;
+  FrictionStep friction = friction_of(w, pb);
+  rc = friction.n ? lag_friction_step_begin(&friction, pb, *t, y) : 0;
+  rc = rc ? rc : kick(w, pb, tm, *t + next.dt, next.dt, y, &contacts, &friction);
+  if (rc == 0 && friction.n && pb->model->ncontacts) rc = lag_friction_step_note(&friction, pb, *t + next.dt, mid, y1);
+  if (rc) {
+    if (friction.n) lag_friction_step_back(&friction, pb);
+    return rc;
+  }
   memcpy(y0, y, (size_t)n * sizeof *y);
   drift(w, pb, next.dt, y);
   pb->bad_index = lag_not_finite(n, y);
   rc = pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, next.tb) : lag_project_step(pb, next.tb, y0, y, w->x + COMP * n);
   if (rc) {
     memcpy(y, y0, (size_t)n * sizeof *y);
+    if (friction.n) lag_friction_step_back(&friction, pb);
     return rc == LAG_ENAN ? rc : lag_step_not_projected(pb, rc, next.tb);
   }
   w->struck = contacts.impacts;

@@ -1,5 +1,5 @@
 /* Steps of an emitted header with dry friction, by Moreau's method. Enters: accelerations with held modes (ir/unit.h), switching functions. Leaves: what the state says of surfaces, prototypes
- * and functions of the steps. Holds: a body that sticks at the end of a step has no velocity of slipping there, to rounding. Friction of contacts: header_moreau.c. */
+ * and functions of the steps. Holds: a body that sticks at the end of a step has no velocity of slipping there, to rounding; each step has the digits of the runtime's (methods/friction_step.c). Friction of contacts: header_moreau.c. */
 #include "emit/header_impl.h"
 
 uint32_t header_surfaces(const IrUnit *u) {

@@ -76,7 +76,7 @@ digits() { # FILE SCENE
   n=$(basename "$1" .lag) upper=$(basename "$1" .lag | tr '[:lower:]' '[:upper:]')
   "$LAGC" header "$1" "$2" --with moreau --prefix "$n" -o "$TMP/$n.$2.h" && "$LAGC" emit "$1" "$2" --method moreau -o "$TMP/$n.c" || return 1
   scene=$(sed -n 's/^const lag_scene \(.*\) = {/\1/p' "$TMP/$n.c" | head -n 1)
-  "$CC" -std=c11 -O0 -ffp-contract=off "-DM=$n" "-DU=$upper" "-DSCENE=$scene" -DMETHOD=moreau -DORDER=0 "-DNEAR=${near:-0}" -DADAPTIVE=0 -DSTART= "-DSTEP=JOIN(M, _moreau_step)(&p, &s, opt[0].value, 0)" \
+  "$CC" -std=c11 -O0 -ffp-contract=off "-DM=$n" "-DU=$upper" "-DSCENE=$scene" -DMETHOD=moreau -DORDER=0 "-DNEAR=${near:-0}" -DADAPTIVE=0 -DSTART= "-DSTEP=JOIN(M, _moreau_step)(&p, &s, opt[0].value${inputs-, 0})" \
     "-DHEADER=\"$n.$2.h\"" "-D${upper}_IMPLEMENTATION" -iquote "$TMP" -I"$INC" $here/embed_digits.c "$TMP/$n.c" "$BUILD/liblag.a" -lm -o "$TMP/digits" && "$TMP/digits" >"$TMP/log" 2>&1 &&
     grep -q '^300 steps, status 0$' "$TMP/log" || { cat "$TMP/log"; return 1; }
 }
@@ -125,6 +125,7 @@ kinetic = m/2*x'^2
 potential = k/2*x^2
 friction rub on x: R
 scene free { start x = 1.05 [m]; span 6 [s] }
+scene turns { like free; span 200 [s] } # 300 steps to its rest
 END_OF
 model belt <<'END_OF'
 model belt
@@ -144,6 +145,7 @@ kinetic = 1 [kg]/2*x'^2 + 2 [kg]/2*y'^2
 friction top on slip: 3 [N]
 friction below on y: 1 [N]
 scene s { start x' = 4 [m/s]; span 5 [s] }
+scene stops { like s; span 100 [s] }
 END_OF
 model wire <<'END_OF'
 model wire
@@ -181,6 +183,7 @@ param a = 2
 flow x' = y - a*sign(x)
 flow y' = -x
 scene s { start x = 1; span 5 }
+scene slides { like s; span 50 }
 END_OF
 relay() { # x falls to 0 and slides there, y' = 0, as |y| < a
   cat >"$TMP/relay.c" <<'END_OF'
@@ -199,6 +202,15 @@ END_OF
   "$LAGC" header "$TMP/relay.lag" --with moreau -o "$TMP/relay.h" && "$CC" -std=c99 -O0 "$TMP/relay.c" -lm -o "$TMP/relay" && "$TMP/relay"
 }
 check "a relay without coordinates slides on its surface" relay
+inputs='' # models without them
+check "dry friction has the digits of a run: a spring" digits "$TMP/spring.lag" turns
+check "a belt, with static friction, in time" digits "$TMP/belt.lag" squeak
+check "two surfaces" digits "$TMP/plank.lag" stops
+check "a relay" digits "$TMP/relay.lag" slides
+unset inputs
+near=200
+check "beside a constraint, with an input, to rounding" digits "$TMP/wire.lag" s
+near=0
 check "a header without it says so" sh -c "$LAGC header $TMP/spring.lag | grep -q 'go to and fro where a body sticks; .lagc header --with moreau. adds a step'"
 model both <<'END_OF'
 model both

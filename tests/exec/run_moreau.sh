@@ -238,18 +238,121 @@ check "others refuse" refuses 2 'dop853 follows friction in a plane, and the sli
 three() { sed "s/slip = (x' - k\*r\*b', y' + k\*r\*a')/slip = (x', y', z')/" "$TMP/puck.lag" >"$TMP/three.lag" && refuses 1 'a number or two are needed here' check three; }
 check "three components" three
 
+# ---- a long row of dominoes. Times by quadrature of the motion in which each leans on the next (models/dominoes.facts), 60 points of Gauss an interval
+dominoes() {
+  "$LAGC" run models/dominoes.lag "$1" -D N=50 --quiet -o "$TMP/csv" --json $2 >"$TMP/json" 2>"$TMP/err" || { cat "$TMP/err"; return 1; }
+}
+all_fall() { # from th > asin(s/h) on each lies on the next, which never lets it rise
+  awk -F, 'NR == 1 { next } { for (i = 2; i <= 51; i++) { bad += $i < was[i] - 1e-4; was[i] = $i } } END { for (i = 2; i <= 51; i++) bad += !(was[i] > 0.4297); exit bad > 0 }' "$TMP/csv"
+}
+no_growth() { awk -F, 'NR > 2 && $52 > was*(1 + 1e-6) { bad = 1 } { was = $52 } END { exit bad || was == "" }' "$TMP/csv"; } # drift of a smooth part
+passes() { awk -F, -v c="$1" 'NR > 1 { if (was < 0.42977 && $c >= 0.42977) { print t + ($1 - t)*(0.42977 - was)/($c - was); exit } was = $c; t = $1 }' "$TMP/csv"; } # asin(s/h), where the next is struck
+slow check "50 dominoes, by events" dominoes fall "--measure a=hit(hit[40]) --measure b=hit(hit[48]) --measure c=hit(hit[49])"
+slow check "the 40th strikes the 41st" near "$(number a)" 1.136827509425722 1e-8
+slow check "the wave has its last speed" near "$(calc "0.0275/($(number c) - $(number b))")" 1.1977567843 1e-6
+slow check "all fall" all_fall
+slow check "their energy never grows" no_growth
+slow check "50 dominoes, by time steps" dominoes row
+slow check "the 40th strikes the 41st: impacts come late by a step at most, each" near "$(passes 41)" 1.1368275 "$(calc '40*2e-4')"
+slow check "the wave is as fast, to these steps" near "$(calc "10*0.0275/($(passes 49) - $(passes 39))")" 1.1977568 "$(calc '1.2*2e-4*1.2/0.0275')"
+slow check "all fall" all_fall
+slow check "their energy never grows" no_growth
+
+# ---- dry friction of joints and sliders, beside contacts
+model slider <<'END_OF'
+model slider
+coord x [m], y [m]
+param m = 2 [kg] > 0, g = 9.81 [m/s^2], mu = 0.3 >= 0, mu_s = 0.3 >= 0, k = 0 [N/m], v = 0 [m/s], F = 0 [N], wall = 10 [m], e = 0
+kinetic = m/2*(x'^2 + y'^2)
+potential = m*g*y + k/2*(x - v*t)^2
+force x = F
+friction rub on x: mu*m*g, static = mu_s*m*g
+contact floor: y >= 0, restitution = 0
+contact stop: wall - x >= 0, restitution = e
+scene stops { start x' = 3 [m/s]; span 2 [s]; output x, x', rub, lambda(stop), energy every 0.25 [s] }
+scene pulled { like stops; start x' = 0; k = 10 [N/m]; v = 1 [m/s]; mu_s = 0.5; span 1.5 [s] }
+scene pressed { like stops; start x' = 0; F = 20 [N]; wall = 0.5 [m]; e = 0.5; span 6 [s] }
+END_OF
+check "a slider stops" run slider stops --method $m3
+check "at v0^2/(2 mu g), to h^2 mu g/8" near "$(final x)" "$(calc '9/(2*0.3*9.81)')" 4e-7
+check "and stays" near "$(final "x'")" 0 0
+check "its energy is the heat of friction, m v0^2/2" near "$(number dry_friction)" -9 1e-11
+check "which the balance contains" near "$(number drift)" 0 1e-12
+check "friction is mu m g while it slides" near "$(cell 0.5 4)" "$(calc '-0.3*2*9.81')" 1e-12
+check "and 0 at rest" near "$(cell 2 4)" 0 1e-12
+check "the report counts its rest, to a step" near "$(number sliding_s)" "$(calc '2 - 3/(0.3*9.81)')" 1e-3
+check "pulled by a spring" run slider pulled --method $m3
+check "static friction holds it: at k v t < 0.5 m g" near "$(cell 0.75 2)" 0 1e-15
+check "by the force of the spring, in the middle of a step" near "$(cell 0.75 4)" "$(calc '-10*0.7495')" 1e-12
+w=2.2360679774997896 t=$(calc '1.5 - 0.5*2*9.81/10') f=$(calc '0.2*2*9.81/10') # sqrt(k/m); time since it broke loose; way from where friction and spring balance, m x'' = -k (x - v t - ...)
+check "it breaks loose at 0.5 m g/k: v (t - sin(w t)/w) + f (1 - cos(w t)); friction falls within a step" near "$(final x)" "$(calc "$t - sin($w*$t)/$w + $f*(1 - cos($w*$t))")" "$(calc "0.001*$t*0.2*9.81 + 1e-6")"
+check "pressed against a wall" run slider pressed --method $m3
+check "it comes to rest there" near "$(final "x'")" 0 1e-15
+check "friction and wall hold it together" near "$(calc "20 + $(cell 6 4) - $(cell 6 5)")" 0 1e-12
+check "friction by no more than its size" sh -c "awk 'BEGIN { exit !($(cell 6 4) <= 0 && $(cell 6 4) >= -0.3*2*9.81*(1 + 1e-12)) }'"
+check "impacts and friction take what the force brings" near "$(number drift)" 0 1e-12
+check "no contact brings energy in" near "$(number energy_gained)" 0 0
+model leg <<'END_OF'
+model leg
+coord a [rad], b [rad]
+param m = 1 [kg] > 0, l = 0.5 [m] > 0, g = 9.81 [m/s^2], R = 0.6 [N*m] >= 0
+let x1 = l*cos(a)
+let y1 = l*sin(a)
+let x2 = x1 + l*cos(b)
+let y2 = y1 + l*sin(b)
+let knee = b - a
+kinetic = m/2*(x1'^2 + y1'^2 + x2'^2 + y2'^2)
+potential = m*g*(y1 + y2)
+friction hip on a: R, static = 1.3*R
+friction rub on knee: R/2
+contact foot: y2 + 0.3 [m] >= 0, restitution = 0.6
+contact shin: y1 + 0.3 [m] >= 0, restitution = 0.6
+scene s { start a = 1.2 [rad], b = 0.3 [rad]; span 4 [s]; tolerance 1e-10; output a, b, energy every 0.01 [s] }
+END_OF
+leg_at() { run leg s --method "$1" --until 1.2 && final a; } # after 6 impacts of the foot
+exact=$(leg_at dop853)
+for h in 0.005 0.001 0.0001; do check "a leg with friction in hip and knee, which bounces: the event-driven run, to the path of a step, h = $h" near "$(leg_at "moreau(step=$h)")" "$exact" "$(calc "$h*4")"; done
+check "at rest, where events follow each other without end" run leg s --method $m3
+check "at rest" near "$(final "b'")" 0 1e-12
+check "its energy never grows" awk -F, 'NR > 2 && $4 > was + 1e-12 { bad = 1 } { was = $4 } END { exit bad }' "$TMP/csv"
+leg_drift() { run leg s --method "moreau(step=$1)" --until 0.4 && number drift; }
+check "before the first impact the balance is of order 2" near "$(calc "$(leg_drift 0.01)/($(leg_drift 0.005))")" 4 0.3
+model bump <<'END_OF'
+model bump "A block that rubs strikes a heavier one, and comes back with half its speed"
+coord x [m], y [m]
+kinetic = 1 [kg]/2*x'^2 + 3 [kg]/2*y'^2
+friction rub on x: 1 [N]
+contact hit: y - x >= 0, restitution = 1
+scene s { start x' = 2 [m/s], y = 0.125 [m]; span 0.5 [s]; output x', y', energy every 0.01 [s] }
+END_OF
+check "an impact turns the slip round" run bump s --method 'moreau(step=0.01)'
+check "once" near "$(number impacts)" 1 0
+check "nor then does friction bring energy in" awk -F, 'NR > 2 && $4 > was + 1e-12 { print; bad = 1 } { was = $4 } END { exit bad }' "$TMP/csv"
+check "momentum is what friction leaves, 1 N before and -1 N behind, to the step" near "$(calc "$(final "x'") + 3*($(final "y'"))")" "$(calc '2 - 0.0635 + (0.5 - 0.0635)')" 0.02
+model rubs <<'END_OF'
+model rubs
+coord x [m], y [m]
+kinetic = 1 [kg]/2*(x'^2 + y'^2)
+potential = 1 [kg]*9.81 [m/s^2]*y
+friction rub on x: 0.5*lambda(floor)
+contact floor: y >= 0, restitution = 0
+scene s { span 2 [s] }
+END_OF
+check "a size that follows the force of a contact" refuses 1 'multipliers follow from the equations of motion' run rubs s --method $m3
+
 # ---- reports, sweeps, saved runs
 check "the report counts" sh -c "$LAGC run $TMP/ball.lag drop --method '$m3' >$TMP/log && grep -q 'contacts: at most [12] acts\{0,1\} at once, [0-9]* impacts, 1[.0-9]* iterations a step with contacts; the deepest is 0.004[0-9]* inside (in SI)' $TMP/log"
 check "events of contacts are left out" sh -c "! grep -q 'event floor' $TMP/log"
 run ball drop --method $m3
 x=$(final y)
 check "a sweep has the same end" sh -c "$LAGC sweep $TMP/ball.lag drop e=0.7..0.8:2 --method '$m3' -o $TMP/sweep.csv --measure y >/dev/null && tail -n 1 $TMP/sweep.csv | grep -q ',$x,ok'"
-split() {
-  "$LAGC" run "$TMP/ball.lag" drop --method $m3 --until 1.0005 --save-state "$TMP/s.state" --quiet &&
-    "$LAGC" run "$TMP/ball.lag" drop --method $m3 --resume "$TMP/s.state" --until 6 --json >"$TMP/b.json" && "$LAGC" run "$TMP/ball.lag" drop --method $m3 --json >"$TMP/a.json" &&
+split() { # MODEL SCENE
+  "$LAGC" run "$TMP/$1.lag" "$2" --method $m3 --until 1.0005 --save-state "$TMP/s.state" --quiet &&
+    "$LAGC" run "$TMP/$1.lag" "$2" --method $m3 --resume "$TMP/s.state" --until 6 --json >"$TMP/b.json" && "$LAGC" run "$TMP/$1.lag" "$2" --method $m3 --json >"$TMP/a.json" &&
     [ "$(sed 's/.*"contacts"//' "$TMP/a.json")" = "$(sed 's/.*"contacts"//' "$TMP/b.json")" ]
 }
-check "a run in two parts is the same run" split
+check "a run in two parts is the same run" split ball drop
+check "with dry friction, too" split slider pressed
 check "a picture" sh -c "$LAGC plot $TMP/ball.lag drop --method '$m3' -o $TMP/ball.svg >/dev/null && grep -q '<svg' $TMP/ball.svg"
 
 # ---- refusals, and the way out of other methods
@@ -270,13 +373,4 @@ constraint clutch: a' = b' while t > 1 [s]
 scene s { span 2 [s] }
 END_OF
 check "constraints with a condition" refuses 2 'constraints that hold while a condition is true are not followed; dop853' run clutch s --method $m3
-model dry <<'END_OF'
-model dry
-coord x [m], y [m]
-kinetic = 1 [kg]/2*(x'^2 + y'^2)
-force x = -sign(x')*1 [N]
-contact floor: y >= 0, restitution = 0
-scene s { span 2 [s] }
-END_OF
-check "forces that jump with a velocity" refuses 2 'method moreau cannot follow a motion that sticks or slides' run dry s --method $m3
 tap_end

@@ -366,6 +366,25 @@ check "balls of time-stepping" a "$models/room.lag" bounce --method 'moreau(step
 check "touch as steps say" sh -c 'grep -q acts' <<END
 $(marks room.html)
 END
+# by moreau: words and impacts to a step
+cat >drop.lag <<'END'
+model drop
+coord y [m]
+kinetic = 1 [kg]/2*y'^2
+potential = 9.81 [N]*y
+contact floor: y >= 0, restitution = 0.8
+scene s { start y = 1 [m]; span 2 [s] }
+END
+check "a ball that bounces, by time-stepping" a drop.lag --method 'moreau(step=0.001)' -o steps.html
+check "is marked where it strikes" near "$(marks steps.html | grep 'floor event' | sed -n '1s/ .*//p')" 0.4515236410 1e-3
+check "again" near "$(marks steps.html | grep 'floor event' | sed -n '2s/ .*//p')" 1.1739614665 2e-3
+check "a ball that slides until it rolls, by time-stepping" a "$models/sliding_ball.lag" pushed --method 'moreau(step=0.001)' -o steps.html
+check "slips" near "$(marked steps.html 1 table slips)" 0 1e-8
+check "and sticks" near "$(marked steps.html 2 table sticks)" 0.4368719965 2e-3
+is "nothing else" 2 "$(marks steps.html | wc -l | tr -d ' ')"
+check "a block that sticks and slips, by time-stepping" a belt.lag --method 'moreau(step=0.001)' -o steps.html
+check "breaks loose" near "$(marked steps.html 2 "slip'" slips)" 2 2e-3
+check "and sticks" near "$(marked steps.html 3 "slip'" sticks)" 6.9961830896 2e-3
 empty "a pendulum has no marks" "$(marks double_pendulum_swing.html)"
 
 # ---- animate: the page in a browser ----
