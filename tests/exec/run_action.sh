@@ -290,5 +290,5 @@ words='"action": 0.5, "frequency": 1, "digits": 16, "low": -1, "high": 1'
 check "numbers" json "$TMP/tied.lag"
 if command -v python3 >/dev/null; then check "it is JSON" python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$TMP/json"; else skip "it is JSON" "there is no python3"; fi
 
-check "a name without a value" told 2 "x= has no value: write name=value" models/damped_oscillator.lag under x=
+check "a name without a value" told 2 "x=: a value is missing" models/damped_oscillator.lag under x=
 tap_end

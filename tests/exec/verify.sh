@@ -82,7 +82,7 @@ given() { check "refused: $3" says "$1" "$2" verify models/chain.lag "$3" --agai
 given 1 "did you mean \`g\`?" gg=1
 given 2 'write -D N=3' N=3
 given 1 'is declared > 0' g=-1
-given 2 'write name=value' g=
+given 2 'a value is missing' g=
 
 # ---- mistakes ----
 # wrong MODEL FUNCTION FILE EDIT WORDS [OPTIONS...]: the file with this edit, of sed, differs, and is told these words.
