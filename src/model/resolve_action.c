@@ -27,11 +27,12 @@ Value action_value(Eval *ev, const AstExpr *x) {
     return refuse(b, ast_expr(b->ast, x->args)->span, "`action` takes the name of a coordinate, and `%s` is %s" HELP "write `action(%s)`",
                   ast_short(b, x->args), v->n ? shape_text(b, v->n) : s ? "none" : "an expression", model_coordinates(m).at[0]);
   SymId sym = 0, of = expr_sym_id(b->g, v->e);
+  Name name = s->name; /* symbols move when another is declared */
   for (uint32_t i = 0; i < m->actions.n; i++)
     if (m->actions.at[i].coordinate == of) sym = m->actions.at[i].sym;
   if (!sym) {
-    sym = declare_symbol(b, SYM_LOCAL, 0, intern_printf(b, "action(%s)", s->name), SIGN_UNKNOWN, dim_mul(b->dims, b->energy, b->dim_of.at[m->time]));
-    vec_push(b->arena, &m->actions, ((ActionOutput){sym, of, s->name, x->span}));
+    sym = declare_symbol(b, SYM_LOCAL, 0, intern_printf(b, "action(%s)", name), SIGN_UNKNOWN, dim_mul(b->dims, b->energy, b->dim_of.at[m->time]));
+    vec_push(b->arena, &m->actions, ((ActionOutput){sym, of, name, x->span}));
   }
   return a_value(expr_symbol(b->g, sym)->node, b->dim_of.at[sym], 0);
 }
