@@ -6,10 +6,14 @@
 
 #include "app/app.h"
 
-/* Where the expression begins in NAME=EXPR, or EXPR, whose name is its text; x(t=2) is one of these. */
+/* Where the expression begins in NAME=EXPR, or EXPR, whose name is its text; T^(2/3)=... has a name, x(t=2) has none. */
 static const char *split(const char *text, size_t *name_length) {
-  const char *equals = text + strcspn(text, "=(");
-  if (*equals != '=') equals = NULL;
+  const char *equals = NULL;
+  int depth = 0;
+  for (const char *c = text; *c && !equals; c++) {
+    depth += (*c == '(') - (*c == ')');
+    if (*c == '=' && depth == 0) equals = c;
+  }
   *name_length = equals ? (size_t)(equals - text) : strlen(text);
   while (*name_length && text[*name_length - 1] == ' ') --*name_length;
   return equals ? equals + 1 + strspn(equals + 1, " ") : text;
