@@ -58,9 +58,9 @@ check "a ratio of measures" near ratio "$(awk -v t=$T 'BEGIN { printf "%.15g", 3
 check "a scene by like replaces a measure" values low --until 1.5
 check "and keeps the others" near high "$(awk -v t=$T 'BEGIN { printf "%.15g", t*2.6 }')" s 1e-9
 check "a measure of the command line replaces the scene's" values drop --measure 'high=max(y) - 10' --measure "v=y'(0.2)"
-check "a name with parentheses" values drop --measure 'w^(2/3)=max(y)^(2/3)'
 check "a plain number is in the unit beside it" near high 90 cm 1e-9
 check "an option adds measures" near v -196.2 cm/s 1e-9
+check "a name with parentheses" values drop --measure 'w^(2/3)=max(y)^(2/3)'
 check "a let in an option" values drop --measure 'max(2*height)'
 check "is known" grep -Eq '^  max\(2\*height\)  *2$' vals
 check "an expression by --observe, in quotes" values drop --observe 'hypot(x, y)' --measure 'least=min("hypot(x, y)")'
