@@ -60,7 +60,7 @@ void lag_widen_range(double *lo, double *hi, double least, double margin);
 /* Step of axis ticks: 1, 2 or 5 times a power of ten, about n of them from lo to hi. */
 double lag_tick_step(double lo, double hi, int n);
 
-/* What a picture of a path has beneath: value(of, x, y) over its axes. */
+/* Function drawn beneath a path, as level curves or as a curve: value(of, x, y) over its axes. */
 typedef struct Beneath {
   double (*value)(void *of, double x, double y); /* NULL: nothing */
   void *of;

@@ -350,7 +350,7 @@ static const char *const kick =
 
 static const char *const step =
   " |\n"
-  " |/* What contacts did in a step. */\n"
+  " |/* Contacts at the end of a step: open, slipping or sticking, with impulses. */\n"
   " |static void lag_moreau_note(const lag_contact_room *w, lag_state *s) {\n"
   " |  for (int i = 0; i < LAG_NCONTACTS; i++) s->touch[i] = s->struck[i] = s->impulse[i] = LAG_C(0.0);\n"
   " |  for (int j = 0; j < (int)w->n; j++) {\n"
