@@ -124,6 +124,8 @@ found() {
 # Suites known to take long: they begin first where there is no record of a run.
 slow="unit/test_nest unit/test_rt_cost unit/test_lift unit/test_found unit/test_syntax unit/test_rt_energy unit/test_sym exec/random_models \
 exec/run_contradictions exec/includes exec/run_scenes exec/run_facts exec/run_modes exec/run_pictures"
+[ "$kind" != long ] || slow="$slow exec/run_compilers exec/long_sanitized exec/long_agree exec/long_random exec/long_windows exec/long_lanes exec/run_callbacks \
+exec/run_digits exec/long_energy exec/long_ports math/run_math hard/long_hard golden/gallery exec/verify exec/run_lanes exec/long_million hard/long_quad"
 suites=$(found "$@")
 if [ -z "$suites" ]; then
   [ $# = 0 ] || { echo "no suite's name begins with: $*"; exit 1; }

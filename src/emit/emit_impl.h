@@ -1,8 +1,26 @@
-/* Parts of the emitted model file that emit_model.c puts together: Taylor recurrences (emit_taylor.c), tables of variables (variable_tables.c). */
+/* Parts of the emitted model file that emit_model.c puts together: scenes (emit_scene.c), Taylor recurrences (emit_taylor.c), tables of variables (variable_tables.c). */
 #pragma once
 
 #include "emit/cfunction.h"
 #include "ir/unit.h"
+
+typedef struct {
+  const IrUnit *u;
+  Arena *a;
+  const char *const *globals; /* names that functions must not hide, NULL at the end */
+  StrBuf *out;
+} ModelFile;
+
+/* How functions of the file spell their arrays. own: names of their arguments, NULL at the end; written: of their output arrays. */
+CStyle model_style(const ModelFile *f, const char *const *own, const char *const *written);
+
+/* Appends the function NAME of the state around p, if there is one; in: a further array that it reads, or NULL; written: its output arrays,
+ * NULL at the end. */
+void state_function(const ModelFile *f, const Prog *p, const char *name, const char *comment, const char *in, const char *const *written);
+extern const char *const one_out[]; /* the output array `out` alone */
+
+/* emit_scene.c: appends the functions and tables of scene `index` of the model whose lag_model is called NAME. */
+void emit_scene(const ModelFile *f, const char *name, uint32_t index);
 
 /* Series -> the functions that compute a model's Taylor coefficients, and the const lag_taylor called `taylor`. base: all but in, out and own; lanes: for a text that is
  * compiled for lanes. */

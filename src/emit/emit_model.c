@@ -6,13 +6,6 @@
 #include "base/hash.h"
 #include "emit/emit_impl.h"
 
-typedef struct {
-  const IrUnit *u;
-  Arena *a;
-  const char *const *globals; /* names that functions must not hide, NULL at the end */
-  StrBuf *out;
-} File;
-
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
 static const char *const prelude =
@@ -87,9 +80,9 @@ static void flag_text(unsigned flags, const char *const *names, uint32_t n, StrB
   if (!some) sb_putc(out, '0');
 }
 
-static const char *const one_out[] = {"out", NULL};
+const char *const one_out[] = {"out", NULL};
 
-static CStyle style_for(const File *f, const char *const *own, const char *const *written) {
+CStyle model_style(const ModelFile *f, const char *const *own, const char *const *written) {
   return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .kkt = "lag_kkt",
                   .spline = "lag_spline", .math = math_prefix(f->u, "lag")};
 }
@@ -101,9 +94,7 @@ static int is_seldom_called(const IrUnit *u, const Prog *p) {
   return seldom;
 }
 
-/* Appends the function NAME of the state around p, if there is one; in: a further array that it reads, or NULL; written: its output arrays,
- * NULL at the end. */
-static void state_function(const File *f, const Prog *p, const char *name, const char *comment, const char *in, const char *const *written) {
+void state_function(const ModelFile *f, const Prog *p, const char *name, const char *comment, const char *in, const char *const *written) {
   const char *own[12] = {"t", "q", "v", "z", "p", "u"};
   uint32_t n = 6, outputs = 0;
   StrBuf head = strbuf(f->a);
@@ -114,21 +105,21 @@ static void state_function(const File *f, const Prog *p, const char *name, const
   for (uint32_t k = 0; k < outputs; k++) sb_printf(&head, "%s LAG_REAL *%s", !k && (in || outputs > 2) ? ",\n   " : ",", own[n++] = written[k]);
   sb_puts(&head, ", LAG_REAL *w)");
   own[n] = "w";
-  CStyle st = style_for(f, own, written);
+  CStyle st = model_style(f, own, written);
   st.prefer_short_code = is_seldom_called(f->u, p);
   CFunction c = {.comment = comment, .head = sb_text(&head), .returns = 1};
   cfunction(p, &st, &c, f->out);
 }
 
-static void accel(const File *f) {
+static void accel(const ModelFile *f) {
   static const char *const written[] = {"a", "zd", NULL};
   const char *what = !f->u->z.n ? "Accelerations" : f->u->q.n ? "Accelerations and rates" : "Rates";
   state_function(f, f->u->accel, "accel", arena_printf(f->a, "%s: %s.", what, op_count_text(f->u->accel, f->a)), NULL, written);
 }
 
-void emit_accel(const IrUnit *u, StrBuf *out) { accel(&(File){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out}); }
+void emit_accel(const IrUnit *u, StrBuf *out) { accel(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out}); }
 
-static void emit_variation(const File *f) {
+static void emit_variation(const ModelFile *f) {
   static const char *const written[] = {"Lq", "Lv", "Q", NULL}, *const derivatives[] = {"h", NULL};
   const IrUnit *u = f->u;
   if (!u->variation) return;
@@ -137,7 +128,7 @@ static void emit_variation(const File *f) {
 }
 
 /* Newton's law of impact for the contact whose constraint is `row`, which its input closes. */
-static void emit_strike(const File *f) {
+static void emit_strike(const ModelFile *f) {
   static const char *const written[] = {"v1", NULL};
   const IrUnit *u = f->u;
   if (!u->impact) return;
@@ -149,7 +140,7 @@ static void emit_strike(const File *f) {
             u->constraints.of.n, u->u.n, u->constraints.of.n, u->u.n);
 }
 
-static void emit_events(const File *f) {
+static void emit_events(const ModelFile *f) {
   static const char *const written[] = {"q1", "v1", "z1", NULL};
   const IrUnit *u = f->u;
   if (!u->events.n) return;
@@ -168,7 +159,7 @@ static void emit_events(const File *f) {
   sb_puts(f->out, "    default: (void)stop; return LAG_OK;\n  }\n}\n");
 }
 
-static void emit_switches(const File *f) {
+static void emit_switches(const ModelFile *f) {
   const IrUnit *u = f->u;
   if (!u->switches.n) return;
   state_function(f, u->switch_values, "switch_values", "Switching functions: forces jump, or have a corner, where one of them is 0.", NULL, one_out);
@@ -183,7 +174,7 @@ static void emit_switches(const File *f) {
 }
 
 /* Charges of symmetries. */
-static void emit_charges(const File *f) {
+static void emit_charges(const ModelFile *f) {
   static const char *const flags[CHARGE_FLAGS] = {
 #define CHARGE_FLAG(name) "LAG_" #name,
 #include "ir/flags.def"
@@ -206,59 +197,21 @@ static void emit_charges(const File *f) {
 
 /* --- parameters and inputs --- */
 
-static void emit_derive(const File *f) {
+static void emit_derive(const ModelFile *f) {
   static const char *const own[] = {"p", NULL}, *const written[] = {"p"};
   if (!f->u->nderived) return;
-  CStyle st = style_for(f, own, written);
+  CStyle st = model_style(f, own, written);
   st.apart = st.prefer_short_code = 1;
   CFunction c = {.comment = arena_printf(f->a, "Derived parameters, for the functions below: %s.", op_count_text(f->u->derived, f->a)),
                  .head = "static void derive(LAG_REAL *p)"};
   cfunction(f->u->derived, &st, &c, f->out);
 }
 
-/* Whether the parameter of p is a constant equal to that of `like`. */
-static int is_number_like(const Prog *p, const Prog *like) {
-  if (p->stores.n != 1 || like->stores.n != 1) return 0;
-  const Ins *x = &p->ins.at[p->stores.at[0].slot], *y = &like->ins.at[like->stores.at[0].slot];
-  return p->stores.at[0].slot && like->stores.at[0].slot && x->op == IR_CONST && y->op == IR_CONST && num_equal(x->number, y->number);
-}
-
-/* Number of parameters from i on with one constant value if at least 16; otherwise 1. */
-static uint32_t same_params(const IrUnit *u, const IrScene *s, uint32_t i) {
-  enum { MANY = 16 };
-  uint32_t n = 1;
-  while (i + n < u->p.n && is_number_like(s->params[i + n], s->params[i])) n++;
-  return n >= MANY ? n : 1;
-}
-
-/* Function params_ID: parameters in order, as each formula may use the parameters before it. */
-static void emit_params(const File *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"p", "fixed", NULL}, *const written[] = {"p"};
-  sb_printf(f->out, "\nstatic void params_%s(LAG_REAL *p, const unsigned char *fixed) {\n", id);
-  if (!f->u->p.n) sb_puts(f->out, "  (void)p; (void)fixed;\n");
-  for (uint32_t i = 0, same; i < f->u->p.n; i += same) {
-    same = same_params(f->u, s, i);
-    if (same > 1) {
-      const Prog *p = s->params[i];
-      sb_printf(f->out, "  for (int k = 0; k < %u; k++) /* %s ... %s */\n    if (!fixed[k + %u]) p[k + %u] = %s;\n", same,
-                comment_text(f->a, f->u->p.at[i].name), comment_text(f->a, f->u->p.at[i + same - 1].name), i, i,
-                c_number(f->a, "LAG", p->ins.at[p->stores.at[0].slot].number));
-      continue;
-    }
-    CStyle st = style_for(f, own, written);
-    st.loads_inline = 1;
-    StrBuf body = strbuf(f->a);
-    cwrite_body(s->params[i], &st, f->a, &body);
-    cwrite_guarded(arena_printf(f->a, "if (!fixed[%u]) ", i), sb_text(&body), f->out);
-  }
-  sb_puts(f->out, f->u->nderived ? "  derive(p);\n}\n" : "}\n");
-}
-
-static void emit_inputs(const File *f) {
+static void emit_inputs(const ModelFile *f) {
   static const char *const own[] = {"t", "p", "u", NULL}, *const written[] = {"u"};
   const Prog *p = f->u->inputs;
   if (!f->u->u.n) return;
-  CStyle st = style_for(f, own, written);
+  CStyle st = model_style(f, own, written);
   st.rows = rows_names(f->u);
   for (uint32_t i = 0; i < p->tables.n; i++) {
     sb_putc(f->out, '\n');
@@ -277,7 +230,7 @@ static void entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out
   sb_puts(out, "\n};\n");
 }
 
-static void emit_jumps(const File *f) {
+static void emit_jumps(const ModelFile *f) {
   static const char *const written[] = {"d", NULL};
   const IrUnit *u = f->u;
   enum { A_LINE = 8 };
@@ -292,7 +245,7 @@ static void emit_jumps(const File *f) {
 /* With constraints the derivatives are those of headers: see WANT_CONSTRAINED. */
 static int has_linear(const IrUnit *u) { return u->linear && !u->constraints.of.n; }
 
-static void emit_linear(const File *f) {
+static void emit_linear(const ModelFile *f) {
   static const char *const written[] = {"dr", "M", NULL};
   const IrUnit *u = f->u;
   if (!has_linear(u)) return;
@@ -319,7 +272,7 @@ static void constraint_table(const IrUnit *u, StrBuf *out) {
   sb_puts(out, "};\n");
 }
 
-static void emit_constraints(const File *f) {
+static void emit_constraints(const ModelFile *f) {
   static const char *const residuals[] = {"c", "r", NULL}, *const matrices[] = {"A", "M", NULL}, *const change[] = {"d", "force", NULL};
   const IrConstraints *k = &f->u->constraints;
   if (!k->of.n) return;
@@ -346,36 +299,6 @@ static void emit_constraints(const File *f) {
   }
   sb_puts(f->out, "};\n");
   state_function(f, f->u->contact_laws, "contact_laws", "Friction, tangential restitution and multiplier of each contact; static friction beside a gap.", NULL, one_out);
-}
-
-/* --- a scene's functions --- */
-
-static void emit_start(const File *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"p", "q", "v", "z", NULL}, *const written[] = {"q", "v", "z"};
-  CStyle st = style_for(f, own, written);
-  sb_printf(f->out, "\nstatic void start_%s(const LAG_REAL *p, LAG_REAL *q, LAG_REAL *v, LAG_REAL *z) {\n", id);
-  sb_puts(f->out, "  (void)p; (void)q; (void)v; (void)z;\n");
-  if (f->u->q.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) q[i] = v[i] = LAG_C(0.0);\n", f->u->q.n);
-  if (f->u->z.n) sb_printf(f->out, "  for (int i = 0; i < %u; i++) z[i] = LAG_C(0.0);\n", f->u->z.n);
-  st.prefer_short_code = 1;
-  cwrite_body(s->start, &st, f->a, f->out);
-  sb_puts(f->out, "}\n");
-}
-
-/* Function of the closed forms; its arguments q0, v0, z0 are the state at the start. */
-static void emit_exact(const File *f, const IrScene *s, const char *id) {
-  static const char *const own[] = {"t", "q0", "v0", "z0", "p", "u", "out", NULL}, *const written[] = {"out"};
-  static const char *const from_start[ARR_COUNT] = {"t", "q0", "v0", "z0", "p", "u", "a"};
-  if (!s->exact_of.n) return;
-  CStyle st = style_for(f, own, written);
-  st.in = from_start;
-  CFunction c = {.comment = arena_printf(f->a, "The closed forms of the scene %s.", s->name), .returns = 1};
-  c.head = arena_printf(f->a, "static int exact_%s(LAG_REAL t, const LAG_REAL *q0, const LAG_REAL *v0, const LAG_REAL *z0,\n"
-                              "    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out)", id);
-  cfunction(s->exact, &st, &c, f->out);
-  sb_printf(f->out, "\nstatic const int exact_of_%s[] = {", id);
-  for (uint32_t i = 0; i < s->exact_of.n; i++) sb_printf(f->out, "%s%u", i ? ", " : "", s->exact_of.at[i]);
-  sb_puts(f->out, "};\n");
 }
 
 /* --- tables --- */
@@ -480,119 +403,6 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   sb_puts(out, "};\n");
 }
 
-/* Outputs with action variables: their curves, and a function that puts their values behind those in u. Rows of output have no lanes. */
-static void emit_observe(const File *f, const IrScene *s, const char *id) {
-  const IrUnit *u = f->u;
-  StrBuf *out = f->out;
-  const char *comment = arena_printf(f->a, "Outputs of the scene %s.", s->name);
-  uint32_t n = u->u.n + u->nmodes + s->exact_of.n;
-  if (!s->actions.n) {
-    state_function(f, s->observe, arena_printf(f->a, "observe_%s", id), comment, NULL, one_out);
-    return;
-  }
-  sb_puts(out, "\n#ifndef LAG_LANES");
-  state_function(f, s->momenta, arena_printf(f->a, "momenta_%s", id), "The momenta dL/dq'.", NULL, one_out);
-  for (uint32_t i = 0; i < s->actions.n; i++) {
-    const IrAction *a = &s->actions.at[i];
-    const char *what = s->momenta ? "H, dH/dp, d2H/dp2, dH/dq for the action of %s; v holds momenta." : "H, dH/dp, d2H/dp2, dH/dq for the action of %s.";
-    state_function(f, a->curve, arena_printf(f->a, "curve_%s_%u", id, i), arena_printf(f->a, what, a->name), NULL, one_out);
-  }
-  state_function(f, s->observe, arena_printf(f->a, "values_%s", id), arena_printf(f->a, "%s Action variables stand behind the inputs.", comment), NULL, one_out);
-  sb_printf(out, "\nstatic int observe_%s(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w) {\n", id);
-  sb_printf(out, "  LAG_REAL with[%u], y[%u];\n", n + s->actions.n, 2 * u->q.n + u->z.n);
-  if (n) sb_printf(out, "  for (int i = 0; i < %u; i++) with[i] = u[i];\n", n);
-  for (uint32_t i = 0; i < s->actions.n; i++) {
-    const IrAction *a = &s->actions.at[i];
-    sb_printf(out, "  static const lag_action_curve of_%u = {%u, %u, %u, %u, %d, curve_%s_%u, %s%s};\n", i, u->q.n, u->z.n, a->q, a->p, a->periodic, id, i, s->momenta ? "momenta_" : "NULL",
-              s->momenta ? id : "");
-    sb_printf(out, "  with[%u] = lag_action(&of_%u, t, q, v, z, p, u, y, w);\n", n + i, i);
-  }
-  sb_printf(out, "  return values_%s(t, q, v, z, p, with, out, w);\n}\n#else\n#define observe_%s NULL\n#endif\n", id, id);
-}
-
-static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
-  table_vars(arena_printf(u->arena, "outputs_%s", id), s->outputs.at, s->outputs.n, u->arena, out);
-  if (s->options.n) {
-    sb_printf(out, "\nstatic const lag_option options_%s[] = {\n", id);
-    for (uint32_t i = 0; i < s->options.n; i++) {
-      const IrOption *o = &s->options.at[i];
-      sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, o->name), table_number(u->arena, o->value, NULL), o->text ? c_string(u->arena, o->text) : "NULL");
-    }
-    sb_puts(out, "};\n");
-  }
-  if (s->monitors.n) {
-    sb_printf(out, "\nstatic const lag_monitor monitors_%s[] = {\n", id);
-    for (uint32_t i = 0; i < s->monitors.n; i++) {
-      const IrMonitor *m = &s->monitors.at[i];
-      sb_printf(out, "  {%s, %d, %s, %d},\n", c_string(u->arena, m->name), m->output, table_number(u->arena, m->limit, NULL), m->absolute);
-    }
-    sb_puts(out, "};\n");
-  }
-}
-
-static void emit_measures(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
-  if (!s->measures.n) return;
-  sb_printf(out, "\nstatic const lag_measure measures_%s[] = {\n", id);
-  for (uint32_t i = 0; i < s->measures.n; i++) {
-    const IrMeasure *m = &s->measures.at[i];
-    sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, m->name), c_string(u->arena, m->text), c_string(u->arena, m->unit));
-  }
-  sb_puts(out, "};\n");
-}
-
-static void emit_flags(const char *stem, const char *id, const unsigned char *flags, uint32_t n, StrBuf *out) {
-  sb_printf(out, "\nstatic const unsigned char %s_%s[] = {", stem, id);
-  for (uint32_t i = 0; i < n; i++) sb_printf(out, "%s%d", i ? ", " : "", flags[i]);
-  sb_puts(out, "};\n");
-}
-
-/* Table `given` for models with constraints: 1 for components of the state that the start sets, 2 for implied ones. */
-static void emit_given(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
-  uint32_t n = u->q.n, total = 2 * n + u->z.n, after[] = {0, n, 2 * n};
-  if (!u->constraints.of.n) return;
-  unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, total);
-  for (uint32_t k = 0; k < s->start->stores.n; k++) given[after[s->start->stores.at[k].array] + s->start->stores.at[k].index] = 1;
-  for (uint32_t k = 0; k < s->implied.n; k++) given[s->implied.at[k]] = 2;
-  emit_flags("given", id, given, total, out);
-}
-
-/* Whether an output of the scene contains forces. */
-static int has_forces(const IrScene *s) { return s->forces.n && memchr(s->forces.at, 1, s->forces.n); }
-
-static const char *list_name(const IrUnit *u, uint32_t n, const char *stem, const char *id) {
-  return n ? arena_printf(u->arena, "%s_%s", stem, id) : "NULL";
-}
-
-static void emit_scene(const File *f, const char *name, uint32_t index) {
-  const IrUnit *u = f->u;
-  const IrScene *s = &u->scenes.at[index];
-  const char *id = scene_id(u, index);
-  StrBuf *out = f->out;
-  emit_params(f, s, id);
-  emit_start(f, s, id);
-  emit_observe(f, s, id);
-  emit_exact(f, s, id);
-  emit_scene_lists(u, s, id, out);
-  emit_measures(u, s, id, out);
-  emit_given(u, s, id, out);
-  if (has_forces(s)) emit_flags("forces", id, s->forces.at, s->forces.n, out);
-  sb_printf(out, "\nconst lag_scene %s_%s = {\n", name, id);
-  sb_printf(out, "  .name = %s,\n  .doc = %s,\n", c_string(u->arena, s->name), c_string(u->arena, s->doc));
-  sb_printf(out, "  .model = &%s,\n  .params = params_%s, .start = start_%s,\n", name, id, id);
-  if (u->constraints.of.n) sb_printf(out, "  .given = given_%s, .exactly = %d,\n", id, s->exactly);
-  sb_printf(out, "  .t0 = %s, .t1 = %s, .has_span = %d,\n", table_number(u->arena, s->t0, NULL), table_number(u->arena, s->t1, s->t1_digits), s->has_span);
-  sb_printf(out, "  .method = %s, .noptions = %u, .options = %s,\n", s->method ? c_string(u->arena, s->method) : "NULL", s->options.n,
-            list_name(u, s->options.n, "options", id));
-  sb_printf(out, "  .tolerance = %s,\n", table_number(u->arena, s->tolerance, NULL));
-  sb_printf(out, "  .nout = %u, .outputs = %s,\n", s->outputs.n, list_name(u, s->outputs.n, "outputs", id));
-  if (has_forces(s)) sb_printf(out, "  .forces = forces_%s,\n", id);
-  sb_printf(out, "  .every = %s, .observe = observe_%s,\n", table_number(u->arena, s->every, NULL), id);
-  sb_printf(out, "  .nmonitors = %u, .monitors = %s,\n", s->monitors.n, list_name(u, s->monitors.n, "monitors", id));
-  if (s->exact_of.n) sb_printf(out, "  .nexact = %u, .exact_of = exact_of_%s, .exact = exact_%s,\n", s->exact_of.n, id, id);
-  if (s->measures.n) sb_printf(out, "  .nmeasures = %u, .measures = measures_%s,\n", s->measures.n, id);
-  sb_puts(out, "};\n");
-}
-
 static void emit_head(const IrUnit *u, StrBuf *out) {
   sb_printf(out, "/* %s: %s\n", u->name, comment_text(u->arena, u->doc));
   sb_printf(out, " * Emitted by lagc; effects in use: %s.\n", u->effects[0] ? u->effects : "none");
@@ -605,7 +415,7 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
 }
 
 void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
-  File f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .out = out};
+  ModelFile f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
   if (u->lanes) sb_puts(out, "#ifndef LAG_AS_LANES\n#define LAG_AS_LANES 1 /* the same bits as in a lane */\n#endif\n");
   math_lanes("LAG", "lag", out);

@@ -3,6 +3,7 @@
 
 const char *reason_against_brackets(const Model *m) {
   if (!m->lagrangian) return "a bracket needs coordinates and momenta, and the model has no Lagrangian" HELP "a Hamiltonian is given by `hamiltonian = ...`";
+  if (m->contacts.n) return "not yet: brackets of a model with contacts" HELP "let an event reflect it: `event bounce: y falling { y' = -e*y' }`";
   if (m->constraints.n) return "not yet: brackets of a model with constraints, which are Dirac's" HELP "use coordinates without constraints";
   if (m->first_order && !m->hamiltonian) return "not yet: brackets where L is linear in the velocities" HELP "give the model's Hamiltonian: `momentum p of x`, `hamiltonian = ...`";
   for (uint32_t i = 0; i < m->states.n; i++)

@@ -44,7 +44,6 @@ every_command() {
   for format in text latex c; do sometimes clean derive "$m" --format "$format"; done
   clean derive "$m" --hamiltonian
   clean derive "$m" --ops
-  clean noether "$m"
   clean noether "$m" --degree 2 --involution
   clean action "$m"
   for format in latex json; do sometimes clean noether "$m" --format "$format"; done
