@@ -154,10 +154,12 @@ void lag_report_residual(lag_problem *pb, int k, int holonomic, double residual,
 
 static double ratio(double x, double y) { return x == 0.0 ? 0 : fabs(x / y); }
 
-/* Whether the rest of a correction d, its part `left`, is rounding of x. */
-static int is_rounding(int n, const double *x, const double *d, double left) {
-  for (int i = 0; i < n; i++)
-    if (!(left * fabs(d[i]) <= 2 * DBL_EPSILON * fabs(x[i]))) return 0;
+/* Whether the rest of a correction d, its part `left`, is rounding of the largest component with the same unit: one that is 0 never stops moving. */
+static int is_rounding(const lag_problem *pb, const double *x, const double *d, double left) {
+  for (int i = 0; i < pb->nq; i++) {
+    double rest = left * fabs(d[i]), rounding = 4 * DBL_EPSILON;
+    if (!(rest <= rounding * fabs(x[i])) && !(rest <= rounding * lag_unit_magnitude(pb, x, i))) return 0;
+  }
   return 1;
 }
 
@@ -215,19 +217,16 @@ int lag_constraint_is_met(lag_problem *pb, double t, const double *y, int holono
   return met;
 }
 
-/* Newton's iteration of positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of y, before and after. */
+/* Newton's iteration of positions (holonomic) or velocities onto the constraints. w->c and w->r are the residuals of y, before and after. Headers take the same
+ * turns (emit/header_definitions.c); where the residuals shrink no more, the state is judged here alone. */
 static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double *y, double *lost, int holonomic) {
   int n = holonomic ? w->of->nholonomic : w->of->n, nq = pb->nq, strikes = 0;
   double *x = holonomic ? y : y + nq, *residual = holonomic ? w->c : w->r, least;
   double *lost_x = lost ? lost + (x - y) : NULL;
   for (int turn = 0; turn < MOST_TURNS; turn++) {
     int busy = 0;
-    double digits = HUGE_VAL;
     for (int k = 0; k < n; k++) busy |= !(residual[k] == 0.0);
-    if (turn > holonomic && busy) lag_worst_constraint(pb, t, y, holonomic, &digits);
-    if (!busy || digits <= 4) { /* coordinates that are 0 up to rounding never stop moving by more than their last digits */
-      return LAG_OK;
-    }
+    if (!busy) return LAG_OK;
     for (int k = 0; k < n; k++) {
       w->before[k] = residual[k];
       w->g[k] = -residual[k];
@@ -237,7 +236,7 @@ static int newton(lag_problem *pb, const ConstraintScratch *w, double t, double 
     for (int i = 0; i < nq; i++) x[i] = lost_x ? lag_compensated_sum(x[i], w->d[i], &lost_x[i]) : x[i] + w->d[i];
     if ((rc = lag_residuals(pb, t, y, w->c, w->r)) != 0) return rc;
     double most = parts_left(n, residual, w->before, &least);
-    int lost_in_rounding = is_rounding(nq, x, w->d, most);
+    int lost_in_rounding = is_rounding(pb, x, w->d, most);
     if (lost_in_rounding && most < 0.5) return LAG_OK;
     if (lost_in_rounding || !(least < 0.5)) { /* no residual shrinks any more, or one that the correction cannot reach does not */
       if (lag_constraint_is_met(pb, t, y, holonomic, residual)) return LAG_OK;

@@ -45,34 +45,49 @@ static const char *const overloads =
   "using lagc_overloads::hypot;\n"
   "#endif\n";
 
-/* Newton's method onto the constraints, positions first, then velocities; stops when the residual no longer halves, each lane by itself. */
-static const char *const hold_body =
-  " {\n"
-  "  const LAG_REAL zero = LAG_C(0.0);\n"
-  "  int status = LAG_OK;\n"
-  "  for (int level = LAG_FIRST; level < 2; level++) {\n"
-  "    LAG_REAL last = zero;\n"
-  "    LAG_MASK on = zero <= zero; /* still comes nearer */\n"
-  "    for (int turn = 0; turn < 20; turn++) {\n"
-  "      LAG_REAL c[LAG_NC], r[LAG_NC], g[LAG_NC], d[LAG_NQ], force[LAG_NQ], size = zero;\n"
-  "      on = LAG_AND(on, LAG_NOT(LAG_FAILED(lag_residuals(ARGS, c, r))));\n"
-  "      for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++) {\n"
-  "        g[k] = -(level ? r[k] : c[k]);\n"
-  "        size += LAG_FN(fabs)(g[k]);\n"
-  "      }\n"
-  "      on = LAG_AND(on, size > zero);\n"
-  "      if (turn) on = LAG_AND(on, size < LAG_C(0.5)*last);\n"
-  "      if (!LAG_ANY(on)) break;\n"
-  "      last = size;\n"
-  "      LAG_TRY(LAG_WHERE(on, CORRECT));\n"
-  "      for (int i = 0; i < LAG_NQ; i++) {\n"
-  "        LAG_REAL *const x = level ? &s->v[i] : &s->q[i];\n"
-  "        *x = LAG_SELECT(on, *x + d[i], *x);\n"
-  "      }\n"
-  "    }\n"
-  "  }\n"
-  "  return status;\n"
-  "}\n";
+/* Newton's method onto the constraints, positions first, then velocities, by the turns of the runtime (constraints/projection.c), each lane by itself. */
+static const char *const onto =
+  " |\n"
+  " |/* The state nearest to the constraints. lost: rounding that q, v have lost so far, or 0. */\n"
+  " |static int lag_onto(const lag_params *p, lag_state *sINPUTS, LAG_REAL *lost) {\n"
+  " |  const LAG_REAL zero = LAG_C(0.0), half = LAG_C(0.5), rounding = LAG_C(4.0)*lag_epsilon();\n"
+  " |  int status = LAG_OK;\n"
+  " |  for (int level = FIRST; level < 2; level++) {\n"
+  " |    LAG_REAL c[LAG_NC], r[LAG_NC], g[LAG_NC], before[LAG_NC], d[LAG_NQ], force[LAG_NQ], *const x = level ? s->v : s->q;\n"
+  " |    LAG_MASK on = zero <= zero; /* still comes nearer */\n"
+  " |    for (int turn = 0; turn < 20; turn++) {\n"
+  " |      LAG_REAL size = zero, most = zero, least = LAG_C(1.0);\n"
+  " |      on = LAG_AND(on, LAG_NOT(LAG_FAILED(lag_residuals(AT, c, r))));\n"
+  " |      for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++) {\n"
+  " |        g[k] = -(level ? r[k] : c[k]);\n"
+  " |        const LAG_REAL now = LAG_FN(fabs)(g[k]), part = turn ? LAG_SELECT(now > zero, now/before[k], zero) : zero;\n"
+  " |        most = LAG_SELECT(part > most, part, most);\n"
+  " |        least = LAG_SELECT(LAG_AND(now > zero, part < least), part, least);\n"
+  " |        before[k] = now;\n"
+  " |        size += now;\n"
+  " |      }\n"
+  " |      on = LAG_AND(on, size > zero);\n"
+  " |      if (turn) {\n"
+  " |        LAG_MASK done = zero <= zero; /* what is left is rounding of the largest component with its unit */\n"
+  " |        for (int i = 0; i < LAG_NQ; i++) {\n"
+  " |          LAG_REAL largest = zero;\n"
+  " |          for (int j = 0; j < LAG_NQ; j++) largest = LAG_SELECT(WITHLAG_FN(fabs)(x[j]) > largest, LAG_FN(fabs)(x[j]), largest);\n"
+  " |          done = LAG_AND(done, most*LAG_FN(fabs)(d[i]) <= rounding*largest);\n"
+  " |        }\n"
+  " |        on = LAG_AND(on, LAG_AND(LAG_NOT(done), least < half));\n"
+  " |      }\n"
+  " |      if (!LAG_ANY(on)) break;\n"
+  " |      LAG_TRY(LAG_WHERE(on, CORRECT));\n"
+  " |      for (int i = 0; i < LAG_NQ; i++) {\n"
+  " |        LAG_REAL rest = lost ? lost[level*LAG_NQ + i] : zero;\n"
+  " |        const LAG_REAL sum = lag_sum(x[i], d[i], &rest);\n"
+  " |        x[i] = LAG_SELECT(on, sum, x[i]);\n"
+  " |        if (lost) lost[level*LAG_NQ + i] = LAG_SELECT(on, rest, lost[level*LAG_NQ + i]);\n"
+  " |      }\n"
+  " |    }\n"
+  " |  }\n"
+  " |  return status;\n"
+  " |}\n";
 
 /* --- functions around programs --- */
 
@@ -238,28 +253,36 @@ static void change(const Header *h, const Prog *p, const char *name) {
   header_internal_function(h, p, name, arena_printf(h->a, "const %s_REAL *g, %s_REAL *d, %s_REAL *force", h->upper, h->upper, h->upper), extra, out);
 }
 
-static void hold(const Header *h) {
+/* The numbers of the coordinates' units, where there are several. */
+static int units(const Header *h) {
+  const IrVar *q = h->u->q.at;
+  uint32_t n = h->u->q.n, several = 0;
+  StrBuf text = strbuf(h->a);
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t first = 0;
+    while (strcmp(q[first].unit, q[i].unit) != 0) first++;
+    several |= first;
+    sb_printf(&text, "%s%u", i ? ", " : "", first);
+  }
+  if (several) sb_printf(h->out, "\nstatic const int %s_unit_of[] = {%s}; /* equal for coordinates with the same unit */\n", h->lower, sb_text(&text));
+  return several != 0;
+}
+
+void header_hold_define(const Header *h) {
   static const char *const extra[] = {"c", "r", NULL};
   const IrConstraints *k = &h->u->constraints;
-  if (!header_has(h, FN_HOLD)) return;
-  header_failures(h);
   int both = k->position == k->velocity;
-  const char *args = header_state_args(h, 0, "s->"), *R = h->upper, *m = h->lower;
+  const char *args = header_state_args(h, 0, "s->"), *R = h->upper, *m = h->lower, *u = h->u->u.n ? ", u" : "";
   header_internal_function(h, k->residuals, "residuals", arena_printf(h->a, "%s_REAL *c, %s_REAL *r", R, R), extra, extra);
   if (k->nholonomic) change(h, k->position, both ? "correct" : "correct_positions");
   if (!both) change(h, k->velocity, "correct_velocities");
-  const char *correct = both ? arena_printf(h->a, "%s_correct(%s, g, d, force)", m, args)
-                        : !k->nholonomic ? arena_printf(h->a, "%s_correct_velocities(%s, g, d, force)", m, args)
-                        : arena_printf(h->a, "level ? %s_correct_velocities(%s, g, d, force) : %s_correct_positions(%s, g, d, force)", m, args, m, args);
-  sb_printf(h->out, "\nenum { %s_FIRST = %d }; /* where %s_hold begins: positions or velocities */\n", R, k->nholonomic == 0, m);
-  sb_printf(h->out, "\n%s", header_api(h, FN_HOLD));
-  StrBuf text = strbuf(h->a);
-  for (const char *s = hold_body; *s;) {
-    if (strncmp(s, "ARGS", 4) == 0) sb_puts(&text, args), s += 4;
-    else if (strncmp(s, "CORRECT", 7) == 0) sb_puts(&text, correct), s += 7;
-    else sb_putc(&text, *s++);
-  }
-  csupport_expand(sb_text(&text), R, m, h->out);
+  const char *correct = both ? arena_printf(h->a, "lag_correct(%s, g, d, force)", args)
+                        : !k->nholonomic ? arena_printf(h->a, "lag_correct_velocities(%s, g, d, force)", args)
+                        : arena_printf(h->a, "level ? lag_correct_velocities(%s, g, d, force) : lag_correct_positions(%s, g, d, force)", args, args);
+  const HeaderWord words[] = {{"AT", args}, {"CORRECT", correct}, {"FIRST", k->nholonomic ? "0" : "1"}, {"INPUTS", h->u->u.n ? ", const LAG_REAL *u" : ""},
+                              {"WITH", units(h) ? "lag_unit_of[j] == lag_unit_of[i] && " : ""}, {NULL, NULL}};
+  header_template(h, onto, words);
+  sb_printf(h->out, "\n%s {\n  return %s_onto(p, s%s, 0);\n}\n", header_api(h, FN_HOLD), m, u);
 }
 
 /* Operation of a program that complex numbers lack, or NULL. Scales of drifts may have absolute values: LAG_ABS. */
@@ -322,7 +345,6 @@ void header_implementation(const Header *h) {
   if (header_has(h, FN_OBSERVE)) header_state_function(h, h->scene->observe_plain, NULL, header_api(h, FN_OBSERVE), out, out, 1);
   if (header_has(h, FN_EVENTS)) header_state_function(h, h->u->event_values, NULL, header_api(h, FN_EVENTS), g, g, 1);
   act(h);
-  hold(h);
   header_steps_define(h);
   header_dynamics_define(h);
   sb_puts(h->out, "\n#ifdef __cplusplus\n}\n#endif\n");

@@ -191,7 +191,7 @@ static const char *const step =
   " |    end.mode[j] = mode[j];\n"
   " |    end.touch[j] = part < LAG_C(1.0) || part > LAG_C(1.0) ? (LAG_REAL)LAG_STICKS : (LAG_REAL)LAG_SLIPS;\n"
   " |  }\n"
-  "h|  status = lag_hold(p, &endAT_END);\n"
+  "h|  status = lag_onto(p, &endAT_END, end.lost + 1);\n"
   " |  if (status == LAG_OK) *s = end;\n"
   " |  return status;\n"
   " |}\n"

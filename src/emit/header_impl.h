@@ -82,6 +82,9 @@ typedef struct {
  * inputs, CALL: arguments of _accel, ARGS: of functions of the state; further words end with {NULL, NULL}. LAG_ and lag_ become the prefix. */
 void header_template(const Header *h, const char *text, const HeaderWord *more);
 
+/* header_definitions.c: functions of models with constraints. */
+void header_hold_define(const Header *h);
+
 /* header_dynamics.c: matrices and derivatives; the table of names. */
 void header_dynamics_define(const Header *h);
 void header_name_tables(const Header *h);

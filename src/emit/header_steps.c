@@ -162,7 +162,7 @@ static void write_trial(const Header *h, const HeaderMethod *m, int adaptive, in
   for (uint32_t s = 1; s < last; s++, row = list_of(h, &at)) write_stage(h, &row, c.at[s], s);
   const char *sum = weighted(h, &row, last);
   line(h, arena_printf(h->a, "  for (int i = 0; i < LAG_NY; i++) x[i] = lag_sum(y[i], h*(%s), &end->lost[i + 1]);\n  lag_scatter(x, end);\n", sum));
-  const char *hold = arena_printf(h->a, "lag_hold(p, end%s)", h->u->u.n ? ", lag_held(p, end->t, u, input, context, now)" : "");
+  const char *hold = arena_printf(h->a, "lag_onto(p, end%s, end->lost + 1)", h->u->u.n ? ", lag_held(p, end->t, u, input, context, now)" : "");
   if (!late) {
     if (holds) line(h, tried(h, hold));
     if (holds && adaptive) line(h, "  lag_gather(end, x);\n");
@@ -508,7 +508,7 @@ static void define_taylor(const Header *h) {
 /* Methods that need one state, too: not over lanes. */
 static void define_single(const Header *h) {
   line(h, guard);
-  if (!header_has_method(h, "taylor")) header_template(h, epsilon, NULL);
+  if (!header_has_method(h, "taylor") && !header_has(h, FN_HOLD)) header_template(h, epsilon, NULL);
   if (header_has_method(h, "variational")) header_variational_define(h);
   if (header_has_method(h, "moreau")) header_moreau_define(h);
   line(h, "#endif\n");
@@ -516,7 +516,11 @@ static void define_single(const Header *h) {
 
 void header_steps_define(const Header *h) {
   header_template(h, support, NULL);
-  if (!header_has(h, FN_HOLD)) header_failures(h);
+  header_failures(h);
+  if (header_has(h, FN_HOLD)) {
+    header_template(h, epsilon, NULL);
+    header_hold_define(h);
+  }
   header_move(h);
   define_rk4(h);
   if (some_adaptive(h)) define_adaptive(h);

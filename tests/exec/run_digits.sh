@@ -1,15 +1,14 @@
 #!/bin/sh
-# Steps of headers have the digits of `lagc run`: each method that both have, on the models of the gallery. Models with constraints have them
-# up to rounding, since a header's _hold ends its iterations by a simpler rule: rk4 alone, as steps of chosen sizes follow estimates that are rounding, too. `make test`: one combination in 39.
+# Steps of headers have the digits of `lagc run`: each method that both have, on the models of the gallery. `make test`: one combination in 39.
 . tests/tap.sh
 here=tests/exec
 
 digits() { # MODEL METHOD
   n=$(basename "$1" .lag) method=$2
-  upper=$(echo "$n" | tr '[:lower:]' '[:upper:]')
+  upper=IN_C # the header's own prefix: a scene may be called as one of its functions is
   order=0
   case $method in variational*) order=${method#variational} method=variational ;; esac
-  "$LAGC" header "$1" --with "$method" -o "$TMP/$n.h" 2>"$TMP/err" || { grep -q 'only of models' "$TMP/err"; return; }
+  "$LAGC" header "$1" --with "$method" --prefix in_c -o "$TMP/$n.h" 2>"$TMP/err" || { grep -q 'only of models' "$TMP/err"; return; }
   "$LAGC" emit "$1" --method "$method" -o "$TMP/$n.c" || return 1
   scene=$(sed -n 's/^const lag_scene \(.*\) = {/\1/p' "$TMP/$n.c" | head -n 1)
   held= inputs=
@@ -37,7 +36,7 @@ digits() { # MODEL METHOD
       ;;
   esac
   # shellcheck disable=SC2086
-  "$CC" -std=c11 -O0 -ffp-contract=off "-DM=$n" "-DU=$upper" "-DSCENE=$scene" "-DMETHOD=$of" "-DORDER=$order" "-DNEAR=${near:-0}" ${tol:+-DTOL=$tol -DSTEPS=$steps} -DADAPTIVE=$adaptive "-DSTART=$start" "-DSTEP=$step" \
+  "$CC" -std=c11 -O0 -ffp-contract=off -DM=in_c "-DU=$upper" "-DSCENE=$scene" "-DMETHOD=$of" "-DORDER=$order" "-DNEAR=${near:-0}" ${tol:+-DTOL=$tol -DSTEPS=$steps} -DADAPTIVE=$adaptive "-DSTART=$start" "-DSTEP=$step" \
     "-DHEADER=\"$n.h\"" "-D${upper}_IMPLEMENTATION" -iquote "$TMP" -I"$INC" $here/embed_digits.c "$TMP/$n.c" "$BUILD/liblag.a" -lm -o "$TMP/digits" && "$TMP/digits"
 }
 for m in models/*.lag; do
@@ -58,9 +57,19 @@ check "taylor: steps that leave the domain" along $here/taylor/edge.lag 1e-3 300
 check "taylor: a state at rest" along $here/taylor/rest.lag 1e-9 30
 tol= steps=
 
-near=200 # at most 94 are seen in 300 steps (rattleback, whose inertia is nearly singular); 8 in the others
-check "constraints, rk4: slider_crank" digits models/slider_crank.lag rk4
-for m in free_body lagrange_top rattleback turntable; do slow check "constraints, rk4: $m" digits models/$m.lag rk4; done
+# Under constraints: the start to rounding, which the compiler has found for the header, then each step to the bit. Not where a contact is closed at the start,
+# which steps of headers leave to their caller; and not sizes that follow an error above the tolerance, of which `lagc run` takes the part along the constraints.
+near=200
+for m in models/*.lag; do
+  case $m in */dominoes.lag | */painleve_rod.lag | */sliding_ball.lag | */sliding_off.lag | */woodpecker.lag) continue ;; esac
+  has_header "$m" || continue
+  "$LAGC" header "$m" | grep -q '_hold(' || continue
+  "$LAGC" emit "$m" | grep -q 'nmodes\|ntables' && continue
+  for method in rk4 rk45 dop853; do
+    case "$m $method" in "models/slider_crank.lag rk4") ;; *) one_of 13 || continue ;; esac
+    check "$(basename "$m" .lag), on its constraints: $method" digits "$m" $method
+  done
+done
 
 # ---- Taylor and variational steps in each scalar type, against closed forms
 "$LAGC" header models/pendulum.lag --with taylor,variational,dop853 -o "$TMP/pendulum.h"
