@@ -70,6 +70,8 @@ check "an input that is set after the start" moves 2 cs $driven s "G=2" 1e-9 1 @
 for v in 2 3; do
   check "saved and serialized states give the same bits, FMI $v" moves $v saved $driven s "G=2" 1e-9 1 G=2
   check "what the importer must not do is refused with a message, FMI $v" sh -c '"$0" "$1" "$(echo "$1"/binaries/*/*)" refusals' "$TMP/import$v" "$TMP/pendulum.$v"
+  make_fmu $here/fmu/halt.lag $v
+  check "a force without a value ends steps, and an importer's trials, FMI $v" sh -c '"$0" "$1" "$(echo "$1"/binaries/*/*)" halts' "$TMP/import$v" "$TMP/halt.$v"
 done
 check "impacts that follow each other faster than steps" moves 2 cs $here/fmu/bounces.lag s "" 1e-8 1
 check "events twice and more within a step" moves 2 cs $here/fmu/toss.lag s "" 1e-8 1
