@@ -42,6 +42,7 @@ static void write_head(const IrUnit *u, const Fmu *f, StrBuf *out) {
   define(out, "NOUT", s->plain.n);
   define(out, "HOLDS", u->constraints.of.n > 0);
   define(out, "CONTACTS", u->contacts.n);
+  if (u->constraints.of.n) sb_printf(out, "#define CORRECT model_correct%s\n", u->constraints.position == u->constraints.velocity ? "" : "_velocities");
   define(out, "FRICTION", (uint32_t)(f->moreau && !u->contacts.n));
   const char *with = u->u.n ? "_with(&(m)->p, &(m)->s, h, set_inputs, m)" : "(&(m)->p, &(m)->s, h)";
   if (f->moreau) sb_printf(out, "#define MOREAU_STEP %.17g\n#define MOREAU(m, h) model_moreau_step%s\n", moreau_step(s), with);

@@ -2,6 +2,7 @@
  * or tries what the standard asks of saved states, refusals and the end of a run.
  *   fmu_import FOLDER BINARY MODE TABLE.csv TOLERANCE SUBSTEPS [name=value ...]
  * me: model exchange, by the classical Runge-Kutta method with SUBSTEPS steps a row, and bisection to events. cs: co-simulation, a step a row.
+ * halts: a motion that ends at t = 1, where a force loses its value: the standard's answers.
  * derivatives: directional derivatives by the variables named, beside differences. saved: co-simulation, in which each row is computed anew from a saved and from a serialized state, with the same bits. @name=value: set after the start. */
 #ifdef _WIN32
 #include <windows.h>
@@ -352,8 +353,8 @@ static void refuses(const char *what, int status) {
 }
 
 static void refusals(const char *token) {
-  double x = 1, y = -1;
-  Ref none = 9999, time = 0, p = reference_of("m"), rate = reference_of("th''");
+  double x = 1, y = -1, nothing = NAN, endless = HUGE_VAL;
+  Ref none = 9999, time = 0, p = reference_of("m"), rate = reference_of("th''"), start = reference_of("th");
   if (instance_new("{another}", 0)) fail("the token of another FMU is taken");
   messages = 0;
   c = instance_new(token, 1);
@@ -362,22 +363,49 @@ static void refusals(const char *token) {
   refuses("time is set as a variable", set_real(&time, 1, &x));
   refuses("a computed variable is set", set_real(&rate, 1, &x));
   refuses("a parameter against its sign", set_real(&p, 1, &y));
+  refuses("a parameter that is infinite", set_real(&p, 1, &endless));
+  refuses("a start that is not a number", set_real(&start, 1, &nothing));
   refuses("an integer", CALL(SPELLED("GetInteger", "GetInt32"), (Instance, const Ref *, size_t, int *, size_t), c, &p, 1, (int *)&x, 1));
   initialize(1e-9, 0);
   refuses("a derivative by a parameter before the initialization ends", derivative(&rate, 1, p, 1, &x));
   ok(CALL(PREFIX "ExitInitializationMode", (Instance), c), "ExitInitializationMode");
-  Ref state = reference_of("th");
-  refuses("a start after the initialization", set_real(&state, 1, &x));
+  refuses("a start after the initialization", set_real(&start, 1, &x));
   if (step(5, 0.1) != 3) fail("a step from another time");
   double a[2];
   ok(step(0, 0.1), "DoStep");
-  ok(get_real(&state, 1, &a[0]), "get");
+  ok(get_real(&start, 1, &a[0]), "get");
   ok(CALL(PREFIX "Reset", (Instance), c), "Reset");
   initialize(1e-9, 0);
   ok(CALL(PREFIX "ExitInitializationMode", (Instance), c), "ExitInitializationMode");
   ok(step(0, 0.1), "DoStep");
-  ok(get_real(&state, 1, &a[1]), "get");
+  ok(get_real(&start, 1, &a[1]), "get");
   if (a[0] != a[1]) fail("a run after a reset has other bits");
+}
+
+/* ---- a motion that comes to a halt ---- */
+
+static void begin(const char *token, int cosim) {
+  c = instance_new(token, cosim);
+  initialize(1e-9, 0);
+  ok(CALL(PREFIX "ExitInitializationMode", (Instance), c), "ExitInitializationMode");
+}
+
+/* DISCARD where part of the step is made, or a smaller one may be; ERROR where none is: an importer that tried again would do so without end. */
+static void halts(const char *token) {
+  double x[2] = {0}, f[2], beyond = 1.5;
+  begin(token, 1);
+  ok(step(0, 0.75), "DoStep");
+  if (step(0.75, 0.75) != 2) fail("a step into the place is not discarded");
+  if (!(now > 0.99 && now <= 1)) fail("the time reached is not the end of the motion");
+  messages = 0;
+  refuses("a step that cannot begin", step(now, 0.75));
+  begin(token, 0);
+  nx = 2;
+  put(0.75, x);
+  ok(CALL(SPELLED("GetDerivatives", "GetContinuousStateDerivatives"), (Instance, double *, size_t), c, f, (size_t)2), "GetDerivatives");
+  if (f[1] != 0.5) fail("the rate is another");
+  put(beyond, x);
+  if (CALL(SPELLED("GetDerivatives", "GetContinuousStateDerivatives"), (Instance, double *, size_t), c, f, (size_t)2) != 2) fail("rates without a value are not discarded");
 }
 
 /* ---- tables ---- */
@@ -405,6 +433,7 @@ int main(int argc, char **argv) {
   snprintf(token, sizeof token, "%s", attribute(head, FMI == 2 ? "guid" : "instantiationToken"));
   const char *mode = argv[3];
   if (strcmp(mode, "refusals") == 0) return refusals(token), 0;
+  if (strcmp(mode, "halts") == 0) return halts(token), 0;
 
   const char *derivatives = strstr(xml, "<Derivatives>");
   nx = FMI == 2 ? count(derivatives, strstr(derivatives, "</Derivatives>"), "<Unknown") : count(xml, tail, "<ContinuousStateDerivative ");
