@@ -295,7 +295,7 @@ static int finish(App *app) {
   }
   if (a->json) lag_report_json(app, stdout);
   else if (!a->quiet) lag_report_text(app, f);
-  if (app->status < 0 && (a->json || a->quiet)) lag_app_error(a, "%s", lag_sim_message(app->sim));
+  if (app->status < 0 && (a->json || a->quiet)) lag_app_error(a, "%s%s", lag_sim_message(app->sim), lag_app_way_on(app));
   if (fflush(stdout) != 0) bad = lag_app_io_error(app, "standard output");
   tell_last_state(app);
   return bad ? bad : rc;

@@ -20,7 +20,7 @@ typedef struct Args {
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram; /* for --sweep */
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
-  int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs, where, sweep, zip, go_on, portrait, potential, distance, energy_error;
+  int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs, where, sweep, zip, go_on, portrait, potential, distance, energy_error, no_monitors;
   char **sets; /* name=value, in order */
   int nsets;
   const char **scenes; /* all scenes named; scene is the first */
@@ -65,6 +65,7 @@ typedef struct App {
   const lag_scene *scene;
   const lag_scene *whole; /* the scene with its monitors */
   lag_scene bare;   /* for exponents, costs, errors and their pictures: the scene without monitors and closed forms, which would end a rough run or take time */
+  lag_scene unwatched; /* for --no-monitors */
   lag_sim *sim;
   State state;      /* the saved state of --resume */
   int resumed;      /* 1: the run continues from `state` */
@@ -290,6 +291,8 @@ void lag_report_events_json(const App *app, Json *j);
 
 /* report.c */
 void lag_report_text(App *app, FILE *f);
+/* How a run that a monitor has ended goes on, behind its message; "" for others. */
+const char *lag_app_way_on(const App *app);
 void lag_report_json(App *app, FILE *f);
 /* Members model, scene, method, chosen, status. */
 void lag_report_json_head(const App *app, Json *j);

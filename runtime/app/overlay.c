@@ -90,7 +90,7 @@ static int judge_run(Overlay *o, int rc) {
   int status = rc ? LAG_OK : r->app.status, refused = r->app.refused || status == LAG_EMETHOD;
   if (status == LAG_EINVAL || status == LAG_ENOMEM || status == LAG_EIO) return lag_app_error(a, "%s", status == LAG_ENOMEM ? "out of memory" : lag_sim_message(r->app.sim));
   if (rc == 0) lag_sampling_warn(&r->app, note, sizeof note);
-  if (!refused && status < 0) lag_app_error(a, "warning: %s: %s; the picture shows the run up to its end", r->label, lag_sim_message(r->app.sim));
+  if (!refused && status < 0) lag_app_error(a, "warning: %s: %s; the picture shows the run up to its end%s", r->label, lag_sim_message(r->app.sim), lag_app_way_on(&r->app));
   if (!refused) return rc;
   if (rc == 0) lag_app_error(a, "%s", lag_sim_message(r->app.sim));
   lag_app_error(a, "note: %s is left out of the picture", r->label);

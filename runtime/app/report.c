@@ -246,13 +246,15 @@ static void newton(const App *app, const lag_stats *st, FILE *f) {
   }
 }
 
+const char *lag_app_way_on(const App *app) { return app->status == LAG_EMONITOR ? "; with --no-monitors the run goes on past it" : ""; }
+
 static void verdict(const App *app, FILE *f) {
   double t = lag_sim_time(app->sim);
   switch (app->status) {
   case LAG_OK: fprintf(f, "reached t = %.15g s\n", t); break;
   case LAG_STOPPED: fprintf(f, "stopped by an event at t = %s s\n", lag_number_text(t, (char[64]){0})); break;
   case LAG_INTERRUPTED: fprintf(f, "interrupted at t = %s s\n", lag_number_text(t, (char[64]){0})); break;
-  default: fprintf(f, "FAILED: %s\n", lag_sim_message(app->sim));
+  default: fprintf(f, "FAILED: %s%s\n", lag_sim_message(app->sim), lag_app_way_on(app));
   }
 }
 

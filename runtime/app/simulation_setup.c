@@ -37,6 +37,11 @@ static int choose_scene(App *app) {
       app->scene = p->scenes[i];
       app->whole = app->scene;
       if (app->args.lyapunov || (app->args.cost && !app->args.where) || app->args.reference || app->args.energy_error || app->args.distance || app->args.cloud || app->compared) app->scene = bare_scene(app, app->scene);
+      if (app->args.no_monitors) {
+        app->unwatched = *app->scene;
+        app->unwatched.nmonitors = 0;
+        app->scene = &app->unwatched;
+      }
       return 0;
     }
   return name ? no_scene(app, name) : lag_app_error(&app->args, "this program has no scenes");

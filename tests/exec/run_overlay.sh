@@ -46,6 +46,10 @@ check "a monitor does not end a rough method's run beside others" draws "$osc" w
 is "both are whole" 2 "$(grep -c 't = 2 s, 20 steps' "$TMP/out")"
 "$LAGC" plot "$osc" watched --phase x --method euler --step 0.1 -o "$pic" >"$TMP/out"
 is "that of one method it ends" "3 FAILED: monitor energy" "$? $(grep -o 'FAILED: monitor energy' "$TMP/out")"
+is "with a way on" 1 "$(grep -c 'FAILED: .*; with --no-monitors the run goes on past it$' "$TMP/out")"
+check "that leads on" draws "$osc" watched --phase x --method verlet --step 0.1 --vs x=2 --no-monitors
+is "both values, whole" 2 "$(grep -c 't = 2 s, 20 steps' "$TMP/out")"
+check "the same way in a warning" says 3 'up to its end; with --no-monitors the run goes on past it' "$LAGC" plot "$osc" watched --phase x --method verlet --step 0.1 --vs x=2 -o "$pic"
 mv "$TMP/kept.lag" "$osc"
 check "options of their own" draws "$osc" --y x --method 'euler(step=0.04),euler(step=0.02)' --quiet
 is "stand in the legend" "euler(step=0.04);euler(step=0.02);" "$(legends)"
