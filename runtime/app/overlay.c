@@ -371,6 +371,18 @@ static void report_distance(const OverlaidRun *r) {
   putchar('\n');
 }
 
+/* The largest error of the energy as the picture shows it; else the drift or balance as a run reports it. */
+static void report_energy(const Overlay *o, int i) {
+  const App *whole = o->app;
+  const int col = whole->args.energy_error ? whole->drawn.y[i] : 0;
+  lag_charge_stats energy;
+  double most = NAN;
+  lag_sim_charge(o->runs[i].app.sim, 0, &energy);
+  for (size_t at = 0; col && at < whole->table.nrows; at++) most = fmax(most, lag_table_cell(&whole->table, at, col));
+  if (col) printf(", %s up to %.3g%s%s", whole->drawn.yname, isnan(most) ? 0 : pow(10, most), whole->table.cols[col].unit[0] ? " " : "", whole->table.cols[col].unit);
+  else if (isfinite(energy.drift)) printf(i ? ", energy %s %.3g" : ", energy %s %.3g (%s)", lag_charge_word(&energy), energy.drift, lag_energy_scale);
+}
+
 static void report(const Overlay *o) {
   size_t widest = 0;
   if (o->app->args.starts) {
@@ -385,7 +397,7 @@ static void report(const Overlay *o) {
     lag_sim_stats(app->sim, &st);
     lag_report_method(app, method, sizeof method);
     printf("%-*s  %s t = %.6g s, %lld steps", (int)widest, o->runs[i].label, app->status < 0 ? "FAILED at" : "reached", st.t, st.steps);
-    if (isfinite(st.energy_drift)) printf(", energy drift %.3g", st.energy_drift);
+    report_energy(o, i);
     printf(o->runs[i].method ? "\n" : ", by %s\n", method);
     if (i && o->app->args.distance) report_distance(&o->runs[i]);
   }
@@ -402,7 +414,7 @@ int lag_app_overlay(App *app) {
     const App *first = &o.runs[0].app;
     snprintf(title, sizeof title, "%s%s%s", first->scene->model->name, a->nscenes > 1 ? "" : ": ", a->nscenes > 1 ? "" : first->scene->name);
     lag_table_scale_time(&app->table);
-    if (a->energy_error) lag_energy_errors(&app->table, &app->drawn);
+    if (a->energy_error) lag_energy_errors(app, first->sim);
     rc = lag_app_draw_table(app, title);
     if (rc == 0 && a->sketch) lag_sketch_write(stdout, &app->table, &app->drawn);
     if (rc == 0 && !a->quiet) report(&o);

@@ -40,7 +40,8 @@ check "Euler's curve ends at its closed form" ends 1 "$(awk 'BEGIN { print 1.04^
 check "symplectic Euler's, too" ends 2 "$(awk 'BEGIN { a = atan2(0.1, sqrt(0.99)); print cos(41*a)/cos(a) }')" "$(awk 'BEGIN { a = atan2(0.1, sqrt(0.99)); print -2*sin(40*a)/cos(a) }')"
 check "and verlet's" ends 3 "$(awk 'BEGIN { a = atan2(0.1, sqrt(0.99)); print cos(40*a) }')" "$(awk 'BEGIN { a = atan2(0.1, sqrt(0.99)); print -2*cos(a)*sin(40*a) }')"
 check "a line a run" grep -q '^verlet  *reached t = 2 s, 20 steps, energy drift 0.00' "$TMP/out"
-check "the energy that Euler's method gains is warned of" grep -q 'warning: euler: at t = 2 s the energy is off' "$TMP/err"
+check "the scale of its drift is said, once" [ "$(grep -c 'relative to the larger of |E0| and the median' "$TMP/out")" = 1 ]
+check "the energy that Euler's method gains is warned of" grep -q 'warning: euler: up to t = 2 s the energy has an error of' "$TMP/err"
 cp "$osc" "$TMP/kept.lag" && echo 'scene watched { like swing; monitor energy 1e-6 }' >>"$osc"
 check "a monitor does not end a rough method's run beside others" draws "$osc" watched --phase x --method euler,verlet --step 0.1
 is "both are whole" 2 "$(grep -c 't = 2 s, 20 steps' "$TMP/out")"
