@@ -136,11 +136,23 @@ static int read_values(Overlay *o) {
   return 0;
 }
 
+/* Counts the methods of --method, all of which the program knows; 0 after a message. */
+static int count_methods(const Overlay *o) {
+  int n = 0;
+  for (const char *m = o->app->args.method; n == 0 || m; n++) {
+    char name[64] = "";
+    size_t length = m ? lag_app_method_length(m) : 0;
+    if (m) snprintf(name, sizeof name, "%.*s", (int)strcspn(m, " ,("), m);
+    if (m && !lag_app_find_method(o->app, name)) return lag_app_unknown_method(o->app, name), 0;
+    m = m && m[length] ? m + length + 1 + strspn(m + length + 1, " ") : NULL;
+  }
+  return n;
+}
+
 static int run_all(Overlay *o) {
   const Args *a = &o->app->args;
-  int scenes = a->nscenes ? a->nscenes : 1, methods = 1, rc = read_values(o), interrupted = 0;
+  int scenes = a->nscenes ? a->nscenes : 1, methods = count_methods(o), rc = methods ? read_values(o) : EXIT_USAGE, interrupted = 0;
   if (rc) return rc;
-  for (const char *m = a->method; m && m[lag_app_method_length(m)]; m += lag_app_method_length(m) + 1) methods++;
   o->runs = calloc((size_t)(scenes * methods * o->nvalues), sizeof *o->runs);
   if (!o->runs) return lag_app_error(a, "out of memory");
   for (int s = 0; s < scenes; s++) {
@@ -379,7 +391,8 @@ static void report_energy(const Overlay *o, int i) {
   double most = NAN;
   lag_sim_charge(o->runs[i].app.sim, 0, &energy);
   for (size_t at = 0; col && at < whole->table.nrows; at++) most = fmax(most, lag_table_cell(&whole->table, at, col));
-  if (col) printf(", %s up to %.3g%s%s", whole->drawn.yname, isnan(most) ? 0 : pow(10, most), whole->table.cols[col].unit[0] ? " " : "", whole->table.cols[col].unit);
+  if (col) printf(", %s up to %.3g%s%s%s", whole->drawn.yname, isnan(most) ? 0 : pow(10, most), whole->table.cols[col].unit[0] ? " " : "", whole->table.cols[col].unit,
+                  energy.flags & (LAG_CONSERVED | LAG_BALANCED) ? "" : ", where the work of forces is not known");
   else if (isfinite(energy.drift)) printf(i ? ", energy %s %.3g" : ", energy %s %.3g (%s)", lag_charge_word(&energy), energy.drift, lag_energy_scale);
 }
 

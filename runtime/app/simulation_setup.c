@@ -9,6 +9,7 @@
 #include "app/app.h"
 #include "io/visible.h"
 #include "core/core.h"
+#include "numeric/edit_distance.h"
 
 static int no_scene(const App *app, const char *name) {
   const lag_program *p = app->program;
@@ -121,11 +122,12 @@ static int parse_method(const Args *a, Choice *c) {
   return 0;
 }
 
-/* Suggests the nearest name. */
+/* Suggests the nearest name, or the method whose description has the word. */
 int lag_app_unknown_method(const App *app, const char *name) {
   const lag_method *m;
   lag_nearest near = {.name = name};
   for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) lag_try_nearest(&near, m->name);
+  for (int i = 0; !near.best && (m = lag_app_method_at(app, i)) != NULL; i++) near.best = lag_text_has_word(m->doc, name) ? m->name : NULL;
   if (strncmp(name, "gsl-", 4) == 0 && strcmp(LAG_PRECISION, "double") != 0)
     return lag_app_error(&app->args, "method %s computes with doubles, this run in " LAG_PRECISION " precision; dop853 and taylor do, too", name);
   if (near.best) return lag_app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near.best);

@@ -133,6 +133,13 @@ check "one run that fails is drawn, too" says 3 'the step became too small' "$LA
 check "up to its end" test -s "$TMP/one.svg"
 
 check "an unknown method" says 2 'unknown method rk5; did you mean rk4' "$LAGC" plot "$osc" --method euler,rk5 -o "$TMP/none.svg"
+check "by another of its names" says 2 'unknown method leapfrog; did you mean verlet?' "$LAGC" plot "$osc" --method leapfrog -o "$TMP/none.svg"
+check "one of several words" says 2 'did you mean symplectic_euler?' "$LAGC" plot "$osc" --method semi_implicit_Euler -o "$TMP/none.svg"
+check "not a part of a word" says 2 'unknown method frog; --method help lists them' "$LAGC" plot "$osc" --method frog -o "$TMP/none.svg"
+printf '%s\n' "model o" "coord x" "lagrangian = x'^2/2 - x^2/2" "scene s { start x = 1; method leapfrog }" >"$TMP/leapfrog.lag"
+check "in a scene, too" says 1 'did you mean `verlet`?' "$LAGC" run "$TMP/leapfrog.lag"
+check "the last of a list, before any runs" says 2 'unknown method yoshida4; ' "$LAGC" plot "$TMP/falls.lag" --method 'verlet(step=0.1), yoshida4' -o "$TMP/none.svg"
+is "says nothing else" 0 "$("$LAGC" plot "$TMP/falls.lag" --method 'verlet(step=0.1), yoshida4' -o "$TMP/none.svg" 2>&1 | grep -c verlet)"
 check "an unknown scene" says 1 'unknown scene `fra`' "$LAGC" plot "$osc" swing fra -o "$TMP/none.svg"
 check "a run takes one scene" says 2 'two scenes are named: swing and far' "$LAGC" run "$osc" swing far
 check "and one method" says 2 'several methods are for a picture' "$LAGC" run "$osc" --method euler,rk4
