@@ -121,7 +121,12 @@ check "an unknown scene" says 1 'unknown scene `wied`' plot "$p" wied --phase th
 check "of any command" says 1 'did you mean `wide`?' plot "$p" wied
 check "before a simulator is built" not_grep 'this build' err
 check "or far from all names" says 1 'the scenes are `small`, `tiny`' modes "$p" nosuch
-check "a name far from all names" says 1 'the model has th, ' plot "$p" --y nosuch
+check "energy, misspelt" says 1 'did you mean `energy`?' plot "$p" --y enrgy
+check "or as a title" says 1 'did you mean `energy`?' plot "$p" --y Energy
+once() { [ "$("$LAGC" plot "$p" --phase "$1" -o none.svg 2>&1 | grep -c "unknown name")" = 1 ]; }
+check "a name of --phase is unknown once" once thx
+check "within an expression, too" once '2*thx'
+check "a name far from all names, and energy" says 1 'the model has th, m, l, g, x, y, pull, energy' plot "$p" --y nosuch
 check "is not to be declared" not_grep 'declare it' err
 check "a value is missing" says 2 'needs a value' plot "$p" --x
 check "an effect that the scene does not use" says 1 'friction' plot "$p" wide --y 'friction.b*th' -o none.svg
