@@ -17,7 +17,8 @@ typedef struct OverlaidRun {
   char **sets;  /* of the command line, and its value of --vs; NULL: has none */
   char label[96];
   int *curve;
-  double first, most, rate, until; /* of --distance: the first and the largest distance from the first run; the rate of growth up to a time; NaN: none */
+  double first, most, rate, level, until; /* of --distance: the first and the largest distance from the first run; its growth up to a time, log10 of the distance = level + rate
+                                           * t/log(10); NaN: none */
 } OverlaidRun;
 
 typedef struct Overlay {
@@ -27,6 +28,7 @@ typedef struct Overlay {
   const char **values; /* [nvalues] name=value of each run of one scene and method; NULL: none, as of the first before those of --vs */
   int nvalues;
   char *starts; /* texts of --starts */
+  int scaled;   /* of --distance: 1: the outputs have several units */
 } Overlay;
 
 size_t lag_app_method_length(const char *list) {
@@ -280,7 +282,7 @@ static const char *unit_of(const Overlay *o, int k) {
 }
 
 /* scale[k] := what differences of curve k are divided by: 1 where all have one unit, which is returned; else the largest value of this unit in the first run. */
-static const char *find_scales(const Overlay *o, double *scale) {
+static const char *find_scales(Overlay *o, double *scale) {
   const OverlaidRun *first = &o->runs[0];
   const char *one = NULL;
   int units = 0, n = first->app.drawn.n;
@@ -294,6 +296,7 @@ static const char *find_scales(const Overlay *o, double *scale) {
       for (size_t at = 0; unit_of(o, j) && strcmp(unit_of(o, j), unit) == 0 && at < first->app.table.nrows; at++) scale[k] = fmax(scale[k], fabs(value_of(first, j, at)));
   }
   for (int k = 0; k < n && units == 1; k++) scale[k] = 1;
+  o->scaled = units > 1;
   return units == 1 ? one : "";
 }
 
@@ -313,14 +316,28 @@ static double distance_at(const Overlay *o, const OverlaidRun *r, size_t at, con
 /* The growth of a distance, a straight line of its logarithm: from its first row to the one where it reaches a tenth of its largest. t, log10 of it: [n]. */
 static void fit_growth(OverlaidRun *r, int n, const double *t, const double *log_distance) {
   int end = 0;
-  r->first = r->most = r->rate = r->until = NAN;
+  r->first = r->most = r->rate = r->level = r->until = NAN;
   for (int i = 0; i < n; i++) r->most = fmax(r->most, pow(10, log_distance[i]));
   if (n) r->first = pow(10, log_distance[0]);
   while (end < n && log_distance[end] < log10(r->most) - 1) end++;
   if (end < 10 || log_distance[end - 1] < log_distance[0] + 1) return;
   LineFit f = lag_line_fit(end, t, log_distance);
   r->rate = f.xy / f.xx * log(10);
+  r->level = f.my - f.xy / f.xx * f.mx;
   r->until = t[end - 1];
+}
+
+/* Adds a curve for the line of run i, in column o->n - 1 + i, named by its growth. */
+static void add_line(Overlay *o, int i) {
+  PlottedCurves *d = &o->app->drawn;
+  Table *t = &o->app->table;
+  const OverlaidRun *r = &o->runs[i];
+  int col = o->n - 1 + i;
+  if (!isfinite(r->rate)) return;
+  t->cols[col] = t->cols[i];
+  snprintf(t->cols[col].name, sizeof t->cols[col].name, "exp(%.3g t/s)", r->rate);
+  d->x[d->n] = 0;
+  d->y[d->n++] = col;
 }
 
 /* Column i of the picture's table := the distance of run i. room: [2 rows]. */
@@ -336,10 +353,12 @@ static int add_distances(Overlay *o, const double *scale, double *room) {
       room[rows + (size_t)n++] = log10(d);
     }
     fit_growth(&o->runs[i], n, room, room + rows);
+    add_line(o, i);
     for (int k = 0; k < n; k++) {
       for (int c = 1; c < t->ncols; c++) o->app->row[c] = NAN;
       o->app->row[0] = room[k];
       o->app->row[i] = room[rows + (size_t)k];
+      if (room[k] <= o->runs[i].until) o->app->row[o->n - 1 + i] = o->runs[i].level + o->runs[i].rate / log(10) * room[k];
       if (lag_table_add(t, o->app->row)) return lag_app_error(&o->app->args, "out of memory");
     }
     if (n == 0) lag_app_error(&o->app->args, "note: %s has no row at a time of the first run that differs from it", o->runs[i].label);
@@ -352,14 +371,15 @@ static int join_distances(Overlay *o) {
   int common, n = o->runs[0].app.drawn.n, rc = match_curves(o, &common);
   if (rc) return rc;
   if (o->n < 2) return lag_app_error(&app->args, "no other run is left to compare with %s", o->runs[0].label);
-  app->table = (Table){.ncols = o->n, .cols = calloc((size_t)o->n, sizeof *app->table.cols), .keep = 1};
-  app->drawn = (PlottedCurves){.n = o->n - 1, .x = calloc(2 * (size_t)o->n, sizeof *app->drawn.x), .ylog = 1, .xname = "t", .yname = "distance"};
-  app->row = calloc((size_t)o->n, sizeof *app->row);
+  size_t cols = 2 * (size_t)o->n - 1; /* the time, distances and their lines */
+  app->table = (Table){.ncols = (int)cols, .cols = calloc(cols, sizeof *app->table.cols), .keep = 1};
+  app->drawn = (PlottedCurves){.n = o->n - 1, .x = calloc(2 * cols, sizeof *app->drawn.x), .ylog = 1, .xname = "t", .yname = "distance"};
+  app->row = calloc(cols, sizeof *app->row);
   double *room = calloc((size_t)n + 2 * o->runs[0].app.table.nrows + 1, sizeof *room);
   if (!app->table.cols || !app->drawn.x || !app->row || !room) rc = lag_app_error(&app->args, "out of memory");
   if (rc == 0) {
     const char *unit = find_scales(o, room);
-    app->drawn.y = app->drawn.x + o->n;
+    app->drawn.y = app->drawn.x + cols;
     app->table.cols[0] = o->runs[0].app.table.cols[0];
     for (int i = 1; i < o->n; i++) {
       Column *c = &app->table.cols[app->drawn.y[i - 1] = i];
@@ -376,9 +396,10 @@ static int join_distances(Overlay *o) {
 
 /* ---- The report */
 
-static void report_distance(const OverlaidRun *r) {
+static void report_distance(const Overlay *o, const OverlaidRun *r) {
+  const char *unit = o->app->table.cols[1].unit, *space = unit[0] ? " " : "";
   if (isnan(r->first)) printf("  no distance from the first");
-  else printf("  distance from the first: %.3g at first, %.3g at most", r->first, r->most);
+  else printf("  distance from the first: %.3g%s%s at first, %.3g%s%s at most%s", r->first, space, unit, r->most, space, unit, o->scaled ? ", each output over the largest value of its unit" : "");
   if (isfinite(r->rate)) printf("; grows as exp(%.3g t/s) up to t = %.3g s", r->rate, r->until);
   putchar('\n');
 }
@@ -412,7 +433,7 @@ static void report(const Overlay *o) {
     printf("%-*s  %s t = %.6g s, %lld steps", (int)widest, o->runs[i].label, app->status < 0 ? "FAILED at" : "reached", st.t, st.steps);
     report_energy(o, i);
     printf(o->runs[i].method ? "\n" : ", by %s\n", method);
-    if (i && o->app->args.distance) report_distance(&o->runs[i]);
+    if (i && o->app->args.distance) report_distance(o, &o->runs[i]);
   }
   printf("picture in %s\n", o->app->args.svg);
 }

@@ -124,7 +124,7 @@ potential = -k*x^2/2
 scene rest { start x = 0; span 10; tolerance 1e-12; output x every 0.07 [s]; monitor energy 1e-8 }
 END
 distance() {
-  "$LAGC" plot "$TMP/saddle.lag" --vs x=1e-8 --distance -o "$TMP/distance.svg" >"$TMP/out" 2>&1 && cat "$TMP/out" && curves "$TMP/distance.svg" 'stroke-width="1.6"' 50 &&
+  "$LAGC" plot "$TMP/saddle.lag" --vs x=1e-8 --distance -o "$TMP/distance.svg" >"$TMP/out" 2>&1 && cat "$TMP/out" && curves "$TMP/distance.svg" 'stroke="#0072b2" stroke-width="1.6"' 50 &&
     awk '{ d = $3/(1e-8*(exp($2) + exp(-$2))/2) - 1; if (d < 0) d = -d; if (d > most) most = d; last = $2 } END { print most; exit !(most < 0.03 && last > 9.9) }' "$TMP/points"
 }
 check "the distance of two starts grows as cosh" distance
@@ -134,10 +134,15 @@ rate() {
     for (n = 0; y[n] < y[1000] - log(10); n++) { mx += n/100; my += y[n] }
     mx /= n; my /= n
     for (i = 0; i < n; i++) { xx += (i/100 - mx)^2; xy += (i/100 - mx)*(y[i] - my) }
-    printf "grows as exp(%.3g t/s) up to t = %.3g s", xy/xx, (n - 1)/100 }')
-  echo "$want" && grep -qF "1e-08 at first, 0.00011 at most; $want" "$TMP/out"
+    printf "grows as exp(%.3g t/s) up to t = %.3g s", xy/xx, (n - 1)/100; print xy/xx, my, mx, (n - 1)/100 >"'"$TMP/line"'" }')
+  echo "$want" && grep -qF "1e-08 m at first, 0.00011 m at most; $want" "$TMP/out" && want=${want#*as } && grep -qF ">${want%% up*}<" "$TMP/distance.svg"
+}
+line() { # to half a pixel of 380, which are five decades
+  curves "$TMP/distance.svg" 'stroke="#d55e00" stroke-width="1.6"' 2 && awk 'NR == FNR { rate = $1; my = $2; mx = $3; until = $4; next }
+    { d = log($3/1e-8) - my - rate*($2 - mx); if (d < 0) d = -d; if (d > most) most = d; last = $2 } END { print most, last; exit !(most < 0.02 && last < until + 0.02 && last > until - 0.02) }' "$TMP/line" "$TMP/points"
 }
 check "and its rate is fitted" rate
+check "and drawn" line
 cat >"$TMP/two.lag" <<'END'
 model two
 coord x [m]
@@ -148,7 +153,7 @@ scene swing { start x = 1; span 10; tolerance 1e-12; output x, x' }
 END
 relative() { # each is divided by its largest value: (0.1 cos 2t)/1, (0.2 sin 2t)/2
   "$LAGC" plot "$TMP/two.lag" --vs x=1.1 --distance -o "$TMP/two.svg" >"$TMP/out" 2>&1
-  cat "$TMP/out" && grep -q 'distance from the first: 0.1 at first, 0.1 at most' "$TMP/out"
+  cat "$TMP/out" && grep -q 'distance from the first: 0.1 at first, 0.1 at most, each output over the largest value of its unit' "$TMP/out"
 }
 check "outputs of two units" relative
 
