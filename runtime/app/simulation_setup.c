@@ -188,9 +188,9 @@ int lag_app_set_value(App *app, const char *text) {
   if (dot && lag_app_has_word(app->program->effects, text, (size_t)(dot - text)) &&
       !lag_app_has_word(app->scene->model->effects, text, (size_t)(dot - text))) {
     return lag_app_error(a,
-                     "%s: effect %.*s is not in scene %s of this build; let the scene use it, then this builds and runs "
-                     "it: lagc run %s %s",
-                     name, (int)(dot - text), text, app->scene->name, app->program->source, app->scene->name);
+                     "%s: effect %.*s is not in scene %s of this build; take a scene of %s that uses it, or write one: "
+                     "scene %s_%.*s { like %s; use %.*s }",
+                     name, (int)(dot - text), text, app->scene->name, app->program->source, app->scene->name, (int)(dot - text), text, app->scene->name, (int)(dot - text), text);
   }
   for (size_t k = 1; name[k - 1]; k++) /* a parameter, or a member or component of it */
     if (strchr("[.", name[k]) && lag_app_has_word(app->scene->model->fixed, name, k))
