@@ -167,7 +167,7 @@ static void put_runs(FILE *f, const Cost *c, int all) {
     }
   }
   fprintf(f, "* no other run is both faster and more accurate%s. time: median processor time; +- half of the interquartile range of the\n"
-          "times. order: slope of log error against log steps, at the smallest errors above rounding\n", all ? "" : "; --runs: every run");
+          "times. order: as measured, the slope of log error against log steps, at the smallest errors above rounding\n", all ? "" : "; --runs: every run");
 }
 
 /* Why a method has no runs, without its name. */
