@@ -140,7 +140,7 @@ int lag_app_write_row(App *app, int drawn) {
     app->bad_file = app->args.out;
     return LAG_EIO;
   }
-  if (drawn && app->args.energy_error) lag_energy_without_jumps(app);
+  if (drawn && app->args.energy_error) lag_energy_kept(app);
   return drawn && lag_table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
 
@@ -286,7 +286,7 @@ static int finish(App *app) {
            app->section < 0 ? "" : app->scene->model->ev[app->section].name);
   if (a->html && lag_html_write(a->html, &app->table, title, &app->show)) bad = lag_app_io_error(app, a->html);
   lag_table_scale_time(&app->table);
-  if (a->energy_error) lag_energy_errors(&app->table, &app->drawn);
+  if (a->energy_error) lag_energy_errors(app, app->sim);
   if (lag_app_draw_table(app, title)) bad = EXIT_USAGE;
   if (a->save && app->status >= 0 && save_state(app)) bad = EXIT_USAGE;
   if (a->sketch) {
@@ -295,7 +295,7 @@ static int finish(App *app) {
   }
   if (a->json) lag_report_json(app, stdout);
   else if (!a->quiet) lag_report_text(app, f);
-  if (app->status < 0 && (a->json || a->quiet)) lag_app_error(a, "%s", lag_sim_message(app->sim));
+  if (app->status < 0 && (a->json || a->quiet)) lag_app_error(a, "%s%s", lag_sim_message(app->sim), lag_app_way_on(app));
   if (fflush(stdout) != 0) bad = lag_app_io_error(app, "standard output");
   tell_last_state(app);
   return bad ? bad : rc;
@@ -337,7 +337,7 @@ int lag_app_run(App *app) {
   if ((rc = lag_app_measures_open(app)) != 0) return rc;
   lag_app_catch_interrupt();
   if ((rc = open_output(app)) != 0) return rc;
-  if (!app->args.quiet || app->args.json || app->args.save) {
+  if (!app->args.quiet || app->args.json || app->args.save || app->args.energy_error) {
     lag_sim_balance(app->sim); /* no effect on a resumed run, which keeps its setting */
   }
   note_tables(app);

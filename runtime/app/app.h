@@ -20,7 +20,7 @@ typedef struct Args {
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram; /* for --sweep */
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
-  int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs, where, sweep, zip, go_on, portrait, potential, distance, energy_error;
+  int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs, where, sweep, zip, go_on, portrait, potential, distance, energy_error, no_monitors;
   char **sets; /* name=value, in order */
   int nsets;
   const char **scenes; /* all scenes named; scene is the first */
@@ -65,6 +65,7 @@ typedef struct App {
   const lag_scene *scene;
   const lag_scene *whole; /* the scene with its monitors */
   lag_scene bare;   /* for exponents, costs, errors and their pictures: the scene without monitors and closed forms, which would end a rough run or take time */
+  lag_scene unwatched; /* for --no-monitors */
   lag_sim *sim;
   State state;      /* the saved state of --resume */
   int resumed;      /* 1: the run continues from `state` */
@@ -175,11 +176,11 @@ void lag_sampling_free(App *app);
 
 /* app.c: time of row grid[2] of a grid that begins at grid[0], with rows grid[1] apart. */
 double lag_app_row_time(const App *app, const double *grid);
-/* error_curves.c: whether the rows of a picture lie at equal times, as differences need them; the present row's energy, less its jumps at events so far;
- * the energies that `d` draws := decimal logarithms of their errors, relative where no run begins with the energy 0. */
+/* error_curves.c: whether the rows of a picture lie at equal times, as differences need them; the present row's energy, less its jumps at events and the work
+ * of forces so far; the energies that are drawn := decimal logarithms of their errors, relative where no run begins with the energy 0. sim: of the first run. */
 int lag_app_equal_times(const Args *a);
-void lag_energy_without_jumps(App *app);
-void lag_energy_errors(Table *t, PlottedCurves *d);
+void lag_energy_kept(App *app);
+void lag_energy_errors(App *app, lag_sim *sim);
 /* portrait.c: what --portrait or --potential draws beneath app->drawn. 0, or EXIT_USAGE after a message. */
 int lag_portrait_open(App *app);
 /* app.c: writes a row of the present state; writes app->row, also to the table if drawn. LAG_OK, or a failure. */
@@ -290,7 +291,12 @@ void lag_report_events_json(const App *app, Json *j);
 
 /* report.c */
 void lag_report_text(App *app, FILE *f);
+/* How a run that a monitor has ended goes on, behind its message; "" for others. */
+const char *lag_app_way_on(const App *app);
 void lag_report_json(App *app, FILE *f);
+/* The word behind a charge's name: "energy drift", "spin balance". */
+const char *lag_charge_word(const lag_charge_stats *charge);
+extern const char lag_energy_scale[]; /* what drifts and balances of the energy are relative to */
 /* Members model, scene, method, chosen, status. */
 void lag_report_json_head(const App *app, Json *j);
 /* s[n] := method with the options that differ from their defaults, "rk45(tol=1e-09)". */

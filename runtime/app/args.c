@@ -81,7 +81,7 @@ static const Option options[] = {
     {"resume", offsetof(Args, resume), 0, RUN}, {"events", offsetof(Args, events), 0, RUN},
     {"section", offsetof(Args, section), 0, RUN}, {"cloud", offsetof(Args, cloud), 0, RUN}, {"starts", offsetof(Args, starts), 0, RUN}, {"output", offsetof(Args, out), 0, RUN | LYAPUNOV | COST | SWEEP},
     {"json", offsetof(Args, json), 1, ANY}, {"sketch", offsetof(Args, sketch), 1, RUN | COST},
-    {"quiet", offsetof(Args, quiet), 1, ANY},
+    {"quiet", offsetof(Args, quiet), 1, ANY}, {"no-monitors", offsetof(Args, no_monitors), 1, RUN},
     {"measure", offsetof(Args, measures), 2, RUN | SWEEP}, {"vs", offsetof(Args, vs), 2, RUN}, {"tangent", offsetof(Args, tangent), 1, RUN}, {"volume", offsetof(Args, volume), 1, RUN}, {"modes", offsetof(Args, modes), 1, ANY}, {"steady", offsetof(Args, steady), 1, MODES},
     {"lyapunov", offsetof(Args, lyapunov), 1, ANY}, {"transient", offsetof(Args, transient), 0, LYAPUNOV},
     {"exponents", offsetof(Args, exponents), 0, LYAPUNOV}, {"effects", offsetof(Args, effects), 0, ANY},

@@ -65,7 +65,7 @@ static int columns_of(const App *app, const char *name, int *cols) {
   return n ? n : no_column(app, name);
 }
 
-/* The period of an angle that is declared periodic, in the unit of its column, over which points of a section are drawn; 0: none. */
+/* The period of an angle that is declared periodic, in the unit of its column, over which pictures of more than a turn, and points of a section, are drawn; 0: none. */
 static double period_of(const App *app, int col) {
   const lag_model *m = app->scene->model;
   int i = lag_component_index(m, app->table.cols[col].name);
@@ -101,7 +101,7 @@ int lag_app_choose_curves(App *app) {
   if (nx != 1 && nx != d->n)
     return lag_app_error(a, "--plot-x %s has %d parts, --plot-y %s has %d; draw one against the other by naming a part", a->plot_x, nx, a->plot_y, d->n);
   for (int i = nx; i < d->n; i++) d->x[i] = d->x[0];
-  if (app->table.points && a->plot_x) d->beneath.period = period_of(app, d->x[0]);
+  if (a->plot_x) d->beneath.period = period_of(app, d->x[0]);
   return 0;
 }
 

@@ -279,6 +279,7 @@ int lag_cost_list_methods(App *app, Cost *c) {
       if (is_wanted(a, m->name) || is_wanted(a, name)) bad |= add(c, m, (lag_option){.name = families[k].option, .value = x});
     }
   }
+  c->named = a->methods && c->nmethods <= LAG_COST_FAMILIES;
   return bad ? lag_app_error(a, "out of memory") : check_methods(app, c);
 }
 

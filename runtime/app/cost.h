@@ -25,6 +25,7 @@ typedef struct Cost {
   double seen;               /* t to which the growth of errors was seen */
   CostMethod *method;        /* [nmethods] */
   int nmethods;
+  int named;                 /* 1: --methods names them, few enough to show each: each is then a family of its own */
   double seconds;            /* time to spend, by the clock */
   double target;             /* error of --target; 0: none */
   char monitor[200];         /* a monitor's message, where it stops settings that would be answers; "" */

@@ -116,7 +116,7 @@ static int by_error(const void *a, const void *b) {
   return (x->error < y->error) - (x->error > y->error);
 }
 
-/* A band from the front to twice its time. */
+/* A band from the front to twice its time, within the frame. */
 static void put_front(FILE *f, const Range *r, const Cost *c) {
   const CostRun *front[LAG_COST_MOST_RUNS * LAG_COST_FAMILIES];
   int n = 0;
@@ -128,8 +128,8 @@ static void put_front(FILE *f, const Range *r, const Cost *c) {
   fputs("<path fill=\"#f0c808\" fill-opacity=\"0.35\" stroke=\"none\" d=\"", f);
   for (int k = 0; k < 2 * n; k++) {
     const CostRun *run = front[k < n ? k : 2 * n - 1 - k];
-    double y = log10(run->time) + (k < n ? 0 : log10(2));
-    fprintf(f, "%s%.1f %.1f", k ? "L" : "M", px(r, log10(fmax(run->error, 1e-17))), py(r, y));
+    double x = log10(fmax(run->error, 1e-17)), y = log10(run->time) + (k < n ? 0 : log10(2));
+    fprintf(f, "%s%.1f %.1f", k ? "L" : "M", px(r, fmax(r->x1, fmin(x, r->x0))), py(r, fmax(r->y0, fmin(y, r->y1))));
   }
   fputs("Z\"/>\n", f);
 }

@@ -13,12 +13,13 @@ const char *lag_cost_knob(const lag_method *m) { return m->flags & LAG_METHOD_AD
 
 /* ---- Families */
 
-/* By the begin of their methods' names; the last takes all others. */
-static int family_of(const CostMethod *m) {
+/* By the begin of their methods' names; the last takes all others. Of methods that are named each is its own. */
+static int family_of(const Cost *c, const CostMethod *m) {
   static const struct {
     const char *begin;
     int family;
   } names[] = {{"taylor", 0}, {"rk", 1}, {"dop", 1}, {"verlet", 2}, {"symplectic", 2}, {"variational", 3}, {"gauss", 4}, {"radau", 5}, {"gsl-", 6}};
+  if (c->named) return (int)(m - c->method);
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (strncmp(m->name, names[i].begin, strlen(names[i].begin)) == 0) return names[i].family;
   return LAG_COST_FAMILIES - 1;
@@ -36,11 +37,11 @@ const CostMethod *lag_cost_best_of_family(const Cost *c, int family) {
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
     int wins = 0;
-    if (family_of(m) != family || m->nruns == 0) continue;
+    if (family_of(c, m) != family || m->nruns == 0) continue;
     for (int k = 1; k <= COLUMNS; k++) {
       double own = time_for(m, k);
       int first = own < HUGE_VAL;
-      for (int j = 0; j < c->nmethods && first; j++) first = family_of(&c->method[j]) != family || time_for(&c->method[j], k) >= own;
+      for (int j = 0; j < c->nmethods && first; j++) first = family_of(c, &c->method[j]) != family || time_for(&c->method[j], k) >= own;
       wins += first;
     }
     if (wins > most) {
@@ -129,7 +130,7 @@ static void put_times(FILE *f, const Cost *c, int all) {
   putc('\n', f);
   for (int i = 0; i < c->nmethods; i++) {
     const CostMethod *m = &c->method[i];
-    if (time_for(m, 1) == HUGE_VAL || (!all && lag_cost_best_of_family(c, family_of(m)) != m)) continue;
+    if ((c->named ? m->nruns == 0 : time_for(m, 1) == HUGE_VAL) || (!all && lag_cost_best_of_family(c, family_of(c, m)) != m)) continue;
     fprintf(f, "  %-30s", m->name);
     for (int k = 1; k <= COLUMNS; k++) {
       const CostRun *any;
@@ -143,7 +144,7 @@ static void put_times(FILE *f, const Cost *c, int all) {
     }
     putc('\n', f);
   }
-  fputs(all ? "* the fastest of all\n" : "* the fastest of all; one method of each family, --all: every method\n", f);
+  fputs(all || c->named ? "* the fastest of all\n" : "* the fastest of all; one method of each family, --all: every method\n", f);
 }
 
 /* The runs of the front, or all. */
@@ -166,7 +167,7 @@ static void put_runs(FILE *f, const Cost *c, int all) {
     }
   }
   fprintf(f, "* no other run is both faster and more accurate%s. time: median processor time; +- half of the interquartile range of the\n"
-          "times. order: slope of log error against log steps, at the smallest errors above rounding\n", all ? "" : "; --runs: every run");
+          "times. order: as measured, the slope of log error against log steps, at the smallest errors above rounding\n", all ? "" : "; --runs: every run");
 }
 
 /* Why a method has no runs, without its name. */
@@ -247,7 +248,7 @@ void lag_cost_put_json(FILE *f, const App *app, const Cost *c) {
     lag_json_begin(&j, NULL, '{');
     lag_json_string(&j, "method", m->name);
     lag_json_number(&j, "order", m->order);
-    lag_json_truth(&j, "best_of_family", lag_cost_best_of_family(c, family_of(m)) == m);
+    lag_json_truth(&j, "best_of_family", lag_cost_best_of_family(c, family_of(c, m)) == m);
     lag_json_number(&j, "left_out_from", m->left_out > 0 ? m->left_out : NAN);
     lag_json_string(&j, "refused", m->why[0] ? m->why : NULL);
     lag_json_begin(&j, "runs", '[');

@@ -1,4 +1,4 @@
-/* Curves of differences, on a logarithmic axis: of the energy from its first value (--energy-error). (overlay.c: the distance of runs, --distance.) */
+/* Curves of differences, on a logarithmic axis: of the energy, less the work of forces, from its first value (--energy-error). (overlay.c: the distance of runs, --distance.) */
 #include <math.h>
 #include <string.h>
 
@@ -6,12 +6,12 @@
 
 int lag_app_equal_times(const Args *a) { return (a->distance || a->energy_error) && !a->every; }
 
-void lag_energy_without_jumps(App *app) {
+void lag_energy_kept(App *app) {
   lag_charge_stats energy;
   lag_sim_charge(app->sim, 0, &energy);
   for (int i = 0; i < app->drawn.n; i++) {
     int col = app->drawn.y[i];
-    app->row[col] -= energy.at_events / lag_sim_output_info(app->sim, col - 1, NULL, 0, NULL, 0);
+    app->row[col] -= (energy.at_events + energy.work) / lag_sim_output_info(app->sim, col - 1, NULL, 0, NULL, 0);
   }
 }
 
@@ -30,10 +30,15 @@ static void replace_energy(Table *t, int col, double first, double size) {
   }
 }
 
-void lag_energy_errors(Table *t, PlottedCurves *d) {
+void lag_energy_errors(App *app, lag_sim *sim) {
+  Table *t = &app->table;
+  PlottedCurves *d = &app->drawn;
+  lag_charge_stats energy;
   int relative = 1;
+  lag_sim_charge(sim, 0, &energy);
   for (int i = 0; i < d->n; i++) relative &= first_value(t, d->y[i]) != 0;
-  d->yname = relative ? "|E/E(0) - 1|" : "|E - E(0)|";
+  if ((energy.flags & (LAG_CONSERVED | LAG_BALANCED)) == LAG_BALANCED) d->yname = relative ? "|(E - work)/E(0) - 1|" : "|E - work - E(0)|";
+  else d->yname = relative ? "|E/E(0) - 1|" : "|E - E(0)|";
   for (int i = 0; i < d->n; i++) {
     double first = first_value(t, d->y[i]);
     replace_energy(t, d->y[i], first, relative ? fabs(first) : 1);

@@ -57,6 +57,7 @@ static const char more_usage[] =
     "                       --transient T, a tenth of that; --exponents K: the largest ones; -o FILE, --svg FILE: as they\n"
     "                       settle; --json (in simulators built --with linear)\n"
     "  --quiet              no report\n"
+    "  --no-monitors        no monitor of the scene ends the run\n"
     "  --save-state FILE    write the complete state at the end; --resume FILE goes on from there, with the same\n"
     "                       scene, method and values, which may be given again: results are those of an uninterrupted run, bit by bit.\n"
     "                       A resumed run writes the rows after the saved time (a run that ends between two rows\n"

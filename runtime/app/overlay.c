@@ -17,7 +17,8 @@ typedef struct OverlaidRun {
   char **sets;  /* of the command line, and its value of --vs; NULL: has none */
   char label[96];
   int *curve;
-  double first, most, rate, until; /* of --distance: the first and the largest distance from the first run; the rate of growth up to a time; NaN: none */
+  double first, most, rate, level, until; /* of --distance: the first and the largest distance from the first run; its growth up to a time, log10 of the distance = level + rate
+                                           * t/log(10); NaN: none */
 } OverlaidRun;
 
 typedef struct Overlay {
@@ -27,6 +28,7 @@ typedef struct Overlay {
   const char **values; /* [nvalues] name=value of each run of one scene and method; NULL: none, as of the first before those of --vs */
   int nvalues;
   char *starts; /* texts of --starts */
+  int scaled;   /* of --distance: 1: the outputs have several units */
 } Overlay;
 
 size_t lag_app_method_length(const char *list) {
@@ -90,7 +92,7 @@ static int judge_run(Overlay *o, int rc) {
   int status = rc ? LAG_OK : r->app.status, refused = r->app.refused || status == LAG_EMETHOD;
   if (status == LAG_EINVAL || status == LAG_ENOMEM || status == LAG_EIO) return lag_app_error(a, "%s", status == LAG_ENOMEM ? "out of memory" : lag_sim_message(r->app.sim));
   if (rc == 0) lag_sampling_warn(&r->app, note, sizeof note);
-  if (!refused && status < 0) lag_app_error(a, "warning: %s: %s; the picture shows the run up to its end", r->label, lag_sim_message(r->app.sim));
+  if (!refused && status < 0) lag_app_error(a, "warning: %s: %s; the picture shows the run up to its end%s", r->label, lag_sim_message(r->app.sim), lag_app_way_on(&r->app));
   if (!refused) return rc;
   if (rc == 0) lag_app_error(a, "%s", lag_sim_message(r->app.sim));
   lag_app_error(a, "note: %s is left out of the picture", r->label);
@@ -136,11 +138,23 @@ static int read_values(Overlay *o) {
   return 0;
 }
 
+/* Counts the methods of --method, all of which the program knows; 0 after a message. */
+static int count_methods(const Overlay *o) {
+  int n = 0;
+  for (const char *m = o->app->args.method; n == 0 || m; n++) {
+    char name[64] = "";
+    size_t length = m ? lag_app_method_length(m) : 0;
+    if (m) snprintf(name, sizeof name, "%.*s", (int)strcspn(m, " ,("), m);
+    if (m && !lag_app_find_method(o->app, name)) return lag_app_unknown_method(o->app, name), 0;
+    m = m && m[length] ? m + length + 1 + strspn(m + length + 1, " ") : NULL;
+  }
+  return n;
+}
+
 static int run_all(Overlay *o) {
   const Args *a = &o->app->args;
-  int scenes = a->nscenes ? a->nscenes : 1, methods = 1, rc = read_values(o), interrupted = 0;
+  int scenes = a->nscenes ? a->nscenes : 1, methods = count_methods(o), rc = methods ? read_values(o) : EXIT_USAGE, interrupted = 0;
   if (rc) return rc;
-  for (const char *m = a->method; m && m[lag_app_method_length(m)]; m += lag_app_method_length(m) + 1) methods++;
   o->runs = calloc((size_t)(scenes * methods * o->nvalues), sizeof *o->runs);
   if (!o->runs) return lag_app_error(a, "out of memory");
   for (int s = 0; s < scenes; s++) {
@@ -268,7 +282,7 @@ static const char *unit_of(const Overlay *o, int k) {
 }
 
 /* scale[k] := what differences of curve k are divided by: 1 where all have one unit, which is returned; else the largest value of this unit in the first run. */
-static const char *find_scales(const Overlay *o, double *scale) {
+static const char *find_scales(Overlay *o, double *scale) {
   const OverlaidRun *first = &o->runs[0];
   const char *one = NULL;
   int units = 0, n = first->app.drawn.n;
@@ -282,6 +296,7 @@ static const char *find_scales(const Overlay *o, double *scale) {
       for (size_t at = 0; unit_of(o, j) && strcmp(unit_of(o, j), unit) == 0 && at < first->app.table.nrows; at++) scale[k] = fmax(scale[k], fabs(value_of(first, j, at)));
   }
   for (int k = 0; k < n && units == 1; k++) scale[k] = 1;
+  o->scaled = units > 1;
   return units == 1 ? one : "";
 }
 
@@ -301,14 +316,28 @@ static double distance_at(const Overlay *o, const OverlaidRun *r, size_t at, con
 /* The growth of a distance, a straight line of its logarithm: from its first row to the one where it reaches a tenth of its largest. t, log10 of it: [n]. */
 static void fit_growth(OverlaidRun *r, int n, const double *t, const double *log_distance) {
   int end = 0;
-  r->first = r->most = r->rate = r->until = NAN;
+  r->first = r->most = r->rate = r->level = r->until = NAN;
   for (int i = 0; i < n; i++) r->most = fmax(r->most, pow(10, log_distance[i]));
   if (n) r->first = pow(10, log_distance[0]);
   while (end < n && log_distance[end] < log10(r->most) - 1) end++;
   if (end < 10 || log_distance[end - 1] < log_distance[0] + 1) return;
   LineFit f = lag_line_fit(end, t, log_distance);
   r->rate = f.xy / f.xx * log(10);
+  r->level = f.my - f.xy / f.xx * f.mx;
   r->until = t[end - 1];
+}
+
+/* Adds a curve for the line of run i, in column o->n - 1 + i, named by its growth. */
+static void add_line(Overlay *o, int i) {
+  PlottedCurves *d = &o->app->drawn;
+  Table *t = &o->app->table;
+  const OverlaidRun *r = &o->runs[i];
+  int col = o->n - 1 + i;
+  if (!isfinite(r->rate)) return;
+  t->cols[col] = t->cols[i];
+  snprintf(t->cols[col].name, sizeof t->cols[col].name, "exp(%.3g t/s)", r->rate);
+  d->x[d->n] = 0;
+  d->y[d->n++] = col;
 }
 
 /* Column i of the picture's table := the distance of run i. room: [2 rows]. */
@@ -324,10 +353,12 @@ static int add_distances(Overlay *o, const double *scale, double *room) {
       room[rows + (size_t)n++] = log10(d);
     }
     fit_growth(&o->runs[i], n, room, room + rows);
+    add_line(o, i);
     for (int k = 0; k < n; k++) {
       for (int c = 1; c < t->ncols; c++) o->app->row[c] = NAN;
       o->app->row[0] = room[k];
       o->app->row[i] = room[rows + (size_t)k];
+      if (room[k] <= o->runs[i].until) o->app->row[o->n - 1 + i] = o->runs[i].level + o->runs[i].rate / log(10) * room[k];
       if (lag_table_add(t, o->app->row)) return lag_app_error(&o->app->args, "out of memory");
     }
     if (n == 0) lag_app_error(&o->app->args, "note: %s has no row at a time of the first run that differs from it", o->runs[i].label);
@@ -340,14 +371,15 @@ static int join_distances(Overlay *o) {
   int common, n = o->runs[0].app.drawn.n, rc = match_curves(o, &common);
   if (rc) return rc;
   if (o->n < 2) return lag_app_error(&app->args, "no other run is left to compare with %s", o->runs[0].label);
-  app->table = (Table){.ncols = o->n, .cols = calloc((size_t)o->n, sizeof *app->table.cols), .keep = 1};
-  app->drawn = (PlottedCurves){.n = o->n - 1, .x = calloc(2 * (size_t)o->n, sizeof *app->drawn.x), .ylog = 1, .xname = "t", .yname = "distance"};
-  app->row = calloc((size_t)o->n, sizeof *app->row);
+  size_t cols = 2 * (size_t)o->n - 1; /* the time, distances and their lines */
+  app->table = (Table){.ncols = (int)cols, .cols = calloc(cols, sizeof *app->table.cols), .keep = 1};
+  app->drawn = (PlottedCurves){.n = o->n - 1, .x = calloc(2 * cols, sizeof *app->drawn.x), .ylog = 1, .xname = "t", .yname = "distance"};
+  app->row = calloc(cols, sizeof *app->row);
   double *room = calloc((size_t)n + 2 * o->runs[0].app.table.nrows + 1, sizeof *room);
   if (!app->table.cols || !app->drawn.x || !app->row || !room) rc = lag_app_error(&app->args, "out of memory");
   if (rc == 0) {
     const char *unit = find_scales(o, room);
-    app->drawn.y = app->drawn.x + o->n;
+    app->drawn.y = app->drawn.x + cols;
     app->table.cols[0] = o->runs[0].app.table.cols[0];
     for (int i = 1; i < o->n; i++) {
       Column *c = &app->table.cols[app->drawn.y[i - 1] = i];
@@ -364,11 +396,25 @@ static int join_distances(Overlay *o) {
 
 /* ---- The report */
 
-static void report_distance(const OverlaidRun *r) {
+static void report_distance(const Overlay *o, const OverlaidRun *r) {
+  const char *unit = o->app->table.cols[1].unit, *space = unit[0] ? " " : "";
   if (isnan(r->first)) printf("  no distance from the first");
-  else printf("  distance from the first: %.3g at first, %.3g at most", r->first, r->most);
+  else printf("  distance from the first: %.3g%s%s at first, %.3g%s%s at most%s", r->first, space, unit, r->most, space, unit, o->scaled ? ", each output over the largest value of its unit" : "");
   if (isfinite(r->rate)) printf("; grows as exp(%.3g t/s) up to t = %.3g s", r->rate, r->until);
   putchar('\n');
+}
+
+/* The largest error of the energy as the picture shows it; else the drift or balance as a run reports it. */
+static void report_energy(const Overlay *o, int i) {
+  const App *whole = o->app;
+  const int col = whole->args.energy_error ? whole->drawn.y[i] : 0;
+  lag_charge_stats energy;
+  double most = NAN;
+  lag_sim_charge(o->runs[i].app.sim, 0, &energy);
+  for (size_t at = 0; col && at < whole->table.nrows; at++) most = fmax(most, lag_table_cell(&whole->table, at, col));
+  if (col) printf(", %s up to %.3g%s%s%s", whole->drawn.yname, isnan(most) ? 0 : pow(10, most), whole->table.cols[col].unit[0] ? " " : "", whole->table.cols[col].unit,
+                  energy.flags & (LAG_CONSERVED | LAG_BALANCED) ? "" : ", where the work of forces is not known");
+  else if (isfinite(energy.drift)) printf(i ? ", energy %s %.3g" : ", energy %s %.3g (%s)", lag_charge_word(&energy), energy.drift, lag_energy_scale);
 }
 
 static void report(const Overlay *o) {
@@ -385,9 +431,9 @@ static void report(const Overlay *o) {
     lag_sim_stats(app->sim, &st);
     lag_report_method(app, method, sizeof method);
     printf("%-*s  %s t = %.6g s, %lld steps", (int)widest, o->runs[i].label, app->status < 0 ? "FAILED at" : "reached", st.t, st.steps);
-    if (isfinite(st.energy_drift)) printf(", energy drift %.3g", st.energy_drift);
+    report_energy(o, i);
     printf(o->runs[i].method ? "\n" : ", by %s\n", method);
-    if (i && o->app->args.distance) report_distance(&o->runs[i]);
+    if (i && o->app->args.distance) report_distance(o, &o->runs[i]);
   }
   printf("picture in %s\n", o->app->args.svg);
 }
@@ -402,7 +448,7 @@ int lag_app_overlay(App *app) {
     const App *first = &o.runs[0].app;
     snprintf(title, sizeof title, "%s%s%s", first->scene->model->name, a->nscenes > 1 ? "" : ": ", a->nscenes > 1 ? "" : first->scene->name);
     lag_table_scale_time(&app->table);
-    if (a->energy_error) lag_energy_errors(&app->table, &app->drawn);
+    if (a->energy_error) lag_energy_errors(app, first->sim);
     rc = lag_app_draw_table(app, title);
     if (rc == 0 && a->sketch) lag_sketch_write(stdout, &app->table, &app->drawn);
     if (rc == 0 && !a->quiet) report(&o);

@@ -24,8 +24,7 @@ void lag_report_method(const App *app, char *s, size_t n) {
 
 /* ---- Energy and other charges: drift or balance of each, and whether it grows */
 
-/* The word after the name: "energy drift", "spin balance". */
-static const char *what_of(const lag_charge_stats *c) { return c->flags & LAG_CONSERVED ? "drift" : c->flags & LAG_BALANCED ? "balance" : "change"; }
+const char *lag_charge_word(const lag_charge_stats *c) { return c->flags & LAG_CONSERVED ? "drift" : c->flags & LAG_BALANCED ? "balance" : "change"; }
 
 static void put_trend(const App *app, const lag_charge_stats *c, FILE *f) {
   const lag_method *m = lag_sim_method(app->sim);
@@ -42,15 +41,17 @@ static const char *why_not(const App *app, const lag_charge_stats *c) {
   return lag_method_balances(lag_sim_method(app->sim)) ? "not conserved, or not known to be" : "not conserved; the dense output of the method is too coarse for a balance";
 }
 
+const char lag_energy_scale[] = "relative to the larger of |E0| and the median of |p.v| + |L|";
+
 static void put_energy(const App *app, const lag_charge_stats *c, FILE *f) {
-  const char *size = "relative to the larger of |E0| and the median of |p.v| + |L|", *space = c->unit[0] ? " " : "";
+  const char *space = c->unit[0] ? " " : "";
   if (!(c->flags & (LAG_CONSERVED | LAG_BALANCED))) {
     fprintf(f, "(%s)", why_not(app, c));
     return;
   }
   fprintf(f, "(%.3g%s%s; ", c->absolute, space, c->unit);
   if (!(c->flags & LAG_CONSERVED)) fprintf(f, "work of forces and explicit time: %.6g%s%s; ", c->work, space, c->unit);
-  fprintf(f, "%s)", size);
+  fprintf(f, "%s)", lag_energy_scale);
 }
 
 static void put_charge(const App *app, const lag_charge_stats *c, FILE *f) {
@@ -91,7 +92,7 @@ static void charges(const App *app, FILE *f) {
       fprintf(f, "%s: not finite\n", c.name);
       continue;
     }
-    fprintf(f, "%s %s: %.3g ", c.name, what_of(&c), c.drift);
+    fprintf(f, "%s %s: %.3g ", c.name, lag_charge_word(&c), c.drift);
     if (k) put_charge(app, &c, f);
     else put_energy(app, &c, f);
     put_trend(app, &c, f);
@@ -246,13 +247,15 @@ static void newton(const App *app, const lag_stats *st, FILE *f) {
   }
 }
 
+const char *lag_app_way_on(const App *app) { return app->status == LAG_EMONITOR ? "; with --no-monitors the run goes on past it" : ""; }
+
 static void verdict(const App *app, FILE *f) {
   double t = lag_sim_time(app->sim);
   switch (app->status) {
   case LAG_OK: fprintf(f, "reached t = %.15g s\n", t); break;
   case LAG_STOPPED: fprintf(f, "stopped by an event at t = %s s\n", lag_number_text(t, (char[64]){0})); break;
   case LAG_INTERRUPTED: fprintf(f, "interrupted at t = %s s\n", lag_number_text(t, (char[64]){0})); break;
-  default: fprintf(f, "FAILED: %s\n", lag_sim_message(app->sim));
+  default: fprintf(f, "FAILED: %s%s\n", lag_sim_message(app->sim), lag_app_way_on(app));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "app/app.h"
 #include "io/visible.h"
 #include "core/core.h"
+#include "numeric/edit_distance.h"
 
 static int no_scene(const App *app, const char *name) {
   const lag_program *p = app->program;
@@ -37,6 +38,11 @@ static int choose_scene(App *app) {
       app->scene = p->scenes[i];
       app->whole = app->scene;
       if (app->args.lyapunov || (app->args.cost && !app->args.where) || app->args.reference || app->args.energy_error || app->args.distance || app->args.cloud || app->compared) app->scene = bare_scene(app, app->scene);
+      if (app->args.no_monitors) {
+        app->unwatched = *app->scene;
+        app->unwatched.nmonitors = 0;
+        app->scene = &app->unwatched;
+      }
       return 0;
     }
   return name ? no_scene(app, name) : lag_app_error(&app->args, "this program has no scenes");
@@ -116,11 +122,12 @@ static int parse_method(const Args *a, Choice *c) {
   return 0;
 }
 
-/* Suggests the nearest name. */
+/* Suggests the nearest name, or the method whose description has the word. */
 int lag_app_unknown_method(const App *app, const char *name) {
   const lag_method *m;
   lag_nearest near = {.name = name};
   for (int i = 0; (m = lag_app_method_at(app, i)) != NULL; i++) lag_try_nearest(&near, m->name);
+  for (int i = 0; !near.best && (m = lag_app_method_at(app, i)) != NULL; i++) near.best = lag_text_has_word(m->doc, name) ? m->name : NULL;
   if (strncmp(name, "gsl-", 4) == 0 && strcmp(LAG_PRECISION, "double") != 0)
     return lag_app_error(&app->args, "method %s computes with doubles, this run in " LAG_PRECISION " precision; dop853 and taylor do, too", name);
   if (near.best) return lag_app_error(&app->args, "unknown method %s; did you mean %s? --method help lists them", name, near.best);
@@ -181,9 +188,9 @@ int lag_app_set_value(App *app, const char *text) {
   if (dot && lag_app_has_word(app->program->effects, text, (size_t)(dot - text)) &&
       !lag_app_has_word(app->scene->model->effects, text, (size_t)(dot - text))) {
     return lag_app_error(a,
-                     "%s: effect %.*s is not in scene %s of this build; let the scene use it, then this builds and runs "
-                     "it: lagc run %s %s",
-                     name, (int)(dot - text), text, app->scene->name, app->program->source, app->scene->name);
+                     "%s: effect %.*s is not in scene %s of this build; take a scene of %s that uses it, or write one: "
+                     "scene %s_%.*s { like %s; use %.*s }",
+                     name, (int)(dot - text), text, app->scene->name, app->program->source, app->scene->name, (int)(dot - text), text, app->scene->name, (int)(dot - text), text);
   }
   for (size_t k = 1; name[k - 1]; k++) /* a parameter, or a member or component of it */
     if (strchr("[.", name[k]) && lag_app_has_word(app->scene->model->fixed, name, k))

@@ -223,10 +223,11 @@ int lag_energy_retained(lag_sim *s) {
   lag_charge_stats c;
   if (lag_sim_ncharges(s) == 0 || s->run->begun == 0.0 || (m->constraints && !(m->flags & LAG_AUTONOMOUS))) return LAG_OK;
   lag_sim_charge(s, 0, &c);
+  const char *space = c.unit[0] ? " " : "";
   double large = fmax(fabs(c.now), s->charges[0].through); /* where forces do more work than the energy that there was */
   if (!(c.flags & (LAG_CONSERVED | LAG_BALANCED)) || !(c.drift >= half) || !(c.absolute > fmax(least, half * large))) return LAG_OK;
-  return lag_fail(s, LAG_EDRIFT, "at t = %.9g s the energy is off by %.2g times its size in this run, or was: the numbers mean nothing; take %s", s->run->t, c.drift,
-                  s->steps_equal ? "smaller steps" : "a smaller tolerance");
+  return lag_fail(s, LAG_EDRIFT, "up to t = %.9g s the energy has an error of %.3g%s%s, of %.3g%s%s at the start: the numbers mean nothing; take %s", s->run->t, c.absolute, space, c.unit,
+                  c.begin, space, c.unit, s->steps_equal ? "smaller steps" : "a smaller tolerance");
 }
 
 static int say_lost(lag_sim *s, double t, double before, double d) {

@@ -286,6 +286,7 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
     lag_table_range(t, d->y[i], &p.y0, &p.y1);
   }
   if (d->beneath.profile && p.x1 - p.x0 < d->beneath.period / 2) d->beneath.period = 0; /* a small part of the circle */
+  if (!d->beneath.value && !t->points && p.x1 - p.x0 <= d->beneath.period) d->beneath.period = 0; /* less than a turn */
   if (d->beneath.period > 0) p.x0 = -(p.x1 = d->beneath.period / 2);
   else lag_widen_range(&p.x0, &p.x1, 1e-12, d->beneath.value ? 0.25 : x ? 0.05 : 0);
   if (d->beneath.profile) lag_svg_profile_range(&d->beneath, p.x0, p.x1, &p.y0, &p.y1);
@@ -299,6 +300,11 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   else if (d->beneath.value) lag_svg_levels(f, &p, &d->beneath);
   draw_series(f, &p, t, d, NULL);
   if (!x) put_horizon(f, &p, t, 1);
+  if (x && t->certain && !t->points) {
+    double at = p.x + p.w + 14, below = p.y + p.h - 8;
+    fprintf(f, "<path d=\"M%.1f %.1fh20\" stroke=\"#bbb\" stroke-width=\"2.5\"/>\n", at, below);
+    lag_svg_text(f, at + 27, below + 4, "", "no digit is left");
+  }
   if (x && !t->points && d->n == 1 && !d->runs) mark_ends(f, &p, t, x, d->y[0], d->beneath.period);
 }
 

@@ -216,7 +216,7 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
 
 /* name, table for separable models, table for others, order, flags, line for help */
 #define METHODS(X)                                                                                                       \
-  X(symplectic_euler, euler, euler, 1, 0, "kick, drift; one force a step. DOI 10.1017/S0962492902000144")                \
+  X(symplectic_euler, euler, euler, 1, 0, "semi-implicit Euler: kick, drift; one force a step. DOI 10.1017/S0962492902000144") \
   X(verlet, verlet, verlet, 2, LAG_METHOD_SYMMETRIC,                                                                     \
     "Stoermer-Verlet, leapfrog, as kick, drift, kick; one force a step. DOI 10.1103/PhysRev.159.98")                                \
   X(verlet4, verlet4, any4, 4, LAG_METHOD_SYMMETRIC,                                                                     \

@@ -1,4 +1,4 @@
-/* Edit distance of two words. */
+/* Words: the edit distance of two, and whether a text has one. */
 #pragma once
 
 #include <ctype.h>
@@ -23,4 +23,16 @@ static inline int lag_edit_distance(const char *a, size_t na, const char *b, siz
     }
   }
   return d[na % 3][nb];
+}
+
+/* Whether the text has the word, or the words that - or _ join, in letters of any case: "leapfrog", "semi_implicit_euler" in "semi-implicit Euler". */
+static inline int lag_text_has_word(const char *text, const char *word) {
+  enum { SHORTEST = 4 };
+  size_t n = 0;
+  for (const char *s = text; *s; s++) {
+    if (s > text && isalnum((unsigned char)s[-1])) continue;
+    for (n = 0; word[n] && (isalnum((unsigned char)word[n]) ? tolower((unsigned char)s[n]) == tolower((unsigned char)word[n]) : s[n] == ' ' || s[n] == '-'); n++) continue;
+    if (!word[n] && n >= SHORTEST && !isalnum((unsigned char)s[n])) return 1;
+  }
+  return 0;
 }

@@ -6,6 +6,7 @@
 
 #include "base/words.h"
 #include "base/vec.h"
+#include "numeric/edit_distance.h"
 
 static const MethodInfo methods[] = {
 #include "base/method_rows.def"
@@ -31,7 +32,10 @@ int method_may_be_gsl(const char *name) {
 const char *method_suggest(Arena *a, const char *wrong) {
   VEC(Name) names = {0};
   for (size_t i = 0; i < METHODS; i++) vec_push(a, &names, methods[i].name);
-  return suggest(wrong, names.at, names.n);
+  Name near = suggest(wrong, names.at, names.n);
+  for (size_t i = 0; i < METHODS && !near; i++)
+    if (lag_text_has_word(methods[i].does, wrong)) near = methods[i].name;
+  return near;
 }
 
 const MethodOption *method_option(const MethodInfo *m, const char *name) {

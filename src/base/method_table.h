@@ -35,7 +35,7 @@ const MethodInfo *method_find(const char *name, size_t n);
 /* Whether the name may belong to a library that lagc was built without: gsl-... */
 int method_may_be_gsl(const char *name);
 
-/* The known name nearest to an unknown one, or NULL. */
+/* The known name nearest to an unknown one, else that of a method whose description has the word; or NULL. */
 const char *method_suggest(Arena *a, const char *wrong);
 
 /* The option of that name, or NULL. */

@@ -274,6 +274,7 @@ static const OptionRow options[] = {
   {"--json", NULL, NULL, TAKES_NOTHING, "", C(ACTION), OWN(json), "actions and separated equations as one JSON object"},
   {"--events", NULL, "FILE.csv", TAKES_FILE, "csv", SIMULATE, PASSED, "each event with its time and the state before and after it"},
   {"--quiet", NULL, NULL, TAKES_NOTHING, "", SIMULATE | C(LYAPUNOV) | C(COST) | C(SWEEP), PASSED, "no report"},
+  {"--no-monitors", NULL, NULL, TAKES_NOTHING, "", SIMULATE, PASSED, "no `monitor` of the scene ends the run: a method that is rougher than the scene's goes on"},
   {"--save-state", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED, "writes the complete state at the end"},
   {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
    "continues from a saved state, with the same scene, method and values: the results are those of an uninterrupted run, bit by bit"},

@@ -77,7 +77,11 @@ int command_new(Compiler *c) {
   Gallery g = gallery_find(a, c->argv0);
   const char *error = NULL, *like = c->o.like ? c->o.like + (c->o.like[0] == '@') : nearest_model(&g, name);
   if (c->o.scene) return usage_error(arena_printf(a, "one word too many: `%s`; usage: lagc new NAME [--like MODEL]", c->o.scene));
-  if (!is_name(name)) return usage_error(arena_printf(a, "lagc new %s: a model's name has letters, digits and _, and begins with a letter", name));
+  if (!is_name(name)) {
+    char *better = arena_strdup(a, name);
+    for (char *s = better; *s; s++) *s = *s == '-' || *s == ' ' || *s == '.' ? '_' : *s;
+    return usage_error(arena_printf(a, "%s: a model's name has letters, digits and _, and begins with a letter%s%s", name, is_name(better) ? "; write lagc new " : "", is_name(better) ? better : ""));
+  }
   if (!gallery_path(a, c->argv0, arena_printf(a, "@%s", like), &error)) return usage_error(error);
   if (file_exists(path)) return usage_error(arena_printf(a, "%s is there already; take another name", path));
   StrBuf text = gallery_text(a, &g, like), out = strbuf(a);

@@ -145,7 +145,7 @@ static void advise_names(Builder *b) {
     sb_printf(&list, "%s%s%s%s", n ? ", " : "", e->effect ? e->effect : "", e->effect ? "." : "", e->name);
     shown[n++] = e;
   }
-  if (n) diag_help(b->diags, "the model has %s%s", sb_text(&list), n == MOST ? ", ..." : "");
+  if (n) diag_help(b->diags, "the model has %s%s%s", sb_text(&list), n == MOST ? ", ..." : "", b->m->lagrangian ? ", energy" : "");
 }
 
 static int is_among(const char *word, size_t length, const Name *names, uint32_t n) {
@@ -196,7 +196,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
     return;
   }
   if (advise_index(b, name, span) || advise_rate(b, name) || advise_momentum(b, name) || advise_function(b, name)) return;
-  Name *known = ARENA_ARRAY(b->arena, Name, b->scope.all.n + 2);
+  Name *known = ARENA_ARRAY(b->arena, Name, b->scope.all.n + 3);
   uint32_t n = 0;
   for (uint32_t i = 0; i < b->scope.all.n; i++) {
     const Entity *e = &b->scope.all.at[i];
@@ -204,6 +204,7 @@ void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const ch
   }
   known[n++] = "t";
   known[n++] = "pi";
+  if (is_asked(b, span) && b->m->lagrangian) known[n++] = "energy";
   if (advise_product(b, name, known, n)) return;
   int paper = strcmp(name, "dt") == 0 || strcmp(name, "T") == 0 || strcmp(name, "t") == 0; /* no nearest name, which could be t */
   Name near = paper ? NULL : suggest(name, known, n);

@@ -394,5 +394,11 @@ void scene_build(Builder *b, const ModelChoice *choice) {
   if (!sc->outputs.n) default_outputs(b);
   if (!b->is_variant) set_monitors(b);
   if (!b->is_variant) set_measures(b);
-  for (uint32_t i = 0; i < choice->nextra_outputs; i++) add_outputs_as(b, choice->asked[i].expr, choice->asked[i].name);
+  for (uint32_t i = 0, before = b->diags->errors; i < choice->nextra_outputs; i++) { /* before: the last output */
+    const CommandOutput *o = &choice->asked[i];
+    uint32_t errors = b->diags->errors;
+    int rate = i && ast_expr(b->ast, o->expr)->kind == AST_PRIME && strstr(o->name, o[-1].name);
+    if (!rate || errors == before) add_outputs_as(b, o->expr, o->name); /* --phase x: what is wrong in x is wrong in x', and said once */
+    before = errors;
+  }
 }

@@ -43,8 +43,10 @@ const char *gallery_path(Arena *a, const char *argv0, const char *word, const ch
     if (strcmp(g.names.at[i], word + 1) == 0) return arena_printf(a, "%s/%s.lag", g.folder, word + 1);
   if (!g.names.n) *error = "the gallery is not found beside lagc: `make install` brings it along";
   else {
-    Name near = suggest(word + 1, g.names.at, g.names.n);
-    *error = near ? arena_printf(a, "the gallery has no model %s; did you mean @%s?", word + 1, near)
+    Name near = word[1] ? suggest(word + 1, g.names.at, g.names.n) : NULL;
+    for (uint32_t i = 0; i < g.names.n && word[1] && !near; i++)
+      if (strncmp(g.names.at[i], word + 1, strlen(word + 1)) == 0) near = g.names.at[i];
+    *error = !word[1] ? "@ and the name of a gallery model, for example @pendulum; `lagc models` lists them" : near ? arena_printf(a, "the gallery has no model %s; did you mean @%s?", word + 1, near)
                   : arena_printf(a, "the gallery has no model %s; `lagc models` lists them", word + 1);
   }
   return NULL;

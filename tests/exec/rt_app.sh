@@ -138,7 +138,7 @@ check "in one line" [ "$(wc -l <err)" = 1 ]
 check "method that does not fit" says 2 "lagc build MODEL --method verlet" drop --method verlet
 check "unknown option of a method" says 2 "no option" --method "rk4(stp=1)"
 check "unknown scene says how to build it" says 2 "lagc run models/rt_sim.lag workshop" workshop
-check "effect that is not built in" says 2 "lagc run models/rt_sim.lag drop" drop moon.c=1
+check "effect that is not built in" says 2 "scene drop_moon { like drop; use moon }" drop moon.c=1
 check "two uses of standard output" says 2 "-o - and --json" --json -o -
 check "plot of an unknown column" says 2 "no output is named" swing --svg x.svg --plot-y nothing
 check "a directory that is not there" says 2 "cannot write" -o none/rows.csv

@@ -104,7 +104,9 @@ check "and no other" [ "$(grep -c "^not in the table" "$TMP/text")" = 1 ]
 
 check "a picture" text models/pendulum.lag --until 1 --seconds 1 --methods rk4,rk45,verlet,verlet4 -o "$TMP/cost.svg" --quiet
 check "is whole" grep -q '</svg>' "$TMP/cost.svg"
-check "has a curve for each family" [ "$(grep -c '<path fill="none".*stroke-linejoin' "$TMP/cost.svg")" = 2 ]
+check "has a curve for each that is named" [ "$(grep -c '<path fill="none".*stroke-linejoin' "$TMP/cost.svg")" = 4 ]
+check "the band of twice the least time ends at the frame" awk '/stroke="none" d=/ { n++; gsub(/.* d="|".*/, ""); gsub(/[MLZ]/, " "); m = split($0, c, " ")
+  for (i = 1; i < m; i += 2) bad += c[i] < 91.9 || c[i] > 560.1 || c[i + 1] < 51.9 || c[i + 1] > 490.1 } END { exit !(n == 1 && !bad) }' "$TMP/cost.svg"
 check "with its name" grep -q '>rk4' "$TMP/cost.svg"
 check "and no other output" [ ! -s "$TMP/text" ]
 check "all runs as rows" text models/pendulum.lag --until 1 --seconds 1 --methods rk4 -o "$TMP/cost.csv" --sketch
@@ -191,10 +193,12 @@ says '^left out, as three times slower than others or for want of time: '
 splitting() { # NUMBER OPTION...: rows of the table of times
   number=$1
   shift
-  text models/pendulum.lag --until 2 --methods verlet,verlet4,verlet6 --seconds 4 "$@" && [ "$(grep -c '^  verlet' "$TMP/text")" = "$number" ]
+  text models/pendulum.lag --until 2 --seconds 4 "$@" && [ "$(grep -c '^  verlet' "$TMP/text")" = "$number" ]
 }
 check "one method of each family" splitting 1
-check "or all of them" splitting 3 --all
+check "or all of them" splitting 4 --all
+check "those that are named" splitting 3 --methods verlet,verlet4,verlet6
+check "and not that others are left out" sh -c '! grep "one method of each" "$0"' "$TMP/text"
 
 # Digits are lost with time, also those of the reference: errors are compared as far as it has some.
 if has_precision long; then

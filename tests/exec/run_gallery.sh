@@ -29,6 +29,8 @@ done
 is "as by its file" "$("$lagc" run "$models/pendulum.lag" wide --until 1 --json | sed 's/"wall_s": [^,]*//')" "$("$lagc" run @pendulum wide --until 1 --json | sed 's/"wall_s": [^,]*//')"
 check "no model is overwritten" says 2 'pendulum.lag would be overwritten' "$lagc" derive @pendulum -o "$models/pendulum.lag"
 check "the nearest name" says 2 'did you mean @double_pendulum?' "$lagc" run @double_pendlum
+check "or one that begins so" says 2 'did you mean @damped_oscillator?' "$lagc" run @damped
+check "no name behind @" says 2 'the name of a gallery model, for example @pendulum' "$lagc" run @
 check "a name without @" says 2 'the gallery has @pendulum' "$lagc" run pendulum
 check "or its file, where it is not" says 2 'the gallery has @pendulum' "$lagc" check no/pendulum.lag
 check "or the list" says 2 '`lagc models` lists them' "$lagc" run @xyzzy
@@ -46,6 +48,7 @@ check "no file is overwritten" says 2 'mine.lag is there already' "$lagc" new mi
 is "it is as it was" kept "$(cat mine.lag)"
 check "an unknown model" says 2 'did you mean @pendulum?' "$lagc" new other --like pendulumm
 check "a name with other characters" says 2 "a model's name has letters" "$lagc" new ../up
+check "which _ could stand for" says 2 'write lagc new my_swing' "$lagc" new my-swing
 check "no name" says 2 'a name is missing' "$lagc" new
 check "one word too many" says 2 'one word too many' "$lagc" new one two
 check "one word too many" says 2 'one word too many' "$lagc" models two words

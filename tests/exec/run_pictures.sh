@@ -121,7 +121,12 @@ check "an unknown scene" says 1 'unknown scene `wied`' plot "$p" wied --phase th
 check "of any command" says 1 'did you mean `wide`?' plot "$p" wied
 check "before a simulator is built" not_grep 'this build' err
 check "or far from all names" says 1 'the scenes are `small`, `tiny`' modes "$p" nosuch
-check "a name far from all names" says 1 'the model has th, ' plot "$p" --y nosuch
+check "energy, misspelt" says 1 'did you mean `energy`?' plot "$p" --y enrgy
+check "or as a title" says 1 'did you mean `energy`?' plot "$p" --y Energy
+once() { [ "$("$LAGC" plot "$p" --phase "$1" -o none.svg 2>&1 | grep -c "unknown name")" = 1 ]; }
+check "a name of --phase is unknown once" once thx
+check "within an expression, too" once '2*thx'
+check "a name far from all names, and energy" says 1 'the model has th, m, l, g, x, y, pull, energy' plot "$p" --y nosuch
 check "is not to be declared" not_grep 'declare it' err
 check "a value is missing" says 2 'needs a value' plot "$p" --x
 check "an effect that the scene does not use" says 1 'friction' plot "$p" wide --y 'friction.b*th' -o none.svg
@@ -320,6 +325,16 @@ check "nothing is left of all that" [ -z "$(ls none* ./*.part* 2>/dev/null)" ]
 check "a chaotic motion" "$LAGC" plot "$d" chaos --until 40 -o chaos.svg --quiet
 is "each curve has a grey end" "$(grep -c '<path fill="none" stroke="#[0-9a-f]\{6\}"' chaos.svg)" "$(grep -c '<path fill="none" stroke="#bbb"' chaos.svg)"
 check "and the horizon its name" grep -q '>no digit is left<' chaos.svg
+"$LAGC" plot "$d" chaos --phase th2 --quiet -o phase.svg
+check "over another axis the grey has a line of the legend" sh -c 'grep -A1 "h20. stroke=.#bbb" phase.svg | grep -q ">no digit is left<"'
+# An angle th = 2 t that is declared periodic: over more than a turn it is a circle, from -pi to pi, in pieces: 20 rad cross pi, 3 pi and 5 pi.
+printf "model rotor\ncoord th [rad] periodic\nlagrangian = 1 [kg*m^2]*th'^2/2\nscene s { start th' = 2 [rad/s]; span 10 [s] }\n" >rotor.lag
+ticks() { sed -n 's/.*text-anchor="middle">\(-*[0-9.]*\)<.*/\1/p' rotor.svg | tr '\n' ' '; }
+"$LAGC" plot rotor.lag --phase th --quiet -o rotor.svg
+is "an angle of several turns is drawn as a circle" "-3 -2 -1 0 1 2 3 " "$(ticks)"
+is "in pieces" 4 "$(sed -n 's/^<path fill="none".* d="//p' rotor.svg | tail -1 | tr -cd M | wc -c)"
+"$LAGC" plot rotor.lag --phase th th=1 --until 2 --quiet -o rotor.svg
+is "one of less than a turn is not" "1 1.5 2 2.5 3 3.5 4 4.5 5 " "$(ticks)"
 check "a section of it" "$LAGC" plot "$d" chaos --until 40 --section 'sin(th1) rising' --x th2 --y "th2'" -o section.svg --quiet
 is "has no grey" 0 "$(grep -c '#bbb' section.svg)"
 check "a page of it" "$LAGC" animate "$d" chaos --until 40 -o chaos.html --quiet

@@ -124,7 +124,7 @@ potential = -k*x^2/2
 scene rest { start x = 0; span 10; tolerance 1e-12; output x every 0.07 [s]; monitor energy 1e-8 }
 END
 distance() {
-  "$LAGC" plot "$TMP/saddle.lag" --vs x=1e-8 --distance -o "$TMP/distance.svg" >"$TMP/out" 2>&1 && cat "$TMP/out" && curves "$TMP/distance.svg" 'stroke-width="1.6"' 50 &&
+  "$LAGC" plot "$TMP/saddle.lag" --vs x=1e-8 --distance -o "$TMP/distance.svg" >"$TMP/out" 2>&1 && cat "$TMP/out" && curves "$TMP/distance.svg" 'stroke="#0072b2" stroke-width="1.6"' 50 &&
     awk '{ d = $3/(1e-8*(exp($2) + exp(-$2))/2) - 1; if (d < 0) d = -d; if (d > most) most = d; last = $2 } END { print most; exit !(most < 0.03 && last > 9.9) }' "$TMP/points"
 }
 check "the distance of two starts grows as cosh" distance
@@ -134,10 +134,15 @@ rate() {
     for (n = 0; y[n] < y[1000] - log(10); n++) { mx += n/100; my += y[n] }
     mx /= n; my /= n
     for (i = 0; i < n; i++) { xx += (i/100 - mx)^2; xy += (i/100 - mx)*(y[i] - my) }
-    printf "grows as exp(%.3g t/s) up to t = %.3g s", xy/xx, (n - 1)/100 }')
-  echo "$want" && grep -qF "1e-08 at first, 0.00011 at most; $want" "$TMP/out"
+    printf "grows as exp(%.3g t/s) up to t = %.3g s", xy/xx, (n - 1)/100; print xy/xx, my, mx, (n - 1)/100 >"'"$TMP/line"'" }')
+  echo "$want" && grep -qF "1e-08 m at first, 0.00011 m at most; $want" "$TMP/out" && want=${want#*as } && grep -qF ">${want%% up*}<" "$TMP/distance.svg"
+}
+line() { # to half a pixel of 380, which are five decades
+  curves "$TMP/distance.svg" 'stroke="#d55e00" stroke-width="1.6"' 2 && awk 'NR == FNR { rate = $1; my = $2; mx = $3; until = $4; next }
+    { d = log($3/1e-8) - my - rate*($2 - mx); if (d < 0) d = -d; if (d > most) most = d; last = $2 } END { print most, last; exit !(most < 0.02 && last < until + 0.02 && last > until - 0.02) }' "$TMP/line" "$TMP/points"
 }
 check "and its rate is fitted" rate
+check "and drawn" line
 cat >"$TMP/two.lag" <<'END'
 model two
 coord x [m]
@@ -148,7 +153,7 @@ scene swing { start x = 1; span 10; tolerance 1e-12; output x, x' }
 END
 relative() { # each is divided by its largest value: (0.1 cos 2t)/1, (0.2 sin 2t)/2
   "$LAGC" plot "$TMP/two.lag" --vs x=1.1 --distance -o "$TMP/two.svg" >"$TMP/out" 2>&1
-  cat "$TMP/out" && grep -q 'distance from the first: 0.1 at first, 0.1 at most' "$TMP/out"
+  cat "$TMP/out" && grep -q 'distance from the first: 0.1 at first, 0.1 at most, each output over the largest value of its unit' "$TMP/out"
 }
 check "outputs of two units" relative
 
@@ -166,6 +171,8 @@ growth() {
     awk '{ d = $3/(exp($2/0.01*log(1 + 1e-4)) - 1) - 1; if (d < 0) d = -d; if ($2 > 0.05 && d > most) most = d; last = $2 } END { print most; exit !(most < 0.03 && last > 9.9) }' "$TMP/points"
 }
 check "of Euler's method: (1 + h^2)^n" growth
+# symplectic_euler keeps x^2 + v^2 - h x v = 1, an ellipse on which h x v is at most h/(2 - h) = 0.005025; rows lie within steps, too
+check "the report has the largest error of the picture" grep -q '^symplectic_euler .*|E/E(0) - 1| up to 0.0050' "$TMP/out"
 check "two methods, two lines of the legend" sh -c 'grep -c "symplectic_euler\|>euler<" "$0" | grep -qx 2' "$TMP/errors.svg"
 
 # The energy v^2/2 - x begins at 0. By euler v = n h and x = h^2 n(n - 1)/2, which leaves h t/2; within steps, where rows lie, up to h^2/8 less.
@@ -182,6 +189,16 @@ bounce() {
     curves "$TMP/ball.svg" 'stroke-width="1.6"' 2 && awk '{ if ($3 > most) most = $3 } END { print most; exit !(most < 1e-8) }' "$TMP/points"
 }
 check "a loss at an event is no error" bounce
+# Drag takes 1 - exp(-2 t) of the energy, which is no error of the method either: rk4 keeps the balance to h^4.
+printf "model drag\ncoord x [m]\nlagrangian = 1 [kg]*x'^2/2\nforce x = -1 [kg/s]*x'\nscene s { start x' = 1 [m/s]; span 5 [s] }\n" >"$TMP/drag.lag"
+drag() {
+  "$LAGC" plot "$TMP/drag.lag" --energy-error --method rk4,euler --step 0.05 $1 -o "$TMP/drag.svg" >"$TMP/out" 2>&1 && cat "$TMP/out" && grep -q '>|(E - work)/E(0) - 1|, logarithmic<' "$TMP/drag.svg" &&
+    curves "$TMP/drag.svg" 'stroke="#0072b2" stroke-width="1.6"' 2 && awk '{ if ($3 > most) most = $3 } END { print most; exit !(most < 1e-6) }' "$TMP/points"
+}
+check "nor is the work of forces" drag
+check "said of each run" sh -c 'grep -c "|(E - work)/E(0) - 1| up to " "$0" | grep -qx 2' "$TMP/out"
+check "without a report, too" drag --quiet
+check "beside another picture it is the balance, as in one run" sh -c '"$0" plot "$1" --method rk4,euler --step 0.05 --y x -o "$2" | grep -c "energy balance" | grep -qx 2' "$LAGC" "$TMP/drag.lag" "$TMP/none.svg"
 none() { "$LAGC" plot "$TMP/oscillator.lag" --vs x=1 --distance -o "$TMP/none.svg" 2>&1 | grep 'no distance from the first'; }
 check "two equal runs" none
 

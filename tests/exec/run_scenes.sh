@@ -91,6 +91,7 @@ check "a vector as a whole is refused" says 2 'r has parts: set r.x' "$LAGC" run
 check "a member too many" says 2 'did you mean x[1]?' "$LAGC" run "$m" 'x[4]=1'
 check "an effect as a whole" says 2 'air has parts: set air.c' "$LAGC" run "$m" drag air=1
 check "an effect that is off" says 2 'effect storm is not in scene drag' "$LAGC" run "$m" drag storm.w=1
+check "with a scene that has it" says 2 'or write one: scene drag_storm { like drag; use storm }' "$LAGC" run "$m" drag storm.w=1
 check "a constant" says 2 'write -D n=5' "$LAGC" run "$m" n=5
 # Energy at the end: `half` follows mr unless it is set.
 near "a parameter that follows another" 1e-12 "$(calc '(1 + 4 + 9)/2 + 5*4/2 + 9*2/2')" "$(final energy "$m" vacuum mr=4)"
