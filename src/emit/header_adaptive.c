@@ -23,6 +23,7 @@ static const char *const failures =
   " |#ifdef LAG_LANES /* a lane that fails does not stop the others */\n"
   " |#define LAG_TRY(call) status = -(-status | -(call))\n"
   " |#define LAG_WHERE(lanes, status) -(-(status) & lag_lanes_bits(lanes))\n"
+  " |#define LAG_STATUS(lanes, code) -lag_lanes_bits(lanes)\n"
   " |#define LAG_FAILED(status) lag_failed(status)\n"
   " |/* Lanes that a status names. */\n"
   " |static LAG_MASK lag_failed(int status) {\n"
@@ -33,6 +34,7 @@ static const char *const failures =
   " |#else\n"
   " |#define LAG_TRY(call) do { status = (call); if (status != LAG_OK) return status; } while (0)\n"
   " |#define LAG_WHERE(lanes, status) (status)\n"
+  " |#define LAG_STATUS(fails, code) ((fails) ? (int)(code) : (int)LAG_OK)\n"
   " |#define LAG_FAILED(status) ((status) != LAG_OK)\n"
   " |#endif\n";
 

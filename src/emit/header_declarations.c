@@ -205,7 +205,8 @@ static const char *const docs[FN_COUNT] = {
   [FN_OBSERVE] = "Outputs of the scene: out[LAG_NOUT].",
   [FN_EVENTS] = "The event functions g[LAG_NEV].",
   [FN_ACT] = "Applies the action of an event to the state; *stop becomes 1 if the event ends the run.",
-  [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, by the metric of the mass matrix; _rk4_step does so itself.",
+  [FN_HOLD] = "Moves the state to the nearest one that obeys the constraints, by the metric of the mass matrix; steps do so themselves.\n"
+              " * LAG_EUNMET: no small change obeys them; begin nearer, or step shorter.",
   [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was. Events, and contacts, are the caller's.",
   [FN_UNTIL_EVENT] = "As _rk4_step, to the first event in the step: *event is its index, and *s the state just behind it, where _act applies; -1: none.\n"
                      " * Signs are compared at the ends of the step: no function may cross 0 twice in it. A function that is 0 at the start, or whose event has just\n"
@@ -263,6 +264,7 @@ void header_declarations(const Header *h) {
     if (f == FN_START && u->constraints.of.n)
       doc = "The state at the start of the scene, on the constraints, as `lagc run` finds it with the parameters of _defaults; with others, _hold\n"
             " * leads from there to the nearest one that obeys them.";
+    if (f == FN_START && u->constraints.of.n) csupport_expand("\nenum { LAG_EUNMET = -7 }; /* status: the constraints cannot be met near this state */\n", h->upper, h->lower, h->out);
     if (f == FN_UNTIL_EVENT) csupport_expand("\nenum { LAG_ENAN = -4, LAG_EZENO = -5 };\n", h->upper, h->lower, h->out);
     sb_puts(h->out, "\n/* ");
     csupport_expand(doc, h->upper, h->lower, h->out);

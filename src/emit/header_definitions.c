@@ -50,14 +50,20 @@ static const char *const onto =
   " |\n"
   " |/* The state nearest to the constraints. lost: rounding that q, v have lost so far, or 0. */\n"
   " |static int lag_onto(const lag_params *p, lag_state *sINPUTS, LAG_REAL *lost) {\n"
-  " |  const LAG_REAL zero = LAG_C(0.0), half = LAG_C(0.5), rounding = LAG_C(4.0)*lag_epsilon();\n"
+  " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), half = LAG_C(0.5), strikes = LAG_C(3.0);\n"
+  " |  const LAG_LANE epsilon = lag_epsilon();\n"
+  " |  LAG_LANE root = epsilon; /* of epsilon, or up to twice that */\n"
+  " |  while (root*root < epsilon) root *= (LAG_LANE)2;\n"
+  " |  LAG_MASK unmet = zero < zero;\n"
   " |  int status = LAG_OK;\n"
   " |  for (int level = FIRST; level < 2; level++) {\n"
   " |    LAG_REAL c[LAG_NC], r[LAG_NC], g[LAG_NC], before[LAG_NC], d[LAG_NQ], force[LAG_NQ], *const x = level ? s->v : s->q;\n"
-  " |    LAG_MASK on = zero <= zero; /* still comes nearer */\n"
+  " |    LAG_REAL vain = zero, size = zero, first = zero;\n"
+  " |    LAG_MASK on = LAG_NOT(unmet), tiny = on, began = on; /* still comes nearer; the last correction is tiny, and the first */\n"
   " |    for (int turn = 0; turn < 20; turn++) {\n"
-  " |      LAG_REAL size = zero, most = zero, least = LAG_C(1.0);\n"
-  " |      on = LAG_AND(on, LAG_NOT(LAG_FAILED(lag_residuals(AT, c, r))));\n"
+  " |      LAG_REAL most = zero, least = one;\n"
+  " |      size = zero;\n"
+  " |      LAG_TRY(lag_residuals(STATE, c, r));\n"
   " |      for (int k = 0; k < (level ? LAG_NC : LAG_NHOLONOMIC); k++) {\n"
   " |        g[k] = -(level ? r[k] : c[k]);\n"
   " |        const LAG_REAL now = LAG_FN(fabs)(g[k]), part = turn ? LAG_SELECT(now > zero, now/before[k], zero) : zero;\n"
@@ -66,15 +72,23 @@ static const char *const onto =
   " |        before[k] = now;\n"
   " |        size += now;\n"
   " |      }\n"
-  " |      on = LAG_AND(on, size > zero);\n"
+  " |      unmet = LAG_OR(unmet, LAG_AND(on, LAG_NOT(size >= zero)));\n"
+  " |      on = LAG_AND(LAG_AND(on, size > zero), LAG_NOT(LAG_FAILED(status)));\n"
+  " |      if (!turn) first = size;\n"
   " |      if (turn) {\n"
   " |        LAG_MASK done = zero <= zero; /* what is left is rounding of the largest component with its unit */\n"
+  " |        tiny = done;\n"
   " |        for (int i = 0; i < LAG_NQ; i++) {\n"
+  " |          const LAG_REAL change = LAG_FN(fabs)(d[i]);\n"
   " |          LAG_REAL largest = zero;\n"
   " |          for (int j = 0; j < LAG_NQ; j++) largest = LAG_SELECT(WITHLAG_FN(fabs)(x[j]) > largest, LAG_FN(fabs)(x[j]), largest);\n"
-  " |          done = LAG_AND(done, most*LAG_FN(fabs)(d[i]) <= rounding*largest);\n"
+  " |          done = LAG_AND(done, most*change <= LAG_C(4.0)*epsilon*largest);\n"
+  " |          tiny = LAG_AND(tiny, change <= root*(one + largest));\n"
   " |        }\n"
-  " |        on = LAG_AND(on, LAG_AND(LAG_NOT(done), least < half));\n"
+  " |        if (turn == 1) began = tiny;\n"
+  " |        vain = LAG_SELECT(LAG_OR(least < half, tiny), vain, vain + one);\n"
+  " |        unmet = LAG_OR(unmet, LAG_AND(on, LAG_AND(LAG_NOT(done), vain >= strikes)));\n"
+  " |        on = LAG_AND(LAG_AND(on, LAG_NOT(done)), LAG_OR(least < half, LAG_AND(LAG_NOT(tiny), vain < strikes)));\n"
   " |      }\n"
   " |      if (!LAG_ANY(on)) break;\n"
   " |      LAG_TRY(LAG_WHERE(on, CORRECT));\n"
@@ -85,7 +99,9 @@ static const char *const onto =
   " |        if (lost) lost[level*LAG_NQ + i] = LAG_SELECT(on, rest, lost[level*LAG_NQ + i]);\n"
   " |      }\n"
   " |    }\n"
+  " |    unmet = LAG_OR(unmet, LAG_OR(LAG_AND(on, LAG_NOT(tiny)), LAG_AND(LAG_NOT(began), size > LAG_C(1e-3)*first)));\n"
   " |  }\n"
+  " |  LAG_TRY(LAG_STATUS(unmet, LAG_EUNMET));\n"
   " |  return status;\n"
   " |}\n";
 
@@ -279,7 +295,7 @@ void header_hold_define(const Header *h) {
   const char *correct = both ? arena_printf(h->a, "lag_correct(%s, g, d, force)", args)
                         : !k->nholonomic ? arena_printf(h->a, "lag_correct_velocities(%s, g, d, force)", args)
                         : arena_printf(h->a, "level ? lag_correct_velocities(%s, g, d, force) : lag_correct_positions(%s, g, d, force)", args, args);
-  const HeaderWord words[] = {{"AT", args}, {"CORRECT", correct}, {"FIRST", k->nholonomic ? "0" : "1"}, {"INPUTS", h->u->u.n ? ", const LAG_REAL *u" : ""},
+  const HeaderWord words[] = {{"STATE", args}, {"CORRECT", correct}, {"FIRST", k->nholonomic ? "0" : "1"}, {"INPUTS", h->u->u.n ? ", const LAG_REAL *u" : ""},
                               {"WITH", units(h) ? "lag_unit_of[j] == lag_unit_of[i] && " : ""}, {NULL, NULL}};
   header_template(h, onto, words);
   sb_printf(h->out, "\n%s {\n  return %s_onto(p, s%s, 0);\n}\n", header_api(h, FN_HOLD), m, u);

@@ -163,14 +163,18 @@ static void write_trial(const Header *h, const HeaderMethod *m, int adaptive, in
   const char *sum = weighted(h, &row, last);
   line(h, arena_printf(h->a, "  for (int i = 0; i < LAG_NY; i++) x[i] = lag_sum(y[i], h*(%s), &end->lost[i + 1]);\n  lag_scatter(x, end);\n", sum));
   const char *hold = arena_printf(h->a, "lag_onto(p, end%s, end->lost + 1)", h->u->u.n ? ", lag_held(p, end->t, u, input, context, now)" : "");
-  if (!late) {
-    if (holds) line(h, tried(h, hold));
-    if (holds && adaptive) line(h, "  lag_gather(end, x);\n");
-    if (adaptive) line(h, tried(h, arena_printf(h->a, "lag_rates(p, end->t, x%s, k[%u])", pass, last)));
+  if (!late && holds && !adaptive) line(h, tried(h, hold));
+  if (!late && adaptive) {
+    const char *rates = arena_printf(h->a, "lag_rates(p, end->t, x%s, k[%u])", pass, last);
+    if (holds) line(h, arena_printf(h->a, "  const LAG_MASK held = LAG_NOT(LAG_FAILED(%s)); /* a shorter step where it cannot be */\n"
+                                          "  *error = -LAG_C(1.0);\n  if (!LAG_ANY(held)) return status;\n  lag_gather(end, x);\n", hold));
+    line(h, tried(h, holds ? arena_printf(h->a, "LAG_WHERE(held, %s)", rates) : rates));
   }
   if (adaptive) write_error(h, m, last, late);
+  if (!late && holds && adaptive) line(h, "  *error = LAG_SELECT(held, *error, -LAG_C(1.0));\n");
   if (late && holds)
-    line(h, arena_printf(h->a, "  const LAG_MASK taken = LAG_AND(*error >= LAG_C(0.0), *error <= LAG_C(1.0));\n  if (LAG_ANY(taken)) LAG_TRY(LAG_WHERE(taken, %s));\n", hold));
+    line(h, arena_printf(h->a, "  const LAG_MASK taken = LAG_AND(*error >= LAG_C(0.0), *error <= LAG_C(1.0));\n"
+                               "  if (LAG_ANY(taken)) *error = LAG_SELECT(LAG_FAILED(LAG_WHERE(taken, %s)), -LAG_C(1.0), *error);\n", hold));
   line(h, "  return status;\n}\n");
 }
 

@@ -166,6 +166,54 @@ check "rk4 over lanes: one that fails does not stop the others" fixed models/dou
 printf "model pair\ncoord x [m], y [m]\nparam m = 1 [kg], n = 0 [kg], k = 2 [N/m] > 0\nkinetic = m/2*(x'^2 + y'^2) + n*x'*y'\npotential = k/2*x^2 + k*y^2\nscene run { start x = 1, y = 0.5; span 5 }\n" >"$TMP/pair.lag"
 check "and verlet" fixed "$TMP/pair.lag" verlet m ', all_a' ', one_a'
 
+# ---- constraints that cannot be met: a circle of radius sqrt(w)
+printf "model ring\ncoord x, y\nparam w = 1\nlagrangian = (x'^2 + y'^2)/2 - y\nconstraint c: x^2 + y^2 = w\nscene s { start x = 1 }\n" >"$TMP/ring.lag"
+"$LAGC" header "$TMP/ring.lag" --with rk45,dop853 -o "$TMP/ring.h"
+cat >"$TMP/ring.c" <<'END'
+#define RING_IMPLEMENTATION
+#include "ring.h"
+static int begin(ring_state *s, double w) {
+  ring_params p;
+  ring_defaults(&p);
+  p.w = w;
+  return ring_start(&p, s);
+}
+int main(void) {
+  ring_params p;
+  ring_state s, was;
+  ring_adaptive w;
+  ring_defaults(&p);
+  if (begin(&s, 4) != RING_OK || !(fabs(s.q[0] - 2) < 1e-15)) return 1;
+  if (begin(&s, -1) != RING_EUNMET || begin(&s, 0.0/0.0) != RING_EUNMET) return 2;
+  if (begin(&s, 1) != RING_OK) return 3;
+  was = s;
+  p.w = -1;
+  if (ring_rk4_step(&p, &s, 0.01) != RING_EUNMET) return 4;
+  ring_adaptive_begin(&w, 1e-6);
+  if (ring_rk45_step(&p, &s, &w, 1) != RING_ESTEP) return 5;
+  ring_adaptive_begin(&w, 1e-6);
+  if (ring_dop853_step(&p, &s, &w, 1) != RING_ESTEP) return 6;
+  return s.q[0] != was.q[0] || s.v[1] != was.v[1] || s.t != was.t;
+}
+END
+unmet() { "$@" -O1 -Wall -Wextra -Werror -iquote "$TMP" "$TMP/ring.c" -o "$TMP/ring" -lm && "$TMP/ring"; }
+check "constraints that cannot be met are a status, and the state stays" unmet "$CC" -std=c99
+# The crank is longer than the rod: Newton's method leads there by a turn that comes no nearer.
+"$LAGC" header models/slider_crank.lag -o "$TMP/crank.h"
+cat >"$TMP/crank.c" <<'END'
+#define CRANK_IMPLEMENTATION
+#include "crank.h"
+int main(void) {
+  crank_params p;
+  crank_state s;
+  crank_defaults(&p);
+  p.a = 3;
+  return crank_start(&p, &s) != CRANK_OK || !(fabs(sin(s.q[2]) + 3*sin(s.q[0])) < 1e-14) || !(fabs(s.q[1] - cos(s.q[2]) - 3*cos(s.q[0])) < 1e-14);
+}
+END
+far_off() { "$CC" -O1 -iquote "$TMP" "$TMP/crank.c" -o "$TMP/crank" -lm && "$TMP/crank"; }
+check "a start that is far from its constraints gets there" far_off
+
 # ---- only what is asked for
 asked() {
   "$LAGC" header models/double_pendulum.lag --with mass -o "$TMP/one.h" && grep -q '_mass(' "$TMP/one.h" && ! grep -qE '_(jac|linearize|dparams|inverse_dynamics|rk45_step|adapt)\(' "$TMP/one.h"
