@@ -43,21 +43,6 @@ static int g_at(lag_sim *s, double t, double *g) {
   return rc ? rc : lag_events_eval(s, t, s->yc, g);
 }
 
-int lag_events_spread(lag_sim *s, const double *at_event, double *spread) {
-  const Run *r = s->run;
-  int nev = lag_watched(s), rc = 0;
-  double last = 4 * DBL_EPSILON * fmax(fabs(r->step_t0), fabs(r->step_t1));
-  memset(spread, 0, (size_t)nev * sizeof *spread);
-  for (int i = -2; i <= 2 && rc == 0; i++) {
-    double t = r->limit + i * last * r->dir;
-    if (i != 0 && (t - r->from) * r->dir >= 0 && (t - r->step_t1) * r->dir <= 0) {
-      rc = g_at(s, t, s->g1);
-      for (int k = 0; k < nev && rc == 0; k++) spread[k] = fmax(spread[k], fabs(s->g1[k] - at_event[k]));
-    }
-  }
-  return rc;
-}
-
 /* ---- one crossing */
 
 typedef struct Crossing {
@@ -120,6 +105,39 @@ static int find_rounding(lag_sim *s, double t, double *rounding) {
   rc = rc ? rc : lag_events_eval(s, t * (1 + last), s->yc, s->g1);
   for (int k = 0; k < nev && rc == 0; k++) rounding[k] = 4 * (fabs(s->g1[k] - rounding[k]) + last * fabs(rounding[k]));
   return rc;
+}
+
+/* Marks jumps, of the events due now, whose functions go on at some distance from zero, as sign(x) does: from one sample to the next (2^-50 of t) values
+ * on the same side hardly change, and the change over zero is no rounding. at_event: values now; rounding: scratch. */
+static int confirm_jumps(lag_sim *s, const double *at_event, const double *spread, double *jumps, double *rounding) {
+  const Run *r = s->run;
+  int nev = lag_watched(s), some = 0, rc = 0;
+  for (int k = 0; k < nev; k++) some |= jumps[k] != 0.0;
+  if (some) rc = find_rounding(s, r->from + (r->limit - r->from) / 2, rounding);
+  for (int k = 0; k < nev && some && rc == 0; k++) jumps[k] = jumps[k] != 0.0 && fmax(spread[k], fabs(at_event[k])) > 1000 * rounding[k];
+  return rc;
+}
+
+int lag_events_spread(lag_sim *s, const double *at_event, double *spread, double *jumps) {
+  const Run *r = s->run;
+  int nev = lag_watched(s), rc = 0;
+  double last = 4 * DBL_EPSILON * fmax(fabs(r->step_t0), fabs(r->step_t1)), *previous = jumps + nev;
+  for (int k = 0; k < nev; k++) {
+    spread[k] = previous[k] = 0;
+    jumps[k] = k < s->scene->model->nev && !lag_is_kick(s->scene->model, k) && fabs(s->root[k] - r->limit) <= last;
+  }
+  for (int i = -2; i <= 2 && rc == 0; i++) {
+    double t = r->limit + i * last * r->dir;
+    if (i != 0 && ((t - r->from) * r->dir < 0 || (t - r->step_t1) * r->dir > 0)) continue;
+    const double *g = i ? s->g1 : at_event;
+    rc = i ? g_at(s, t, s->g1) : 0;
+    for (int k = 0; k < nev && rc == 0; k++) {
+      spread[k] = fmax(spread[k], fabs(g[k] - at_event[k]));
+      if (previous[k] * g[k] > 0 && fabs(g[k] - previous[k]) > fabs(g[k]) / 4) jumps[k] = 0;
+      previous[k] = g[k];
+    }
+  }
+  return rc ? rc : confirm_jumps(s, at_event, spread, jumps, previous);
 }
 
 /* Chebyshev coefficients of the polynomial of degree N through N + 1 values (mirrored in time, which matters nowhere). */
