@@ -58,10 +58,15 @@ static double g_of(void *context, double t) {
   return c->sim->g1[c->k] + c->lift;
 }
 
-/* root[k] := the zero of g + lift; the end of a step may be one. */
-static int find_crossing(lag_sim *s, int k, double lift, double ta, double ga, double tb, double gb) {
+/* root[k] := the zero of g + lift; the end of a step may be one. A change of sign at a pole is none: there g exceeds both samples beyond measure. */
+static int find_crossing(lag_sim *s, int k, double lift, double ta, double ga, double tb, double gb, int *found) {
+  const double pole = 100;
+  const lag_model *m = s->scene->model;
   Crossing c = {s, k, 0, lift};
+  int may_be_pole = k < m->nev && !lag_contact_of(m, k);
   s->root[k] = ga + lift == 0 ? ta : ga + lift > 0 || gb + lift > 0 ? lag_root(g_of, &c, ta, ga + lift, tb, gb + lift) : tb;
+  if (may_be_pole && c.rc == 0 && fabs(g_of(&c, s->root[k])) > pole * fmax(fabs(ga + lift), fabs(gb + lift))) s->root[k] = NAN;
+  else *found = 1;
   return c.rc;
 }
 
@@ -73,17 +78,12 @@ static int detect_sign_changes(lag_sim *s, double ta, const double *ga, double t
     double now = sign_of(gb[k]), was = s->sign_end[k];
     if (was == 0.0) {
       s->sign_end[k] = fabs(gb[k]) > s->noise[k] ? now : 0;
-      if (s->sign_end[k] < 0 && (k >= m->nev || lag_contact_of(m, k))) { /* it may have been positive: a switch, a closing gap, a force that pulls */
-        rc = find_crossing(s, k, s->noise[k], ta, ga[k], tb, gb[k]);
-        *found = 1;
-      }
+      if (s->sign_end[k] < 0 && (k >= m->nev || lag_contact_of(m, k))) /* it may have been positive: a switch, a closing gap, a force that pulls */
+        rc = find_crossing(s, k, s->noise[k], ta, ga[k], tb, gb[k], found);
     } else if (now == -was) {
       int direction = k < m->nev ? m->ev[k].direction : -1;
       s->sign_end[k] = now;
-      if (direction == 0 || direction == (int)now) {
-        rc = find_crossing(s, k, 0, ta, ga[k], tb, gb[k]);
-        *found = 1;
-      }
+      if (direction == 0 || direction == (int)now) rc = find_crossing(s, k, 0, ta, ga[k], tb, gb[k], found);
     }
   }
   return rc;
