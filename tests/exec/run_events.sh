@@ -49,8 +49,8 @@ jumps() { # G ACTION METHOD: the count, the phases 2 t of the first and the last
   sed "s!event hop.*!event e: $1 $2!" "$TMP/osc.lag" >"$TMP/jump.lag"
   # shellcheck disable=SC2086
   "$LAGC" run "$TMP/jump.lag" --method $3 >"$TMP/out" 2>&1 || return 1
-  sed -n 's/^event e: \([0-9]*\) times, first at t = \([^ ]*\) s, last at \([^ ]*\) s/\1 \2 \3/p' "$TMP/out" |
-    awk 'END {if (!NR) print "none"} {u = 24/3.14159265358979; printf "%d %.4f %.4f\n", $1, $2*u, $3*u}'
+  sed -n 's/^event e: never/none/p; s/^event e: \([0-9]*\) times, first at t = \([^ ]*\) s, last at \([^ ]*\) s/\1 \2 \3/p' "$TMP/out" |
+    awk '/none/ {print; next} {u = 24/3.14159265358979; printf "%d %.4f %.4f\n", $1, $2*u, $3*u}'
 }
 for method in taylor dop853 rk45 'rk4 --step 0.01'; do
   while IFS='|' read -r g action want; do
