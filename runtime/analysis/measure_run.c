@@ -4,7 +4,8 @@
  * leave room for a larger value or a zero. Where the parabola through three samples has its top between two of them, the top is found by golden section
  * (R.P. Brent, Algorithms for Minimization without Derivatives, 1973, ch. 5); where samples change their sign, the zero by numeric/root.h. Integrals are sums of quadratures over the parts, by the nodes that balances of charges take
  * (core/charges.c): of the order of the method, so that the error of a mean falls with the step as that of the motion does; in methods of long steps,
- * Taylor's, over halves of halves of them. Both sides of a jump count. */
+ * Taylor's, over halves of halves of them. Both sides of a jump count.
+ * A drift, with equal steps, is that of the ends of steps. */
 #include "analysis/measure.h"
 
 #include <float.h>
@@ -219,6 +220,15 @@ static void take_samples(Measures *m, double a, double b, int n, int first, int 
   }
 }
 
+/* Whether a track is followed at ends of steps alone, where the method computes: a drift, with equal steps. Between them is an interpolation, with errors of its own. */
+static int is_at_ends(const Measures *m, const Track *k) { return k->kind == TRACK_DRIFT && m->sim->steps_equal; }
+
+/* Notes a value at t if a step begins or ends there. */
+static void note_end(const Measures *m, Track *k, double t, double x) {
+  const Run *r = m->sim->run;
+  if (r->have_step == 0.0 || t == r->step_t0 || t == r->step_t1) note(k, t, x);
+}
+
 /* Follows the tracks over [a, b]: by a few samples, and by all where these leave anything open. */
 static void sample(Measures *m, double a, double b) {
   enum { FEW = MEASURE_SAMPLES / 4 };
@@ -227,7 +237,7 @@ static void sample(Measures *m, double a, double b) {
   take_samples(m, a, b, n, 0, stride, t);
   for (int i = 0; i < m->ntracks && stride > 1 && !more; i++) {
     for (int k = 0; k <= FEW; k++) few[k] = m->sampled[i * (MEASURE_SAMPLES + 1) + k * stride];
-    more = !is_integral(&m->track[i]) && needs_more(&m->track[i], FEW, few);
+    more = !is_integral(&m->track[i]) && !is_at_ends(m, &m->track[i]) && needs_more(&m->track[i], FEW, few);
   }
   for (int first = 1; more && first < stride; first++) take_samples(m, a, b, n, first, stride, t);
   if (more) stride = 1;
@@ -235,7 +245,9 @@ static void sample(Measures *m, double a, double b) {
   for (int i = 0; i < m->ntracks; i++) {
     double *x = m->sampled + i * (MEASURE_SAMPLES + 1);
     for (int k = 0; k * stride <= n; k++) x[k] = x[k * stride];
-    if (!is_integral(&m->track[i])) follow(m, &m->track[i], n / stride, t, x);
+    if (is_integral(&m->track[i])) continue;
+    if (!is_at_ends(m, &m->track[i])) follow(m, &m->track[i], n / stride, t, x);
+    else note_end(m, &m->track[i], a, x[0]), note_end(m, &m->track[i], b, x[n / stride]);
   }
 }
 

@@ -102,7 +102,9 @@ static int choose_grid(App *app) {
     origin = app->scene->t0;
   }
   if (!(every > 0)) {
+    double h = a->energy_error ? lag_equal_step(app->sim) : 0; /* equal steps: the energy at ends of them */
     every = fabs(app->until - t) / 1000;
+    if (h > 0) every = h * ceil(every / h * (1 - 1e-9));
     origin = t;
   }
   if (app->section < 0 && (a->out || ((a->every || a->tangent) && (a->svg || a->html || a->sketch))) && fabs(app->until - t) / every > 1e9) {
@@ -179,7 +181,8 @@ static void run(App *app) {
     rc = lag_sampling_advance(app, app->until);
     rc = rc ? rc : lag_sim_judge(app->sim);
   }
-  if (rows && rc >= 0 && app->last_row != lag_sim_time(app->sim)) {
+  int within = app->args.energy_error && !app->args.every && lag_equal_step(app->sim) > 0; /* a step */
+  if (rows && rc >= 0 && app->last_row != lag_sim_time(app->sim) && !within) {
     int bad = lag_app_put_row(app);
     rc = bad ? bad : rc;
   }

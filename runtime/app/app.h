@@ -47,6 +47,7 @@ typedef struct PictureSampling {
   double soonest;   /* steps that end within this time after the last sampled one are not sampled [s] */
   double seen_to, length; /* end of the last sampled step; for STEPS_TO methods the longest step that few samples resolve */
   double *y, *seen; /* [n] scratch; samples of a step, [MOST_PLACES + 1][ncols] */
+  int ends, cut;    /* 1: rows are ends of steps; the last sample is at an event within a step */
   int store;        /* 0: kept rows are counted, not stored */
   size_t kept;
   double part;      /* deviation allowed, as a part of the drawn range */

@@ -1,8 +1,9 @@
 /* Adaptive sampling of a run for pictures. Enters: a run under way; leaves: in its table, as many rows as the motion needs, whatever the steps of
  * the method: the samples of a step are doubled until straight lines follow it, and a "swinging door" (E. H. Bristol, Swinging door trending, ISA
- * Transactions 1990) keeps rows such that the lines between them miss no row by more than a given part of the drawn range. Holds: both sides of a
- * jump are kept, and the first and the last row; sampling does not change the run (except for STEPS_TO methods, whose steps end at the times asked
- * for). */
+ * Transactions 1990) keeps rows such that the lines between them miss no row by more than a given part of the drawn range. Of a method of equal steps
+ * a picture has the ends of steps, joined by straight lines: that is what the method computes, and an interpolation has errors of its own, of the energy a thousand times
+ * the method's. An animation moves between them, too. Holds: both sides of a jump are kept, and the first and the last row; sampling does not change the run (except for
+ * STEPS_TO methods, whose steps end at the times asked for). */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -148,6 +149,7 @@ int lag_sampling_open(App *app) {
     return 0;
   }
   *f = (PictureSampling){.on = 1, .places = 16, .soonest = span / (1 << 20), .store = !app->args.every, .part = PART, .longest = span / 400};
+  f->ends = lag_equal_step(app->sim) > 0 && !app->args.html;
   f->y = malloc((size_t)app->sim->pb.n * sizeof *f->y);
   f->seen = malloc((MOST_PLACES + 1) * ncols * sizeof *f->seen);
   f->drawn = calloc(ncols, sizeof *f->drawn);
@@ -197,8 +199,26 @@ static int sample_step(App *app, double a, double b) {
   }
   f->places = n;
   for (int k = 0; k <= n && rc == 0; k++) rc = thin(app, f->seen + (size_t)(MOST_PLACES / n * k) * (size_t)app->table.ncols);
-  if (rc == 0 && f->store && app->table.nrows * (size_t)app->table.ncols > MOST_VALUES)
-    rc = reduce(app, MOST_VALUES / 2 / (size_t)app->table.ncols);
+  return rc ? LAG_ENOMEM : LAG_OK;
+}
+
+/* Adds the ends of the present step that a and b are; stopped: the run ends at a. b may be an event within the step: its row is added if the event changes the state,
+ * and so begins a new step. A run of less than a step is a line, too. */
+static int sample_ends(App *app, double a, double b, int stopped) {
+  PictureSampling *f = &app->sampling;
+  const Run *r = app->sim->run;
+  size_t by = (size_t)app->table.ncols;
+  int begins = stopped || a == r->step_t0, rc = begins && f->cut ? thin(app, f->seen + by) : 0;
+  f->cut = 0;
+  if (begins && rc == 0) {
+    sample(app, 0, a);
+    rc = thin(app, f->seen);
+  }
+  if (rc == 0 && (b == r->limit || (b == app->until && f->kept == 1 && !f->have_last))) {
+    sample(app, 1, b);
+    f->cut = b == r->limit && b != r->step_t1;
+    rc = f->cut ? 0 : thin(app, f->seen + by);
+  }
   return rc ? LAG_ENOMEM : LAG_OK;
 }
 
@@ -218,7 +238,8 @@ int lag_sampling_advance(App *app, double until) {
     double t = lag_sim_time(app->sim);
     if (rc < 0 || (lag_marks_note(app) && (rc = LAG_ENOMEM))) return rc;
     if (rc || reach == until || f->kept == 0 || fabs(reach - f->seen_to) >= f->soonest) {
-      int bad = sample_step(app, t, reach);
+      int bad = f->ends ? sample_ends(app, t, reach, rc == LAG_STOPPED) : sample_step(app, t, reach);
+      if (bad == 0 && f->store && app->table.nrows * (size_t)app->table.ncols > MOST_VALUES && reduce(app, MOST_VALUES / 2 / (size_t)app->table.ncols)) bad = LAG_ENOMEM;
       rc = bad ? bad : rc;
       f->length = fabs(reach - t) * 4 / f->places;
       f->seen_to = reach;
@@ -246,7 +267,7 @@ void lag_sampling_warn(App *app, char *note, size_t size) {
   if (!f->store && f->kept > FINER * app->table.nrows) {
     double span = fabs(lag_table_cell(&app->table, app->table.nrows - 1, 0) - lag_table_cell(&app->table, 0, 0));
     snprintf(note, size, "rows every %s s are too coarse for this motion, and straight lines join them: leave --every out, or write --every %g",
-             app->args.every, lag_tick_step(0, span / (double)f->kept / 1.6, 1)); /* a round number that resolves the motion */
+             app->args.every, fmax(lag_equal_step(app->sim), lag_tick_step(0, span / (double)f->kept / 1.6, 1))); /* a round number that resolves the motion */
   } else if (f->part > 32 * PART) {
     snprintf(note, size, "the run is too long to be shown finely: lines are off by up to %.2g %% of the picture; an earlier --until shows it better",
              100 * f->part);

@@ -190,12 +190,13 @@ void lag_note_redundant(lag_sim *sim);
 int lag_setup_start(lag_sim *sim);
 
 /* events.c and event_location.c. arm: signs of g at the start of a chain of steps. locate: the first event in (run->from, step_t1]; sets limit and
- * pending. spread: variation of g[nev] about limit within the last digits of the time, which the dense output cannot resolve. fire: applies the
+ * pending. spread: variation of g[nev] about limit within the last digits of the time, which the dense output cannot resolve; jumps[2 nev]: 1 for events that
+ * are due because g jumps over zero; then scratch. fire: applies the
  * events at limit. inputs_jump: modes of switches after a jump of inputs. eval: g[nev] at y, t. */
 int lag_events_arm(lag_sim *sim);
 int lag_events_inputs_jump(lag_sim *sim);
 int lag_events_locate(lag_sim *sim);
-int lag_events_spread(lag_sim *sim, const double *at_event, double *spread);
+int lag_events_spread(lag_sim *sim, const double *at_event, double *spread, double *jumps);
 int lag_events_fire(lag_sim *sim);
 int lag_events_eval(lag_sim *sim, double t, const double *y, double *g);
 

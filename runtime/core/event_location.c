@@ -43,21 +43,6 @@ static int g_at(lag_sim *s, double t, double *g) {
   return rc ? rc : lag_events_eval(s, t, s->yc, g);
 }
 
-int lag_events_spread(lag_sim *s, const double *at_event, double *spread) {
-  const Run *r = s->run;
-  int nev = lag_watched(s), rc = 0;
-  double last = 4 * DBL_EPSILON * fmax(fabs(r->step_t0), fabs(r->step_t1));
-  memset(spread, 0, (size_t)nev * sizeof *spread);
-  for (int i = -2; i <= 2 && rc == 0; i++) {
-    double t = r->limit + i * last * r->dir;
-    if (i != 0 && (t - r->from) * r->dir >= 0 && (t - r->step_t1) * r->dir <= 0) {
-      rc = g_at(s, t, s->g1);
-      for (int k = 0; k < nev && rc == 0; k++) spread[k] = fmax(spread[k], fabs(s->g1[k] - at_event[k]));
-    }
-  }
-  return rc;
-}
-
 /* ---- one crossing */
 
 typedef struct Crossing {
@@ -73,10 +58,15 @@ static double g_of(void *context, double t) {
   return c->sim->g1[c->k] + c->lift;
 }
 
-/* root[k] := the zero of g + lift; the end of a step may be one. */
-static int find_crossing(lag_sim *s, int k, double lift, double ta, double ga, double tb, double gb) {
+/* root[k] := the zero of g + lift; the end of a step may be one. A change of sign at a pole is none: there g exceeds both samples beyond measure. */
+static int find_crossing(lag_sim *s, int k, double lift, double ta, double ga, double tb, double gb, int *found) {
+  const double pole = 100;
+  const lag_model *m = s->scene->model;
   Crossing c = {s, k, 0, lift};
+  int may_be_pole = k < m->nev && !lag_contact_of(m, k);
   s->root[k] = ga + lift == 0 ? ta : ga + lift > 0 || gb + lift > 0 ? lag_root(g_of, &c, ta, ga + lift, tb, gb + lift) : tb;
+  if (may_be_pole && c.rc == 0 && fabs(g_of(&c, s->root[k])) > pole * fmax(fabs(ga + lift), fabs(gb + lift))) s->root[k] = NAN;
+  else *found = 1;
   return c.rc;
 }
 
@@ -88,17 +78,12 @@ static int detect_sign_changes(lag_sim *s, double ta, const double *ga, double t
     double now = sign_of(gb[k]), was = s->sign_end[k];
     if (was == 0.0) {
       s->sign_end[k] = fabs(gb[k]) > s->noise[k] ? now : 0;
-      if (s->sign_end[k] < 0 && (k >= m->nev || lag_contact_of(m, k))) { /* it may have been positive: a switch, a closing gap, a force that pulls */
-        rc = find_crossing(s, k, s->noise[k], ta, ga[k], tb, gb[k]);
-        *found = 1;
-      }
+      if (s->sign_end[k] < 0 && (k >= m->nev || lag_contact_of(m, k))) /* it may have been positive: a switch, a closing gap, a force that pulls */
+        rc = find_crossing(s, k, s->noise[k], ta, ga[k], tb, gb[k], found);
     } else if (now == -was) {
       int direction = k < m->nev ? m->ev[k].direction : -1;
       s->sign_end[k] = now;
-      if (direction == 0 || direction == (int)now) {
-        rc = find_crossing(s, k, 0, ta, ga[k], tb, gb[k]);
-        *found = 1;
-      }
+      if (direction == 0 || direction == (int)now) rc = find_crossing(s, k, 0, ta, ga[k], tb, gb[k], found);
     }
   }
   return rc;
@@ -120,6 +105,39 @@ static int find_rounding(lag_sim *s, double t, double *rounding) {
   rc = rc ? rc : lag_events_eval(s, t * (1 + last), s->yc, s->g1);
   for (int k = 0; k < nev && rc == 0; k++) rounding[k] = 4 * (fabs(s->g1[k] - rounding[k]) + last * fabs(rounding[k]));
   return rc;
+}
+
+/* Marks jumps, of the events due now, whose functions go on at some distance from zero, as sign(x) does: from one sample to the next (2^-50 of t) values
+ * on the same side hardly change, and the change over zero is no rounding. at_event: values now; rounding: scratch. */
+static int confirm_jumps(lag_sim *s, const double *at_event, const double *spread, double *jumps, double *rounding) {
+  const Run *r = s->run;
+  int nev = lag_watched(s), some = 0, rc = 0;
+  for (int k = 0; k < nev; k++) some |= jumps[k] != 0.0;
+  if (some) rc = find_rounding(s, r->from + (r->limit - r->from) / 2, rounding);
+  for (int k = 0; k < nev && some && rc == 0; k++) jumps[k] = jumps[k] != 0.0 && fmax(spread[k], fabs(at_event[k])) > 1000 * rounding[k];
+  return rc;
+}
+
+int lag_events_spread(lag_sim *s, const double *at_event, double *spread, double *jumps) {
+  const Run *r = s->run;
+  int nev = lag_watched(s), rc = 0;
+  double last = 4 * DBL_EPSILON * fmax(fabs(r->step_t0), fabs(r->step_t1)), *previous = jumps + nev;
+  for (int k = 0; k < nev; k++) {
+    spread[k] = previous[k] = 0;
+    jumps[k] = k < s->scene->model->nev && !lag_is_kick(s->scene->model, k) && fabs(s->root[k] - r->limit) <= last;
+  }
+  for (int i = -2; i <= 2 && rc == 0; i++) {
+    double t = r->limit + i * last * r->dir;
+    if (i != 0 && ((t - r->from) * r->dir < 0 || (t - r->step_t1) * r->dir > 0)) continue;
+    const double *g = i ? s->g1 : at_event;
+    rc = i ? g_at(s, t, s->g1) : 0;
+    for (int k = 0; k < nev && rc == 0; k++) {
+      spread[k] = fmax(spread[k], fabs(g[k] - at_event[k]));
+      if (previous[k] * g[k] > 0 && fabs(g[k] - previous[k]) > fabs(g[k]) / 4) jumps[k] = 0;
+      previous[k] = g[k];
+    }
+  }
+  return rc ? rc : confirm_jumps(s, at_event, spread, jumps, previous);
 }
 
 /* Chebyshev coefficients of the polynomial of degree N through N + 1 values (mirrored in time, which matters nowhere). */

@@ -162,8 +162,8 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
   return rc ? rc : ends && !contact ? fail_zeno(s, k) : LAG_OK;
 }
 
-/* Signs after the events at t. before: g before the actions; spread: rounding of g. */
-static int rearm(lag_sim *s, const double *before, const double *spread) {
+/* Signs after the events at t. before: g before the actions; spread: rounding of g; jumps: 1 where g jumps over zero; changed: the state was replaced. */
+static int rearm(lag_sim *s, const double *before, const double *spread, const double *jumps, int changed) {
   const lag_model *m = s->scene->model;
   int rc = lag_events_eval(s, s->run->t, s->now, s->g1);
   for (int k = 0; k < m->nev && rc == 0; k++) {
@@ -171,7 +171,10 @@ static int rearm(lag_sim *s, const double *before, const double *spread) {
     double g = s->g1[k], residue = fabs(before[k]) + 4 * spread[k];
     double same = fmax(2 * residue, 1e-12 * fabs(s->g0[k])); /* g0: a sample of g in this step, for its size */
     int fired = s->root[k] == HUGE_VAL;
-    if (fired && fabs(g) <= same) {
+    if (fired && jumps[k] != 0.0) { /* g is not near zero on either side */
+      s->sign[k] = changed ? 0 : s->sign_end[k];
+      s->noise[k] = 0;
+    } else if (fired && fabs(g) <= same) {
       s->sign[k] = 0;
       s->noise[k] = fmax(2 * fabs(g), 2 * residue);
     } else if (!fired && !isnan(s->root[k]) && fabs(g - before[k]) <= same) {
@@ -222,9 +225,9 @@ static int settle_switches(lag_sim *s, int met, int *changed) {
 int lag_events_fire(lag_sim *s) {
   Run *r = s->run;
   int stop = 0, changed = 0, met = 0, nev = s->scene->model->nev;
-  double *before = s->e + 2, *spread = s->spare;
+  double *before = s->e + 2, *spread = s->spare, *jumps = spread + 2 * lag_watched(s);
   int rc = lag_events_eval(s, r->t, s->now, before);
-  rc = rc ? rc : lag_events_spread(s, before, spread);
+  rc = rc ? rc : lag_events_spread(s, before, spread, jumps);
   rc = rc ? rc : lag_switch_before_events(s);
   for (int k; rc == 0 && (k = next_due(s)) >= 0;) { /* an impact may make others happen at once */
     s->root[k] = HUGE_VAL; /* fired */
@@ -232,7 +235,7 @@ int lag_events_fire(lag_sim *s) {
     met |= k >= nev;
   }
   rc = rc ? rc : settle_switches(s, met, &changed);
-  rc = rc ? rc : rearm(s, before, spread);
+  rc = rc ? rc : rearm(s, before, spread, jumps, changed);
   r->from = r->t;
   r->pending = 0;
   if (changed || r->t == r->step_t1) {

@@ -189,7 +189,7 @@ static const OptionRow options[] = {
   {"--observe", NULL, "EXPR", TAKES_EXPRS, "", C(RUN), OWN(observe),
    "one more column: any expression of the model, --observe 'l*sin(th)'; can be repeated"},
   {"--section", NULL, "'EXPR rising'", TAKES_EXPR, "", C(RUN) | C(PLOT), OWN(section),
-   "a Poincare section: one row, or one point, each time EXPR crosses zero; or falling, or crossing (both ways). For an angle that turns: 'sin(th2) rising'"},
+   "a Poincare section: one row, or one point, each time EXPR crosses zero; or falling, or crossing (both ways). A periodic angle is zero once a turn: 'th2 rising'"},
   {"--y", NULL, "EXPR", TAKES_EXPRS, "", C(PLOT), OWN(y), "draws EXPR, or all members of a family, against time (can be repeated),"},
   {"--x", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(x), "or against this one: a path, with one scale for both axes if their units agree"},
   {"--phase", NULL, "EXPR", TAKES_EXPR, "", C(PLOT), OWN(phase), "draws the rate of EXPR against EXPR: --phase th draws th' against th"},

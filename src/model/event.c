@@ -120,6 +120,19 @@ void add_event(Builder *b, const AstStmt *st, Name effect) {
   if (g.e) vec_push(b->arena, &b->m->events, ev);
 }
 
+/* Whether e is an angle on a circle: a periodic coordinate, alone or with other terms. */
+static int turns(Builder *b, Expr e) {
+  e = expr_expand_defs(b->g, e);
+  for (uint32_t i = 0; i < expr_pairs(b->g, e, EX_SUM); i++) {
+    Num n;
+    Expr term = expr_pair(b->g, e, EX_SUM, i, &n);
+    const Symbol *s = expr_op(b->g, term) == EX_SYM ? expr_sym_of(b->g, term) : NULL;
+    if (!s || !num_is_one(num_abs(n))) continue;
+    if ((s->kind == SYM_COORD && b->m->coords.at[s->index].periodic) || (s->kind == SYM_STATE && b->m->states.at[s->index].periodic)) return 1;
+  }
+  return 0;
+}
+
 /* A section must be a function of state and time: no accelerations, rates of states, energy. */
 void add_section(Builder *b, const Section *s) {
   if (!s->expr) return;
@@ -137,6 +150,7 @@ void add_section(Builder *b, const Section *s) {
     diag_help(b->diags, "write it with coordinates, velocities, states, t and lets");
     return;
   }
+  if (turns(b, g.e)) g.e = expr_fn(b->g, EX_TAN, expr_scale(b->g, num_ratio(1, 2), g.e)); /* zero once a turn; a pole half a turn away is no crossing */
   vec_push(b->arena, &b->m->events, ((Event){.name = s->name, .span = span, .g = g.e, .direction = s->direction}));
 }
 

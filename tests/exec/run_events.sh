@@ -35,6 +35,43 @@ for method in rk45 dop853 'verlet8 --step 0.3' taylor; do
     sed 's/.*"up": {"count": \([0-9]*\).*/\1/')"
 done
 
+# Functions that jump over zero: x = sin t is above 1/2 from pi/6 to 5 pi/6, modulo 2 pi, 10 times in 60 s; x or -x also rises where x falls through 0, at
+# pi + 2 pi k. Reflected at 1/2 the motion comes back every 4 pi/3, 15 times. A change of another state at the jump leaves the count. At a pole g has no zero.
+. tests/exec/lib_oscillator.sh
+oscillator <<'END'
+state n
+flow n' = 0 [1/s]
+event hop
+scene s { start x' = 2 [m/s]
+  span 30 [s] }
+END
+jumps() { # G ACTION METHOD: the count, the phases 2 t of the first and the last time in units of pi/12
+  sed "s!event hop.*!event e: $1 $2!" "$TMP/osc.lag" >"$TMP/jump.lag"
+  # shellcheck disable=SC2086
+  "$LAGC" run "$TMP/jump.lag" --method $3 >"$TMP/out" 2>&1 || return 1
+  sed -n 's/^event e: never/none/p; s/^event e: \([0-9]*\) times, first at t = \([^ ]*\) s, last at \([^ ]*\) s/\1 \2 \3/p' "$TMP/out" |
+    awk '/none/ {print; next} {u = 24/3.14159265358979; printf "%d %.4f %.4f\n", $1, $2*u, $3*u}'
+}
+for method in taylor dop853 rk45 'rk4 --step 0.01'; do
+  while IFS='|' read -r g action want; do
+    is "$method: $g $action" "$want" "$(jumps "$g" "$action" "$method")"
+  done <<'END'
+x - 0.5 [m]|rising {}|10 2.0000 218.0000
+if(x > 0.5 [m], 1, -1)|rising {}|10 2.0000 218.0000
+if(x > 0.5 [m], 1, -1)|falling {}|10 10.0000 226.0000
+if(x > 0.5 [m], 1, -1)|crossing {}|20 2.0000 226.0000
+sign(x - 0.5 [m])|rising {}|10 2.0000 218.0000
+floor(x/(0.5 [m])) - 0.5|rising {}|10 2.0000 218.0000
+if(x > 0.5 [m], x, -x)|rising {}|20 2.0000 228.0000
+if(x > 0.5 [m], 1, -1)|rising { x' = -x' }|15 2.0000 226.0000
+if(x > 0.5 [m], 1, -1)|crossing { x' = -x' }|15 2.0000 226.0000
+sign(x - 0.5 [m])|rising { n = n + 1 }|10 2.0000 218.0000
+if(x > 0.5 [m], 1, -1)*1e-5|crossing {}|20 2.0000 226.0000
+tan(2*t/(1 [s]))|rising {}|19 12.0000 228.0000
+tan(2*t/(1 [s]))|falling {}|none
+END
+done
+
 printf '%s\n' 'model m' 'coord x [m]' "kinetic = x'^2/2 * 1 [kg]" 'event down: 1/2 [s] - t falling {}' 'event up: t - 1/2 [s] rising {}' 'scene s { span 1 [s] }' >"$TMP/end.lag"
 is "at the end of a step" "0.5 0.5" "$("$LAGC" run "$TMP/end.lag" --method rk4 --step 0.125 --json | sed 's/.*"down": {"count": 1, "first": \([^,]*\).*"up": {"count": 1, "first": \([^,]*\).*/\1 \2/')"
 

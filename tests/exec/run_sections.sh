@@ -62,6 +62,22 @@ halves() {
 check "two halves of a run have the points of the whole" halves
 is "the report counts them" "section x rising: 7 times" "$("$LAGC" run models/spring.lag free --section 'x falling' | sed -n 's/^section x falling/section x rising/; s/, first.*//p')"
 check "a sketch in the terminal" sh -c "$LAGC run models/henon_heiles.lag chaos --section 'x rising' --sketch --plot-x y --plot-y \"y'\" | grep -q '⠐\|⠂\|⡀\|⠠'"
+# ---- A periodic angle is zero once a turn, in one direction: of the zeros of its sine those with a positive cosine and that sign of the rate.
+turns() { # SECTION SIGN B: of th2 + B th1
+  pend="models/double_pendulum.lag chaos --until 100 --observe th1' --observe th2' --quiet"
+  # shellcheck disable=SC2086
+  "$LAGC" run $pend --section "$1" -o "$TMP/turns.csv" && "$LAGC" run $pend --section "sin(th2 + $3*th1) crossing" -o "$TMP/sines.csv" || return 1
+  awk -F, -v sign="$2" -v b="$3" '
+    FNR == 1 {next}
+    FILENAME ~ /sines/ {if (cos($3 + b*$2) > 0 && ($8 + b*$7)*sign > 0) want[++n] = $1; next}
+    {d = $1 - want[++k]; if (d*d > 1e-16) bad = 1}
+    END {print n, k; exit !(n == k && n > 20 && !bad)}' "$TMP/sines.csv" "$TMP/turns.csv"
+}
+check "th2 rising" turns 'th2 rising' 1 0
+check "th2 falling" turns 'th2 falling' -1 0
+check "-th2 rising" turns '-th2 rising' -1 0
+check "th2 - th1 rising" turns 'th2 - th1 rising' 1 -1
+
 simulator() {
   "$LAGC" build models/bouncing_ball.lag -o "$TMP/ball" && "$TMP/ball" drop --section floor --until 2 --quiet -o "$TMP/ball.csv" &&
     "$LAGC" run models/bouncing_ball.lag drop --section 'y falling' --until 2 --quiet -o "$TMP/y.csv" && [ "$(wc -l <"$TMP/ball.csv")" -gt 1 ]

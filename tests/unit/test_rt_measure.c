@@ -41,8 +41,9 @@ static void an_oscillator_by_every_method(void **state)
     assert_int_equal(measure(s, T, MOST, text, value), LAG_OK);
     for (int k = 0; k < MOST; k++) {
       int at_time = strchr(text[k], '(') == NULL || text[k][0] == 'x' || text[k][0] == '2';
-      if (!(fabs(value[k] - expected[k]) <= (at_time ? within : between))) {
-        fail_msg("%s: %s = %.15g, expected %.15g within %.2g", m->name, text[k], value[k], expected[k], at_time ? within : between);
+      double off = (at_time ? within : between) + (text[k][0] == 'd' && !adaptive ? 0.002*0.002/8 : 0); /* the drift at ends of steps, half a step from the bottom */
+      if (!(fabs(value[k] - expected[k]) <= off)) {
+        fail_msg("%s: %s = %.15g, expected %.15g within %.2g", m->name, text[k], value[k], expected[k], off);
       }
     }
   }
