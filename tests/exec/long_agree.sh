@@ -6,7 +6,7 @@
 . tests/tap.sh
 
 models=$(ls models/*.lag tests/exec/models/*.lag | grep -v /mutants_) # mutants share names with other models
-third=$(echo "$models" | awk 'NR % 3 == 1')
+third=$(echo "$models" | grep -v /bicycle | awk 'NR % 3 == 1') # the bicycle alone would take as long as all others
 mkdir -p "$TMP/c"
 name_of() { sed -n 's/^model \([^ ]*\).*/\1/p' "$1" | tr '[:upper:]' '[:lower:]'; }
 emit_all() { for m in $models; do "$LAGC" emit "$m" --method gauss -o "$TMP/c/$(name_of "$m").c" || return 1; done; }
