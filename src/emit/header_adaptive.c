@@ -132,7 +132,7 @@ static const char *const lanes =
   " |  end.t = LAG_SELECT(clipped, until, end.t);\n"
   " |  end.lost[0] = LAG_SELECT(clipped, zero, end.lost[0]);\n"
   " |  LAG_TRY(c->trial(p, s, dir*hPASS, k, &end, w, &error));\n"
-  " |  const LAG_MASK moves = LAG_OR(end.t > s->t, end.t < s->t), failed = LAG_AND(busy, LAG_OR(LAG_NOT(moves), LAG_FAILED(status)));\n"
+  " |  const LAG_MASK moves = LAG_AND(h*c->least > zero, LAG_OR(end.t > s->t, end.t < s->t)), failed = LAG_AND(busy, LAG_OR(LAG_NOT(moves), LAG_FAILED(status)));\n"
   " |  const LAG_MASK good = LAG_AND(busy, LAG_NOT(failed)), taken = LAG_AND(good, LAG_AND(error >= zero, error <= one));\n"
   " |  lag_resize(c, w, h, error, taken, LAG_AND(good, LAG_NOT(taken)), wanted, clipped);\n"
   " |  LAG_MOVE(taken, s, &end);\n"
