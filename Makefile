@@ -45,6 +45,10 @@ ifneq ($(BUILDS),)
 -include $(CONFIG)
 endif
 
+# ccache, where it is installed, keeps objects between builds and between copies of the tree; `make CCACHE=` does without.
+CCACHE ?= $(firstword $(wildcard $(addsuffix /ccache,$(subst :, ,$(PATH)))))
+export CCACHE_NOHASHDIR ?= 1
+
 # GSL is optional: without it there are no gsl-* methods, and no liblag_gsl.a.
 GSL := $(GSL_FOUND)
 GSL_LIBS := $(if $(GSL),-lgsl -lgslcblas)
@@ -189,10 +193,10 @@ $(BUILD)/gen/lag.lex.h: $(BUILD)/gen/lag.lex.c ;
 
 $(BUILD)/obj/src/%.o: src/%.c
 	@mkdir -p $(@D)
-	$(CC) $(WARN) $(SRC_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
+	$(CCACHE) $(CC) $(WARN) $(SRC_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
 $(BUILD)/obj/runtime/%.o: runtime/%.c
 	@mkdir -p $(@D)
-	$(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
+	$(CCACHE) $(CC) $(WARN) $(RT_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
 
 # Of one text, by runtime/precision.awk, in $(BUILD)/gen/long and $(BUILD)/gen/quad; lagc finds the headers in $(BUILD)/lag-long
 # and $(BUILD)/lag-quad. src/toolchain/toolchain.c compiles models with the same LAG_REAL.
@@ -214,7 +218,7 @@ $(BUILD)/lag-$(1)/%.h: $(BUILD)/gen/$(1)/include/%.h
 	cp $$< $$@
 $(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | $(BUILD)/gen/io/page.h
 	@mkdir -p $$(@D)
-	$$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(PIC) $$(CFLAGS) $$(SAFE) -c -o $$@ $$<
+	$$(CCACHE) $$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(PIC) $$(CFLAGS) $$(SAFE) -c -o $$@ $$<
 $(BUILD)/liblag_$(1).a: $(RT_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%)
 	$$(ARCHIVE) $$(filter %.o,$$^)
 	$$(INDEX)
@@ -314,7 +318,7 @@ $(BUILD)/obj/gen/toolchain/outfile.o $(BUILD)/obj/gen/base/windows.o: | $(BUILD)
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 	@mkdir -p $(@D)
-	$(CC) -std=c11 -w $(SRC_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
+	$(CCACHE) $(CC) -std=c11 -w $(SRC_FLAGS) $(CFLAGS) $(SAFE) $(SAN) -MMD -MP -c -o $@ $<
 $(BUILD)/obj/src/syntax/parse.o: $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h
 
 # ---- the demonstration ------------------------------------------------------------------------------
@@ -495,7 +499,7 @@ fuzz-coverage:
 
 # The share of lines that the suites of `make test` reach. Simulators count, too: MODEL_CC links them with gcov.
 COVERAGE := $(BUILD)/coverage
-COVERAGE_MAKE = $(QUIET) BUILD=$(COVERAGE) SAN_BUILD=$(COVERAGE) PRECISIONS= CLANG= CFLAGS='-O0 -include tests/coverage/counted.h' \
+COVERAGE_MAKE = $(QUIET) BUILD=$(COVERAGE) SAN_BUILD=$(COVERAGE) CCACHE= PRECISIONS= CLANG= CFLAGS='-O0 -include tests/coverage/counted.h' \
                 SAN=--coverage SAN_FLAGS=--coverage TEST_OPT=-O0
 coverage:
 	$(SETUP) test
