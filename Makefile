@@ -138,7 +138,9 @@ LIBLAG_MORE := $(PRECISIONS:%=$(BUILD)/liblag_%.a)
 DYNAMIC ?= $(ELF_FOUND)
 LIBLAG_SO = $(if $(DYNAMIC),$(BUILD)/liblag.so.$(SOVERSION))
 
-all: $(BUILD)/lagc$(EXE) $(LIBLAG) $(LIBLAG_MORE)
+all: $(BUILD)/lagc$(EXE) $(LIBLAG)
+# The runtime for long double and quad takes as long to build as all the rest.
+precisions: $(LIBLAG_MORE)
 install: $(LIBLAG_SO)
 
 # ---- the compiler and the runtime -------------------------------------------------------------------
@@ -337,15 +339,15 @@ run-demo: all
 	$(BUILD)/lagc run models/double_pendulum.lag --method rk45 --plot-x x2 --plot-y y2 --sketch --svg $(BUILD)/double_pendulum.svg
 
 # The pictures of models/README.md, each by the command that stands above it.
-gallery: all
+gallery: all precisions
 	@sed -n 's|^Drawn by `build/lagc \(.*\)`:$$|$(BUILD)/lagc \1 --quiet|p' models/README.md | sh -e
 
 # ---- tests: tests/run.sh says what a suite is -------------------------------------------------------
 # Two builds for `make test`: as users get it, less the precisions; and in $(BUILD)/san with the address and undefined-behaviour sanitizers,
 # which unit tests, their helpers and fuzz targets link. gcc compiles sanitized code at -Og in 60 % of the time of -O1 or of -O0, and in two
 # thirds of that without the four checks of pointers, whose faults the address sanitizer sees for the greater part.
-# `make test-long` has all checks, at -O0, which leaves out no load, in $(BUILD)/zero, and runs unit tests and fuzz targets once more with them;
-# long and quad precision; and, where clang is installed, everything by clang.
+# `make test-long`, which CI runs, has all checks, at -O0, which leaves out no load, in $(BUILD)/zero; long and quad precision; and, where clang is
+# installed, everything by clang. `make test-all` is the same without leaving out rows.
 SAN_BUILD := $(BUILD)/san
 SAN_OPT   := -Og -g1
 SAN_ALL   := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -383,14 +385,15 @@ check-quick:
 	$(QUIET) BIN=$(QUICK_BIN) SAN_BUILD=$(BUILD) SAN_FLAGS= PRECISIONS= $(BUILD)/lagc $(LIBLAG) $(UNIT_SRC:tests/unit/%.c=$(QUICK_BIN)/%)
 	$(RUN_TESTS) $(or $(T),$(QUICK))
 ZERO = SAN_BUILD='$(BUILD)/zero' SAN_OPT='-O0 -g1' SAN_FLAGS='$(SAN_ALL)' BIN='$(BUILD)/zero/bin'
-test-long: MORE_BUILDS = PRECISIONS='$(PRECISIONS)' LAGC_CLANG='$(if $(CLANG),$(BUILD)/clang/lagc)'
-test-long: SAN_BUILD := $(BUILD)/zero
-test-long: SAN_FLAGS := $(SAN_ALL)
-test-long: BIN := $(BUILD)/zero/bin
-test-long:
+LONG := test-long test-all
+$(LONG): MORE_BUILDS = PRECISIONS='$(PRECISIONS)' LAGC_CLANG='$(if $(CLANG),$(BUILD)/clang/lagc)'
+$(LONG): SAN_BUILD := $(BUILD)/zero
+$(LONG): SAN_FLAGS := $(SAN_ALL)
+$(LONG): BIN := $(BUILD)/zero/bin
+$(LONG):
 	$(SETUP) test
 	$(BUILD_TESTS) build-more $(ZERO)
-	$(RUN_TESTS) --long $(T)
+	$(RUN_TESTS) $(@:test-%=--%) $(T)
 bless:
 	$(SETUP) test
 	$(BUILD_TESTS)
@@ -402,13 +405,13 @@ hard:
 	@LAGC='$(BUILD)/lagc' LIBS='$(GSL_LIBS) -lm' INC='runtime/include' BUILD='$(BUILD)' CC='$(CC)' GSL='$(GSL)' sh tests/hard/lib_table.sh
 bench:
 	$(SETUP) build
-	$(QUIET) all
+	$(QUIET) all precisions
 	$(RUN_TESTS) --bench $(T)
 
 # What accuracy costs in time: models/COST.md, by this machine.
 cost-report:
 	$(SETUP) build
-	$(QUIET) all
+	$(QUIET) all precisions
 	@LAGC='$(BUILD)/lagc' CC='$(CC)' sh tests/bench/lib_cost_report.sh
 
 SAN_MAKE = $(QUIET) BUILD=$(SAN_BUILD) PRECISIONS= CFLAGS='$(SAN_OPT)' SAN='$(SAN_FLAGS)'
@@ -428,10 +431,10 @@ build-san:
 	$(SAN_MAKE) $(if $(ONLY),,$(SAN_BUILD)/lagc) $(SAN_LAGC) $(SAN_RT)
 build-plain:
 	@echo 'building $(BUILD)/lagc'
-	$(QUIET) PRECISIONS= all
+	$(QUIET) all
 build-more: build-san build-plain
 	@echo 'building other precisions$(if $(CLANG), and $(BUILD)/clang by clang)'
-	$(QUIET) all
+	$(QUIET) precisions
 	$(if $(CLANG),$(QUIET) BUILD=$(BUILD)/clang PRECISIONS= CC='$(CLANG)' all)
 
 # Test programs themselves: -O1 would take ten times as long to compile.
@@ -536,7 +539,7 @@ CMAKE_FILL_IN = sed -e 's|@CMAKE_PREFIX@|$(TO_PREFIX)|' -e 's|@LIBDIR@|$(call be
             -e 's|@INCLUDEDIR@|$(call below,$${_lagc_prefix}/,$(INCLUDEDIR))|' -e 's|@VERSION@|$(VERSION)|' -e 's|@SOVERSION@|$(SOVERSION)|g'
 COMPLETIONS := bash-completion/completions zsh/site-functions fish/vendor_completions.d
 
-install: all
+install: all precisions
 	install -d '$(DESTDIR)$(PREFIX)/bin' '$(DESTDIR)$(LIBDIR)/pkgconfig' '$(DESTDIR)$(INCLUDEDIR)' \
 	  '$(DESTDIR)$(PREFIX)/share/lagc/models/lib' '$(DESTDIR)$(PYTHONDIR)' '$(DESTDIR)$(PREFIX)/share/man/man1' '$(DESTDIR)$(PREFIX)/share/doc/lagc' \
 	  $(COMPLETIONS:%='$(DESTDIR)$(PREFIX)/share/%')
@@ -594,12 +597,15 @@ clean:
 
 help:
 	@echo 'make              the compiler build/lagc and the runtime build/liblag.a'
+	@echo 'make precisions   the runtime for lagc run --precision long and quad, which lagc cost uses for its reference, too'
 	@echo 'make demo         installs what is missing, then compiles and runs models/double_pendulum.lag'
-	@echo 'make test         installs what is missing, then runs every test'
+	@echo 'make test         installs what is missing, then runs every suite that takes seconds; of long rows of checks some'
 	@echo '                  T="unit/test_num golden": only suites whose names begin so'
+	@echo '                  DAY=20785: the rows of that day, which the first line of each run names'
 	@echo '                  TIMES=1: the processor time of each suite; JOBS=4: suites at a time, one a processor unless given'
 	@echo 'make check-quick  unit and golden tests only, without sanitizers: half a minute'
-	@echo 'make test-long    the suites that take minutes'
+	@echo 'make test-long    every suite, deeper, with more of the rows: what CI runs'
+	@echo 'make test-all     every suite with all rows: hours'
 	@echo 'make hard         hard cases with published digits: a row each, error beside what is allowed'
 	@echo 'make bench        instructions and times next to peers, to tests/bench/RESULTS.md; nothing fails by being slow'
 	@echo 'make cost-report  what accuracy costs in time, for eight models: models/COST.md with its pictures'
@@ -623,4 +629,4 @@ ifneq ($(BUILDS),)
 endif
 
 FORCE:
-.PHONY: FORCE all demo run-demo gallery test check-quick test-long bless hard bench cost-report build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall dist clean help
+.PHONY: FORCE all demo run-demo precisions gallery test check-quick test-long test-all bless hard bench cost-report build-tests build-san build-plain build-more coverage build-coverage run-coverage fuzz fuzz-coverage mutants install uninstall dist clean help

@@ -1,16 +1,17 @@
 #!/bin/sh
 # Runs suites of tests; `make test` calls it with what it built (see RUN_TESTS in the Makefile).
-#   sh tests/run.sh [--long | --bless | --bench] [PREFIX...]     only suites whose names, with or without their folder, begin with a PREFIX
+#   sh tests/run.sh [--long | --all | --bless | --bench] [PREFIX...]     only suites whose names, with or without their folder, begin with a PREFIX
 # JOBS: suites at a time (a job a processor); TIMES=1: each suite's processor time beside its wall time, and their sum.
 #
 # A suite is a file, found by its name; there is no list.
 #   tests/unit/test_NAME.c         built into $BIN/test_NAME (cmocka)            suite unit/test_NAME
 #   tests/fuzz/fuzz_NAME.c         replays tests/fuzz/corpus/NAME                suite fuzz/fuzz_NAME
 #   tests/FOLDER/NAME.sh           run from the top of the source tree by sh     suite FOLDER/NAME
-#   tests/FOLDER/long_NAME.sh      the same, in `make test-long`, which also runs, with SLOW=1, each NAME.sh that has a `slow` check or `one_of`
-#                                     (tests/tap.sh), and each test_NAME.c and fuzz_NAME.c, where slow() is the larger (tests/unit/slow.h)
+#   tests/FOLDER/long_NAME.sh      the same, in `make test-long` and `make test-all` only
 #   tests/bench/NAME.sh            run by `make bench`; its output is shown, and written to tests/bench/RESULTS.md
 #   tests/FOLDER/lib_NAME.sh       no suite: functions that scripts share
+# How deep: `make test` takes some rows of long tables (`one_of` of tests/tap.sh, slow() of tests/unit/slow.h); `make test-long` has SLOW=1, four times
+# as many rows and all `slow` checks; `make test-all` has all rows. DAY, the number of today, chooses the rows; the first line of a run names it.
 # --bless runs the scripts that know BLESS with BLESS=1: they rewrite their expectations.
 #
 # Suites speak TAP: a plan `1..N`; `ok 1 - name`, `not ok 2 - name`, `ok 3 - name # SKIP why`; `# details`.
@@ -25,7 +26,7 @@
 #   CC, CLANG, CXX, GSL, MAKE      GSL is `yes` or empty
 #   LINKER                         a faster linker than CC's own, for `make test`: COMPILER_PATH
 #   LAG_TREE                       value of LAG_HOME with which LAGC_SAN and LAGC_CLANG find the runtime and the gallery
-#   LAGC_OPTIMISE                  -O0 in `make test`, whose simulators run for less time than they compile for; unset, so -O2, elsewhere
+#   LAGC_OPTIMISE                  -O0 where simulators run for less time than they compile for: suites without `slow` checks and `one_of`; unset, so -O2, elsewhere
 # Every suite leaves its output in $BUILD/test/log, those of `make test-long` in $BUILD/test/long, which reports in the order in which suites begin.
 # The last line is `N passed, N failed`.
 cd "$(dirname "$0")/.." || exit 2
@@ -36,6 +37,7 @@ export UBSAN_OPTIONS="print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}"
 : "${BUILD:=build}" "${BIN:=$BUILD/test/bin}" "${JOBS:=$(nproc 2>/dev/null || echo 2)}"
 logs=$BUILD/test/log
 # Simulators that tests make are kept apart from the user's own.
+export CCACHE_DIR="${CCACHE_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/ccache}"
 XDG_CACHE_HOME=$(pwd)/$BUILD/test/cache
 LAG_TREE=$(pwd)/$BUILD/test/home
 export XDG_CACHE_HOME LAG_TREE
@@ -44,24 +46,28 @@ kind='test'
 limit=600
 case ${1:-} in
   --long) kind=long limit=3600 logs=$BUILD/test/long ;;
+  --all) kind=long limit=7200 logs=$BUILD/test/all ;;
   --bless) kind=bless JOBS=1 ;;
   --bench) kind=bench limit=3600 JOBS=1 ;;
   --run-one) kind=one ;;
 esac
+rows=some
+[ "${1:-}" != --all ] || rows=all
 case ${1:-} in --*) shift ;; esac
 case $kind in
-  test | bless)
-    export LAGC_OPTIMISE="${LAGC_OPTIMISE:--O0}" && unset SLOW
-    # Compilers look for `ld` there first: gold links a simulator in half the time.
-    if [ -n "${LINKER:-}" ]; then
-      mkdir -p "$BUILD/test/linker"
-      ln -sfn "$LINKER" "$BUILD/test/linker/ld"
-      export COMPILER_PATH="$(pwd)/$BUILD/test/linker${COMPILER_PATH:+:$COMPILER_PATH}"
-    fi
-    ;;
-  long) unset LAGC_OPTIMISE && export SLOW=1 ;;
+  test | bless) unset SLOW ;;
+  long) unset LAGC_OPTIMISE && export SLOW=1 ROWS=$rows ;;
   bench) unset LAGC_OPTIMISE SLOW ;;
 esac
+[ "$kind" = one ] || export DAY="${DAY:-$(($(date +%s) / 86400))}"
+# Compilers look for `ld` there first: gold links a simulator in half the time.
+if [ -n "${LINKER:-}" ] && [ "$kind" != bench ]; then
+  mkdir -p "$BUILD/test/linker"
+  ln -sfn "$LINKER" "$BUILD/test/linker/ld"
+  export COMPILER_PATH="$(pwd)/$BUILD/test/linker${COMPILER_PATH:+:$COMPILER_PATH}"
+fi
+# deep FILE: a suite with rows or checks that `make test` leaves out
+deep() { grep -q 'SLOW\|^ *slow \|\<one_of ' "$1"; }
 
 seconds() { date +%s.%N 2>/dev/null; }
 
@@ -78,7 +84,10 @@ if [ "$kind" = one ]; then
   case $suite in
     unit/test_*) set -- "$BIN/${suite#unit/}" ;;
     fuzz/fuzz_*) set -- "$BIN/${suite#fuzz/}" "tests/fuzz/corpus/${suite#fuzz/fuzz_}" ;;
-    *) set -- sh "tests/$suite.sh" ;;
+    *)
+      set -- sh "tests/$suite.sh"
+      if [ -z "${SLOW:-}" ] || ! deep "tests/$suite.sh"; then export LAGC_OPTIMISE="${LAGC_OPTIMISE:--O0}"; fi
+      ;;
   esac
   begin=$(seconds)
   timeout -k 5 "$limit" "$@" >"$log" 2>&1 </dev/null
@@ -108,7 +117,6 @@ found() {
       grep -q BLESS "$f" || continue
     elif [ "$is" != "$kind" ]; then
       [ "$kind $is" = 'long test' ] || continue
-      case $f in *.sh) grep -q 'SLOW\|^ *slow \|\<one_of ' "$f" || continue ;; esac
     fi
     [ $# = 0 ] && echo "$name"
     for prefix; do
@@ -158,6 +166,7 @@ slowest_first() {
 }
 order=$(slowest_first)
 [ "$kind" != long ] || suites=$order
+case $kind in 'test' | long) echo "rows of DAY=$DAY" ;; esac
 for s in $suites; do rm -f "$logs/$s.done"; done
 # shellcheck disable=SC2086 # a list of words
 printf '%s\n' $order | xargs -P "$JOBS" -I SUITE sh tests/run.sh --run-one SUITE "$limit" "$logs" &

@@ -99,8 +99,8 @@ int toolchain_precision(Arena *a, Toolchain *t, const char *precision, const cha
   t->library = arena_printf(a, "lag_%s", precision);
   t->include = arena_printf(a, "%s/lag-%s", t->lib, precision);
   if (file_exists(arena_printf(a, "%s/lib%s.a", t->lib, t->library))) return 1;
-  return fail_with(error, arena_printf(a, "--precision %s: %s/lib%s.a is not there: this lagc was built without it%s", precision, t->lib, t->library,
-                                       t->needs ? ", as where the C compiler has no libquadmath" : ""));
+  return fail_with(error, arena_printf(a, "--precision %s: %s/lib%s.a is not there; `make precisions` builds it%s", precision, t->lib, t->library,
+                                       t->needs ? ", where the C compiler has libquadmath" : ""));
 }
 
 /* --- the probe for compilers that store wrong numbers --- */

@@ -5,8 +5,12 @@
 [ -n "${TMP:-}" ] || { TMP=$(mktemp -d) && trap 'rm -rf "$TMP"' EXIT; }
 . tests/tap.sh
 
-models=$(ls models/*.lag tests/exec/models/*.lag | grep -v /mutants_) # mutants share names with other models
-third=$(echo "$models" | grep -v /bicycle | awk 'NR % 3 == 1') # the bicycle alone would take as long as all others
+models=
+for m in models/*.lag tests/exec/models/*.lag; do
+  case $m in */mutants_*) continue ;; esac # they share names with other models
+  one_of 16 && models="$models $m"
+done
+third=$(printf '%s\n' $models | grep -v /bicycle | awk 'NR % 3 == 1') # the bicycle alone would take as long as all others
 mkdir -p "$TMP/c"
 name_of() { sed -n 's/^model \([^ ]*\).*/\1/p' "$1" | tr '[:upper:]' '[:lower:]'; }
 emit_all() { for m in $models; do "$LAGC" emit "$m" --method gauss -o "$TMP/c/$(name_of "$m").c" || return 1; done; }

@@ -1,5 +1,6 @@
 #!/bin/sh
 # Emitted C with every compiler, and in every precision; headers run. run_emit.sh: with one compiler, in doubles; run_compilers.sh: headers in every standard.
+part=16
 . tests/exec/lib_emit.sh
 # The first compiler of each kind.
 gcc=

@@ -1,12 +1,10 @@
 #!/bin/sh
 # Emitted C compiles without warnings, computes what its program says, and is the same byte for byte from every compiler; headers can be
-# embedded. For one model in five of models/ and of the unusual ones of tests/exec/models/, in `make test-long` for all. long_emit.sh: other
+# embedded. For one model in ten of models/ and of the unusual ones of tests/exec/models/. long_emit.sh: other
 # compilers, standards and precisions.
-plain= models=
-if [ -z "${SLOW:-}" ]; then
-  plain=no
-  models="$(ls models/*.lag tests/exec/models/*.lag | awk 'NR % 5 == 0 && !/double_pendulum.lag|oscillator.lag/') models/double_pendulum.lag tests/exec/models/oscillator.lag"
-fi
+plain=
+[ -n "${SLOW:-}" ] || plain=no
+part=10
 . tests/exec/lib_emit.sh
 
 check "emitted C is clean with $(basename "$CC")" sources_clean "$CC" c11

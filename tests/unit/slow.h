@@ -3,7 +3,13 @@
 #define TESTS_UNIT_SLOW_H
 #include <stdlib.h>
 
-/* In `make test-long`, which runs suites with this call once more, the first; in `make test` the second. */
+/* In `make test-long` and `make test-all` the first, in `make test` the second. */
 static inline int slow(int in_test_long, int in_test) { return getenv("SLOW") ? in_test_long : in_test; }
+
+/* The first of the rows that are taken in steps, another one each DAY (tests/run.sh). */
+static inline size_t first_row(size_t step) {
+  const char *day = getenv("DAY");
+  return day ? strtoul(day, NULL, 10) % step : 0;
+}
 
 #endif
