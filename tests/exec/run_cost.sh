@@ -224,6 +224,9 @@ interrupted() { # Ctrl-C: what is known is printed
   wait $pid
   [ $? = 143 ] && grep -q '^interrupted' "$TMP/text" && grep -q '^cheapest setting' "$TMP/text"
 }
+# The bicycle's 7292 operations: gcc takes most of ten seconds for second derivatives of L alone.
+in_time() { text models/bicycle.lag --quiet -o "$TMP/bicycle.json" && grep -q 'second derivatives of L are left out' "$TMP/err" && grep -q '"method": "radau' "$TMP/bicycle.json"; }
+slow check "a model that takes long to compile" in_time
 slow check "an interrupted sweep prints what it knows" interrupted
 
 # A scene's monitor is a demand: no answer is stopped by it. rk4 loses (w h)^6/72 of the energy a step, so 1e-6 of it in 20 s at steps of 0.023 s at most.
