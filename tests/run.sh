@@ -1,5 +1,5 @@
 #!/bin/sh
-# Runs suites of tests; `make test` calls it with what it built (see RUN_TESTS in the Makefile).
+# Runs suites of tests; `make test` calls it with what it built (RUN_TESTS in tests/tests.mk).
 #   sh tests/run.sh [--long | --all | --bless | --bench] [PREFIX...]     only suites whose names, with or without their folder, begin with a PREFIX
 # JOBS: suites at a time (a job a processor); TIMES=1: each suite's processor time beside its wall time, and their sum.
 #

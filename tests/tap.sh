@@ -18,6 +18,13 @@ check() {
     echo "not ok $tap_n - $tap_name"
     sed 's/^/# /' "$TMP/tap_output"
   fi
+  [ -z "${TIMES:-}" ] || tap_times
+}
+# With TIMES=1 logs have, after each check, the processor time of the suite's commands so far, user and system.
+tap_times() {
+  times >"$TMP/tap_times"
+  { read -r tap_line && read -r tap_line; } <"$TMP/tap_times"
+  echo "# $tap_line"
 }
 
 # slow CHECK...: a check that `make test` leaves to `make test-long`, which sets SLOW=1. Where its words run a command, `"$(...)"`, write

@@ -43,6 +43,8 @@ int compiler_read(Compiler *c);
 
 /* required_derivatives.c: flags WANT_... (ir/unit.h) that the methods of e's scene, of --method and of the state of --resume need, and --with. */
 unsigned derivatives_required(const Eqns *e, const Options *o);
+/* `lagc cost`: those of them that a C compiler has ready in a part of --seconds. */
+unsigned derivatives_in_time(unsigned wants, const IrUnit *u, const Options *o);
 
 /* Equations of a choice of scene and effects; NULL with the reasons in c->diags. */
 Eqns *compiler_derive(Compiler *c, const ModelChoice *choice);

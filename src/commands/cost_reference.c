@@ -116,10 +116,10 @@ void cost_reference_begin(Compiler *c, double seconds, CostReference *r) {
   r->out = NULL;
 }
 
-int cost_reference_end(CostReference *r) {
+int cost_reference_end(CostReference *r, double seconds) {
   enum { CUT_SHORT = 3 };
   if (!r->out) return 0;
-  int status = process_end(r->process), given = (status == 0 || status == CUT_SHORT) && process_read_from(r->out);
+  int status = process_end(r->process, seconds), given = (status == 0 || status == CUT_SHORT) && process_read_from(r->out);
   fclose(r->out);
   return given;
 }

@@ -13,5 +13,6 @@ typedef struct {
  * more digits, or the user gave a reference with --against. */
 void cost_reference_begin(Compiler *c, double seconds, CostReference *r);
 
-/* Waits for it. Returns 1 with the reference as standard input of this process; 0 where there is none. */
-int cost_reference_end(CostReference *r);
+/* Waits for it, but no longer than `seconds`. Returns 1 with the reference as standard input of this process; 0 where there is none, or none in
+ * time. */
+int cost_reference_end(CostReference *r, double seconds);

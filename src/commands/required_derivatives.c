@@ -79,8 +79,29 @@ static int measures_exponent(const Eqns *e, const Options *o) {
   return found;
 }
 
+/* The value of an option that the simulator reads: --NAME VALUE or --NAME=VALUE; NULL if it is not given. */
+static const char *passed_option(const Options *o, const char *name) {
+  size_t n = strlen(name);
+  for (uint32_t i = 0; i < o->rest.n; i++) {
+    const char *word = o->rest.at[i];
+    if (strncmp(word, name, n) == 0 && word[n] == '=') return word + n + 1;
+    if (strcmp(word, name) == 0 && i + 1 < o->rest.n) return o->rest.at[i + 1];
+  }
+  return NULL;
+}
+
+unsigned derivatives_in_time(unsigned wants, const IrUnit *u, const Options *o) {
+  const double a_second = 400; /* instructions of accelerations with second derivatives of L: gcc 12 -O2, 400 to 880 (bicycle) */
+  double seconds = o->seconds ? strtod(o->seconds, NULL) : 10;
+  int takes_long = o->command == CMD_COST && !passed_option(o, "--methods") && u->accel && u->accel->ins.n > seconds/2*a_second;
+  return takes_long ? wants & ~(unsigned)WANT_VARIATION : wants;
+}
+
 unsigned derivatives_required(const Eqns *e, const Options *o) {
-  if (o->command == CMD_COST) return required_by_all(e);
+  if (o->command == CMD_COST) {
+    const char *methods = passed_option(o, "--methods");
+    return methods ? required_by_method(e, methods) : required_by_all(e);
+  }
   unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) | required_by_choice(e, o) | (o->command == CMD_FMU ? fmu_wants() : o->command == CMD_HEADER ? WANT_HELD | header_wants(o->with) | header_wants(o->target) : o->with || measures_exponent(e, o) ? WANT_LINEAR : 0u);
   return o->resume ? wants | required_by_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

@@ -98,7 +98,10 @@ static int lower_scene(Compiler *c, const char *scene, int runs, int apart, Unit
   }
   home->lines = 1;
   if (runs) c->run = e, c->run_by = home;
-  unit_require(home, e, derivatives_required(e, &c->o));
+  unsigned wants = derivatives_required(e, &c->o), in_time = derivatives_in_time(wants, home, &c->o);
+  if (in_time != wants)
+    c->picture.note = "methods that need second derivatives of L are left out: their C takes long to compile; --seconds 60 or --methods NAME has them";
+  unit_require(home, e, in_time);
   unit_add_scene(home, e);
   vec_push(c->arena, all, ((Lowered){e, home, home->scenes.n - 1}));
   return 1;

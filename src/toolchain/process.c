@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/vec.h"
@@ -66,11 +67,25 @@ void process_become(const char *path, char *const *argv) { execv(path, argv); }
 long process_begin(int (*work)(void *data), void *data) {
   fflush(NULL);
   pid_t pid = fork();
-  if (pid == 0) _exit(work(data));
+  if (pid == 0) {
+    setpgid(0, 0);
+    _exit(work(data));
+  }
   return pid;
 }
 
-int process_end(long process) { return wait_for((pid_t)process); }
+int process_end(long process, double seconds) {
+  const struct timespec pause = {0, 10000000};
+  siginfo_t end = {0};
+  double waited = 0;
+  int over = 0;
+  while ((over = waitid(P_PID, (id_t)process, &end, WEXITED | WNOHANG | WNOWAIT) != 0 || end.si_pid) == 0 && waited < seconds) {
+    nanosleep(&pause, NULL);
+    waited += 0.01;
+  }
+  if (!over) kill(-(pid_t)process, SIGKILL);
+  return wait_for((pid_t)process);
+}
 
 int process_read_from(FILE *f) { return lseek(fileno(f), 0, SEEK_END) > 0 && lseek(fileno(f), 0, SEEK_SET) == 0 && dup2(fileno(f), 0) == 0; }
 

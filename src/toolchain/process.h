@@ -18,8 +18,8 @@ void process_become(const char *path, char *const *argv);
 /* Begins work(data) in a child process, whose exit status is what work returns. Returns the process, or -1, as
  * on Windows, which has no fork. */
 long process_begin(int (*work)(void *data), void *data);
-/* Waits for its end; its exit status, or -1. */
-int process_end(long process);
+/* Waits for its end, but no longer than `seconds`; then it is ended with all that it began. Its exit status, or -1. */
+int process_end(long process, double seconds);
 /* Makes what the file holds the standard input. Returns 0 where it is empty or that fails. */
 int process_read_from(FILE *f);
 

@@ -95,7 +95,7 @@ long process_begin(int (*work)(void *data), void *data) {
   return -1;
 }
 
-int process_end(long process) { return (int)process; }
+int process_end(long process, double seconds) { return (void)seconds, (int)process; }
 
 int process_read_from(FILE *f) { return _lseeki64(_fileno(f), 0, SEEK_END) > 0 && _lseeki64(_fileno(f), 0, SEEK_SET) == 0 && _dup2(_fileno(f), 0) == 0; }
 

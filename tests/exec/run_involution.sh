@@ -264,7 +264,7 @@ check "zero is not independent" says "  1 independent charge in all, by the rank
     for j in 1 2 3 4 5 6 7 8 9; do echo "observe f${i}_$j = (p$i^2 + $((i * i + 1))*x$i^2)^$((j + 1))"; done
   done
 } >"$TMP/m.lag"
-count "72 functions declared" "9 of 9: Liouville-integrable"
+[ -z "${SLOW:-}" ] || count "72 functions declared" "9 of 9: Liouville-integrable"
 model <<'END2'
 model central "36 rotations commute at most in fours"
 const N = 9

@@ -232,7 +232,7 @@ check "loops compute what the program says, to the last bit" agrees
 # ---- memory and time of compilation
 # 3160 pairs of charges, three scenes: each program that a pass replaces, and each block that an array outgrows, is given up. With them it takes 360 MB.
 within() { (ulimit -v 250000 && "$LAGC" build models/electron_cloud.lag -DN=80 -o "$TMP/cloud"); }
-check "sums over 3160 pairs are compiled within 250 MB" within
+slow check "sums over 3160 pairs are compiled within 250 MB" within
 grows() {
   "$LAGC" emit models/chain.lag -DN=1000 -o "$TMP/long.c" && awk '/^static int accel/,/^}/' "$TMP/long.c" | wc -l >"$TMP/lines" && [ "$(cat "$TMP/lines")" -le 250 ] || return 1
   timeout 60 "$CC" -O2 -std=c11 -I"$INC" -c "$TMP/long.c" -o "$TMP/long.o"

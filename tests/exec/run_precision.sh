@@ -14,7 +14,7 @@ check "--precision double is the default" same_as_double
 
 # Where no library of these numbers is: LAG_HOME of a tree with the runtime for doubles.
 mkdir -p "$TMP/doubles/lib" && cp "$BUILD/liblag.a" "$TMP/doubles/lib" && ln -s "$(cd "$INC" && pwd)" "$TMP/doubles/include"
-no_library() { LAG_HOME=$TMP/doubles refuses 2 "built without it, as where the C compiler has no libquadmath" "$TMP/osc.lag" --precision quad; }
+no_library() { LAG_HOME=$TMP/doubles refuses 2 "\`make precisions\` builds it, where the C compiler has libquadmath" "$TMP/osc.lag" --precision quad; }
 check "quad needs libquadmath" no_library
 if [ -z "${SLOW:-}" ] || ! has_precision quad; then
   slow skip "the digits of quad" "there is no gcc with libquadmath"

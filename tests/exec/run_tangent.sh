@@ -257,7 +257,7 @@ force x = 0.1*if(x > 0, 1, 2)
 force y = 0.1*if(y > 0, 1, 2)
 scene s { start x = -1, y = -1, x' = 1, y' = 1; span 3 }
 X
-check "a linkage that lies in one line" refused 3 "constraint .* nearly depends on the others: neighbouring motions part there" tests/exec/models/four_bars.lag turn --method 'rk4(step=1e-4)' --until 4
+slow check "a linkage that lies in one line" refused 3 "constraint .* nearly depends on the others: neighbouring motions part there" tests/exec/models/four_bars.lag turn --method 'rk4(step=1e-4)' --until 4
 check "two surfaces at once" refused 3 "a force jumps, and two surfaces are met at once" "$TMP/corner.lag"
 check "an event with constraints" refused 3 "event knock changes the state at t = .*: what constraints make of its effect has no derivative yet" "$TMP/knocked.lag"
 check "two at once" refused 3 'event other changes the state at t = .*: another event does so at the same time' "$TMP/driven.lag" both

@@ -87,7 +87,7 @@ given 2 'a value is missing' g=
 # ---- mistakes ----
 # wrong MODEL FUNCTION FILE EDIT WORDS [OPTIONS...]: the file with this edit, of sed, differs, and is told these words.
 wrong() {
-  one_of 4 || return 0
+  one_of 8 || return 0
   model=$1 function=$2 edit=$4 words=$5
   sed "$edit" "$3" >"$TMP/edited.c"
   shift 5
@@ -153,7 +153,7 @@ unexplained "$TMP/unused.lag" f "$TMP/unused.c" 's/dydt\[1\] = /dydt[1] = -(1 + 
 unexplained models/pendulum.lag pendulum $hand 's/-p\[2\]\/p\[1\]\*sin(y\[0\])/-0.7*p[0]*y[1] - 0.3*exp(y[0]) - p[2]*cos(p[1])/'
 
 # ---- no right-hand sides ----
-seldom() { one_of 2 && bad "$@"; }
+seldom() { one_of 4 && bad "$@"; }
 bad() { check "$2" says "$1" "$3" verify models/pendulum.lag --against "$hand:$2"; }
 bad 3 crashes 'crashes'
 bad 3 crashes_late ', t = '
@@ -231,6 +231,6 @@ check "a rate that a constraint holds at 0: rounding alone is no float" held
 check "inputs by tables: the emitted function agrees" sh "$TMP/emitted.sh" tests/exec/models/tables.lag
 check "models/toda.lag, where exp rounds alike beside the start: the emitted function agrees" sh "$TMP/emitted.sh" models/toda.lag
 for model in models/*.lag; do
-  one_of 26 && has_header "$model" && check "$(basename "$model"): the emitted function agrees" sh "$TMP/emitted.sh" "$model"
+  one_of 50 && has_header "$model" && check "$(basename "$model"): the emitted function agrees" sh "$TMP/emitted.sh" "$model"
 done
 tap_end

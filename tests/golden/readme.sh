@@ -22,7 +22,7 @@ shows() { # shows PAGE
       continue ;;
     esac
     case ${SLOW:-}${BLESS:-}$command in
-    build/lagc\ effects*--accuracy*) # a simulator for each set of effects: 8 s, in `make test-long`
+    build/lagc\ effects*--accuracy* | build/lagc\ modes*bicycle*) # 8 s and 6 s, in `make test-long`
       awk -v k="$n" '/^<!-- printed by: / { i++ } /^```/ { inside = i == k && !inside; next } inside' "$page" >"$TMP/blocks/$n"
       continue ;;
     esac
