@@ -24,7 +24,7 @@
 #   LIBLAG, INC, LIBS              the runtime's libraries, its headers, libraries to link after them
 #   BIN, BUILD, TMP                built test programs; the build folder; a folder of the suite's own, empty
 #   CC, CLANG, CXX, GSL, MAKE      GSL is `yes` or empty
-#   LINKER                         a faster linker than CC's own, for `make test`: COMPILER_PATH
+#   LINKER                         a faster linker than CC's own: COMPILER_PATH where LAGC_OPTIMISE is set
 #   LAG_TREE                       value of LAG_HOME with which LAGC_SAN and LAGC_CLANG find the runtime and the gallery
 #   LAGC_OPTIMISE                  -O0 where simulators run for less time than they compile for: suites without `slow` checks and `one_of`; unset, so -O2, elsewhere
 # Every suite leaves its output in $BUILD/test/log, those of `make test-long` in $BUILD/test/long, which reports in the order in which suites begin.
@@ -60,12 +60,7 @@ case $kind in
   bench) unset LAGC_OPTIMISE SLOW ;;
 esac
 [ "$kind" = one ] || export DAY="${DAY:-$(($(date +%s) / 86400))}"
-# Compilers look for `ld` there first: gold links a simulator in half the time.
-if [ -n "${LINKER:-}" ] && [ "$kind" != bench ]; then
-  mkdir -p "$BUILD/test/linker"
-  ln -sfn "$LINKER" "$BUILD/test/linker/ld"
-  export COMPILER_PATH="$(pwd)/$BUILD/test/linker${COMPILER_PATH:+:$COMPILER_PATH}"
-fi
+[ -z "${LINKER:-}" ] || { mkdir -p "$BUILD/test/linker" && ln -sfn "$LINKER" "$BUILD/test/linker/ld"; }
 # deep FILE: a suite with rows or checks that `make test` leaves out
 deep() { grep -q 'SLOW\|^ *slow \|\<one_of ' "$1"; }
 
@@ -86,7 +81,16 @@ if [ "$kind" = one ]; then
     fuzz/fuzz_*) set -- "$BIN/${suite#fuzz/}" "tests/fuzz/corpus/${suite#fuzz/fuzz_}" ;;
     *)
       set -- sh "tests/$suite.sh"
-      if [ -z "${SLOW:-}" ] || ! deep "tests/$suite.sh"; then export LAGC_OPTIMISE="${LAGC_OPTIMISE:--O0}"; fi
+      case $suite in
+        */long_*) ;; # cross compilers, users' flags
+        *)
+          if [ -z "${SLOW:-}" ] || ! deep "tests/$suite.sh"; then
+            export LAGC_OPTIMISE="${LAGC_OPTIMISE:--O0}"
+            # Compilers look for `ld` there first: gold links a simulator in half the time.
+            [ -z "${LINKER:-}" ] || export COMPILER_PATH="$(pwd)/$BUILD/test/linker${COMPILER_PATH:+:$COMPILER_PATH}"
+          fi
+          ;;
+      esac
       ;;
   esac
   begin=$(seconds)

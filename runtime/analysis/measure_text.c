@@ -35,7 +35,8 @@ static double negative(double a) { return -a; }
 
 static const MeasureFunction functions[] = {
   {"sin", sin, NULL}, {"cos", cos, NULL}, {"tan", tan, NULL}, {"asin", asin, NULL}, {"acos", acos, NULL}, {"atan", atan, NULL},
-  {"sqrt", sqrt, NULL}, {"exp", exp, NULL}, {"log", log, NULL}, {"abs", fabs, NULL}, {"atan2", NULL, atan2},
+  {"sinh", sinh, NULL}, {"cosh", cosh, NULL}, {"tanh", tanh, NULL}, {"sqrt", sqrt, NULL}, {"cbrt", cbrt, NULL}, {"exp", exp, NULL},
+  {"log", log, NULL}, {"abs", fabs, NULL}, {"floor", floor, NULL}, {"atan2", NULL, atan2}, {"hypot", NULL, hypot},
 };
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 

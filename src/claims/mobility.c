@@ -33,16 +33,35 @@ static int has_slope(const Eqns *e, StateSolver *s, const long double *symbols, 
   return 0;
 }
 
+/* The last of the contacts that one statement makes, from constraint k on. */
+static uint32_t last_of_family(const Eqns *e, uint32_t k) {
+  const Constraints *all = &e->constraints;
+  const Contact *first = contact_of_constraint(e->m, all->of[k]);
+  for (uint32_t i = k + 1; i < all->n; i++) {
+    const Contact *next = contact_of_constraint(e->m, all->of[i]);
+    if (!next || next->is_tangent != first->is_tangent || all->of[i]->span.begin != all->of[k]->span.begin) return i - 1;
+  }
+  return all->n - 1;
+}
+
+/* A line for a contact, its friction, or a family of them. Returns the last constraint that it is about. */
+static uint32_t show_contacts(const Eqns *e, const Contact *contact, uint32_t k, StrBuf *out) {
+  uint32_t last = last_of_family(e, k), many = last > k;
+  const char *name = e->constraints.of[k]->name, *to = many ? " to " : "", *end = many ? e->constraints.of[last]->name : "";
+  const char *s = many ? "s" : "", *are = many ? "are" : "is", *they = many ? "they" : "it";
+  if (contact->is_tangent) {
+    sb_printf(out, "  %s friction: %s, %s%s%s = 0, while %s stick%s\n", many ? "their" : "its", many ? "constraints" : "a constraint", name, to, end, they, many ? "" : "s");
+    return last;
+  }
+  sb_printf(out, "  %s%s %s%s%s (line %u): ", contact->margin ? "constraint" : "contact", s, name, to, end, source_place(e->m->ast->sources, e->constraints.of[k]->span.begin).line);
+  if (contact->margin) sb_printf(out, "%s, while %s condition%s %s true\n", kind_of(e, k), many ? "their" : "its", s, are);
+  else sb_printf(out, "%s while %s %s closed\n", many ? "constraints" : "a constraint", they, are);
+  return last;
+}
+
 static void show_one(const Eqns *e, StateSolver *s, const long double *symbols, const unsigned char *counts, uint32_t k, uint32_t rank, StrBuf *out) {
   const Constraint *c = e->constraints.of[k];
   Place place = source_place(e->m->ast->sources, c->span.begin);
-  const Contact *contact = contact_of_constraint(e->m, c);
-  if (contact) {
-    if (contact->is_tangent) sb_printf(out, "  its friction: a constraint, %s = 0, while it sticks\n", c->name);
-    else if (contact->margin) sb_printf(out, "  constraint %s (line %u): %s, while its condition is true\n", c->name, place.line, kind_of(e, k));
-    else sb_printf(out, "  contact %s (line %u): a constraint while it is closed\n", c->name, place.line);
-    return;
-  }
   sb_printf(out, "  constraint %s (line %u): %s%s", c->name, place.line, kind_of(e, k), c->inside ? ", the unit length of a rotation" : "");
   if (!counts[k]) sb_puts(out, has_slope(e, s, symbols, k) ? "; follows from the constraints before it" : "; its derivatives vanish at the start");
   if (rank < e->constraints.n - e->m->contacts.n && is_dispensable(s, e, k, rank)) sb_puts(out, "; its multiplier is not unique: the multipliers of least norm are taken");
@@ -258,7 +277,11 @@ int mobility_show(const Eqns *e, StrBuf *out) {
   if (held) sb_printf(out, "; %u constraint%s, of rank %u at the start", held, plural(held), rank);
   sb_putc(out, '\n');
   if (rank < held) show_singular(e, s, symbols, rank, out);
-  for (uint32_t k = 0; k < all->n; k++) show_one(e, s, symbols, counts, k, rank, out);
+  for (uint32_t k = 0; k < all->n; k++) {
+    const Contact *contact = contact_of_constraint(e->m, all->of[k]);
+    if (contact) k = show_contacts(e, contact, k, out);
+    else show_one(e, s, symbols, counts, k, rank, out);
+  }
   show_integrability(e, s, out);
   return 1;
 }

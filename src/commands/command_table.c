@@ -232,7 +232,7 @@ static const OptionRow options[] = {
   {"--seconds", NULL, "S", TAKES_NUMBER, "", C(COST), OWN(seconds), "the time to spend, with building; default: 10. What was left out is said"},
   {"--error", NULL, "EXPR|final|residual", TAKES_EXPR, "", C(COST), OWN(error), "the error of this expression, `energy` for example, or of the state at the end, or what is left of the equations of motion within steps, instead of the state at 16 times"},
   {"--realtime", NULL, "H", TAKES_NUMBER, "", C(COST), PASSED,
-   "for games and controllers, which make steps of H [s]: the error of each method of equal steps, the time of a step at worst, and the largest step that follows the motion"},
+   "for games and controllers, which make steps of H [s]: the error of each method of equal steps, the time of a step at worst, and the largest step that follows the motion; with --target, the fastest with at most this error"},
   {"--budget", NULL, "X", TAKES_NUMBER, "", C(COST), OWN(budget),
    "the cheapest combination of effects, method, setting and precision whose motion differs from the full model's by X at most, with its error measured against that"},
   {"--where", NULL, NULL, TAKES_NOTHING, "", C(COST), PASSED,

@@ -15,7 +15,8 @@ like_by_hand() { # SCENE PEER NAME OPTIONS...
 }
 output=string.c
 check "a string of 27,000 masses is emitted" emits "$LAGC" emit models/string.lag hard -DN=27000
-check "it computes what a loop by hand computes" like_by_hand string_hard string loop -DN=27000
+# The C compiler takes a minute and 1.3 GB for it.
+[ "${ROWS:-all}" = some ] || check "it computes what a loop by hand computes" like_by_hand string_hard string loop -DN=27000
 output=bodies.c
 check "256 bodies are emitted" emits "$LAGC" emit $bench/models/bodies.lag
 tap_end

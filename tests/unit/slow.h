@@ -6,6 +6,12 @@
 /* In `make test-long` and `make test-all` the first, in `make test` the second. */
 static inline int slow(int in_test_long, int in_test) { return getenv("SLOW") ? in_test_long : in_test; }
 
+/* Whether this is `make test-all`, which leaves out no row. */
+static inline int all_rows(void) {
+  const char *rows = getenv("ROWS");
+  return getenv("SLOW") && (!rows || rows[0] == 'a');
+}
+
 /* The first of the rows that are taken in steps, another one each DAY (tests/run.sh). */
 static inline size_t first_row(size_t step) {
   const char *day = getenv("DAY");

@@ -22,6 +22,23 @@ static int measure(lag_sim *sim, double until, int n, const char *const *text, d
   return rc;
 }
 
+/* Each function at x = cos 3: the C library's value, 1e-9 for the run's error. */
+static void functions(void **state)
+{
+  static const char *const text[] = {"sin(x(3))", "cos(x(3))", "tan(x(3))", "asin(x(3))", "acos(x(3))", "atan(x(3))",
+                                     "sinh(x(3))", "cosh(x(3))", "tanh(x(3))", "cbrt(x(3))", "exp(x(3))", "floor(x(3))"};
+  const double x = cos(3), expected[] = {sin(x), cos(x), tan(x), asin(x), acos(x), atan(x), sinh(x), cosh(x), tanh(x), cbrt(x), exp(x), -1};
+  static const char *const more[] = {"sqrt(2 + x(3))", "log(2 + x(3))", "abs(x(3))", "atan2(x(3), x(1))", "hypot(x(3), x(1))"};
+  const double values[] = {sqrt(2 + x), log(2 + x), -x, atan2(x, cos(1)), hypot(x, cos(1))};
+  lag_option none[] = {{"step", 0.002, NULL}};
+  double value[12];
+  (void)state;
+  assert_int_equal(measure(sim_with(&osc, &lag_dop853, 1e-12, 0, none), 4, 12, text, value), LAG_OK);
+  for (int k = 0; k < 12; k++) assert_true(fabs(value[k] - expected[k]) < 1e-9);
+  assert_int_equal(measure(sim_with(&osc, &lag_dop853, 1e-12, 0, none), 4, 5, more, value), LAG_OK);
+  for (int k = 0; k < 5; k++) assert_true(fabs(value[k] - values[k]) < 1e-9);
+}
+
 /* x = cos t, x' = -sin t to t = 20: extremes inside steps, means and the period. */
 static void an_oscillator_by_every_method(void **state)
 {
@@ -356,7 +373,7 @@ static void wrong_expressions_get_a_message(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(an_oscillator_by_every_method),
+      cmocka_unit_test(functions), cmocka_unit_test(an_oscillator_by_every_method),
       cmocka_unit_test(the_period_of_a_pendulum_over_its_amplitude),
       cmocka_unit_test(an_extreme_anywhere_in_a_step),
       cmocka_unit_test(a_driven_oscillator_in_its_steady_state),
