@@ -15,16 +15,16 @@ static int clearly_nonzero(long double value, long double bound) {
   return isfinite(value) && isfinite(bound) && fabsl(value) > 1000 * bound + LDBL_MIN;
 }
 
-static Verdict nonzero_by_value(ExprGraph *g, Expr e) {
+int prove_nonzero(ExprGraph *g, Expr e) {
   long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
   for (uint32_t seed = 1; seed <= 2 * STATES; seed++) {
     long double bound, value;
     if (seed <= STATES) sample_state(g, seed, symbols);
     else sample_state_wide(g, seed, symbols);
     value = value_with_bound(g, e, symbols, NULL, &bound);
-    if (clearly_nonzero(value, bound)) return PROVED_NONZERO;
+    if (clearly_nonzero(value, bound)) return 1;
   }
-  return NOT_DECIDED;
+  return 0;
 }
 
 /* --- zero --- */
@@ -61,7 +61,7 @@ static Verdict zero_by_form(ExprGraph *g, Expr e, const NormalLimits *limits) {
 
 Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits) {
   Verdict v = zero_by_form(g, e, limits);
-  return v != NOT_DECIDED ? v : nonzero_by_value(g, e);
+  return v == NOT_DECIDED && prove_nonzero(g, e) ? PROVED_NONZERO : v;
 }
 
 /* --- the block of a linear system that an expression needs --- */

@@ -4,13 +4,12 @@
 
 #include <math.h>
 
-#include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "mech/discontinuity.h"
+#include "mech/motion_proof.h"
 #include "mech/states.h"
 #include "sym/diff.h"
 #include "sym/integrate.h"
-#include "sym/prove.h"
 #include "sym/simplify.h"
 
 /* Past this number of coordinates charges are not simplified, like the energy (mech/derive.c). */
@@ -127,49 +126,6 @@ static Expr delta_lagrangian(const ProofWork *w) {
 
 /* --- zero on the constraints --- */
 
-/* 1: x is rounding at a state that obeys the constraints; 0: it is more; -1: it has no value there. */
-static int is_small(const ProofWork *w, Expr x, const long double *symbols) {
-  const long double tiny = LONG_TOLERANCE(1e-14L); /* states obey to 1e-16; terms of x have size 1 */
-  long double bound, value = value_with_bound(w->g, x, symbols, NULL, &bound), size = 0;
-  if (!isfinite(value)) return -1;
-  for (uint32_t i = 0; i < expr_pairs(w->g, x, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(w->g, x, EX_SUM, i, &c);
-    size += fabsl((long double)num_value(c) * value_with_bound(w->g, term, symbols, NULL, &bound));
-  }
-  return fabsl(value) <= tiny * fmaxl(size, 1);
-}
-
-/* Scales coordinates by powers of two and flips unknown signs by the bits of the seed: where constraints have several branches, the nearest states
- * then lie on several of them. */
-static void spread(const ProofWork *w, uint32_t seed, long double *symbols) {
-  static const int powers[] = {0, 2, -3, 4, 1, 7, -6, 3};
-  for (uint32_t i = 0; i < w->n; i++) {
-    const Symbol *q = expr_symbol(w->g, w->q[i]);
-    symbols[w->q[i]] = ldexpl(symbols[w->q[i]], powers[seed % 8]);
-    if (q->sign == SIGN_UNKNOWN && (seed / 8 * 5 + seed) >> (i + seed) % 8 & 1) symbols[w->q[i]] *= -1;
-  }
-}
-
-/* Whether x is zero at random states that obey the constraints: near ones first, then from starts that are far apart. A large x at a far state is
- * judged by the size of its terms. */
-static int vanishes_by_value(const ProofWork *w, Expr x) {
-  enum { STATES = 12, NEAR = 4 * STATES, ALL = NEAR + 64 };
-  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
-  StateSolver *solver = states_new(w->e);
-  uint32_t seen = 0;
-  for (uint32_t seed = 1; seed <= ALL; seed++) {
-    if (seed <= NEAR && seen == STATES) continue;
-    sample_state(w->g, seed, symbols);
-    if (seed > NEAR) spread(w, seed - NEAR - 1, symbols);
-    if (!states_complete(solver, symbols)) continue;
-    int small = is_small(w, x, symbols);
-    if (!small) return 0;
-    seen += small > 0;
-  }
-  return seen >= STATES;
-}
-
 /* Whether base^power is a factor that contains coordinates and may be 0. */
 static int may_vanish(const ProofWork *w, Expr base, Num power) {
   ExprSign sign = expr_sign(w->g, base);
@@ -200,7 +156,7 @@ static int is_constrained(const ProofWork *w) { return w->e->constraints.n > w->
 /* Whether x is zero where the constraints hold, those of contacts excepted. */
 static Verdict zero_on_constraints(ProofWork *w, Expr x) {
   Verdict v = is_zero(w, x);
-  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x)) return v;
+  if (v == PROVED_ZERO || !is_constrained(w) || !motion_vanishes(w->e, x)) return v;
   w->product = constraint_with_factors(w);
   w->by_value = 1;
   return PROVED_ZERO;
