@@ -67,7 +67,7 @@ static void derive_energy(Eqns *e) {
     terms[i] = expr_mul(g, p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
   }
   e->momenta = momenta;
-  Expr pv = expr_add_n(g, terms, e->n), l = e->m->lagrangian;
+  Expr pv = expr_add_n(g, terms, e->n), l = e->lagrangian;
   VEC(Expr) still = {0};
   for (uint32_t i = 0; i < expr_pairs(g, l, EX_SUM); i++) {
     Num c;
@@ -146,12 +146,12 @@ static int dissipation_is_passive(const Eqns *e) {
   return !(expr_kinds(g, R) & (bit(SYM_TIME) | bit(SYM_STATE)));
 }
 
-/* Whether energy less the work of constant forces cannot rise while inputs stay as they are. */
+/* Whether energy less the work of constant forces cannot rise while inputs stay as they are; it may be conserved. */
 static int loses_energy(const Eqns *e, unsigned lagrangian) {
   const Model *m = e->m;
   unsigned forces = 0;
   for (uint32_t i = 0; i < m->forces.n; i++) forces |= expr_kinds(e->g, m->forces.at[i].f);
-  return m->lagrangian && !e->first.n && !e->conserves_energy && constraints_do_no_work(e) && !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) &&
+  return m->lagrangian && !e->first.n && !e->energy_jumps && constraints_do_no_work(e) && !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) &&
          !(forces & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_COORD) | bit(SYM_VEL))) && (!m->dissipation || dissipation_is_passive(e));
 }
 
@@ -160,8 +160,8 @@ static int is_no_coordinate(const Symbol *s, const void *states) { return s->kin
 /* Kinds of symbols in L; coordinates of a model of first order do not count as states. */
 static unsigned kinds_of_lagrangian(const Eqns *e) {
   const Model *m = e->m;
-  unsigned kinds = kinds_in(e, &m->lagrangian, 1);
-  return e->first.n && !expr_contains(e->g, m->lagrangian, is_no_coordinate, m->states.at) ? kinds & ~bit(SYM_STATE) : kinds;
+  unsigned kinds = kinds_in(e, &e->lagrangian, 1);
+  return e->first.n && !expr_contains(e->g, e->lagrangian, is_no_coordinate, m->states.at) ? kinds & ~bit(SYM_STATE) : kinds;
 }
 
 typedef struct {
@@ -187,6 +187,24 @@ static void find_splitting(Eqns *e) {
   uint32_t n = e->m->pairs.n;
   e->sum_hamiltonian = n && e->m->states.n == 2 * n && rates_lack(e, 0, n, (StateRange){0, n, 1});
   e->separable |= e->sum_hamiltonian && rates_lack(e, n, 2 * n, (StateRange){n, 2 * n, 0});
+}
+
+/* x in a form without t if t drops out of it, as of cos(w*t)^2 + sin(w*t)^2. */
+static Expr without_idle_time(const Eqns *e, Expr x) {
+  if (!x || !contains_kind(e, x, SYM_TIME) || e->n > SHORTEN_MAX_COORDS) return x;
+  Expr other = simplify(e->g, x);
+  return contains_kind(e, other, SYM_TIME) ? x : other;
+}
+
+/* Brings the equations of motion to forms without t, where it drops out of them. */
+static void drop_idle_time(Eqns *e) {
+  Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n + 1), *solved = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) f[i] = without_idle_time(e, e->f[i]), solved[i] = without_idle_time(e, e->system.f[i]);
+  for (uint32_t k = 0; k < e->mass.n; k++) e->mass.at[k].e = without_idle_time(e, e->mass.at[k].e);
+  for (uint32_t k = 0; k < e->system.H.n; k++) e->system.H.at[k].e = without_idle_time(e, e->system.H.at[k].e);
+  for (uint32_t k = 0; k < e->system.C.n; k++) e->system.C.at[k].e = without_idle_time(e, e->system.C.at[k].e);
+  e->f = f;
+  e->system.f = solved;
 }
 
 /* Facts that hold at every state, read off the graph. */
@@ -215,9 +233,7 @@ static void classify(Eqns *e) {
   }
   unsigned lagrangian = kinds_of_lagrangian(e);
   e->energy_jumps = e->energy && discontinuities_of(e, e->energy).n > 0;
-  e->conserves_energy = m->lagrangian && !e->energy_jumps && !m->forces.n && !m->dissipation && !inputs && constraints_do_no_work(e) &&
-                        !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_INPUT)));
-  e->loses_energy = !e->energy_jumps && loses_energy(e, lagrangian);
+  e->loses_energy = loses_energy(e, lagrangian);
 }
 
 /* Refuses numbers in the equations that overflow a double or lost their digits, by differentiation or cancellation. */
@@ -264,11 +280,13 @@ Eqns *eqns_derive(const Model *m) {
   e->m = m;
   e->g = m->g;
   e->n = m->coords.n;
+  e->lagrangian = without_idle_time(e, m->lagrangian);
   Expr *flow = ARENA_ARRAY(m->arena, Expr, m->states.n + 1);
   for (uint32_t i = 0; i < m->states.n; i++) flow[i] = m->states.at[i].flow;
   e->flow = flow;
   if (e->n) {
     lagrange_momenta_and_forces(e);
+    drop_idle_time(e);
     if (!constrain(e) || !check_momenta(e) || !lagrange_check_mass(e)) return NULL;
     derive_energy(e);
   }

@@ -153,7 +153,7 @@ static void add_once(SymmetrySearch *s, Exprs *list, Expr x) {
 /* Rates w of sin(w t + ...) and cos(w t + ...) in L, and s of exp(s t + ...). */
 static void rates_in_text(SymmetrySearch *s, Exprs *circular, Exprs *exponential) {
   ExprGraph *g = s->g;
-  Expr L = s->e->m->lagrangian;
+  Expr L = s->e->lagrangian;
   ExprList all = expr_topo(g, &L, 1);
   for (uint32_t i = 0; i < all.n; i++) {
     ExprOp op = expr_op(g, all.at[i]);

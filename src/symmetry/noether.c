@@ -62,7 +62,7 @@ static ProofWork begin(const Eqns *e, const Generator *by) {
   w.q = eqns_symbols(e, 0);
   w.v = eqns_symbols(e, 1);
   w.Dxi = ARENA_ARRAY(a, Expr, w.n + 1);
-  w.L = e->m->lagrangian;
+  w.L = e->lagrangian;
   w.p = eqns_momenta(e);
   w.xi = xi;
   w.tau = by->tau ? by->tau : zero;
@@ -254,10 +254,13 @@ static void judge(ProofWork *w, Noether *to) {
 
 /* --- the charge and its balance --- */
 
+/* p q' - L. */
+static Expr bare_energy(const Eqns *e) { return e->potential ? expr_sub(e->g, e->energy, e->potential) : e->energy; }
+
 /* p.xi - E tau - F. */
 static Expr charge_of(const ProofWork *w, Expr F) {
   ExprGraph *g = w->g;
-  Expr px = dot(w, w->p, w->xi, w->n), minus_F = expr_neg(g, F), et = expr_mul(g, w->e->energy, w->tau), minus_et = expr_neg(g, et);
+  Expr px = dot(w, w->p, w->xi, w->n), minus_F = expr_neg(g, F), et = expr_mul(g, bare_energy(w->e), w->tau), minus_et = expr_neg(g, et);
   Expr front = expr_add(g, px, minus_F);
   front = shorten(w, front);
   return expr_add(g, front, minus_et);
@@ -366,12 +369,12 @@ static Expr power_of_change(const ProofWork *w, Noether *to) {
     if (is_other_state(w->e, i)) seed[m->states.at[i].z] = w->e->flow[i];
   for (uint32_t i = 0; i < m->inputs.n; i++) {
     const Input *in = &m->inputs.at[i];
-    if (!(expr_kinds(g, m->lagrangian) & 1u << SYM_INPUT) || !expr_contains_sym(g, m->lagrangian, in->sym) || model_is_contact_switch(m, in->sym)) continue;
+    if (!(expr_kinds(g, w->L) & 1u << SYM_INPUT) || !expr_contains_sym(g, w->L, in->sym) || model_is_contact_switch(m, in->sym)) continue;
     if (in->value) seed[in->sym] = expr_diff(g, in->value, m->time);
     to->by_formulas |= in->value != 0;
     to->power_unknown |= !in->value;
   }
-  Expr rate = tangent(w, m->lagrangian, seed, "_drift");
+  Expr rate = tangent(w, w->L, seed, "_drift");
   return expr_mul(g, w->tau, rate);
 }
 
@@ -390,7 +393,7 @@ static Expr power_of_forces(const ProofWork *w) {
 /* Whether the generator moves the surfaces where L jumps. */
 static int moves_jumps(const ProofWork *w) {
   const long double still = 1e-7L; /* states lie on a jump to 1e-19 of their size, slopes are known to 1e-6 */
-  ExprJumps all = discontinuities_of(w->e, w->m->lagrangian);
+  ExprJumps all = discontinuities_of(w->e, w->L);
   for (uint32_t i = 0; i < all.n; i++) {
     const ExprJump *jump = &all.at[i];
     Expr change = moved_by(w, jump->side);
@@ -398,6 +401,42 @@ static int moves_jumps(const ProofWork *w) {
     if (!(fabsl(value) <= still * fabsl(jump->slope))) return 1;
   }
   return 0;
+}
+
+/* Whether V has one value at each position: coordinates declared periodic enter by periodic functions. */
+static int is_single_valued(const ProofWork *w, Expr V) {
+  const Model *m = w->m;
+  Expr turn = expr_mul(w->g, expr_int(w->g, 2), expr_symbol(w->g, m->pi)->node);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr there = expr_add(w->g, node(w, w->q[i]), turn), moved = expr_replace(w->g, V, &w->q[i], &there, 1);
+    if (m->coords.at[i].periodic && prove_zero(w->g, expr_sub(w->g, moved, V), NULL) != PROVED_ZERO) return 0;
+  }
+  return 1;
+}
+
+/* V with power = -dV/dt along motions, for a power of forces alone; 0: none is found and proved. */
+static Expr potential_of(const ProofWork *w, Expr power) {
+  const unsigned other = 1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_STATE | 1u << SYM_MULTIPLIER;
+  ExprGraph *g = w->g;
+  Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  if (!w->e->n || w->n > SHORTEN_MAX || expr_kinds(g, power) & other) return 0;
+  for (uint32_t i = 0; i < w->n; i++) a[i] = at_rest(w, expr_neg(g, expr_diff(g, power, w->v[i])));
+  Expr V = shorten(w, expr_potential(g, a, w->q, w->n)), left = expr_add(g, power, total(w, V));
+  return !expr_is_zero(g, V) && is_single_valued(w, V) && motion_verdict(w->e, left) == PROVED_ZERO ? V : 0;
+}
+
+static int is_shift_of_time(const ProofWork *w) {
+  for (uint32_t i = 0; i < w->n; i++)
+    if (!expr_is_zero(w->g, w->xi[i])) return 0;
+  return expr_is_num(w->g, w->tau) && num_is_one(num_neg(expr_number(w->g, w->tau)));
+}
+
+/* Judges dQ/dt along motions. A shift of time completes the energy by the potential of the forces. */
+static void judge_drift(const ProofWork *w, Noether *to) {
+  if (to->power_unknown) return;
+  to->drift = motion_verdict(w->e, to->power);
+  if (to->drift != PROVED_ZERO && is_shift_of_time(w) && (to->potential = potential_of(w, to->power))) to->drift = PROVED_ZERO;
+  if (to->drift == PROVED_ZERO) to->power = to->by_constraints = expr_int(w->g, 0);
 }
 
 /* Balance of the charge, and the part of the constraints in it. */
@@ -408,13 +447,14 @@ static void put_power(ProofWork *w, Noether *to, Expr remainder) {
   Expr parts[3] = {forces, change, remainder}, rest = expr_add_n(g, parts, 3);
   rest = states_substitute(w->e, shorten(w, rest));
   to->power = expr_add(g, rest, to->by_constraints);
+  judge_drift(w, to);
   to->by_value = w->by_value;
   to->product = w->product;
   if (w->product && (to->is == INVARIANT || to->is == INVARIANT_UP_TO_F)) to->is = INVARIANCE_NOT_DECIDED;
 }
 
 int noether_moves_jumps(const Eqns *e, const Generator *by) {
-  if (discontinuities_of(e, e->m->lagrangian).n == 0) return 0;
+  if (discontinuities_of(e, e->lagrangian).n == 0) return 0;
   ProofWork w = begin(e, by);
   return moves_jumps(&w);
 }
@@ -424,15 +464,16 @@ Noether noether_prove(const Eqns *e, const Generator *by) {
   Noether out;
   judge(&w, &out);
   put_power(&w, &out, out.remainder);
-  out.charge = charge_of(&w, out.F);
-  out.scale = scale_of(&w, out.F);
+  Expr whole = out.potential ? expr_sub(w.g, out.F, out.potential) : out.F;
+  out.charge = charge_of(&w, whole);
+  out.scale = scale_of(&w, whole);
   out.jumps = discontinuities_of(e, out.charge).n > 0 || moves_jumps(&w);
   return out;
 }
 
 Noether noether_energy(const Eqns *e) {
   ProofWork w = begin(e, &(Generator){.tau = expr_int(e->g, -1)});
-  Expr zero = expr_int(w.g, 0), drift = expr_diff(w.g, w.m->lagrangian, w.m->time);
+  Expr zero = expr_int(w.g, 0), drift = expr_diff(w.g, w.L, w.m->time);
   Noether out = {.is = INVARIANT, .F = zero, .remainder = zero, .charge = e->energy, .scale = e->energy_scale};
   put_power(&w, &out, expr_neg(w.g, drift));
   out.jumps = e->energy_jumps;
