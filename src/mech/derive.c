@@ -196,7 +196,7 @@ static Expr without_idle_time(const Eqns *e, Expr x) {
   return contains_kind(e, other, SYM_TIME) ? x : other;
 }
 
-/* Brings the equations of motion to forms without t, where it drops out of them. */
+/* Brings the equations of motion, and then L, to forms without t, where it drops out of them. */
 static void drop_idle_time(Eqns *e) {
   Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n + 1), *solved = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
   for (uint32_t i = 0; i < e->n; i++) f[i] = without_idle_time(e, e->f[i]), solved[i] = without_idle_time(e, e->system.f[i]);
@@ -205,6 +205,9 @@ static void drop_idle_time(Eqns *e) {
   for (uint32_t k = 0; k < e->system.C.n; k++) e->system.C.at[k].e = without_idle_time(e, e->system.C.at[k].e);
   e->f = f;
   e->system.f = solved;
+  unsigned left = kinds_in(e, f, e->n);
+  for (uint32_t k = 0; k < e->mass.n; k++) left |= expr_kinds(e->g, e->mass.at[k].e);
+  if (!(left & bit(SYM_TIME))) e->lagrangian = without_idle_time(e, e->lagrangian);
 }
 
 /* Facts that hold at every state, read off the graph. */
@@ -280,7 +283,7 @@ Eqns *eqns_derive(const Model *m) {
   e->m = m;
   e->g = m->g;
   e->n = m->coords.n;
-  e->lagrangian = without_idle_time(e, m->lagrangian);
+  e->lagrangian = m->lagrangian;
   Expr *flow = ARENA_ARRAY(m->arena, Expr, m->states.n + 1);
   for (uint32_t i = 0; i < m->states.n; i++) flow[i] = m->states.at[i].flow;
   e->flow = flow;

@@ -431,11 +431,11 @@ static int is_shift_of_time(const ProofWork *w) {
   return expr_is_num(w->g, w->tau) && num_is_one(num_neg(expr_number(w->g, w->tau)));
 }
 
-/* Judges dQ/dt along motions. A shift of time completes the energy by the potential of the forces. */
-static void judge_drift(const ProofWork *w, Noether *to) {
+/* Judges dQ/dt along motions. Where forces alone change the energy, their potential completes it. */
+static void judge_drift(const ProofWork *w, Noether *to, int forces_alone) {
   if (to->power_unknown) return;
   to->drift = motion_verdict(w->e, to->power);
-  if (to->drift != PROVED_ZERO && is_shift_of_time(w) && (to->potential = potential_of(w, to->power))) to->drift = PROVED_ZERO;
+  if (to->drift != PROVED_ZERO && forces_alone && is_shift_of_time(w) && (to->potential = potential_of(w, to->power))) to->drift = PROVED_ZERO;
   if (to->drift == PROVED_ZERO) to->power = to->by_constraints = expr_int(w->g, 0);
 }
 
@@ -447,7 +447,7 @@ static void put_power(ProofWork *w, Noether *to, Expr remainder) {
   Expr parts[3] = {forces, change, remainder}, rest = expr_add_n(g, parts, 3);
   rest = states_substitute(w->e, shorten(w, rest));
   to->power = expr_add(g, rest, to->by_constraints);
-  judge_drift(w, to);
+  judge_drift(w, to, expr_is_zero(g, change) && expr_is_zero(g, remainder));
   to->by_value = w->by_value;
   to->product = w->product;
   if (w->product && (to->is == INVARIANT || to->is == INVARIANT_UP_TO_F)) to->is = INVARIANCE_NOT_DECIDED;
