@@ -10,6 +10,7 @@
 #include "mech/degree.h"
 #include "mech/discontinuity.h"
 #include "mech/first_order.h"
+#include "mech/idle_time.h"
 #include "mech/lagrange.h"
 #include "mech/constraint_regularise.h"
 #include "sym/diff.h"
@@ -187,27 +188,6 @@ static void find_splitting(Eqns *e) {
   uint32_t n = e->m->pairs.n;
   e->sum_hamiltonian = n && e->m->states.n == 2 * n && rates_lack(e, 0, n, (StateRange){0, n, 1});
   e->separable |= e->sum_hamiltonian && rates_lack(e, n, 2 * n, (StateRange){n, 2 * n, 0});
-}
-
-/* x in a form without t if t drops out of it, as of cos(w*t)^2 + sin(w*t)^2. */
-static Expr without_idle_time(const Eqns *e, Expr x) {
-  if (!x || !contains_kind(e, x, SYM_TIME) || e->n > SHORTEN_MAX_COORDS) return x;
-  Expr other = simplify(e->g, x);
-  return contains_kind(e, other, SYM_TIME) ? x : other;
-}
-
-/* Brings the equations of motion, and then L, to forms without t, where it drops out of them. */
-static void drop_idle_time(Eqns *e) {
-  Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n + 1), *solved = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
-  for (uint32_t i = 0; i < e->n; i++) f[i] = without_idle_time(e, e->f[i]), solved[i] = without_idle_time(e, e->system.f[i]);
-  for (uint32_t k = 0; k < e->mass.n; k++) e->mass.at[k].e = without_idle_time(e, e->mass.at[k].e);
-  for (uint32_t k = 0; k < e->system.H.n; k++) e->system.H.at[k].e = without_idle_time(e, e->system.H.at[k].e);
-  for (uint32_t k = 0; k < e->system.C.n; k++) e->system.C.at[k].e = without_idle_time(e, e->system.C.at[k].e);
-  e->f = f;
-  e->system.f = solved;
-  unsigned left = kinds_in(e, f, e->n);
-  for (uint32_t k = 0; k < e->mass.n; k++) left |= expr_kinds(e->g, e->mass.at[k].e);
-  if (!(left & bit(SYM_TIME))) e->lagrangian = without_idle_time(e, e->lagrangian);
 }
 
 /* Facts that hold at every state, read off the graph. */

@@ -134,7 +134,8 @@ Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs) {
   Expr difference = expr_sub(e->g, lhs, rhs);
   Expr closed = states_substitute(e, with_definitions(e, difference));
   Verdict v = prove_by_solving(e, closed);
-  return v == NOT_DECIDED && prove_by_rows(e, closed) ? PROVED_ZERO : v;
+  int open = v == NOT_DECIDED || (v == PROVED_NONZERO && e->constraints.n); /* nonzero somewhere may be zero on the constraints */
+  return open && prove_by_rows(e, closed) ? PROVED_ZERO : v;
 }
 
 /* --- by value --- */

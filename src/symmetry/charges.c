@@ -206,9 +206,11 @@ const char *charge_verdict(const Noether *is) {
   return is->drift == PROVED_ZERO ? "conserved" : is->drift == PROVED_NONZERO ? "changes" : "not decided whether it changes";
 }
 
-/* "d(spin)/dt = ...", or why there is no such formula. */
+#define NO_RATE "L depends on an input whose rate of change is not known"
+
+/* "d(spin)/dt = ...". */
 static const char *power_text(const Eqns *e, const Charge *c) {
-  if (c->proof.power_unknown) return "L depends on an input whose rate of change is not known";
+  if (c->proof.power_unknown) return arena_printf(e->m->arena, "d(%s)/dt: " NO_RATE, c->name);
   return arena_printf(e->m->arena, "d(%s)/dt = %s", c->name, text_of(e, c->proof.power));
 }
 
@@ -216,7 +218,7 @@ static const char *power_text(const Eqns *e, const Charge *c) {
 static void put_balance(const Eqns *e, const Charge *c, StrBuf *out) {
   if (c->proof.drift == PROVED_ZERO) return;
   const char *how = c->proof.over_time ? "without that integral" : charge_verdict(&c->proof);
-  sb_printf(out, "; %s: %s", how, power_text(e, c));
+  sb_printf(out, "; %s: %s", how, c->proof.power_unknown ? NO_RATE : power_text(e, c));
 }
 
 /* Whether events, kicks or impacts change the motion, and so the energy. */
@@ -239,7 +241,7 @@ const char *charges_energy_text(const Eqns *e) {
   if (is->jumps) return "energy changes (L jumps, and the energy with it)";
   if (is->drift == PROVED_ZERO) return arena_printf(e->m->arena, "energy is conserved%s%s%s", motion_jumps(e->m) ? " between events" : "", is->by_formulas ? " while inputs follow their formulas" : "", reason_of(e));
   const char *verdict = is->drift == PROVED_NONZERO ? "energy changes" : "not decided whether the energy is conserved";
-  if (is->power_unknown) return arena_printf(e->m->arena, "%s: L depends on an input whose rate of change is not known", verdict);
+  if (is->power_unknown) return arena_printf(e->m->arena, "%s: " NO_RATE, verdict);
   const char *power = text_of(e, is->power);
   return strlen(power) <= LINE ? arena_printf(e->m->arena, "%s: d%s/dt = %s", verdict, e->m->hamiltonian ? "H" : "E", power)
                                : arena_printf(e->m->arena, "%s; `lagc derive` prints d%s/dt", verdict, e->m->hamiltonian ? "H" : "E");

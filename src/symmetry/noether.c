@@ -414,12 +414,22 @@ static int is_single_valued(const ProofWork *w, Expr V) {
   return 1;
 }
 
+/* Whether x doubles with the velocities at a random state: makes no nodes. */
+static int is_linear_in_velocities(const ProofWork *w, Expr x) {
+  const long double rounding = 1e-12L;
+  long double bound, *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  sample_state(w->g, 1, symbols);
+  long double one = value_with_bound(w->g, x, symbols, NULL, &bound);
+  for (uint32_t i = 0; i < w->n; i++) symbols[w->v[i]] *= 2;
+  return !(fabsl(value_with_bound(w->g, x, symbols, NULL, &bound) - 2 * one) > rounding * fabsl(one) + 2 * bound);
+}
+
 /* V with power = -dV/dt along motions, for a power of forces alone; 0: none is found and proved. */
 static Expr potential_of(const ProofWork *w, Expr power) {
   const unsigned other = 1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_STATE | 1u << SYM_MULTIPLIER;
   ExprGraph *g = w->g;
   Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
-  if (!w->e->n || w->n > SHORTEN_MAX || expr_kinds(g, power) & other) return 0;
+  if (!w->e->n || w->n > SHORTEN_MAX || expr_kinds(g, power) & other || !is_linear_in_velocities(w, power)) return 0;
   for (uint32_t i = 0; i < w->n; i++) a[i] = at_rest(w, expr_neg(g, expr_diff(g, power, w->v[i])));
   Expr V = shorten(w, expr_potential(g, a, w->q, w->n)), left = expr_add(g, power, total(w, V));
   return !expr_is_zero(g, V) && is_single_valued(w, V) && motion_verdict(w->e, left) == PROVED_ZERO ? V : 0;

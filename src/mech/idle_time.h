@@ -1,0 +1,7 @@
+/* Forms without t of equations from which it drops out, as in rotating coordinates written with cos(w*t) and sin(w*t). */
+#pragma once
+
+#include "mech/eqns.h"
+
+/* Brings f, M and the linear system to forms without t, each entry where that is possible; then L, if no t is left in them. */
+void drop_idle_time(Eqns *e);
