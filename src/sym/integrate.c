@@ -3,6 +3,7 @@
 
 #include "sym/diff.h"
 #include "sym/normal_form.h"
+#include "sym/simplify.h"
 
 enum { MAX_TERMS = 4000, MAX_WORK = 400000, MAX_HARMONICS = 256, MAX_POWER = 64 };
 
@@ -199,11 +200,62 @@ Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without) {
 
 /* --- potentials --- */
 
+static int contains_any(ExprGraph *g, Expr e, const SymId *q, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++)
+    if (expr_contains_sym(g, e, q[i])) return 1;
+  return 0;
+}
+
+/* Integral of u^power; log|u| for power -1. */
+static Expr integral_of_power(ExprGraph *g, Expr u, Num power) {
+  Num next = num_add(power, num_int(1));
+  if (num_is_zero(next)) return expr_fn(g, EX_LOG, expr_fn(g, EX_ABS, u));
+  return expr_scale(g, num_div(num_int(1), next), expr_pow_num(g, u, next));
+}
+
+/* factor of c = factor du/dx, where e has the term c u^power: free of q, or 0. s: a symbol that stands for u. */
+static Expr factor_of_power(const Task *t, Expr u, Num power, SymId s, const SymId *q, uint32_t n) {
+  ExprGraph *g = t->g;
+  Expr slope = expr_diff(g, u, t->x), node = expr_symbol(g, s)->node, in_s;
+  if (expr_op(g, u) != EX_SUM || expr_is_zero(g, slope)) return 0;
+  expr_replace_nodes(g, &t->e, 1, &u, &node, 1, &in_s);
+  Expr flat = expr_pow_num(g, node, num_sub(num_int(1), power)), c = expr_mul(g, expr_diff(g, in_s, s), flat);
+  Expr factor = simplify(g, expr_div(g, expr_scale(g, num_div(num_int(1), power), c), slope));
+  return expr_contains_sym(g, factor, s) || contains_any(g, factor, q, n) ? 0 : factor;
+}
+
+/* Integral by t->x of one term c u^power of t->e in which c is du/dx times a constant, as of x/(x^2 + y^2)^(3/2); 0: there is none. */
+static Expr integral_by_substitution(const Task *t, SymId s, const SymId *q, uint32_t n) {
+  ExprList nodes = expr_topo(t->g, &t->e, 1);
+  for (uint32_t i = 0; i < nodes.n; i++)
+    for (uint32_t k = 0; expr_op(t->g, nodes.at[i]) == EX_PROD && k < expr_pairs(t->g, nodes.at[i], EX_PROD); k++) {
+      Num power;
+      Expr u = expr_pair(t->g, nodes.at[i], EX_PROD, k, &power), factor = factor_of_power(t, u, power, s, q, n);
+      if (factor && !expr_is_zero(t->g, factor)) return expr_mul(t->g, factor, integral_of_power(t->g, u, power));
+    }
+  return 0;
+}
+
+/* Antiderivative of e by x by the forms above, then by substitution. */
+static Expr antiderivative(ExprGraph *g, Expr e, SymId x, const SymId *q, uint32_t n) {
+  enum { MOST = 64 };
+  Expr sum = expr_integrate(g, e, x, 0), rest = expr_sub(g, e, expr_diff(g, sum, x));
+  SymId s = expr_is_zero(g, simplify(g, rest)) ? 0 : expr_declare(g, SYM_LOCAL, 0, "?", SIGN_UNKNOWN);
+  for (uint32_t k = 0; k < MOST && s; k++) {
+    Task t = {.g = g, .e = expr_expand_defs(g, rest), .x = x};
+    Expr part = integral_by_substitution(&t, s, q, n);
+    if (!part) break;
+    sum = expr_add(g, sum, part);
+    rest = expr_sub(g, t.e, expr_diff(g, part, x));
+  }
+  return sum;
+}
+
 Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
   Expr F = expr_int(g, 0);
   for (uint32_t i = 0; i < n; i++) {
     Expr done = expr_diff(g, F, q[i]), left = expr_sub(g, a[i], done);
-    if (!expr_is_zero(g, left)) F = expr_add(g, F, expr_integrate(g, left, q[i], 0));
+    if (!expr_is_zero(g, left)) F = expr_add(g, F, antiderivative(g, left, q[i], q, n));
   }
   return F;
 }
