@@ -76,8 +76,8 @@ static const struct {
     [LAG_UNSTABLE] = {"unstable", NULL},
     [LAG_DECAYS] = {"asymptotically stable", NULL},
     [LAG_MINIMUM] = {"stable", "the energy, which is conserved, has a minimum here (Lagrange, Dirichlet)"},
-    [LAG_DISSIPATIVE_MINIMUM] = {"stable", "the energy, less the work of constant forces, has a minimum here, and nothing raises it (Lagrange, "
-                                           "Dirichlet, Kelvin)"},
+    [LAG_DISSIPATIVE_MINIMUM] = {"stable", "the energy, less the work of forces that are constant or have a potential, has a minimum here, and nothing "
+                                           "raises it (Lagrange, Dirichlet, Kelvin)"},
     [LAG_NEUTRAL] = {"neutral", NULL},
     [LAG_GYROSCOPIC] = {"undecided", NULL},
     [LAG_DEGENERATE] = {"undecided", "a zero mode, or several together: the linearisation has no force along it, so it does not decide stability"},

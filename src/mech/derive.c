@@ -147,13 +147,11 @@ static int dissipation_is_passive(const Eqns *e) {
   return !(expr_kinds(g, R) & (bit(SYM_TIME) | bit(SYM_STATE)));
 }
 
-/* Whether energy less the work of constant forces cannot rise while inputs stay as they are; it may be conserved. */
-static int loses_energy(const Eqns *e, unsigned lagrangian) {
+/* Whether nothing but forces can raise the energy while inputs stay as they are; it may be conserved. */
+static int raised_by_forces_alone(const Eqns *e, unsigned lagrangian) {
   const Model *m = e->m;
-  unsigned forces = 0;
-  for (uint32_t i = 0; i < m->forces.n; i++) forces |= expr_kinds(e->g, m->forces.at[i].f);
   return m->lagrangian && !e->first.n && !e->energy_jumps && constraints_do_no_work(e) && !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) &&
-         !(forces & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_COORD) | bit(SYM_VEL))) && (!m->dissipation || dissipation_is_passive(e));
+         (!m->dissipation || dissipation_is_passive(e));
 }
 
 static int is_no_coordinate(const Symbol *s, const void *states) { return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate; }
@@ -216,7 +214,7 @@ static void classify(Eqns *e) {
   }
   unsigned lagrangian = kinds_of_lagrangian(e);
   e->energy_jumps = e->energy && discontinuities_of(e, e->energy).n > 0;
-  e->loses_energy = loses_energy(e, lagrangian);
+  e->loses_energy = raised_by_forces_alone(e, lagrangian);
 }
 
 /* Refuses numbers in the equations that overflow a double or lost their digits, by differentiation or cancellation. */

@@ -137,7 +137,8 @@ typedef struct {
   int constant_mass, definite_mass, singular_mass, autonomous, smooth;
   int conserves_energy;  /* dE/dt = 0 is proved along all motions, for any inputs: charges[0] */
   int energy_jumps;      /* the energy is discontinuous somewhere, as L is; the facts about it hold between such places */
-  int loses_energy;      /* energy less the work of constant forces cannot rise while inputs stay as they are, and is not conserved */
+  int loses_energy;      /* energy less the work of forces that are constant or have a potential cannot rise while inputs stay as they are, and is
+                          * not proved to be conserved; derive.c leaves the forces to charges.c */
   int timeless;          /* t occurs in the formulas of inputs only */
   int separable;         /* constant mass, no velocity in f, no states, or H = T(p) + V(q, t): a splitting method can integrate it */
   int sum_hamiltonian;   /* H = T(p) + V(q, t) is given, whatever the forces */

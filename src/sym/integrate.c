@@ -238,8 +238,11 @@ static Expr integral_by_substitution(const Task *t, SymId s, const SymId *q, uin
 
 /* Antiderivative of e by x by the forms above, then by substitution. */
 static Expr antiderivative(ExprGraph *g, Expr e, SymId x, const SymId *q, uint32_t n) {
-  enum { MOST = 64 };
-  Expr sum = expr_integrate(g, e, x, 0), rest = expr_sub(g, e, expr_diff(g, sum, x));
+  enum { MOST = 64, LONGEST = 2000 };
+  uint32_t distinct;
+  Expr sum = expr_integrate(g, e, x, 0);
+  if (expr_tree_size(g, e, &distinct) > LONGEST) return sum;
+  Expr rest = expr_sub(g, e, expr_diff(g, sum, x));
   SymId s = expr_is_zero(g, simplify(g, rest)) ? 0 : expr_declare(g, SYM_LOCAL, 0, "?", SIGN_UNKNOWN);
   for (uint32_t k = 0; k < MOST && s; k++) {
     Task t = {.g = g, .e = expr_expand_defs(g, rest), .x = x};
@@ -251,11 +254,11 @@ static Expr antiderivative(ExprGraph *g, Expr e, SymId x, const SymId *q, uint32
   return sum;
 }
 
-Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
+Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n, int by_substitution) {
   Expr F = expr_int(g, 0);
   for (uint32_t i = 0; i < n; i++) {
     Expr done = expr_diff(g, F, q[i]), left = expr_sub(g, a[i], done);
-    if (!expr_is_zero(g, left)) F = expr_add(g, F, antiderivative(g, left, q[i], q, n));
+    if (!expr_is_zero(g, left)) F = expr_add(g, F, by_substitution ? antiderivative(g, left, q[i], q, n) : expr_integrate(g, left, q[i], 0));
   }
   return F;
 }

@@ -43,7 +43,7 @@ static Charge energy_of(Eqns *e) {
     e->energy_scale = expr_add(e->g, e->energy_scale, expr_fn(e->g, EX_ABS, V));
   }
   e->conserves_energy = c.proof.drift == PROVED_ZERO && !c.proof.by_formulas && !c.proof.jumps;
-  e->loses_energy &= !e->conserves_energy;
+  e->loses_energy = e->loses_energy && !e->conserves_energy && noether_forces_are_potential(e);
   c.value = e->energy_stable;
   c.scale = e->energy_scale;
   return c;

@@ -171,7 +171,7 @@ static Expr find_gauge(const ProofWork *w, Expr dL) {
     Expr slope = expr_diff(w->g, dL, w->v[i]);
     a[i] = at_rest(w, slope);
   }
-  Expr F = expr_potential(w->g, a, w->q, w->n), drift = expr_diff(w->g, F, w->m->time), left = expr_sub(w->g, b, drift);
+  Expr F = expr_potential(w->g, a, w->q, w->n, 0), drift = expr_diff(w->g, F, w->m->time), left = expr_sub(w->g, b, drift);
   left = simplify(w->g, left);
   Expr rest = expr_integrate(w->g, left, w->m->time, 1u << SYM_COORD | 1u << SYM_STATE | 1u << SYM_INPUT);
   return expr_add(w->g, F, rest);
@@ -431,7 +431,7 @@ static Expr potential_of(const ProofWork *w, Expr power) {
   Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   if (!w->e->n || w->n > SHORTEN_MAX || expr_kinds(g, power) & other || !is_linear_in_velocities(w, power)) return 0;
   for (uint32_t i = 0; i < w->n; i++) a[i] = at_rest(w, expr_neg(g, expr_diff(g, power, w->v[i])));
-  Expr V = shorten(w, expr_potential(g, a, w->q, w->n)), left = expr_add(g, power, total(w, V));
+  Expr V = shorten(w, expr_potential(g, a, w->q, w->n, 1)), left = expr_add(g, power, total(w, V));
   return !expr_is_zero(g, V) && is_single_valued(w, V) && motion_verdict(w->e, left) == PROVED_ZERO ? V : 0;
 }
 
@@ -488,4 +488,20 @@ Noether noether_energy(const Eqns *e) {
   put_power(&w, &out, expr_neg(w.g, drift));
   out.jumps = e->energy_jumps;
   return out;
+}
+
+int noether_forces_are_potential(const Eqns *e) {
+  const unsigned varies = 1u << SYM_TIME | 1u << SYM_STATE | 1u << SYM_COORD | 1u << SYM_VEL;
+  const Model *m = e->m;
+  unsigned kinds = 0;
+  for (uint32_t i = 0; i < m->forces.n; i++) kinds |= expr_kinds(e->g, m->forces.at[i].f);
+  if (!(kinds & varies)) return 1;
+  ProofWork w = begin(e, &(Generator){.tau = expr_int(e->g, -1)});
+  Expr power = power_of_forces(&w);
+  for (uint32_t i = 0; i < w.n && m->dissipation; i++) {
+    Expr drag = expr_diff(w.g, m->dissipation, w.v[i]), part = expr_mul(w.g, drag, node(&w, w.v[i]));
+    power = expr_add(w.g, power, part);
+  }
+  power = shorten(&w, power);
+  return motion_verdict(e, power) == PROVED_ZERO || potential_of(&w, power) != 0;
 }

@@ -55,3 +55,6 @@ int noether_moves_jumps(const Eqns *e, const Generator *by);
 /* The energy as the charge of t -> t - s, F = 0: charge p q' - L and the potential of the forces if they have one, power of forces, moving
  * constraints and explicit time. */
 Noether noether_energy(const Eqns *e);
+
+/* Whether the forces outside L, less the dissipation, are constant, do no work, or have a potential. */
+int noether_forces_are_potential(const Eqns *e);

@@ -52,7 +52,7 @@ value() { sed -n "s/.*\"$1\": \\([^,}]*\\)[,}].*/\\1/p" "$2" | head -n 1; }
 # full MODEL SCENE: run and modes, too; a conserved energy drifts by less than 1e-5 in a run with a tolerance of 1e-9
 full() {
   quick "$1" "$2"
-  "$LAGC" run "$m" "$s" --method dop853 --tol 1e-9 --until "${3:-0.5}" --json >"$o/run" 2>/dev/null || return 0 # events or constraints may end it
+  timeout 20 "$LAGC" run "$m" "$s" --method dop853 --tol 1e-9 --until "${3:-0.5}" --json >"$o/run" 2>/dev/null || return 0 # events or constraints may end it, or the scene is of nanoseconds
   "$LAGC" modes "$m" "$s" >"$o/modes" 2>&1
   is=$(sed -n 's/.*"charges": {"energy": {"is": "\([a-z ]*\)".*/\1/p' "$o/run")
   drift=$(value energy_drift "$o/run")
