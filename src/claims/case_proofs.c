@@ -5,6 +5,7 @@
 #include "claims/branch_coverage.h"
 #include "mech/motion_proof.h"
 #include "mech/states.h"
+#include "sym/prove.h"
 #include "sym/diff.h"
 
 enum { PROOFS_MOST = 60, ENTRIES_MOST = 400 };

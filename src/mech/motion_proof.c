@@ -7,6 +7,7 @@
 #include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "mech/states.h"
+#include "sym/prove.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
 

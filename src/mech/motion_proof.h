@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mech/eqns.h"
-#include "sym/prove.h"
+#include "sym/verdict.h"
 
 /* Whether two sides are equal by the equations of motion: accelerations and multipliers solved for, or a combination of the rows of
  * M q'' = f + A^T lambda, A q'' = demand and r = 0; rates and the energy substituted. */

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "sym/normal_form.h"
-
-typedef enum { NOT_DECIDED, PROVED_ZERO, PROVED_NONZERO } Verdict;
+#include "sym/verdict.h"
 
 /* Default limits on the cost of a proof: about 0.2 s at most. */
 NormalLimits prove_limits(void);

@@ -8,6 +8,7 @@
 #include "mech/discontinuity.h"
 #include "mech/motion_proof.h"
 #include "mech/states.h"
+#include "sym/prove.h"
 #include "sym/diff.h"
 #include "sym/integrate.h"
 #include "sym/simplify.h"

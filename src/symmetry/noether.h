@@ -11,7 +11,7 @@
 #pragma once
 
 #include "mech/eqns.h"
-#include "sym/prove.h"
+#include "sym/verdict.h"
 
 typedef struct {
   const Expr *xi; /* [eqns_coordinates] in q, t and parameters; 0: nothing */
