@@ -35,7 +35,7 @@ quick() {
   "$LAGC" derive "$m" "$s" >"$o/derive" 2>/dev/null
   "$LAGC" emit "$m" "$s" >"$o/c" 2>/dev/null
   same "check and derive" "$(sentence "$o/check")" "$(sentence "$o/derive")"
-  [ -z "${SLOW:-}" ] && [ "$(sed -n '1s/^\([0-9]*\) coordinate.*/\1/p' "$o/check")0" -gt 30 ] || symmetries # the search takes a second with more coordinates
+  [ "$(sed -n '1s/^\([0-9]*\) coordinate.*/\1/p' "$o/check")0" -gt "${SLOW:+9}30" ] || symmetries # the search takes a second with more than 3 coordinates
   rate=$(grep -c '^  d[EH]/dt = ' "$o/derive")
   grep -q 'L jumps' "$o/check" || case $said:$rate in conserved:0 | changes:[1-9]* | undecided:*) ;; *) echo "derive prints $rate rates of an energy that $said" ;; esac
   grep -q "L depends on an input" "$o/check" && [ "$said" != undecided ] && echo "unknown rate, yet $said"
