@@ -267,11 +267,12 @@ Eqns *eqns_derive(const Model *m) {
   e->flow = flow;
   if (e->n) {
     lagrange_momenta_and_forces(e);
-    drop_idle_time(e);
     if (!constrain(e) || !check_momenta(e) || !lagrange_check_mass(e)) return NULL;
+    drop_idle_time(e);
     derive_energy(e);
   }
   if (m->first_order && !first_order_derive(e, m)) return NULL;
+  if (!e->n) drop_idle_time(e);
   classify(e);
   return check_method(e) ? e : NULL;
 }

@@ -54,17 +54,29 @@ static void drop_from(const Eqns *e, Entries *x) {
   for (uint32_t k = 0; k < x->n; k++) x->at[k].e = without_time(e, x->at[k].e);
 }
 
+static const Expr *dropped(const Eqns *e, const Expr *x, uint32_t n) {
+  Expr *out = ARENA_ARRAY(e->m->arena, Expr, n + 1);
+  for (uint32_t i = 0; i < n; i++) out[i] = without_time(e, x[i]);
+  return out;
+}
+
 void drop_idle_time(Eqns *e) {
-  Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n + 1), *solved = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
+  Constraints *c = &e->constraints;
+  uint32_t flows = e->m->states.n;
   int left = 0;
-  if (e->n > COORDINATES_MOST || !has_time(e, e->lagrangian)) return;
+  if (e->n + flows > COORDINATES_MOST) return;
   drop_from(e, &e->mass);
   drop_from(e, &e->system.H);
   drop_from(e, &e->system.C);
-  for (uint32_t i = 0; i < e->n; i++) f[i] = without_time(e, e->f[i]), solved[i] = without_time(e, e->system.f[i]);
-  for (uint32_t i = 0; i < e->n; i++) left |= has_time(e, f[i]);
+  drop_from(e, &c->A);
+  e->f = dropped(e, e->f, e->n);
+  e->system.f = dropped(e, e->system.f, e->n);
+  e->flow = dropped(e, e->flow, flows);
+  c->c = dropped(e, c->c, c->nkept);
+  c->r = dropped(e, c->r, c->n);
+  c->demand = dropped(e, c->demand, c->n);
+  for (uint32_t i = 0; i < e->n; i++) left |= has_time(e, e->f[i]);
+  for (uint32_t i = 0; i < flows; i++) left |= has_time(e, e->flow[i]);
   for (uint32_t k = 0; k < e->mass.n; k++) left |= has_time(e, e->mass.at[k].e);
-  e->f = f;
-  e->system.f = solved;
   if (!left) e->lagrangian = without_time(e, e->lagrangian);
 }

@@ -3,5 +3,5 @@
 
 #include "mech/eqns.h"
 
-/* Brings f, M and the linear system to forms without t, each entry where that is possible; then L, if no t is left in them. */
+/* Brings M, f, flows and constraints to forms without t, each entry where that is possible; then L, if no t is left in them. */
 void drop_idle_time(Eqns *e);
