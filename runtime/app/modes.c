@@ -76,8 +76,8 @@ static const struct {
     [LAG_UNSTABLE] = {"unstable", NULL},
     [LAG_DECAYS] = {"asymptotically stable", NULL},
     [LAG_MINIMUM] = {"stable", "the energy, which is conserved, has a minimum here (Lagrange, Dirichlet)"},
-    [LAG_DISSIPATIVE_MINIMUM] = {"stable", "the energy, less the work of forces that are constant or have a potential, has a minimum here, and nothing "
-                                           "raises it (Lagrange, Dirichlet, Kelvin)"},
+    [LAG_DISSIPATIVE_MINIMUM] = {"stable", "the energy, less the work of forces that are constant or have a potential, "
+                                           "has a minimum here, and nothing raises it (Lagrange, Dirichlet, Kelvin)"},
     [LAG_NEUTRAL] = {"neutral", NULL},
     [LAG_GYROSCOPIC] = {"undecided", NULL},
     [LAG_DEGENERATE] = {"undecided", "a zero mode, or several together: the linearisation has no force along it, so it does not decide stability"},
@@ -94,7 +94,8 @@ static void put_reason(const Modes *s, unsigned facts, char *text, size_t n) {
   const Mode *last = &s->mode[s->n - 1], *top = s->mode; /* the one that grows fastest, or decays slowest */
   for (int i = 0; i < s->n; i++) top = s->mode[i].re > top->re ? &s->mode[i] : top;
   if (s->verdict == LAG_CENTRE && facts & LAG_CONSERVES_ENERGY) {
-    snprintf(text, n, "some modes neither grow nor decay, and the energy, which is conserved, is not known to have a minimum here");
+    snprintf(text, n, "some modes neither grow nor decay, and the energy, which is conserved, is not known to have a minimum "
+                      "here");
   } else if (verdicts[s->verdict].reason) {
     snprintf(text, n, "%s", verdicts[s->verdict].reason);
   } else if (s->verdict == LAG_UNSTABLE) {

@@ -38,7 +38,8 @@ static void put_trend(const App *app, const lag_charge_stats *c, FILE *f) {
 /* Reason why there is no balance. */
 static const char *why_not(const App *app, const lag_charge_stats *c) {
   if (c->flags & LAG_JUMPS) return "jumps where L does";
-  return lag_method_balances(lag_sim_method(app->sim)) ? "not decided: its rate is not known" : "its rate is known, and the dense output of the method is too coarse for a balance";
+  return lag_method_balances(lag_sim_method(app->sim)) ? "not decided: its rate is not known"
+                                                       : "the dense output of the method is too coarse for a balance";
 }
 
 const char lag_energy_scale[] = "relative to the larger of |E0| and the median of |p.v| + |L|";
@@ -199,7 +200,8 @@ static void caveat(const App *app, const lag_stats *st, FILE *f) {
   } else if ((has & LAG_FIRST_ORDER) && (has & LAG_CONSERVES_ENERGY) && !(has & LAG_CONSTANT_FORM)) {
     fprintf(f, "note: %s is symplectic where the two-form of L is constant; here it varies, and the method is symmetric\n", m->name);
   } else if (!(has & LAG_CONSERVES_ENERGY)) {
-    fprintf(f, "note: %s is symplectic for conservative models; the energy of this one is not proved to be conserved (lagc check)\n", m->name);
+    fprintf(f, "note: %s is symplectic for conservative models; the energy of this one is not proved to be conserved "
+               "(lagc check)\n", m->name);
   }
 }
 

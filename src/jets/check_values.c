@@ -34,7 +34,8 @@ static CheckVerdict check_constraints(Check *c) {
   return v;
 }
 
-/* The potential that completes the energy, from its expression: its gradient is proved to be the forces, and they are compared on their own. */
+/* The potential that completes the energy, from its expression: its gradient is proved to be the forces, which are compared
+ * on their own. */
 static Bounded potential(const Check *c) {
   const Model *m = c->m;
   long double bound, *symbols = model_constants(m);

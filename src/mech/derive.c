@@ -150,8 +150,8 @@ static int dissipation_is_passive(const Eqns *e) {
 /* Whether nothing but forces can raise the energy while inputs stay as they are; it may be conserved. */
 static int raised_by_forces_alone(const Eqns *e, unsigned lagrangian) {
   const Model *m = e->m;
-  return m->lagrangian && !e->first.n && !e->energy_jumps && constraints_do_no_work(e) && !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) &&
-         (!m->dissipation || dissipation_is_passive(e));
+  if (!m->lagrangian || e->first.n || e->energy_jumps || lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) return 0;
+  return constraints_do_no_work(e) && (!m->dissipation || dissipation_is_passive(e));
 }
 
 static int is_no_coordinate(const Symbol *s, const void *states) { return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate; }

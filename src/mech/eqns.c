@@ -72,4 +72,6 @@ int eqns_has_forces(const Eqns *e) {
   return 0;
 }
 
-long double eqns_potential_at(const Eqns *e, const long double *symbols, long double *bound) { return value_with_bound(e->g, e->potential, symbols, NULL, bound); }
+long double eqns_potential_at(const Eqns *e, const long double *symbols, long double *bound) {
+  return value_with_bound(e->g, e->potential, symbols, NULL, bound);
+}

@@ -120,7 +120,7 @@ typedef struct {
   const Expr *Q;         /* [n] generalised forces, already in f; first order: [first.n], with rates, already in rhs and form */
   const Expr *flow;      /* [number of states] z', free of rates */
   Expr energy;           /* p q' - L, and the potential below, to show; 0 without coordinates */
-  Expr potential;        /* of all forces outside L, where the energy is conserved with it; 0: none (symmetry/charges.c) */
+  Expr potential;        /* of all forces, where the energy is conserved with it; 0: none (symmetry/charges.c) */
   Expr energy_stable;    /* the energy in a form with small rounding, to compute */
   Expr energy_scale;     /* |p q'| + |L|: scale for drifts of the energy */
   const Charge *charges; /* [ncharges] the energy, then the charges of the symmetries in order; none without L */
@@ -137,8 +137,8 @@ typedef struct {
   int constant_mass, definite_mass, singular_mass, autonomous, smooth;
   int conserves_energy;  /* dE/dt = 0 is proved along all motions, for any inputs: charges[0] */
   int energy_jumps;      /* the energy is discontinuous somewhere, as L is; the facts about it hold between such places */
-  int loses_energy;      /* energy less the work of forces that are constant or have a potential cannot rise while inputs stay as they are, and is
-                          * not proved to be conserved; derive.c leaves the forces to charges.c */
+  int loses_energy;      /* not proved to be conserved; less the work of forces that are constant or have a potential,
+                          * the energy cannot rise while inputs stay; derive.c leaves the forces to charges.c */
   int timeless;          /* t occurs in the formulas of inputs only */
   int separable;         /* constant mass, no velocity in f, no states, or H = T(p) + V(q, t): a splitting method can integrate it */
   int sum_hamiltonian;   /* H = T(p) + V(q, t) is given, whatever the forces */

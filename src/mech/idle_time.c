@@ -1,4 +1,4 @@
-/* Each entry alone; where a common denominator of several roots would be too long, their radicands are brought to a form without t first. */
+/* Each entry alone; where a common denominator of several roots would be too long, their radicands lose t first. */
 #include "mech/idle_time.h"
 
 #include "sym/simplify.h"
@@ -34,7 +34,8 @@ static Bases bases_in(const Eqns *e, Expr x) {
     for (uint32_t k = 0; expr_op(g, nodes.at[i]) == EX_PROD && k < expr_pairs(g, nodes.at[i], EX_PROD); k++) {
       Num power;
       Expr base = expr_pair(g, nodes.at[i], EX_PROD, k, &power);
-      if (expr_op(g, base) == EX_SUM && has_time(e, base) && !(num_is_int(power) && num_sign(power) > 0)) add_base(e, base, &all);
+      int whole = num_is_int(power) && num_sign(power) > 0;
+      if (expr_op(g, base) == EX_SUM && has_time(e, base) && !whole) add_base(e, base, &all);
     }
   return all;
 }

@@ -1,5 +1,5 @@
-/* Linear algebra on normal forms where the system is small; otherwise the difference is reduced by one row of the equations after another. Numbers at
- * states on the constraints refute, and never prove. */
+/* Linear algebra on normal forms where the system is small; otherwise one row of the equations after another reduces the
+ * difference. Numbers at states on the constraints refute, and never prove. */
 #include "mech/motion_proof.h"
 
 #include <math.h>
@@ -87,7 +87,8 @@ static void add_constraint_rows(RowSearch *w) {
   const Constraints *c = &e->constraints;
   Expr *row = ARENA_ARRAY(e->m->arena, Expr, c->n + 1);
   for (uint32_t k = 0; k < c->n; k++) row[k] = expr_neg(w->g, with_definitions(e, c->demand[k]));
-  for (uint32_t i = 0; i < c->A.n; i++) add_product(w, &row[c->A.at[i].row], c->A.at[i].e, e->m->coords.at[c->A.at[i].col].a);
+  for (uint32_t i = 0; i < c->A.n; i++)
+    add_product(w, &row[c->A.at[i].row], c->A.at[i].e, e->m->coords.at[c->A.at[i].col].a);
   for (uint32_t k = 0; k < c->n; k++) {
     if (contact_of_constraint(e->m, c->of[k])) continue;
     vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, row[k]));
@@ -101,7 +102,8 @@ static void add_constraint_rows(RowSearch *w) {
 static Expr reduced(RowSearch *w, Expr x, Expr slope, Expr row, SymId unknown) {
   Expr lead = expr_diff(w->g, row, unknown);
   if (expr_is_zero(w->g, lead) || expr_contains_sym(w->g, lead, unknown) || w->tries-- <= 0) return 0;
-  Expr times = simplify(w->g, expr_div(w->g, slope, lead)), taken = expr_mul(w->g, times, row), left = simplify(w->g, expr_sub(w->g, x, taken));
+  Expr times = simplify(w->g, expr_div(w->g, slope, lead)), taken = expr_mul(w->g, times, row);
+  Expr left = simplify(w->g, expr_sub(w->g, x, taken));
   return expr_contains_sym(w->g, left, unknown) ? 0 : left;
 }
 
@@ -135,7 +137,7 @@ Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs) {
   Expr difference = expr_sub(e->g, lhs, rhs);
   Expr closed = states_substitute(e, with_definitions(e, difference));
   Verdict v = prove_by_solving(e, closed);
-  int open = v == NOT_DECIDED || (v == PROVED_NONZERO && e->constraints.n); /* nonzero somewhere may be zero on the constraints */
+  int open = v == NOT_DECIDED || (v == PROVED_NONZERO && e->constraints.n); /* it may be 0 on the constraints */
   return open && prove_by_rows(e, closed) ? PROVED_ZERO : v;
 }
 
@@ -164,8 +166,8 @@ static void spread(const Eqns *e, uint32_t seed, long double *symbols) {
   }
 }
 
-/* 1: |x| is below `tiny` at random states that obey the constraints, near ones first, then from starts that are far apart; 0: it is not at one
- * of them; -1: too few were found. A large x at a far state is judged by the size of its terms. */
+/* 1: |x| is below `tiny` at random states that obey the constraints, near ones first, then from starts that are far apart;
+ * 0: it is not at one of them; -1: too few were found. A large x at a far state is judged by the size of its terms. */
 static int vanishes_by_value(const Eqns *e, Expr x, long double tiny) {
   enum { STATES = 12, NEAR = 4 * STATES, ALL = NEAR + 64 };
   long double *symbols = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);

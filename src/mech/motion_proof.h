@@ -4,12 +4,11 @@
 #include "mech/eqns.h"
 #include "sym/verdict.h"
 
-/* Whether two sides are equal by the equations of motion: accelerations and multipliers solved for, or a combination of the rows of
- * M q'' = f + A^T lambda, A q'' = demand and r = 0; rates and the energy substituted. */
+/* Whether two sides are equal by the equations of motion: accelerations and multipliers solved for, or a combination of
+ * rows of M q'' = f + A^T lambda, A q'' = demand and r = 0; rates and the energy substituted. */
 Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs);
 
-/* 1: x is rounding at random states that obey the constraints, with accelerations and multipliers of the motion; 0: it is more at one of
- * them; -1: too few states were found. */
+/* Whether x is rounding at random states that obey the constraints, with accelerations and multipliers of the motion. */
 int motion_vanishes(const Eqns *e, Expr x);
 
 /* Whether x is 0 along all motions. PROVED_NONZERO: it is not at a state that obeys the constraints. */

@@ -69,7 +69,8 @@ static void warn_of_still(Eval *ev, const AstExpr *x) {
   while (of->kind == AST_INDEX || of->kind == AST_MEMBER) of = ast_expr(b->ast, of->a);
   const Entity *e = of->kind == AST_NAME ? scope_find(&b->scope, of->name, ev->effect, &ambiguous) : NULL;
   if (!e || (e->kind != ENT_PARAM && e->kind != ENT_CONST)) return;
-  diag_warning(b->diags, x->span, "this is 0: `%s` is a %s, which does not move", of->name, e->kind == ENT_PARAM ? "parameter" : "constant");
+  const char *what = e->kind == ENT_PARAM ? "parameter" : "constant";
+  diag_warning(b->diags, x->span, "this is 0: `%s` is a %s, which does not move", of->name, what);
   diag_help(b->diags, "what moves by itself is a `coord`, what is given over time an `input`, or a formula of t");
 }
 

@@ -91,7 +91,9 @@ static void symmetry(Page *p, uint32_t k) {
   if (moves) text_named(t, named(p, "d", k, "/dt"), named_latex(p, k, 1), s->is.power, 1);
   text_end(t);
   put_conditions(p, k);
-  if (s->is.drift == NOT_DECIDED) say(p, s->is.power_unknown ? "  not decided whether it changes: L depends on an input whose rate of change is not known" : "  not decided whether it changes: no proof is found that this rate is 0, and no state where it is not");
+  if (s->is.drift != NOT_DECIDED) return;
+  say(p, s->is.power_unknown ? "  not decided whether it changes: L depends on an input whose rate of change is not known"
+                             : "  not decided whether it changes: this rate is neither proved to be 0 nor seen not to be");
 }
 
 static int some_jump(const FoundSymmetries *f) {

@@ -224,7 +224,7 @@ static Expr factor_of_power(const Task *t, Expr u, Num power, SymId s, const Sym
   return expr_contains_sym(g, factor, s) || contains_any(g, factor, q, n) ? 0 : factor;
 }
 
-/* Integral by t->x of one term c u^power of t->e in which c is du/dx times a constant, as of x/(x^2 + y^2)^(3/2); 0: there is none. */
+/* Integral by t->x of one term c u^power of t->e in which c is du/dx times a constant, as of x/(x^2 + y^2)^(3/2), or 0. */
 static Expr integral_by_substitution(const Task *t, SymId s, const SymId *q, uint32_t n) {
   ExprList nodes = expr_topo(t->g, &t->e, 1);
   for (uint32_t i = 0; i < nodes.n; i++)
@@ -258,7 +258,9 @@ Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n, int
   Expr F = expr_int(g, 0);
   for (uint32_t i = 0; i < n; i++) {
     Expr done = expr_diff(g, F, q[i]), left = expr_sub(g, a[i], done);
-    if (!expr_is_zero(g, left)) F = expr_add(g, F, by_substitution ? antiderivative(g, left, q[i], q, n) : expr_integrate(g, left, q[i], 0));
+    if (expr_is_zero(g, left)) continue;
+    Expr part = by_substitution ? antiderivative(g, left, q[i], q, n) : expr_integrate(g, left, q[i], 0);
+    F = expr_add(g, F, part);
   }
   return F;
 }

@@ -32,7 +32,7 @@ static Charge charge_of(const Eqns *e, const Symmetry *y) {
   return c;
 }
 
-/* The one judgement of the energy, which all commands quote; the potential that completes it becomes a part of e->energy. */
+/* The one judgement of the energy, which all commands quote; a potential that completes it becomes a part of e->energy. */
 static Charge energy_of(Eqns *e) {
   Charge c = {.name = "energy", .unit = e->m->energy_unit, .proof = noether_energy(e)};
   Expr V = c.proof.potential;
@@ -203,7 +203,9 @@ int charges_judge(const Eqns *e, Name effect) {
 }
 
 const char *charge_verdict(const Noether *is) {
-  return is->drift == PROVED_ZERO ? "conserved" : is->drift == PROVED_NONZERO ? "changes" : "not decided whether it changes";
+  static const char *const words[] = {
+    [PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided whether it changes"};
+  return words[is->drift];
 }
 
 #define NO_RATE "L depends on an input whose rate of change is not known"
@@ -239,12 +241,14 @@ const char *charges_energy_text(const Eqns *e) {
   enum { LINE = 100 };
   const Noether *is = &e->charges[0].proof;
   if (is->jumps) return "energy changes (L jumps, and the energy with it)";
-  if (is->drift == PROVED_ZERO) return arena_printf(e->m->arena, "energy is conserved%s%s%s", motion_jumps(e->m) ? " between events" : "", is->by_formulas ? " while inputs follow their formulas" : "", reason_of(e));
+  const char *events = motion_jumps(e->m) ? " between events" : "", *name = e->m->hamiltonian ? "H" : "E";
+  const char *inputs = is->by_formulas ? " while inputs follow their formulas" : "";
+  if (is->drift == PROVED_ZERO) return arena_printf(e->m->arena, "energy is conserved%s%s%s", events, inputs, reason_of(e));
   const char *verdict = is->drift == PROVED_NONZERO ? "energy changes" : "not decided whether the energy is conserved";
   if (is->power_unknown) return arena_printf(e->m->arena, "%s: " NO_RATE, verdict);
   const char *power = text_of(e, is->power);
-  return strlen(power) <= LINE ? arena_printf(e->m->arena, "%s: d%s/dt = %s", verdict, e->m->hamiltonian ? "H" : "E", power)
-                               : arena_printf(e->m->arena, "%s; `lagc derive` prints d%s/dt", verdict, e->m->hamiltonian ? "H" : "E");
+  return strlen(power) <= LINE ? arena_printf(e->m->arena, "%s: d%s/dt = %s", verdict, name, power)
+                               : arena_printf(e->m->arena, "%s; `lagc derive` prints d%s/dt", verdict, name);
 }
 
 /* F, with the integral that the printed charge omits. */

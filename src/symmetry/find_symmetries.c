@@ -324,7 +324,7 @@ static FoundSymmetries search_in(const Eqns *e, Expr lagrangian) {
   return out;
 }
 
-/* Where t drops out of L, and the search for any function of time does not write all in closed form, the text may have the functions. */
+/* Where t drops out of L, and not all symmetries are found in closed form, the text may have their functions of time. */
 static FoundSymmetries search(const Eqns *e) {
   FoundSymmetries out = search_in(e, e->lagrangian);
   if (e->lagrangian == e->m->lagrangian || (out.searched && !out.unproved)) return out;

@@ -172,7 +172,8 @@ static Expr find_gauge(const ProofWork *w, Expr dL) {
     Expr slope = expr_diff(w->g, dL, w->v[i]);
     a[i] = at_rest(w, slope);
   }
-  Expr F = expr_potential(w->g, a, w->q, w->n, 0), drift = expr_diff(w->g, F, w->m->time), left = expr_sub(w->g, b, drift);
+  Expr F = expr_potential(w->g, a, w->q, w->n, 0), drift = expr_diff(w->g, F, w->m->time);
+  Expr left = expr_sub(w->g, b, drift);
   left = simplify(w->g, left);
   Expr rest = expr_integrate(w->g, left, w->m->time, 1u << SYM_COORD | 1u << SYM_STATE | 1u << SYM_INPUT);
   return expr_add(w->g, F, rest);
@@ -261,7 +262,8 @@ static Expr bare_energy(const Eqns *e) { return e->potential ? expr_sub(e->g, e-
 /* p.xi - E tau - F. */
 static Expr charge_of(const ProofWork *w, Expr F) {
   ExprGraph *g = w->g;
-  Expr px = dot(w, w->p, w->xi, w->n), minus_F = expr_neg(g, F), et = expr_mul(g, bare_energy(w->e), w->tau), minus_et = expr_neg(g, et);
+  Expr px = dot(w, w->p, w->xi, w->n), minus_F = expr_neg(g, F);
+  Expr et = expr_mul(g, bare_energy(w->e), w->tau), minus_et = expr_neg(g, et);
   Expr front = expr_add(g, px, minus_F);
   front = shorten(w, front);
   return expr_add(g, front, minus_et);
@@ -446,7 +448,8 @@ static int is_shift_of_time(const ProofWork *w) {
 static void judge_drift(const ProofWork *w, Noether *to, int forces_alone) {
   if (to->power_unknown) return;
   to->drift = motion_verdict(w->e, to->power);
-  if (to->drift != PROVED_ZERO && forces_alone && is_shift_of_time(w) && (to->potential = potential_of(w, to->power))) to->drift = PROVED_ZERO;
+  if (to->drift != PROVED_ZERO && forces_alone && is_shift_of_time(w)) to->potential = potential_of(w, to->power);
+  if (to->potential) to->drift = PROVED_ZERO;
   if (to->drift == PROVED_ZERO) to->power = to->by_constraints = expr_int(w->g, 0);
 }
 

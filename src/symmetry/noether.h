@@ -36,7 +36,7 @@ typedef struct {
   Expr charge;       /* in q, q', z, t */
   Expr scale;        /* sum |p_i xi_i| + |tau| (|p q'| + |L|) + |F|, the measure for a drift of the charge */
   Expr power;        /* dQ/dt, in q, q', z, t, inputs and multipliers; the number 0: Q is conserved */
-  Verdict drift;     /* the one judgement of conservation. PROVED_ZERO: power is 0 along motions; PROVED_NONZERO: it is not at some state */
+  Verdict drift;     /* the one judgement of conservation. PROVED_ZERO: power is 0 along motions; PROVED_NONZERO: not at a state */
   Expr potential;    /* of all forces, where it completes the energy: Q contains it; 0: none */
   Expr by_constraints; /* power of the constraint forces, lambda^T (A xi + b tau); the number 0: none */
   uint32_t broken; /* first holonomic constraint, counted from 1 and no contact, that the generator does not preserve; 0: none */
@@ -52,8 +52,8 @@ Noether noether_prove(const Eqns *e, const Generator *by);
 /* Whether the generator moves the surfaces where L jumps: delta L then has contributions that derivatives of its branches miss. */
 int noether_moves_jumps(const Eqns *e, const Generator *by);
 
-/* The energy as the charge of t -> t - s, F = 0: charge p q' - L and the potential of the forces if they have one, power of forces, moving
- * constraints and explicit time. */
+/* The energy as the charge of t -> t - s, F = 0: p q' - L, and the potential of the forces if they have one; its power is that
+ * of forces, moving constraints and explicit time. */
 Noether noether_energy(const Eqns *e);
 
 /* Whether the forces outside L, less the dissipation, are constant, do no work, or have a potential. */

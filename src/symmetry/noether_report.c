@@ -9,7 +9,7 @@
 
 /* --- cyclic coordinates --- */
 
-/* Past this many coordinates only those absent from the text of L are cyclic, and only those that nothing acts on are decided. */
+/* Past this many coordinates those absent from the text of L are cyclic, and those that nothing acts on are decided. */
 enum { PROVE_MOST = 20 };
 
 /* x_i -> x_i + s */
@@ -39,12 +39,15 @@ static Verdict drift_of_momentum(const Eqns *e, uint32_t i) {
 }
 
 void show_cyclic(const Eqns *e, const char *before, StrBuf *out) {
-  static const char *const words[] = {[PROVED_ZERO] = "is conserved", [PROVED_NONZERO] = "is changed by forces and constraints alone", [NOT_DECIDED] = "can be changed by forces and constraints alone"};
+  static const char *const words[] = {
+    [PROVED_ZERO] = "is conserved", [PROVED_NONZERO] = "is changed by forces and constraints alone",
+    [NOT_DECIDED] = "can be changed by forces and constraints alone"};
   Indices all = noether_cyclic(e);
   for (uint32_t k = 0; k < all.n; k++) {
     Name x = e->m->coords.at[all.at[k]].name;
-    int jumps = discontinuities_of(e, eqns_momenta(e)[all.at[k]]).n > 0;
-    sb_printf(out, "%scyclic coordinate: %s; L does not contain it, and p_%s %s%s\n", before, x, x, words[drift_of_momentum(e, all.at[k])], jumps ? " between jumps" : "");
+    const char *jumps = discontinuities_of(e, eqns_momenta(e)[all.at[k]]).n ? " between jumps" : "";
+    const char *is = words[drift_of_momentum(e, all.at[k])];
+    sb_printf(out, "%scyclic coordinate: %s; L does not contain it, and p_%s %s%s\n", before, x, x, is, jumps);
   }
 }
 

@@ -43,7 +43,8 @@ quick() {
   case $flags in *LAG_CONSERVES_ENERGY*) same "emitted flag" conserved "$said" ;; *) grep -q 'while inputs follow' "$o/check" || [ "$said" != conserved ] || echo "no flag of a conserved energy" ;; esac
   charge=$(sed -n 's/^  {"energy", "[^"]*", \(LAG_.*\|0\)},$/\1/p' "$o/c")
   case $charge in *LAG_CONSERVED*) same "emitted charge" conserved "$said" ;; ?*) [ "$said" != conserved ] || echo "the emitted charge is not conserved" ;; esac
-  case $flags in *LAG_CONSTANT_MASS*) grep -q 'mass matrix constant' "$o/check" || echo "flag of a constant M" ;; *) ! grep -q 'mass matrix constant' "$o/check" || echo "no flag of a constant M" ;; esac
+  mass=$(sed -n 's/.*mass matrix \([a-z]*\).*/\1/p' "$o/check" | head -n 1)
+  case $mass:$flags in constant:*LAG_CONSTANT_MASS* | :*) ;; constant:* | *:*LAG_CONSTANT_MASS*) echo "M is $mass, flags are $flags" ;; esac
 }
 
 # value NAME FILE: of JSON
@@ -52,12 +53,13 @@ value() { sed -n "s/.*\"$1\": \\([^,}]*\\)[,}].*/\\1/p" "$2" | head -n 1; }
 # full MODEL SCENE: run and modes, too; a conserved energy drifts by less than 1e-5 in a run with a tolerance of 1e-9
 full() {
   quick "$1" "$2"
+  [ -n "$said" ] || return 0
   timeout 20 "$LAGC" run "$m" "$s" --method dop853 --tol 1e-9 --until "${3:-0.5}" --json >"$o/run" 2>/dev/null || return 0 # events or constraints may end it, or the scene is of nanoseconds
   "$LAGC" modes "$m" "$s" >"$o/modes" 2>&1
   is=$(sed -n 's/.*"charges": {"energy": {"is": "\([a-z ]*\)".*/\1/p' "$o/run")
   drift=$(value energy_drift "$o/run")
   case $said:$is in conserved:conserved | changes:balanced | changes:"not known" | undecided:balanced | undecided:"not known") ;; *) echo "check says $said, run $is" ;; esac
-  case $is:$drift in conserved:null) echo "conserved without a drift" ;; conserved:*) close_to "$drift" 0 1e-5 >/dev/null || echo "conserved, and drifts by $drift" ;; *:null) ;; *) echo "a drift of an energy that is $is" ;; esac
+  case $is:$drift in conserved:null) echo "conserved without a drift" ;; conserved:*) close_to "$drift" 0 1e-5 >/dev/null || close_to "$(value energy_drift_absolute "$o/run")" 0 1e-12 >/dev/null || echo "conserved, and drifts by $drift" ;; *:null) ;; *) echo "a drift of an energy that is $is" ;; esac
   case $said:$(tr '\n' ' ' <"$o/modes") in
   changes:*"which is conserved"* | undecided:*"which is conserved"* | conserved:*"no energy is known"*) echo "check says $said, modes: $(grep -m1 energy "$o/modes")" ;;
   esac
@@ -94,12 +96,13 @@ check "rows of the equations of motion are proved" says 0 '3 of 3 expectations p
 scenes() { sed -n 's/^scene \([A-Za-z_0-9]*\).*/\1/p' "$1"; }
 how=quick
 [ -z "${SLOW:-}" ] || how=full
+few=1 count=4
+[ -z "${SLOW:-}" ] || few=3 count=500
 for m in models/*.lag; do
   one_of 24 || continue
-  for s in $(scenes "$m" | head -n "${SLOW:+100}${SLOW:-1}" | head -n 3); do empty "$(basename "$m") $s" "$($how "$m" "$s")"; done
+  for s in $(scenes "$m" | head -n $few); do empty "$(basename "$m") $s" "$($how "$m" "$s")"; done
 done
-count=${SLOW:+500}
-"${CC%% *}" -O1 -w -o "$TMP/generate" tests/random/generate.c tests/random/model.c && "$TMP/generate" 36 1 "${count:-5}" "$TMP"
+"${CC%% *}" -O1 -w -o "$TMP/generate" tests/random/generate.c tests/random/model.c && "$TMP/generate" 36 1 $count "$TMP"
 for m in "$TMP"/r*.lag; do
   how=quick
   case $m in *0.lag) [ -z "${SLOW:-}" ] || how=full ;; esac
