@@ -48,12 +48,18 @@ static Expr tangent(const ProofWork *w, Expr x, const Expr *seed, const char *su
   return out;
 }
 
-/* d/dt along q'. */
-static Expr total(const ProofWork *w, Expr x) {
+/* out[i] = d/dt of x[i] along q'. */
+static void totals(const ProofWork *w, const Expr *x, uint32_t n, Expr *out) {
   Expr *seed = no_seed(w);
   seed[w->m->time] = expr_int(w->g, 1);
   for (uint32_t i = 0; i < w->n; i++) seed[w->q[i]] = node(w, w->v[i]);
-  return tangent(w, x, seed, "'");
+  expr_tangent(w->g, x, n, seed, expr_symbol_count(w->g) + 1, "'", NULL, out);
+}
+
+static Expr total(const ProofWork *w, Expr x) {
+  Expr out;
+  totals(w, &x, 1, &out);
+  return out;
 }
 
 static ProofWork begin(const Eqns *e, const Generator *by) {
@@ -68,7 +74,7 @@ static ProofWork begin(const Eqns *e, const Generator *by) {
   w.xi = xi;
   w.tau = by->tau ? by->tau : zero;
   for (uint32_t i = 0; i < w.n; i++) xi[i] = by->xi && by->xi[i] ? by->xi[i] : zero;
-  for (uint32_t i = 0; i < w.n; i++) w.Dxi[i] = total(&w, xi[i]);
+  totals(&w, xi, w.n, w.Dxi);
   w.Dtau = total(&w, w.tau);
   return w;
 }
