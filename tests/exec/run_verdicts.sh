@@ -1,9 +1,9 @@
 #!/bin/sh
-# One fact, one judgement: what check, derive, noether, modes, run and emitted flags say of one model must agree. A contradiction is a fault, and so is a
-# conserved energy that drifts in a run. verdicts/ has models whose verdicts are known: a force that is normal to the velocity, a multiplier that is 0, ...
+# One fact, one judgement: what check, derive, noether, modes, run and emitted flags say of one model must agree. A contradiction
+# is a fault, and so is a conserved energy that drifts in a run. verdicts/ has models whose verdicts are known by hand.
 . tests/tap.sh
 models=tests/exec/verdicts
-[ -d "$LAG_CACHE" ] 2>/dev/null || export XDG_CACHE_HOME="${XDG_CACHE_HOME:-$TMP}"
+export XDG_CACHE_HOME="${XDG_CACHE_HOME:-$TMP}"
 
 # word FILE: conserved, changes or undecided, of the sentence about the energy; nothing where there is none.
 word() {
@@ -43,14 +43,26 @@ quick() {
   same "check and derive" "$(sentence "$o/check")" "$(sentence "$o/derive")"
   [ "$(sed -n '1s/^\([0-9]*\) coordinate.*/\1/p' "$o/check")0" -gt "${SLOW:+9}30" ] || symmetries # the search takes a second with more than 3 coordinates
   rate=$(grep -c '^  d[EH]/dt = ' "$o/derive")
-  grep -q 'L jumps' "$o/check" || case $said:$rate in conserved:0 | changes:[1-9]* | undecided:*) ;; *) echo "derive prints $rate rates of an energy that $said" ;; esac
+  grep -q 'L jumps' "$o/check" || case $said:$rate in
+  conserved:0 | changes:[1-9]* | undecided:*) ;;
+  *) echo "check: $said; derive prints $rate rates" ;;
+  esac
   grep -q "L depends on an input" "$o/check" && [ "$said" != undecided ] && echo "unknown rate, yet $said"
   flags=$(sed -n 's/^ *\.flags = \(LAG_[A-Z_| ]*\),$/\1/p' "$o/c")
-  case $flags in *LAG_CONSERVES_ENERGY*) same "emitted flag" conserved "$said" ;; *) grep -q 'while inputs follow' "$o/check" || [ "$said" != conserved ] || echo "no flag of a conserved energy" ;; esac
+  case $flags in
+  *LAG_CONSERVES_ENERGY*) same "emitted flag" conserved "$said" ;;
+  *) grep -q 'while inputs follow' "$o/check" || [ "$said" != conserved ] || echo "no flag of a conserved energy" ;;
+  esac
   charge=$(sed -n 's/^  {"energy", "[^"]*", \(LAG_.*\|0\)},$/\1/p' "$o/c")
-  case $charge in *LAG_CONSERVED*) same "emitted charge" conserved "$said" ;; ?*) [ "$said" != conserved ] || echo "the emitted charge is not conserved" ;; esac
+  case $charge in
+  *LAG_CONSERVED*) same "emitted charge" conserved "$said" ;;
+  ?*) [ "$said" != conserved ] || echo "the emitted charge is not conserved" ;;
+  esac
   mass=$(sed -n 's/.*mass matrix \([a-z]*\).*/\1/p' "$o/check" | head -n 1)
-  case $mass:$flags in constant:*LAG_CONSTANT_MASS* | :*) ;; constant:* | *:*LAG_CONSTANT_MASS*) echo "M is $mass, flags are $flags" ;; esac
+  case $mass:$flags in
+  constant:*LAG_CONSTANT_MASS* | :*) ;;
+  constant:* | *:*LAG_CONSTANT_MASS*) echo "M is $mass, flags are $flags" ;;
+  esac
 }
 
 # value NAME FILE: of JSON
@@ -60,14 +72,28 @@ value() { sed -n "s/.*\"$1\": \\([^,}]*\\)[,}].*/\\1/p" "$2" | head -n 1; }
 full() {
   quick "$1" "$2"
   [ -n "$said" ] || return 0
-  timeout 20 "$LAGC" run "$m" "$s" --method dop853 --tol 1e-9 --until "${3:-0.5}" --json >"$o/run" 2>/dev/null || return 0 # events or constraints may end it, or the scene is of nanoseconds
+  timeout 20 "$LAGC" run "$m" "$s" --method dop853 --tol 1e-9 --until "${3:-0.5}" --json >"$o/run" 2>/dev/null ||
+    return 0 # events or constraints may end it, or the scene is of nanoseconds
   "$LAGC" modes "$m" "$s" >"$o/modes" 2>&1
   is=$(sed -n 's/.*"charges": {"energy": {"is": "\([a-z ]*\)".*/\1/p' "$o/run")
   drift=$(value energy_drift "$o/run")
-  case $said:$is in conserved:conserved | changes:balanced | changes:"not known" | undecided:balanced | undecided:"not known") ;; *) echo "check says $said, run $is" ;; esac
-  case $is:$drift in conserved:null) echo "conserved without a drift" ;; conserved:*) close_to "$drift" 0 1e-5 >/dev/null || close_to "$(value energy_drift_absolute "$o/run")" 0 1e-12 >/dev/null || echo "conserved, and drifts by $drift" ;; *:null) ;; *) echo "a drift of an energy that is $is" ;; esac
+  case $said:$is in
+  conserved:conserved | changes:balanced | changes:"not known" | undecided:balanced | undecided:"not known") ;;
+  *) echo "check says $said, run $is" ;;
+  esac
+  case $is:$drift in
+  conserved:null) echo "conserved without a drift" ;;
+  conserved:*)
+    close_to "$drift" 0 1e-5 >/dev/null || close_to "$(value energy_drift_absolute "$o/run")" 0 1e-12 >/dev/null ||
+      echo "conserved, and drifts by $drift"
+    ;;
+  *:null) ;;
+  *) echo "a drift of an energy that is $is" ;;
+  esac
   case $said:$(tr '\n' ' ' <"$o/modes") in
-  changes:*"which is conserved"* | undecided:*"which is conserved"* | conserved:*"no energy is known"*) echo "check says $said, modes: $(grep -m1 energy "$o/modes")" ;;
+  changes:*"which is conserved"* | undecided:*"which is conserved"* | conserved:*"no energy is known"*)
+    echo "check says $said, modes: $(grep -m1 energy "$o/modes")"
+    ;;
   esac
   case $flags:$(cat "$o/modes") in *LAG_AUTONOMOUS*:*"t stands in its equations"*) echo "modes sees t in equations without it" ;; esac
 }
