@@ -224,15 +224,40 @@ static Expr factor_of_power(const Task *t, Expr u, Num power, SymId s, const Sym
   return expr_contains_sym(g, factor, s) || contains_any(g, factor, q, n) ? 0 : factor;
 }
 
+/* Integral of f(u) by u; 0: it is not in this list. */
+static Expr integral_of_function(ExprGraph *g, ExprOp f, Expr u) {
+  static const ExprOp integral[][2] = {{EX_EXP, EX_EXP}, {EX_COS, EX_SIN}, {EX_SINH, EX_COSH}, {EX_COSH, EX_SINH}};
+  for (size_t i = 0; i < sizeof integral / sizeof *integral; i++)
+    if (f == integral[i][0]) return expr_fn(g, integral[i][1], u);
+  return f == EX_SIN ? expr_neg(g, expr_fn(g, EX_COS, u)) : 0;
+}
+
+/* Integral by t->x of one term c f(u) of t->e in which c is du/dx times a constant, or 0. */
+static Expr integral_of_call(const Task *t, Expr call, SymId s, const SymId *q, uint32_t n) {
+  ExprGraph *g = t->g;
+  Expr whole = integral_of_function(g, expr_op(g, call), expr_arg(g, call, 0)), node = expr_symbol(g, s)->node, in_s;
+  Expr slope = whole ? expr_diff(g, expr_arg(g, call, 0), t->x) : 0;
+  if (!whole || expr_is_zero(g, slope)) return 0;
+  expr_replace_nodes(g, &t->e, 1, &call, &node, 1, &in_s);
+  Expr factor = simplify(g, expr_div(g, expr_diff(g, in_s, s), slope));
+  int constant = !expr_is_zero(g, factor) && !expr_contains_sym(g, factor, s) && !contains_any(g, factor, q, n);
+  return constant ? expr_mul(g, factor, whole) : 0;
+}
+
 /* Integral by t->x of one term c u^power of t->e in which c is du/dx times a constant, as of x/(x^2 + y^2)^(3/2), or 0. */
 static Expr integral_by_substitution(const Task *t, SymId s, const SymId *q, uint32_t n) {
   ExprList nodes = expr_topo(t->g, &t->e, 1);
-  for (uint32_t i = 0; i < nodes.n; i++)
-    for (uint32_t k = 0; expr_op(t->g, nodes.at[i]) == EX_PROD && k < expr_pairs(t->g, nodes.at[i], EX_PROD); k++) {
+  for (uint32_t i = 0; i < nodes.n; i++) {
+    ExprOp op = expr_op(t->g, nodes.at[i]);
+    int call = op != EX_SYM && op != EX_NUM && op != EX_PROD && op != EX_SUM && expr_nargs(t->g, nodes.at[i]) == 1;
+    Expr whole = call ? integral_of_call(t, nodes.at[i], s, q, n) : 0;
+    if (whole) return whole;
+    for (uint32_t k = 0; op == EX_PROD && k < expr_pairs(t->g, nodes.at[i], op); k++) {
       Num power;
-      Expr u = expr_pair(t->g, nodes.at[i], EX_PROD, k, &power), factor = factor_of_power(t, u, power, s, q, n);
+      Expr u = expr_pair(t->g, nodes.at[i], op, k, &power), factor = factor_of_power(t, u, power, s, q, n);
       if (factor && !expr_is_zero(t->g, factor)) return expr_mul(t->g, factor, integral_of_power(t->g, u, power));
     }
+  }
   return 0;
 }
 
