@@ -98,13 +98,26 @@ static void add_constraint_rows(RowSearch *w) {
   for (uint32_t i = 0; i < e->n && c->n; i++) vec_push(e->m->arena, &w->unknown, e->m->coords.at[i].v);
 }
 
+/* Whether x divides by what may be 0 along a motion: then a row times x proves nothing there. */
+static int may_be_singular(ExprGraph *g, Expr x) {
+  const unsigned moves = 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_TIME | 1u << SYM_STATE | 1u << SYM_INPUT;
+  ExprList all = expr_topo(g, &x, 1);
+  for (uint32_t i = 0; i < all.n; i++)
+    for (uint32_t k = 0; expr_op(g, all.at[i]) == EX_PROD && k < expr_pairs(g, all.at[i], EX_PROD); k++) {
+      Num power;
+      Expr base = expr_pair(g, all.at[i], EX_PROD, k, &power);
+      if (num_sign(power) < 0 && expr_kinds(g, base) & moves && !expr_is_nonzero(g, base)) return 1;
+    }
+  return 0;
+}
+
 /* x less the multiple of a row that takes the unknown out of it; 0: the row lacks it, or something remains. */
 static Expr reduced(RowSearch *w, Expr x, Expr slope, Expr row, SymId unknown) {
   Expr lead = expr_diff(w->g, row, unknown);
   if (expr_is_zero(w->g, lead) || expr_contains_sym(w->g, lead, unknown) || w->tries-- <= 0) return 0;
   Expr times = simplify(w->g, expr_div(w->g, slope, lead)), taken = expr_mul(w->g, times, row);
   Expr left = simplify(w->g, expr_sub(w->g, x, taken));
-  return expr_contains_sym(w->g, left, unknown) ? 0 : left;
+  return expr_contains_sym(w->g, left, unknown) || may_be_singular(w->g, times) ? 0 : left;
 }
 
 /* Whether x is a combination of at most MOST rows; the unknowns go in order. */
