@@ -76,8 +76,8 @@ static const struct {
     [LAG_UNSTABLE] = {"unstable", NULL},
     [LAG_DECAYS] = {"asymptotically stable", NULL},
     [LAG_MINIMUM] = {"stable", "the energy, which is conserved, has a minimum here (Lagrange, Dirichlet)"},
-    [LAG_DISSIPATIVE_MINIMUM] = {"stable", "the energy, less the work of constant forces, has a minimum here, and nothing raises it (Lagrange, "
-                                           "Dirichlet, Kelvin)"},
+    [LAG_DISSIPATIVE_MINIMUM] = {"stable", "the energy, less the work of forces that are constant or have a potential, "
+                                           "has a minimum here, and nothing raises it (Lagrange, Dirichlet, Kelvin)"},
     [LAG_NEUTRAL] = {"neutral", NULL},
     [LAG_GYROSCOPIC] = {"undecided", NULL},
     [LAG_DEGENERATE] = {"undecided", "a zero mode, or several together: the linearisation has no force along it, so it does not decide stability"},
@@ -86,14 +86,17 @@ static const struct {
     [LAG_NONSMOOTH] = {"undecided", "the forces' derivatives jump here, or have no limit, so that no motion is small enough to be linear"},
     [LAG_DEFECTIVE] = {"undecided", "a multiple frequency with too few shapes: small motion grows in proportion to time, until the nonlinear "
                                     "terms matter"},
-    [LAG_CENTRE] = {"undecided", "some modes neither grow nor decay, and no energy is known that is conserved and has a minimum here"},
+    [LAG_CENTRE] = {"undecided", "some modes neither grow nor decay, and no energy is known that is conserved"},
 };
 
 /* text[n] := the reason of the verdict on stability. */
-static void put_reason(const Modes *s, char *text, size_t n) {
+static void put_reason(const Modes *s, unsigned facts, char *text, size_t n) {
   const Mode *last = &s->mode[s->n - 1], *top = s->mode; /* the one that grows fastest, or decays slowest */
   for (int i = 0; i < s->n; i++) top = s->mode[i].re > top->re ? &s->mode[i] : top;
-  if (verdicts[s->verdict].reason) {
+  if (s->verdict == LAG_CENTRE && facts & LAG_CONSERVES_ENERGY) {
+    snprintf(text, n, "some modes neither grow nor decay, and the energy, which is conserved, is not known to have a minimum "
+                      "here");
+  } else if (verdicts[s->verdict].reason) {
     snprintf(text, n, "%s", verdicts[s->verdict].reason);
   } else if (s->verdict == LAG_UNSTABLE) {
     snprintf(text, n, "mode %d grows by a factor of e in %.6g s", (int)(top - s->mode) + 1, 1 / top->re);
@@ -273,7 +276,7 @@ static void put_modes(FILE *f, const App *app, const Modes *s) {
   char text[300];
   int damped = 0;
   for (int i = 0; i < s->n; i++) damped |= s->mode[i].re != 0;
-  put_reason(s, text, sizeof text);
+  put_reason(s, app->scene->model->flags, text, sizeof text);
   Line line = {f, fprintf(f, "%s%s:", verdicts[s->verdict].name, s->verdict >= LAG_GYROSCOPIC ? " by the linearisation" : ""), 2};
   for (char *word = strtok(text, " "); word; word = strtok(NULL, " ")) put_word(&line, word);
   fprintf(f, "\n\nmode  %-*s  %-*s  %-*s", NUMBER, "rad/s", NUMBER, "Hz", NUMBER, "period [s]");
@@ -323,7 +326,7 @@ static void json_modes(FILE *f, const App *app, const Equilibrium *r, const Mode
   const lag_model *m = app->scene->model;
   char text[300];
   Json j = {.f = f};
-  put_reason(s, text, sizeof text);
+  put_reason(s, app->scene->model->flags, text, sizeof text);
   json_head(&j, app, "ok");
   lag_json_string(&j, "verdict", verdicts[s->verdict].name);
   lag_json_string(&j, "reason", text);

@@ -28,7 +28,7 @@ const char *lag_charge_word(const lag_charge_stats *c) { return c->flags & LAG_C
 
 static void put_trend(const App *app, const lag_charge_stats *c, FILE *f) {
   const lag_method *m = lag_sim_method(app->sim);
-  int bounded = (m->flags & LAG_METHOD_SYMPLECTIC) && (app->scene->model->flags & LAG_CONSERVES_ENERGY);
+  int bounded = (m->flags & LAG_METHOD_SYMPLECTIC) && (c->flags & LAG_CONSERVED);
   if (c->trend == LAG_TREND_GROWS) fprintf(f, ", grows by %.2g a second", fabs(c->slope));
   if (c->trend == LAG_TREND_OSCILLATES) fputs(", oscillates", f);
   if (c->trend == LAG_TREND_OSCILLATES && bounded) fprintf(f, " (as step^%d)", m->order_of ? m->order_of(lag_sim_options(app->sim)) : m->order);
@@ -38,7 +38,8 @@ static void put_trend(const App *app, const lag_charge_stats *c, FILE *f) {
 /* Reason why there is no balance. */
 static const char *why_not(const App *app, const lag_charge_stats *c) {
   if (c->flags & LAG_JUMPS) return "jumps where L does";
-  return lag_method_balances(lag_sim_method(app->sim)) ? "not conserved, or not known to be" : "not conserved; the dense output of the method is too coarse for a balance";
+  return lag_method_balances(lag_sim_method(app->sim)) ? "not decided: its rate is not known"
+                                                       : "the dense output of the method is too coarse for a balance";
 }
 
 const char lag_energy_scale[] = "relative to the larger of |E0| and the median of |p.v| + |L|";
@@ -199,7 +200,8 @@ static void caveat(const App *app, const lag_stats *st, FILE *f) {
   } else if ((has & LAG_FIRST_ORDER) && (has & LAG_CONSERVES_ENERGY) && !(has & LAG_CONSTANT_FORM)) {
     fprintf(f, "note: %s is symplectic where the two-form of L is constant; here it varies, and the method is symmetric\n", m->name);
   } else if (!(has & LAG_CONSERVES_ENERGY)) {
-    fprintf(f, "note: %s is symplectic for conservative models; this one has forces or explicit time\n", m->name);
+    fprintf(f, "note: %s is symplectic for conservative models; the energy of this one is not proved to be conserved "
+               "(lagc check)\n", m->name);
   }
 }
 
@@ -414,11 +416,12 @@ void lag_report_json(App *app, FILE *f) {
   lag_json_count(&j, "newton_iterations", st.iterations);
   lag_json_name(&j, "wall_s");
   fprintf(f, "%.6g", app->wall); /* 6 digits in any precision */
-  lag_json_number(&j, "energy_drift", m->flags & LAG_CONSERVES_ENERGY ? st.energy_drift : NAN); /* null where energy is not conserved */
-  lag_report_error_json(app, &j);
   lag_charge_stats energy = {.absolute = NAN};
   if (lag_sim_ncharges(app->sim)) lag_sim_charge(app->sim, 0, &energy);
-  lag_json_number(&j, "energy_drift_absolute", m->flags & LAG_CONSERVES_ENERGY ? energy.absolute : NAN);
+  int conserved = (energy.flags & LAG_CONSERVED) != 0; /* else null */
+  lag_json_number(&j, "energy_drift", conserved ? st.energy_drift : NAN);
+  lag_report_error_json(app, &j);
+  lag_json_number(&j, "energy_drift_absolute", conserved ? energy.absolute : NAN);
   lag_json_number(&j, "unresolved_period", st.unresolved);
   lag_json_count(&j, "rows_without_value", app->empty_rows);
   if (lost_digits(app, &energy)) {

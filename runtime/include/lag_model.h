@@ -52,15 +52,16 @@ enum {
 
 /* Facts that the compiler has proved of a model with its own formulas and tables of inputs. */
 enum {
-  LAG_CONSERVES_ENERGY = 1, /* no t in L, no force, no dissipation, no input */
+  LAG_CONSERVES_ENERGY = 1, /* dE/dt = 0 along all motions, for any inputs */
   LAG_CONSTANT_MASS = 2,    /* d2L/dq'2 depends on no coordinate, velocity or time */
   LAG_AUTONOMOUS = 4,       /* the right-hand side does not contain t */
   LAG_SMOOTH = 8,           /* no if, abs, sign, min, max, and no table */
   LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states; with LAG_FIRST_ORDER a Hamiltonian
                              * T(p) + V(q, t): nz is even, z = [q|p], the rates of q are functions of p alone and those of p of q and t */
   LAG_TIMELESS = 32,        /* t enters only by the formulas and tables of inputs, if at all */
-  LAG_LOSES_ENERGY = 64,    /* not conserved; with constant inputs and constant forces, the energy less the work of these forces never grows: the
-                             * dissipation is quadratic in q' and nowhere negative, for the signs declared */
+  LAG_LOSES_ENERGY = 64,    /* not proved to be conserved; with constant inputs, the energy less the work of forces that
+                             * are constant, do no work or have a potential never grows: the dissipation is quadratic in
+                             * q' and nowhere negative, for the signs declared */
   LAG_FIRST_ORDER = 128,    /* L = theta(q, t) v - H is linear in all velocities: coordinates are among z, nq is 0, and their rates solve
                              * omega zd = dH/dq + ... with the two-form omega = dtheta in place of a mass matrix */
   LAG_CONSTANT_FORM = 256,  /* the same, and omega depends on no coordinate, state or time, and no force on velocities */

@@ -3,9 +3,10 @@
 #include "claims/case_proofs.h"
 
 #include "claims/branch_coverage.h"
+#include "mech/motion_proof.h"
 #include "mech/states.h"
-#include "sym/diff.h"
 #include "sym/prove.h"
+#include "sym/diff.h"
 
 enum { PROOFS_MOST = 60, ENTRIES_MOST = 400 };
 
@@ -22,51 +23,6 @@ typedef struct {
   uint32_t depth;
   int solved; /* the sides contain accelerations or multipliers */
 } Claim;
-
-/* --- one proof --- */
-
-static Expr with_definitions(const Eqns *e, Expr x) {
-  return e->definitions ? expr_substitute(e->g, x, e->definitions, expr_symbol_count(e->g) + 1, "") : x;
-}
-
-/* Proves that the difference is 0 by solving M q'' - A^T lambda = f, A q'' = demand for accelerations and multipliers. Redundant constraints leave
- * that undecided; so would contacts, whose rows are zero while they are open and are left out. */
-static Verdict proof(const Eqns *e, Expr difference) {
-  const Model *m = e->m;
-  const Constraints *c = &e->constraints;
-  ExprGraph *g = e->g;
-  uint32_t n = e->n, w = n, *row = ARENA_ARRAY(m->arena, uint32_t, c->n + 1);
-  for (uint32_t i = 0; i < c->n; i++) row[i] = UINT32_MAX;
-  for (uint32_t k = 0; k < c->A.n; k++)
-    if (row[c->A.at[k].row] == UINT32_MAX && !expr_is_zero(g, with_definitions(e, c->A.at[k].e))) row[c->A.at[k].row] = w++;
-  Expr *M = ARENA_ARRAY(m->arena, Expr, (size_t)w * w + 1), *f = ARENA_ARRAY(m->arena, Expr, w + 1);
-  SymId *acc = ARENA_ARRAY(m->arena, SymId, w + 1);
-  for (size_t i = 0; i < (size_t)w * w; i++) M[i] = expr_int(g, 0);
-  for (uint32_t i = 0; i < n; i++) {
-    acc[i] = m->coords.at[i].a;
-    f[i] = c->n ? with_definitions(e, e->system.f[i]) : e->f[i];
-    for (uint32_t k = 0; k < n; k++) M[i * w + k] = eqns_mass(e, i, k);
-  }
-  for (uint32_t i = 0; i < c->n; i++) {
-    if (row[i] == UINT32_MAX) continue;
-    acc[row[i]] = c->of[i]->multiplier;
-    f[row[i]] = with_definitions(e, c->demand[i]);
-  }
-  for (uint32_t k = 0; k < c->A.n; k++) {
-    uint32_t i = row[c->A.at[k].row], j = c->A.at[k].col;
-    if (i == UINT32_MAX) continue;
-    Expr x = with_definitions(e, c->A.at[k].e);
-    M[i * w + j] = x;
-    M[j * w + i] = expr_neg(g, x);
-  }
-  return prove_solves(g, w, M, f, acc, difference, NULL);
-}
-
-Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs) {
-  Expr difference = expr_sub(e->g, lhs, rhs);
-  Expr closed = states_substitute(e, with_definitions(e, difference));
-  return proof(e, closed);
-}
 
 /* --- signs --- */
 

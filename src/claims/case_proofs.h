@@ -1,11 +1,7 @@
 /* Proofs of expectations case by case, where one normal form for all states does not decide. */
 #pragma once
 
-#include "mech/eqns.h"
-#include "sym/prove.h"
-
-/* Whether two sides are equal by the equations of motion: accelerations and multipliers solved for, rates and the energy substituted. */
-Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs);
+#include "mech/motion_proof.h"
 
 /* The equations with symbol s replaced by with[s] where that is not 0; `with` covers all symbols. */
 const Eqns *equations_with(const Eqns *e, const Expr *with);

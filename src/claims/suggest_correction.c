@@ -9,6 +9,7 @@
 #include "claims/edit_sites.h"
 #include "claims/feature_pool.h"
 #include "mech/states.h"
+#include "sym/prove.h"
 #include "sym/print.h"
 
 /* Costs of edits: slips of the pen first, then larger changes. */

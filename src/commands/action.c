@@ -5,6 +5,7 @@
 
 #include "sym/print.h"
 #include "symmetry/action_variables.h"
+#include "symmetry/charges.h"
 #include "symmetry/find_symmetries.h"
 
 static void print_one(const ActionVariables *v, uint32_t i, StrBuf *out) {
@@ -47,7 +48,8 @@ static void print_separated(const ActionVariables *v, StrBuf *out) {
 static const char *remark_on(const Eqns *e) {
   if (noether_note_on_impacts(e->m)) return "kicks, events or impacts change the state: the actions are those of the motion between them";
   if (eqns_has_forces(e)) return "forces stand outside H: the actions are those of the motion without them";
-  return e->conserves_energy ? "" : "the energy is not conserved: the actions are those of the start, all else held";
+  if (e->conserves_energy) return "";
+  return arena_printf(e->m->arena, "%s; the actions are those of the start, all else held", charges_energy_text(e));
 }
 
 static void print_text(const ActionVariables *v, StrBuf *out) {

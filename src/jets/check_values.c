@@ -34,7 +34,18 @@ static CheckVerdict check_constraints(Check *c) {
   return v;
 }
 
-/* Energy p q' - L; p q' is the change of L under the displacement along the velocity. */
+/* The potential that completes the energy, from its expression: its gradient is proved to be the forces, which are compared
+ * on their own. */
+static Bounded potential(const Check *c) {
+  const Model *m = c->m;
+  long double bound, *symbols = model_constants(m);
+  for (uint32_t i = 0; i < c->n; i++) symbols[m->coords.at[i].q] = (long double)c->q[i];
+  for (uint32_t i = 0; i < m->params.n; i++) symbols[m->params.at[i].sym] = (long double)c->given[i];
+  long double value = eqns_potential_at(c->e, symbols, &bound);
+  return (Bounded){(Real)value, (Real)bound};
+}
+
+/* Energy p q' - L, and the potential of forces; p q' is the change of L under the displacement along the velocity. */
 static CheckVerdict check_energy(Check *c) {
   const TextDynamics *d = c->dynamics;
   Real value[2] = {0};
@@ -44,6 +55,7 @@ static CheckVerdict check_energy(Check *c) {
   if (!check_run_text(c) || !check_run(c, c->u->energy, (Real *const[]){value})) return DISMISSED;
   bounded_sum_add(&t, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 0));
   bounded_sum_add(&t, -1, check_coefficient(d->tape, c->at, d->lagrangian, 0, 0));
+  if (c->e->potential) bounded_sum_add(&t, 1, potential(c));
   c->energy = t;
   c->has_energy = 1;
   return check_compare(c, &t, value[0], c->m->lagrangian_span, "the energy", NULL);

@@ -101,7 +101,7 @@ static void add_charges(IrUnit *u, const Eqns *e) {
   if (e->ncharges < 2 && !powers && !e->energy_jumps && !(e->ncharges && e->charges[0].unit.text[0])) return;
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
-    int conserved = i ? expr_is_zero(e->g, c->proof.power) : e->conserves_energy;
+    int conserved = c->proof.drift == PROVED_ZERO;
     unsigned known = 1u << CHARGE_BALANCED | (conserved ? 1u << CHARGE_CONSERVED : 0) | (c->proof.by_formulas ? 1u << CHARGE_BY_FORMULAS : 0);
     unsigned flags = c->proof.jumps ? 1u << CHARGE_JUMPS : c->proof.power_unknown ? 0 : known;
     vec_push(u->arena, &u->charges, ((IrCharge){c->name, c->unit.text, flags}));

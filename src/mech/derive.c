@@ -10,6 +10,7 @@
 #include "mech/degree.h"
 #include "mech/discontinuity.h"
 #include "mech/first_order.h"
+#include "mech/idle_time.h"
 #include "mech/lagrange.h"
 #include "mech/constraint_regularise.h"
 #include "sym/diff.h"
@@ -67,7 +68,7 @@ static void derive_energy(Eqns *e) {
     terms[i] = expr_mul(g, p[i], expr_symbol(g, e->m->coords.at[i].v)->node);
   }
   e->momenta = momenta;
-  Expr pv = expr_add_n(g, terms, e->n), l = e->m->lagrangian;
+  Expr pv = expr_add_n(g, terms, e->n), l = e->lagrangian;
   VEC(Expr) still = {0};
   for (uint32_t i = 0; i < expr_pairs(g, l, EX_SUM); i++) {
     Num c;
@@ -146,13 +147,11 @@ static int dissipation_is_passive(const Eqns *e) {
   return !(expr_kinds(g, R) & (bit(SYM_TIME) | bit(SYM_STATE)));
 }
 
-/* Whether energy less the work of constant forces cannot rise while inputs stay as they are. */
-static int loses_energy(const Eqns *e, unsigned lagrangian) {
+/* Whether nothing but forces can raise the energy while inputs stay as they are; it may be conserved. */
+static int raised_by_forces_alone(const Eqns *e, unsigned lagrangian) {
   const Model *m = e->m;
-  unsigned forces = 0;
-  for (uint32_t i = 0; i < m->forces.n; i++) forces |= expr_kinds(e->g, m->forces.at[i].f);
-  return m->lagrangian && !e->first.n && !e->conserves_energy && constraints_do_no_work(e) && !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) &&
-         !(forces & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_COORD) | bit(SYM_VEL))) && (!m->dissipation || dissipation_is_passive(e));
+  if (!m->lagrangian || e->first.n || e->energy_jumps || lagrangian & (bit(SYM_TIME) | bit(SYM_STATE))) return 0;
+  return constraints_do_no_work(e) && (!m->dissipation || dissipation_is_passive(e));
 }
 
 static int is_no_coordinate(const Symbol *s, const void *states) { return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate; }
@@ -160,8 +159,8 @@ static int is_no_coordinate(const Symbol *s, const void *states) { return s->kin
 /* Kinds of symbols in L; coordinates of a model of first order do not count as states. */
 static unsigned kinds_of_lagrangian(const Eqns *e) {
   const Model *m = e->m;
-  unsigned kinds = kinds_in(e, &m->lagrangian, 1);
-  return e->first.n && !expr_contains(e->g, m->lagrangian, is_no_coordinate, m->states.at) ? kinds & ~bit(SYM_STATE) : kinds;
+  unsigned kinds = kinds_in(e, &e->lagrangian, 1);
+  return e->first.n && !expr_contains(e->g, e->lagrangian, is_no_coordinate, m->states.at) ? kinds & ~bit(SYM_STATE) : kinds;
 }
 
 typedef struct {
@@ -215,9 +214,7 @@ static void classify(Eqns *e) {
   }
   unsigned lagrangian = kinds_of_lagrangian(e);
   e->energy_jumps = e->energy && discontinuities_of(e, e->energy).n > 0;
-  e->conserves_energy = m->lagrangian && !e->energy_jumps && !m->forces.n && !m->dissipation && !inputs && constraints_do_no_work(e) &&
-                        !(lagrangian & (bit(SYM_TIME) | bit(SYM_STATE) | bit(SYM_INPUT)));
-  e->loses_energy = !e->energy_jumps && loses_energy(e, lagrangian);
+  e->loses_energy = raised_by_forces_alone(e, lagrangian);
 }
 
 /* Refuses numbers in the equations that overflow a double or lost their digits, by differentiation or cancellation. */
@@ -264,15 +261,18 @@ Eqns *eqns_derive(const Model *m) {
   e->m = m;
   e->g = m->g;
   e->n = m->coords.n;
+  e->lagrangian = m->lagrangian;
   Expr *flow = ARENA_ARRAY(m->arena, Expr, m->states.n + 1);
   for (uint32_t i = 0; i < m->states.n; i++) flow[i] = m->states.at[i].flow;
   e->flow = flow;
   if (e->n) {
     lagrange_momenta_and_forces(e);
     if (!constrain(e) || !check_momenta(e) || !lagrange_check_mass(e)) return NULL;
+    drop_idle_time(e);
     derive_energy(e);
   }
   if (m->first_order && !first_order_derive(e, m)) return NULL;
+  if (!e->n) drop_idle_time(e);
   classify(e);
   return check_method(e) ? e : NULL;
 }

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "sym/prove.h"
 #include "sym/simplify.h"
 
 typedef struct {
@@ -69,4 +70,8 @@ int eqns_has_forces(const Eqns *e) {
   for (uint32_t i = 0; e->Q && i < eqns_coordinates(e); i++)
     if (!expr_is_zero(e->g, e->Q[i])) return 1;
   return 0;
+}
+
+long double eqns_potential_at(const Eqns *e, const long double *symbols, long double *bound) {
+  return value_with_bound(e->g, e->potential, symbols, NULL, bound);
 }

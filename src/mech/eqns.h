@@ -105,6 +105,7 @@ struct BracketValue; /* symmetry/expression_brackets.h */
 typedef struct {
   const Model *m;
   ExprGraph *g;
+  Expr lagrangian;       /* that of the model, in a form without t where t drops out; 0: none */
   FirstOrder first;
   uint32_t n;            /* number of coordinates with accelerations */
   const Expr *p;         /* [n] momenta, as differentiated */
@@ -118,7 +119,8 @@ typedef struct {
   Constraints constraints;
   const Expr *Q;         /* [n] generalised forces, already in f; first order: [first.n], with rates, already in rhs and form */
   const Expr *flow;      /* [number of states] z', free of rates */
-  Expr energy;           /* p q' - L, to show; 0 without coordinates */
+  Expr energy;           /* p q' - L, and the potential below, to show; 0 without coordinates */
+  Expr potential;        /* of all forces, where the energy is conserved with it; 0: none (symmetry/charges.c) */
   Expr energy_stable;    /* the energy in a form with small rounding, to compute */
   Expr energy_scale;     /* |p q'| + |L|: scale for drifts of the energy */
   const Charge *charges; /* [ncharges] the energy, then the charges of the symmetries in order; none without L */
@@ -132,9 +134,11 @@ typedef struct {
   uint32_t nactions;
   const Expr *definitions; /* by symbol: expressions substituted for parameters that others define; or NULL */
   int definite_by_values; /* definite_mass, or definite for parameters with the signs of their values; a run checks the pivots */
-  int constant_mass, definite_mass, singular_mass, conserves_energy, autonomous, smooth;
+  int constant_mass, definite_mass, singular_mass, autonomous, smooth;
+  int conserves_energy;  /* dE/dt = 0 is proved along all motions, for any inputs: charges[0] */
   int energy_jumps;      /* the energy is discontinuous somewhere, as L is; the facts about it hold between such places */
-  int loses_energy;      /* energy less the work of constant forces cannot rise while inputs stay as they are, and is not conserved */
+  int loses_energy;      /* not proved to be conserved; less the work of forces that are constant or have a potential,
+                          * the energy cannot rise while inputs stay; derive.c leaves the forces to charges.c */
   int timeless;          /* t occurs in the formulas of inputs only */
   int separable;         /* constant mass, no velocity in f, no states, or H = T(p) + V(q, t): a splitting method can integrate it */
   int sum_hamiltonian;   /* H = T(p) + V(q, t) is given, whatever the forces */
@@ -158,3 +162,6 @@ Expr eqns_mass(const Eqns *e, uint32_t i, uint32_t j);
 
 /* x at q' = 0, simplified. */
 Expr eqns_at_rest(const Eqns *e, Expr x);
+
+/* Value of e->potential, and a bound of its rounding, where symbols have these values. */
+long double eqns_potential_at(const Eqns *e, const long double *symbols, long double *bound);

@@ -149,7 +149,7 @@ Expr frobenius_leaf(const Eqns *e, Expr r) {
   ExprPartials row = expr_gradient_sparse(g, r, SYM_VEL, n);
   for (uint32_t i = 0; i < row.n; i++) a[row.at[i].index] = row.at[i].e;
   a[n] = eqns_at_rest(e, r), q[n] = m->time;
-  Expr leaf = expr_potential(g, a, q, n + 1);
+  Expr leaf = expr_potential(g, a, q, n + 1, 0);
   for (uint32_t i = 0; i <= n; i++) {
     Expr x = expr_diff(g, leaf, q[i]);
     rate = expr_add(g, rate, i < n ? expr_mul(g, x, expr_symbol(g, m->coords.at[i].v)->node) : x);

@@ -61,6 +61,19 @@ static void mark(Eval *ev) {
   }
 }
 
+/* Warns of q' where q is a parameter or a constant: its rate is 0. */
+static void warn_of_still(Eval *ev, const AstExpr *x) {
+  Builder *b = ev->b;
+  const AstExpr *of = ast_expr(b->ast, x->a);
+  int ambiguous;
+  while (of->kind == AST_INDEX || of->kind == AST_MEMBER) of = ast_expr(b->ast, of->a);
+  const Entity *e = of->kind == AST_NAME ? scope_find(&b->scope, of->name, ev->effect, &ambiguous) : NULL;
+  if (!e || (e->kind != ENT_PARAM && e->kind != ENT_CONST)) return;
+  const char *what = e->kind == ENT_PARAM ? "parameter" : "constant";
+  diag_warning(b->diags, x->span, "this is 0: `%s` is a %s, which does not move", of->name, what);
+  diag_help(b->diags, "what moves by itself is a `coord`, what is given over time an `input`, or a formula of t");
+}
+
 /* --- one node --- */
 
 static Value node_value(Eval *ev, AstId id) {
@@ -74,6 +87,7 @@ static Value node_value(Eval *ev, AstId id) {
       const Value *v = value_of(ev, x->a);
       if (!v->e) return FAILED;
       if (v->n == ROTATION) return refuse_rotation(b, x->span, ast_short(b, x->a), TURN_PRIME);
+      warn_of_still(ev, x);
       if (ev->kind == ENT_FUNCTION) need_rates(b, b->instances.at[ev->definition]);
       return time_derivative(b, *v, x->span, ev->where);
     }

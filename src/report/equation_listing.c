@@ -165,7 +165,7 @@ static void constraints(Text *t) {
 static void energy(Text *t, const Charge *c) {
   const char *title = t->e->m->hamiltonian ? "Hamiltonian" : "energy";
   text_heading(t, t->e->energy_jumps ? arena_printf(t->e->m->arena, "%s; its balance holds between jumps of L", title) : title);
-  int moves = !t->e->conserves_energy && !c->proof.power_unknown;
+  int moves = c->proof.drift != PROVED_ZERO && !c->proof.power_unknown;
   const char *name = t->e->m->hamiltonian ? "H" : "E";
   text_named(t, name, name, t->e->energy, !moves);
   if (moves) text_named(t, arena_printf(t->e->m->arena, "d%s/dt", name), arena_printf(t->e->m->arena, "\\dot{%s}", name), c->proof.power, 1);
@@ -183,23 +183,15 @@ static const char *pole_text(const Eqns *e) {
   return arena_printf(e->m->arena, "%s singular at %s = %s", e->definite_by_values ? ", but" : ",", e->m->coords.at[pole.coordinate].name, at[pole.quarters + 1]);
 }
 
-/* Whether events, kicks or impacts change the motion, and so the energy. */
-static int motion_jumps(const Model *m) {
-  for (uint32_t i = 0; i < m->events.n; i++)
-    if (m->events.at[i].actions.n) return 1;
-  return m->contacts.n > 0;
-}
-
 void show_facts(const Eqns *e, StrBuf *out) {
-  const char *energy = e->conserves_energy ? motion_jumps(e->m) ? "conserved between events" : "conserved" : e->energy_jumps ? "not conserved (L jumps, and the energy with it)" : e->constraints.n ? "not conserved (force, dissipation, input, explicit time, or a constraint that moves)"
-                                           : "not conserved (force, dissipation, input or explicit time)";
+  const char *energy = e->ncharges ? charges_energy_text(e) : "";
   if (e->m->hamiltonian)
-    sb_printf(out, "Hamiltonian, %u coordinate%s and as many momenta; energy is %s\n", e->first.n / 2, plural(e->first.n / 2), energy);
+    sb_printf(out, "Hamiltonian, %u coordinate%s and as many momenta; %s\n", e->first.n / 2, plural(e->first.n / 2), energy);
   else if (e->first.n)
-    sb_printf(out, "first-order Lagrangian, %u coordinates, %s degree%s of freedom; two-form %s; energy is %s\n", e->first.n, half(e, e->first.n),
+    sb_printf(out, "first-order Lagrangian, %u coordinates, %s degree%s of freedom; two-form %s; %s\n", e->first.n, half(e, e->first.n),
               e->first.n == 2 ? "" : "s", e->first.constant ? "constant" : "variable", energy);
   if (!e->n) return;
-  sb_printf(out, "%u coordinate%s; mass matrix %s%s%s; energy is %s\n", e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
+  sb_printf(out, "%u coordinate%s; mass matrix %s%s%s; %s\n", e->n, plural(e->n), e->constant_mass ? "constant" : "variable",
             e->singular_mass ? ", singular where no constraint holds" : e->definite_mass ? ", positive definite"
             : e->definite_by_values ? ", positive definite by the signs of its parameters' values" : "", pole_text(e), energy);
 }

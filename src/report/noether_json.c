@@ -1,4 +1,5 @@
 /* `lagc noether` as one JSON object: names and formulas are text of the language, in which no character needs an escape. */
+#include "symmetry/charges.h"
 #include "symmetry/noether_report.h"
 
 static const char *comma(uint32_t k) { return k ? ", " : ""; }
@@ -7,6 +8,13 @@ static void put_expr(StrBuf *out, ExprGraph *g, Expr x) {
   sb_putc(out, '"');
   expr_print(g, x, PRINT_TEXT, out);
   sb_putc(out, '"');
+}
+
+static const char *const drift_words[] = {
+  [PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided"};
+
+static const char *energy_word(const Eqns *e) {
+  return !e->ncharges ? "" : e->charges[0].proof.jumps ? "changes" : drift_words[e->charges[0].proof.drift];
 }
 
 /* The power; null where it is not known, or there is no charge. */
@@ -32,7 +40,7 @@ static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
   put_expr(out, e->g, s->is.F);
   sb_puts(out, ", \"charge\": ");
   put_expr(out, e->g, s->is.charge);
-  sb_puts(out, ", \"power\": ");
+  sb_printf(out, ", \"is\": \"%s\", \"power\": ", drift_words[s->is.drift]);
   put_power(out, e->g, &s->is);
   Conditions positive = noether_conditions(r, k);
   for (uint32_t i = 0; i < positive.n; i++) {
@@ -138,7 +146,7 @@ void show_noether_json(const NoetherReport *r, StrBuf *out) {
   const FoundSymmetries *f = &r->found;
   sb_printf(out, "{\"model\": \"%s\", \"effects_on\": [", m->name);
   for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(out, "%s\"%s\"", comma(i), m->effects.at[i]);
-  sb_puts(out, "], \"cyclic\": [");
+  sb_printf(out, "], \"energy\": \"%s\", \"cyclic\": [", energy_word(r->e));
   for (uint32_t i = 0; i < r->cyclic.n; i++) sb_printf(out, "%s\"%s\"", comma(i), m->coords.at[r->cyclic.at[i]].name);
   sb_printf(out, "],\n \"note\": \"%s\", \"ansatz\": \"%s\", \"searched\": %s, \"not_proved\": %u, \"galilean\": %s,\n \"symmetries\": [", f->note ? f->note : "", f->ansatz, f->searched ? "true" : "false", f->unproved,
             f->galilean ? "true" : "false");

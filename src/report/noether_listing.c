@@ -1,6 +1,7 @@
 /* `lagc noether` as text and as LaTeX. */
 #include "symmetry/noether_report.h"
 #include "base/words.h"
+#include "symmetry/charges.h"
 #include "report/listing_text.h"
 
 typedef struct {
@@ -80,7 +81,7 @@ static void symmetry(Page *p, uint32_t k) {
   Text *t = &p->text;
   Arena *a = t->e->m->arena;
   const FoundSymmetry *s = &p->r->found.all.at[k];
-  int moves = !s->is.power_unknown && !expr_is_zero(t->g, s->is.power);
+  int moves = s->is.drift != PROVED_ZERO && !s->is.power_unknown;
   Name declared = noether_declared(p->r, k);
   text_heading(t, arena_printf(a, "%s: %s%s%s%s", named(p, "", k, ""), s->name, declared ? "; declared as " : "", declared ? declared : "", s->is.jumps ? "; between jumps of L only" : ""));
   deltas(p, s);
@@ -90,7 +91,9 @@ static void symmetry(Page *p, uint32_t k) {
   if (moves) text_named(t, named(p, "d", k, "/dt"), named_latex(p, k, 1), s->is.power, 1);
   text_end(t);
   put_conditions(p, k);
-  if (s->is.power_unknown) say(p, "  not conserved: L depends on an input whose rate of change is not known");
+  if (s->is.drift != NOT_DECIDED) return;
+  say(p, s->is.power_unknown ? "  not decided whether it changes: L depends on an input whose rate of change is not known"
+                             : "  not decided whether it changes: this rate is neither proved to be 0 nor seen not to be");
 }
 
 static int some_jump(const FoundSymmetries *f) {
@@ -324,7 +327,8 @@ void show_noether(const NoetherReport *r, PrintStyle style, StrBuf *out) {
   Page p = {.text = {.e = r->e, .g = r->e->g, .style = style, .out = out}, .r = r, .Q = free_letter(r->e)};
   text_title(&p.text);
   text_charges(&p.text);
-  if (r->cyclic.n) sb_putc(out, '\n');
+  sb_putc(out, '\n');
+  if (r->e->ncharges) say(&p, charges_energy_text(r->e));
   show_cyclic(r->e, text_latex(&p.text) ? "% " : "", out);
   symmetries(&p);
   scaling(&p);

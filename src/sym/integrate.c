@@ -3,6 +3,7 @@
 
 #include "sym/diff.h"
 #include "sym/normal_form.h"
+#include "sym/simplify.h"
 
 enum { MAX_TERMS = 4000, MAX_WORK = 400000, MAX_HARMONICS = 256, MAX_POWER = 64 };
 
@@ -199,11 +200,92 @@ Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without) {
 
 /* --- potentials --- */
 
-Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n) {
+static int contains_any(ExprGraph *g, Expr e, const SymId *q, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++)
+    if (expr_contains_sym(g, e, q[i])) return 1;
+  return 0;
+}
+
+/* Integral of u^power; log|u| for power -1. */
+static Expr integral_of_power(ExprGraph *g, Expr u, Num power) {
+  Num next = num_add(power, num_int(1));
+  if (num_is_zero(next)) return expr_fn(g, EX_LOG, expr_fn(g, EX_ABS, u));
+  return expr_scale(g, num_div(num_int(1), next), expr_pow_num(g, u, next));
+}
+
+/* factor of c = factor du/dx, where e has the term c u^power: free of q, or 0. s: a symbol that stands for u. */
+static Expr factor_of_power(const Task *t, Expr u, Num power, SymId s, const SymId *q, uint32_t n) {
+  ExprGraph *g = t->g;
+  Expr slope = expr_diff(g, u, t->x), node = expr_symbol(g, s)->node, in_s;
+  if (expr_op(g, u) != EX_SUM || expr_is_zero(g, slope)) return 0;
+  expr_replace_nodes(g, &t->e, 1, &u, &node, 1, &in_s);
+  Expr flat = expr_pow_num(g, node, num_sub(num_int(1), power)), c = expr_mul(g, expr_diff(g, in_s, s), flat);
+  Expr factor = simplify(g, expr_div(g, expr_scale(g, num_div(num_int(1), power), c), slope));
+  return expr_contains_sym(g, factor, s) || contains_any(g, factor, q, n) ? 0 : factor;
+}
+
+/* Integral of f(u) by u; 0: it is not in this list. */
+static Expr integral_of_function(ExprGraph *g, ExprOp f, Expr u) {
+  static const ExprOp integral[][2] = {{EX_EXP, EX_EXP}, {EX_COS, EX_SIN}, {EX_SINH, EX_COSH}, {EX_COSH, EX_SINH}};
+  for (size_t i = 0; i < sizeof integral / sizeof *integral; i++)
+    if (f == integral[i][0]) return expr_fn(g, integral[i][1], u);
+  return f == EX_SIN ? expr_neg(g, expr_fn(g, EX_COS, u)) : 0;
+}
+
+/* Integral by t->x of one term c f(u) of t->e in which c is du/dx times a constant, or 0. */
+static Expr integral_of_call(const Task *t, Expr call, SymId s, const SymId *q, uint32_t n) {
+  ExprGraph *g = t->g;
+  Expr whole = integral_of_function(g, expr_op(g, call), expr_arg(g, call, 0)), node = expr_symbol(g, s)->node, in_s;
+  Expr slope = whole ? expr_diff(g, expr_arg(g, call, 0), t->x) : 0;
+  if (!whole || expr_is_zero(g, slope)) return 0;
+  expr_replace_nodes(g, &t->e, 1, &call, &node, 1, &in_s);
+  Expr factor = simplify(g, expr_div(g, expr_diff(g, in_s, s), slope));
+  int constant = !expr_is_zero(g, factor) && !expr_contains_sym(g, factor, s) && !contains_any(g, factor, q, n);
+  return constant ? expr_mul(g, factor, whole) : 0;
+}
+
+/* Integral by t->x of one term c u^power of t->e in which c is du/dx times a constant, as of x/(x^2 + y^2)^(3/2), or 0. */
+static Expr integral_by_substitution(const Task *t, SymId s, const SymId *q, uint32_t n) {
+  ExprList nodes = expr_topo(t->g, &t->e, 1);
+  for (uint32_t i = 0; i < nodes.n; i++) {
+    ExprOp op = expr_op(t->g, nodes.at[i]);
+    int call = op != EX_SYM && op != EX_NUM && op != EX_PROD && op != EX_SUM && expr_nargs(t->g, nodes.at[i]) == 1;
+    Expr whole = call ? integral_of_call(t, nodes.at[i], s, q, n) : 0;
+    if (whole) return whole;
+    for (uint32_t k = 0; op == EX_PROD && k < expr_pairs(t->g, nodes.at[i], op); k++) {
+      Num power;
+      Expr u = expr_pair(t->g, nodes.at[i], op, k, &power), factor = factor_of_power(t, u, power, s, q, n);
+      if (factor && !expr_is_zero(t->g, factor)) return expr_mul(t->g, factor, integral_of_power(t->g, u, power));
+    }
+  }
+  return 0;
+}
+
+/* Antiderivative of e by x by the forms above, then by substitution. */
+static Expr antiderivative(ExprGraph *g, Expr e, SymId x, const SymId *q, uint32_t n) {
+  enum { MOST = 64, LONGEST = 2000 };
+  uint32_t distinct;
+  Expr sum = expr_integrate(g, e, x, 0);
+  if (expr_tree_size(g, e, &distinct) > LONGEST) return sum;
+  Expr rest = expr_sub(g, e, expr_diff(g, sum, x));
+  SymId s = expr_is_zero(g, simplify(g, rest)) ? 0 : expr_declare(g, SYM_LOCAL, 0, "?", SIGN_UNKNOWN);
+  for (uint32_t k = 0; k < MOST && s; k++) {
+    Task t = {.g = g, .e = expr_expand_defs(g, rest), .x = x};
+    Expr part = integral_by_substitution(&t, s, q, n);
+    if (!part) break;
+    sum = expr_add(g, sum, part);
+    rest = expr_sub(g, t.e, expr_diff(g, part, x));
+  }
+  return sum;
+}
+
+Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n, int by_substitution) {
   Expr F = expr_int(g, 0);
   for (uint32_t i = 0; i < n; i++) {
     Expr done = expr_diff(g, F, q[i]), left = expr_sub(g, a[i], done);
-    if (!expr_is_zero(g, left)) F = expr_add(g, F, expr_integrate(g, left, q[i], 0));
+    if (expr_is_zero(g, left)) continue;
+    Expr part = by_substitution ? antiderivative(g, left, q[i], q, n) : expr_integrate(g, left, q[i], 0);
+    F = expr_add(g, F, part);
   }
   return F;
 }

@@ -10,8 +10,8 @@ enum { STATES = 8, MOST_STATES = 2000, MOST_WORK = 4000000 };
 
 /* --- by value --- */
 
-/* A value that is certainly not 0, at one of 16 states in the domain; few states may lie there, as of roots of several differences. */
-static Verdict nonzero_by_value(ExprGraph *g, Expr e) {
+/* One of 16 states in the domain decides; few states may lie there, as of roots of several differences. */
+int prove_nonzero(ExprGraph *g, Expr e) {
   long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
   uint32_t most = 2 * STATES + MOST_WORK / (e + 1);
   if (most > MOST_STATES) most = MOST_STATES;
@@ -22,9 +22,9 @@ static Verdict nonzero_by_value(ExprGraph *g, Expr e) {
     value = value_with_bound(g, e, symbols, NULL, &bound);
     if (!isfinite(value) || !isfinite(bound)) continue;
     inside++;
-    if (fabsl(value) > 1000 * bound + LDBL_MIN) return PROVED_NONZERO;
+    if (fabsl(value) > 1000 * bound + LDBL_MIN) return 1;
   }
-  return NOT_DECIDED;
+  return 0;
 }
 
 /* --- zero --- */
@@ -61,7 +61,7 @@ static Verdict zero_by_form(ExprGraph *g, Expr e, const NormalLimits *limits) {
 
 Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits) {
   Verdict v = zero_by_form(g, e, limits);
-  return v != NOT_DECIDED ? v : nonzero_by_value(g, e);
+  return v == NOT_DECIDED && prove_nonzero(g, e) ? PROVED_NONZERO : v;
 }
 
 /* --- the block of a linear system that an expression needs --- */

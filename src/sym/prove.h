@@ -2,8 +2,7 @@
 #pragma once
 
 #include "sym/normal_form.h"
-
-typedef enum { NOT_DECIDED, PROVED_ZERO, PROVED_NONZERO } Verdict;
+#include "sym/verdict.h"
 
 /* Default limits on the cost of a proof: about 0.2 s at most. */
 NormalLimits prove_limits(void);
@@ -11,6 +10,9 @@ NormalLimits prove_limits(void);
 /* Decides whether e is 0 wherever it is defined; numbers beyond 64 bits are compared by their residues (base/num.h). PROVED_NONZERO: the normal form
  * is unique and not 0, or the value at some state exceeds its rounding bound. limits NULL: prove_limits(). */
 Verdict prove_zero(ExprGraph *g, Expr e, const NormalLimits *limits);
+
+/* Whether the value of e at some random state exceeds its rounding bound: the quick half of prove_zero. */
+int prove_nonzero(ExprGraph *g, Expr e);
 
 /* Decides whether e vanishes when the symbols acc[0..n-1] solve M acc = f (M is n*n, row by row; its entries
  * do not contain acc). Proved by Cramer's rule on normal forms of the block of M that e needs.

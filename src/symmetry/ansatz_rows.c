@@ -49,7 +49,7 @@ static void add_held(Ansatz *s, Arena *a) {
 
 Ansatz *ansatz_new(Arena *a, const Eqns *e) {
   Ansatz *s = ARENA_NEW(a, Ansatz);
-  unsigned kinds = expr_kinds(e->g, e->m->lagrangian);
+  unsigned kinds = expr_kinds(e->g, e->lagrangian);
   s->e = e;
   s->symbols = expr_symbol_count(e->g) + 1;
   s->n = eqns_coordinates(e);
@@ -97,7 +97,7 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
   const Constraints *k = &e->constraints;
   RowSource *r = ARENA_NEW(scratch, RowSource);
   uint32_t count = 0, symbols = expr_symbol_count(e->g) + 1;
-  Expr *roots = ARENA_ARRAY(scratch, Expr, 2 + 2 * (size_t)s->n + k->A.n + k->n), L = e->m->lagrangian;
+  Expr *roots = ARENA_ARRAY(scratch, Expr, 2 + 2 * (size_t)s->n + k->A.n + k->n), L = e->lagrangian;
   roots[count++] = L;
   roots[count++] = expr_diff(e->g, L, e->m->time);
   expr_gradient(e->g, L, s->q, s->n, roots + count);

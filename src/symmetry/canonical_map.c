@@ -213,7 +213,7 @@ static Expr *time_gradient(const PhaseSpace *s, const Canonical *c, const Expr *
 static Expr time_part(const PhaseSpace *s, const Canonical *c, const Expr *z, const Expr *r) {
   ExprGraph *g = s->e->g;
   SymId *x = old_symbols(s);
-  Expr R = c->kind ? expr_replace(g, expr_expand_defs(g, expr_diff(g, c->generator, s->e->m->time)), x, z, 2 * c->n) : expr_potential(g, r, c->fresh, 2 * c->n);
+  Expr R = c->kind ? expr_replace(g, expr_expand_defs(g, expr_diff(g, c->generator, s->e->m->time)), x, z, 2 * c->n) : expr_potential(g, r, c->fresh, 2 * c->n, 0);
   for (uint32_t k = 0; k < 2 * c->n; k++) {
     Expr slope = expr_diff(g, R, c->fresh[k]);
     if (prove_zero(g, expr_sub(g, slope, r[k]), NULL) != PROVED_ZERO) return 0;

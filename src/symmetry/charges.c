@@ -1,6 +1,7 @@
 /* Generators of declared symmetries, their charges, and messages about symmetries that do not hold. */
 #include "symmetry/charges.h"
 
+#include "mech/constrain.h"
 #include "mech/derive.h"
 #include "mech/lagrange.h"
 #include "symmetry/action_outputs.h"
@@ -31,11 +32,20 @@ static Charge charge_of(const Eqns *e, const Symmetry *y) {
   return c;
 }
 
-static Charge energy_of(const Eqns *e) {
-  Expr zero = expr_int(e->g, 0);
-  Charge c = {.name = "energy", .unit = e->m->energy_unit, .value = e->energy_stable, .scale = e->energy_scale};
-  if (e->conserves_energy) c.proof = (Noether){.charge = e->energy, .power = zero, .F = zero, .remainder = zero, .by_constraints = zero};
-  else c.proof = noether_energy(e);
+/* The one judgement of the energy, which all commands quote; a potential that completes it becomes a part of e->energy. */
+static Charge energy_of(Eqns *e) {
+  Charge c = {.name = "energy", .unit = e->m->energy_unit, .proof = noether_energy(e)};
+  Expr V = c.proof.potential;
+  if (V) {
+    e->potential = V;
+    e->energy = c.proof.charge = expr_add(e->g, e->energy, V);
+    e->energy_stable = simplify_stable(e->g, expr_add(e->g, e->energy_stable, V));
+    e->energy_scale = expr_add(e->g, e->energy_scale, expr_fn(e->g, EX_ABS, V));
+  }
+  e->conserves_energy = c.proof.drift == PROVED_ZERO && !c.proof.by_formulas && !c.proof.jumps;
+  e->loses_energy = e->loses_energy && !e->conserves_energy && noether_forces_are_potential(e);
+  c.value = e->energy_stable;
+  c.scale = e->energy_scale;
   return c;
 }
 
@@ -192,10 +202,53 @@ int charges_judge(const Eqns *e, Name effect) {
   return good;
 }
 
-/* Appends "; not conserved: d(spin)/dt = ...", if the charge is not conserved. */
+const char *charge_verdict(const Noether *is) {
+  static const char *const words[] = {
+    [PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided whether it changes"};
+  return words[is->drift];
+}
+
+#define NO_RATE "L depends on an input whose rate of change is not known"
+
+/* "d(spin)/dt = ...". */
+static const char *power_text(const Eqns *e, const Charge *c) {
+  if (c->proof.power_unknown) return arena_printf(e->m->arena, "d(%s)/dt: " NO_RATE, c->name);
+  return arena_printf(e->m->arena, "d(%s)/dt = %s", c->name, text_of(e, c->proof.power));
+}
+
+/* Appends "; changes: d(spin)/dt = ...", unless the charge is conserved. */
 static void put_balance(const Eqns *e, const Charge *c, StrBuf *out) {
-  if (c->proof.power_unknown) sb_puts(out, "; not conserved: L depends on an input whose rate of change is not known");
-  else if (!expr_is_zero(e->g, c->proof.power)) sb_printf(out, "; %s: d(%s)/dt = %s", c->proof.over_time ? "without that integral" : "not conserved", c->name, text_of(e, c->proof.power));
+  if (c->proof.drift == PROVED_ZERO) return;
+  const char *how = c->proof.over_time ? "without that integral" : charge_verdict(&c->proof);
+  sb_printf(out, "; %s: %s", how, c->proof.power_unknown ? NO_RATE : power_text(e, c));
+}
+
+/* Whether events, kicks or impacts change the motion, and so the energy. */
+static int motion_jumps(const Model *m) {
+  for (uint32_t i = 0; i < m->events.n; i++)
+    if (m->events.at[i].actions.n) return 1;
+  return m->contacts.n > 0;
+}
+
+/* Reason of a conserved energy beside which forces, or constraints that move, act. */
+static const char *reason_of(const Eqns *e) {
+  if (e->potential) return arena_printf(e->m->arena, ", with the potential %s of the forces", text_of(e, e->potential));
+  if (eqns_has_forces(e)) return ": the forces do no work";
+  return constraints_do_no_work(e) ? "" : ": the constraints do no work";
+}
+
+const char *charges_energy_text(const Eqns *e) {
+  enum { LINE = 100 };
+  const Noether *is = &e->charges[0].proof;
+  if (is->jumps) return "energy changes (L jumps, and the energy with it)";
+  const char *events = motion_jumps(e->m) ? " between events" : "", *name = e->m->hamiltonian ? "H" : "E";
+  const char *inputs = is->by_formulas ? " while inputs follow their formulas" : "";
+  if (is->drift == PROVED_ZERO) return arena_printf(e->m->arena, "energy is conserved%s%s%s", events, inputs, reason_of(e));
+  const char *verdict = is->drift == PROVED_NONZERO ? "energy changes" : "not decided whether the energy is conserved";
+  if (is->power_unknown) return arena_printf(e->m->arena, "%s: " NO_RATE, verdict);
+  const char *power = text_of(e, is->power);
+  return strlen(power) <= LINE ? arena_printf(e->m->arena, "%s: d%s/dt = %s", verdict, name, power)
+                               : arena_printf(e->m->arena, "%s; `lagc derive` prints d%s/dt", verdict, name);
 }
 
 /* F, with the integral that the printed charge omits. */
@@ -228,9 +281,8 @@ void charges_print(const Eqns *e, Name effect, StrBuf *out) {
 void charges_show_broken(const Eqns *e, StrBuf *out) {
   for (uint32_t i = 0; i < e->ncharges; i++) {
     const Charge *c = &e->charges[i];
-    if ((!c->proof.power_unknown && !c->proof.jumps && expr_is_zero(e->g, c->proof.power)) || (!c->of && e->m->symmetries.n == 0)) continue;
-    if (c->proof.power_unknown) sb_printf(out, "  d(%s)/dt: L depends on an input whose rate of change is not known\n", c->name);
-    else sb_printf(out, "  d(%s)/dt = %s%s\n", c->name, text_of(e, c->proof.power), c->proof.jumps ? " between jumps of L" : "");
+    if ((c->proof.drift == PROVED_ZERO && !c->proof.jumps) || (!c->of && e->m->symmetries.n == 0)) continue;
+    sb_printf(out, "  %s%s\n", power_text(e, c), c->proof.jumps && !c->proof.power_unknown ? " between jumps of L" : "");
   }
 }
 

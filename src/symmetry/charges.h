@@ -19,6 +19,12 @@ Eqns *equations_of(const Model *m);
 /* The complete equations of the same model with a regular mass matrix (eqns_derive_regularised). */
 Eqns *equations_regularised(const Eqns *singular);
 
+/* "conserved", "changes" or "not decided whether it changes". */
+const char *charge_verdict(const Noether *is);
+
+/* "energy is conserved", "energy changes: dE/dt = ..." or "not decided whether the energy is conserved: ...". */
+const char *charges_energy_text(const Eqns *e);
+
 /* x with the symbols of declared charges and of brackets replaced by their expressions. */
 Expr charges_substitute(const Eqns *e, Expr x);
 

@@ -153,7 +153,7 @@ static void add_once(SymmetrySearch *s, Exprs *list, Expr x) {
 /* Rates w of sin(w t + ...) and cos(w t + ...) in L, and s of exp(s t + ...). */
 static void rates_in_text(SymmetrySearch *s, Exprs *circular, Exprs *exponential) {
   ExprGraph *g = s->g;
-  Expr L = s->e->m->lagrangian;
+  Expr L = s->e->lagrangian;
   ExprList all = expr_topo(g, &L, 1);
   for (uint32_t i = 0; i < all.n; i++) {
     ExprOp op = expr_op(g, all.at[i]);
@@ -315,11 +315,21 @@ const char *noether_note_on_impacts(const Model *m) {
   return setting ? "events change charges: the balances hold between them" : NULL;
 }
 
-static FoundSymmetries search(Eqns *e) {
+static FoundSymmetries search_in(const Eqns *e, Expr lagrangian) {
   FoundSymmetries out = {0};
-  SymmetrySearch s = {.e = e, .g = e->g, .out = &out};
+  Eqns written = *e;
+  written.lagrangian = lagrangian;
+  SymmetrySearch s = {.e = &written, .g = e->g, .out = &out};
   arena_with_scratch(expr_arena(e->g), search_work, &s);
   return out;
+}
+
+/* Where t drops out of L, and not all symmetries are found in closed form, the text may have their functions of time. */
+static FoundSymmetries search(const Eqns *e) {
+  FoundSymmetries out = search_in(e, e->lagrangian);
+  if (e->lagrangian == e->m->lagrangian || (out.searched && !out.unproved)) return out;
+  FoundSymmetries other = search_in(e, e->m->lagrangian);
+  return other.searched && other.all.n > out.all.n ? other : out;
 }
 
 /* Whether energy, three momenta, three angular momenta and three boosts are among them. */

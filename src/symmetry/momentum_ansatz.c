@@ -212,7 +212,7 @@ MomentumAnsatz *momentum_ansatz_new(Arena *scratch, Eqns *e) {
   a->force = a->rate + a->n;
   (hamiltonian ? from_hamiltonian : from_lagrangian)(a);
   a->symbols = expr_symbol_count(a->g) + 1;
-  read_function(a, &s, hamiltonian ? e->energy : e->m->lagrangian);
+  read_function(a, &s, hamiltonian ? e->energy : e->lagrangian);
   add_angles(a, &s);
   a->functions = s.found.n;
   a->factors = 2 * a->n + a->functions;

@@ -4,13 +4,13 @@
 
 #include <math.h>
 
-#include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "mech/discontinuity.h"
+#include "mech/motion_proof.h"
 #include "mech/states.h"
+#include "sym/prove.h"
 #include "sym/diff.h"
 #include "sym/integrate.h"
-#include "sym/prove.h"
 #include "sym/simplify.h"
 
 /* Past this number of coordinates charges are not simplified, like the energy (mech/derive.c). */
@@ -48,12 +48,18 @@ static Expr tangent(const ProofWork *w, Expr x, const Expr *seed, const char *su
   return out;
 }
 
-/* d/dt along q'. */
-static Expr total(const ProofWork *w, Expr x) {
+/* out[i] = d/dt of x[i] along q'. */
+static void totals(const ProofWork *w, const Expr *x, uint32_t n, Expr *out) {
   Expr *seed = no_seed(w);
   seed[w->m->time] = expr_int(w->g, 1);
   for (uint32_t i = 0; i < w->n; i++) seed[w->q[i]] = node(w, w->v[i]);
-  return tangent(w, x, seed, "'");
+  expr_tangent(w->g, x, n, seed, expr_symbol_count(w->g) + 1, "'", NULL, out);
+}
+
+static Expr total(const ProofWork *w, Expr x) {
+  Expr out;
+  totals(w, &x, 1, &out);
+  return out;
 }
 
 static ProofWork begin(const Eqns *e, const Generator *by) {
@@ -63,12 +69,12 @@ static ProofWork begin(const Eqns *e, const Generator *by) {
   w.q = eqns_symbols(e, 0);
   w.v = eqns_symbols(e, 1);
   w.Dxi = ARENA_ARRAY(a, Expr, w.n + 1);
-  w.L = e->m->lagrangian;
+  w.L = e->lagrangian;
   w.p = eqns_momenta(e);
   w.xi = xi;
   w.tau = by->tau ? by->tau : zero;
   for (uint32_t i = 0; i < w.n; i++) xi[i] = by->xi && by->xi[i] ? by->xi[i] : zero;
-  for (uint32_t i = 0; i < w.n; i++) w.Dxi[i] = total(&w, xi[i]);
+  totals(&w, xi, w.n, w.Dxi);
   w.Dtau = total(&w, w.tau);
   return w;
 }
@@ -127,49 +133,6 @@ static Expr delta_lagrangian(const ProofWork *w) {
 
 /* --- zero on the constraints --- */
 
-/* 1: x is rounding at a state that obeys the constraints; 0: it is more; -1: it has no value there. */
-static int is_small(const ProofWork *w, Expr x, const long double *symbols) {
-  const long double tiny = LONG_TOLERANCE(1e-14L); /* states obey to 1e-16; terms of x have size 1 */
-  long double bound, value = value_with_bound(w->g, x, symbols, NULL, &bound), size = 0;
-  if (!isfinite(value)) return -1;
-  for (uint32_t i = 0; i < expr_pairs(w->g, x, EX_SUM); i++) {
-    Num c;
-    Expr term = expr_pair(w->g, x, EX_SUM, i, &c);
-    size += fabsl((long double)num_value(c) * value_with_bound(w->g, term, symbols, NULL, &bound));
-  }
-  return fabsl(value) <= tiny * fmaxl(size, 1);
-}
-
-/* Scales coordinates by powers of two and flips unknown signs by the bits of the seed: where constraints have several branches, the nearest states
- * then lie on several of them. */
-static void spread(const ProofWork *w, uint32_t seed, long double *symbols) {
-  static const int powers[] = {0, 2, -3, 4, 1, 7, -6, 3};
-  for (uint32_t i = 0; i < w->n; i++) {
-    const Symbol *q = expr_symbol(w->g, w->q[i]);
-    symbols[w->q[i]] = ldexpl(symbols[w->q[i]], powers[seed % 8]);
-    if (q->sign == SIGN_UNKNOWN && (seed / 8 * 5 + seed) >> (i + seed) % 8 & 1) symbols[w->q[i]] *= -1;
-  }
-}
-
-/* Whether x is zero at random states that obey the constraints: near ones first, then from starts that are far apart. A large x at a far state is
- * judged by the size of its terms. */
-static int vanishes_by_value(const ProofWork *w, Expr x) {
-  enum { STATES = 12, NEAR = 4 * STATES, ALL = NEAR + 64 };
-  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
-  StateSolver *solver = states_new(w->e);
-  uint32_t seen = 0;
-  for (uint32_t seed = 1; seed <= ALL; seed++) {
-    if (seed <= NEAR && seen == STATES) continue;
-    sample_state(w->g, seed, symbols);
-    if (seed > NEAR) spread(w, seed - NEAR - 1, symbols);
-    if (!states_complete(solver, symbols)) continue;
-    int small = is_small(w, x, symbols);
-    if (!small) return 0;
-    seen += small > 0;
-  }
-  return seen >= STATES;
-}
-
 /* Whether base^power is a factor that contains coordinates and may be 0. */
 static int may_vanish(const ProofWork *w, Expr base, Num power) {
   ExprSign sign = expr_sign(w->g, base);
@@ -200,7 +163,7 @@ static int is_constrained(const ProofWork *w) { return w->e->constraints.n > w->
 /* Whether x is zero where the constraints hold, those of contacts excepted. */
 static Verdict zero_on_constraints(ProofWork *w, Expr x) {
   Verdict v = is_zero(w, x);
-  if (v == PROVED_ZERO || !is_constrained(w) || !vanishes_by_value(w, x)) return v;
+  if (v == PROVED_ZERO || !is_constrained(w) || !motion_vanishes(w->e, x)) return v;
   w->product = constraint_with_factors(w);
   w->by_value = 1;
   return PROVED_ZERO;
@@ -215,7 +178,8 @@ static Expr find_gauge(const ProofWork *w, Expr dL) {
     Expr slope = expr_diff(w->g, dL, w->v[i]);
     a[i] = at_rest(w, slope);
   }
-  Expr F = expr_potential(w->g, a, w->q, w->n), drift = expr_diff(w->g, F, w->m->time), left = expr_sub(w->g, b, drift);
+  Expr F = expr_potential(w->g, a, w->q, w->n, 0), drift = expr_diff(w->g, F, w->m->time);
+  Expr left = expr_sub(w->g, b, drift);
   left = simplify(w->g, left);
   Expr rest = expr_integrate(w->g, left, w->m->time, 1u << SYM_COORD | 1u << SYM_STATE | 1u << SYM_INPUT);
   return expr_add(w->g, F, rest);
@@ -298,10 +262,14 @@ static void judge(ProofWork *w, Noether *to) {
 
 /* --- the charge and its balance --- */
 
+/* p q' - L. */
+static Expr bare_energy(const Eqns *e) { return e->potential ? expr_sub(e->g, e->energy, e->potential) : e->energy; }
+
 /* p.xi - E tau - F. */
 static Expr charge_of(const ProofWork *w, Expr F) {
   ExprGraph *g = w->g;
-  Expr px = dot(w, w->p, w->xi, w->n), minus_F = expr_neg(g, F), et = expr_mul(g, w->e->energy, w->tau), minus_et = expr_neg(g, et);
+  Expr px = dot(w, w->p, w->xi, w->n), minus_F = expr_neg(g, F);
+  Expr et = expr_mul(g, bare_energy(w->e), w->tau), minus_et = expr_neg(g, et);
   Expr front = expr_add(g, px, minus_F);
   front = shorten(w, front);
   return expr_add(g, front, minus_et);
@@ -410,12 +378,12 @@ static Expr power_of_change(const ProofWork *w, Noether *to) {
     if (is_other_state(w->e, i)) seed[m->states.at[i].z] = w->e->flow[i];
   for (uint32_t i = 0; i < m->inputs.n; i++) {
     const Input *in = &m->inputs.at[i];
-    if (!(expr_kinds(g, m->lagrangian) & 1u << SYM_INPUT) || !expr_contains_sym(g, m->lagrangian, in->sym) || model_is_contact_switch(m, in->sym)) continue;
+    if (!(expr_kinds(g, w->L) & 1u << SYM_INPUT) || !expr_contains_sym(g, w->L, in->sym) || model_is_contact_switch(m, in->sym)) continue;
     if (in->value) seed[in->sym] = expr_diff(g, in->value, m->time);
     to->by_formulas |= in->value != 0;
     to->power_unknown |= !in->value;
   }
-  Expr rate = tangent(w, m->lagrangian, seed, "_drift");
+  Expr rate = tangent(w, w->L, seed, "_drift");
   return expr_mul(g, w->tau, rate);
 }
 
@@ -434,7 +402,7 @@ static Expr power_of_forces(const ProofWork *w) {
 /* Whether the generator moves the surfaces where L jumps. */
 static int moves_jumps(const ProofWork *w) {
   const long double still = 1e-7L; /* states lie on a jump to 1e-19 of their size, slopes are known to 1e-6 */
-  ExprJumps all = discontinuities_of(w->e, w->m->lagrangian);
+  ExprJumps all = discontinuities_of(w->e, w->L);
   for (uint32_t i = 0; i < all.n; i++) {
     const ExprJump *jump = &all.at[i];
     Expr change = moved_by(w, jump->side);
@@ -442,6 +410,53 @@ static int moves_jumps(const ProofWork *w) {
     if (!(fabsl(value) <= still * fabsl(jump->slope))) return 1;
   }
   return 0;
+}
+
+/* Whether V has one value at each position: coordinates declared periodic enter by periodic functions. */
+static int is_single_valued(const ProofWork *w, Expr V) {
+  const Model *m = w->m;
+  Expr turn = expr_mul(w->g, expr_int(w->g, 2), expr_symbol(w->g, m->pi)->node);
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr there = expr_add(w->g, node(w, w->q[i]), turn), moved = expr_replace(w->g, V, &w->q[i], &there, 1);
+    if (m->coords.at[i].periodic && prove_zero(w->g, expr_sub(w->g, moved, V), NULL) != PROVED_ZERO) return 0;
+  }
+  return 1;
+}
+
+/* Whether x doubles with the velocities at a random state: makes no nodes. */
+static int is_linear_in_velocities(const ProofWork *w, Expr x) {
+  const long double rounding = 1e-12L;
+  long double bound, *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  sample_state(w->g, 1, symbols);
+  long double one = value_with_bound(w->g, x, symbols, NULL, &bound);
+  for (uint32_t i = 0; i < w->n; i++) symbols[w->v[i]] *= 2;
+  return !(fabsl(value_with_bound(w->g, x, symbols, NULL, &bound) - 2 * one) > rounding * fabsl(one) + 2 * bound);
+}
+
+/* V with power = -dV/dt along motions, for a power of forces alone; 0: none is found and proved. */
+static Expr potential_of(const ProofWork *w, Expr power) {
+  const unsigned other = 1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_STATE | 1u << SYM_MULTIPLIER;
+  ExprGraph *g = w->g;
+  Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  if (!w->e->n || w->n > SHORTEN_MAX || expr_kinds(g, power) & other || !is_linear_in_velocities(w, power)) return 0;
+  for (uint32_t i = 0; i < w->n; i++) a[i] = at_rest(w, expr_neg(g, expr_diff(g, power, w->v[i])));
+  Expr V = shorten(w, expr_potential(g, a, w->q, w->n, 1)), left = expr_add(g, power, total(w, V));
+  return !expr_is_zero(g, V) && is_single_valued(w, V) && motion_verdict(w->e, left) == PROVED_ZERO ? V : 0;
+}
+
+static int is_shift_of_time(const ProofWork *w) {
+  for (uint32_t i = 0; i < w->n; i++)
+    if (!expr_is_zero(w->g, w->xi[i])) return 0;
+  return expr_is_num(w->g, w->tau) && num_is_one(num_neg(expr_number(w->g, w->tau)));
+}
+
+/* Judges dQ/dt along motions. Where forces alone change the energy, their potential completes it. */
+static void judge_drift(const ProofWork *w, Noether *to, int forces_alone) {
+  if (to->power_unknown) return;
+  to->drift = motion_verdict(w->e, to->power);
+  if (to->drift != PROVED_ZERO && forces_alone && is_shift_of_time(w)) to->potential = potential_of(w, to->power);
+  if (to->potential) to->drift = PROVED_ZERO;
+  if (to->drift == PROVED_ZERO) to->power = to->by_constraints = expr_int(w->g, 0);
 }
 
 /* Balance of the charge, and the part of the constraints in it. */
@@ -452,13 +467,14 @@ static void put_power(ProofWork *w, Noether *to, Expr remainder) {
   Expr parts[3] = {forces, change, remainder}, rest = expr_add_n(g, parts, 3);
   rest = states_substitute(w->e, shorten(w, rest));
   to->power = expr_add(g, rest, to->by_constraints);
+  judge_drift(w, to, expr_is_zero(g, change) && expr_is_zero(g, remainder));
   to->by_value = w->by_value;
   to->product = w->product;
   if (w->product && (to->is == INVARIANT || to->is == INVARIANT_UP_TO_F)) to->is = INVARIANCE_NOT_DECIDED;
 }
 
 int noether_moves_jumps(const Eqns *e, const Generator *by) {
-  if (discontinuities_of(e, e->m->lagrangian).n == 0) return 0;
+  if (discontinuities_of(e, e->lagrangian).n == 0) return 0;
   ProofWork w = begin(e, by);
   return moves_jumps(&w);
 }
@@ -468,17 +484,34 @@ Noether noether_prove(const Eqns *e, const Generator *by) {
   Noether out;
   judge(&w, &out);
   put_power(&w, &out, out.remainder);
-  out.charge = charge_of(&w, out.F);
-  out.scale = scale_of(&w, out.F);
+  Expr whole = out.potential ? expr_sub(w.g, out.F, out.potential) : out.F;
+  out.charge = charge_of(&w, whole);
+  out.scale = scale_of(&w, whole);
   out.jumps = discontinuities_of(e, out.charge).n > 0 || moves_jumps(&w);
   return out;
 }
 
 Noether noether_energy(const Eqns *e) {
   ProofWork w = begin(e, &(Generator){.tau = expr_int(e->g, -1)});
-  Expr zero = expr_int(w.g, 0), drift = expr_diff(w.g, w.m->lagrangian, w.m->time);
+  Expr zero = expr_int(w.g, 0), drift = expr_diff(w.g, w.L, w.m->time);
   Noether out = {.is = INVARIANT, .F = zero, .remainder = zero, .charge = e->energy, .scale = e->energy_scale};
   put_power(&w, &out, expr_neg(w.g, drift));
   out.jumps = e->energy_jumps;
   return out;
+}
+
+int noether_forces_are_potential(const Eqns *e) {
+  const unsigned varies = 1u << SYM_TIME | 1u << SYM_STATE | 1u << SYM_COORD | 1u << SYM_VEL;
+  const Model *m = e->m;
+  unsigned kinds = 0;
+  for (uint32_t i = 0; i < m->forces.n; i++) kinds |= expr_kinds(e->g, m->forces.at[i].f);
+  if (!(kinds & varies)) return 1;
+  ProofWork w = begin(e, &(Generator){.tau = expr_int(e->g, -1)});
+  Expr power = power_of_forces(&w);
+  for (uint32_t i = 0; i < w.n && m->dissipation; i++) {
+    Expr drag = expr_diff(w.g, m->dissipation, w.v[i]), part = expr_mul(w.g, drag, node(&w, w.v[i]));
+    power = expr_add(w.g, power, part);
+  }
+  power = shorten(&w, power);
+  return motion_verdict(e, power) == PROVED_ZERO || potential_of(&w, power) != 0;
 }

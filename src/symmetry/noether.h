@@ -11,6 +11,7 @@
 #pragma once
 
 #include "mech/eqns.h"
+#include "sym/verdict.h"
 
 typedef struct {
   const Expr *xi; /* [eqns_coordinates] in q, t and parameters; 0: nothing */
@@ -35,6 +36,8 @@ typedef struct {
   Expr charge;       /* in q, q', z, t */
   Expr scale;        /* sum |p_i xi_i| + |tau| (|p q'| + |L|) + |F|, the measure for a drift of the charge */
   Expr power;        /* dQ/dt, in q, q', z, t, inputs and multipliers; the number 0: Q is conserved */
+  Verdict drift;     /* the one judgement of conservation. PROVED_ZERO: power is 0 along motions; PROVED_NONZERO: not at a state */
+  Expr potential;    /* of all forces, where it completes the energy: Q contains it; 0: none */
   Expr by_constraints; /* power of the constraint forces, lambda^T (A xi + b tau); the number 0: none */
   uint32_t broken; /* first holonomic constraint, counted from 1 and no contact, that the generator does not preserve; 0: none */
   Expr breaks;     /* change of that constraint, A xi + c_t tau */
@@ -49,6 +52,9 @@ Noether noether_prove(const Eqns *e, const Generator *by);
 /* Whether the generator moves the surfaces where L jumps: delta L then has contributions that derivatives of its branches miss. */
 int noether_moves_jumps(const Eqns *e, const Generator *by);
 
-/* The energy as the charge of t -> t - s, F = 0: charge e->energy, power of forces, moving constraints and explicit time. Whether it is conserved:
- * e->conserves_energy. */
+/* The energy as the charge of t -> t - s, F = 0: p q' - L, and the potential of the forces if they have one; its power is that
+ * of forces, moving constraints and explicit time. */
 Noether noether_energy(const Eqns *e);
+
+/* Whether the forces outside L, less the dissipation, are constant, do no work, or have a potential. */
+int noether_forces_are_potential(const Eqns *e);

@@ -9,6 +9,9 @@
 
 /* --- cyclic coordinates --- */
 
+/* Past this many coordinates those absent from the text of L are cyclic, and those that nothing acts on are decided. */
+enum { PROVE_MOST = 20 };
+
 /* x_i -> x_i + s */
 static const Generator *shift(const Eqns *e, uint32_t i) {
   Expr *xi = ARENA_ARRAY(e->m->arena, Expr, e->n);
@@ -19,7 +22,6 @@ static const Generator *shift(const Eqns *e, uint32_t i) {
 }
 
 Indices noether_cyclic(const Eqns *e) {
-  enum { PROVE_MOST = 20 }; /* beyond, only those absent from the text of L */
   Indices all = {0};
   for (uint32_t i = 0; i < e->n; i++) {
     int absent = expr_is_zero(e->g, e->dLdq[i]);
@@ -29,20 +31,23 @@ Indices noether_cyclic(const Eqns *e) {
   return all;
 }
 
-/* Whether a force or a constraint acts on coordinate i. */
-static int is_pushed(const Eqns *e, uint32_t i) {
-  for (uint32_t k = 0; k < e->constraints.A.n; k++)
-    if (e->constraints.A.at[k].col == i) return 1;
-  return !expr_is_zero(e->g, e->Q[i]);
+/* Whether p_i is conserved. Where there are many coordinates a force or constraint on them counts as a change. */
+static Verdict drift_of_momentum(const Eqns *e, uint32_t i) {
+  int pushed = !expr_is_zero(e->g, e->Q[i]);
+  for (uint32_t k = 0; k < e->constraints.A.n; k++) pushed |= e->constraints.A.at[k].col == i;
+  return !pushed ? PROVED_ZERO : e->n > PROVE_MOST ? NOT_DECIDED : noether_prove(e, shift(e, i)).drift;
 }
 
 void show_cyclic(const Eqns *e, const char *before, StrBuf *out) {
+  static const char *const words[] = {
+    [PROVED_ZERO] = "is conserved", [PROVED_NONZERO] = "is changed by forces and constraints alone",
+    [NOT_DECIDED] = "can be changed by forces and constraints alone"};
   Indices all = noether_cyclic(e);
   for (uint32_t k = 0; k < all.n; k++) {
     Name x = e->m->coords.at[all.at[k]].name;
-    int pushed = is_pushed(e, all.at[k]), jumps = discontinuities_of(e, eqns_momenta(e)[all.at[k]]).n > 0;
-    sb_printf(out, "%scyclic coordinate: %s; L does not contain it, and p_%s is %s%s\n", before, x, x, pushed ? "changed by forces and constraints alone" : "conserved",
-              jumps ? " between jumps" : "");
+    const char *jumps = discontinuities_of(e, eqns_momenta(e)[all.at[k]]).n ? " between jumps" : "";
+    const char *is = words[drift_of_momentum(e, all.at[k])];
+    sb_printf(out, "%scyclic coordinate: %s; L does not contain it, and p_%s %s%s\n", before, x, x, is, jumps);
   }
 }
 

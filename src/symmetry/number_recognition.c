@@ -18,7 +18,7 @@ Choices choices_new(Arena *a, const Eqns *e, uint32_t attempt) {
   VEC(SymId) params = {0};
   VEC(Expr) roots = {0};
   uint32_t count = expr_symbol_count(g) + 1;
-  vec_push(a, &roots, e->m->lagrangian);
+  vec_push(a, &roots, e->lagrangian);
   for (uint32_t i = 0; i < e->constraints.n; i++) vec_push(a, &roots, e->constraints.r[i]);
   ExprList all = expr_topo(g, roots.at, roots.n);
   for (uint32_t i = 0; i < all.n; i++)

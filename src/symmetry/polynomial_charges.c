@@ -347,7 +347,7 @@ static const char *reason_against(const Eqns *e) {
   if (e->constraints.n) return "the model has constraints";
   if (!e->n && !e->m->hamiltonian) return "L is linear in velocities";
   if (e->m->states.n != 2 * e->m->pairs.n) return "the model has states beside its coordinates";
-  if (discontinuities_of(e, e->m->lagrangian).n) return "L is discontinuous";
+  if (discontinuities_of(e, e->lagrangian).n) return "L is discontinuous";
   return e->singular_mass ? "the mass matrix is singular" : NULL;
 }
 

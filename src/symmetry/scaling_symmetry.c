@@ -26,7 +26,7 @@ static SymId v_of(const ScalingSearch *w, uint32_t i) { return w->e->m->coords.a
 static const long double *exponents(ScalingSearch *w, const long double *parameters, uint32_t turn) {
   enum { SPARE_ROWS = 8 };
   ExprGraph *g = w->g;
-  Expr L = w->e->m->lagrangian, *roots = ARENA_ARRAY(w->scratch, Expr, 2 + 2 * (size_t)w->n);
+  Expr L = w->e->lagrangian, *roots = ARENA_ARRAY(w->scratch, Expr, 2 + 2 * (size_t)w->n);
   uint32_t n = w->n, width = n + 2, rows = width + SPARE_ROWS, count = expr_symbol_count(g) + 1;
   long double *m = ARENA_ARRAY(w->scratch, long double, (size_t)rows * width), *symbols = ARENA_ARRAY(w->scratch, long double, count);
   long double *out = ARENA_ARRAY(w->scratch, long double, 2 + 2 * (size_t)n);
@@ -57,7 +57,7 @@ static const long double *exponents(ScalingSearch *w, const long double *paramet
 /* Whether delta L = kappa L, term by term: each has the same dimension. */
 static int is_proved(ScalingSearch *w) {
   ExprGraph *g = w->g;
-  Expr L = w->e->m->lagrangian;
+  Expr L = w->e->lagrangian;
   uint32_t n = w->n;
   SymId *syms = ARENA_ARRAY(w->scratch, SymId, 2 * (size_t)n + 1);
   Expr *slope = ARENA_ARRAY(w->scratch, Expr, 2 * (size_t)n + 1);
@@ -102,7 +102,7 @@ static void scaling_work(Arena *scratch, void *data) {
 
 int noether_scaling(const Eqns *e, Scaling *found) {
   ScalingSearch w = {.e = e, .g = e->g, .n = e->n, .out = found};
-  if (!e->n || e->constraints.n || e->m->states.n || expr_kinds(e->g, e->m->lagrangian) & 1u << SYM_INPUT) return 0;
+  if (!e->n || e->constraints.n || e->m->states.n || expr_kinds(e->g, e->lagrangian) & 1u << SYM_INPUT) return 0;
   for (uint32_t i = 0; i < e->n; i++)
     if (!expr_is_zero(e->g, e->Q[i])) return 0;
   arena_with_scratch(expr_arena(e->g), scaling_work, &w);

@@ -277,7 +277,7 @@ printf 'model rotor\ncoord q periodic\nmomentum p of q\nhamiltonian = p^2/2\nkic
 check "kicks are told" told 0 "kicks, events or impacts change the state: the actions are those of the motion between them" "$TMP/rotor.lag" p=1
 check "constraints" told 1 "not yet: brackets of a model with constraints" models/cartesian_pendulum.lag
 check "friction is told" told 0 "forces stand outside H: the actions are those of the motion without them" models/damped_oscillator.lag
-check "explicit time is told" told 0 "the energy is not conserved: the actions are those of the start, all else held" "$TMP/slow.lag"
+check "explicit time is told" told 0 "; the actions are those of the start, all else held" "$TMP/slow.lag"
 empty "a frequency that would need the others' constants is not printed" "$("$LAGC" action "$TMP/spherical.lag" | grep '^th.*omega')"
 
 # ---- JSON ----

@@ -13,9 +13,9 @@
 #include "symmetry/charges.h"
 #include "syntax/parse.h"
 
-typedef enum { AGREES, UNDECIDED, REFUSED, DISAGREES, VERDICTS } Verdict;
+typedef enum { AGREES, UNDECIDED, REFUSED, DISAGREES, OUTCOMES } Outcome;
 
-static Verdict judge(Arena *a, Diags *diags, Sources *sources, const char *text) {
+static Outcome judge(Arena *a, Diags *diags, Sources *sources, const char *text) {
   Ast *ast = ast_new(a, interner_new(a), sources, diags);
   if (!parse(ast, source_add(sources, "random.lag", text, strlen(text)))) return REFUSED;
   Model *m = model_build(ast, &(ModelChoice){0});
@@ -31,13 +31,13 @@ static Verdict judge(Arena *a, Diags *diags, Sources *sources, const char *text)
   return told.states ? AGREES : UNDECIDED;
 }
 
-static Verdict check_one(uint64_t seed, uint64_t number) {
+static Outcome check_one(uint64_t seed, uint64_t number) {
   char *text = random_model(seed, number);
   ArenaConfig config = {.max_bytes = (size_t)1 << 30};
   Arena *a = arena_new(&config);
   jmp_buf out_of_memory;
   if (!text || !a) exit(2);
-  Verdict v = REFUSED;
+  Outcome v = REFUSED;
   if (!setjmp(out_of_memory)) {
     arena_guard(a, &out_of_memory);
     Sources *sources = sources_new(a);
@@ -57,7 +57,7 @@ static Verdict check_one(uint64_t seed, uint64_t number) {
 int main(int argc, char **argv) {
   if (argc != 4) return fprintf(stderr, "usage: check SEED FROM TO\n"), 2;
   uint64_t seed = strtoull(argv[1], NULL, 10), from = strtoull(argv[2], NULL, 10), to = strtoull(argv[3], NULL, 10);
-  uint64_t n[VERDICTS] = {0};
+  uint64_t n[OUTCOMES] = {0};
   for (uint64_t i = from; i <= to; i++) n[check_one(seed, i)]++;
   printf("%llu agree, %llu with nothing decided, %llu refused, %llu disagree; seed %llu\n", (unsigned long long)n[AGREES], (unsigned long long)n[UNDECIDED],
          (unsigned long long)n[REFUSED], (unsigned long long)n[DISAGREES], (unsigned long long)seed);

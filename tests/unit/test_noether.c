@@ -151,11 +151,11 @@ static void constrained(void **state) {
   proves("model s\ncoord x, y, z\nparam g = 9.81, l = 1 > 0\nlagrangian = (x'^2 + y'^2 + z'^2)/2 - g*z\nconstraint rod: x^2 + y^2 + z^2 = l^2\n"
          "observe xi_x = -y\nobserve xi_y = x\nobserve Q = x*y' - y*x'\nobserve P = 0\n",
          INVARIANT);
-  proves("model s\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2\nconstraint slope: y = 2*x\nobserve xi_x = 1\nobserve P = -2*lambda(slope)\n", INVARIANT);
+  proves("model s\ncoord x, y\nlagrangian = (x'^2 + y'^2)/2 - y\nconstraint slope: y = 2*x\nobserve xi_x = 1\nobserve P = -2*lambda(slope)\n", INVARIANT);
   proves("model s\ncoord x, y\nparam w = 1\nlagrangian = (x'^2 + y'^2)/2\nconstraint arm: x*sin(w*t) = y*cos(w*t)\n"
          "observe tau = -1\nobserve P = -lambda(arm)*w*(x*cos(w*t) + y*sin(w*t))\n",
          INVARIANT);
-  proves("model s\ncoord x, y, a\nparam w = 1\nlagrangian = (x'^2 + y'^2 + a'^2)/2\nconstraint belt: x' = a' + w\n"
+  proves("model s\ncoord x, y, a\nparam w = 1\nlagrangian = (x'^2 + y'^2 + a'^2)/2 - x\nconstraint belt: x' = a' + w\n"
          "observe tau = -1\nobserve P = lambda(belt)*w\n",
          INVARIANT);
 }

@@ -1,0 +1,214 @@
+/* Linear algebra on normal forms where the system is small; otherwise one row of the equations after another reduces the
+ * difference. Numbers at states on the constraints refute, and never prove. */
+#include "mech/motion_proof.h"
+
+#include <math.h>
+
+#include "base/tolerance.h"
+#include "mech/constrain.h"
+#include "mech/states.h"
+#include "sym/prove.h"
+#include "sym/diff.h"
+#include "sym/simplify.h"
+
+/* --- by solving --- */
+
+static Expr with_definitions(const Eqns *e, Expr x) {
+  return e->definitions ? expr_substitute(e->g, x, e->definitions, expr_symbol_count(e->g) + 1, "") : x;
+}
+
+/* Proves that the difference is 0 by solving M q'' - A^T lambda = f, A q'' = demand for accelerations and multipliers. Redundant constraints leave
+ * that undecided; so would contacts, whose rows are zero while they are open and are left out. */
+static Verdict prove_by_solving(const Eqns *e, Expr difference) {
+  const Model *m = e->m;
+  const Constraints *c = &e->constraints;
+  ExprGraph *g = e->g;
+  uint32_t n = e->n, w = n, *row = ARENA_ARRAY(m->arena, uint32_t, c->n + 1);
+  for (uint32_t i = 0; i < c->n; i++) row[i] = UINT32_MAX;
+  for (uint32_t k = 0; k < c->A.n; k++)
+    if (row[c->A.at[k].row] == UINT32_MAX && !expr_is_zero(g, with_definitions(e, c->A.at[k].e))) row[c->A.at[k].row] = w++;
+  Expr *M = ARENA_ARRAY(m->arena, Expr, (size_t)w * w + 1), *f = ARENA_ARRAY(m->arena, Expr, w + 1);
+  SymId *acc = ARENA_ARRAY(m->arena, SymId, w + 1);
+  for (size_t i = 0; i < (size_t)w * w; i++) M[i] = expr_int(g, 0);
+  for (uint32_t i = 0; i < n; i++) {
+    acc[i] = m->coords.at[i].a;
+    f[i] = c->n ? with_definitions(e, e->system.f[i]) : e->f[i];
+    for (uint32_t k = 0; k < n; k++) M[i * w + k] = eqns_mass(e, i, k);
+  }
+  for (uint32_t i = 0; i < c->n; i++) {
+    if (row[i] == UINT32_MAX) continue;
+    acc[row[i]] = c->of[i]->multiplier;
+    f[row[i]] = with_definitions(e, c->demand[i]);
+  }
+  for (uint32_t k = 0; k < c->A.n; k++) {
+    uint32_t i = row[c->A.at[k].row], j = c->A.at[k].col;
+    if (i == UINT32_MAX) continue;
+    Expr x = with_definitions(e, c->A.at[k].e);
+    M[i * w + j] = x;
+    M[j * w + i] = expr_neg(g, x);
+  }
+  return prove_solves(g, w, M, f, acc, difference, NULL);
+}
+
+/* --- by a combination of rows --- */
+
+typedef struct {
+  const Eqns *e;
+  ExprGraph *g;
+  VEC(Expr) row;      /* each is 0 along motions, and linear in the unknowns */
+  VEC(SymId) unknown; /* accelerations, multipliers, then velocities of a model with constraints */
+  int tries;          /* steps still allowed */
+} RowSearch;
+
+static void add_product(RowSearch *w, Expr *row, Expr factor, SymId unknown) {
+  Expr part = expr_mul(w->g, with_definitions(w->e, factor), expr_symbol(w->g, unknown)->node);
+  *row = expr_add(w->g, *row, part);
+}
+
+/* Rows M q'' - f, with the multipliers' forces in f. */
+static void add_motion_rows(RowSearch *w) {
+  const Eqns *e = w->e;
+  Expr *row = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) row[i] = expr_neg(w->g, with_definitions(e, e->f[i]));
+  for (uint32_t k = 0; k < e->mass.n; k++) {
+    const MassEntry *x = &e->mass.at[k];
+    add_product(w, &row[x->row], x->e, e->m->coords.at[x->col].a);
+    if (x->row != x->col) add_product(w, &row[x->col], x->e, e->m->coords.at[x->row].a);
+  }
+  for (uint32_t i = 0; i < e->n; i++) {
+    vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, row[i]));
+    vec_push(e->m->arena, &w->unknown, e->m->coords.at[i].a);
+  }
+}
+
+/* Rows A q'' - demand and r. */
+static void add_constraint_rows(RowSearch *w) {
+  const Eqns *e = w->e;
+  const Constraints *c = &e->constraints;
+  Expr *row = ARENA_ARRAY(e->m->arena, Expr, c->n + 1);
+  for (uint32_t k = 0; k < c->n; k++) row[k] = expr_neg(w->g, with_definitions(e, c->demand[k]));
+  for (uint32_t i = 0; i < c->A.n; i++)
+    add_product(w, &row[c->A.at[i].row], c->A.at[i].e, e->m->coords.at[c->A.at[i].col].a);
+  for (uint32_t k = 0; k < c->n; k++) {
+    if (contact_of_constraint(e->m, c->of[k])) continue;
+    vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, row[k]));
+    vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, with_definitions(e, c->r[k])));
+    vec_push(e->m->arena, &w->unknown, c->of[k]->multiplier);
+  }
+  for (uint32_t i = 0; i < e->n && c->n; i++) vec_push(e->m->arena, &w->unknown, e->m->coords.at[i].v);
+}
+
+/* Whether x divides by what may be 0 along a motion: then a row times x proves nothing there. */
+static int may_be_singular(ExprGraph *g, Expr x) {
+  const unsigned moves = 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_TIME | 1u << SYM_STATE | 1u << SYM_INPUT;
+  ExprList all = expr_topo(g, &x, 1);
+  for (uint32_t i = 0; i < all.n; i++)
+    for (uint32_t k = 0; expr_op(g, all.at[i]) == EX_PROD && k < expr_pairs(g, all.at[i], EX_PROD); k++) {
+      Num power;
+      Expr base = expr_pair(g, all.at[i], EX_PROD, k, &power);
+      if (num_sign(power) < 0 && expr_kinds(g, base) & moves && !expr_is_nonzero(g, base)) return 1;
+    }
+  return 0;
+}
+
+/* x less the multiple of a row that takes the unknown out of it; 0: the row lacks it, or something remains. */
+static Expr reduced(RowSearch *w, Expr x, Expr slope, Expr row, SymId unknown) {
+  Expr lead = expr_diff(w->g, row, unknown);
+  if (expr_is_zero(w->g, lead) || expr_contains_sym(w->g, lead, unknown) || w->tries-- <= 0) return 0;
+  Expr times = simplify(w->g, expr_div(w->g, slope, lead)), taken = expr_mul(w->g, times, row);
+  Expr left = simplify(w->g, expr_sub(w->g, x, taken));
+  return expr_contains_sym(w->g, left, unknown) || may_be_singular(w->g, times) ? 0 : left;
+}
+
+/* Whether x is a combination of at most MOST rows; the unknowns go in order. */
+static int is_combination(RowSearch *w, Expr x, uint32_t depth) {
+  enum { MOST = 4 };
+  uint32_t u = 0;
+  while (u < w->unknown.n && !expr_contains_sym(w->g, x, w->unknown.at[u])) u++;
+  if (u == w->unknown.n) return prove_zero(w->g, x, NULL) == PROVED_ZERO;
+  SymId unknown = w->unknown.at[u];
+  Expr slope = expr_diff(w->g, x, unknown);
+  if (depth == MOST || expr_contains_sym(w->g, slope, unknown)) return 0;
+  for (uint32_t k = 0; k < w->row.n; k++) {
+    Expr left = expr_contains_sym(w->g, w->row.at[k], unknown) ? reduced(w, x, slope, w->row.at[k], unknown) : 0;
+    if (left && is_combination(w, left, depth + 1)) return 1;
+  }
+  return 0;
+}
+
+static int prove_by_rows(const Eqns *e, Expr x) {
+  enum { TRIES = 60, ROWS_MOST = 200, LONGEST = 20000 };
+  uint32_t distinct;
+  RowSearch w = {.e = e, .g = e->g, .tries = TRIES};
+  if (!e->mass_known || e->n + e->constraints.n > ROWS_MOST || expr_tree_size(e->g, x, &distinct) > LONGEST) return 0;
+  add_motion_rows(&w);
+  add_constraint_rows(&w);
+  return is_combination(&w, simplify(e->g, expr_expand_defs(e->g, x)), 0);
+}
+
+Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs) {
+  Expr difference = expr_sub(e->g, lhs, rhs);
+  Expr closed = states_substitute(e, with_definitions(e, difference));
+  Verdict v = prove_by_solving(e, closed);
+  int open = v == NOT_DECIDED || (v == PROVED_NONZERO && e->constraints.n); /* it may be 0 on the constraints */
+  return open && prove_by_rows(e, closed) ? PROVED_ZERO : v;
+}
+
+/* --- by value --- */
+
+/* 1: x is rounding at a state that obeys the constraints; 0: it is more; -1: it has no value there. */
+static int is_small(const Eqns *e, Expr x, const long double *symbols, long double tiny) {
+  long double bound, value = value_with_bound(e->g, x, symbols, NULL, &bound), size = 0;
+  if (!isfinite(value)) return -1;
+  for (uint32_t i = 0; i < expr_pairs(e->g, x, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(e->g, x, EX_SUM, i, &c);
+    size += fabsl((long double)num_value(c) * value_with_bound(e->g, term, symbols, NULL, &bound));
+  }
+  return fabsl(value) <= tiny * fmaxl(size, 1);
+}
+
+/* Scales coordinates by powers of two and flips unknown signs by the bits of the seed: where constraints have several branches, the nearest states
+ * then lie on several of them. */
+static void spread(const Eqns *e, uint32_t seed, long double *symbols) {
+  static const int powers[] = {0, 2, -3, 4, 1, 7, -6, 3};
+  for (uint32_t i = 0; i < eqns_coordinates(e); i++) {
+    const Symbol *q = expr_symbol(e->g, eqns_coordinate(e, i));
+    symbols[eqns_coordinate(e, i)] = ldexpl(symbols[eqns_coordinate(e, i)], powers[seed % 8]);
+    if (q->sign == SIGN_UNKNOWN && (seed / 8 * 5 + seed) >> (i + seed) % 8 & 1) symbols[eqns_coordinate(e, i)] *= -1;
+  }
+}
+
+/* 1: |x| is below `tiny` at random states that obey the constraints, near ones first, then from starts that are far apart;
+ * 0: it is not at one of them; -1: too few were found. A large x at a far state is judged by the size of its terms. */
+static int vanishes_by_value(const Eqns *e, Expr x, long double tiny) {
+  enum { STATES = 12, NEAR = 4 * STATES, ALL = NEAR + 64 };
+  long double *symbols = ARENA_ARRAY(e->m->arena, long double, expr_symbol_count(e->g) + 1);
+  StateSolver *solver = states_new(e);
+  uint32_t seen = 0;
+  for (uint32_t seed = 1; seed <= ALL; seed++) {
+    if (seed <= NEAR && seen == STATES) continue;
+    sample_state(e->g, seed, symbols);
+    if (seed > NEAR) spread(e, seed - NEAR - 1, symbols);
+    if (!states_complete(solver, symbols)) continue;
+    int small = is_small(e, x, symbols, tiny);
+    if (!small) return 0;
+    seen += small > 0;
+  }
+  return seen >= STATES ? 1 : -1;
+}
+
+int motion_vanishes(const Eqns *e, Expr x) {
+  const long double tiny = LONG_TOLERANCE(1e-14L); /* states obey to 1e-16; terms of x have size 1 */
+  return vanishes_by_value(e, x, tiny) == 1;
+}
+
+Verdict motion_verdict(const Eqns *e, Expr x) {
+  enum { LARGEST = 64 };
+  const long double seen = 1e-8L; /* multipliers of a badly conditioned state have half of 19 digits */
+  if (expr_is_zero(e->g, x)) return PROVED_ZERO;
+  if (e->constraints.n == e->m->contacts.n) return prove_nonzero(e->g, x) ? PROVED_NONZERO : prove_zero(e->g, x, NULL);
+  if (e->n + e->constraints.n > LARGEST) return prove_zero(e->g, x, NULL) == PROVED_ZERO ? PROVED_ZERO : NOT_DECIDED;
+  if (vanishes_by_value(e, x, seen) == 0) return PROVED_NONZERO;
+  return prove_by_motion(e, x, expr_int(e->g, 0)) == PROVED_ZERO ? PROVED_ZERO : NOT_DECIDED;
+}

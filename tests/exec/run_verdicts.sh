@@ -1,0 +1,148 @@
+#!/bin/sh
+# One fact, one judgement: what check, derive, noether, modes, run and emitted flags say of one model must agree. A contradiction
+# is a fault, and so is a conserved energy that drifts in a run. verdicts/ has models whose verdicts are known by hand.
+. tests/tap.sh
+models=tests/exec/verdicts
+export XDG_CACHE_HOME="${XDG_CACHE_HOME:-$TMP}"
+
+# word FILE: conserved, changes or undecided, of the sentence about the energy; nothing where there is none.
+word() {
+  sed -n 's/.*not decided whether the energy.*/undecided/p; t
+    s/.*energy is conserved.*/conserved/p; s/.*energy changes.*/changes/p' "$1" | head -n 1
+}
+# sentence FILE: from "energy" or "not decided" to the end of its line
+sentence() {
+  sed -n 's/^.*\(not decided whether the energy.*\)$/\1/p; t
+    s/^.*\(energy is conserved.*\|energy changes.*\)$/\1/p' "$1" | head -n 1
+}
+# same WHAT A B
+same() { [ "$2" = "$3" ] || echo "$1: $2 | $3"; }
+
+# symmetries: those that noether lists, against check
+symmetries() {
+  "$LAGC" noether "$m" "$s" >"$o/noether" 2>/dev/null
+  "$LAGC" noether "$m" "$s" --format json >"$o/json" 2>/dev/null
+  same "check and noether" "$(sentence "$o/check")" "$(sentence "$o/noether")"
+  same "check and noether's JSON" "$said" "$(sed -n '1s/.*"energy": "\([a-z ]*\)".*/\1/p' "$o/json" | sed 's/not decided/undecided/')"
+  same "cyclic in check and noether" "$(grep '^cyclic' "$o/check")" "$(grep '^cyclic' "$o/noether")"
+  same "cyclic in check and JSON" "$(sed -n 's/^cyclic coordinate: \([^;]*\);.*/\1/p' "$o/check" | paste -sd ' ' -)" "$(sed -n '1s/.*"cyclic": \[\(.*\)\],$/\1/p' "$o/json" | tr -d '",')"
+  sed -n 's/^cyclic coordinate: \([^;]*\);.* is conserved.*/\1/p' "$o/check" | while read -r x; do
+    grep -F "\"delta\": {\"$x\": \"1\"}, \"delta_t\": \"0\"" "$o/json" | grep '"is": "changes"' | sed "s/^/p_$x conserved in check, not in noether: /"
+  done
+}
+
+# quick MODEL SCENE: contradictions between check, derive, noether and emitted C, without a simulator
+quick() {
+  m=$1 s=$2 o=$TMP/words
+  mkdir -p "$o"
+  "$LAGC" check --allow-numeric "$m" "$s" >"$o/check" 2>/dev/null
+  said=$(word "$o/check")
+  [ -n "$said" ] || return 0
+  "$LAGC" derive "$m" "$s" >"$o/derive" 2>/dev/null
+  "$LAGC" emit "$m" "$s" >"$o/c" 2>/dev/null
+  same "check and derive" "$(sentence "$o/check")" "$(sentence "$o/derive")"
+  [ "$(sed -n '1s/^\([0-9]*\) coordinate.*/\1/p' "$o/check")0" -gt "${SLOW:+9}30" ] || symmetries # the search takes a second with more than 3 coordinates
+  rate=$(grep -c '^  d[EH]/dt = ' "$o/derive")
+  grep -q 'L jumps' "$o/check" || case $said:$rate in
+  conserved:0 | changes:[1-9]* | undecided:*) ;;
+  *) echo "check: $said; derive prints $rate rates" ;;
+  esac
+  grep -q "L depends on an input" "$o/check" && [ "$said" != undecided ] && echo "unknown rate, yet $said"
+  flags=$(sed -n 's/^ *\.flags = \(LAG_[A-Z_| ]*\),$/\1/p' "$o/c")
+  case $flags in
+  *LAG_CONSERVES_ENERGY*) same "emitted flag" conserved "$said" ;;
+  *) grep -q 'while inputs follow' "$o/check" || [ "$said" != conserved ] || echo "no flag of a conserved energy" ;;
+  esac
+  charge=$(sed -n 's/^  {"energy", "[^"]*", \(LAG_.*\|0\)},$/\1/p' "$o/c")
+  case $charge in
+  *LAG_CONSERVED*) same "emitted charge" conserved "$said" ;;
+  ?*) [ "$said" != conserved ] || echo "the emitted charge is not conserved" ;;
+  esac
+  mass=$(sed -n 's/.*mass matrix \([a-z]*\).*/\1/p' "$o/check" | head -n 1)
+  case $mass:$flags in
+  constant:*LAG_CONSTANT_MASS* | :*) ;;
+  constant:* | *:*LAG_CONSTANT_MASS*) echo "M is $mass, flags are $flags" ;;
+  esac
+}
+
+# value NAME FILE: of JSON
+value() { sed -n "s/.*\"$1\": \\([^,}]*\\)[,}].*/\\1/p" "$2" | head -n 1; }
+
+# full MODEL SCENE: run and modes, too; a conserved energy drifts by less than 1e-5 in a run with a tolerance of 1e-9
+full() {
+  quick "$1" "$2"
+  [ -n "$said" ] || return 0
+  timeout 20 "$LAGC" run "$m" "$s" --method dop853 --tol 1e-9 --until "${3:-0.5}" --json >"$o/run" 2>/dev/null ||
+    return 0 # events or constraints may end it, or the scene is of nanoseconds
+  "$LAGC" modes "$m" "$s" >"$o/modes" 2>&1
+  is=$(sed -n 's/.*"charges": {"energy": {"is": "\([a-z ]*\)".*/\1/p' "$o/run")
+  drift=$(value energy_drift "$o/run")
+  case $said:$is in
+  conserved:conserved | changes:balanced | changes:"not known" | undecided:balanced | undecided:"not known") ;;
+  *) echo "check says $said, run $is" ;;
+  esac
+  case $is:$drift in
+  conserved:null) echo "conserved without a drift" ;;
+  conserved:*)
+    close_to "$drift" 0 1e-5 >/dev/null || close_to "$(value energy_drift_absolute "$o/run")" 0 1e-12 >/dev/null ||
+      echo "conserved, and drifts by $drift"
+    ;;
+  *:null) ;;
+  *) echo "a drift of an energy that is $is" ;;
+  esac
+  case $said:$(tr '\n' ' ' <"$o/modes") in
+  changes:*"which is conserved"* | undecided:*"which is conserved"* | conserved:*"no energy is known"*)
+    echo "check says $said, modes: $(grep -m1 energy "$o/modes")"
+    ;;
+  esac
+  case $flags:$(cat "$o/modes") in *LAG_AUTONOMOUS*:*"t stands in its equations"*) echo "modes sees t in equations without it" ;; esac
+}
+
+# ---- verdicts that are known
+# is_said MODEL WORD: check's verdict, and no contradiction
+is_said() {
+  faults=$(quick "$models/$1.lag" "$(sed -n 's/^scene \([a-z]*\).*/\1/p' "$models/$1.lag" | head -n 1)")
+  is "$1: $3" "$2" "$(word "$TMP/words/check")"
+  empty "$1: all say so" "$faults"
+}
+is_said bead_on_parabola conserved "t drops out of L"
+is_said turntable conserved "t drops out of L: as multiplied out by hand"
+is_said two_bodies_turning conserved "t drops out below roots"
+is_said magnetic_force conserved "q r' x B does no work"
+is_said coriolis_force conserved "one force does no work, the other has a potential"
+is_said no_force conserved "forces that are 0"
+is_said moving_rod conserved "a multiplier that is 0"
+is_said normal_force conserved "a force normal to the constraint"
+is_said constant_force conserved "a constant force"
+is_said kepler_by_force conserved "Newton's force"
+is_said well_by_force conserved "exp(u) du/dx"
+is_said shaken changes "a constraint that does work"
+is_said curl changes "a force with a curl"
+is_said torque changes "a torque on an angle has no potential with one value"
+is_said two_branches undecided "zero on one branch of a constraint alone"
+is "the symmetries of the turntable are those of its expanded form" "8 8" "$(for f in turntable turntable_expanded; do "$LAGC" noether $models/$f.lag | sed -n 's/^found: \([0-9]*\).*/\1/p'; done | paste -sd ' ' -)"
+empty "run and modes, a constant force" "$(full $models/constant_force.lag hang 1)"
+check "it is stable" grep -q '^stable: the energy, which is conserved, has a minimum here' "$TMP/words/modes"
+empty "run and modes, a rotating wire" "$(full $models/bead_on_parabola.lag slow 1)"
+check "it is stable" grep -q '^stable: the energy, which is conserved, has a minimum here' "$TMP/words/modes"
+"$LAGC" check $models/rows_of_motion.lag >"$TMP/rows" 2>/dev/null
+is "rows of the equations of motion, and combinations, are proved; a false one is not" "9 1" \
+  "$(grep -c ': proved$' "$TMP/rows") $(grep -c ' (wrong): refuted$' "$TMP/rows")"
+
+# ---- the gallery, and random models: a few of them quickly, all in `make test-long`, with runs and modes of the gallery and of a tenth
+scenes() { sed -n 's/^scene \([A-Za-z_0-9]*\).*/\1/p' "$1"; }
+how=quick
+[ -z "${SLOW:-}" ] || how=full
+few=1 count=4
+[ -z "${SLOW:-}" ] || few=3 count=500
+for m in models/*.lag; do
+  one_of 24 || continue
+  for s in $(scenes "$m" | head -n $few); do empty "$(basename "$m") $s" "$($how "$m" "$s")"; done
+done
+"${CC%% *}" -O1 -w -o "$TMP/generate" tests/random/generate.c tests/random/model.c && "$TMP/generate" 36 1 $count "$TMP"
+for m in "$TMP"/r*.lag; do
+  how=quick
+  case $m in *0.lag) [ -z "${SLOW:-}" ] || how=full ;; esac
+  empty "random model $(basename "$m" .lag) of seed 36" "$($how "$m" one 0.05)"
+done
+tap_end
