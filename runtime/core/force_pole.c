@@ -3,7 +3,8 @@
  * methods stop in front of a pole by themselves, as their steps become too small.
  *
  * A step is examined where the rate of change of a velocity or a state is unlike that of the two steps before: the second difference is a tenth
- * of the largest change (in a resolved motion it is (w step)^2 of it), or the change is a peak, four times that of two steps before. Then the
+ * of the largest change (in a resolved motion it is (w step)^2 of it), or the change is a peak, four times that of two steps before. Evaluations are
+ * bounded: at most a quarter as many as steps, and rates that are small beside their recent peak, as where a force goes through 0, a sixteenth. Then the
  * straight line between the step's ends is bisected towards the end with the larger derivative. Across a pole of order p, the interval's length
  * times the smaller derivative at its ends grows by 2^(p-1) per bisection; for anything finite, however steep, it is halved from some bisection
  * on, and at the integrable end of a square root divided by sqrt 2. */
@@ -13,19 +14,20 @@
 #include "core/core.h"
 #include "core/rhs.h"
 
-enum { TURNS = 24, LEAST_TURNS = 12, BACK = 4 };
+enum { TURNS = 24, LEAST_TURNS = 12, BACK = 4, FREE_CALLS = 12, CALLS_FIRST = 64 };
 
 /* Updates the rates of change of components nq to n; returns the component whose rate is rough (see above) and largest relative to its size; -1:
- * none. */
-static int find_rough(lag_sim *s, double t) {
+ * none. slight: rates that are small beside their recent peak count, too. */
+static int find_rough(lag_sim *s, double t, int slight) {
   const double rough = 0.1, rounding = 1e-9, steep = 4, fading = 0.99;
   int nq = s->pb.nq, n = s->pb.n, which = -1;
   double most = 0, dt = t - s->run->t, *one = s->rate_history, *two = one + n, *peak = two + n;
   for (int i = nq; i < n; i++) {
     double pace = (s->y[i] - s->now[i]) / dt, size = fabs(pace), bend = fabs(pace - 2 * one[i] + two[i]), faded = fading * peak[i];
+    double large = slight || isnan(faded) ? 0 : faded;
     int grows = size > steep * fabs(two[i]) && size > peak[i];
     if (grows || !(bend <= rough * size)) { /* NaN after the first two steps: rates not known yet */
-      double largest = fmax(size, fmax(fabs(one[i]), fabs(two[i]))), part = (isnan(bend) ? largest : bend) / fmax(fabs(s->now[i]), DBL_MIN);
+      double largest = fmax(fmax(size, large), fmax(fabs(one[i]), fabs(two[i]))), part = (isnan(bend) ? largest : bend) / fmax(fabs(s->now[i]), DBL_MIN);
       int counts = (grows || !(bend <= rough * largest)) && largest * fabs(dt) > rounding * fabs(s->now[i]) && part > most;
       most = counts ? part : most;
       which = counts ? i : which;
@@ -68,11 +70,11 @@ static double find_pole(lag_sim *s, double t, int i) {
 
 int lag_crosses_force_pole(lag_sim *s, double t) {
   lag_problem *pb = &s->pb;
-  int i = s->steps_equal && !pb->model->constraints ? find_rough(s, t) : -1;
-  if (i < 0) return LAG_OK;
-  double calls = pb->rhs_calls, pole = find_pole(s, t, i);
-
-  pb->rhs_calls = calls;
+  double *spent = &s->run->pole_calls, steps = s->run->steps, calls = pb->rhs_calls;
+  int i = s->steps_equal && !pb->model->constraints ? find_rough(s, t, *spent <= FREE_CALLS + steps / 16) : -1;
+  if (i < 0 || *spent > CALLS_FIRST + steps / 4) return LAG_OK;
+  double pole = find_pole(s, t, i);
+  *spent += pb->rhs_calls - calls;
   if (isnan(pole)) return LAG_OK;
   char name[128];
   lag_sim_state_info(s, i, name, sizeof name, NULL, 0);
