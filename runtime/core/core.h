@@ -108,6 +108,7 @@ struct lag_sim {
   double *count;         /* [nev] */
   double *first, *last;  /* [nev] times of firing, where count is not 0 */
   double *interval, *shorter; /* [nev] interval between the last two firings; number of intervals in a row, each shorter than the one before */
+  double *flight, *skipped; /* [nev] first interval of the present series of shorter ones; time of the flights that were taken as rest */
   double *crossed, *slips, *slid, *slid_since; /* [nmodes] times that a surface was crossed, slides begun; their time, start of the present mode */
   double *mon_first, *mon_peak; /* [nmonitors] first value and largest deviation of a monitored output */
   double *charge_block;
