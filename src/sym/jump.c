@@ -248,3 +248,27 @@ ExprJumps expr_jumps(ExprGraph *g, Expr x) {
   for (uint32_t i = 0; i < all.n; i++) try_source(&s, &all.at[i]);
   return (ExprJumps){s.found.at, s.found.n};
 }
+
+/* Function that is 0 where node e jumps or has a corner; 0: e has neither. */
+static Expr zero_at_jump(ExprGraph *g, Expr e) {
+  switch (expr_op(g, e)) {
+    case EX_ABS: case EX_SIGN: return expr_arg(g, e, 0);
+    case EX_FLOOR: return expr_sub(g, expr_arg(g, e, 0), e);
+    case EX_LT: case EX_LE: case EX_EQ: case EX_MIN: case EX_MAX: return expr_sub(g, expr_arg(g, e, 0), expr_arg(g, e, 1));
+    default: return 0;
+  }
+}
+
+Expr expr_between_jumps(ExprGraph *g, const Expr *roots, uint32_t n, const SymId *symbols, uint32_t nsymbols) {
+  ExprList l = expr_topo(g, roots, n);
+  Expr all = 0, zero = expr_int(g, 0);
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr u = zero_at_jump(g, l.at[i]);
+    int moves = 0;
+    for (uint32_t k = 0; u && k < nsymbols && !moves; k++) moves = expr_contains_sym(g, u, symbols[k]);
+    if (!moves || expr_is_nonzero(g, u)) continue;
+    Expr apart = expr_fn(g, EX_NOT, expr_fn2(g, EX_EQ, u, zero));
+    all = all ? expr_fn2(g, EX_AND, all, apart) : apart;
+  }
+  return all;
+}

@@ -9,6 +9,7 @@
 struct BracketValue {
   Expr value; /* in q, q', t, as the equations have them */
   Expr shown; /* in q, p, t */
+  Expr between; /* condition of being between jumps of f and g, as value; 0: they have none */
 };
 
 /* Values of the n names that stand for charges. */
@@ -42,6 +43,9 @@ Expr poisson_bracket(ExprGraph *g, Expr f, Expr h, const SymId *q, const SymId *
 
 /* Fills e->brackets, in the order of Model.brackets. 0, reported, where there is no closed form. */
 int expression_brackets_derive(Eqns *e, const ChargeNames *charges);
+
+/* Condition under which all brackets in x are between jumps of what they contain; 0: none has any. */
+Expr expression_brackets_between(const Eqns *e, Expr x);
 
 /* x with the symbols of brackets replaced by their values, or, in_momenta, by their forms in q and p. */
 Expr expression_brackets_substitute(const Eqns *e, Expr x, int in_momenta);
