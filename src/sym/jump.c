@@ -249,26 +249,39 @@ ExprJumps expr_jumps(ExprGraph *g, Expr x) {
   return (ExprJumps){s.found.at, s.found.n};
 }
 
-/* Function that is 0 where node e jumps or has a corner; 0: e has neither. */
-static Expr zero_at_jump(ExprGraph *g, Expr e) {
-  switch (expr_op(g, e)) {
-    case EX_ABS: case EX_SIGN: return expr_arg(g, e, 0);
-    case EX_FLOOR: return expr_sub(g, expr_arg(g, e, 0), e);
-    case EX_LT: case EX_LE: case EX_EQ: case EX_MIN: case EX_MAX: return expr_sub(g, expr_arg(g, e, 0), expr_arg(g, e, 1));
-    default: return 0;
-  }
+typedef struct {
+  ExprGraph *g;
+  Expr all; /* 0: everywhere */
+} SmoothDomain;
+
+/* Adds the condition a != b. 1: it restricts the motion. */
+static int add_apart(SmoothDomain *d, Expr a, Expr b) {
+  Expr u = expr_sub(d->g, a, b), apart;
+  if (!(expr_kinds(d->g, u) & ~(1u << SYM_PARAM | 1u << SYM_CONST | 1u << SYM_TIME)) || expr_is_nonzero(d->g, u)) return 0;
+  apart = expr_fn(d->g, EX_NOT, expr_fn2(d->g, EX_EQ, a, b));
+  d->all = d->all ? expr_fn2(d->g, EX_AND, d->all, apart) : apart;
+  return 1;
 }
 
-Expr expr_between_jumps(ExprGraph *g, const Expr *roots, uint32_t n, const SymId *symbols, uint32_t nsymbols) {
+Expr expr_smooth_domain(ExprGraph *g, const Expr *roots, uint32_t n, int *jumps) {
+  SmoothDomain d = {.g = g};
   ExprList l = expr_topo(g, roots, n);
-  Expr all = 0, zero = expr_int(g, 0);
+  Expr zero = expr_int(g, 0), one = expr_int(g, 1), minus = expr_int(g, -1);
+  int some = 0;
   for (uint32_t i = 0; i < l.n; i++) {
-    Expr u = zero_at_jump(g, l.at[i]);
-    int moves = 0;
-    for (uint32_t k = 0; u && k < nsymbols && !moves; k++) moves = expr_contains_sym(g, u, symbols[k]);
-    if (!moves || expr_is_nonzero(g, u)) continue;
-    Expr apart = expr_fn(g, EX_NOT, expr_fn2(g, EX_EQ, u, zero));
-    all = all ? expr_fn2(g, EX_AND, all, apart) : apart;
+    Expr e = l.at[i], u = expr_nargs(g, e) ? expr_arg(g, e, 0) : 0;
+    ExprOp op = expr_op(g, e);
+    if (op == EX_ABS || op == EX_SIGN) some |= add_apart(&d, u, zero);
+    if (op == EX_FLOOR) some |= add_apart(&d, u, e);
+    if (op == EX_MIN || op == EX_MAX || op == EX_LT || op == EX_LE || op == EX_EQ) some |= add_apart(&d, u, expr_arg(g, e, 1));
+    if (op == EX_CBRT) add_apart(&d, u, zero);
+    if (op == EX_ASIN || op == EX_ACOS) add_apart(&d, u, one), add_apart(&d, u, minus);
+    for (uint32_t k = 0; op == EX_PROD && k < expr_pairs(g, e, EX_PROD); k++) {
+      Num power;
+      Expr base = expr_pair(g, e, EX_PROD, k, &power);
+      if (!num_is_int(power)) add_apart(&d, base, zero);
+    }
   }
-  return all;
+  if (jumps) *jumps |= some;
+  return d.all;
 }

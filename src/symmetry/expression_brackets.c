@@ -56,10 +56,13 @@ Expr poisson_bracket(ExprGraph *g, Expr f, Expr h, const SymId *q, const SymId *
 /* Both conditions; 0: always. */
 static Expr both(ExprGraph *g, Expr a, Expr b) { return !a ? b : !b ? a : expr_fn2(g, EX_AND, a, b); }
 
-Expr expression_brackets_between(const Eqns *e, Expr x) {
+Expr expression_brackets_domain(const Eqns *e, Expr x, int *jumps) {
   Expr all = 0;
-  for (uint32_t i = 0; i < e->nbrackets; i++)
-    if (e->brackets[i].between && expr_contains_sym(e->g, x, e->m->brackets.at[i].sym)) all = both(e->g, all, e->brackets[i].between);
+  for (uint32_t i = 0; i < e->nbrackets; i++) {
+    if (!e->brackets[i].domain || !expr_contains_sym(e->g, x, e->m->brackets.at[i].sym)) continue;
+    all = both(e->g, all, e->brackets[i].domain);
+    *jumps |= e->brackets[i].jumps;
+  }
   return all;
 }
 
@@ -69,19 +72,17 @@ int expression_brackets_derive(Eqns *e, const ChargeNames *charges) {
   if (!m->brackets.n) return 1;
   if (!phase_space_of(e, m->brackets.at[0].span, &s)) return 0;
   struct BracketValue *all = ARENA_ARRAY(m->arena, struct BracketValue, m->brackets.n);
-  SymId *z = ARENA_ARRAY(m->arena, SymId, 2 * (size_t)s.n + 1);
-  for (uint32_t i = 0; i < s.n; i++) z[i] = s.q[i], z[s.n + i] = s.p[i];
   e->brackets = all;
   for (e->nbrackets = 0; e->nbrackets < m->brackets.n; e->nbrackets++) {
     const ExpressionBracket *b = &m->brackets.at[e->nbrackets];
     Expr part[2] = {b->f, b->g};
     for (int k = 0; k < 2; k++) part[k] = phase_space_expression(&s, expr_replace(e->g, part[k], charges->sym, charges->value, charges->n));
     Expr shown = poisson_bracket(e->g, part[0], part[1], s.q, s.p, s.n);
-    Expr between = both(e->g, expr_between_jumps(e->g, part, 2, z, 2 * s.n), both(e->g, expression_brackets_between(e, b->f), expression_brackets_between(e, b->g)));
-    all[e->nbrackets] = (struct BracketValue){shown, shown, between};
-    if (m->hamiltonian) continue;
-    all[e->nbrackets].value = expr_replace(e->g, shown, s.p, e->p, s.n);
-    all[e->nbrackets].between = between ? expr_replace(e->g, between, s.p, e->p, s.n) : 0;
+    struct BracketValue x = {.value = shown, .shown = shown};
+    x.domain = both(e->g, expr_smooth_domain(e->g, part, 2, &x.jumps), expression_brackets_domain(e, expr_add(e->g, b->f, b->g), &x.jumps));
+    if (!m->hamiltonian) x.value = expr_replace(e->g, shown, s.p, e->p, s.n);
+    if (!m->hamiltonian && x.domain) x.domain = expr_replace(e->g, x.domain, s.p, e->p, s.n);
+    all[e->nbrackets] = x;
   }
   return 1;
 }
