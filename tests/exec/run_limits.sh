@@ -35,6 +35,11 @@ starved() {
   (ulimit -v 400000 && limit "$1" 2 'out of memory')
 }
 
+# Beyond 2000 calls the derivatives of one expression, a product for each level, need gigabytes: refused before they are made.
+{ echo 'function f(a) = sin(a)'; printf "lagrangian = x'^2/2 - "; awk 'BEGIN { for (i = 0; i < 3000; i++) printf "f("; printf "x"; for (i = 0; i < 3000; i++) printf ")"; print "" }'; } | model calls
+at_once() { (ulimit -t 2 -v 200000 && limit calls 1 'functions are nested 3000 deep here, and at most 2000 in one expression'); }
+check 'calls nested 3000 deep' at_once
+
 model powers <<'END'
 lagrangian = x'^2/2 + x^(10^9) + x^1e300 + (1 + x)^(2^62) + 0^0 + (x)^(1/3) + (-8)^(1/3)*x
 END
