@@ -14,7 +14,7 @@
 #include "core/core.h"
 #include "core/rhs.h"
 
-enum { TURNS = 24, LEAST_TURNS = 12, BACK = 4, FREE_CALLS = 12, CALLS_FIRST = 64 };
+enum { TURNS = 24, LEAST_TURNS = 12, BACK = 4, FREE_CALLS = 12, CALLS_FIRST = 48 };
 
 /* Updates the rates of change of components nq to n; returns the component whose rate is rough (see above) and largest relative to its size; -1:
  * none. slight: rates that are small beside their recent peak count, too. */
@@ -41,25 +41,29 @@ static int find_rough(lag_sim *s, double t, int slight) {
 
 void lag_reset_rate_history(lag_sim *s) { for (int i = 0; i < 3 * s->pb.n; i++) s->rate_history[i] = NAN; }
 
-/* |derivative of component i| at fraction x of the straight line from now to y at t; NaN: no value. Leaves the state in ya; uses yb. Dense
+/* The derivative of component i at fraction x of the straight line from now to y at t; NaN: no value. Leaves the state in ya; uses yb. Dense
  * output would not do: its velocities are wild beside a pole. */
 static double derivative_at(lag_sim *s, double x, double t, int i) {
   for (int k = 0; k < s->pb.n; k++) s->ya[k] = s->now[k] + x * (s->y[k] - s->now[k]);
-  return lag_rhs(&s->pb, s->run->t + x * (t - s->run->t), s->ya, s->yb) ? NAN : fabs(s->yb[i]);
+  return lag_rhs(&s->pb, s->run->t + x * (t - s->run->t), s->ya, s->yb) ? NAN : s->yb[i];
 }
 
 /* The fraction of the step at which the derivative of component i has a pole; NaN: it has none. */
 static double find_pole(lag_sim *s, double t, int i) {
   static const double parts[] = {0.5, 0.45, 0.55};
   const double falls = 0.4; /* in BACK turns; a pole of first order keeps half or more, a root a third or less */
-  double from = 0, to = 1, a = derivative_at(s, from, t, i), b = derivative_at(s, to, t, i), before[BACK] = {0};
+  const double alike = 2.5; /* at both ends and in the middle of a step over a pole derivatives differ by more, or in sign */
+  double from = 0, to = 1, a = derivative_at(s, from, t, i), b = derivative_at(s, to, t, i), middle = derivative_at(s, 0.5, t, i), before[BACK] = {0};
+  double least = fmin(a, fmin(b, middle)), most = fmax(a, fmax(b, middle));
+  if (least * most > 0 && fmax(fabs(least), fabs(most)) <= alike * fmin(fabs(least), fabs(most)) && isfinite(a + b + middle)) return NAN;
+  a = fabs(a), b = fabs(b);
   for (int turn = 0; turn < TURNS; turn++) {
     double size = (to - from) * fmin(a, b), x = from, c = NAN;
     if (!(size > 0) || (turn >= BACK && size < falls * before[turn % BACK])) return NAN;
     before[turn % BACK] = size;
     for (size_t k = 0; k < sizeof parts / sizeof *parts && !isfinite(c); k++) {
       x = from + parts[k] * (to - from);
-      c = derivative_at(s, x, t, i);
+      c = fabs(turn || k ? derivative_at(s, x, t, i) : middle);
     }
     if (!isfinite(c)) return turn > LEAST_TURNS ? x : NAN;
     *(a > b ? &to : &from) = x;
