@@ -362,7 +362,7 @@ static Expr scale_of(const ProofWork *w, Expr F) {
   ExprMap size = expr_map(w->m->arena);
   Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 2), size_tau = term_magnitude(g, &size, w->tau);
   for (uint32_t i = 0; i < w->n; i++) {
-    Expr size_xi = term_magnitude(g, &size, w->xi[i]), size_p = expr_is_zero(g, size_xi) ? size_xi : term_magnitude(g, &size, p[i]);
+    Expr size_p = term_magnitude(g, &size, p[i]), size_xi = term_magnitude(g, &size, w->xi[i]);
     terms[i] = expr_mul(g, size_p, size_xi);
   }
   terms[w->n] = expr_mul(g, w->e->energy_scale, size_tau);
