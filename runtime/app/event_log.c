@@ -97,6 +97,7 @@ void lag_report_events(const App *app, FILE *f) {
     else fprintf(f, "%lld time%s", n, n == 1 ? "" : "s");
     if (n == 1) fprintf(f, ", t = %s s", lag_number_text(first, (char[64]){0}));
     else if (n > 1) fprintf(f, ", first at t = %s s, last at %s s", lag_number_text(first, (char[64]){0}), lag_number_text(last, (char[64]){0}));
+    if (app->sim->skipped[k] > 0) fprintf(f, "; then at rest: impacts of the next %.2g s are left out", app->sim->skipped[k]);
     putc('\n', f);
   }
   if (m->nev > MOST_EVENTS) fprintf(f, "  (and %d events more)\n", m->nev - MOST_EVENTS);
@@ -113,6 +114,7 @@ void lag_report_events_json(const App *app, Json *j) {
     lag_json_count(j, "count", lag_sim_event_times(app->sim, k, &first, &last));
     lag_json_number(j, "first", first);
     lag_json_number(j, "last", last);
+    if (app->sim->skipped[k] > 0) lag_json_number(j, "left_out", app->sim->skipped[k]);
     lag_json_end(j, '}');
   }
   lag_json_end(j, '}');

@@ -30,6 +30,7 @@ typedef struct Run {
   double energy_jump, energy_jump_t;   /* largest energy change in one step, and its time; replaced only by a change more than twice as large */
   double mass_condition, mass_condition_of; /* condition of the mass matrix at energy_jump_t, and the coordinate of least inertia */
   double chatter, chatter_since; /* impacts that follow another at once and leave the gap open, and the time of the first of them */
+  double pole_calls;     /* right-hand sides that the search for poles of forces took */
   double rattles;        /* ends of branches of switches that followed another at once */
   double row_origin, row_every, row_next;  /* output grid, kept here for app/ */
   double seal;           /* in a saved state: hash of its numbers, and of what they belong to */
@@ -107,6 +108,7 @@ struct lag_sim {
   double *count;         /* [nev] */
   double *first, *last;  /* [nev] times of firing, where count is not 0 */
   double *interval, *shorter; /* [nev] interval between the last two firings; number of intervals in a row, each shorter than the one before */
+  double *flight, *skipped; /* [nev] first interval of the present series of shorter ones; time of the flights that were taken as rest */
   double *crossed, *slips, *slid, *slid_since; /* [nmodes] times that a surface was crossed, slides begun; their time, start of the present mode */
   double *mon_first, *mon_peak; /* [nmonitors] first value and largest deviation of a monitored output */
   double *charge_block;

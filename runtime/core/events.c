@@ -60,12 +60,26 @@ int lag_events_inputs_jump(lag_sim *s) {
 /* Intervals below this part of the run so far count as 0. */
 static const double at_once = 1e-7;
 
-/* Whether event k accumulates: `few` intervals in a row, each shorter than the one before, the last of them, dt, next to nothing (a ball coming
- * to rest would never let time pass; a block that rocks loses most of its speed at once). Others may fire between. */
-static int is_zeno(lag_sim *s, int k, double dt, int few) {
-  s->shorter[k] = dt < s->interval[k] ? s->shorter[k] + 1 : 0;
+/* Time in which event k will fire for ever, dt after it fired last: the rest of the geometric series of its intervals; HUGE_VAL: they do not become
+ * shorter. Others may fire between. */
+static double series_rest(lag_sim *s, int k, double dt) {
+  double *flight = &s->flight[k], *n = &s->shorter[k], before = s->interval[k], rounding = 4 * DBL_EPSILON * fabs(s->run->t);
   s->interval[k] = dt;
-  return s->shorter[k] >= few && dt <= at_once * fabs(s->run->t - s->scene->t0);
+  if (!(dt <= *flight)) { /* the next interval begins a series */
+    *flight = HUGE_VAL, *n = 0;
+    return HUGE_VAL;
+  }
+  if (*flight == HUGE_VAL) *flight = dt;
+  *n = dt < before + rounding ? *n + 1 : 0;
+  double ratio = *n > 0 ? pow(dt / *flight, 1 / *n) : 1;
+  if (dt / before > ratio && rounding < (1 - ratio) * dt) ratio = dt / before;
+  return ratio < 1 ? dt * ratio / (1 - ratio) : HUGE_VAL;
+}
+
+/* Whether the event accumulates: `few` intervals in a row became shorter, and the rest of the series is below the tolerance, in units of its first
+ * interval, or time does not resolve it. A block that rocks loses most of its speed at once. */
+static int is_zeno(const lag_sim *s, int k, double rest, int few) {
+  return s->shorter[k] >= few && (rest <= fmin(s->tol, at_once) * s->flight[k] || s->interval[k] <= 64 * DBL_EPSILON * fabs(s->run->t));
 }
 
 static int fail_zeno(lag_sim *s, int k) {
@@ -80,7 +94,7 @@ static int fail_chatter(lag_sim *s, int k, const lag_contact *c, double dt) {
   const int most = 1000;
   const double pace = 1e-5; /* of the run so far */
   Run *r = s->run;
-  if (lag_contact_is_closed(s, c) || !(dt <= at_once * fabs(r->t - s->scene->t0))) return LAG_OK;
+  if (lag_contact_is_closed(s, c) || s->shorter[k] > 2 || !(dt <= at_once * fabs(r->t - s->scene->t0))) return LAG_OK;
   if (!(fabs(r->t - r->chatter_since) <= pace * fabs(r->t - s->scene->t0))) {
     r->chatter_since = r->t;
     r->chatter = 0;
@@ -139,13 +153,15 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
     return lag_fail(s, rc < 0 ? rc : LAG_ENAN, "event %s: its action gives no finite state at t = %s s", m->ev[k].name,
                     LAG_TEXT(r->t));
   }
-  int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, since, contact ? 3 : 10), moved = memcmp(s->yb, s->now, bytes) != 0;
+  double rest = series_rest(s, k, since);
+  int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact ? 3 : 10), moved = memcmp(s->yb, s->now, bytes) != 0;
   int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
   if (of || moved) {
     char who[128];
     snprintf(who, sizeof who, "at t = %.9g s event %s sets a state that", r->t, m->ev[k].name);
     rc = lag_settle_constraints(s, s->yb, of && !moved ? NULL : who, k, ends, moved + elsewhere, rounding_of_events(s));
   }
+  if (rc == 0 && contact && rest < HUGE_VAL && lag_contact_is_closed(s, contact)) s->skipped[k] = fmax(s->skipped[k], rest);
   if (rc == 0 && contact) rc = fail_chatter(s, k, contact, since);
   if (rc) return rc;
   int before = *changed;
@@ -206,7 +222,7 @@ static int meet_switch(lag_sim *s, int k) {
   s->count[k]++;
   r->rattles = since <= at_once * elapsed ? r->rattles + 1 : 0;
   int which = k - s->scene->model->nev;
-  if (is_zeno(s, k, since, 10) || r->rattles > most) return lag_switch_fail_zeno(s, which);
+  if (is_zeno(s, k, series_rest(s, k, since), 10) || r->rattles > most) return lag_switch_fail_zeno(s, which);
   lag_switch_meet(s, which);
   return lag_tangent_meet(s, k);
 }

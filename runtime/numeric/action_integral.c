@@ -1,4 +1,5 @@
-/* Turning points by a search outward from the start and bisection; the momenta of both branches by Newton's method about the extremum of H in p. */
+/* Turning points by a search outward from the start and bisection; the momenta of both branches by Newton's method about the extremum of H in p.
+ * Beside a saddle E - H is small against H: there it is the integral of the force from the start, which has all digits. */
 #include "numeric/action_integral.h"
 
 #include <float.h>
@@ -6,19 +7,29 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "numeric/quadrature.h"
+
+enum { POINTS = 10 };
 static const double PI = 3.14159265358979323846264338327950288;
 
 typedef struct {
   lag_phase_fn *at;
   void *context;
   double E, middle; /* p where dH/dp = 0, near the last q */
+  double q, room;   /* of the start, or of a node */
+  double noise;     /* rounding of H at the start */
   int sign;         /* of d2H/dp2 */
   int periodic;     /* q is an angle, and H repeats after a turn */
+  double rounding;  /* of the last room */
+  double node[POINTS], weight[POINTS]; /* Gauss's, in (0, 1) */
 } Curve;
 
 static const char *const goes_round = "it goes round";
 
-static lag_phase_point point_at(Curve *c, double q, double p) { return c->at(c->context, q, p); }
+/* q, or the same place within half a turn of the start. */
+static double beside_start(const Curve *c, double q) { return c->periodic ? q - 2 * PI * round((q - c->q) / (2 * PI)) : q; }
+
+static lag_phase_point point_at(Curve *c, double q, double p) { return c->at(c->context, beside_start(c, q), p); }
 
 /* --- momenta --- */
 
@@ -38,21 +49,42 @@ static lag_phase_point at_middle(Curve *c, double q) {
   return x;
 }
 
-/* E - H at the extremum, positive where the motion may be. */
-static double room(Curve *c, double q) {
-  lag_phase_point x = at_middle(c, q);
-  return c->sign * (c->E - x.H);
+/* H at the distance d from its extremum in p at q, less that extremum: by the integral of dH/dp where rounding of H would show. */
+static double height(Curve *c, double q, const lag_phase_point *extremum, double d) {
+  double direct = point_at(c, q, c->middle + d).H - extremum->H, sum = 0;
+  if (fabs(direct) > 0x1p40 * DBL_EPSILON * fabs(extremum->H)) return direct;
+  for (int k = 0; k < POINTS; k++) sum += c->weight[k] * point_at(c, q, c->middle + c->node[k] * d).slope;
+  return sum * d;
 }
 
-/* The momentum on the branch `side` (1, -1) at q, as a distance from c->middle; 0: none. */
-static double branch(Curve *c, double q, int side, lag_phase_point *at) {
-  enum { STEPS = 100 };
+/* E - H at the extremum, positive where the motion may be; q is `way` from c->q. */
+static double room_along(Curve *c, double q, double way) {
   lag_phase_point x = at_middle(c, q);
-  double left = c->E - x.H, d = side * sqrt(fmax(2 * left / x.bend, 0)), last = INFINITY;
+  double middle = c->middle, direct = c->sign * (c->E - x.H), sum = 0, size = 0;
+  int beside = fabs(direct) <= 0x1p40 * c->noise;
+  for (int k = 0; k < POINTS && beside; k++) {
+    double part = c->weight[k] * at_middle(c, c->q + c->node[k] * way).force * way;
+    sum += part, size += fabs(part);
+  }
+  c->middle = middle;
+  double along = c->room - c->sign * sum;
+  beside = beside && fabs(along - direct) <= 64 * c->noise; /* else H is too rough for so few points */
+  c->rounding = DBL_EPSILON * (beside ? size + fabs(x.force * q) : fabs(c->E) + fabs(x.H));
+  return beside ? along : direct;
+}
+
+static double room(Curve *c, double q) { return room_along(c, q, beside_start(c, q) - c->q); }
+
+/* The momentum on the branch `side` (1, -1) at q, where the room is `left`, as a distance from c->middle; 0: none. */
+static double branch(Curve *c, double q, double left, int side, lag_phase_point *at) {
+  enum { STEPS = 100 };
+  double last = INFINITY;
+  lag_phase_point x = at_middle(c, q);
+  double d = side * sqrt(fmax(2 * c->sign * left / x.bend, 0));
   *at = x;
   for (int k = 0; k < STEPS && d != 0; k++) {
     *at = point_at(c, q, c->middle + d);
-    double step = (at->H - c->E) / at->slope;
+    double step = (height(c, q, &x, d) - c->sign * left) / at->slope;
     if (!isfinite(step) || fabs(step) >= last) break;
     last = fabs(step);
     if (last <= 2 * DBL_EPSILON * fabs(d)) break;
@@ -67,7 +99,7 @@ static int has_two_branches(Curve *c, double q) {
   double extremum = at_middle(c, q).H, left = fabs(c->E - extremum), rounding = 64 * DBL_EPSILON * (fabs(c->E) + fabs(extremum));
   for (int side = -1; side <= 1; side += 2) {
     lag_phase_point at;
-    double d = branch(c, q, side, &at);
+    double d = branch(c, q, room(c, q), side, &at);
     if (!(fabs(point_at(c, q, c->middle + d).H - c->E) <= 1e-6 * left + rounding)) return 0;
     for (int k = 1; k <= PLACES && left > rounding; k++)
       if (!(point_at(c, q, c->middle + d * k / PLACES).slope * d * c->sign > 0)) return 0;
@@ -83,16 +115,17 @@ static const char *reason_at(Curve *c, double q) {
 
 /* --- turning points --- */
 
-/* The distance of the farther turning point of the parabola through the room at q, its slope, and the largest mean curvature from q to places near and far. */
-static double scale_at(Curve *c, double q) {
+/* The distance of the farther turning point of the parabola through the room at q, its slope, and *most, the largest mean curvature from q to places near and far. */
+static double scale_at(Curve *c, double q, double *most) {
   enum { DECADES = 9 };
   lag_phase_point x = at_middle(c, q);
-  double size = fabs(q) > 0 ? fabs(q) : 1, left = fabs(c->E - x.H), slope = fabs(x.force), bend = 0, h = size;
+  double size = fabs(q) > 0 ? fabs(q) : 1, left = fabs(room(c, q)), slope = fabs(x.force), bend = 0, h = size;
   for (int k = 0; k < DECADES; k += 2, h /= 100)
     for (int side = -1; side <= 1; side += 2) {
       double mean = fabs(point_at(c, q + side * h, c->middle).force - x.force) / h;
       if (isfinite(mean) && mean > bend) bend = mean;
     }
+  *most = bend;
   double length = bend > 0 ? (slope + sqrt(slope * slope + 2 * bend * left)) / bend : left / slope;
   return isfinite(length) && length > 0 ? length : size;
 }
@@ -118,7 +151,7 @@ static double place_without_room(Curve *curve, double a, double b, double c) {
 /* Turning point on one side of q, where there is room; NAN, with the reason in *why: there is none. */
 static double turning_point(Curve *c, double q, double step, const char **why) {
   enum { STEPS = 1500, HALVES = 200 };
-  double behind = q, good = q, bad = q, last = 0, room_behind = INFINITY, room_good = room(c, q);
+  double first = step, behind = q, good = q, bad = q, last = 0, room_behind = INFINITY, room_good = room(c, q);
   for (int k = 0; k < STEPS; k++) {
     bad = good + step;
     last = room(c, bad);
@@ -141,46 +174,119 @@ static double turning_point(Curve *c, double q, double step, const char **why) {
     if (room(c, middle) > 0) good = middle;
     else bad = middle;
   }
-  double left = room(c, good), size = fabs(c->E) + fabs(at_middle(c, good).H);
-  if (left > 1e-9 * size) return *why = "its motion ends where H is singular, before it turns", NAN;
+  double inside = fabs(good - q) > fabs(first) ? good + 1e-3 * (q - good) : good - 1e-3 * first;
+  if (room(c, good) > 1e-2 * room(c, inside)) return *why = "its motion ends where H is singular, before it turns", NAN;
   return good;
 }
 
 /* --- the integrals --- */
 
-/* Integrals of p and of dq/q' over the curve, by n points; side: of a curve that goes round, the branch; 0: it turns. */
-static void midpoint_rule(Curve *c, double low, double high, int side, uint32_t n, double *J, double *time) {
-  double centre = (low + high) / 2, half = (high - low) / 2;
-  *J = *time = 0;
-  for (uint32_t k = 0; k < n; k++) {
-    double u = PI * (((double)k + 0.5) / n - 0.5), q = centre + half * (side ? 2 * u / PI : sin(u)), width = side ? 2 * half / n : half * cos(u) * PI / n;
+/* A part of the curve, from a node, where the room is least or 0, to a place `step` from it. There q = at + step v^2 about a turning point, with
+ * v = near sinh(w), and q = at + step near sinh(w) about a minimum: the square roots that are near the node lie far from the real axis of w. */
+typedef struct {
+  double at, step, near, room;
+  int turns;
+} Panel;
+
+enum { NODES_MOST = 16 };
+
+/* The largest mean curvature of the room from q to places inside the panel. */
+static double bend_at(Curve *c, double q, double step) {
+  double bend = 0, force = at_middle(c, q).force;
+  for (double h = step; fabs(h) > 1e-12 * fabs(step); h /= 4) bend = fmax(bend, fabs((at_middle(c, q + h).force - force) / h));
+  return bend;
+}
+
+/* The panel from a node. Adds to *doubt the error of the period by rounding of E - H, which decides how long the motion stays beside a saddle. */
+static Panel panel_from(Curve *c, double at, double step, int turns, double *doubt) {
+  double left = fmax(room(c, at), 0), rounding = c->rounding, bend = bend_at(c, at, step);
+  lag_phase_point x = at_middle(c, at);
+  double depth = turns ? x.force * x.force / (2 * bend) : left;
+  double near = turns ? sqrt(2 * fabs(x.force / (bend * step))) : sqrt(2 * left / bend) / fabs(step);
+  double part = rounding / depth; /* a tenth: E may be that of the saddle */
+  if (bend > 0) *doubt += part < 0.1 ? part / sqrt(bend * fabs(x.bend)) : INFINITY;
+  return (Panel){at, step, isfinite(near) && near < 1 ? fmax(near, 1e-15) : 1, turns ? 0 : left, turns};
+}
+
+/* Adds the integrals of p and of dq/q' over a panel, by n points; side: of a curve that goes round, the branch; 0: it turns. */
+static void add_panel(Curve *c, const Panel *x, int side, int n, const double *node, const double *weight, double *J, double *time) {
+  double whole = asinh(1 / x->near);
+  c->q = x->at, c->room = x->room; /* from here rooms are integrated */
+  for (int k = 0; k < n; k++) {
+    double w = node[k] * whole, v = x->near * sinh(w), way = x->step * (x->turns ? v * v : v), q = x->at + way, left = room_along(c, q, way);
+    double width = fabs(x->step) * x->near * cosh(w) * whole * weight[k] * (x->turns ? 2 * v : 1);
     for (int branch_of = side ? side : -1; branch_of <= (side ? side : 1); branch_of += 2) {
       lag_phase_point at;
-      double d = branch(c, q, branch_of, &at), way = side ? 1 : branch_of;
+      double d = branch(c, q, left, branch_of, &at), sense = side ? 1 : branch_of;
       *J += (side ? c->middle + d : branch_of * d) * width;
-      if (d != 0) *time += way * width / at.slope;
+      if (d != 0) *time += sense * width / at.slope;
     }
   }
 }
 
+/* A place between a and b where dH/dq jumps, as at a corner of H; NAN: none. */
+static double corner(Curve *c, double a, double b) {
+  enum { HALVES = 100 };
+  double fa = at_middle(c, a).force, fb = at_middle(c, b).force, jump = fabs(fb - fa);
+  if (!(jump > 1e-6 * (fabs(fa) + fabs(fb)))) return NAN;
+  for (int k = 0; k < HALVES; k++) {
+    double middle = (a + b) / 2, f = at_middle(c, middle).force, first = fabs(f - fa), second = fabs(fb - f);
+    if (fmax(first, second) < 0.7 * jump) return NAN; /* half, where H is smooth */
+    if (middle == a || middle == b) break;
+    if (first > second) b = middle, fb = f;
+    else a = middle, fa = f;
+  }
+  return (a + b) / 2;
+}
+
+/* Ends of the curve, and minima of the room and corners of H between them, ascending in node[]. Returns their number. */
+static int find_nodes(Curve *c, double low, double high, double *node) {
+  enum { PLACES = 64, HALVES = 80 };
+  double h = (high - low) / PLACES;
+  int n = 1;
+  node[0] = low;
+  for (int k = 1; k < PLACES && n < NODES_MOST - 2; k++) {
+    double at = low + k * h, here = room(c, at), bent = corner(c, at, at + h);
+    if (isfinite(bent)) node[n++] = bent;
+    else if (!(here < room(c, at - h)) || !(here <= room(c, at + h))) continue;
+    else {
+      double a = fmax(at - h, node[n - 1]), b = at + h;
+      for (int i = 0; i < HALVES; i++) *(c->sign * at_middle(c, (a + b) / 2).force > 0 ? &a : &b) = (a + b) / 2;
+      node[n++] = (a + b) / 2;
+    }
+  }
+  node[n++] = high;
+  return n;
+}
+
 static void integrate(Curve *c, int side, lag_action_integral *out) {
-  enum { LEAST = 32, MOST = 1 << 16 };
-  for (int k = 1; k < 2 * LEAST && !out->why_not; k++) out->why_not = reason_at(c, out->low + (out->high - out->low) * k / (2 * LEAST));
+  enum { PLACES = 64, LEAST = 16, MOST = 1024 };
+  for (int k = 1; k < PLACES && !out->why_not; k++) out->why_not = reason_at(c, out->low + (out->high - out->low) * k / PLACES);
   if (out->why_not) return;
-  double J = 0, time = 0, error = INFINITY, centre = (out->low + out->high) / 2, extremum = at_middle(c, centre).H;
-  double cancelled = DBL_EPSILON * (fabs(c->E) + fabs(extremum)) / room(c, centre), enough = 1024 * DBL_EPSILON, last; /* the next difference would be its square */
-  /* terms that cancel near the ends leave n times their rounding */
-  for (uint32_t n = LEAST; n <= MOST && !(error <= fmax(enough, n * cancelled)); n *= 2) {
+  double ends[NODES_MOST], points[2 * MOST], J = 0, time = 0, doubt = 0, last_J, last_time;
+  Panel panels[2 * NODES_MOST];
+  int nodes = find_nodes(c, out->low, out->high, ends), count = 0;
+  for (int k = 0; k + 1 < nodes; k++) {
+    double half = (ends[k + 1] - ends[k]) / 2;
+    panels[count++] = panel_from(c, ends[k], half, !side && k == 0, &doubt);
+    panels[count++] = panel_from(c, ends[k + 1], -half, !side && k + 2 == nodes, &doubt);
+  }
+  out->error = out->time_error = INFINITY;
+  for (int n = LEAST; n <= MOST; n *= 2) {
     double before = J, time_before = time;
-    midpoint_rule(c, out->low, out->high, side, n, &J, &time);
-    last = error;
-    if (n > LEAST) error = fmax(fabs((J - before) / J), fabs((time - time_before) / time));
-    if (n > LEAST && error < n * cancelled) error = n * cancelled;
-    if (error < 1e-9 && error > last / 2) break; /* rounding of q */
+    last_J = out->error, last_time = out->time_error;
+    J = time = 0;
+    lag_gauss_points(n, points, points + MOST);
+    for (int k = 0; k < count; k++) add_panel(c, &panels[k], side, n, points, points + MOST, &J, &time);
+    if (n == LEAST) continue;
+    out->error = fabs((J - before) / J), out->time_error = fabs((time - time_before) / time);
+    double worst = fmax(out->error, out->time_error);
+    if (worst <= 1024 * DBL_EPSILON || (worst < 1e-9 && worst > fmax(last_J, last_time) / 2)) break; /* rounding of q */
   }
   out->J = (side ? J : fabs(J)) / (2 * PI);
   out->time = side ? time : fabs(time);
-  out->error = error; /* at a corner of H the rule is of order 2: the difference is three times its error */
+  out->time_error += fabs((side ? 1 : 2) * doubt / time);
+  if (!isfinite(out->time_error)) out->why_not = "it lies on a separatrix, as far as the digits of its start tell: the motion takes for ever";
 }
 
 /* --- the curve --- */
@@ -198,9 +304,9 @@ static int repeats(Curve *c, double q, double p) {
 }
 
 /* Turning points of the curve through q, where it does not rest. */
-static void find_ends(Curve *c, double q, double left, double size, double length, lag_action_integral *out) {
+static void find_ends(Curve *c, double q, double length, lag_action_integral *out) {
   double step = 1e-3 * length;
-  if (left > 16 * DBL_EPSILON * size) {
+  if (c->room > 0) {
     out->low = turning_point(c, q, -step, &out->why_not);
     if (!out->why_not) out->high = turning_point(c, q, step, &out->why_not);
     return;
@@ -213,7 +319,7 @@ static void find_ends(Curve *c, double q, double left, double size, double lengt
 }
 
 lag_action_integral lag_action_of_curve(lag_phase_fn *at, void *context, double q, double p, int periodic) {
-  Curve curve = {.at = at, .context = context, .middle = p}, *c = &curve;
+  Curve curve = {.at = at, .context = context, .middle = p, .q = q}, *c = &curve;
   lag_action_integral out = {0};
   lag_phase_point x = point_at(c, q, p);
   c->E = x.H;
@@ -222,10 +328,16 @@ lag_action_integral lag_action_of_curve(lag_phase_fn *at, void *context, double 
   else if (x.bend == 0 || !isfinite(x.bend)) out.why_not = "H is not curved in its momentum";
   if (out.why_not) return out;
   c->periodic = periodic && repeats(c, q, p);
-  double left = room(c, q), size = fabs(c->E) + fabs(at_middle(c, q).H), length = scale_at(c, q);
-  out.rests = left <= 16 * DBL_EPSILON * size && fabs(at_middle(c, q).force) * length <= 16 * DBL_EPSILON * size;
+  lag_gauss_points(POINTS, c->node, c->weight);
+  x = at_middle(c, q);
+  double d = p - c->middle, bend;
+  d = fabs(d) > 16 * DBL_EPSILON * fabs(c->middle) ? d : 0;
+  c->room = c->sign * height(c, q, &x, d);
+  c->noise = DBL_EPSILON * (fabs(c->E) + fabs(x.H));
+  double length = scale_at(c, q, &bend);
+  out.rests = d == 0 && fabs(x.force) <= 16 * DBL_EPSILON * bend * fabs(q);
   if (out.rests) return out;
-  find_ends(c, q, left, size, length, &out);
+  find_ends(c, q, length, &out);
   out.rotates = out.why_not == goes_round;
   if (out.rotates) {
     at_middle(c, q);

@@ -1,9 +1,9 @@
 /* The action variable of one closed curve H(q, p) = E: J = 1/(2 pi) closed integral of p dq, and its period.
  *
- * A curve that turns lies between turning points a, b. q = (a + b)/2 + (b - a)/2 sin(u) leaves no square roots at the ends: the integrand is smooth and periodic in
- * u, and the midpoint rule converges exponentially; so it does over the turn of a curve that goes round a periodic coordinate.
+ * The curve is cut at minima of E - H. From them, and from turning points, q = a + b sinh(w), or its square, leaves no square root near the nodes,
+ * and Gauss's rule converges exponentially, beside a separatrix, too. The period there has the digits that E - H has.
  * L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed. (1976), 48 to 50; V. I. Arnold, Mathematical Methods of Classical Mechanics, 2nd ed. (1989), 50.
- * L. N. Trefethen, J. A. C. Weideman, SIAM Rev. 56 (2014) 385, doi:10.1137/130932132, on the midpoint rule. */
+ * P. R. Johnston, D. Elliott, Int. J. Numer. Meth. Engng 62 (2005) 564, doi:10.1002/nme.1208, on sinh for nearly singular integrals. */
 #pragma once
 
 /* H and its derivatives at a point. */
@@ -18,7 +18,7 @@ typedef struct lag_action_integral {
   int rests;           /* the point is an equilibrium: J = 0 */
   int rotates;          /* the curve goes round: J is the mean of p over a turn, with its sign; a curve that turns has J > 0 */
   double J, time;      /* time: the period; < 0 where the curve goes round towards smaller q */
-  double error;        /* of J and time, relative */
+  double error, time_error; /* of J and time, relative */
   double low, high;    /* turning points, or the ends of a turn */
 } lag_action_integral;
 

@@ -230,6 +230,7 @@ long double dense_largest(const long double *x, size_t n) {
 }
 
 int dense_solve_rows(Arena *a, uint32_t n, const long double *m, uint32_t count, long double *rows) {
+  ArenaMark before = arena_mark(a);
   size_t w = (size_t)n + count;
   long double *both = ARENA_ARRAY(a, long double, n * w);
   uint32_t *pivot = ARENA_ARRAY(a, uint32_t, n);
@@ -238,9 +239,11 @@ int dense_solve_rows(Arena *a, uint32_t n, const long double *m, uint32_t count,
     for (size_t k = 0; k < count; k++) both[i * w + n + k] = rows[k * n + i];
   }
   dense_echelon(n, (uint32_t)w, both, 1e-13L * dense_largest(m, (size_t)n * n), pivot);
+  int regular = 1;
   for (size_t i = 0; i < n; i++) {
-    if (pivot[i] != i || both[i * w + i] == 0) return 0;
-    for (size_t k = 0; k < count; k++) rows[k * n + i] = both[i * w + n + k];
+    regular = regular && pivot[i] == i && both[i * w + i] != 0;
+    for (size_t k = 0; k < count && regular; k++) rows[k * n + i] = both[i * w + n + k];
   }
-  return 1;
+  arena_forget(a, before);
+  return regular;
 }

@@ -87,21 +87,23 @@ static uint32_t line_of(const Source *f, uint32_t at) {
   return lo + 1;
 }
 
+const Source *source_of(const Sources *s, uint32_t offset) {
+  for (uint32_t i = 0; i < s->files.n; i++)
+    if (offset >= s->files.at[i].base && offset <= s->files.at[i].base + s->files.at[i].len) return &s->files.at[i];
+  return NULL;
+}
+
 Place source_place(const Sources *s, uint32_t offset) {
-  for (uint32_t i = 0; i < s->files.n; i++) {
-    const Source *f = &s->files.at[i];
-    if (offset < f->base || offset > f->base + f->len) continue;
-    uint32_t at = offset - f->base, line = line_of(f, at), start = f->lines.at[line - 1], column = 1;
-    for (uint32_t k = start; k < at; k++)
-      if (((unsigned char)f->text[k] & 0xC0) != 0x80) column++;
-    const char *text = f->text + start;
-    uint32_t len = 0;
-    while (start + len < f->len && text[len] != '\n') len++;
-    len -= len > 0 && text[len - 1] == '\r'; /* elsewhere a \r is part of the line */
-    return (Place){.file = f, .line = line, .column = column, .line_text = text, .line_len = len,
-                   .line_byte = at - start};
-  }
-  return (Place){0};
+  const Source *f = source_of(s, offset);
+  if (!f) return (Place){0};
+  uint32_t at = offset - f->base, line = line_of(f, at), start = f->lines.at[line - 1], column = 1;
+  for (uint32_t k = start; k < at; k++)
+    if (((unsigned char)f->text[k] & 0xC0) != 0x80) column++;
+  const char *text = f->text + start;
+  uint32_t len = 0;
+  while (start + len < f->len && text[len] != '\n') len++;
+  len -= len > 0 && text[len - 1] == '\r'; /* elsewhere a \r is part of the line */
+  return (Place){.file = f, .line = line, .column = column, .line_text = text, .line_len = len, .line_byte = at - start};
 }
 
 /* --- paths --- */

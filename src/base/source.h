@@ -57,6 +57,9 @@ const Source *source_read(Sources *s, const char *path, const char **error);
 /* Opens a regular file for reading, or NULL with *error. */
 FILE *source_open(const char *path, const char **error);
 
+/* The text of an offset, or NULL; at once, where a place takes as long as its line. */
+const Source *source_of(const Sources *s, uint32_t offset);
+
 /* The place of an offset; file NULL for offset 0 and offsets past all texts. */
 Place source_place(const Sources *s, uint32_t offset);
 

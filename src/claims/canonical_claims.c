@@ -4,6 +4,7 @@
 
 #include "base/words.h"
 #include "sym/diff.h"
+#include "sym/jump.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
@@ -19,6 +20,8 @@ typedef struct {
   PhaseSpace old;
   SymId *z;            /* [2n] */
   const Expr *forward; /* [2n] Z(z, t), or NULL */
+  Expr smooth;         /* where all that is given has derivatives; 0: everywhere */
+  int jumps;           /* some of it jumps, or has corners */
   uint32_t proofs;
   const char *fault;   /* "is not canonical" */
 } Claims;
@@ -36,6 +39,7 @@ static const char *text_of(const Claims *k, Expr x) {
 static int claim(Claims *k, Span span, const char *label, Expr left, Expr right, Expr shown) {
   Diags *d = k->e->m->diags;
   Expr domain = k->c->domain ? charges_substitute(k->e, k->c->domain) : 0;
+  if (k->smooth) domain = domain ? expr_fn2(k->g, EX_AND, domain, k->smooth) : k->smooth;
   Expect x = {.name = label, .span = span, .lhs = without_inverse_functions(k->g, left), .rhs = without_inverse_functions(k->g, right), .domain = domain};
   ExpectResult r = expect_judge(k->e, k->symbols, &x);
   const char *value = shown ? text_of(k, shown) : NULL, *want = text_of(k, right);
@@ -152,11 +156,24 @@ static int phase_space(Claims *k) {
   return 1;
 }
 
+static void find_smooth(Claims *k) {
+  uint32_t n = k->c->n, count = 0;
+  Expr *roots = ARENA_ARRAY(k->arena, Expr, 4 * (size_t)n + 2);
+  for (uint32_t i = 0; i < 2 * n; i++) {
+    if (k->forward) roots[count++] = k->forward[i];
+    if (k->c->inverse && (i < n || !k->c->is_point)) roots[count++] = expr_expand_defs(k->g, k->c->inverse[i]);
+  }
+  if (k->c->generator) roots[count++] = expr_expand_defs(k->g, k->c->generator);
+  k->smooth = expr_smooth_domain(k->g, roots, count, &k->jumps);
+  if (k->smooth && k->old.rate) k->smooth = expr_replace(k->g, k->smooth, k->old.p, k->e->p, n);
+}
+
 int canonical_holds(Eqns *e, const Canonical *c, const CaseSymbols *symbols, const char **how) {
   Claims k = {.e = e, .g = e->g, .arena = e->m->arena, .c = c, .symbols = symbols, .fault = "is not canonical"};
   const char *where = NULL;
   uint32_t brackets = 0;
   int ok = c->is_point || phase_space(&k);
+  if (ok) find_smooth(&k);
   if (ok && (c->kind || c->is_point)) ok = claim_regular(&k, &where);
   if (ok && k.forward) ok = claim_brackets(&k, k.forward, c->fresh, k.z, c->spans);
   else if (ok && !c->kind && !c->is_point) ok = claim_brackets(&k, c->inverse, k.z, c->fresh, NULL);
@@ -167,6 +184,7 @@ int canonical_holds(Eqns *e, const Canonical *c, const CaseSymbols *symbols, con
   if (ok && c->K) ok = c->kind ? claim_by_generator(&k) : claim_by_inverse(&k);
   *how = where ? where : c->n == 1 ? k.forward ? arena_printf(k.arena, "{%s, %s} = 1", expr_symbol(k.g, c->fresh[0])->name, expr_symbol(k.g, c->fresh[1])->name) : "{q, p} = 1 in the new variables"
                        : arena_printf(k.arena, "by its %u brackets%s", brackets, k.forward ? "" : " in the new variables");
+  *how = arena_printf(k.arena, "%s, %s", k.jumps ? " between jumps" : "", *how);
   return ok;
 }
 
@@ -178,7 +196,7 @@ void canonicals_check(Eqns *e, StrBuf *out) {
     const char *how;
     if (!canonical_holds(e, c, &symbols, &how)) continue;
     Place p = source_place(m->ast->sources, c->span.begin);
-    sb_printf(out, "%s:%u: %s %s: proved, %s%s\n", p.file ? p.file->path : "", p.line, c->is_point ? "change of coordinates" : "canonical", c->name, how,
+    sb_printf(out, "%s:%u: %s %s: proved%s%s\n", p.file ? p.file->path : "", p.line, c->is_point ? "change of coordinates" : "canonical", c->name, how,
               c->K ? "; its Hamiltonian is as given" : "");
   }
 }

@@ -140,11 +140,12 @@ static ExpectResult judge_cases(const ContactCase *cases, const CaseSymbols *sym
   return r;
 }
 
-/* Domain of an expectation: that of its text and, if it uses accelerations, multipliers, rates or the energy, that of the equations of motion. */
-static Expr domain_of(const Eqns *e, const Expect *x) {
+/* Domain of an expectation: that of its text and of its brackets, and, if it uses accelerations, multipliers, rates or the energy, that of the equations of motion. */
+static Expr domain_of(const Eqns *e, const Expect *x, Expr brackets) {
   const unsigned solved = 1u << SYM_ACC | 1u << SYM_MULTIPLIER | 1u << SYM_RATE | 1u << SYM_LOCAL;
   Expr domain = x->domain ? charges_substitute(e, x->domain) : 0, motion = e->m->domain;
   int uses = ((expr_kinds(e->g, x->lhs) | expr_kinds(e->g, x->rhs)) & solved) != 0;
+  if (brackets) domain = domain ? expr_fn2(e->g, EX_AND, domain, brackets) : brackets;
   return !uses || !motion ? domain : domain ? expr_fn2(e->g, EX_AND, domain, motion) : motion;
 }
 
@@ -165,9 +166,11 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
     Expect x = m->expects.at[i], shown;
     const Eqns *at;
     if (x.effect != effect) continue;
+    int between = 0;
+    Expr brackets = expression_brackets_domain(e, expr_sub(e->g, x.lhs, x.rhs), &between);
     x.lhs = charges_substitute(e, x.lhs);
     x.rhs = charges_substitute(e, x.rhs);
-    x.domain = domain_of(e, &x);
+    x.domain = domain_of(e, &x, brackets);
     x.nodes[0] = nodes_with_brackets(e, x.lhs_ast, x.nodes[0]);
     x.nodes[1] = nodes_with_brackets(e, x.rhs_ast, x.nodes[1]);
     ExpectResult r = judge_cases(cases, &symbols, &x, &shown, &at);
@@ -175,6 +178,7 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
     if (r.verdict == EXPECT_AGREES) report_agrees(at, &shown, &r, allow_numeric);
     if (r.verdict == EXPECT_UNKNOWN) report_unknown(at, &shown, &r);
     r.label = label_of(m, &x);
+    r.between = between;
     vec_push(m->arena, out, r);
   }
 }
@@ -183,7 +187,7 @@ static void print_one(const ExpectResult *r, const Sources *sources, StrBuf *out
   Place p = source_place(sources, r->span.begin);
   sb_printf(out, "%s:%u: expect %s: ", p.file ? p.file->path : "", p.line, r->label);
   switch (r->verdict) {
-    case EXPECT_PROVED: sb_puts(out, "proved\n"); return;
+    case EXPECT_PROVED: sb_puts(out, r->between ? "proved between jumps\n" : "proved\n"); return;
     case EXPECT_REFUTED: sb_puts(out, "refuted\n"); return;
     case EXPECT_AGREES: sb_printf(out, "not proved, agrees to %d digits\n", r->digits); return;
     case EXPECT_UNKNOWN: sb_puts(out, "not decided\n"); return;

@@ -19,6 +19,7 @@ typedef struct {
   int states; /* number of states at which the sides were compared */
   const char *missing; /* a side of a switch, or a proved difference, that no compared state showed; NULL: none, or no state was compared */
   const char *difference; /* if refuted: both values, and a state that has them */
+  int between; /* holds between jumps of what its brackets contain */
   int inexact; /* a number in the sides or in the equations is not exact, which may be why it is not decided */
 } ExpectResult;
 
@@ -36,7 +37,8 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
 void expects_print(const ExpectResults *r, const Sources *sources, StrBuf *out);
 
 /* canonical_claims.c: whether a canonical transformation is one: the Poisson brackets of its map, or the mixed Hessian of its generating function, and
- * the agreement of all that is given. Otherwise reported, with the bracket that is wrong. *how: the proof, in words. */
+ * the agreement of all that is given. Otherwise reported, with the bracket that is wrong. *how: the proof, in words. Holds between jumps of
+ * its functions, which *how then says. */
 int canonical_holds(Eqns *e, const Canonical *c, const CaseSymbols *symbols, const char **how);
 
 /* Judges all canonical transformations, and appends a line for each that holds. */

@@ -17,10 +17,11 @@ static void print_one(const ActionVariables *v, uint32_t i, StrBuf *out) {
   else if (x->rests) sb_puts(out, "J = 0, at rest\n");
   else {
     sb_printf(out, "J = %.*Lg", x->digits, x->J);
-    if (isfinite(x->omega)) sb_printf(out, ", omega = dE/dJ = %.*Lg, period %.*Lg", x->digits, x->omega, x->digits, 2 * acosl(-1) / fabsl(x->omega));
+    if (isfinite(x->omega)) sb_printf(out, ", omega = dE/dJ = %.*Lg, period %.*Lg", x->omega_digits, x->omega, x->omega_digits, 2 * acosl(-1) / fabsl(x->omega));
     if (x->rotates) sb_puts(out, ", going round: over a turn");
     else sb_printf(out, ", between %.10Lg and %.10Lg", x->low, x->high);
-    sb_printf(out, "%s\n", x->digits < 16 ? "; no more digits are sure, as H is not smooth along the curve, or its terms cancel" : "");
+    sb_printf(out, "%s\n", x->digits < 16 ? "; no more digits are sure, as H is not smooth along the curve, or its terms cancel"
+                         : x->omega_digits < 16 ? "; omega has no more digits, as a separatrix is near" : "");
   }
 }
 
@@ -63,8 +64,8 @@ static void print_text(const ActionVariables *v, StrBuf *out) {
 
 /* --- JSON --- */
 
-static void json_number(const char *name, long double x, StrBuf *out) {
-  if (isfinite(x)) sb_printf(out, ", \"%s\": %.17Lg", name, x);
+static void json_number(const char *name, long double x, int digits, StrBuf *out) {
+  if (isfinite(x)) sb_printf(out, ", \"%s\": %.*Lg", name, digits, x);
   else sb_printf(out, ", \"%s\": null", name);
 }
 
@@ -86,11 +87,11 @@ static void json_action(const ActionVariables *v, uint32_t i, StrBuf *out) {
   int turns = !x->why_not && !x->cyclic && !x->rests;
   sb_printf(out, "%s{\"coordinate\": \"%s\", \"momentum\": \"%s\", \"why_not\": \"%s\", \"cyclic\": %s", i ? ",\n  " : "\n  ", name_of(v, v->space->q[i]), name_of(v, v->space->p[i]),
             x->why_not ? x->why_not : "", x->cyclic ? "true" : "false");
-  json_number("action", x->why_not ? NAN : x->J, out);
-  json_number("frequency", turns ? x->omega : NAN, out);
-  sb_printf(out, ", \"digits\": %d", turns ? x->digits : 16);
-  json_number("low", turns && !x->rotates ? x->low : NAN, out);
-  json_number("high", turns && !x->rotates ? x->high : NAN, out);
+  json_number("action", x->why_not ? NAN : x->J, turns ? x->digits : 17, out);
+  json_number("frequency", turns ? x->omega : NAN, x->omega_digits, out);
+  sb_printf(out, ", \"digits\": %d, \"frequency_digits\": %d", turns ? x->digits : 16, turns ? x->omega_digits : 16);
+  json_number("low", turns && !x->rotates ? x->low : NAN, 17, out);
+  json_number("high", turns && !x->rotates ? x->high : NAN, 17, out);
   json_expr("left", g, s->separates ? s->left[i] : 0, out);
   json_expr("right", g, s->separates ? s->right[i] : 0, out);
   sb_putc(out, '}');
@@ -100,7 +101,7 @@ static void print_json(const ActionVariables *v, StrBuf *out) {
   const Eqns *e = v->space->e;
   const Separation *s = &v->separation;
   sb_printf(out, "{\"model\": \"%s\", \"scene\": \"%s\"", e->m->name, e->m->scene.name);
-  json_number("energy", v->E, out);
+  json_number("energy", v->E, 17, out);
   sb_printf(out, ", \"remark\": \"%s\", \"separates\": %s, \"tied\": [", remark_on(e), s->separates ? "true" : "false");
   if (!s->separates && s->kind[s->i] == PAIR_TIED) sb_printf(out, "\"%s\", \"%s\"", name_of(v, v->space->q[s->i]), name_of(v, v->space->q[s->j]));
   sb_puts(out, "], \"actions\": [");

@@ -29,7 +29,7 @@ static const CommandRow commands[] = {
    "--lagrangian goes back from a model that gives its Hamiltonian, and says where the velocities determine the momenta. "
    "--bracket 'F, G' prints the Poisson bracket of two expressions, with {x, p} = 1; {F, {G, H}} may stand in it. "
    "--in NAME prints the Hamiltonian and Hamilton's equations in the variables of a canonical transformation of the model, once it is proved; of a change of coordinates, the equations of motion."},
-  {CMD_NOETHER, "noether", "symmetries", "MODEL [SCENE] [--degree 2|3|4] [--involution] [--format text|latex|json] [-o FILE]", "find symmetries and conserved quantities",
+  {CMD_NOETHER, "noether", "symmetries", "MODEL [SCENE] [--degree 2|3|4] [--involution] [--seconds S] [--format text|latex|json] [-o FILE]", "find symmetries and conserved quantities",
    "Searches for the symmetries of L: transformations of coordinates, affine in them with coefficients that depend on time, and of time, that change "
    "L by a total derivative dF/dt at most. Every listed symmetry is proved, and shown with its generator, its F and its charge; then come the Poisson "
    "brackets of the charges, declared symmetries, cyclic coordinates, and a scaling that maps solutions to solutions.\n\n"
@@ -37,6 +37,7 @@ static const CommandRow commands[] = {
    "polynomials of the coordinates, times functions that stand in L. Each is proved; products of charges already known are not listed.\n\n"
    "--involution reports a largest set of independent charges in involution: those listed, squares of angular momenta, and conserved functions that the model declares in `expect {f, g} = h`, "
    "`observe` and `symmetry`. All their brackets are proved to be 0; with n of them the motion is integrable in Liouville's sense.\n\n"
+   "--seconds S is the processor time for the search. What could not be searched in it is said.\n\n"
    "Without a scene the model has no effects, and a list shows how each effect alone changes the balance that replaces dQ/dt = 0."},
   {CMD_ACTION, "action", "actions", "MODEL [SCENE] [name=value ...] [--json]", "action variables and their frequencies, in numbers",
    "Computes the action variable of each coordinate at the scene's start, J = 1/(2 pi) times the closed integral of p dq between the turning points at the start's energy, "
@@ -229,7 +230,7 @@ static const OptionRow options[] = {
   {"--step", NULL, "H", TAKES_NUMBER, "", STEPS | C(COST) | C(SWEEP), PASSED, "step [s]; the first step to try if the method chooses its own steps"},
   {"--target", NULL, "X", TAKES_NUMBER, "", C(COST), PASSED, "names the cheapest setting whose error is at most X"},
   {"--methods", NULL, "NAME,NAME", TAKES_TEXT, "", C(COST), PASSED, "only these methods"},
-  {"--seconds", NULL, "S", TAKES_NUMBER, "", C(COST), OWN(seconds), "the time to spend, with building; default: 10. What was left out is said"},
+  {"--seconds", NULL, "S", TAKES_NUMBER, "", C(COST) | C(NOETHER), OWN(seconds), "the time to spend; default: 10. What was left out is said"},
   {"--error", NULL, "EXPR|final|residual", TAKES_EXPR, "", C(COST), OWN(error), "the error of this expression, `energy` for example, or of the state at the end, or what is left of the equations of motion within steps, instead of the state at 16 times"},
   {"--realtime", NULL, "H", TAKES_NUMBER, "", C(COST), PASSED,
    "for games and controllers, which make steps of H [s]: the error of each method of equal steps, the time of a step at worst, and the largest step that follows the motion; with --target, the fastest with at most this error"},

@@ -20,8 +20,8 @@ int command_effects(Compiler *c);
 int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out);
 
 /* Appends the symmetries of the scene's model; scene NULL: of the model without effects, and of each effect alone. format: text, latex, json, or
- * NULL. Returns 0, with the reasons in c->diags: a wrong model, a false symmetry, no Lagrangian. */
-int noether_print(Compiler *c, const char *scene, const char *format, StrBuf *out);
+ * NULL; seconds: of the processor, for the search. Returns 0, with the reasons in c->diags: a wrong model, a false symmetry, no Lagrangian. */
+int noether_print(Compiler *c, const char *scene, double seconds, const char *format, StrBuf *out);
 
 /* Topics of `lagc help`, each once, except functions, units and options. */
 typedef VEC(Name) Topics;

@@ -1,20 +1,32 @@
 /* `lagc noether`: symmetries with their charges. */
 #include "commands/commands.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "symmetry/charges.h"
 #include "symmetry/noether_report.h"
 #include "report/equation_listing.h"
+#include "toolchain/process.h"
 
 static PrintStyle style_of(const char *format) { return format && strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT; }
 
-int noether_print(Compiler *c, const char *scene, const char *format, StrBuf *out) {
+/* Each stage that begins or goes on after a second. */
+static void show_progress(SearchLimit *l, double spent) {
+  if (spent < 1 || l->shown == l->doing) return;
+  fprintf(stderr, "lagc: %.2g of %.3g s; looking for %s\n", spent, l->seconds, l->doing);
+  l->shown = l->doing;
+}
+
+int noether_print(Compiler *c, const char *scene, double seconds, const char *format, StrBuf *out) {
   Eqns *e = compiler_derive_compared(c, &(ModelChoice){.scene = scene, .bare = !scene});
   if (!e) return 0;
   if (!e->m->lagrangian) return diag_error(e->m->diags, e->m->span, "no symmetries to look for: the model has no Lagrangian");
   if (!scene && !charges_judge(e, NULL)) return 0;
-  NoetherReport *r = noether_report(e);
+  SearchLimit limit = search_limit(seconds);
+  if (stderr_is_terminal()) limit.show = show_progress;
+  NoetherReport *r = noether_report(e, &limit);
   if (c->o.degree) r->polynomial = polynomial_charges_find(e, &r->found, (uint32_t)(*c->o.degree - '0'));
   if (c->o.involution) r->involution = involution_find(e, &r->found, r->polynomial);
   for (uint32_t i = 0; i < e->m->all_effects.n && !scene; i++) {
@@ -29,5 +41,8 @@ int noether_print(Compiler *c, const char *scene, const char *format, StrBuf *ou
 
 int command_noether(Compiler *c) {
   StrBuf out = strbuf(c->arena);
-  return noether_print(c, c->o.scene, c->o.format, &out) ? compiler_write(c, c->o.output, &out) : STATUS_MODEL;
+  double seconds = 10;
+  if (c->o.seconds && (!num_parse_double(c->o.seconds, &seconds) || !(seconds > 0)))
+    return usage_error(arena_printf(c->arena, "--seconds %s: the time for the search, for example --seconds 60", c->o.seconds));
+  return noether_print(c, c->o.scene, seconds, c->o.format, &out) ? compiler_write(c, c->o.output, &out) : STATUS_MODEL;
 }

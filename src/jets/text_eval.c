@@ -65,7 +65,7 @@ static Frame *begin_awaited(TextEval *t, Frame *f) {
   if (w.kind != ENT_FUNCTION) return g;
   g->function = d;
   g->nargs = 0;
-  g->args = ARENA_ARRAY(t->arena, TextValue, f->pc - f->first + 1); /* there are fewer arguments than nodes before the call */
+  g->args = ARENA_ARRAY(t->arena, TextValue, ast_list_length(t->b->ast, ast_expr(t->b->ast, f->pc)->args) + 1);
   for (AstId i = ast_expr(t->b->ast, f->pc)->args; i; i = ast_expr(t->b->ast, i)->next) g->args[g->nargs++] = f->value[i - f->first];
   return g;
 }

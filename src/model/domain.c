@@ -1,6 +1,7 @@
 /* Domains: the condition under which an expression, as written, has a real value. Graph nodes lose it: sqrt(x)^2 is the node x.
  * Conditions are graph nodes, made only if Builder.domains is set; 0 stands for a condition that always holds. */
 #include "model/resolve_impl.h"
+#include "sym/jump.h"
 
 Expr domain_and(const Builder *b, Expr p, Expr q) {
   if (!p || !q || p == q) return p ? p : q;
@@ -34,23 +35,7 @@ static Expr power_domain(const Builder *b, Expr base, Expr exponent) {
   return root ? at_least(b, base, expr_int(b->g, 0)) : 0;
 }
 
-Expr domain_of_derivative(const Builder *b, const Value *of) {
-  ExprList l = expr_topo(b->g, of->at, component_count(of));
-  Expr all = 0;
-  for (uint32_t i = 0; i < l.n && b->domains; i++) {
-    Expr e = l.at[i];
-    ExprOp op = expr_op(b->g, e);
-    if (op == EX_ABS || op == EX_SIGN || op == EX_CBRT) all = domain_and(b, all, not_zero(b, expr_arg(b->g, e, 0)));
-    if (op == EX_MIN || op == EX_MAX || op == EX_LT || op == EX_LE || op == EX_EQ)
-      all = domain_and(b, all, not_equal(b, expr_arg(b->g, e, 0), expr_arg(b->g, e, 1)));
-    for (uint32_t k = 0; op == EX_PROD && k < expr_pairs(b->g, e, EX_PROD); k++) {
-      Num power;
-      Expr base = expr_pair(b->g, e, EX_PROD, k, &power);
-      if (!num_is_int(power)) all = domain_and(b, all, not_zero(b, base));
-    }
-  }
-  return all;
-}
+Expr domain_of_derivative(const Builder *b, const Value *of) { return b->domains ? expr_smooth_domain(b->g, of->at, component_count(of), NULL) : 0; }
 
 static Expr if_domain(const Eval *ev, const AstExpr *x, const Value *v) {
   const Builder *b = ev->b;

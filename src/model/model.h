@@ -177,8 +177,8 @@ typedef struct {
 /* Component of a symmetry's generator: first derivative of the transformed coordinate (or t) by the group parameter, at 0. */
 typedef struct {
   SymId target; /* of kind SYM_COORD, SYM_STATE (a coordinate) or SYM_TIME */
-  Expr rate;    /* in coordinates, t and parameters */
-  Span span;
+  Expr rate;    /* in coordinates, t and parameters; 0: wrong, and reported */
+  Span span, value; /* of the map, and of its right side */
 } Move;
 
 typedef struct {

@@ -347,8 +347,27 @@ void resolve_observe(Builder *b, uint32_t index) {
 }
 
 /* As resolve_nodes; the value may be a condition. */
+/* Reports functions within functions, deeper than memory holds their derivatives: a product for each level. */
+static int nests_too_deep(Builder *b, AstId id) {
+  enum { DEEPEST = 2000 };
+  VEC(AstId) open = {0}; /* first nodes of the calls around node i */
+  uint32_t deepest = 0;
+  AstId first = ast_expr(b->ast, id)->first;
+  if (id - first < DEEPEST) return 0;
+  for (AstId i = id; i >= first; i--) {
+    const AstExpr *x = ast_expr(b->ast, i);
+    while (open.n && open.at[open.n - 1] > i) open.n--;
+    if (x->kind != AST_CALL || strcmp(x->name, "if") == 0) continue;
+    vec_push(b->arena, &open, x->first);
+    if (open.n > deepest) deepest = open.n;
+  }
+  if (deepest <= DEEPEST) return 0;
+  diag_error(b->diags, ast_expr(b->ast, id)->span, "functions are nested %u deep here, and at most %d in one expression" HELP "name an inner part: `let a = sin(...)`", deepest, DEEPEST);
+  return 1;
+}
+
 static Value evaluate(Builder *b, AstId id, Context where, Name effect, Expr *nodes) {
-  if (!id) return FAILED;
+  if (!id || nests_too_deep(b, id)) return FAILED;
   EvalStack stack = {0};
   Eval *ev = begin(b, id, where, effect);
   vec_push(b->arena, &stack, ev);

@@ -21,10 +21,10 @@ Value refuse(Builder *b, Span span, const char *fmt, ...) {
 
 /* Text of a span on one line, without comments. */
 static const char *one_line(const Ast *ast, Span s) {
-  Place p = source_place(ast->sources, s.begin);
-  if (!p.file || s.end <= s.begin) return "";
+  const Source *file = source_of(ast->sources, s.begin);
+  if (!file || s.end <= s.begin) return "";
   StrBuf out = strbuf(ast->arena);
-  const char *from = p.file->text + (s.begin - p.file->base), *end = from + (s.end - s.begin);
+  const char *from = file->text + (s.begin - file->base), *end = from + (s.end - s.begin);
   int quoted = 0;
   for (const char *c = from; c < end; c++) {
     if (*c == '"') quoted = !quoted;

@@ -110,31 +110,42 @@ static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span
   return 0;
 }
 
-/* 1 if no corner, as |s| has, depends on s, and the rate has a value at one of some random states: sqrt(s) has none at s = 0. */
-static int has_rate(const Mapping *p, Expr to, Expr rate) {
-  enum { TRIES = 64 }; /* some maps, like x + s*sqrt(k), have no value at many random states */
+/* Whether a corner, as |s| has, depends on s. */
+static int has_corner(const Mapping *p, Expr to) {
   ExprGraph *g = p->b->g;
   ExprList l = expr_topo(g, &to, 1);
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(g, l.at[i]);
     int corner = op == EX_ABS || op == EX_SIGN || op == EX_FLOOR || op == EX_MIN || op == EX_MAX || op == EX_SELECT;
-    if (corner && expr_contains_sym(g, l.at[i], p->of->parameter)) return 0;
-  }
-  long double *symbols = ARENA_ARRAY(p->b->arena, long double, expr_symbol_count(g) + 1), value;
-  for (uint32_t seed = 1; seed <= TRIES; seed++) {
-    sample_state(g, seed, symbols);
-    expr_eval(g, &rate, 1, symbols, &value);
-    if (isfinite(value)) return 1;
+    if (corner && expr_contains_sym(g, l.at[i], p->of->parameter)) return 1;
   }
   return 0;
 }
 
-static void report_no_rate(const Mapping *p, SymId target, Span span) {
-  Builder *b = p->b;
-  Name s = expr_symbol(b->g, p->of->parameter)->name, turned = rotation_of(b, target), name = turned ? turned : expr_symbol(b->g, target)->name;
-  diag_error(b->diags, span, "the symmetry `%s` maps `%s` to an expression that is not differentiable by %s at %s = 0", p->of->name, name, s, s);
+static void report_no_rate(const Builder *b, const Symmetry *y, Move *move) {
+  Name s = expr_symbol(b->g, y->parameter)->name, turned = rotation_of(b, move->target), name = turned ? turned : expr_symbol(b->g, move->target)->name;
+  diag_error(b->diags, move->value, "the symmetry `%s` maps `%s` to an expression that is not differentiable by %s at %s = 0", y->name, name, s, s);
   const char *as = turned ? arena_printf(b->arena, "`%s -> turn((0, 0, 1), %s)*%s`", name, s, name) : arena_printf(b->arena, "`%s -> %s + %s`", name, name, s);
   diag_help(b->diags, "a charge belongs to a transformation that is smooth in its parameter, as %s is", as);
+  move->rate = 0;
+}
+
+/* Reports moves whose rate has a value at none of some random states, as that of sqrt(s) at s = 0. */
+static void check_rates(Builder *b, const Symmetry *y) {
+  enum { TRIES = 64 }; /* some maps, like x + s*sqrt(k), have no value at many random states */
+  uint32_t n = y->moves.n, open = n;
+  Expr *rates = ARENA_ARRAY(b->arena, Expr, n + 1);
+  uint8_t *known = ARENA_ARRAY(b->arena, uint8_t, n + 1);
+  long double *symbols = ARENA_ARRAY(b->arena, long double, expr_symbol_count(b->g) + 1), *value = ARENA_ARRAY(b->arena, long double, n + 1);
+  for (uint32_t i = 0; i < n; i++) rates[i] = y->moves.at[i].rate;
+  EvalTape *tape = eval_tape(b->g, rates, n);
+  for (uint32_t seed = 1; seed <= TRIES && open; seed++) {
+    sample_state(b->g, seed, symbols);
+    eval_run(tape, symbols, value);
+    for (uint32_t i = open = 0; i < n; i++) open += !(known[i] |= isfinite(value[i]) != 0);
+  }
+  for (uint32_t i = 0; i < n; i++)
+    if (!known[i]) report_no_rate(b, y, &y->moves.at[i]);
 }
 
 static void add_move(const Mapping *p, SymId target, Expr to, Span span) {
@@ -148,15 +159,12 @@ static void add_move(const Mapping *p, SymId target, Expr to, Span span) {
     if (b->index.n) diag_help(b->diags, "maps after a `for` belong to it, up to the next `for`: write other maps before it");
     return;
   }
-  Move move = {.target = target, .span = p->map->span};
+  Move move = {.target = target, .span = p->map->span, .value = span};
   if (is_of_points(p, to, span) && begins_at_identity(p, target, to, span)) {
     Expr zero = expr_int(b->g, 0), slope = expr_diff(b->g, to, y->parameter);
     Expr rate = expr_replace(b->g, slope, &y->parameter, &zero, 1);
     move.rate = simplify(b->g, rate);
-    if (!has_rate(p, to, move.rate)) {
-      report_no_rate(p, target, span);
-      move.rate = 0;
-    }
+    if (has_corner(p, to)) report_no_rate(b, y, &move);
   }
   vec_push(b->arena, &y->moves, move);
 }
@@ -241,6 +249,6 @@ void add_symmetry(Builder *b, const AstStmt *st, Name effect) {
   b->bound = &group;
   b->nbound = group.name != NULL;
   for (const AstStmt *map = st->body; map && group.name; map = map->next) each_statement(b, map, effect, add_map, y);
-  if (group.name) check_moves(b, y);
+  if (group.name) check_rates(b, y), check_moves(b, y);
   b->nbound = 0;
 }

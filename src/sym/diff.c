@@ -173,8 +173,14 @@ static void push_term(ExprGraph *g, Terms *t, Expr term) {
 
 static Expr add_terms(ExprGraph *g, const Terms *t) { return t->n ? expr_add_n(g, t->at, t->n) : g->zero; }
 
-void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
-                  const char *suffix, ExprMap *known, Expr *out) {
+/* Seeds of the symbols first .. first + n - 1; 0: zero. */
+typedef struct {
+  SymId first;
+  uint32_t n;
+  const Expr *at;
+} Seeds;
+
+static void sweep_forward(ExprGraph *g, const Expr *roots, uint32_t n, Seeds seed, const char *suffix, ExprMap *known, Expr *out) {
   ExprList l = expr_topo_until(g, roots, n, known);
   ExprMap *dot = &g->work; /* node -> its tangent; absent: zero */
   expr_map_clear(dot);
@@ -183,7 +189,7 @@ void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed,
     Expr e = l.at[k];
     if (expr_op(g, e) == EX_SYM) {
       SymId s = expr_sym_id(g, e);
-      if (s < nseed && seed[s]) expr_map_set(dot, e, seed[s]);
+      if (s >= seed.first && s - seed.first < seed.n && seed.at[s - seed.first]) expr_map_set(dot, e, seed.at[s - seed.first]);
       continue;
     }
     Expr before = known ? expr_map_get(known, e) : 0;
@@ -226,12 +232,16 @@ void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed,
   }
 }
 
+void expr_tangent(ExprGraph *g, const Expr *roots, uint32_t n, const Expr *seed, uint32_t nseed,
+                  const char *suffix, ExprMap *known, Expr *out) {
+  sweep_forward(g, roots, n, (Seeds){0, nseed, seed}, suffix, known, out);
+}
+
 Expr expr_diff(ExprGraph *g, Expr e, SymId sym) {
-  Expr *seed = ARENA_ARRAY(g->arena, Expr, sym + 1), out;
-  seed[sym] = g->one;
+  Expr out;
   StrBuf b = strbuf(g->arena);
   sb_printf(&b, "_%s", expr_symbol(g, sym)->name);
-  expr_tangent(g, &e, 1, seed, sym + 1, sb_text(&b), NULL, &out);
+  sweep_forward(g, &e, 1, (Seeds){sym, 1, &g->one}, sb_text(&b), NULL, &out);
   return out;
 }
 

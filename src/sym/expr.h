@@ -153,6 +153,9 @@ void expr_map_clear(ExprMap *m);
 void expr_map_set(ExprMap *m, Expr e, uint32_t value);
 uint32_t expr_map_get(const ExprMap *m, Expr e); /* 0 when not set */
 
+/* expr_topo that stops at the nodes of the map `leaves` (NULL: none). */
+ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves);
+
 /* e with symbols replaced: symbol s becomes with[s] where that is not 0 (n entries).
  * Definitions whose body changes are rebuilt under their name followed by suffix (may be ""). */
 Expr expr_substitute(ExprGraph *g, Expr e, const Expr *with, uint32_t n, const char *suffix);

@@ -84,8 +84,5 @@ ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32
 /* Node e with its arguments mapped through m; an argument that is not in m stays. */
 Expr expr_with_mapped_args(ExprGraph *g, const ExprMap *m, Expr e);
 
-/* expr_topo that stops at the nodes of the map `leaves` (NULL: none). */
-ExprList expr_topo_until(ExprGraph *g, const Expr *roots, uint32_t n, const ExprMap *leaves);
-
 /* Sets m to 1 for those nodes of l (a result of expr_topo) that contain a symbol for which want() is true. */
 void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s, const void *data), const void *data, ExprMap *m);

@@ -279,13 +279,22 @@ static Expr antiderivative(ExprGraph *g, Expr e, SymId x, const SymId *q, uint32
   return sum;
 }
 
-Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n, int by_substitution) {
-  Expr F = expr_int(g, 0);
-  for (uint32_t i = 0; i < n; i++) {
-    Expr done = expr_diff(g, F, q[i]), left = expr_sub(g, a[i], done);
-    if (expr_is_zero(g, left)) continue;
-    Expr part = by_substitution ? antiderivative(g, left, q[i], q, n) : expr_integrate(g, left, q[i], 0);
-    F = expr_add(g, F, part);
+/* Takes the derivatives of a part of F from those that are left. */
+static void take_part(ExprGraph *g, Expr part, const ExprMap *place, const SymId *q, Expr *left) {
+  ExprList nodes = expr_topo(g, &part, 1);
+  for (uint32_t k = 0; k < nodes.n; k++) {
+    uint32_t i = expr_op(g, nodes.at[k]) == EX_SYM ? expr_map_get(place, nodes.at[k]) : 0;
+    if (i) left[i - 1] = expr_sub(g, left[i - 1], expr_diff(g, part, q[i - 1]));
   }
-  return F;
+}
+
+Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n, int by_substitution) {
+  Expr *left = ARENA_ARRAY(expr_arena(g), Expr, 2 * (size_t)n + 1), *part = left + n;
+  ExprMap place = expr_map(expr_arena(g));
+  for (uint32_t i = 0; i < n; i++) left[i] = a[i], expr_map_set(&place, expr_symbol(g, q[i])->node, i + 1);
+  for (uint32_t i = 0; i < n; i++) {
+    part[i] = expr_is_zero(g, left[i]) ? left[i] : by_substitution ? antiderivative(g, left[i], q[i], q, n) : expr_integrate(g, left[i], q[i], 0);
+    if (!expr_is_zero(g, part[i])) take_part(g, part[i], &place, q, left);
+  }
+  return expr_add_n(g, part, n);
 }

@@ -248,3 +248,40 @@ ExprJumps expr_jumps(ExprGraph *g, Expr x) {
   for (uint32_t i = 0; i < all.n; i++) try_source(&s, &all.at[i]);
   return (ExprJumps){s.found.at, s.found.n};
 }
+
+typedef struct {
+  ExprGraph *g;
+  Expr all; /* 0: everywhere */
+} SmoothDomain;
+
+/* Adds the condition a != b. 1: it restricts the motion. */
+static int add_apart(SmoothDomain *d, Expr a, Expr b) {
+  Expr u = expr_sub(d->g, a, b), apart;
+  if (!(expr_kinds(d->g, u) & ~(1u << SYM_PARAM | 1u << SYM_CONST | 1u << SYM_TIME)) || expr_is_nonzero(d->g, u)) return 0;
+  apart = expr_fn(d->g, EX_NOT, expr_fn2(d->g, EX_EQ, a, b));
+  d->all = d->all ? expr_fn2(d->g, EX_AND, d->all, apart) : apart;
+  return 1;
+}
+
+Expr expr_smooth_domain(ExprGraph *g, const Expr *roots, uint32_t n, int *jumps) {
+  SmoothDomain d = {.g = g};
+  ExprList l = expr_topo(g, roots, n);
+  Expr zero = expr_int(g, 0), one = expr_int(g, 1), minus = expr_int(g, -1);
+  int some = 0;
+  for (uint32_t i = 0; i < l.n; i++) {
+    Expr e = l.at[i], u = expr_nargs(g, e) ? expr_arg(g, e, 0) : 0;
+    ExprOp op = expr_op(g, e);
+    if (op == EX_ABS || op == EX_SIGN) some |= add_apart(&d, u, zero);
+    if (op == EX_FLOOR) some |= add_apart(&d, u, e);
+    if (op == EX_MIN || op == EX_MAX || op == EX_LT || op == EX_LE || op == EX_EQ) some |= add_apart(&d, u, expr_arg(g, e, 1));
+    if (op == EX_CBRT) add_apart(&d, u, zero);
+    if (op == EX_ASIN || op == EX_ACOS) add_apart(&d, u, one), add_apart(&d, u, minus);
+    for (uint32_t k = 0; op == EX_PROD && k < expr_pairs(g, e, EX_PROD); k++) {
+      Num power;
+      Expr base = expr_pair(g, e, EX_PROD, k, &power);
+      if (!num_is_int(power)) add_apart(&d, base, zero);
+    }
+  }
+  if (jumps) *jumps |= some;
+  return d.all;
+}

@@ -53,8 +53,10 @@ void action_roots(const PhaseSpace *s, uint32_t i, Expr *roots) {
   roots[0] = s->H, roots[1] = simplify(g, slope), roots[2] = simplify(g, bend), roots[3] = simplify(g, force);
 }
 
+/* Digits of a number with this relative error, up to 16. */
+static int digits_of(Real error) { return error < 1e-12L ? 16 : error < 0.1L ? (int)-log10l(error) : 1; }
+
 static void pair_action(const PhaseSpace *s, uint32_t i, const Real *start, ActionVariable *out) {
-  enum { DIGITS = 16 };
   const Real pi = 3.14159265358979323846264338327950288L;
   ExprGraph *g = s->e->g;
   uint32_t count = expr_symbol_count(g) + 1;
@@ -65,7 +67,8 @@ static void pair_action(const PhaseSpace *s, uint32_t i, const Real *start, Acti
   c.tape = eval_tape(g, roots, 4);
   lag_action_integral x = lag_action_of_curve(point_at, &c, start[c.q], start[c.p], pair_is_periodic(s, i));
   *out = (ActionVariable){.why_not = x.why_not, .rests = x.rests, .rotates = x.rotates, .J = x.J, .omega = 2 * pi / x.time, .low = x.low, .high = x.high};
-  out->digits = x.error < 1e-12L ? DIGITS : x.error < 0.1L ? (int)-log10l(x.error) : 1;
+  out->digits = digits_of(x.error);
+  out->omega_digits = digits_of(x.time_error);
 }
 
 /* NULL: a cyclic coordinate has its momentum as its action. */

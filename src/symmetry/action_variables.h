@@ -13,7 +13,7 @@ typedef struct {
   int rests;               /* at an equilibrium: J = 0 */
   int rotates;              /* it goes round: J is the mean of p over a turn, omega has its sign */
   long double J;           /* SI */
-  int digits;              /* of J and omega, up to 16: fewer where H has a corner along the curve */
+  int digits, omega_digits; /* of J and omega, up to 16: fewer where H has a corner along the curve, omega's beside a separatrix */
   long double omega;       /* dE/dJ at fixed other actions; NAN: not computed */
   long double low, high;   /* turning points, or ends of a turn */
 } ActionVariable;

@@ -7,7 +7,7 @@
 #include "mech/states.h"
 #include "sym/diff.h"
 
-enum { WHOLE_MOST = 20, CUBIC_MOST = 4 };
+enum { CUBIC_MOST = 4 };
 
 /* --- the ansatz --- */
 
@@ -22,15 +22,13 @@ static int same_vector(Name a, Name b) {
   return n && n == vector_part(b) && memcmp(a, b, n) == 0;
 }
 
-int ansatz_is_restricted(const Ansatz *a) { return a->n > WHOLE_MOST; }
-
 static Name name_of(const Ansatz *s, uint32_t i) { return expr_symbol(s->e->g, s->q[i])->name; }
 
 static void add_xi(Ansatz *s, Arena *a) {
   for (uint32_t i = 0; i < s->n; i++) vec_push(a, &s->xi, ((XiColumn){i, 0}));
   for (uint32_t i = 0; i < s->n; i++)
     for (uint32_t j = 0; j < s->n; j++)
-      if (!ansatz_is_restricted(s) || i == j || same_vector(name_of(s, i), name_of(s, j)))
+      if (s->whole || i == j || same_vector(name_of(s, i), name_of(s, j)))
         vec_push(a, &s->xi, ((XiColumn){i, j + 1}));
 }
 
@@ -47,15 +45,17 @@ static void add_held(Ansatz *s, Arena *a) {
     if (!contact_of_constraint(s->e->m, k->of[i])) vec_push(a, &s->held, i);
 }
 
-Ansatz *ansatz_new(Arena *a, const Eqns *e) {
+Ansatz *ansatz_new(Arena *a, const Eqns *e, int whole, SearchLimit *limit) {
   Ansatz *s = ARENA_NEW(a, Ansatz);
   unsigned kinds = expr_kinds(e->g, e->lagrangian);
   s->e = e;
+  s->whole = whole;
+  s->limit = limit;
   s->symbols = expr_symbol_count(e->g) + 1;
   s->n = eqns_coordinates(e);
   s->q = eqns_symbols(e, 0);
   s->v = eqns_symbols(e, 1);
-  s->degree = s->n <= CUBIC_MOST ? 3 : s->n <= WHOLE_MOST ? 2 : 1;
+  s->degree = !whole ? 1 : s->n <= CUBIC_MOST ? 3 : 2;
   s->has_tau = !(kinds & (1u << SYM_INPUT | (e->n ? 1u << SYM_STATE : 0)));
   s->has_time = (kinds & 1u << SYM_TIME) != 0;
   add_xi(s, a);
@@ -79,6 +79,7 @@ struct RowSource {
   uint64_t random;
   uint32_t turn;         /* number of rows at times so far; constraints take turns in them */
   uint32_t filled;       /* rows so far; constraints take turns in them */
+  uint32_t reach;        /* index into reaches */
 };
 
 /* Random number, 0.3 .. 1.7 with random sign. Steele, Lea, Flood: Fast splittable pseudorandom number generators, OOPSLA 2014, DOI
@@ -116,29 +117,35 @@ RowSource *rows_new(const Ansatz *s, Arena *scratch, const long double *paramete
   return r;
 }
 
+/* Sizes of coordinates and velocities, tried until L has a value: roots of 1 - v^2/c^2, logarithms of x - a. */
+static const long double reaches[][2] = {{1, 1}, {1, 0.5L}, {1, 0.25L}, {1, 0.125L}, {0.5L, 1}, {0.25L, 1}, {4, 1}, {16, 1}, {0.25L, 0.25L}, {0.0625L, 0.0625L}};
+enum { REACHES = sizeof reaches / sizeof *reaches };
+
 /* Draws new values of all symbols but parameters, coordinates `spread` times as large. Times are further apart, so that functions of time are told
  * from each other. */
 static void draw(RowSource *r, long double spread) {
   const ExprGraph *g = r->of->e->g;
+  const long double *reach = reaches[r->reach];
   for (SymId s = 1; s <= expr_symbol_count(g); s++) {
     const Symbol *x = expr_symbol(g, s);
     if (x->kind == SYM_PARAM || x->kind == SYM_CONST) continue;
-    long double value = next_value(r) * (x->kind == SYM_TIME ? 4 : x->kind == SYM_COORD ? spread : 1);
+    long double value = next_value(r) * (x->kind == SYM_TIME ? 4 : x->kind == SYM_COORD ? spread * reach[0] : x->kind == SYM_VEL ? reach[1] : 1);
     r->symbols[s] = sign_is_nonnegative(x->sign) ? fabsl(value) : value;
   }
 }
 
-/* Sum of |dL/dq_i| at the state. */
+/* Sum of |dL/dq_i| at the state; NaN where L, a force or a momentum has no value. */
 static long double steepness(RowSource *r) {
-  long double sum = 0;
+  long double sum = 0, none = 0;
   eval_run(r->tape, r->symbols, r->out);
   for (uint32_t i = 0; i < r->of->n; i++) sum += fabsl(r->out[2 + i]);
-  return sum;
+  for (uint32_t i = 0; i < 2 + 2 * r->of->n; i++) none += 0 * r->out[i];
+  return sum + none;
 }
 
 /* Draws some states and keeps that with the weakest forces: where two of several bodies nearly touch, their force drowns all others, and with 1/(x
  * - y)^2 rounding of the potential drowns the kinetic energy. With many bodies every second state is wide. */
-static void draw_gentle(RowSource *r) {
+static int draw_some(RowSource *r) {
   enum { MANY = 6, DRAWS = 24 };
   size_t size = (expr_symbol_count(r->of->e->g) + 1) * sizeof *r->symbols;
   long double least = INFINITY;
@@ -150,6 +157,13 @@ static void draw_gentle(RowSource *r) {
     memcpy(r->kept, r->symbols, size);
   }
   if (least < INFINITY) memcpy(r->symbols, r->kept, size);
+  return least < INFINITY;
+}
+
+static void draw_gentle(RowSource *r) {
+  uint32_t first = r->reach;
+  while (!draw_some(r) && r->reach + 1 < REACHES) r->reach++;
+  if (r->reach + 1 == REACHES) r->reach = first;
 }
 
 static void set_velocities(RowSource *r, const long double *v, long double factor) {
@@ -263,10 +277,15 @@ static int try_row(RowSource *r, RowKind kind, uint32_t which, long double *b0, 
 
 enum { TRIES = 20 };
 
+int rows_exist(const Ansatz *s, Arena *scratch, const long double *parameters) {
+  long double *b0 = ARENA_ARRAY(scratch, long double, 2 * (size_t)s->columns), *b1 = b0 + s->columns;
+  return rows_fill(rows_new(s, scratch, parameters), ROWS_ALL, 1, b0, b1) > 0;
+}
+
 uint32_t rows_fill(RowSource *r, RowKind kind, uint32_t n, long double *b0, long double *b1) {
   size_t w = r->of->columns;
   uint32_t done = 0;
-  for (uint32_t tries = 0; done < n && tries < TRIES * (done + 10); tries++)
+  for (uint32_t tries = 0; done < n && tries < TRIES * (done + 10) && search_goes_on(r->of->limit, 0); tries++)
     done += (uint32_t)try_row(r, kind, r->filled + done, b0 + done * w, b1 + done * w);
   r->filled += done;
   return done;

@@ -11,6 +11,7 @@
 
 #include "base/dense.h"
 #include "symmetry/noether.h"
+#include "symmetry/search_limit.h"
 #include "sym/eval.h"
 
 /* Coefficient of phi_k in xi_i; k is 0 for phi = 1, j + 1 for q_j. */
@@ -39,13 +40,13 @@ typedef struct {
   uint32_t columns;        /* shown + gauge.n */
   uint32_t symbols;        /* number of symbols when the search begins, plus 1; integrals declare more, which it never evaluates */
   VEC(uint32_t) held;      /* constraints that always hold: those of contacts do not */
+  int whole;               /* 0: the linear part of xi mixes only the components of one vector */
+  SearchLimit *limit;
 } Ansatz;
 
-/* The full ansatz for up to 20 coordinates; beyond, the linear part of xi mixes only the components of one vector. */
-Ansatz *ansatz_new(Arena *a, const Eqns *e);
+enum { WHOLE_MOST = 20 };  /* coordinates of a whole ansatz */
 
-/* Whether the linear part of xi is restricted in that way. */
-int ansatz_is_restricted(const Ansatz *a);
+Ansatz *ansatz_new(Arena *a, const Eqns *e, int whole, SearchLimit *limit);
 
 /* Kinds of rows. ROWS_ALL: delta L - dF/dt at a state. ROWS_AT_REST: at q' = 0. ROWS_EVEN: the part even in q', less its value at rest.
  * ROWS_DIFFERENCE: delta L - dF/dt at two states of one time, subtracted: F(t) alone drops out, and the first gauge column is zero.
@@ -56,6 +57,9 @@ typedef struct RowSource RowSource;
 
 /* A source of random rows. parameters: values by symbol, at least [a->symbols]; only those of SYM_PARAM and SYM_CONST are used. */
 RowSource *rows_new(const Ansatz *a, Arena *scratch, const long double *parameters);
+
+/* Whether rows can be had: L has finite values at these parameters. */
+int rows_exist(const Ansatz *a, Arena *scratch, const long double *parameters);
 
 /* Fills in up to `n` rows b0, b1 [n*columns] at new states; states with a value that is not finite are skipped. Returns their number: 0 where no
  * state works, or L has no such rows. */
@@ -68,7 +72,7 @@ int rows_at_time(RowSource *r, RowKind kind, long double *b0, long double *b1, l
 typedef struct {
   DenseRows space;   /* orthonormal; one direction is F = 1 */
   long double *A;    /* [n*n] */
-  int sure;          /* 0: ranks are doubtful, or L has symmetries with arbitrary functions of time */
+  int sure;          /* 0: ranks are doubtful, L has symmetries with arbitrary functions of time, or the time is spent */
 } SolutionSpace;
 
 /* Solution space at given values of the parameters. like: the space at other generic values, in which only the coefficients that occur there are

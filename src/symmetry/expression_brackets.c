@@ -4,6 +4,7 @@
 #include "mech/hamilton.h"
 #include "mech/states.h"
 #include "sym/diff.h"
+#include "sym/jump.h"
 #include "sym/simplify.h"
 
 const char *phase_space_try(Eqns *e, PhaseSpace *s) {
@@ -52,6 +53,19 @@ Expr poisson_bracket(ExprGraph *g, Expr f, Expr h, const SymId *q, const SymId *
   return simplify(g, sum);
 }
 
+/* Both conditions; 0: always. */
+static Expr both(ExprGraph *g, Expr a, Expr b) { return !a ? b : !b ? a : expr_fn2(g, EX_AND, a, b); }
+
+Expr expression_brackets_domain(const Eqns *e, Expr x, int *jumps) {
+  Expr all = 0;
+  for (uint32_t i = 0; i < e->nbrackets; i++) {
+    if (!e->brackets[i].domain || !expr_contains_sym(e->g, x, e->m->brackets.at[i].sym)) continue;
+    all = both(e->g, all, e->brackets[i].domain);
+    *jumps |= e->brackets[i].jumps;
+  }
+  return all;
+}
+
 int expression_brackets_derive(Eqns *e, const ChargeNames *charges) {
   const Model *m = e->m;
   PhaseSpace s;
@@ -64,7 +78,11 @@ int expression_brackets_derive(Eqns *e, const ChargeNames *charges) {
     Expr part[2] = {b->f, b->g};
     for (int k = 0; k < 2; k++) part[k] = phase_space_expression(&s, expr_replace(e->g, part[k], charges->sym, charges->value, charges->n));
     Expr shown = poisson_bracket(e->g, part[0], part[1], s.q, s.p, s.n);
-    all[e->nbrackets] = (struct BracketValue){m->hamiltonian ? shown : expr_replace(e->g, shown, s.p, e->p, s.n), shown};
+    struct BracketValue x = {.value = shown, .shown = shown};
+    x.domain = both(e->g, expr_smooth_domain(e->g, part, 2, &x.jumps), expression_brackets_domain(e, expr_add(e->g, b->f, b->g), &x.jumps));
+    if (!m->hamiltonian) x.value = expr_replace(e->g, shown, s.p, e->p, s.n);
+    if (!m->hamiltonian && x.domain) x.domain = expr_replace(e->g, x.domain, s.p, e->p, s.n);
+    all[e->nbrackets] = x;
   }
   return 1;
 }

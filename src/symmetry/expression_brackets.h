@@ -9,6 +9,8 @@
 struct BracketValue {
   Expr value; /* in q, q', t, as the equations have them */
   Expr shown; /* in q, p, t */
+  Expr domain; /* where f and g have derivatives, in the symbols of value; 0: everywhere */
+  int jumps;   /* they jump, or have corners */
 };
 
 /* Values of the n names that stand for charges. */
@@ -42,6 +44,9 @@ Expr poisson_bracket(ExprGraph *g, Expr f, Expr h, const SymId *q, const SymId *
 
 /* Fills e->brackets, in the order of Model.brackets. 0, reported, where there is no closed form. */
 int expression_brackets_derive(Eqns *e, const ChargeNames *charges);
+
+/* Where what the brackets in x contain has derivatives; 0: everywhere. *jumps: 1 is set where they hold between jumps. */
+Expr expression_brackets_domain(const Eqns *e, Expr x, int *jumps);
 
 /* x with the symbols of brackets replaced by their values, or, in_momenta, by their forms in q and p. */
 Expr expression_brackets_substitute(const Eqns *e, Expr x, int in_momenta);

@@ -243,7 +243,7 @@ static void search_listed(SymmetrySearch *s) {
   s->out->searched = noether_add_family(s, &f);
   s->out->ansatz = arena_printf(s->e->m->arena, "xi affine in the coordinates%s, tau, with coefficients in t: %s; F a polynomial of degree %u in the coordinates, "
                                 "with those%s%s, and any function of t alone",
-                                ansatz_is_restricted(s->ansatz) ? " (turns and stretches of one vector only)" : "", functions_text(s, &f.times, 0, f.times.n),
+                                !s->ansatz->whole ? " (turns and stretches of one vector only)" : "", functions_text(s, &f.times, 0, f.times.n),
                                 s->ansatz->degree, f.times.n < f.times.ngauge ? " and " : "", functions_text(s, &f.times, f.times.n, f.times.ngauge));
 }
 
@@ -252,7 +252,7 @@ static void search_listed(SymmetrySearch *s) {
 static const char *ansatz_text(const SymmetrySearch *s) {
   const Ansatz *a = s->ansatz;
   return arena_printf(s->e->m->arena, "xi affine in the coordinates%s, tau, both with any dependence on time; F a polynomial of degree %u in the coordinates",
-                      ansatz_is_restricted(a) ? " (turns and stretches of one vector only)" : "", a->degree);
+                      !a->whole ? " (turns and stretches of one vector only)" : "", a->degree);
 }
 
 static const long double GAP_WEAK = 1e10L; /* least ratio of pivots to rounding that is trusted; models have 1e13 and more */
@@ -282,29 +282,48 @@ static void use_attempt(SymmetrySearch *s, uint32_t attempt) {
   s->spaces = ARENA_ARRAY(s->scratch, SolutionSpace, noether_choices(s));
 }
 
-/* Chooses values of the parameters, and others where some rate is complex and has no closed form: a trap that does not confine. */
+/* Chooses values of the parameters at which L has values, and others where some rate is complex and has no closed form: a trap that does not
+ * confine. */
 static void draw_parameters(SymmetrySearch *s) {
   enum { ATTEMPTS = 12 };
-  use_attempt(s, 0);
+  for (uint32_t attempt = 0; attempt < ATTEMPTS; attempt++) {
+    use_attempt(s, attempt);
+    if (rows_exist(s->ansatz, s->scratch, s->choices.at[CHOICE_FIRST]) && rows_exist(s->ansatz, s->scratch, s->choices.at[CHOICE_SECOND])) break;
+  }
   if (s->ansatz->has_time || !s->e->n || !s->choices.n || !(complex_rates(s, CHOICE_FIRST) + complex_rates(s, CHOICE_SECOND))) return;
-  for (uint32_t attempt = 1; attempt < ATTEMPTS; attempt++) {
+  for (uint32_t attempt = 1; attempt < ATTEMPTS && search_goes_on(s->limit, 0); attempt++) {
     use_attempt(s, attempt);
     if (complex_rates(s, CHOICE_FIRST) + complex_rates(s, CHOICE_SECOND) == 0) return;
   }
   use_attempt(s, 0);
 }
 
-static void search_work(Arena *scratch, void *data) {
-  SymmetrySearch *s = data;
-  s->scratch = scratch;
-  s->ansatz = ansatz_new(scratch, s->e);
+static void search_ansatz(SymmetrySearch *s, int whole) {
+  *s->out = (FoundSymmetries){0};
+  search_stage(s->limit, whole ? 0.5 : 0.7, whole ? "all generators affine in the coordinates" : "generators that mix the components of one vector");
+  s->ansatz = ansatz_new(s->scratch, s->e, whole, s->limit);
   draw_parameters(s);
   if (s->ansatz->has_time || !s->e->n) search_listed(s);
   else search_autonomous(s);
-  if (s->out->searched) return;
-  try_usual_symmetries(s->e, s->out);
-  s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and rotations of all coordinates of a kind together";
-  s->out->note = "the linear equations of the full search could not be solved reliably";
+}
+
+static const char *stopped_note(const SymmetrySearch *s) {
+  return arena_printf(s->e->m->arena, "%.3g s did not suffice for more, and nothing was searched beyond: --seconds %.3g gives more time", s->limit->seconds, 10 * s->limit->seconds);
+}
+
+/* The largest ansatz that can be searched in its part of the time, else the usual symmetries. */
+static void search_work(Arena *scratch, void *data) {
+  SymmetrySearch *s = data;
+  int whole = eqns_coordinates(s->e) <= WHOLE_MOST;
+  s->scratch = scratch;
+  search_ansatz(s, whole);
+  if (whole && s->limit->stopped && !s->out->all.n) search_ansatz(s, 0);
+  if (!s->out->searched || (s->limit->stopped && !s->out->all.n)) {
+    try_usual_symmetries(s->e, s->out, s->limit);
+    s->out->ansatz = "the energy, momenta of cyclic coordinates, translations, boosts and rotations of all coordinates of a kind together";
+    s->out->note = "the linear equations of the full search could not be solved reliably";
+  }
+  if (s->limit->stopped) s->out->note = stopped_note(s);
 }
 
 const char *noether_note_on_impacts(const Model *m) {
@@ -315,20 +334,20 @@ const char *noether_note_on_impacts(const Model *m) {
   return setting ? "events change charges: the balances hold between them" : NULL;
 }
 
-static FoundSymmetries search_in(const Eqns *e, Expr lagrangian) {
+static FoundSymmetries search_in(Eqns *e, SearchLimit *limit) {
   FoundSymmetries out = {0};
-  Eqns written = *e;
-  written.lagrangian = lagrangian;
-  SymmetrySearch s = {.e = &written, .g = e->g, .out = &out};
+  SymmetrySearch s = {.e = e, .g = e->g, .out = &out, .limit = limit};
   arena_with_scratch(expr_arena(e->g), search_work, &s);
   return out;
 }
 
 /* Where t drops out of L, and not all symmetries are found in closed form, the text may have their functions of time. */
-static FoundSymmetries search(const Eqns *e) {
-  FoundSymmetries out = search_in(e, e->lagrangian);
+static FoundSymmetries search(Eqns *e, SearchLimit *limit) {
+  FoundSymmetries out = search_in(e, limit);
   if (e->lagrangian == e->m->lagrangian || (out.searched && !out.unproved)) return out;
-  FoundSymmetries other = search_in(e, e->m->lagrangian);
+  Eqns written = *e;
+  written.lagrangian = e->m->lagrangian;
+  FoundSymmetries other = search_in(&written, limit);
   return other.searched && other.all.n > out.all.n ? other : out;
 }
 
@@ -343,10 +362,10 @@ static int has_galilean_charges(const FoundSymmetries *all) {
   return seen[SYMMETRY_ENERGY] && seen[SYMMETRY_MOMENTUM] == 7 && seen[SYMMETRY_ROTATION] == 7 && seen[SYMMETRY_BOOST] == 7;
 }
 
-FoundSymmetries noether_find(Eqns *e) {
+FoundSymmetries noether_find(Eqns *e, SearchLimit *limit) {
   FoundSymmetries out = {0};
-  if (too_large_to_search(e)) try_usual_symmetries(e, &out);
-  else out = search(e);
+  if (too_large_to_search(e)) try_usual_symmetries(e, &out, limit);
+  else out = search(e, limit);
   out.galilean = has_galilean_charges(&out);
   if (!out.note) out.note = noether_note_on_impacts(e->m);
   return out;

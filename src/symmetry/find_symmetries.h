@@ -6,6 +6,7 @@
 #pragma once
 
 #include "symmetry/noether.h"
+#include "symmetry/search_limit.h"
 
 typedef enum {
   SYMMETRY_OTHER,
@@ -40,8 +41,8 @@ typedef struct {
  * has none. */
 const char *noether_note_on_impacts(const Model *m);
 
-/* Finds symmetries that hold for all values of the parameters. Needs a Lagrangian. */
-FoundSymmetries noether_find(Eqns *e);
+/* Finds symmetries that hold for all values of the parameters, in the time allowed: `note` says what was not searched. Needs a Lagrangian. */
+FoundSymmetries noether_find(Eqns *e, SearchLimit *limit);
 
 /* A scaling q_i -> s^alpha_i q_i, t -> s^beta t that multiplies L dt by s^kappa with kappa not 0: it maps solutions to solutions and has no
  * charge. noether_scaling returns 0 where there is none, or there are several. */

@@ -21,6 +21,7 @@ typedef struct {
   Choices choices;
   SolutionSpace *spaces; /* [choice]; width 0: not computed yet */
   FoundSymmetries *out;
+  SearchLimit *limit;
 } SymmetrySearch;
 
 /* Solution space at a choice of parameter values; computed once. */
@@ -36,4 +37,4 @@ int noether_add_family(SymmetrySearch *s, const Family *f);
 int too_large_to_search(const Eqns *e);
 
 /* Tries the energy, momenta of cyclic coordinates, and translations, boosts and rotations of all coordinates of a kind. */
-void try_usual_symmetries(Eqns *e, FoundSymmetries *out);
+void try_usual_symmetries(Eqns *e, FoundSymmetries *out, SearchLimit *limit);

@@ -225,7 +225,7 @@ int noether_add_family(SymmetrySearch *s, const Family *f) {
   uint32_t width = t.at[0].blocks * t.at[0].shown, rows = t.at[0].rows;
   DenseRows listed = {.width = width, .at = ARENA_ARRAY(s->scratch, long double, (size_t)(rows + 1) * width + 1)};
   int agree = table_same_shape(&t.at[0], &t.at[1]);
-  for (uint32_t row = 0; agree && row < rows && listed.n < rows; row++) {
+  for (uint32_t row = 0; agree && row < rows && listed.n < rows && search_goes_on(s->limit, 0); row++) {
     Expr *c = ARENA_ARRAY(s->scratch, Expr, width + 1);
     const long double *values = t.at[0].at + (size_t)row * width;
     if (!recognise_row(s, &t, row, c) || !add_independent(&listed, values)) continue;

@@ -27,13 +27,15 @@ typedef struct {
   const Expr *xi;   /* [n] */
   Expr tau;
   Expr *Dxi, Dtau;  /* total time derivatives */
+  uint32_t symbols; /* entries of a seed */
+  Expr *along, *moving; /* seeds of d/dt and of the generator, by symbol */
   int by_value;
   const Constraint *product; /* a constraint whose states were sought, but perhaps not on each of its factors; or NULL */
 } ProofWork;
 
 static Expr node(const ProofWork *w, SymId s) { return expr_symbol(w->g, s)->node; }
 
-static Expr *no_seed(const ProofWork *w) { return ARENA_ARRAY(w->m->arena, Expr, expr_symbol_count(w->g) + 1); }
+static Expr *no_seed(const ProofWork *w) { return ARENA_ARRAY(w->m->arena, Expr, w->symbols); }
 
 /* Sum of a_i b_i. */
 static Expr dot(const ProofWork *w, const Expr *a, const Expr *b, uint32_t n) {
@@ -44,27 +46,31 @@ static Expr dot(const ProofWork *w, const Expr *a, const Expr *b, uint32_t n) {
 
 static Expr tangent(const ProofWork *w, Expr x, const Expr *seed, const char *suffix) {
   Expr out;
-  expr_tangent(w->g, &x, 1, seed, expr_symbol_count(w->g) + 1, suffix, NULL, &out);
+  expr_tangent(w->g, &x, 1, seed, w->symbols, suffix, NULL, &out);
   return out;
 }
 
-/* out[i] = d/dt of x[i] along q'. */
-static void totals(const ProofWork *w, const Expr *x, uint32_t n, Expr *out) {
-  Expr *seed = no_seed(w);
-  seed[w->m->time] = expr_int(w->g, 1);
-  for (uint32_t i = 0; i < w->n; i++) seed[w->q[i]] = node(w, w->v[i]);
-  expr_tangent(w->g, x, n, seed, expr_symbol_count(w->g) + 1, "'", NULL, out);
-}
+/* d/dt along q'. */
+static Expr total(const ProofWork *w, Expr x) { return tangent(w, x, w->along, "'"); }
 
-static Expr total(const ProofWork *w, Expr x) {
-  Expr out;
-  totals(w, &x, 1, &out);
-  return out;
+static void fill_seeds(ProofWork *w) {
+  w->along = no_seed(w);
+  w->along[w->m->time] = expr_int(w->g, 1);
+  for (uint32_t i = 0; i < w->n; i++) w->along[w->q[i]] = node(w, w->v[i]);
+  expr_tangent(w->g, w->xi, w->n, w->along, w->symbols, "'", NULL, w->Dxi);
+  w->Dtau = total(w, w->tau);
+  w->moving = no_seed(w);
+  w->moving[w->m->time] = w->tau;
+  for (uint32_t i = 0; i < w->n; i++) {
+    Expr slower = expr_mul(w->g, node(w, w->v[i]), w->Dtau);
+    w->moving[w->q[i]] = w->xi[i];
+    w->moving[w->v[i]] = expr_sub(w->g, w->Dxi[i], slower);
+  }
 }
 
 static ProofWork begin(const Eqns *e, const Generator *by) {
   Arena *a = e->m->arena;
-  ProofWork w = {.e = e, .m = e->m, .g = e->g, .n = eqns_coordinates(e)};
+  ProofWork w = {.e = e, .m = e->m, .g = e->g, .n = eqns_coordinates(e), .symbols = expr_symbol_count(e->g) + 1};
   Expr zero = expr_int(w.g, 0), *xi = ARENA_ARRAY(a, Expr, w.n + 1);
   w.q = eqns_symbols(e, 0);
   w.v = eqns_symbols(e, 1);
@@ -74,8 +80,7 @@ static ProofWork begin(const Eqns *e, const Generator *by) {
   w.xi = xi;
   w.tau = by->tau ? by->tau : zero;
   for (uint32_t i = 0; i < w.n; i++) xi[i] = by->xi && by->xi[i] ? by->xi[i] : zero;
-  totals(&w, xi, w.n, w.Dxi);
-  w.Dtau = total(&w, w.tau);
+  fill_seeds(&w);
   return w;
 }
 
@@ -93,16 +98,7 @@ static Expr readable(const ProofWork *w, Expr x) {
 static Verdict is_zero(const ProofWork *w, Expr x) { return prove_zero(w->g, x, NULL); }
 
 /* Change of x under the generator, to first order. */
-static Expr moved_by(const ProofWork *w, Expr x) {
-  Expr *seed = no_seed(w);
-  for (uint32_t i = 0; i < w->n; i++) {
-    Expr slower = expr_mul(w->g, node(w, w->v[i]), w->Dtau);
-    seed[w->q[i]] = w->xi[i];
-    seed[w->v[i]] = expr_sub(w->g, w->Dxi[i], slower);
-  }
-  seed[w->m->time] = w->tau;
-  return tangent(w, x, seed, "_delta");
-}
+static Expr moved_by(const ProofWork *w, Expr x) { return tangent(w, x, w->moving, "_delta"); }
 
 /* delta of a term of L. */
 static Expr delta(const ProofWork *w, Expr term) {
@@ -281,25 +277,25 @@ static Expr while_closed(const ProofWork *w, const Contact *c, Expr x) {
   return c ? expr_replace(w->g, x, &c->closed, &one, 1) : x;
 }
 
-static Expr size_of_sum(ExprGraph *g, const Expr *size, Expr x) {
+static Expr size_of_sum(ExprGraph *g, const ExprMap *size, Expr x) {
   uint32_t n = expr_pairs(g, x, EX_SUM);
   Expr *terms = ARENA_ARRAY(expr_arena(g), Expr, n);
   for (uint32_t i = 0; i < n; i++) {
     Num c;
     Expr term = expr_pair(g, x, EX_SUM, i, &c);
-    terms[i] = expr_scale(g, num_sign(c) < 0 ? num_neg(c) : c, size[term]);
+    terms[i] = expr_scale(g, num_sign(c) < 0 ? num_neg(c) : c, expr_map_get(size, term));
   }
   return expr_add_n(g, terms, n);
 }
 
-static Expr size_of_product(ExprGraph *g, const Expr *size, Expr x) {
+static Expr size_of_product(ExprGraph *g, const ExprMap *size, Expr x) {
   uint32_t n = expr_pairs(g, x, EX_PROD);
   Expr *factors = ARENA_ARRAY(expr_arena(g), Expr, n);
   for (uint32_t i = 0; i < n; i++) {
     Num power;
     Expr base = expr_pair(g, x, EX_PROD, i, &power);
     int whole = num_is_int(power) && num_sign(power) > 0;
-    if (whole) base = size[base];
+    if (whole) base = expr_map_get(size, base);
     Expr factor = expr_pow_num(g, base, power);
     factors[i] = whole ? factor : expr_fn(g, EX_ABS, factor);
   }
@@ -307,31 +303,32 @@ static Expr size_of_product(ExprGraph *g, const Expr *size, Expr x) {
 }
 
 /* Sum of the absolute values of the terms of x, as if products of sums were multiplied out: |a|*(|x| + |z|) for a*(x - z). Denominators,
- * roots and functions count as single terms; definitions are expanded. */
-static Expr term_magnitude(ExprGraph *g, Expr x) {
-  Expr *size = ARENA_ARRAY(expr_arena(g), Expr, (size_t)expr_count(g) + 1);
-  ExprList l = expr_topo(g, &x, 1);
+ * roots and functions count as single terms; definitions are expanded. size: magnitudes known from earlier calls. */
+static Expr term_magnitude(ExprGraph *g, ExprMap *size, Expr x) {
+  ExprList l = expr_topo_until(g, &x, 1, size);
   for (uint32_t i = 0; i < l.n; i++) {
     Expr e = l.at[i];
     ExprOp op = expr_op(g, e);
-    size[e] = op == EX_SUM ? size_of_sum(g, size, e)
-            : op == EX_PROD ? size_of_product(g, size, e)
-            : op == EX_DEF ? size[expr_arg(g, e, 0)]
-            : expr_fn(g, EX_ABS, e);
+    if (expr_map_get(size, e)) continue;
+    expr_map_set(size, e, op == EX_SUM ? size_of_sum(g, size, e)
+                        : op == EX_PROD ? size_of_product(g, size, e)
+                        : op == EX_DEF ? expr_map_get(size, expr_arg(g, e, 0))
+                        : expr_fn(g, EX_ABS, e));
   }
-  return size[x];
+  return expr_map_get(size, x);
 }
 
 static Expr scale_of(const ProofWork *w, Expr F) {
   ExprGraph *g = w->g;
   const Expr *p = w->e->n ? w->e->momenta : w->p;
-  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 2), size_tau = term_magnitude(g, w->tau);
+  ExprMap size = expr_map(w->m->arena);
+  Expr *terms = ARENA_ARRAY(w->m->arena, Expr, w->n + 2), size_tau = term_magnitude(g, &size, w->tau);
   for (uint32_t i = 0; i < w->n; i++) {
-    Expr size_p = term_magnitude(g, p[i]), size_xi = term_magnitude(g, w->xi[i]);
+    Expr size_p = term_magnitude(g, &size, p[i]), size_xi = term_magnitude(g, &size, w->xi[i]);
     terms[i] = expr_mul(g, size_p, size_xi);
   }
   terms[w->n] = expr_mul(g, w->e->energy_scale, size_tau);
-  terms[w->n + 1] = term_magnitude(g, F);
+  terms[w->n + 1] = term_magnitude(g, &size, F);
   return expr_add_n(g, terms, w->n + 2);
 }
 
@@ -339,17 +336,14 @@ static Expr scale_of(const ProofWork *w, Expr F) {
 static Expr power_of_constraints(ProofWork *w, Noether *to) {
   ExprGraph *g = w->g;
   const Constraints *k = &w->e->constraints;
-  Expr sum = expr_int(g, 0);
+  Expr sum = expr_int(g, 0), *seed = no_seed(w), moved;
+  for (uint32_t j = 0; j < w->n; j++) seed[w->v[j]] = w->xi[j];
   for (uint32_t i = 0; i < k->n; i++) {
-    Expr *seed = no_seed(w), moved;
     const Contact *contact = contact_of_constraint(w->m, k->of[i]);
     if (i < k->nholonomic) {
-      for (uint32_t j = 0; j < w->n; j++) seed[w->q[j]] = w->xi[j];
-      seed[w->m->time] = w->tau;
-      moved = tangent(w, while_closed(w, contact, k->c[i]), seed, "_delta");
+      moved = moved_by(w, while_closed(w, contact, k->c[i]));
     } else {
       Expr b = at_rest(w, k->r[i]), part = expr_mul(g, b, w->tau);
-      for (uint32_t j = 0; j < w->n; j++) seed[w->v[j]] = w->xi[j];
       Expr slide = tangent(w, k->r[i], seed, "_delta");
       moved = expr_add(g, slide, part);
     }

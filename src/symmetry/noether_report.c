@@ -53,12 +53,12 @@ void show_cyclic(const Eqns *e, const char *before, StrBuf *out) {
 
 /* --- the report --- */
 
-NoetherReport *noether_report(Eqns *e) {
+NoetherReport *noether_report(Eqns *e, SearchLimit *limit) {
   NoetherReport *r = ARENA_NEW(e->m->arena, NoetherReport);
   r->e = e;
   r->cyclic = noether_cyclic(e);
-  r->found = noether_find(e);
-  r->algebra = brackets_find(e, &r->found);
+  r->found = noether_find(e, limit);
+  r->algebra = brackets_find(e, &r->found, limit);
   r->scales = noether_scaling(e, &r->scaling);
   return r;
 }

@@ -28,7 +28,7 @@ typedef struct {
 } NoetherReport;
 
 /* Finds symmetries, brackets, scaling and cyclic coordinates. Needs a Lagrangian. */
-NoetherReport *noether_report(Eqns *e);
+NoetherReport *noether_report(Eqns *e, SearchLimit *limit);
 
 /* Name of the declared symmetry with the charge of found symmetry k, or its opposite; NULL: there is none. */
 Name noether_declared(const NoetherReport *r, uint32_t k);

@@ -26,6 +26,8 @@ typedef struct {
   uint32_t roots;
   Choices choices;
   VEC(Expr) rates;      /* of the charges that have one */
+  Expr *slopes;         /* [r*2n] dA/dp, then dA/dq of each charge */
+  SearchLimit *limit;
   Algebra *out;
 } BracketFit;
 
@@ -157,9 +159,12 @@ static int fit(const BracketFit *w, uint32_t choice, long double *c) {
 
 /* --- symbolically --- */
 
+static Expr *slopes_of(const BracketFit *w, uint32_t a) { return w->slopes + 2 * (size_t)w->n * a; }
+
 /* dA/dp_i and dA/dq_i at fixed p, A the charge number a. */
-static void slopes(const BracketFit *w, uint32_t a, Expr *by_p, Expr *by_q) {
+static void put_slopes(const BracketFit *w, uint32_t a) {
   ExprGraph *g = w->g;
+  Expr *by_p = slopes_of(w, a), *by_q = by_p + w->n;
   const Generator *by = &at(w, a)->by;
   Expr *of_xi = ARENA_ARRAY(w->scratch, Expr, w->n + 1);
   for (uint32_t i = 0; i < w->n; i++) {
@@ -168,6 +173,7 @@ static void slopes(const BracketFit *w, uint32_t a, Expr *by_p, Expr *by_q) {
     by_q[i] = w->e->n ? expr_sub(g, expr_mul(g, by->tau, w->e->dLdq[i]), fall) : expr_int(g, 0);
   }
   for (uint32_t k = 0; k < w->n && w->e->n; k++) {
+    if (expr_is_constant(g, by->xi[k])) continue;
     expr_gradient(g, by->xi[k], w->q, w->n, of_xi);
     for (uint32_t i = 0; i < w->n; i++) by_q[i] = expr_add(g, by_q[i], expr_mul(g, w->e->p[k], of_xi[i]));
   }
@@ -180,12 +186,11 @@ static Expr with_energy(const BracketFit *w, uint32_t a) { return expr_neg(w->g,
 
 static Expr symbolic(const BracketFit *w, uint32_t a, uint32_t b) {
   ExprGraph *g = w->g;
-  Expr *all = ARENA_ARRAY(w->scratch, Expr, 4 * (size_t)w->n + 1), *ap = all, *aq = ap + w->n, *bp = aq + w->n, *bq = bp + w->n, sum = expr_int(g, 0);
+  Expr *ap = slopes_of(w, a), *aq = ap + w->n, *bp = slopes_of(w, b), *bq = bp + w->n, sum = expr_int(g, 0);
   if (is_energy(w, b) && expr_is_zero(g, at(w, a)->is.power)) return with_energy(w, a);
   if (is_energy(w, a) && expr_is_zero(g, at(w, b)->is.power)) return expr_neg(g, with_energy(w, b));
-  slopes(w, a, ap, aq);
-  slopes(w, b, bp, bq);
   if (!w->e->n) { /* minus the change of B under A */
+    bq = ARENA_ARRAY(w->scratch, Expr, w->n + 1);
     expr_gradient(g, at(w, b)->is.charge, w->q, w->n, bq);
     for (uint32_t i = 0; i < w->n; i++) sum = expr_sub(g, sum, expr_mul(g, bq[i], ap[i]));
     return sum;
@@ -266,20 +271,25 @@ static void compute_brackets(Arena *scratch, void *data) {
   w->scratch = scratch;
   w->choices = choices_new(scratch, w->e, w->of->attempt);
   make_tape(w);
+  w->slopes = ARENA_ARRAY(scratch, Expr, 2 * (size_t)w->n * w->r + 1);
+  for (uint32_t a = 0; a < w->r; a++) put_slopes(w, a);
   for (uint32_t a = 0; a < w->r; a++)
     if (at(w, a)->rate) vec_push(scratch, &w->rates, at(w, a)->rate);
   uint32_t choices = 2 + w->choices.n;
   long double **fits = ARENA_ARRAY(scratch, long double *, choices);
   for (uint32_t k = 0; k < choices; k++) {
     fits[k] = ARENA_ARRAY(scratch, long double, (size_t)w->pairs * (w->r + 1) + 1);
-    if (!fit(w, k, fits[k])) {
-      w->out->why_not = "the charges depend on one another, or M has no inverse at random states";
-      return;
-    }
+    int fits_well = search_goes_on(w->limit, 0) && fit(w, k, fits[k]);
+    if (!fits_well) w->out->why_not = w->limit->stopped ? "the time was spent; --seconds gives more" : "the charges depend on one another, or M has no inverse at random states";
+    if (!fits_well) return;
   }
   size_t place = 0;
   for (uint32_t a = 0; a < w->r; a++)
     for (uint32_t b = a + 1; b < w->r; b++, place += w->r + 1) {
+      if (!search_goes_on(w->limit, 0)) {
+        w->out->why_not = "the time was spent; --seconds gives more";
+        return;
+      }
       Bracket k = bracket_of(w, a, b, fits, place);
       w->out->by_value += !k.proved;
       if (!is_null(w, &k)) vec_push(w->e->m->arena, &w->out->all, k);
@@ -294,9 +304,11 @@ static const char *reason_against(const Eqns *e, uint32_t r) {
   return NULL;
 }
 
-Algebra brackets_find(Eqns *e, const FoundSymmetries *of) {
+Algebra brackets_find(Eqns *e, const FoundSymmetries *of, SearchLimit *limit) {
   Algebra out = {.n = of->all.n, .why_not = reason_against(e, of->all.n)};
-  BracketFit w = {.e = e, .g = e->g, .of = of, .n = eqns_coordinates(e), .r = of->all.n, .pairs = of->all.n * (of->all.n - 1) / 2, .out = &out};
+  BracketFit w = {.e = e, .g = e->g, .of = of, .n = eqns_coordinates(e), .r = of->all.n, .pairs = of->all.n * (of->all.n - 1) / 2, .out = &out, .limit = limit};
+  search_stage(limit, 1, "Poisson brackets");
+  limit->stopped = 0;
   if (out.why_not || of->all.n < 2) return out;
   if (e->n && !e->mass_known) eqns_derive_mass(e);
   w.q = eqns_symbols(e, 0);

@@ -27,4 +27,4 @@ typedef struct {
 } Algebra;
 
 /* All brackets of the charges found; up to 48 charges. */
-Algebra brackets_find(Eqns *e, const FoundSymmetries *of);
+Algebra brackets_find(Eqns *e, const FoundSymmetries *of, SearchLimit *limit);

@@ -59,20 +59,18 @@ static int is_proved(ScalingSearch *w) {
   ExprGraph *g = w->g;
   Expr L = w->e->lagrangian;
   uint32_t n = w->n;
-  SymId *syms = ARENA_ARRAY(w->scratch, SymId, 2 * (size_t)n + 1);
-  Expr *slope = ARENA_ARRAY(w->scratch, Expr, 2 * (size_t)n + 1);
-  for (uint32_t i = 0; i < n; i++) syms[i] = q_of(w, i), syms[n + i] = v_of(w, i);
-  syms[2 * n] = w->e->m->time;
+  uint32_t symbols = expr_symbol_count(g) + 1;
+  Expr *seed = ARENA_ARRAY(w->scratch, Expr, symbols), moved;
+  for (uint32_t i = 0; i < n; i++) {
+    seed[q_of(w, i)] = expr_scale(g, w->out->alpha[i], node(w, q_of(w, i)));
+    seed[v_of(w, i)] = expr_scale(g, num_sub(w->out->alpha[i], w->out->beta), node(w, v_of(w, i)));
+  }
+  seed[w->e->m->time] = expr_scale(g, w->out->beta, node(w, w->e->m->time));
   for (uint32_t k = 0; k < expr_pairs(g, L, EX_SUM); k++) {
     Num c;
-    Expr term = expr_pair(g, L, EX_SUM, k, &c), sum = expr_scale(g, num_sub(w->out->beta, w->out->kappa), term);
-    expr_gradient(g, term, syms, 2 * n + 1, slope);
-    for (uint32_t i = 0; i < 2 * n + 1; i++) {
-      Num by = i == 2 * n ? w->out->beta : i < n ? w->out->alpha[i] : num_sub(w->out->alpha[i - n], w->out->beta);
-      Expr moved = expr_mul(g, node(w, syms[i]), slope[i]);
-      sum = expr_add(g, sum, expr_scale(g, by, moved));
-    }
-    if (prove_zero(g, sum, NULL) != PROVED_ZERO) return 0;
+    Expr term = expr_pair(g, L, EX_SUM, k, &c), less = expr_scale(g, num_sub(w->out->kappa, w->out->beta), term);
+    expr_tangent(g, &term, 1, seed, symbols, "_delta", NULL, &moved);
+    if (prove_zero(g, expr_sub(g, moved, less), NULL) != PROVED_ZERO) return 0;
   }
   return 1;
 }

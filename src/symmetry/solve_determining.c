@@ -69,7 +69,7 @@ static uint32_t columns_used(const long double *m, uint32_t rows, uint32_t colum
 
 /* Kernel of (B0, B1) on vectors (x, y), u = x*space, u' = y*space. Its rank is at most the number of nonzero columns, a third of all for
  * ROWS_EVEN. It takes half as many rows again, because square random matrices are badly conditioned. */
-static DenseRows kernel_of_rows(RowSource *r, Arena *a, RowKind kind, const DenseRows *space) {
+static DenseRows kernel_of_rows(RowSource *r, Arena *a, RowKind kind, const DenseRows *space, SearchLimit *limit) {
   uint32_t n = space->n, rows = 0, wanted = SPARE_ROWS;
   size_t most = 3 * n + SPARE_ROWS, w = space->width;
   long double *b0 = ARENA_ARRAY(a, long double, most * w), *b1 = ARENA_ARRAY(a, long double, most * w);
@@ -82,12 +82,13 @@ static DenseRows kernel_of_rows(RowSource *r, Arena *a, RowKind kind, const Dens
       project(&sparse, n, b1 + i * w, rounding_of(space), m + (size_t)rows * 2 * n + n);
     }
   }
-  return dense_kernel(a, rows, 2 * n, m, REST);
+  double used = columns_used(m, rows, 2 * n);
+  return search_goes_on(limit, 2 * used * used * rows) ? dense_kernel(a, rows, 2 * n, m, REST) : (DenseRows){.width = 2 * n};
 }
 
 /* Intersects the space with the solutions of rows of one kind. 0: such rows could not be had. */
-static int intersect(RowSource *r, Arena *a, RowKind kind, DenseRows *space, int *sure) {
-  DenseRows kernel = kernel_of_rows(r, a, kind, space);
+static int intersect(RowSource *r, Arena *a, RowKind kind, DenseRows *space, SearchLimit *limit, int *sure) {
+  DenseRows kernel = kernel_of_rows(r, a, kind, space, limit);
   if (kernel.at == NULL) return 0;
   if (kernel.gap < 1e4L) *sure = 0;
   DenseRows x = dense_orthonormal(a, &kernel, space->n), u = combine(a, &x, space);
@@ -113,10 +114,10 @@ static DenseRows initial_space(const Ansatz *s, Arena *a, const DenseRows *withi
 }
 
 /* A of x' = A x: the kernel spans (x, A x), with one row for each x. */
-static long double *rates(RowSource *r, Arena *a, const DenseRows *space, int *sure) {
+static long double *rates(RowSource *r, Arena *a, const DenseRows *space, SearchLimit *limit, int *sure) {
   uint32_t n = space->n, *pivot = ARENA_ARRAY(a, uint32_t, 2 * n + 1);
   long double *A = ARENA_ARRAY(a, long double, (size_t)n * n + 1);
-  DenseRows kernel = kernel_of_rows(r, a, ROWS_ALL, space);
+  DenseRows kernel = kernel_of_rows(r, a, ROWS_ALL, space, limit);
   if (kernel.n != n) {
     *sure = 0;
     return A;
@@ -133,12 +134,12 @@ SolutionSpace solution_space(const Ansatz *s, Arena *a, const long double *param
   RowSource *r = rows_new(s, a, parameters);
   SolutionSpace found = {.space = initial_space(s, a, like ? &like->space : NULL), .sure = 1};
   DenseRows *space = &found.space;
-  if (!intersect(r, a, ROWS_EVEN, space, &found.sure) || !intersect(r, a, ROWS_AT_REST, space, &found.sure)) return (SolutionSpace){0};
+  if (!intersect(r, a, ROWS_EVEN, space, s->limit, &found.sure) || !intersect(r, a, ROWS_AT_REST, space, s->limit, &found.sure)) return (SolutionSpace){0};
   for (uint32_t before = UINT32_MAX; before != space->n;) {
     before = space->n;
-    if (!intersect(r, a, ROWS_ALL, space, &found.sure)) return (SolutionSpace){0};
-    if (s->held.n && !intersect(r, a, ROWS_CONSTRAINTS, space, &found.sure)) return (SolutionSpace){0};
+    if (!intersect(r, a, ROWS_ALL, space, s->limit, &found.sure)) return (SolutionSpace){0};
+    if (s->held.n && !intersect(r, a, ROWS_CONSTRAINTS, space, s->limit, &found.sure)) return (SolutionSpace){0};
   }
-  found.A = rates(r, a, space, &found.sure);
+  found.A = rates(r, a, space, s->limit, &found.sure);
   return found;
 }

@@ -15,6 +15,7 @@ typedef struct {
   Expr t;
   CoordinateNames names;
   FoundSymmetries *out;
+  SearchLimit *limit;
 } TrialWork;
 
 static Name name_of(const TrialWork *w, uint32_t i) { return expr_symbol(w->g, eqns_coordinate(w->e, i))->name; }
@@ -28,6 +29,7 @@ static Expr *zero_components(const TrialWork *w) {
 
 /* Lists the generator if it is proved. */
 static int try_one(TrialWork *w, const Expr *xi, Expr tau, FoundSymmetry as) {
+  if (!search_goes_on(w->limit, 0)) return 0;
   as.by = (Generator){.xi = xi, .tau = tau};
   as.is = noether_prove(w->e, &as.by);
   if ((as.is.is != INVARIANT && as.is.is != INVARIANT_UP_TO_F) || as.is.by_value || as.is.broken) return 0;
@@ -97,8 +99,9 @@ static void try_cyclic(TrialWork *w) {
 
 int too_large_to_search(const Eqns *e) { return eqns_coordinates(e) > SEARCH_MOST; }
 
-void try_usual_symmetries(Eqns *e, FoundSymmetries *out) {
-  TrialWork w = {.e = e, .g = e->g, .n = eqns_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e), .out = out};
+void try_usual_symmetries(Eqns *e, FoundSymmetries *out, SearchLimit *limit) {
+  TrialWork w = {.e = e, .g = e->g, .n = eqns_coordinates(e), .t = expr_symbol(e->g, e->m->time)->node, .names = coordinate_names(e), .out = out, .limit = limit};
+  search_stage(limit, 0.8, "the usual symmetries");
   out->ansatz = "for more than a hundred coordinates: the energy, momenta of cyclic coordinates, and translations, boosts and rotations of all "
                 "coordinates of a kind together";
   out->searched = w.n <= TRY_MOST;

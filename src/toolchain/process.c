@@ -23,6 +23,8 @@ static char *read_fd(Arena *a, int fd) {
   return arena_strdup(a, sb_text(&b));
 }
 
+int stderr_is_terminal(void) { return isatty(2); }
+
 /* Waits for the process; its exit status, or -1 when it ended by a signal. */
 static int wait_for(pid_t pid) {
   int status = 0;

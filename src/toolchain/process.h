@@ -20,6 +20,8 @@ void process_become(const char *path, char *const *argv);
 long process_begin(int (*work)(void *data), void *data);
 /* Waits for its end, but no longer than `seconds`; then it is ended with all that it began. Its exit status, or -1. */
 int process_end(long process, double seconds);
+/* Whether messages are read at a terminal. */
+int stderr_is_terminal(void);
 /* Makes what the file holds the standard input. Returns 0 where it is empty or that fails. */
 int process_read_from(FILE *f);
 

@@ -6,8 +6,11 @@
 #include <string.h>
 #define WIN32_LEAN_AND_MEAN
 #include <windows.h>
+#include <io.h>
 
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
+
+int stderr_is_terminal(void) { return _isatty(2); }
 
 enum { NOT_FOUND = 127 }; /* as shells and process.c say it */
 

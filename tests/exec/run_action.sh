@@ -7,6 +7,7 @@
 action() { f=$1 s=$2 q=$3 name=$4; shift 4; "$LAGC" action "$TMP/$f.lag" "$s" "$@" | sed -n "s|^$q: \(.*, omega = \)*$name = \([^,]*\).*|\2|p"; }
 # 1e-14: relative, beside numbers of size 0.1 to 10; 16 digits are printed.
 agrees() { near "$1: J" 1e-14 "$2" "$(action "$4" "$5" "$6" J)"; [ "$3" = - ] || near "$1: omega" 1e-14 "$3" "$(action "$4" "$5" "$6" dE/dJ)"; }
+told() { status=$1 words=$2; shift 2; "$LAGC" action "$@" >"$TMP/out" 2>&1; [ $? = "$status" ] && grep -q -F -e "$words" "$TMP/out" || { cat "$TMP/out"; false; }; }
 
 cat >"$TMP/oscillator.lag" <<'END'
 model oscillator
@@ -38,6 +39,43 @@ near "the other way" 1e-14 -18.8941134266863135722 "$(action pendulum round th J
 # 0.04 rad from the top E - V has lost two digits
 near "near the separatrix" 1e-13 9.33062020079675179285 "$(action pendulum near th J)"
 near "its frequency" 1e-13 1.11798413698563502666 "$(action pendulum near th dE/dJ)"
+
+# ---- beside a separatrix: J = (8/pi)(E(k) - k'^2 K(k)), period 4 K(k), k = sin(th/2) in 40 digits; omega's digits are those that E - H keeps.
+cat >"$TMP/top.lag" <<'END'
+model top
+coord th periodic
+lagrangian = th'^2/2 + cos(th)
+scene s { start th = 3.141592653 }
+scene on { start th = 0, th' = 2 }
+END
+cat >"$TMP/saddle.lag" <<'END'
+model saddle
+coord x
+lagrangian = x'^2/2 + x^2/2 - x^4/4
+scene s { start x = 1e-9 }
+END
+beside() { # beside FILE SCENE COORDINATE J PERIOD DIGITS ARGS...: J to 12 digits; the period as far as it is printed, and that is DIGITS or more
+  f=$1 scene=$2 q=$3 J=$4 period=$5 digits=$6
+  shift 6
+  "$LAGC" action "$TMP/$f.lag" "$scene" "$@" >"$TMP/out" || { cat "$TMP/out"; return 1; }
+  awk -v q="$q:" -v J="$J" -v T="$period" -v least="$digits" '$1 == q { sub(",", "", $4); j = $4; for (i = 1; i < NF; i++) if ($i == "period") t = $(i + 1) }
+    END { sub(",", "", t); n = length(t) - 1; unit = 10^(index(t, ".") - length(t)); print j, t
+          exit !(j/J - 1 < 1e-12 && 1 - j/J < 1e-12 && n >= least && t - T < 0.51*unit + 1e-13*T && T - t < 0.51*unit + 1e-13*T) }' "$TMP/out" || { cat "$TMP/out"; return 1; }
+}
+check "a pendulum 6e-10 rad from the top" beside top s th 2.54647908947032537 93.3227625016474865 7
+check "4e-9 rad" beside top s th 2.54647908947032528 86.0984510861105567 8 th=3.14159265
+check "and 3e-6 rad" beside top s th 2.54647908943576527 59.6761549495602935 9 th=3.14159
+# Going round with k = sqrt((E + 1)/2): J = (4/pi) k E(1/k), over a turn in 2 K(1/k)/k
+check "just over the top" beside top s th 1.27323954558818351 25.7984396515603 9 th=0 "th'=2.0000000001"
+check "just not" beside top s th 2.54647907387578002 46.9917091296203 5 th=0 "th'=1.999999999"
+check "on the separatrix, as far as 2 tells" told 3 "th: no action variable: it lies on a separatrix" "$TMP/top.lag" on
+check "at the top it rests" told 0 "th: J = 0, at rest" "$TMP/top.lag" th=pi
+# V = x^4/4 - x^2/2, between a and b, a^2 + b^2 = 2: the period 2 sqrt(2)/b K(m), m = 1 - a^2/b^2
+check "1e-9 from a saddle" beside saddle s x 0.212206590789193777 44.9122675766925489 15
+check "1e-5 from it" beside saddle s x 0.212206590570422684 26.4915868336586179 15 x=1e-5
+check "over the saddle, around both wells" beside saddle s x 0.424413182015929756 52.9831736637435 14 x=0 "x'=1e-5"
+"$LAGC" action "$TMP/top.lag" s --json >"$TMP/json"
+check "in JSON" grep -q '"digits": 16, "frequency_digits": \(8\|9\|10\),' "$TMP/json"
 cat >"$TMP/kepler.lag" <<'END'
 model kepler
 coord r, th periodic
@@ -229,7 +267,6 @@ near "Hannay's angle of a hoop, in the limit of slow turns" 1e-7 "$(awk 'BEGIN {
   "$(echo "$(behind 800) $(behind 1600)" | awk '{ if (NF == 2) printf "%.15g", 8*atan2(1, 1)/9.688448220547676*(8*$2 - $1)/7 }')"
 
 # ---- no action ----
-told() { status=$1 words=$2; shift 2; "$LAGC" action "$@" >"$TMP/out" 2>&1; [ $? = "$status" ] && grep -q -F -e "$words" "$TMP/out" || { cat "$TMP/out"; false; }; }
 check "at rest" told 0 "q: J = 0, at rest" "$TMP/oscillator.lag" rest
 printf 'model tilt\ncoord q periodic\nmomentum p of q\nhamiltonian = p^2/2 - cos(q) + 0.1*q\nscene s { start p = 30 }\n' >"$TMP/tilt.lag"
 check "H that differs from turn to turn has no mean of p" told 3 "q: no action variable: its motion does not turn" "$TMP/tilt.lag"
@@ -254,11 +291,13 @@ END
 near "two wells in p, the motion in one" 1e-15 0.003542211874021359314 "$("$LAGC" action "$TMP/wells.lag" one | sed -n 's/^x: J = \([^,]*\),.*/\1/p')"
 check "around both" told 3 "x: no action variable: H is not convex in its momentum along the curve" "$TMP/wells.lag" both
 check "from between them" told 3 "x: no action variable: H is not convex in its momentum along the curve" "$TMP/wells.lag" inner
-printf 'model wedge\ncoord x\nlagrangian = x'"'^2/2 - abs(x)"'\nscene s { start x = 1 }\n' >"$TMP/wedge.lag"
-# 4 sqrt(2)/(3 pi) and 4 sqrt(2)
-near "a corner of H" 1e-9 0.60021087743807072 "$("$LAGC" action "$TMP/wedge.lag" | sed -n 's/^x: J = \([^,]*\),.*/\1/p')"
-check "without digits that are not sure" told 0 "period 5.65685425" "$TMP/wedge.lag"
-check "which is said" told 0 "no more digits are sure, as H is not smooth along the curve" "$TMP/wedge.lag"
+printf 'model wedge\ncoord x\nlagrangian = x'"'^2/2 - abs(x) - 0.3*x"'\nscene s { start x = 1 }\n' >"$TMP/wedge.lag"
+# Slopes 1.3 and 0.7, E = 1.3: J = 2 sqrt(2)/(3 pi) E^(3/2) (1/1.3 + 1/0.7), the period 2 sqrt(2 E) (1/1.3 + 1/0.7). The curve is cut at the corner.
+near "a corner of H" 1e-14 0.977636703331541 "$(action wedge s x J)"
+near "and its frequency" 1e-13 0.886491539969074 "$(action wedge s x dE/dJ)"
+# |x|^1.5 has no second derivative at 0, and no corner.
+printf 'model root\ncoord x\nmomentum p of x\nhamiltonian = p^2/2 + abs(x)^1.5 + 0.3*x\nscene s { start x = 1 }\n' >"$TMP/root.lag"
+check "digits that are not sure are not printed, which is said" told 0 "no more digits are sure, as H is not smooth along the curve" "$TMP/root.lag"
 printf 'model spike\ncoord x\nlagrangian = x'"'^2/2 - x^2/2 - 5*exp(-((x - 0.5)/1e-5)^2)"'\nscene s { start x = 1 }\n' >"$TMP/spike.lag"
 check "a barrier that the search missed" told 3 "x: no action variable: H has a narrow barrier between the turning points that were found" "$TMP/spike.lag"
 printf 'model held\ncoord x, y\nmomentum px of x, py of y\nhamiltonian = px^2/2 + x^2 + x*y\n' >"$TMP/held.lag"
@@ -266,9 +305,9 @@ check "H without a momentum does not separate: px depends on y" told 3 "H does n
 printf 'model tilt\ncoord x, y\nparam e = 0\nlagrangian = (x'"'^2 + y'^2"')/2 - x^2 - y^2 - e*x*y\n' >"$TMP/tilt.lag"
 check "a parameter that is 0 by chance" told 3 "Levi-Civita's condition for x and y fails, for general values of the parameters" "$TMP/tilt.lag"
 printf 'model slow\ncoord x\nmomentum p of x\nhamiltonian = sqrt(1 + p^2) + x^2/2\nscene s { start p = 1e-6 }\n' >"$TMP/slow_one.lag"
-check "1e-12 of energy beside that of rest leaves few digits" told 0 "no more digits are sure, as H is not smooth along the curve, or its terms cancel" "$TMP/slow_one.lag"
-# omega is 1 - 3e-13/8; four digits are printed at most.
-near "which are right" 1e-3 1 "$("$LAGC" action "$TMP/slow_one.lag" | sed -n 's/.*dE.dJ = \([^,]*\),.*/\1/p')"
+# H = 1 + J - 3 J^2/16: J = e + 3 e^2/16 with e = 5e-13 - 1.25e-25, omega = 1 - 3 J/8.
+near "1e-12 of energy beside that of rest has all digits" 1e-27 4.99999999999921875e-13 "$(action slow_one s x J)"
+near "its frequency, too" 1e-15 0.9999999999998125 "$(action slow_one s x dE/dJ)"
 printf 'model step\ncoord x periodic\nmomentum p of x\nhamiltonian = p^2/2 + if(sin(x) > 0, 1, 0)\n' >"$TMP/step.lag"
 check "a step: x is not cyclic" told 3 "x: no action variable: H jumps with the coordinates or momenta" "$TMP/step.lag" p=3
 printf 'model later\ncoord x\nmomentum p of x\nhamiltonian = p^2/2 + if(t > 1, 2, 1)*x^2/2\n' >"$TMP/later.lag"
@@ -282,11 +321,11 @@ empty "a frequency that would need the others' constants is not printed" "$("$LA
 
 # ---- JSON ----
 fields() { "$LAGC" action "$@" --json 2>&1 | grep -o '"[^"]*": [[{]\{0,1\}' | sed 's/^"//; s/": *//' | awk '!seen[$0]++' | tr '\n' ' ' | sed 's/ $//'; }
-is "fields of --json" "model scene energy remark separates tied[ actions[ coordinate momentum why_not cyclic action frequency digits low high left right" "$(fields models/henon_heiles.lag)"
+is "fields of --json" "model scene energy remark separates tied[ actions[ coordinate momentum why_not cyclic action frequency digits frequency_digits low high left right" "$(fields models/henon_heiles.lag)"
 json() { "$LAGC" action "$@" --json >"$TMP/json" 2>&1; grep -q -F -e "$words" "$TMP/json" || { cat "$TMP/json"; false; }; }
 words='"tied": ["x", "y"]'
 check "two coordinates that are tied" json models/henon_heiles.lag
-words='"action": 0.5, "frequency": 1, "digits": 16, "low": -1, "high": 1'
+words='"action": 0.5, "frequency": 1, "digits": 16, "frequency_digits": 16, "low": -1, "high": 1'
 check "numbers" json "$TMP/tied.lag"
 if command -v python3 >/dev/null; then check "it is JSON" python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$TMP/json"; else skip "it is JSON" "there is no python3"; fi
 

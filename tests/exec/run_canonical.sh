@@ -90,4 +90,41 @@ check "a change of coordinates is proved where its Jacobian is not 0" sh -c '"$0
 check "centrifugal and Coriolis force, and drag" in_new "$TMP/disc.lag" disc "  m*X'' = w*c*Y - (k - m*w^2)*X - c*X' + 2*m*w*Y'"
 check "polar coordinates" in_new "$TMP/disc.lag" polar "  m*r^2*th'' = -2*m*r*r'*th' - c*r^2*th'"
 check "momenta of L in a canonical transformation" in_new "$TMP/disc.lag" swapped "  Q1' = k*P1 - c*Q1/m"
+
+# ---- functions with jumps and corners: derivatives are those of the branches, and each verdict says so
+cat >"$TMP/jumps.lag" <<'END'
+model jumps
+coord x, y
+momentum p of x, r of y
+hamiltonian = (p^2 + r^2)/2
+expect {floor(x), p} = 0
+expect {sign(x), p} = 0
+expect {abs(x), p} = sign(x)
+expect {if(x > 1, x^2, x), p^2} = 2*p*if(x > 1, 2*x, 1)
+expect {max(x, y), p} = if(x > y, 1, 0)
+expect {x*floor(p), energy} = p*floor(p)
+expect {abs(x), {abs(p), y*r}} = 0
+canonical c: Q1 = floor(x) + x, P1 = p, Q2 = y, P2 = r
+canonical d: Q1 = abs(x), P1 = p*sign(x), Q2 = y, P2 = r
+END
+"$LAGC" check "$TMP/jumps.lag" >"$TMP/out" 2>&1
+is "between jumps: expectations and maps" "7 2" "$(grep -c ': expect .*: proved between jumps$' "$TMP/out") $(grep -c ': canonical .: proved between jumps, ' "$TMP/out")"
+wrong() { sed "$1" "$TMP/jumps.lag" >"$TMP/flip.lag"; ! cmp -s "$TMP/flip.lag" "$TMP/jumps.lag" && ! "$LAGC" check "$TMP/flip.lag" >"$TMP/out" 2>&1 && grep -q "$2" "$TMP/out" || { cat "$TMP/out"; false; }; }
+check "a wrong factor is refuted" wrong 's/{abs(x), p} = sign(x)/{abs(x), p} = 2*sign(x)/' 'the factor `2` should not be there'
+check "a map without its sign" wrong 's/P1 = p\*sign(x)/P1 = p/' '`d` is not canonical: {Q1, P1} is sign(x), and must be 1'
+
+# ---- Hamilton and Jacobi: W of an oscillator with asin, acos and atan of the same angle, where dW/dq exists
+for angle in 'asin(q*w*sqrt(m/(2*al)))' '-acos(q*w*sqrt(m)/sqrt(2*al))' 'atan2(m*w*q, sqrt(2*m*al - m^2*w^2*q^2))'; do
+  cat >"$TMP/oscillator.lag" <<END
+model oscillator
+coord q
+momentum p of q
+param m = 1 > 0, w = 2 > 0
+hamiltonian = p^2/(2*m) + m*w^2*q^2/2
+canonical c: F2(q, al) = q*sqrt(2*m*al - m^2*w^2*q^2)/2 + al/w*($angle), hamiltonian = al
+END
+  check "W with $angle" sh -c '"$1" check "$2" | grep -q "canonical c: proved, where .* is not 0; its Hamiltonian is as given$"' sh "$LAGC" "$TMP/oscillator.lag"
+  sed 's/ + al/ - al/' "$TMP/oscillator.lag" >"$TMP/flip.lag"
+  check "refused with another sign" sh -c '"$1" check "$2" 2>&1 | grep -q "has another Hamiltonian: H + dF/dt is .*, and must be al"' sh "$LAGC" "$TMP/flip.lag"
+done
 tap_end

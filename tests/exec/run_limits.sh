@@ -61,7 +61,12 @@ slow check '1,000 choices inside each other' answer ifs
 slow check '1,500 scenes and 1,500 effects' answer scenes
 
 { printf "lagrangian = x'^2/2 + "; lines 30000 'printf "sin("'; printf x; lines 30000 'printf ")"'; echo; } | model deep
-check '30,000 sines inside each other' starved deep
+# The derivatives of an expression, a product for each level, need gigabytes: refused before they are made.
+at_once() { (ulimit -t 2; ulimit -v 200000; limit deep 1 'functions are nested 30000 deep here, and at most 2000 in one expression'); }
+check '30,000 sines inside each other' at_once
+{ lines 40000 'printf "observe o%d = x*%d\n", i, i'; printf "lagrangian = x'^2/2\nscene s { start x = 1; span 1; output x"; lines 40000 'printf ", o%d", i'; echo ' every 1 }'; } | model outputs
+names() { (ulimit -t 3; "$LAGC" check "$dir/outputs.lag" >/dev/null); } # 0.2 s; 5.5 where each name takes as long as its line
+check '40,000 outputs on a line' names
 { echo 'function f0(a) = a*a + 1'; lines 40 'printf "function f%d(a) = f%d(f%d(a))\n", i, i - 1, i - 1'; echo "lagrangian = x'^2/2 + f40(x)"; } | model power_tower
 slow check 'a function applied 2^40 times' starved power_tower
 model infinite <<'END'

@@ -177,6 +177,45 @@ END
 else skip "JSON" "there is no python3"
 fi
 
+# ---- states where L has values: |v| < c, coordinates above a; by hand, 5 and 3 symmetries for all values of the parameters
+cat >"$TMP/charge.lag" <<'END'
+model charge
+coord x, y, z
+param m = 1 > 0, c = 3 > 0, b = 1
+lagrangian = -m*c^2*sqrt(1 - (x'^2 + y'^2 + z'^2)/c^2) + b/2*(x*y' - y*x')
+END
+cat >"$TMP/far.lag" <<'END'
+model far
+coord x, y, z
+param m = 1 > 0, k = 1 > 0
+lagrangian = m/2*(x'^2 + y'^2 + z'^2) + k*log(x - 9)
+END
+found() { "$LAGC" noether "$@" >"$TMP/out" && grep -q "^found: $n symmetries, each proved" "$TMP/out" || { cat "$TMP/out"; false; }; }
+n=5; check "a relativistic charge in a field" found "$TMP/charge.lag"
+n=6; check "a logarithm that begins at 9: energy, momenta and boosts along y and z, a rotation" found "$TMP/far.lag"
+
+# ---- bounded time: what was not searched is said; memory near linear in what is found
+cat >"$TMP/wave.lag" <<'END'
+model wave
+const N = 16
+param T = 1 > 0, mu = 1 > 0
+coord u[N]
+lagrangian = sum(i in 1..N, mu/2*u[i]'^2 - T/2*(if(i < N, u[i+1], u[1]) - u[i])^2)
+END
+bounded() { (ulimit -t 4 && "$LAGC" noether "$TMP/wave.lag" --seconds 0.3 >"$TMP/out") && grep -q '^0.3 s did not suffice for more, and nothing was searched beyond: --seconds 3 ' "$TMP/out" &&
+  grep -q '^found: 3 symmetries, each proved' "$TMP/out" || { cat "$TMP/out"; false; }; } # energy, momentum, boost
+check "a ring of 16: 40 s without a limit" bounded
+check "a time that is none" sh -c '"$0" noether "$1" --seconds 0 2>&1 | grep -q "the time for the search, for example --seconds 60"; ' "$LAGC" "$TMP/wave.lag"
+cat >"$TMP/rods.lag" <<'END'
+model rods
+const N = 60
+param m = 1 > 0, J = 0.1 > 0
+coord x[N], y[N], th[N]
+lagrangian = sum(i in 1..N, m/2*(x[i]'^2 + y[i]'^2) + J/2*th[i]'^2)
+END
+rods() { (ulimit -v 200000 && "$LAGC" noether "$TMP/rods.lag" | grep -q '^found: 188 symmetries, each proved'); } # 180 momenta, energy; 3 sums, 3 boosts, the rotation of all
+check "60 free rods" rods
+
 # ---- every model of the gallery with few coordinates is searched ----
 unsearched() {
   for m in models/*.lag; do

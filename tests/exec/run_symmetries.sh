@@ -240,4 +240,17 @@ done
 # A header names the numbers in its array of charges.
 names() { "$LAGC" header models/kepler.lag | grep -q '^ \* Symmetries: 0 spin\.'; }
 check "a header numbers the charges from 0" names
+
+# Symmetries that move all of 600 members: 95 MB, where every term had arrays of all symbols 2 GB.
+cat >"$TMP/ring.lag" <<'END'
+model ring
+const N = 600
+coord u[N], v[N]
+lagrangian = sum(i in 1..N, (u[i]'^2 + v[i]'^2)/2) - sum(i in 1..N-1, ((u[i+1] - u[i])^2 + (v[i+1] - v[i])^2)/2)
+symmetry later(s): t -> t + s
+symmetry boost(s): for i in 1..N: u[i] -> u[i] + s*t
+symmetry turn(s): for i in 1..N: u[i] -> u[i]*cos(s) - v[i]*sin(s), v[i] -> u[i]*sin(s) + v[i]*cos(s)
+END
+large() { (ulimit -v 200000 && [ "$("$LAGC" check "$TMP/ring.lag" | grep -c ': proved')" = 3 ]); }
+check "memory grows with the text" large
 tap_end

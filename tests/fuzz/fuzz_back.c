@@ -181,7 +181,7 @@ static void run(Arena *a, const char *text) {
     if (e) emit(ast, e);
     Compiler c = {.arena = a, .o.file = "fuzz.lag", .sources = sources, .diags = ast->diags, .ast = ast};
     if (way == 1) check_print(&c, NULL, 0, &out);
-    if (way == 2) noether_print(&c, NULL, NULL, &out);
+    if (way == 2) noether_print(&c, NULL, 10, NULL, &out);
     diags_print(ast->diags, &out);
     if (e && e->n >= LARGE) break; /* the others take seconds */
   }

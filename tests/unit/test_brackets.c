@@ -27,8 +27,9 @@ static Charges charges(const char *lag) {
   arena_guard(c.arena, &failed);
   c.e = equations(c.arena, lag, NULL);
   assert_non_null(c.e);
-  c.found = noether_find(c.e);
-  c.algebra = brackets_find(c.e, &c.found);
+  SearchLimit limit = search_limit(INFINITY);
+  c.found = noether_find(c.e, &limit);
+  c.algebra = brackets_find(c.e, &c.found, &limit);
   assert_null(c.algebra.why_not);
   assert_int_equal(c.algebra.by_value, 0);
   return c;
@@ -199,8 +200,9 @@ static void refused(void **state) {
   if (setjmp(failed)) fail_msg("out of memory");
   arena_guard(a, &failed);
   Eqns *e = equations(a, "model s\ncoord x, y, z\nparam g = 9.81, l = 1 > 0\nlagrangian = (x'^2 + y'^2 + z'^2)/2 - g*z\nconstraint rod: x^2 + y^2 + z^2 = l^2\n", NULL);
-  FoundSymmetries found = noether_find(e);
-  assert_non_null(brackets_find(e, &found).why_not);
+  SearchLimit limit = search_limit(INFINITY);
+  FoundSymmetries found = noether_find(e, &limit);
+  assert_non_null(brackets_find(e, &found, &limit).why_not);
   arena_free(a);
 }
 

@@ -32,7 +32,8 @@ static Model_ model(const char *lag) {
   arena_guard(m.arena, &failed);
   m.e = equations(m.arena, lag, NULL);
   assert_non_null(m.e);
-  m.found = noether_find(m.e);
+  SearchLimit limit = search_limit(INFINITY);
+  m.found = noether_find(m.e, &limit);
   return m;
 }
 

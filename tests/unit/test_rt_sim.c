@@ -296,7 +296,7 @@ static void check_cut(const lag_scene *scene, const lag_method *m, double cut, d
   lag_sim_stats(whole, &a);
   lag_sim_stats(second, &b);
   assert_true(a.energy_drift == b.energy_drift && a.steps == b.steps && a.events == b.events);
-  assert_in_range(b.rhs_calls - a.rhs_calls, 0, 6); /* the state at the cut may have cost some */
+  assert_in_range(b.rhs_calls - a.rhs_calls, 0, 12); /* the state at the cut, and the search for poles, which has lost its history */
   free(x);
   lag_sim_free(whole);
   lag_sim_free(first);

@@ -3,6 +3,7 @@
  * precision (pendulum also 2 asin(k sn(K - t, k)) with mpmath), on which two precisions and step sequences agree. */
 #include "test_rt_systems.h"
 
+#include "core/core.h"
 #include "methods/composition.h"
 #include "methods/step_interpolant.h"
 
@@ -105,7 +106,7 @@ static void dense_output_is_paid_for_when_asked_for(void **state)
     assert_int_equal(lag_sim_advance(s, 1.07), LAG_OK);
     lag_sim_stats(s, &st);
     assert_int_equal(st.steps, 9);
-    assert_int_equal(st.rhs_calls, 1 + 9 * family[m].table->stages + extra[m]);
+    assert_int_equal(st.rhs_calls - (long long)s->run->pole_calls, 1 + 9 * family[m].table->stages + extra[m]);
     lag_sim_free(s);
   }
 }
@@ -268,6 +269,35 @@ static void wall_start(UNUSED const double *p, double *q, double *v, UNUSED doub
 
 SYSTEM(wall, 1, LAG_SEPARABLE, NULL, NO_DERIVATIVES);
 
+/* Forces that change their course within a step: where a pole could be, it is looked for. All evaluations are counted, and bounded. */
+static int evaluations;
+
+static int rough_accel(ARGS, double *a, UNUSED double *zd, UNUSED double *w)
+{
+  evaluations++;
+  a[0] = -q[0] + 5 * sin(40 * q[0]) + 3 * sin(77 * q[0] + 1);
+  return 0;
+}
+
+static void poles_are_looked_for_in_bounded_time(void **state)
+{
+  lag_model rough_model = kepler_model;
+  lag_scene rough = kepler;
+  lag_stats st;
+  (void)state;
+  rough_model.nq = 1, rough_model.accel = rough_accel, rough_model.energy = NULL;
+  rough.model = &rough_model, rough.t1 = 20, rough.monitors = NULL, rough.nmonitors = 0;
+  evaluations = 0;
+  lag_sim *s = equal_steps(&rough, &lag_verlet, 0.1);
+  assert_int_equal(lag_sim_advance(s, 20), LAG_OK);
+  lag_sim_stats(s, &st);
+  assert_int_equal(st.steps, 200);
+  assert_in_range(evaluations - st.rhs_calls, 0, 20); /* the estimates of periods are not counted: 16 here */
+  assert_true(s->run->pole_calls > 20);
+  assert_in_range(st.rhs_calls, 201, 201 + 48 + 200 / 4 + 27); /* the last search takes up to 3 + 24 */
+  lag_sim_free(s);
+}
+
 static void a_failed_step_leaves_the_last_state(void **state)
 {
   (void)state;
@@ -293,6 +323,7 @@ int main(void)
       cmocka_unit_test(the_chosen_tables_are_the_efficient_ones),
       cmocka_unit_test(what_needs_derivatives_is_refused_without_them),
       cmocka_unit_test(a_scene_with_a_refused_method_says_so),
+      cmocka_unit_test(poles_are_looked_for_in_bounded_time),
       cmocka_unit_test(a_failed_step_leaves_the_last_state),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
