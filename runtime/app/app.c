@@ -138,10 +138,7 @@ static void note_empty(App *app, double t) {
 }
 
 int lag_app_write_row(App *app, int drawn) {
-  if (app->rows.open && lag_rows_write(&app->rows, app->row)) {
-    app->bad_file = app->args.out;
-    return LAG_EIO;
-  }
+  if (app->rows.open && lag_rows_write(&app->rows, app->row)) return lag_app_bad_file(app, app->args.out);
   if (drawn && app->args.energy_error) lag_energy_kept(app);
   return drawn && lag_table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
@@ -194,7 +191,18 @@ static void run(App *app) {
 
 /* ---- Files */
 
-int lag_app_io_error(const App *app, const char *path) { return lag_app_error(&app->args, "cannot write %s: %s", path, strerror(errno)); }
+int lag_app_io_error(const App *app, const char *path) { return lag_app_error(&app->args, "cannot write %s: %s", path, strerror(errno ? errno : EIO)); }
+
+int lag_app_flush(const App *app) {
+  errno = 0;
+  return fflush(stdout) || ferror(stdout) ? lag_app_io_error(app, "standard output") : 0;
+}
+
+int lag_app_bad_file(App *app, const char *path) {
+  app->bad_file = path;
+  app->bad_errno = errno;
+  return LAG_EIO;
+}
 
 int lag_app_try_file(const App *app, const char *path) {
   Outfile o;
@@ -277,6 +285,7 @@ static int finish(App *app) {
   if (app->status == LAG_EINVAL || app->status == LAG_ENOMEM || app->status == LAG_EIO) {
     lag_rows_close(&app->rows, 0);
     lag_rows_close(&app->log_rows, 0);
+    errno = app->bad_errno;
     return app->status == LAG_EIO ? lag_app_io_error(app, app->bad_file) : lag_app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
   }
   if (app->rows.open && lag_rows_close(&app->rows, 1)) bad = lag_app_io_error(app, a->out);
@@ -299,7 +308,7 @@ static int finish(App *app) {
   if (a->json) lag_report_json(app, stdout);
   else if (!a->quiet) lag_report_text(app, f);
   if (app->status < 0 && (a->json || a->quiet)) lag_app_error(a, "%s%s", lag_sim_message(app->sim), lag_app_way_on(app));
-  if (fflush(stdout) != 0) bad = lag_app_io_error(app, "standard output");
+  if (lag_app_flush(app)) bad = EXIT_USAGE;
   tell_last_state(app);
   return bad ? bad : rc;
 }
@@ -376,7 +385,7 @@ void lag_app_free(App *app) {
 
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras) {
   App app = {.program = program, .extras = extras ? *extras : (lag_extras){0}, .last_row = NAN};
-  lag_binary_streams();
+  lag_prepare_streams();
   int rc = lag_args_parse(&app.args, argc, argv);
   rc = rc ? rc : lag_app_check_parts(&app);
   if (rc == 0 && app.args.help) {
@@ -400,6 +409,7 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
   } else if (rc == 0) {
     rc = app.args.cloud ? lag_app_cloud(&app) : lag_app_overlays(&app.args) ? lag_app_overlay(&app) : simulate(&app);
   }
+  if (rc != EXIT_USAGE && lag_app_flush(&app)) rc = EXIT_USAGE;
   lag_app_free(&app);
   free(app.args.sets);
   free(app.args.scenes);

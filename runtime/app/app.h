@@ -110,6 +110,7 @@ typedef struct App {
   double *log_row;  /* the row being written, */
   const char **log_names; /* [nev] and the names of events */
   const char *bad_file; /* file that could not be written; NULL: none */
+  int bad_errno;        /* and why */
 } App;
 
 /* args.c: parses and checks the command line. 0, or EXIT_USAGE after a message. */
@@ -274,6 +275,10 @@ int lag_app_where(App *app);
 
 /* Prints that a file cannot be written, with errno; returns EXIT_USAGE. */
 int lag_app_io_error(const App *app, const char *path);
+/* Notes a file that cannot be written, and errno; returns LAG_EIO, the run's status. */
+int lag_app_bad_file(App *app, const char *path);
+/* Writes what is left for standard output; EXIT_USAGE, after a message, where it cannot be written. */
+int lag_app_flush(const App *app);
 /* Tests before a long run whether a file can be written; path NULL: none. 0, or EXIT_USAGE after a message. */
 int lag_app_try_file(const App *app, const char *path);
 

@@ -370,7 +370,6 @@ static int show(App *app, const Cost *c) {
     int picture = lag_outfile_has_suffix(a->out, "svg png"), rc = picture ? lag_app_picture(app, a->out, draw, &(Drawing){app, c}) : lag_cost_put_rows(a->out, app, c);
     if (rc) return picture ? rc : lag_app_io_error(app, a->out);
   }
-  if (fflush(stdout)) return lag_app_io_error(app, "standard output");
   if (c->stopped) return lag_app_interrupted();
   if (c->target > 0 && !lag_cost_answer(c->method, c->nmethods, c->target, &run)) return EXIT_RUN;
   return EXIT_FINE;
@@ -429,7 +428,7 @@ int lag_app_cost(App *app) {
     rc = run_cost(app, &cost);
   } else if (rc == 0 && (rc = lag_cost_reference(app, &cost, cost.seconds, &limited)) == 0) {
     write_reference(stdout, &cost);
-    rc = fflush(stdout) ? lag_app_io_error(app, "standard output") : limited ? EXIT_RUN : EXIT_FINE;
+    rc = limited ? EXIT_RUN : EXIT_FINE;
   }
   lag_cost_end(&cost);
   return rc;

@@ -108,7 +108,7 @@ int lag_open_in(DIR *d, const char *name, int flags);
 int lag_unlink_in(DIR *d, const char *name);
 
 /* Bytes of the standard streams as they are, without \r. */
-static inline void lag_binary_streams(void) {
+static inline void lag_prepare_streams(void) {
   for (int fd = 0; fd < 3; fd++) _setmode(fd, _O_BINARY);
 }
 static inline DIR *lag_opendir(const char *path) { return opendir(path); }
@@ -122,6 +122,7 @@ static inline int lag_is_null_device(const char *path) { return _stricmp(path, "
 
 #else
 #include <pthread.h>
+#include <signal.h>
 #include <string.h>
 #include <time.h>
 
@@ -150,7 +151,8 @@ static inline void lag_lock_give(lag_lock *lock) { pthread_mutex_unlock(&lock->m
 static inline long lag_own_path(char *path, size_t n) { return (long)readlink("/proc/self/exe", path, n); }
 static inline int lag_open_in(DIR *d, const char *name, int flags) { return openat(dirfd(d), name, flags); }
 static inline int lag_unlink_in(DIR *d, const char *name) { return unlinkat(dirfd(d), name, 0); }
-static inline void lag_binary_streams(void) {}
+/* A file beyond a limit of its size is an error of its write, not the end of the process. */
+static inline void lag_prepare_streams(void) { signal(SIGXFSZ, SIG_IGN); }
 /* The folder at path, unless it is a link. */
 static inline DIR *lag_opendir(const char *path) {
   int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
