@@ -205,9 +205,9 @@ static int read_number(FILE *f, double *x) {
 static int read_reference(App *app, Cost *c) {
   const Args *a = &app->args;
   Samples *s = &c->reference;
-  FILE *f = strcmp(a->against, "-") == 0 ? stdin : fopen(a->against, "r");
+  FILE *f = strcmp(a->against, "-") == 0 ? stdin : lag_open_to_read(a->against);
   int rows, n, good;
-  if (!f) return lag_app_error(a, "cannot read %s: %s", a->against, strerror(errno));
+  if (!f) return lag_app_error(a, "cannot read %s: %s", a->against, lag_read_error());
   good = fscanf(f, "samples %d %d by %95[^\n]", &rows, &n, c->reference_name) == 3 && rows > 0 && rows <= s->rows && n == s->n;
   good = good && fscanf(f, " uncertainty") == 0 && read_number(f, &s->uncertainty);
   good = good && fscanf(f, " largest") == 0;
