@@ -10,6 +10,10 @@
 #ifndef LAG_MODEL_H
 #define LAG_MODEL_H
 
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
+#error "models need NaN and exact sums: compile them without -ffast-math, -Ofast and /fp:fast"
+#endif
+
 #include <stddef.h>
 
 #ifdef __cplusplus

@@ -13,7 +13,8 @@ static const char *const options =
   "/* Number of the interface of headers: it changes with functions and structs. */\n"
   "enum { LAG_ABI = 1 };\n\n"
   "/* Status codes of functions. */\n"
-  "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1 /* the mass matrix is singular at this state, or not positive definite as elsewhere */\n};\n";
+  "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1, /* the mass matrix is singular at this state, or not positive definite as elsewhere */\n"
+  "  LAG_ENAN = -4       /* an acceleration, or the state after a step, is not finite */\n};\n";
 
 /* --- indices --- */
 
@@ -265,7 +266,7 @@ void header_declarations(const Header *h) {
       doc = "The state at the start of the scene, on the constraints, as `lagc run` finds it with the parameters of _defaults; with others, _hold\n"
             " * leads from there to the nearest one that obeys them.";
     if (f == FN_START && u->constraints.of.n) csupport_expand("\nenum { LAG_EUNMET = -7 }; /* status: the constraints cannot be met near this state */\n", h->upper, h->lower, h->out);
-    if (f == FN_UNTIL_EVENT) csupport_expand("\nenum { LAG_ENAN = -4, LAG_EZENO = -5 };\n", h->upper, h->lower, h->out);
+    if (f == FN_UNTIL_EVENT) csupport_expand("\nenum { LAG_EZENO = -5 };\n", h->upper, h->lower, h->out);
     sb_puts(h->out, "\n/* ");
     csupport_expand(doc, h->upper, h->lower, h->out);
     if (f == FN_CHARGES) sb_printf(h->out, "\n * Symmetries: %s.", charge_names(h));

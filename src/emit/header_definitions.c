@@ -3,6 +3,9 @@
 
 #include "emit/header_impl.h"
 
+/* Compilers that drop NaN, or reorder sums. As in lag_model.h. */
+#define FAST_MATH "defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)"
+
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
 static const char *const macros =
@@ -152,7 +155,13 @@ void header_state_function(const Header *h, const Prog *p, const char *comment, 
 static void accel(const Header *h) {
   static const char *const out[] = {"a", "zd", NULL}, *const none[] = {"a", NULL};
   const char *const *extra = !h->u->q.n ? out + 1 : h->u->z.n ? out : none;
-  header_state_function(h, h->u->accel, NULL, header_api(h, FN_ACCEL), extra, out, 1);
+  const char *args = strchr(header_prototype(h, FN_ACCEL), '('), *a = h->u->q.n ? ", a" : "", *zd = h->u->z.n ? ", zd" : "";
+  header_state_function(h, h->u->accel, "As _accel; results may be NaN or infinite: adaptive steps then try a shorter one.",
+                        header_wrapped(h, arena_printf(h->a, "static int %s_rates_at%s", h->lower, args)), extra, out, 1);
+  sb_printf(h->out, "\n%s {\n  int status = %s_rates_at(%s%s%s);\n", header_api(h, FN_ACCEL), h->lower, header_state_args(h, 0, ""), a, zd);
+  if (h->u->q.n) csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(a, LAG_NQ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
+  if (h->u->z.n) csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(zd, LAG_NZ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
+  sb_puts(h->out, "  return status;\n}\n");
 }
 
 /* --- parameters and the start --- */
@@ -355,7 +364,7 @@ static void scalar_macros(const Header *h) {
 
 void header_implementation(const Header *h) {
   static const char *const e[] = {"e", NULL}, *const out[] = {"out", NULL}, *const g[] = {"g", NULL};
-  sb_puts(h->out, "#include <math.h>\n\n");
+  sb_puts(h->out, "#if " FAST_MATH "\n#error \"this header needs NaN and exact sums: compile it without -ffast-math, -Ofast and /fp:fast\"\n#endif\n#include <math.h>\n\n");
   math_lanes(h->upper, h->lower, h->out);
   scalar_macros(h);
   csupport_logic(h->upper, h->out);
@@ -369,6 +378,7 @@ void header_implementation(const Header *h) {
   param(h);
   start(h);
   inputs(h);
+  header_failures(h);
   accel(h);
   if (header_has(h, FN_ENERGY)) header_state_function(h, h->u->energy, NULL, header_api(h, FN_ENERGY), e, e, 0);
   if (header_has(h, FN_CHARGES)) header_state_function(h, h->u->charge_values, NULL, header_api(h, FN_CHARGES), out, out, 1);
