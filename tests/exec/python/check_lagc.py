@@ -259,6 +259,7 @@ with open(path, "w") as f:
     f.write("model ball\ncoord x [m]\nparam g = 2 [m/s^2]\nkinetic = x'^2/2\nforce x = g\nscene run { span 1 [s] }\n")
 near("a method that is compiled after the file was edited: the text as it was loaded", ball.run(method="gauss", step=0.1)["x"][-1], 0.5, 1e-12)
 near("sweeps, too", ball.sweep(x=[0, 1], measure={"X": "x"}, method="rk4", step=0.1)["X"], [0.5, 1.5], 1e-12)
+ball.run(times=[1], method="rk4", step=1e-3)
 threading.Timer(0.1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 began = time.time()
 raises("Ctrl-C in a long run", KeyboardInterrupt, "", lambda: ball.run(times=[1e9], method="rk4", step=1e-3))
