@@ -296,6 +296,7 @@ static const OptionRow options[] = {
   {"--shard", NULL, "I/N", TAKES_TEXT, "", C(SWEEP), PASSED, "only part I of N, to be run on several machines: kept in FILE.I-of-N.journal"},
   {"--merge", NULL, "N", TAKES_NUMBER, "", C(SWEEP), PASSED, "joins the N parts, beside FILE, and writes the rows"},
   {"--resume", NULL, NULL, TAKES_NOTHING, "", C(SWEEP), PASSED, "goes on with a sweep that was interrupted"},
+  {"--yes", NULL, NULL, TAKES_NOTHING, "", C(SWEEP), PASSED, "begins a sweep of more than a day or 10 GB"},
   {"--precision", NULL, "double|long|quad", TAKES_CHOICE, "double long quad", SIMULATE | C(LYAPUNOV) | C(SWEEP) | C(BUILD), OWN(precision),
    "numbers of the simulator: 16, 19 or 34 digits; gsl-* methods are for double only"},
   {"--like", NULL, "MODEL", TAKES_TEXT, "", C(NEW), OWN(like), "the model of the gallery to begin with"},

