@@ -132,8 +132,10 @@ static void note_empty(App *app, double t) {
   while (i <= n && isfinite(app->row[i])) i++;
   app->rows_put++;
   if (i <= n && app->empty_rows++ == 0) {
+    const size_t size = (size_t)(2 * app->scene->model->nq + app->scene->model->nz) * sizeof(double);
     app->empty_column = i;
     app->empty_t = t;
+    if ((app->empty_state = malloc(size + 1)) != NULL) memcpy(app->empty_state, lag_sim_q(app->sim), size);
   }
 }
 
@@ -243,22 +245,40 @@ static int save_state(const App *app) {
   return rc;
 }
 
-/* After a NaN: sends t, q, v, z and p through the pipe $LAG_LAST_STATE (a descriptor) to the waiting lagc process, if there is one, which
- * names the expression that has no value. Waits for its end. */
+const double *lag_app_nonfinite_state(const App *app, double *t) {
+  const double *now = lag_sim_q(app->sim);
+  *t = lag_sim_time(app->sim);
+  if (app->status == LAG_ENAN || app->status == LAG_EDOMAIN) return now;
+  for (int k = 0; k < lag_sim_ncharges(app->sim) && app->status >= 0; k++) {
+    lag_charge_stats c;
+    lag_sim_charge(app->sim, k, &c);
+    if (isfinite(c.drift)) continue;
+    if (!isfinite(c.now)) return now;
+    *t = app->scene->t0;
+    return app->sim->begin;
+  }
+  *t = app->empty_t;
+  return app->status >= 0 ? app->empty_state : NULL;
+}
+
+/* After a value that is not finite: sends t, q, v, z and p of a state through the pipe $LAG_LAST_STATE (a descriptor) to the waiting lagc process, if there is one,
+ * which names the expression that has none; and whether the run ended there. Waits for its end. */
 #ifdef _WIN32
 static void tell_last_state(const App *app) { (void)app; } /* lagc does not wait there */
 #else
 static void tell_last_state(const App *app) {
   const char *name = getenv("LAG_LAST_STATE");
   const lag_model *m = app->scene->model;
-  const int n[] = {m->nq, m->nq, m->nz, m->np};
-  const double *of[] = {lag_sim_q(app->sim), lag_sim_v(app->sim), lag_sim_z(app->sim), lag_sim_p(app->sim)};
-  FILE *f = name && (app->status == LAG_ENAN || app->status == LAG_EDOMAIN) ? fdopen(atoi(name), "w") : NULL;
+  const int n[] = {2 * m->nq + m->nz, m->np};
+  double t;
+  const double *of[] = {lag_app_nonfinite_state(app, &t), lag_sim_p(app->sim)};
+  FILE *f = name && of[0] ? fdopen(atoi(name), "w") : NULL;
   if (!f) return;
   signal(SIGPIPE, SIG_IGN); /* lagc may have been killed; the status of this run does not depend on it */
-  fprintf(f, "%.17g\n", (double)lag_sim_time(app->sim));
-  for (int k = 0; k < 4; k++)
+  fprintf(f, "%.17g\n", (double)t);
+  for (int k = 0; k < 2; k++)
     for (int i = 0; i < n[k]; i++) fprintf(f, "%.17g\n", (double)of[k][i]);
+  fprintf(f, "%d\n", app->status < 0);
   fclose(f);
   while (wait(NULL) < 0 && errno == EINTR) continue;
 }
@@ -380,6 +400,7 @@ void lag_app_free(App *app) {
   free(app->portrait);
   free(app->drawn.x);
   free(app->row);
+  free(app->empty_state);
   free(app->state.data);
 }
 

@@ -82,7 +82,7 @@ typedef struct App {
   double last_row;  /* time of the last row, NaN before the first */
   long long rows_put, empty_rows; /* rows written; rows with an output that is not finite */
   int empty_column;             /* column of the first such output */
-  double empty_t;               /* and its time */
+  double empty_t, *empty_state; /* its time; the state [q|v|z] there */
   double until;
   int section;      /* --section: event at which rows are written; -1: rows at times */
   int section_rc;   /* failure of its last row */
@@ -275,6 +275,9 @@ int lag_app_where(App *app);
 
 /* Prints that a file cannot be written, with errno; returns EXIT_USAGE. */
 int lag_app_io_error(const App *app, const char *path);
+/* A state [q|v|z] where a value is not finite, and its time: where the run ended; or of the energy or a charge at the end, or at the start; or of the first row with
+ * such an output; NULL: none. */
+const double *lag_app_nonfinite_state(const App *app, double *t);
 /* Notes a file that cannot be written, and errno; returns LAG_EIO, the run's status. */
 int lag_app_bad_file(App *app, const char *path);
 /* Writes what is left for standard output; EXIT_USAGE, after a message, where it cannot be written. */

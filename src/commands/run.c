@@ -25,7 +25,7 @@ static int writes_source(Compiler *c) {
   return 0;
 }
 
-/* After a run that ended for want of a finite value: reports the expression of the text that has none. */
+/* After a run that lacked a finite value: reports the expression of the text that has none. */
 static void tell_last_state(void *compiler, const double *number, uint32_t n) {
   Compiler *c = compiler;
   c->diags->list.n = 0; /* they have been printed */
