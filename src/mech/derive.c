@@ -11,6 +11,7 @@
 #include "mech/discontinuity.h"
 #include "mech/first_order.h"
 #include "mech/lagrange.h"
+#include "mech/mass_definiteness.h"
 #include "mech/constraint_regularise.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
@@ -274,6 +275,7 @@ Eqns *eqns_derive(const Model *m) {
   }
   if (m->first_order && !first_order_derive(e, m)) return NULL;
   classify(e);
+  sizes_find(e);
   return check_method(e) ? e : NULL;
 }
 

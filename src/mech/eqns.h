@@ -132,6 +132,7 @@ typedef struct {
   uint32_t nactions;
   const Expr *definitions; /* by symbol: expressions substituted for parameters that others define; or NULL */
   int definite_by_values; /* definite_mass, or definite for parameters with the signs of their values; a run checks the pivots */
+  VEC(ModelSize) sizes;  /* of the model, and inertias of parameters alone, each once: what a run checks at its start */
   int constant_mass, definite_mass, singular_mass, conserves_energy, autonomous, smooth;
   int energy_jumps;      /* the energy is discontinuous somewhere, as L is; the facts about it hold between such places */
   int loses_energy;      /* energy less the work of constant forces cannot rise while inputs stay as they are, and is not conserved */

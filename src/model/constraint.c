@@ -91,6 +91,7 @@ static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *
   double value = expr_is_num(b->g, e->e) ? num_value(expr_number(b->g, e->e)) : 0.5;
   if (!expr_is_constant(b->g, e->e) || value < 0 || value > 1)
     return diag_error(b->diags, bounce, "a coefficient of restitution is a number from 0 to 1, or made of parameters");
+  add_size(b, e->e, arena_printf(b->arena, "the restitution of `%s`", name), bounce, 1);
   return dims_agree(b, e, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, bounce) ||
          diag_error(b->diags, bounce, "a coefficient of restitution is a pure number, and this is %s", in_dim(b, e->dim));
 }
@@ -103,6 +104,7 @@ static int check_coefficient(Builder *b, AstId id, const Value *x, double most, 
   double value = expr_is_num(b->g, x->e) ? num_value(expr_number(b->g, x->e)) : 0;
   if (!expr_is_constant(b->g, x->e)) return diag_error(b->diags, span, "%s is a number, or made of parameters", what);
   if (value < 0 || value > most) return diag_error(b->diags, span, most > 1 ? "%s is at least 0" : "%s is a number from 0 to 1", what);
+  add_size(b, x->e, what, span, !(most > 1));
   return dims_agree(b, x, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, span) ||
          diag_error(b->diags, span, "%s is a pure number, and this is %s", what, in_dim(b, x->dim));
 }
