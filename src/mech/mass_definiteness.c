@@ -204,7 +204,7 @@ static uint32_t without_inertia(const Eqns *e, const long double *at) {
 
 int mass_regular_at_start(const Eqns *e) {
   const Model *m = e->m;
-  if (!e->n || !e->mass_known || m->constraints.n || e->singular_mass || !m->scene.span.end) return 1;
+  if (!e->n || !e->mass_known || e->constant_mass || m->constraints.n || e->singular_mass || !m->scene.span.end) return 1; /* constant: mass_warn_nonpositive */
   uint32_t k = without_inertia(e, start_requested(e));
   if (k == e->n) return 1;
   diag_error(m->diags, m->scene.span, "the mass matrix is singular at the start of the scene `%s`, where `%s` has no inertia: no acceleration follows there", m->scene.name, m->coords.at[k].name);
