@@ -449,7 +449,7 @@ static int check_sizes(lag_sim *s) {
   for (int i = 0; i < m->nsizes && rc == 0; i++) {
     const lag_size *of = &m->sizes[i];
     if ((of->part && size[i] > 1) || !(of->open ? size[i] > 0 : size[i] >= 0))
-      rc = lag_fail(s, LAG_EINVAL, "%s, is %g with these parameters: it must be %s", of->text, size[i], of->part ? "from 0 to 1" : of->open ? "more than 0" : "at least 0");
+      rc = lag_fail(s, LAG_EINVAL, "%s of %.6g, which must be %s: it is %s", of->what, size[i], of->part ? "between 0 and 1" : of->open ? "more than 0" : "at least 0", of->text);
   }
   free(size);
   return rc;

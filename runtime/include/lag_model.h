@@ -260,7 +260,7 @@ typedef struct lag_taylor {
 
 /* A size that parameters determine: at least 0, more than 0 where open, at most 1 where it is a part. */
 typedef struct lag_size {
-  const char *text; /* "the friction `rub`, mu*m*g" */
+  const char *what, *text; /* "this friction has a size", "mu*m*g" */
   int open, part;
 } lag_size;
 

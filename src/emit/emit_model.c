@@ -179,7 +179,7 @@ static void emit_sizes(const ModelFile *f) {
   sb_puts(f->out, "\nstatic const lag_size size_table[] = {\n");
   for (uint32_t i = 0; i < f->u->sizes.n; i++) {
     const IrSize *s = &f->u->sizes.at[i];
-    sb_printf(f->out, "  {%s, %d, %d},\n", c_string(f->a, s->text), s->open, s->part);
+    sb_printf(f->out, "  {%s, %s, %d, %d},\n", c_string(f->a, s->what), c_string(f->a, s->text), s->open, s->part);
   }
   sb_puts(f->out, "};\n");
 }

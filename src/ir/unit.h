@@ -138,7 +138,7 @@ typedef struct {
 
 /* A size that parameters determine, at least 0; open: more than 0; part: at most 1. */
 typedef struct {
-  const char *text; /* "the friction `rub`, mu*m*g" */
+  const char *what, *text; /* "this friction has a size", "mu*m*g" */
   int open, part;
 } IrSize;
 

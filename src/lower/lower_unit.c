@@ -148,10 +148,11 @@ static void add_taylor(IrUnit *u, const Eqns *e) {
 static void add_sizes(IrUnit *u, const Eqns *e) {
   for (uint32_t i = 0; i < e->sizes.n; i++) {
     const ModelSize *s = &e->sizes.at[i];
-    StrBuf text = strbuf(u->arena);
-    sb_printf(&text, "%s, ", s->what);
+    StrBuf what = strbuf(u->arena), text = strbuf(u->arena);
+    for (const char *c = s->what; *c; c++)
+      if (*c != '`') sb_putc(&what, *c);
     expr_print(e->g, s->value, PRINT_TEXT, &text);
-    vec_push(u->arena, &u->sizes, ((IrSize){sb_text(&text), s->open, s->part}));
+    vec_push(u->arena, &u->sizes, ((IrSize){sb_text(&what), sb_text(&text), s->open, s->part}));
   }
   u->size_values = lower_sizes(e);
 }

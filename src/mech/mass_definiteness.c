@@ -162,7 +162,7 @@ void sizes_find(Eqns *e) {
     ExprSign sign = x.row == x.col && expr_is_constant(e->g, x.e) ? expr_sign(e->g, x.e) : SIGN_POSITIVE;
     if (sign == SIGN_POSITIVE || (sign == SIGN_NONNEGATIVE && m->constraints.n)) continue;
     expr_eval(e->g, &x.e, 1, value, &inertia);
-    const char *what = arena_printf(m->arena, "the inertia of `%s`", m->coords.at[x.row].name);
+    const char *what = arena_printf(m->arena, "the coordinate `%s` has an inertia", m->coords.at[x.row].name);
     if (inertia > 0) add_once(e, &known, (ModelSize){x.e, what, m->coords.at[x.row].span, !m->constraints.n, 0});
   }
 }

@@ -184,7 +184,7 @@ static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) 
 static void add_grip(Builder *b, const AstStmt *st, Name effect) {
   AstId rate = st->args, size = ast_expr(b->ast, rate)->next, most = ast_expr(b->ast, size)->next;
   Value f = resolve(b, size, IN_DYNAMICS, effect);
-  if (f.e && !f.n) add_size(b, f.e, "this friction", ast_expr(b->ast, size)->span, 0);
+  if (f.e && !f.n) add_size(b, f.e, "this friction has a size", ast_expr(b->ast, size)->span, 0);
   if (!most) return;
   Value v = resolve(b, rate, IN_DYNAMICS, effect), g = resolve(b, most, IN_DYNAMICS, effect);
   Span span = ast_expr(b->ast, most)->span;

@@ -63,8 +63,8 @@ void check_sizes(Builder *b) {
     expr_eval(b->g, &one->value, 1, x, &f);
     const char *size = arena_printf(b->arena, "%.6Lg", f);
     if (!(f < 0) && !(one->part && f > 1)) continue;
-    if (one->part) diag_error(b->diags, one->span, "%s is %s here, and must be from 0 to 1", one->what, size);
-    else diag_error(b->diags, one->span, "%s has a size of %s, and would drive the motion" HELP "it acts against the velocity by itself: let its size be at least 0, `param mu = 0.3 >= 0`", one->what, size);
+    if (one->part) diag_error(b->diags, one->span, "%s of %s, which must be between 0 and 1", one->what, size);
+    else diag_error(b->diags, one->span, "%s of %s, and would drive the motion" HELP "it acts against the velocity by itself: let its size be at least 0, `param mu = 0.3 >= 0`", one->what, size);
   }
 }
 

@@ -195,7 +195,7 @@ typedef struct {
 /* A size that parameters determine: at least 0, more than 0 where open, at most 1 where it is a part. */
 typedef struct {
   Expr value;
-  const char *what; /* "the friction `rub`" */
+  const char *what; /* "this friction has a size" */
   Span span;
   int open, part;
 } ModelSize;
