@@ -261,8 +261,9 @@ const double *lag_app_nonfinite_state(const App *app, double *t) {
   return app->status >= 0 ? app->empty_state : NULL;
 }
 
-/* After a value that is not finite: sends t, q, v, z and p of a state through the pipe $LAG_LAST_STATE (a descriptor) to the waiting lagc process, if there is one,
- * which names the expression that has none; and whether the run ended there. Waits for its end. */
+/* After a value that is not finite: sends t, q, v, z and p of a state through the pipe $LAG_LAST_STATE (a descriptor) to
+ * the waiting lagc process, if there is one, which names the expression that has none; and whether the run ended there.
+ * Waits for its end. */
 #ifdef _WIN32
 static void tell_last_state(const App *app) { (void)app; } /* lagc does not wait there */
 #else

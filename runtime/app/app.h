@@ -275,8 +275,8 @@ int lag_app_where(App *app);
 
 /* Prints that a file cannot be written, with errno; returns EXIT_USAGE. */
 int lag_app_io_error(const App *app, const char *path);
-/* A state [q|v|z] where a value is not finite, and its time: where the run ended; or of the energy or a charge at the end, or at the start; or of the first row with
- * such an output; NULL: none. */
+/* A state [q|v|z] where a value is not finite, and its time: where the run ended; or of the energy or a charge at the
+ * end, or at the start; or of the first row with such an output; NULL: none. */
 const double *lag_app_nonfinite_state(const App *app, double *t);
 /* Notes a file that cannot be written, and errno; returns LAG_EIO, the run's status. */
 int lag_app_bad_file(App *app, const char *path);

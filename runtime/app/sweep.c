@@ -325,13 +325,14 @@ static int stop(void *context) {
   return lag_app_interrupted() != EXIT_SIGNAL;
 }
 
-/* One run of each variant, timed, where that is a small part of all: refuses what would take longer than a day of this machine, or more than 10 GB, without --yes, and
- * tells what takes longer than a minute. */
+/* One run of each variant, timed, where that is a small part of all: refuses what would take longer than a day of
+ * this machine, or more than 10 GB, without --yes, and tells what takes longer than a minute. */
 static int estimate(SweepApp *s) {
   const Args *a = &s->app->args;
   const double day = 86400, few = 16, per_number = 26, most = 1e10; /* runs of a thread; bytes: 8 in the journal, 18 of a CSV */
   int variants = s->sweep.nvariants;
-  double threads = (double)s->sweep.threads * s->sweep.nranks, share = (double)s->plan.runs / (double)s->sweep.shards, bytes = share * (double)lag_sweep_numbers(&s->sweep) * per_number;
+  double threads = (double)s->sweep.threads * s->sweep.nranks, share = (double)s->plan.runs / (double)s->sweep.shards;
+  double bytes = share * (double)lag_sweep_numbers(&s->sweep) * per_number;
   if ((double)s->plan.runs < few * threads * variants) return 0;
   double *row = malloc((size_t)lag_sweep_columns(&s->sweep) * sizeof *row);
   char why[600], text[64];
@@ -346,7 +347,8 @@ static int estimate(SweepApp *s) {
   double number = long_unit > 0 ? all / long_unit : all < 120 ? all : all / 60;
   snprintf(text, sizeof text, number < 10 ? "%.1f %s" : "%.0f %s", number, long_unit > 0 ? unit : all < 120 ? "s" : "min");
   if (!a->yes && (all > day || bytes > most))
-    return lag_app_error(a, "%lld runs would take about %s and %.3g GB on this machine: take fewer values, --shard i/n on many, or --yes", s->plan.runs, text, 1e-9 * bytes);
+    return lag_app_error(a, "%lld runs would take about %s and %.3g GB on this machine: take fewer values, --shard i/n on many, or --yes",
+                         s->plan.runs, text, 1e-9 * bytes);
   if (all > 60 && !a->quiet) fprintf(stderr, "%s: %lld runs, about %s\n", a->self, s->plan.runs, text);
   return 0;
 }

@@ -89,13 +89,15 @@ int lag_sweep_serve(SweepApp *s) {
   return lag_app_error(&s->app->args, "rank %d: %s", s->sweep.rank, status == LAG_ENOMEM ? "out of memory" : "rank 0 does not answer");
 }
 
-/* Ends the launcher of this process: with --enable-recovery mpirun passes over the status of ranks, and a sweep without rank 0 has no file. */
+/* Ends the launcher of this process: with --enable-recovery mpirun passes over the status of ranks, and a sweep without
+ * rank 0 has no file. */
 static void end_launcher(void) {
 #ifndef _WIN32
   char path[40], name[16] = "";
   snprintf(path, sizeof path, "/proc/%ld/comm", (long)getppid());
   FILE *f = fopen(path, "r");
-  if (f && fgets(name, sizeof name, f) && (strncmp(name, "mpi", 3) == 0 || strncmp(name, "orte", 4) == 0 || strncmp(name, "prte", 4) == 0)) kill(getppid(), SIGTERM);
+  int known = f && fgets(name, sizeof name, f) && (strncmp(name, "mpi", 3) == 0 || strncmp(name, "orte", 4) == 0 || strncmp(name, "prte", 4) == 0);
+  if (known) kill(getppid(), SIGTERM);
   if (f) fclose(f);
 #endif
 }

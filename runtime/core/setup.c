@@ -445,11 +445,13 @@ static int check_sizes(lag_sim *s) {
   const lag_model *m = s->scene->model;
   double *size = m->nsizes ? malloc((size_t)m->nsizes * sizeof *size) : NULL;
   if (!m->nsizes) return LAG_OK;
-  int rc = size ? m->size_values(s->scene->t0, s->begin, s->begin + m->nq, s->begin + 2 * m->nq, s->p, s->pb.u, size, s->pb.work) : lag_fail(s, LAG_ENOMEM, "out of memory");
+  const double *y = s->begin;
+  int rc = size ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work) : lag_fail(s, LAG_ENOMEM, "out of memory");
   for (int i = 0; i < m->nsizes && rc == 0; i++) {
     const lag_size *of = &m->sizes[i];
     if ((of->part && size[i] > 1) || !(of->open ? size[i] > 0 : size[i] >= 0))
-      rc = lag_fail(s, LAG_EINVAL, "%s of %.6g, which must be %s: it is %s", of->what, size[i], of->part ? "between 0 and 1" : of->open ? "more than 0" : "at least 0", of->text);
+      rc = lag_fail(s, LAG_EINVAL, "%s of %.6g, which must be %s: it is %s", of->what, size[i],
+                    of->part ? "between 0 and 1" : of->open ? "more than 0" : "at least 0", of->text);
   }
   free(size);
   return rc;

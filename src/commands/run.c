@@ -77,5 +77,6 @@ int command_run(Compiler *c) {
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   if (c->run && c->run->n <= LARGE && c->o.command != CMD_SWEEP) last_state_listen(c->arena, tell_last_state, c);
   process_become(path, c->picture.argv.at);
-  return usage_error(arena_printf(c->arena, "cannot run %s: %s; set XDG_CACHE_HOME to a folder where programs may run", path, strerror(errno)));
+  const char *why = strerror(errno);
+  return usage_error(arena_printf(c->arena, "cannot run %s: %s; set XDG_CACHE_HOME to a folder where programs may run", path, why));
 }
