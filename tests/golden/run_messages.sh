@@ -19,7 +19,9 @@ a run cannot set
 a section is a surface in the space of states
 is left out: liblag computes action variables
 this is not a finite number
-this is nested too deep'
+this is nested too deep
+the mass matrix is singular at the start of the scene
+begin elsewhere, as with'
 
 # The texts in the calls that report, one a line, as FILE:LINE<tab>TEXT; texts that are not sentences are left out.
 texts() {
