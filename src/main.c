@@ -74,7 +74,7 @@ int main(int argc, char **argv) {
   Compiler c = {.arena = arena_new(&config)};
   jmp_buf out_of_memory;
   int status;
-  lag_binary_streams();
+  lag_prepare_streams();
   if (!c.arena) return usage_error("out of memory");
   if (setjmp(out_of_memory)) {
     if (arena_hit_limit(c.arena)) fprintf(stderr, "lagc: the model needs more than the limit of %d MiB of memory\n", MEMORY_LIMIT_MIB);

@@ -179,4 +179,4 @@ N    ?= 100
 SEED ?= 1
 mutants:
 	$(SETUP) test
-	python3 tests/mutants/mutants.py --n $(N) --seed $(SEED) $(if $(JOBS),--jobs $(JOBS)) $(if $(ONLY_IN),--only '$(ONLY_IN)')
+	SAN_FLAGS='$(SAN_FLAGS)' python3 tests/mutants/mutants.py --n $(N) --seed $(SEED) $(if $(JOBS),--jobs $(JOBS)) $(if $(ONLY_IN),--only '$(ONLY_IN)') $(if $(SUITES),--suites '$(SUITES)')

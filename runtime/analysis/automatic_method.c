@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/core.h"
 #include "numeric/workspace.h"
@@ -98,7 +99,7 @@ static int examine_step(void *context, const lag_sim *sim) {
 
 /* Runs a trial by `method` with the values of sim for at most STEPS_OF_TRIAL steps, and compares each with an explicit method's `bound` of
  * stability on the negative real axis. A mode that grows in the direction of the run does not count: backwards, a stiff model is not stiff. Needs
- * the model's linearisation. 0: no trial is possible. Source of the criterion, and of the bounds 3.3 of rk45 and 6.1 of dop853: Hairer, Wanner,
+ * the model's linearisation. 0: no trial is possible; LAG_ENOMEM. Source of the criterion, and of the bounds 3.3 of rk45 and 6.1 of dop853: Hairer, Wanner,
  * Solving Ordinary Differential Equations II (1996), DOI 10.1007/978-3-642-05221-7, IV.2. */
 static int run_trial(const lag_sim *sim, double until, const lag_method *method, double bound, Stiffness *s) {
   lag_sim *trial = lag_sim_like(sim);
@@ -107,7 +108,7 @@ static int run_trial(const lag_sim *sim, double until, const lag_method *method,
   double **const parts[] = {&l.J, &l.x, &l.y, &l.z, &l.work};
   const size_t sizes[] = {rows * n, n, n, n, lag_linear_work(sim->scene->model)};
   double *block = lag_workspace(sizeof parts / sizeof *parts, parts, sizes);
-  int ready = trial && block && lag_sim_set_method(trial, method, NULL, 0) == 0;
+  int rc = trial && block ? lag_sim_set_method(trial, method, NULL, 0) : LAG_ENOMEM, ready = rc == 0;
   *s = (Stiffness){0};
   if (ready) {
     for (size_t i = 0; i < n; i++) l.x[i] = 1 + 0.1 * (double)(i % 7); /* unlikely to be an eigenvector of a model */
@@ -116,7 +117,7 @@ static int run_trial(const lag_sim *sim, double until, const lag_method *method,
   }
   free(block);
   lag_sim_free(trial);
-  return ready;
+  return rc == LAG_ENOMEM ? rc : ready;
 }
 
 /* After a trial of radau, with n components of the state: whether its steps are so far past the bound that it is much cheaper than dop853 can be.
@@ -126,36 +127,73 @@ static int exceeds_stability(const Stiffness *s, int n) { return STAGES * s->nee
 
 /* ---- The choice */
 
-/* Whether the model is stiff, by a trial of `method`, and if needed of radau; why[size] := the reason. */
+/* Whether the model is stiff, by a trial of `method`, and if needed of radau; why[size] := the reason. LAG_ENOMEM. */
 static int is_stiff(const lag_sim *sim, double until, const lag_method *method, char *why, size_t size) {
   const lag_model *m = sim->scene->model;
   int n = 2 * m->nq + m->nz;
   double bound = method == &lag_rk45 ? 3.3 : 6.1;
   Stiffness s, radau;
-  if (!m->linear || m->constraints || n > MOST_OF_TRIAL || !run_trial(sim, until, method, bound, &s)) return 0;
+  int rc = !m->linear || m->constraints || n > MOST_OF_TRIAL ? 0 : run_trial(sim, until, method, bound, &s);
+  if (rc <= 0) return rc;
   if (s.looked >= LEAST_STEPS && s.limited * 2 > s.looked) {
     snprintf(why, size, "radau, since the model is stiff: stability, not the tolerance, would limit %.0f %% of the first steps of %s",
              100.0 * s.limited / s.looked, method->name);
     return 1;
   }
-  if (!s.unfinished || n > MOST_OF_RADAU || !run_trial(sim, until, &lag_radau, bound, &radau) || !exceeds_stability(&radau, n)) return 0;
+  rc = !s.unfinished || n > MOST_OF_RADAU ? 0 : run_trial(sim, until, &lag_radau, bound, &radau);
+  if (rc <= 0 || !exceeds_stability(&radau, n)) return rc < 0 ? rc : 0;
   snprintf(why, size, "radau, since the model is stiff: stability alone would demand %.2g steps of %s to t = %.3g s, and radau takes %d",
            radau.needed, method->name, radau.until, radau.steps);
   return 1;
 }
 
+static int one_step(void *context, const lag_sim *sim) {
+  (void)context;
+  (void)sim;
+  return 1;
+}
+
+/* Sets the method if it makes a first step. Else its failure: LAG_ENOMEM, or why this method cannot start. */
+static int take_method(lag_sim *sim, double until, const lag_method *method, const lag_option *opt, int n) {
+  int rc = lag_sim_set_method(sim, method, opt, n);
+  if (rc) return rc;
+  lag_sim *trial = lag_sim_like(sim);
+  if (!trial) return lag_fail(sim, LAG_ENOMEM, "out of memory");
+  lag_sim_on_step(trial, one_step, NULL);
+  rc = lag_sim_advance(trial, until);
+  rc = rc == LAG_EINVAL || rc > 0 ? LAG_OK : rc; /* a mistake in the start is not the method's */
+  if (rc) lag_fail(sim, rc, "%s", lag_sim_message(trial));
+  lag_sim_free(trial);
+  return rc;
+}
+
+/* why := the choice after `refused` could not start, as the simulation's message says. */
+static void say_refusal(const lag_sim *sim, const lag_method *refused, const char *taken, char *why, size_t size) {
+  const char *message = lag_sim_message(sim);
+  snprintf(why, size, "%s, since %s cannot start here (%.*s)", taken, refused->name, (int)strcspn(message, ";"), message);
+}
+
 int lag_sim_choose_method(lag_sim *sim, double until, int exponents, const lag_option *opt, int n, char *why, size_t size) {
   if (!sim || !why) return LAG_EINVAL;
   double tol = lag_sim_tolerance(sim);
-  const lag_method *plain = tol > above_rk45 ? &lag_rk45 : &lag_dop853;
-  if (is_stiff(sim, until, plain, why, size) && lag_sim_set_method(sim, &lag_radau, opt, n) == 0) return LAG_OK;
-  if (tol < below_taylor && !exponents && lag_sim_set_method(sim, &lag_taylor_method, opt, n) == 0) {
+  const lag_method *plain = tol > above_rk45 ? &lag_rk45 : &lag_dop853, *refused = NULL;
+  char refusal[400] = "";
+  int stiff = is_stiff(sim, until, plain, why, size), rc = stiff < 0 ? lag_fail(sim, stiff, "out of memory") : LAG_OK;
+  if (stiff > 0) rc = take_method(sim, until, refused = &lag_radau, opt, n);
+  else if (rc == 0 && tol < below_taylor && !exponents) {
     snprintf(why, size, "taylor, since the tolerance is below %g", below_taylor);
-    return LAG_OK;
+    rc = take_method(sim, until, refused = &lag_taylor_method, opt, n);
   }
-  int rc = lag_sim_set_method(sim, plain, opt, n);
+  if (rc == LAG_ENOMEM || (rc == 0 && refused)) return rc;
+  if (rc && rc != LAG_EMETHOD) say_refusal(sim, refused, plain->name, refusal, sizeof refusal);
+  rc = lag_sim_set_method(sim, plain, opt, n);
+  if (rc == LAG_EMETHOD && !exponents) {
+    say_refusal(sim, plain, lag_moreau.name, why, size);
+    return lag_sim_set_method(sim, &lag_moreau, opt, n) == LAG_OK ? LAG_OK : lag_sim_set_method(sim, plain, opt, n);
+  }
   if (rc) return rc;
-  if (plain == &lag_rk45) snprintf(why, size, "rk45, since the tolerance is above %g", above_rk45);
+  if (refusal[0]) snprintf(why, size, "%s", refusal);
+  else if (plain == &lag_rk45) snprintf(why, size, "rk45, since the tolerance is above %g", above_rk45);
   else if (tol >= below_taylor) snprintf(why, size, "dop853, since the tolerance is at most %g", above_rk45);
   else if (exponents) snprintf(why, size, "dop853, since tangent vectors cost less with dop853 than with taylor");
   else if (sim->scene->model->constraints)

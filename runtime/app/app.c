@@ -132,16 +132,15 @@ static void note_empty(App *app, double t) {
   while (i <= n && isfinite(app->row[i])) i++;
   app->rows_put++;
   if (i <= n && app->empty_rows++ == 0) {
+    const size_t size = (size_t)(2 * app->scene->model->nq + app->scene->model->nz) * sizeof(double);
     app->empty_column = i;
     app->empty_t = t;
+    if ((app->empty_state = malloc(size + 1)) != NULL) memcpy(app->empty_state, lag_sim_q(app->sim), size);
   }
 }
 
 int lag_app_write_row(App *app, int drawn) {
-  if (app->rows.open && lag_rows_write(&app->rows, app->row)) {
-    app->bad_file = app->args.out;
-    return LAG_EIO;
-  }
+  if (app->rows.open && lag_rows_write(&app->rows, app->row)) return lag_app_bad_file(app, app->args.out);
   if (drawn && app->args.energy_error) lag_energy_kept(app);
   return drawn && lag_table_add(&app->table, app->row) ? LAG_ENOMEM : LAG_OK;
 }
@@ -194,7 +193,18 @@ static void run(App *app) {
 
 /* ---- Files */
 
-int lag_app_io_error(const App *app, const char *path) { return lag_app_error(&app->args, "cannot write %s: %s", path, strerror(errno)); }
+int lag_app_io_error(const App *app, const char *path) { return lag_app_error(&app->args, "cannot write %s: %s", path, strerror(errno ? errno : EIO)); }
+
+int lag_app_flush(const App *app) {
+  errno = 0;
+  return fflush(stdout) || ferror(stdout) ? lag_app_io_error(app, "standard output") : 0;
+}
+
+int lag_app_bad_file(App *app, const char *path) {
+  app->bad_file = path;
+  app->bad_errno = errno;
+  return LAG_EIO;
+}
 
 int lag_app_try_file(const App *app, const char *path) {
   Outfile o;
@@ -235,22 +245,41 @@ static int save_state(const App *app) {
   return rc;
 }
 
-/* After a NaN: sends t, q, v, z and p through the pipe $LAG_LAST_STATE (a descriptor) to the waiting lagc process, if there is one, which
- * names the expression that has no value. Waits for its end. */
+const double *lag_app_nonfinite_state(const App *app, double *t) {
+  const double *now = lag_sim_q(app->sim);
+  *t = lag_sim_time(app->sim);
+  if (app->status == LAG_ENAN || app->status == LAG_EDOMAIN) return now;
+  for (int k = 0; k < lag_sim_ncharges(app->sim) && app->status >= 0; k++) {
+    lag_charge_stats c;
+    lag_sim_charge(app->sim, k, &c);
+    if (isfinite(c.drift)) continue;
+    if (!isfinite(c.now)) return now;
+    *t = app->scene->t0;
+    return app->sim->begin;
+  }
+  *t = app->empty_t;
+  return app->status >= 0 ? app->empty_state : NULL;
+}
+
+/* After a value that is not finite: sends t, q, v, z and p of a state through the pipe $LAG_LAST_STATE (a descriptor) to
+ * the waiting lagc process, if there is one, which names the expression that has none; and whether the run ended there.
+ * Waits for its end. */
 #ifdef _WIN32
 static void tell_last_state(const App *app) { (void)app; } /* lagc does not wait there */
 #else
 static void tell_last_state(const App *app) {
   const char *name = getenv("LAG_LAST_STATE");
   const lag_model *m = app->scene->model;
-  const int n[] = {m->nq, m->nq, m->nz, m->np};
-  const double *of[] = {lag_sim_q(app->sim), lag_sim_v(app->sim), lag_sim_z(app->sim), lag_sim_p(app->sim)};
-  FILE *f = name && (app->status == LAG_ENAN || app->status == LAG_EDOMAIN) ? fdopen(atoi(name), "w") : NULL;
+  const int n[] = {2 * m->nq + m->nz, m->np};
+  double t;
+  const double *of[] = {lag_app_nonfinite_state(app, &t), lag_sim_p(app->sim)};
+  FILE *f = name && of[0] ? fdopen(atoi(name), "w") : NULL;
   if (!f) return;
   signal(SIGPIPE, SIG_IGN); /* lagc may have been killed; the status of this run does not depend on it */
-  fprintf(f, "%.17g\n", (double)lag_sim_time(app->sim));
-  for (int k = 0; k < 4; k++)
+  fprintf(f, "%.17g\n", (double)t);
+  for (int k = 0; k < 2; k++)
     for (int i = 0; i < n[k]; i++) fprintf(f, "%.17g\n", (double)of[k][i]);
+  fprintf(f, "%d\n", app->status < 0);
   fclose(f);
   while (wait(NULL) < 0 && errno == EINTR) continue;
 }
@@ -277,6 +306,7 @@ static int finish(App *app) {
   if (app->status == LAG_EINVAL || app->status == LAG_ENOMEM || app->status == LAG_EIO) {
     lag_rows_close(&app->rows, 0);
     lag_rows_close(&app->log_rows, 0);
+    errno = app->bad_errno;
     return app->status == LAG_EIO ? lag_app_io_error(app, app->bad_file) : lag_app_error(a, "%s", app->status == LAG_ENOMEM ? "out of memory" : lag_sim_message(app->sim));
   }
   if (app->rows.open && lag_rows_close(&app->rows, 1)) bad = lag_app_io_error(app, a->out);
@@ -299,7 +329,7 @@ static int finish(App *app) {
   if (a->json) lag_report_json(app, stdout);
   else if (!a->quiet) lag_report_text(app, f);
   if (app->status < 0 && (a->json || a->quiet)) lag_app_error(a, "%s%s", lag_sim_message(app->sim), lag_app_way_on(app));
-  if (fflush(stdout) != 0) bad = lag_app_io_error(app, "standard output");
+  if (lag_app_flush(app)) bad = EXIT_USAGE;
   tell_last_state(app);
   return bad ? bad : rc;
 }
@@ -371,12 +401,13 @@ void lag_app_free(App *app) {
   free(app->portrait);
   free(app->drawn.x);
   free(app->row);
+  free(app->empty_state);
   free(app->state.data);
 }
 
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras) {
   App app = {.program = program, .extras = extras ? *extras : (lag_extras){0}, .last_row = NAN};
-  lag_binary_streams();
+  lag_prepare_streams();
   int rc = lag_args_parse(&app.args, argc, argv);
   rc = rc ? rc : lag_app_check_parts(&app);
   if (rc == 0 && app.args.help) {
@@ -400,6 +431,7 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
   } else if (rc == 0) {
     rc = app.args.cloud ? lag_app_cloud(&app) : lag_app_overlays(&app.args) ? lag_app_overlay(&app) : simulate(&app);
   }
+  if (rc != EXIT_USAGE && lag_app_flush(&app)) rc = EXIT_USAGE;
   lag_app_free(&app);
   free(app.args.sets);
   free(app.args.scenes);

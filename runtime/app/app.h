@@ -20,7 +20,7 @@ typedef struct Args {
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram; /* for --sweep */
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
-  int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs, where, sweep, zip, go_on, portrait, potential, distance, energy_error, no_monitors;
+  int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs, where, sweep, zip, go_on, yes, portrait, potential, distance, energy_error, no_monitors;
   char **sets; /* name=value, in order */
   int nsets;
   const char **scenes; /* all scenes named; scene is the first */
@@ -82,7 +82,7 @@ typedef struct App {
   double last_row;  /* time of the last row, NaN before the first */
   long long rows_put, empty_rows; /* rows written; rows with an output that is not finite */
   int empty_column;             /* column of the first such output */
-  double empty_t;               /* and its time */
+  double empty_t, *empty_state; /* its time; the state [q|v|z] there */
   double until;
   int section;      /* --section: event at which rows are written; -1: rows at times */
   int section_rc;   /* failure of its last row */
@@ -110,6 +110,7 @@ typedef struct App {
   double *log_row;  /* the row being written, */
   const char **log_names; /* [nev] and the names of events */
   const char *bad_file; /* file that could not be written; NULL: none */
+  int bad_errno;        /* and why */
 } App;
 
 /* args.c: parses and checks the command line. 0, or EXIT_USAGE after a message. */
@@ -274,6 +275,13 @@ int lag_app_where(App *app);
 
 /* Prints that a file cannot be written, with errno; returns EXIT_USAGE. */
 int lag_app_io_error(const App *app, const char *path);
+/* A state [q|v|z] where a value is not finite, and its time: where the run ended; or of the energy or a charge at the
+ * end, or at the start; or of the first row with such an output; NULL: none. */
+const double *lag_app_nonfinite_state(const App *app, double *t);
+/* Notes a file that cannot be written, and errno; returns LAG_EIO, the run's status. */
+int lag_app_bad_file(App *app, const char *path);
+/* Writes what is left for standard output; EXIT_USAGE, after a message, where it cannot be written. */
+int lag_app_flush(const App *app);
 /* Tests before a long run whether a file can be written; path NULL: none. 0, or EXIT_USAGE after a message. */
 int lag_app_try_file(const App *app, const char *path);
 

@@ -92,7 +92,7 @@ static const Option options[] = {
     {"sweep", offsetof(Args, sweep), 1, ANY}, {"consts", offsetof(Args, consts), 0, SWEEP}, {"zip", offsetof(Args, zip), 1, SWEEP}, {"rows", offsetof(Args, rows), 0, SWEEP}, {"motions", offsetof(Args, motions), 0, SWEEP},
     {"samples", offsetof(Args, samples), 0, SWEEP}, {"sampling", offsetof(Args, sampling), 0, SWEEP}, {"seed", offsetof(Args, seed), 0, SWEEP},
     {"threads", offsetof(Args, threads), 0, SWEEP}, {"lanes", offsetof(Args, lanes), 0, SWEEP}, {"mpi", offsetof(Args, mpi), 0, SWEEP}, {"shard", offsetof(Args, shard), 0, SWEEP},
-    {"merge", offsetof(Args, merge), 0, SWEEP}, {"histogram", offsetof(Args, histogram), 0, SWEEP}, {"resume", offsetof(Args, go_on), 1, SWEEP},
+    {"merge", offsetof(Args, merge), 0, SWEEP}, {"histogram", offsetof(Args, histogram), 0, SWEEP}, {"resume", offsetof(Args, go_on), 1, SWEEP}, {"yes", offsetof(Args, yes), 1, SWEEP},
 };
 enum { NOPTIONS = sizeof options / sizeof *options };
 

@@ -245,7 +245,6 @@ int lag_app_cloud(App *app) {
   if (rc == 0) {
     rc = lag_app_draw_table(app, c.title);
     if (rc == 0 && !app->args.quiet) printf("picture in %s\n", app->args.svg);
-    if (fflush(stdout) != 0) rc = lag_app_io_error(app, "standard output");
   }
   for (int k = 0; k < c.methods && c.names; k++) free(c.names[k]);
   free(c.names);

@@ -205,9 +205,9 @@ static int read_number(FILE *f, double *x) {
 static int read_reference(App *app, Cost *c) {
   const Args *a = &app->args;
   Samples *s = &c->reference;
-  FILE *f = strcmp(a->against, "-") == 0 ? stdin : fopen(a->against, "r");
+  FILE *f = strcmp(a->against, "-") == 0 ? stdin : lag_open_to_read(a->against);
   int rows, n, good;
-  if (!f) return lag_app_error(a, "cannot read %s: %s", a->against, strerror(errno));
+  if (!f) return lag_app_error(a, "cannot read %s: %s", a->against, lag_read_error());
   good = fscanf(f, "samples %d %d by %95[^\n]", &rows, &n, c->reference_name) == 3 && rows > 0 && rows <= s->rows && n == s->n;
   good = good && fscanf(f, " uncertainty") == 0 && read_number(f, &s->uncertainty);
   good = good && fscanf(f, " largest") == 0;
@@ -370,7 +370,6 @@ static int show(App *app, const Cost *c) {
     int picture = lag_outfile_has_suffix(a->out, "svg png"), rc = picture ? lag_app_picture(app, a->out, draw, &(Drawing){app, c}) : lag_cost_put_rows(a->out, app, c);
     if (rc) return picture ? rc : lag_app_io_error(app, a->out);
   }
-  if (fflush(stdout)) return lag_app_io_error(app, "standard output");
   if (c->stopped) return lag_app_interrupted();
   if (c->target > 0 && !lag_cost_answer(c->method, c->nmethods, c->target, &run)) return EXIT_RUN;
   return EXIT_FINE;
@@ -429,7 +428,7 @@ int lag_app_cost(App *app) {
     rc = run_cost(app, &cost);
   } else if (rc == 0 && (rc = lag_cost_reference(app, &cost, cost.seconds, &limited)) == 0) {
     write_reference(stdout, &cost);
-    rc = fflush(stdout) ? lag_app_io_error(app, "standard output") : limited ? EXIT_RUN : EXIT_FINE;
+    rc = limited ? EXIT_RUN : EXIT_FINE;
   }
   lag_cost_end(&cost);
   return rc;

@@ -300,6 +300,5 @@ int lag_app_effects(App *app) {
   for (int i = 0; k.v && i < k.nscenes; i++) lag_variant_free(&k.v[i]);
   lag_variant_free(&k.finer);
   free(k.v);
-  if (rc == 0 && fflush(stdout)) rc = lag_app_io_error(app, "standard output");
   return rc || lag_app_interrupted() == EXIT_SIGNAL ? rc : lag_app_interrupted();
 }

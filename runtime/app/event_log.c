@@ -53,7 +53,7 @@ void lag_event_note(void *context, int k, double t, const double *before, const 
     app->log_row[2 + i] = lag_sim_declared(app->sim, i, before[i]);
     app->log_row[2 + n + i] = lag_sim_declared(app->sim, i, after[i]);
   }
-  if (lag_rows_write(&app->log_rows, app->log_row)) app->bad_file = app->args.events;
+  if (lag_rows_write(&app->log_rows, app->log_row)) lag_app_bad_file(app, app->args.events);
 }
 
 void lag_event_log_free(App *app) {

@@ -189,6 +189,7 @@ static void put_json(FILE *f, const App *app, const Lyapunov *l) {
 static int failed(App *app, const Job *job) {
   const Args *a = &app->args;
   double t = lag_sim_time(app->sim);
+  errno = app->bad_errno;
   if (app->bad_file) return lag_app_io_error(app, app->bad_file);
   if (job->rc == LAG_EDOMAIN)
     lag_app_error(a, "at t = %g s neighbouring motions become one within a step, an exponent of minus infinity; take fewer: --exponents %d, or "
@@ -216,7 +217,6 @@ static int finish(App *app, Job *job) {
   if (a->svg && (lag_app_choose_curves(app) || lag_app_draw_table(app, title))) rc = EXIT_USAGE;
   if (a->json) put_json(stdout, app, &job->l);
   else if (!a->quiet) put_text(on_stdout ? stderr : stdout, app, &job->l);
-  if (fflush(stdout) != 0) rc = lag_app_io_error(app, "standard output");
   return rc ? rc : app->status == LAG_INTERRUPTED ? lag_app_interrupted() : EXIT_FINE;
 }
 

@@ -421,7 +421,7 @@ static int analyse(const App *app, Equilibrium *r, SteadyMotion *steady, Modes *
   if (rc) return analysis_failed(app, rc, moving ? "at the steady motion" : "at the equilibrium");
   if (app->args.json) json_modes(stdout, app, r, s);
   else put_text(stdout, app, r, s);
-  return fflush(stdout) ? lag_app_error(&app->args, "cannot write standard output") : EXIT_FINE;
+  return EXIT_FINE;
 }
 
 int lag_app_modes(App *app) {

@@ -452,7 +452,6 @@ int lag_app_overlay(App *app) {
     rc = lag_app_draw_table(app, title);
     if (rc == 0 && a->sketch) lag_sketch_write(stdout, &app->table, &app->drawn);
     if (rc == 0 && !a->quiet) report(&o);
-    if (fflush(stdout) != 0) rc = lag_app_io_error(app, "standard output");
   }
   for (int i = 0; i < o.n; i++) {
     interrupted |= o.runs[i].app.status == LAG_INTERRUPTED;

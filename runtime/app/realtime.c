@@ -241,7 +241,7 @@ int lag_app_realtime(App *app, const Cost *c) {
     rank(all, n, c->target);
     if (a->json) put_json(app, c, all, n, step);
     else if (!a->quiet) put_text(app, c, all, n, step);
-    rc = fflush(stdout) ? lag_app_io_error(app, "standard output") : choose(all, n, step, c->target) ? EXIT_FINE : EXIT_RUN;
+    rc = choose(all, n, step, c->target) ? EXIT_FINE : EXIT_RUN;
   }
   lag_samples_free(&own);
   free(least);

@@ -85,12 +85,27 @@ static int has_kicks(const App *app) {
   return n > 0;
 }
 
+/* "energy: not finite at t = 0 s: x = 900, x' = 1". */
+static void put_nonfinite(const App *app, const char *name, FILE *f) {
+  enum { MOST = 8 };
+  double t;
+  const double *y = lag_app_nonfinite_state(app, &t);
+  fprintf(f, "%s: not finite", name);
+  if (y) fprintf(f, " at t = %.6g s", t);
+  for (int i = 0; y && i < 2 * app->scene->model->nq + app->scene->model->nz && i < MOST; i++) {
+    char of[128];
+    lag_sim_state_info(app->sim, i, of, sizeof of, NULL, 0);
+    fprintf(f, "%s%s = %.6g", i ? ", " : ": ", of, lag_sim_declared(app->sim, i, y[i]));
+  }
+  putc('\n', f);
+}
+
 static void charges(const App *app, FILE *f) {
   for (int k = 0; k < lag_sim_ncharges(app->sim); k++) {
     lag_charge_stats c;
     lag_sim_charge(app->sim, k, &c);
     if (!isfinite(c.drift)) {
-      fprintf(f, "%s: not finite\n", c.name);
+      put_nonfinite(app, c.name, f);
       continue;
     }
     fprintf(f, "%s %s: %.3g ", c.name, lag_charge_word(&c), c.drift);

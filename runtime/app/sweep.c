@@ -325,13 +325,14 @@ static int stop(void *context) {
   return lag_app_interrupted() != EXIT_SIGNAL;
 }
 
-/* One run of each variant, timed, where that is a small part of all: refuses what would take longer than a year of this machine, and tells what takes longer than a
- * minute. */
-static int estimate_time(SweepApp *s) {
+/* One run of each variant, timed, where that is a small part of all: refuses what would take longer than a day of
+ * this machine, or more than 10 GB, without --yes, and tells what takes longer than a minute. */
+static int estimate(SweepApp *s) {
   const Args *a = &s->app->args;
-  const double year = 31557600, few = 16; /* runs of a thread */
+  const double day = 86400, few = 16, per_number = 26, most = 1e10; /* runs of a thread; bytes: 8 in the journal, 18 of a CSV */
   int variants = s->sweep.nvariants;
-  double threads = (double)s->sweep.threads * s->sweep.nranks;
+  double threads = (double)s->sweep.threads * s->sweep.nranks, share = (double)s->plan.runs / (double)s->sweep.shards;
+  double bytes = share * (double)lag_sweep_numbers(&s->sweep) * per_number;
   if ((double)s->plan.runs < few * threads * variants) return 0;
   double *row = malloc((size_t)lag_sweep_columns(&s->sweep) * sizeof *row);
   char why[600], text[64];
@@ -342,10 +343,12 @@ static int estimate_time(SweepApp *s) {
   free(row);
   if (rc == LAG_ENOMEM) return lag_app_error(a, "out of memory");
   if (rc == LAG_INTERRUPTED) return lag_app_error(a, "interrupted in the first run"), lag_app_interrupted();
-  double all = (lag_clock_seconds() - begin) / variants * (double)s->plan.runs / threads / (double)s->sweep.shards, long_unit = lag_long_time_unit(all, &unit);
+  double all = (lag_clock_seconds() - begin) / variants * share / threads, long_unit = lag_long_time_unit(all, &unit);
   double number = long_unit > 0 ? all / long_unit : all < 120 ? all : all / 60;
   snprintf(text, sizeof text, number < 10 ? "%.1f %s" : "%.0f %s", number, long_unit > 0 ? unit : all < 120 ? "s" : "min");
-  if (all > year) return lag_app_error(a, "%lld runs would take about %s on this machine: take fewer values, or --shard i/n on many", s->plan.runs, text);
+  if (!a->yes && (all > day || bytes > most))
+    return lag_app_error(a, "%lld runs would take about %s and %.3g GB on this machine: take fewer values, --shard i/n on many, or --yes",
+                         s->plan.runs, text, 1e-9 * bytes);
   if (all > 60 && !a->quiet) fprintf(stderr, "%s: %lld runs, about %s\n", a->self, s->plan.runs, text);
   return 0;
 }
@@ -505,7 +508,7 @@ static int set_up(SweepApp *s) {
 static int make_runs(SweepApp *s) {
   App *app = s->app;
   lag_app_catch_interrupt();
-  int rc = estimate_time(s);
+  int rc = estimate(s);
   rc = rc ? rc : open_journal(s, app->args.go_on);
   rc = rc ? rc : lag_sweep_agree(s);
   if (rc) return rc;

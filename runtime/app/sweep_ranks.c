@@ -1,5 +1,7 @@
 /* --sweep on several processes. --mpi K: this one checks the command line, and becomes `mpirun -n K` of itself; there, rank 0 has the files and prints. */
 #include <errno.h>
+#include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -83,7 +85,21 @@ int lag_sweep_serve(SweepApp *s) {
   int status = lag_sweep_run(&s->sweep);
   if (status == LAG_INTERRUPTED) return lag_app_interrupted();
   if (status == LAG_OK) return 0;
+  s->sweep.silent = status != LAG_ENOMEM; /* rank 0 */
   return lag_app_error(&s->app->args, "rank %d: %s", s->sweep.rank, status == LAG_ENOMEM ? "out of memory" : "rank 0 does not answer");
+}
+
+/* Ends the launcher of this process: with --enable-recovery mpirun passes over the status of ranks, and a sweep without
+ * rank 0 has no file. */
+static void end_launcher(void) {
+#ifndef _WIN32
+  char path[40], name[16] = "";
+  snprintf(path, sizeof path, "/proc/%ld/comm", (long)getppid());
+  FILE *f = fopen(path, "r");
+  int known = f && fgets(name, sizeof name, f) && (strncmp(name, "mpi", 3) == 0 || strncmp(name, "orte", 4) == 0 || strncmp(name, "prte", 4) == 0);
+  if (known) kill(getppid(), SIGTERM);
+  if (f) fclose(f);
+#endif
 }
 
 void lag_sweep_leave(const SweepApp *s, int rc) {
@@ -92,4 +108,5 @@ void lag_sweep_leave(const SweepApp *s, int rc) {
   fflush(stdout);
   if (rc == 0 && !s->sweep.silent) ranks->leave();
   else if (s->sweep.rank == 0) ranks->end(rc); /* another rank ends, and mpirun or rank 0 the others */
+  else if (s->sweep.silent) end_launcher();
 }

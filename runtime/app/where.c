@@ -362,7 +362,7 @@ int lag_app_where(App *app) {
     qsort(p.of, (size_t)p.n + 1, sizeof *p.of, by_samples);
     if (a->json) put_json(&p, most);
     else if (!a->quiet) put_text(&p, most);
-    rc = fflush(stdout) ? lag_app_io_error(app, "standard output") : EXIT_FINE;
+    rc = EXIT_FINE;
   } else {
     rc = rc < 0 ? EXIT_RUN : lag_app_interrupted();
   }

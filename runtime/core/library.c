@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "core/core.h"
 
@@ -59,6 +60,13 @@ int lag_sim_rhs(lag_sim *s, int count, const double *t, const double *y, double 
   lag_switch_set_free(s, 0);
   for (int i = 0; i < m->ncontacts; i++) s->hold[m->contacts[i].input] = held[i];
   return rc;
+}
+
+int lag_time_is_up(void *until, const lag_sim *s) {
+  enum { OFTEN = 4 }; /* steps between two looks at the clock */
+  struct timespec now;
+  if ((long long)s->run->steps % OFTEN || timespec_get(&now, TIME_UTC) != TIME_UTC) return 0;
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec > *(const volatile double *)until;
 }
 
 int lag_sim_rows(lag_sim *s, int rows, const double *t, double *y, double *out, int *done) {
@@ -119,6 +127,7 @@ int lag_sim_batch(const lag_sim *like, int count, const double *y0, const double
   for (size_t k = 0; k < (size_t)count; k++) {
     lag_sim *s = lag_sim_like(like);
     if (!s) return LAG_ENOMEM;
+    lag_sim_on_step(s, like->on_step, like->on_step_context);
     for (size_t i = 0; i < each; i++) y[k * each + i] = NAN;
     status[k] = motion(s, y0 ? y0 + k * n : NULL, p ? p + k * np : NULL, rows, t, y + k * each);
     lag_sim_free(s);

@@ -440,6 +440,23 @@ int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *cont
   return LAG_OK;
 }
 
+/* Refuses parameters that make a friction, an inertia or a coefficient negative, or too large. */
+static int check_sizes(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  double *size = m->nsizes ? malloc((size_t)m->nsizes * sizeof *size) : NULL;
+  if (!m->nsizes) return LAG_OK;
+  const double *y = s->begin;
+  int rc = size ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work) : lag_fail(s, LAG_ENOMEM, "out of memory");
+  for (int i = 0; i < m->nsizes && rc == 0; i++) {
+    const lag_size *of = &m->sizes[i];
+    if ((of->part && size[i] > 1) || !(of->open ? size[i] > 0 : size[i] >= 0))
+      rc = lag_fail(s, LAG_EINVAL, "%s of %.6g, which must be %s: it is %s", of->what, size[i],
+                    of->part ? "between 0 and 1" : of->open ? "more than 0" : "at least 0", of->text);
+  }
+  free(size);
+  return rc;
+}
+
 int lag_setup_start(lag_sim *s) {
   const lag_scene *c = s->scene;
   const lag_model *m = c->model;
@@ -452,6 +469,7 @@ int lag_setup_start(lag_sim *s) {
       return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, lag_declared(&m->p[i], s->p[i]),
                       m->p[i].name, sign_text(m->p[i].sign));
     }
+  if ((rc = check_sizes(s)) != 0) return rc;
   set_start_state(s);
   if (lag_not_finite(n, s->now) >= 0) return lag_fail(s, LAG_ENAN, "the start is not finite");
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */

@@ -13,8 +13,8 @@
  *   rsqrt      0.51
  *
  * All lanes, of 4 or of 8, get the same bits. Fused multiply-add is used by name where the processor has it: results then differ in the last
- * place from those of a processor without, but not from one compiler to another. A compiler may contract further products and sums
- * (-ffp-contract=fast): the bounds hold.
+ * place from those of a processor without, but not from one compiler to another; LAG_NO_FMA does without it everywhere. A compiler may contract
+ * further products and sums (-ffp-contract=fast): the bounds hold.
  *
  * lagc copies the sections below, from a line `---- NAME ----` to the next, into what it emits, with LAG_ and lag_ replaced by the prefix of an
  * emitted header. */
@@ -198,7 +198,7 @@ LAG_INLINE double lag_to_real(lag_word w) {
 #define LAG_K(x) (x)
 #endif
 
-#if defined(__FMA__) || defined(FP_FAST_FMA) || defined(__ARM_FEATURE_FMA)
+#if (defined(__FMA__) || defined(FP_FAST_FMA) || defined(__ARM_FEATURE_FMA)) && !defined(LAG_NO_FMA)
 #define LAG_FMA 1
 #else
 #define LAG_FMA 0

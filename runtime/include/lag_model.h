@@ -10,13 +10,17 @@
 #ifndef LAG_MODEL_H
 #define LAG_MODEL_H
 
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
+#error "models need NaN and exact sums: compile them without -ffast-math, -Ofast and /fp:fast"
+#endif
+
 #include <stddef.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#define LAG_ABI 12
+#define LAG_ABI 13
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many doubles, one state or one
  * set of parameters a lane. The status < 0 of such a call has bit k of its negative set where lane k is singular; the other lanes are right. */
@@ -255,6 +259,12 @@ typedef struct lag_taylor {
   void (*at)(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy);
 } lag_taylor;
 
+/* A size that parameters determine: at least 0, more than 0 where open, at most 1 where it is a part. */
+typedef struct lag_size {
+  const char *what, *text; /* "this friction has a size", "mu*m*g" */
+  int open, part;
+} lag_size;
+
 typedef struct lag_model {
   int abi;           /* LAG_ABI */
   size_t real_size;  /* sizeof(LAG_REAL) */
@@ -296,6 +306,12 @@ typedef struct lag_model {
   int (*act)(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,
              const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1,
              int *stop, LAG_REAL *w);
+
+  /* out[nsizes]: the sizes, of parameters alone, that a run checks when it begins. NULL where nsizes is 0. */
+  int nsizes;
+  const lag_size *sizes; /* [nsizes] */
+  int (*size_values)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                     const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
   int ntables;
   const lag_table *tables; /* [ntables] */

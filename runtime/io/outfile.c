@@ -113,8 +113,18 @@ int lag_outfile_open(Outfile *o, const char *path) {
 /* errno, or EIO where a library left it 0. */
 static int error_number(void) { return errno ? errno : EIO; }
 
+/* Why an earlier write to a file that is dropped has failed: the next one fails alike. */
+static int write_error(FILE *f) {
+  enum { BLOCK = 1 << 16 };
+  errno = 0;
+  clearerr(f);
+  if (fseek(f, 0, SEEK_END) != 0) return error_number();
+  for (int i = 0; i < BLOCK && !ferror(f); i++) putc('\n', f);
+  return fflush(f) != 0 || ferror(f) ? error_number() : EIO;
+}
+
 int lag_outfile_close(Outfile *o, int keep) {
-  int is_part = o->part[0] != '\0', error = ferror(o->f) ? EIO : 0;
+  int is_part = o->part[0] != '\0', error = !ferror(o->f) ? 0 : is_part ? write_error(o->f) : EIO;
   errno = 0;
   if (fflush(o->f) != 0 || (keep == OUTFILE_SYNC && is_part && fsync(fileno(o->f)) != 0)) error = error_number(); /* says why, where ferror does not */
   if (o->f != stdout) {

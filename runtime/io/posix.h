@@ -11,6 +11,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* Why a file cannot be read, after lag_open_to_read. */
+#define lag_read_error() (errno == ENXIO ? "nothing writes to this pipe" : strerror(errno))
+
 #ifdef _WIN32
 #include <direct.h>
 #include <io.h>
@@ -108,10 +111,11 @@ int lag_open_in(DIR *d, const char *name, int flags);
 int lag_unlink_in(DIR *d, const char *name);
 
 /* Bytes of the standard streams as they are, without \r. */
-static inline void lag_binary_streams(void) {
+static inline void lag_prepare_streams(void) {
   for (int fd = 0; fd < 3; fd++) _setmode(fd, _O_BINARY);
 }
 static inline DIR *lag_opendir(const char *path) { return opendir(path); }
+static inline FILE *lag_open_to_read(const char *path) { return fopen(path, "rb"); }
 static inline int lag_is_absolute(const char *path) { return path[0] == '/' || path[0] == '\\' || (path[0] && path[1] == ':'); }
 /* The last separator of folders, or NULL. */
 static inline char *lag_last_slash(const char *path) {
@@ -121,7 +125,9 @@ static inline char *lag_last_slash(const char *path) {
 static inline int lag_is_null_device(const char *path) { return _stricmp(path, "nul") == 0; }
 
 #else
+#include <poll.h>
 #include <pthread.h>
+#include <signal.h>
 #include <string.h>
 #include <time.h>
 
@@ -150,7 +156,24 @@ static inline void lag_lock_give(lag_lock *lock) { pthread_mutex_unlock(&lock->m
 static inline long lag_own_path(char *path, size_t n) { return (long)readlink("/proc/self/exe", path, n); }
 static inline int lag_open_in(DIR *d, const char *name, int flags) { return openat(dirfd(d), name, flags); }
 static inline int lag_unlink_in(DIR *d, const char *name) { return unlinkat(dirfd(d), name, 0); }
-static inline void lag_binary_streams(void) {}
+/* Opens a file or pipe; a pipe to which nothing writes within two seconds fails with ENXIO. */
+static inline FILE *lag_open_to_read(const char *path) {
+  char first;
+  int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  struct stat st;
+  struct pollfd ready = {.fd = fd, .events = POLLIN};
+  ssize_t n = -1;
+  if (fd < 0) return NULL;
+  if (fstat(fd, &st) == 0 && S_ISFIFO(st.st_mode))
+    while (poll(&ready, 1, 2000) == 0 && (n = read(fd, &first, 1)) < 0 && errno == EAGAIN) continue; /* a writer that is slow */
+  FILE *f = n == 0 || fcntl(fd, F_SETFL, 0) != 0 ? NULL : fdopen(fd, "rb");
+  if (f && n == 1) ungetc((unsigned char)first, f);
+  if (!f) close(fd);
+  if (!f && n == 0) errno = ENXIO;
+  return f;
+}
+/* A file beyond a limit of its size is an error of its write, not the end of the process. */
+static inline void lag_prepare_streams(void) { signal(SIGXFSZ, SIG_IGN); }
 /* The folder at path, unless it is a link. */
 static inline DIR *lag_opendir(const char *path) {
   int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);

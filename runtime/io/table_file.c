@@ -138,7 +138,7 @@ static int npy_head(Rows *r) {
   long total = (end + 32 + 63) / 64 * 64, length = total - FIXED;
   for (long i = end + fprintf(f, "%zu,), }", r->nrows); i + 1 < total; i++) putc(' ', f);
   putc('\n', f);
-  if (fseek(f, MAGIC, SEEK_SET) != 0) return -1;
+  if (ferror(f) || fseek(f, MAGIC, SEEK_SET) != 0) return -1;
   for (int i = 0; i < 4; i++) putc((int)(length >> 8 * i & 255), f);
   return fseek(f, total, SEEK_SET);
 }

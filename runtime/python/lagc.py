@@ -18,6 +18,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+import time
 import warnings
 import weakref
 from concurrent.futures import ThreadPoolExecutor
@@ -26,9 +27,9 @@ import numpy as np
 
 __all__ = ["load", "Model", "Result", "Batch", "Error", "CompileError", "RunError"]
 
-_ABI = 12  # LAG_ABI of lag_model.h
-_STOPPED = 2
-_CHUNK = 4096  # rows of one call: between calls Ctrl-C is heard
+_ABI = 13  # LAG_ABI of lag_model.h
+_STOPPED, _INTERRUPTED = 2, 3
+_CHUNK, _PATIENCE = 4096, 0.2  # rows and seconds of one call: between calls Ctrl-C is heard
 
 
 class Error(Exception):
@@ -68,6 +69,28 @@ def _lagc(*words):
     return done.stdout
 
 
+def _read(path):
+    try:
+        with open(path, "rb") as f:
+            return f.read()
+    except OSError:
+        return None
+
+
+def _texts(path):
+    """The texts of a model by path: the file, and those that it names, as included files and tables. Those of lagc's own folders do not change."""
+    texts, todo = {}, [os.path.abspath(path)]
+    while todo:
+        one = todo.pop()
+        text = _read(one) if one not in texts and os.path.isfile(one) else None
+        if text is None:
+            continue
+        texts[one] = text
+        names = re.findall(rb'"([^"\n]+)"', text) if len(text) < 1 << 20 else []
+        todo += [os.path.normpath(os.path.join(os.path.dirname(one), os.fsdecode(name))) for name in names]
+    return texts
+
+
 # ---- the library ----
 
 _Pointer = ctypes.c_void_p
@@ -103,6 +126,7 @@ def _open(path):
         "lag_sim_rhs": (i, p, i, p, p, p), "lag_sim_rows": (i, p, i, p, p, p, p), "lag_sim_batch": (i, p, i, p, p, i, p, p, p),
         "lag_sim_stats": (None, p, p), "lag_sim_ncharges": (i, p), "lag_sim_charge": (None, p, i, p), "lag_sim_balance": (i, p),
         "lag_sim_set_tangent": (i, p, i, p), "lag_sim_tangent": (i, p, p), "lag_sim_on_event": (None, p, _EventHook, p),
+        "lag_sim_on_step": (None, p, p, p), "lag_time_is_up": (i, p, p),
     }
     for name, (returns, *takes) in signatures.items():
         f = getattr(lib, name)
@@ -131,8 +155,18 @@ def _number(name, value):
         raise Error(f"{name} = {value!r}: not a number") from None
 
 
+def _named(values, more):
+    """Values by name, of a dictionary and of keywords."""
+    if values is not None and not hasattr(values, "items"):
+        raise Error(f"values = {values!r}: give a dictionary, {{\"th\": 1.2}}")
+    for name in values or {}:
+        if not isinstance(name, str):
+            raise Error(f"values: {name!r} is not a name; write {{\"th\": 1.2}}")
+    return {**(values or {}), **more}
+
+
 def _near(name, names):
-    near = difflib.get_close_matches(name, names, 1)
+    near = difflib.get_close_matches(str(name), names, 1)
     return f"; did you mean {near[0]}?" if near else f"; there are {', '.join(names)}" if names else ""
 
 
@@ -157,6 +191,8 @@ class _Simulation:
         if not self.sim:
             raise MemoryError
         weakref.finalize(self, lib.lag_sim_free, self.sim)
+        self.until = ctypes.c_double(float("inf"))  # time of the clock at which the library returns
+        lib.lag_sim_on_step(self.sim, ctypes.cast(lib.lag_time_is_up, _Pointer), ctypes.addressof(self.until))
         for name, value in values.items():
             if callable(value):
                 hook = _InputHook(lambda context, t, f=value: self._call(f, t))
@@ -257,6 +293,7 @@ class Model:
 
     def __init__(self, path, defines=None):
         self.path = os.fspath(path)
+        self._texts, self._kept = _texts(self.path), None
         self._defines = [word for k, v in (defines or {}).items() for word in ("-D", f"{k}={v}")]
         self._opened, self._simulation = {}, None
         scenes = self._scenes()
@@ -270,10 +307,21 @@ class Model:
     def __repr__(self):
         return f"<lagc model {self.name}: y = {', '.join(self._scene(None).y)}; scenes {', '.join(self.scenes)}>"
 
+    def _source(self):
+        """The model's path; where its files were changed since it was loaded, that of a copy of the texts that the object keeps."""
+        if any(_read(path) != text for path, text in self._texts.items()) and not self._kept:
+            self._kept = tempfile.TemporaryDirectory()
+            for path, text in self._texts.items():
+                copy = self._kept.name + path
+                os.makedirs(os.path.dirname(copy), exist_ok=True)
+                with open(copy, "wb") as f:
+                    f.write(text)
+        return self._kept.name + os.path.abspath(self.path) if self._kept else self.path
+
     def _scenes(self, *words):
         """The scenes in a library with these options of `lagc build`: derivatives that a method or a tangent needs."""
         if words not in self._opened:
-            lib = _open(_lagc("build", self.path, "--shared", *self._defines, *words).strip())
+            lib = _open(_lagc("build", self._source(), "--shared", *self._defines, *words).strip())
             scenes = []
             while lib.lag_library_scene(lib.lag_library(), len(scenes)):
                 scenes.append(_Scene(lib, lib.lag_library_scene(lib.lag_library(), len(scenes))))
@@ -284,24 +332,27 @@ class Model:
         scenes = self._scenes(*words)
         if name is None:
             return next(iter(scenes.values()))
-        if name not in scenes:
+        if not isinstance(name, str) or name not in scenes:
             raise Error(f"{self.name} has no scene {name}" + _near(name, list(scenes)))
         return scenes[name]
 
     def _simulate(self, scene, values, more, method, tol, step, until, tangent):
         """A simulation with its method, and the words that describe it. method: "rk4", or "rk4(step=1e-3)"."""
+        if method is not None and not isinstance(method, str):
+            raise Error(f"method = {method!r}: give a text, \"rk4\" or \"rk4(step=1e-3)\"")
         name, _, inside = (method or "").partition("(")
         options = {k.strip(): v.strip() for k, _, v in (part.partition("=") for part in inside.rstrip(") ").split(",") if part.strip())}
         options = {k: float(v) if re.fullmatch(r"[-+.\deE]+", v) else v for k, v in options.items()}
+        step, tol = (None if x is None else _number(k, x) for k, x in (("step", step), ("tol", tol)))
         if step is not None and not step > 0:
             raise Error(f"step={step}: a step is positive")
         if step is not None:
-            options["step"] = float(step)
+            options["step"] = step
         words = (["--method", name.strip()] if method else []) + (["--with", "linear"] if tangent else [])
         if tol is not None and tol < 1e-9 and not method:
             words += ["--method", "taylor"]
         s = self._scene(scene, *words)
-        sim = _Simulation(s.lib, s, {**(values or {}), **more})
+        sim = _Simulation(s.lib, s, _named(values, more))
         return sim, sim.choose(name.strip(), options, tol, s.t1 if until is None else until, tangent)
 
     def parameters(self, scene=None):
@@ -340,9 +391,9 @@ class Model:
         y, out = np.empty((len(times) + 1, s.n)), np.empty((len(times) + 1, len(outputs)))
         done, rows, status = ctypes.c_int(), 0, 0
         while rows < len(times) and status == 0:
-            part = times[rows:rows + _CHUNK]
+            part, sim.until.value = times[rows:rows + _CHUNK], time.time() + _PATIENCE
             status = lib.lag_sim_rows(sim.sim, len(part), _address(part), y[rows:].ctypes.data, out[rows:].ctypes.data, ctypes.byref(done))
-            rows += done.value
+            rows, status = rows + done.value, 0 if status == _INTERRUPTED else status
         times = times[:rows]
         now = lib.lag_sim_time(sim.sim)
         if status and (rows == 0 or now != times[-1]) and lib.lag_sim_outputs(sim.sim, out[rows:].ctypes.data) == 0:
@@ -362,7 +413,7 @@ class Model:
 
     def rhs(self, t, y, scene=None, values=None, **more):
         """dy/dt at one state y[n], or at many, y[k, n]; SI units. values, or keywords: parameters and inputs."""
-        key = (scene, tuple(sorted({**(values or {}), **more}.items())))
+        key = (scene, tuple(sorted(_named(values, more).items())))
         if not self._simulation or self._simulation[0] != key:
             s = self._scene(scene)
             self._simulation = key, _Simulation(s.lib, s, dict(key[1]))
@@ -380,13 +431,15 @@ class Model:
     def batch(self, scene=None, values=None, *, times, y0=None, p=None, out=None, method=None, tol=None, step=None, threads=1, **more):
         """Many motions in one call. values, or keywords: a number, or an array with one number a motion, in declared units; or y0[count, n] and
         p[count, np], in SI units, in the order of parameters(). times: when states are kept. out: an array [count, len(times), n] to fill. Arrays of doubles are not copied."""
-        given = {**(values or {}), **more}
+        given = _named(values, more)
         columns = {k: np.asarray(v, dtype=np.float64) for k, v in given.items() if not callable(v) and np.ndim(v)}
         times = _array(times, (-1,), "times")
         for k, v in [*columns.items(), ("y0", y0), ("p", p), ("times", times)]:
             bad = [] if v is None else np.argwhere(~np.isfinite(np.asarray(v, dtype=np.float64)))
             if len(bad):
                 raise Error(f"{k}: {'row' if v is times else 'motion'} {bad[0][0]} has a value that is not finite")
+        if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1:
+            raise Error(f"threads = {threads!r}: a number of threads, at least 1")
         until = times[-1] if len(times) else None
         sim, chosen = self._simulate(scene, {k: v for k, v in given.items() if k not in columns}, {}, method, tol, step, until, False)
         s = sim.scene
@@ -397,6 +450,9 @@ class Model:
             out = np.empty(shape)
         elif out.shape != shape or out.dtype != np.float64 or not out.flags.c_contiguous or not out.flags.writeable:
             raise Error(f"out must be a writable array of doubles in C order of the shape {shape}")
+        y0, p = (x if x is None or not np.may_share_memory(x, out) else x.copy() for x in (y0, p))
+        times = times.copy() if np.may_share_memory(times, out) else times
+        self._refuse_signs(sim, p)
         status = np.empty(count, dtype=np.intc)
 
         def part(a, b):
@@ -405,8 +461,12 @@ class Model:
 
         cuts = np.linspace(0, count, max(1, min(threads, count)) + 1).astype(int)
         with ThreadPoolExecutor(len(cuts) - 1) as pool:
-            if any(pool.map(part, cuts[:-1], cuts[1:])):
-                raise MemoryError
+            try:
+                if any(pool.map(part, cuts[:-1], cuts[1:])):
+                    raise MemoryError
+            except KeyboardInterrupt:
+                sim.until.value = 0  # motions end at their next step
+                raise
         sim.raise_what_inputs_raised()
         return Batch(times, out, status, list(s.y), chosen)
 
@@ -414,7 +474,7 @@ class Model:
         """Many runs by `lagc sweep`: a structured array, a row a run, with the columns of its CSV. values, or keywords: a number, a sequence of numbers,
         or a text: th="-180..180[deg]:512", k="1e-3..1e3:log:7", g="~normal(9.81, 0.01)" with samples=1000. measure: expressions, ["max(x)"] or {"T": "period(th)"}."""
         words = []
-        for k, v in {**(values or {}), **more}.items():
+        for k, v in _named(values, more).items():
             text = v.strip() if isinstance(v, str) else ",".join(repr(float(x)) for x in np.ravel(v))
             words.append(k + text if text.startswith("~") else f"{k}={text}")
         for m in measure.items() if isinstance(measure, dict) else [measure] if isinstance(measure, str) else measure or []:
@@ -423,8 +483,17 @@ class Model:
             words += [] if v is None else [f"--{option}", str(v)]
         with tempfile.TemporaryDirectory() as folder:
             rows = os.path.join(folder, "rows.npy")
-            _lagc("sweep", self.path, *([scene] if scene else []), *words, *(["--zip"] if zip else []), *self._defines, "-o", rows, "--quiet")
+            _lagc("sweep", self._source(), *([scene] if scene else []), *words, *(["--zip"] if zip else []), *self._defines, "-o", rows, "--quiet")
             return np.load(rows)
+
+    @staticmethod
+    def _refuse_signs(sim, p):
+        """Raises what the library says of a motion whose parameters break declared signs: the least or the largest of a column does."""
+        trial = _Simulation(sim.lib, sim.scene, {})
+        for (name, (_, factor, offset)), x in zip(sim.scene.p.items(), [] if p is None else p.T):
+            for motion in {int(np.nanargmin(x)), int(np.nanargmax(x))} if not np.all(np.isnan(x)) else ():
+                if sim.lib.lag_sim_set(trial.sim, name.encode(), (x[motion] - offset) / factor) < 0:
+                    raise Error(f"motion {motion}: {trial.message()}")
 
     @staticmethod
     def _starts(sim, columns, y0, p):
@@ -458,12 +527,12 @@ class Model:
     @property
     def equations(self):
         """The equations of motion as text."""
-        return _lagc("derive", self.path, *self._defines)
+        return _lagc("derive", self._source(), *self._defines)
 
     @property
     def latex(self):
         """The equations of motion as LaTeX."""
-        return _lagc("derive", self.path, *self._defines, "--format", "latex")
+        return _lagc("derive", self._source(), *self._defines, "--format", "latex")
 
     def _repr_latex_(self):
         part = re.search(r"% equations of motion\n\\begin\{align\*\}(.*?)\\end\{align\*\}", self.latex, re.S)

@@ -1,12 +1,12 @@
 /* Rows of a CSV file (plan.h). Enters: names in the first line, "th [rad]" for th, numbers in each other one; leaves: a list of values for each name. Holds:
  * every field is read, or the file is refused with its line. */
 #include <ctype.h>
-#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/posix.h"
 #include "sweep/plan.h"
 
 enum { MOST_BYTES = 256000000 };
@@ -32,10 +32,10 @@ static int refuse(const Rows *r, const char *format, ...) {
 }
 
 static int read_text(Rows *r) {
-  FILE *f = fopen(r->path, "rb");
+  FILE *f = lag_open_to_read(r->path);
   size_t n = 0, room = 0, got = 0;
   int binary = 0;
-  if (!f) return refuse(r, "cannot be read: %s", strerror(errno));
+  if (!f) return refuse(r, "cannot be read: %s", lag_read_error());
   do {
     if (n + 1 >= room) {
       char *more = realloc(r->text, room = 2 * room + 65536);

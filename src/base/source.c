@@ -54,9 +54,9 @@ static const Source *read_file(Sources *s, FILE *f, const char *path, const char
 }
 
 const Source *source_read_model(Sources *s, const char *path, const char **error) {
-  FILE *f = fopen(path, "rb");
+  FILE *f = lag_open_to_read(path);
   if (f) return read_file(s, f, path, error);
-  *error = strerror(errno);
+  *error = lag_read_error();
   return NULL;
 }
 

@@ -5,6 +5,7 @@
 
 #include "symmetry/charges.h"
 #include "mech/discontinuity.h"
+#include "mech/mass_definiteness.h"
 #include "mech/switches.h"
 #include "claims/expect.h"
 #include "symmetry/noether_report.h"
@@ -69,7 +70,7 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
     switches_find(e);
     switches_warn(e);
     discontinuity_warn(e);
-    if (!mobility_show(e, out)) continue;
+    if (!mobility_show(e, out) || !mass_regular_at_start(e)) continue;
     sb_printf(out, "scene %s: ok%s\n", scenes.at[i], with_effects(e->m));
     if (i == 0 || scene || e->m->effects.n) switches_show(e, out);
     if (e->m->effects.n || has_inputs(e->m) || e->energy_jumps) charges_show_broken(e, out);

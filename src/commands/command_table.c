@@ -135,9 +135,10 @@ static const CommandRow commands[] = {
    "Writes the scene as a Functional Mock-up Unit (FMI 2.0, or 3.0), for model exchange and co-simulation: sources and a binary for this machine, "
    "which need nothing of lagc. Coordinates, velocities and states are its continuous states, with the starts of the scene; the scene's outputs are outputs; "
    "parameters can be set, within their declared signs; an input follows its formula until the importer sets it; events act, and `stop` ends the "
-   "simulation. Effects are those of the scene. Values are in SI units, display units are the declared ones. Co-simulation steps by dop853, at the tolerance of the experiment.\n\n"
+   "simulation. Effects are those of the scene. Values are in SI units, display units are the declared ones. Co-simulation steps by dop853, at the tolerance of the experiment; "
+   "with dry friction by moreau, with steps that this tolerance chooses.\n\n"
    "CC names the compiler, and so the machine: CC=x86_64-w64-mingw32-gcc makes an FMU for Windows; `--also-cc x86_64-w64-mingw32-gcc` makes one for both. A model with contacts is for co-simulation alone, "
-   "by steps of the method moreau, of the size that its scene gives. Constraints that hold while a condition is true are refused."},
+   "by steps of the method moreau, of the size that its scene gives, whatever the tolerance is. Constraints that hold while a condition is true are refused."},
   {CMD_METHODS, "methods", NULL, "", "list the methods of integration",
    "Lists the methods of integration: their order, the quantities that they keep, their demands on a model, and their options."},
   {CMD_MODELS, "models", "gallery", "[WORD]", "list the models that come with lagc",
@@ -297,6 +298,7 @@ static const OptionRow options[] = {
   {"--shard", NULL, "I/N", TAKES_TEXT, "", C(SWEEP), PASSED, "only part I of N, to be run on several machines: kept in FILE.I-of-N.journal"},
   {"--merge", NULL, "N", TAKES_NUMBER, "", C(SWEEP), PASSED, "joins the N parts, beside FILE, and writes the rows"},
   {"--resume", NULL, NULL, TAKES_NOTHING, "", C(SWEEP), PASSED, "goes on with a sweep that was interrupted"},
+  {"--yes", NULL, NULL, TAKES_NOTHING, "", C(SWEEP), PASSED, "begins a sweep of more than a day or 10 GB"},
   {"--precision", NULL, "double|long|quad", TAKES_CHOICE, "double long quad", SIMULATE | C(LYAPUNOV) | C(SWEEP) | C(BUILD), OWN(precision),
    "numbers of the simulator: 16, 19 or 34 digits; gsl-* methods are for double only"},
   {"--like", NULL, "MODEL", TAKES_TEXT, "", C(NEW), OWN(like), "the model of the gallery to begin with"},

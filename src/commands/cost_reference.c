@@ -39,17 +39,22 @@ static const char *cached_path(Arena *a, const char *simulator, const Words *arg
   return arena_printf(a, "%s.%08x", simulator, (unsigned)(h ^ h >> 32));
 }
 
-static int copy(FILE *from, FILE *to) {
+/* Copies all but the last `seal` bytes, fewer than a buffer has. */
+static int copy(FILE *from, FILE *to, size_t seal) {
   char buffer[4096];
-  size_t n;
-  while ((n = fread(buffer, 1, sizeof buffer, from)) > 0)
-    if (fwrite(buffer, 1, n, to) != n) return 0;
+  size_t n, kept = 0;
+  while ((n = fread(buffer + kept, 1, sizeof buffer - kept, from)) > 0) {
+    n += kept;
+    kept = n < seal ? n : seal;
+    if (fwrite(buffer, 1, n - kept, to) != n - kept) return 0;
+    memmove(buffer, buffer + n - kept, kept);
+  }
   return !ferror(from);
 }
 
 static int copy_of_cached(const char *path, FILE *out) {
   FILE *f = cache_has_data(path) ? fopen(path, "r") : NULL;
-  int ok = f && copy(f, out) && fflush(out) == 0;
+  int ok = f && copy(f, out, CACHE_SEAL) && fflush(out) == 0;
   if (f) fclose(f);
   return ok;
 }
@@ -57,7 +62,7 @@ static int copy_of_cached(const char *path, FILE *out) {
 static void keep(Arena *a, const char *path, FILE *out) {
   Outfile o;
   if (fseek(out, 0, SEEK_SET) != 0 || lag_outfile_open(&o, path) != 0) return;
-  int whole = copy(out, o.f);
+  int whole = copy(out, o.f, 0) && fflush(o.f) == 0 && cache_seal(o.part);
   if (lag_outfile_close(&o, whole ? OUTFILE_KEEP : OUTFILE_DROP) == 0) cache_limit(a, path);
 }
 

@@ -3,6 +3,7 @@
 #include "commands/commands.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <string.h>
 
 #include "base/method_table.h"
@@ -302,7 +303,7 @@ static int help_methods(Compiler *c, const char *name) {
   const char *path = toolchain_simulator(c->arena, &tools, &text, 1, &error);
   if (!path) return usage_error(error);
   process_become(path, argv);
-  return usage_error(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+  return usage_error(arena_printf(c->arena, "cannot run %s: %s", path, strerror(errno)));
 }
 
 int command_help(Compiler *c) {

@@ -1,6 +1,7 @@
 /* `lagc run`, `plot`, `animate`, `modes`, `lyapunov`, `cost`: the simulator in the cache, started with what the command line says. */
 #include "commands/commands.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +25,7 @@ static int writes_source(Compiler *c) {
   return 0;
 }
 
-/* After a run that ended for want of a finite value: reports the expression of the text that has none. */
+/* After a run that lacked a finite value: reports the expression of the text that has none. */
 static void tell_last_state(void *compiler, const double *number, uint32_t n) {
   Compiler *c = compiler;
   c->diags->list.n = 0; /* they have been printed */
@@ -76,5 +77,6 @@ int command_run(Compiler *c) {
   if (c->picture.note) fprintf(stderr, "%s\n", c->picture.note);
   if (c->run && c->run->n <= LARGE && c->o.command != CMD_SWEEP) last_state_listen(c->arena, tell_last_state, c);
   process_become(path, c->picture.argv.at);
-  return usage_error(arena_printf(c->arena, "cannot run %s; delete it, and it is built anew", path));
+  const char *why = strerror(errno);
+  return usage_error(arena_printf(c->arena, "cannot run %s: %s; set XDG_CACHE_HOME to a folder where programs may run", path, why));
 }

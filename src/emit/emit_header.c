@@ -18,7 +18,7 @@ static const char *cased(Arena *a, const char *s, int upper) {
 
 static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTATION", "IMPLEMENTED", "H_INCLUDED", "MASK", "LANE",
                                            "LANES", "LIBM", "OWN", "COMPLEX", "ABS", "BITS", "IS_float", "IS_double", "IS_long",
-                                           "FMA", "INLINE", "TRY", "WHERE", "FAILED", "STATUS", "EUNMET", "PIVOTS", "PIVOTS_STATUS", "OK", "ABI", "WITH_NAMES", "ESINGULAR", "ESTEP", "NQ", "NZ", "NY", "NC", "NHOLONOMIC", "NP", "NU", "NEV", "NOUT", "NNZ", "NNZ_IDA", "ENEWTON", "ENAN", "EZENO", "ECONTACT", "NCONTACTS", "NSURFACES", "OPEN", "SLIPS", "STICKS",
+                                           "FMA", "NO_FMA", "INLINE", "TRY", "WHERE", "FAILED", "STATUS", "EUNMET", "PIVOTS", "PIVOTS_STATUS", "OK", "ABI", "WITH_NAMES", "ESINGULAR", "ESTEP", "NQ", "NZ", "NY", "NC", "NHOLONOMIC", "NP", "NU", "NEV", "NOUT", "NNZ", "NNZ_IDA", "ENEWTON", "ENAN", "EZENO", "ETOLERANCE", "ESIZE", "IS_FINITE", "ECONTACT", "NCONTACTS", "NSURFACES", "OPEN", "SLIPS", "STICKS",
                                            "NFREE", "NNEWTON", "NBAND", "VARIATIONAL_ORDER", "TAYLOR_ORDER", "TAYLOR_COLUMNS", "TAYLOR_WIDTH", "TAYLOR_GROUP",
                                            "TAYLOR_SQUARES", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_STATE", "TAYLOR_PAIRED", "TAYLOR_SQUARED", "TAYLOR_PER_PAIR"};
 
@@ -198,10 +198,11 @@ static void write_usage(const Header *h) {
             " *   %s_FN(x)   the function x for such a type: x##q for __float128, with %s_C(x) x##Q; C++ and compilers that know GNU's\n"
             " *             C choose themselves, others in C99 between float and double\n"
             " *   %s_LANES   4 or 8, with GCC or Clang: %s_REAL is a vector of so many doubles, each with a state and parameters\n"
-            " *             of its own. A status is 0, or minus the sum of 2^k over the lanes k that are singular; others are right\n"
+            " *             of its own. A status is 0, or minus the sum of 2^k over the lanes k that failed; others are right\n"
             " *   %s_LIBM    the C library's functions in place of those below\n"
             " * Not with -ffast-math. GCC 12.2 of Debian 12 stores wrong numbers at -O2 with AVX-512 (as -march=native may mean): add\n"
-            " * -fno-tree-slp-vectorize. -ffp-contract=off makes the same digits everywhere; contracted code is as good.\n", m, m, m, m, m, m, m, m, m);
+            " * -fno-tree-slp-vectorize. -ffp-contract=off makes the same digits with every compiler, and -D%s_NO_FMA on every processor:\n"
+            " * sines use fused multiply-add where __FMA__ is defined. (The C library's functions have their own digits.)\n", m, m, m, m, m, m, m, m, m, m);
 }
 
 static void write_head(const Header *h, const char *equations) {

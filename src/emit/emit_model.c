@@ -47,7 +47,7 @@ static const char *const *rows_names(const IrUnit *u) {
 
 const char *model_id(Arena *a, const char *name) {
   static const char *const taken[] = {"accel", "derive", "energy", "linearise", "jumps", "taylor", "variation", "second", "events", "act", "impact", "strike", "inputs", "params", "start", "observe",
-                                      "outputs", "forces", "options", "monitors", "measures", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws", "correct_positions", "correct_velocities"};
+                                      "outputs", "forces", "options", "monitors", "measures", "program", "scenes", "curves", "exact", "exact_of", "residuals", "matrices", "charge_values", "charge_powers", "switch_values", "switch_rates", "switch_grips", "contact_laws", "size_values", "size_table", "correct_positions", "correct_velocities"};
   const char *id = cname(a, name);
   int clash = cname_is_library(id) || strncmp(id, "lag_", 4) == 0;
   for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) clash |= strcmp(id, taken[i]) == 0;
@@ -89,7 +89,7 @@ CStyle model_style(const ModelFile *f, const char *const *own, const char *const
 
 /* Whether the function is called once a step, or once a row of output. */
 static int is_seldom_called(const IrUnit *u, const Prog *p) {
-  int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values || p == u->switch_rates || p == u->switch_grips || p == u->contact_laws;
+  int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values || p == u->switch_rates || p == u->switch_grips || p == u->contact_laws || p == u->size_values;
   for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe || p == u->scenes.at[i].momenta;
   return seldom;
 }
@@ -169,6 +169,17 @@ static void emit_switches(const ModelFile *f) {
   for (uint32_t i = 0; i < u->switches.n; i++) {
     const IrSwitch *s = &u->switches.at[i];
     sb_printf(f->out, "  {%s, %s, %u, %d, %d, %d, %d},\n", c_string(f->a, s->surface), c_string(f->a, s->text), u->lines ? s->line : 0, s->jumps, s->is_floor, s->is_timed, s->nonnegative);
+  }
+  sb_puts(f->out, "};\n");
+}
+
+static void emit_sizes(const ModelFile *f) {
+  if (!f->u->size_values) return;
+  state_function(f, f->u->size_values, "size_values", "Sizes of friction, inertias and coefficients, of parameters alone.", NULL, one_out);
+  sb_puts(f->out, "\nstatic const lag_size size_table[] = {\n");
+  for (uint32_t i = 0; i < f->u->sizes.n; i++) {
+    const IrSize *s = &f->u->sizes.at[i];
+    sb_printf(f->out, "  {%s, %s, %d, %d},\n", c_string(f->a, s->what), c_string(f->a, s->text), s->open, s->part);
   }
   sb_puts(f->out, "};\n");
 }
@@ -389,6 +400,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->contact_laws) sb_puts(out, "  .contact_laws = contact_laws,\n");
+  if (u->size_values) sb_printf(out, "  .nsizes = %u, .sizes = size_table, .size_values = size_values,\n", u->sizes.n);
   if (u->charges.n) sb_puts(out, "  .charges = &charges,\n");
   if (u->switches.n) sb_printf(out, "  .nswitch = %u, .switches = switch_table, .switch_values = switch_values,\n", u->switches.n);
   if (u->nmodes) sb_printf(out, "  .nmodes = %u, .switch_rates = switch_rates,\n", u->nmodes);
@@ -435,6 +447,7 @@ void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
   emit_inputs(&f);
   emit_constraints(&f);
   const char *digest = digest_text(u->arena, sb_text(out) + begin);
+  emit_sizes(&f);
   emit_charges(&f);
   emit_switches(&f);
   emit_linear(&f); /* after the digest: a saved state depends on the equations, not on the methods' derivatives of them */

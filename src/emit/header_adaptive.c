@@ -36,9 +36,29 @@ static const char *const failures =
   " |#define LAG_WHERE(lanes, status) (status)\n"
   " |#define LAG_STATUS(fails, code) ((fails) ? (int)(code) : (int)LAG_OK)\n"
   " |#define LAG_FAILED(status) ((status) != LAG_OK)\n"
-  " |#endif\n";
+  " |#endif\n"
+  " |\n"
+  " |#ifdef LAG_COMPLEX\n"
+  " |#define LAG_IS_FINITE(x) ((x) - (x) == LAG_C(0.0))\n"
+  " |#else\n"
+  " |#define LAG_IS_FINITE(x) (LAG_C(1.0) > (x) - (x))\n"
+  " |#endif\n"
+  " |/* Whether all of x[n] is finite. */\n"
+  " |static LAG_MASK lag_finite(const LAG_REAL *x, int n) {\n"
+  " |  LAG_MASK finite = LAG_IS_FINITE(LAG_C(0.0));\n"
+  " |  for (int i = 0; i < n; i++) finite = LAG_AND(finite, LAG_IS_FINITE(x[i]));\n"
+  " |  return finite;\n"
+  " |}\n";
 
 static const char *const move =
+  " |\n"
+  " |/* LAG_ENAN where the state is not finite. */\n"
+  " |static int lag_check(const lag_state *s) {\n"
+  " |  LAG_MASK finite = lag_finite(&s->t, 1);\n"
+  "q|  finite = LAG_AND(LAG_AND(finite, lag_finite(s->q, LAG_NQ)), lag_finite(s->v, LAG_NQ));\n"
+  "z|  finite = LAG_AND(finite, lag_finite(s->z, LAG_NZ));\n"
+  " |  return LAG_STATUS(LAG_NOT(finite), LAG_ENAN);\n"
+  " |}\n"
   " |\n"
   " |#ifdef LAG_LANES\n"
   " |/* The lanes of `taken` go from *s to *end. */\n"
@@ -123,6 +143,7 @@ static const char *const lanes =
   " |  if (!LAG_ANY(busy)) return LAG_OK;\n"
   " |  lag_gather(s, y);\n"
   " |  int status = lag_rates(p, s->t, yPASS, k[0]);\n"
+  " |  LAG_TRY(LAG_STATUS(LAG_NOT(BOUNDED), LAG_ETOLERANCE));\n"
   " |  const LAG_MASK first = LAG_AND(LAG_AND(busy, LAG_NOT(w->step > zero)), LAG_NOT(LAG_FAILED(status)));\n"
   " |  if (LAG_ANY(first)) w->step = LAG_SELECT(first, lag_first_step(p, w, c->order, dir, s->t, yPASS, k), w->step);\n"
   " |  const LAG_REAL wanted = LAG_SELECT(LAG_AND(w->longest > zero, w->longest < w->step), w->longest, w->step);\n"
@@ -146,6 +167,8 @@ static const char *const adapt =
   " |    LAG_REAL (*k)[LAG_NY]) {\n"
   " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), floor_of_error = LAG_C(1e-8), dir = until < s->t ? -one : one;\n"
   " |  LAG_REAL y[LAG_NY];\n"
+  " |  if (!(BOUNDED)) return LAG_ETOLERANCE;\n"
+  " |  if (!(until < s->t) && until <= s->t) return LAG_OK;\n"
   " |  lag_gather(s, y);\n"
   " |  int status = lag_rates(p, s->t, yPASS, k[0]);\n"
   " |  if (status != LAG_OK) return status;\n"
@@ -199,10 +222,10 @@ void header_failures(const Header *h) { header_template(h, failures, NULL); }
 void header_move(const Header *h) { header_template(h, move, NULL); }
 
 void header_adaptive_define(const Header *h, const char *longest) {
-  const HeaderWord words[] = {{"LONGEST", longest}, {NULL, NULL}};
+  const HeaderWord words[] = {{"LONGEST", longest}, {"BOUNDED", "LAG_AND(w->tolerance >= zero, LAG_AND(w->absolute >= zero, w->tolerance + w->absolute > zero))"}, {NULL, NULL}};
   header_template(h, begin, NULL);
-  header_template(h, lanes, NULL);
-  header_template(h, adapt, NULL);
+  header_template(h, lanes, words);
+  header_template(h, adapt, words);
   csupport_expand("\nLAG_API void lag_adaptive_begin(lag_adaptive *w, LAG_REAL tolerance)", h->upper, h->lower, h->out);
   header_template(h, adaptive_begin, words);
 }

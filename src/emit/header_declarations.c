@@ -11,9 +11,11 @@ static const char *const options =
   "/* Linkage. */\n"
   "#ifndef LAG_API\n#ifdef LAG_STATIC\n#define LAG_API static inline\n#else\n#define LAG_API\n#endif\n#endif\n\n"
   "/* Number of the interface of headers: it changes with functions and structs. */\n"
-  "enum { LAG_ABI = 1 };\n\n"
+  "enum { LAG_ABI = 2 };\n\n"
   "/* Status codes of functions. */\n"
-  "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1 /* the mass matrix is singular at this state, or not positive definite as elsewhere */\n};\n";
+  "enum {\n  LAG_OK = 0,\n  LAG_ESINGULAR = -1, /* the mass matrix is singular at this state, or not positive definite as elsewhere */\n"
+  "  LAG_ENAN = -4,      /* an acceleration, or the state after a step, is not finite */\n"
+  "  LAG_ESIZE = -9      /* a parameter breaks its declared sign, or makes a friction, an inertia or a coefficient negative */\n};\n";
 
 /* --- indices --- */
 
@@ -159,7 +161,7 @@ const char *header_prototype(const Header *h, HeaderFn f) {
   switch (f) {
     case FN_DEFAULTS: return arena_printf(a, "void %s_defaults(%s_params *p)", m, m);
     case FN_PARAM: return arena_printf(a, "%s_REAL *%s_param(%s_params *p, int index)", R, m, m);
-    case FN_START: return arena_printf(a, "%s %s_start(const %s_params *p, %s_state *s)", header_has(h, FN_HOLD) ? "int" : "void", m, m, m);
+    case FN_START: return arena_printf(a, "int %s_start(const %s_params *p, %s_state *s)", m, m, m);
     case FN_INPUTS: return arena_printf(a, "void %s_inputs(%s_REAL t, const %s_params *p, %s_REAL *u)", m, R, m, R);
     case FN_ACCEL: {
       const char *q = h->u->q.n ? arena_printf(a, ", %s_REAL *a", R) : "", *z = h->u->z.n ? arena_printf(a, ", %s_REAL *zd", R) : "";
@@ -196,7 +198,7 @@ const char *header_prototype(const Header *h, HeaderFn f) {
 static const char *const docs[FN_COUNT] = {
   [FN_DEFAULTS] = "The parameters of the scene.",
   [FN_PARAM] = "A parameter by its index LAG_P_...; 0 when there is none. For tables and sliders.",
-  [FN_START] = "The state at the start of the scene.",
+  [FN_START] = "The state at the start of the scene. LAG_ESIZE: it is as it was.",
   [FN_INPUTS] = "The inputs u[LAG_NU] at time t by the model's formulas and tables; a table holds its end values outside.",
   [FN_ACCEL] = "Accelerations a[LAG_NQ], rates zd[LAG_NZ] of the states: what an integrator needs.",
   [FN_ENERGY] = "e[0]: the energy p q' - L; e[1]: |p q'| + |L|, the scale of its drift.",
@@ -265,7 +267,7 @@ void header_declarations(const Header *h) {
       doc = "The state at the start of the scene, on the constraints, as `lagc run` finds it with the parameters of _defaults; with others, _hold\n"
             " * leads from there to the nearest one that obeys them.";
     if (f == FN_START && u->constraints.of.n) csupport_expand("\nenum { LAG_EUNMET = -7 }; /* status: the constraints cannot be met near this state */\n", h->upper, h->lower, h->out);
-    if (f == FN_UNTIL_EVENT) csupport_expand("\nenum { LAG_ENAN = -4, LAG_EZENO = -5 };\n", h->upper, h->lower, h->out);
+    if (f == FN_UNTIL_EVENT) csupport_expand("\nenum { LAG_EZENO = -5 };\n", h->upper, h->lower, h->out);
     sb_puts(h->out, "\n/* ");
     csupport_expand(doc, h->upper, h->lower, h->out);
     if (f == FN_CHARGES) sb_printf(h->out, "\n * Symmetries: %s.", charge_names(h));

@@ -3,6 +3,9 @@
 
 #include "emit/header_impl.h"
 
+/* Compilers that drop NaN, or reorder sums. As in lag_model.h. */
+#define FAST_MATH "defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)"
+
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
 static const char *const macros =
@@ -152,7 +155,13 @@ void header_state_function(const Header *h, const Prog *p, const char *comment, 
 static void accel(const Header *h) {
   static const char *const out[] = {"a", "zd", NULL}, *const none[] = {"a", NULL};
   const char *const *extra = !h->u->q.n ? out + 1 : h->u->z.n ? out : none;
-  header_state_function(h, h->u->accel, NULL, header_api(h, FN_ACCEL), extra, out, 1);
+  const char *args = strchr(header_prototype(h, FN_ACCEL), '('), *a = h->u->q.n ? ", a" : "", *zd = h->u->z.n ? ", zd" : "";
+  header_state_function(h, h->u->accel, "As _accel; results may be NaN or infinite: adaptive steps then try a shorter one.",
+                        header_wrapped(h, arena_printf(h->a, "static int %s_rates_at%s", h->lower, args)), extra, out, 1);
+  sb_printf(h->out, "\n%s {\n  int status = %s_rates_at(%s%s%s);\n", header_api(h, FN_ACCEL), h->lower, header_state_args(h, 0, ""), a, zd);
+  if (h->u->q.n) csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(a, LAG_NQ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
+  if (h->u->z.n) csupport_expand("  LAG_TRY(LAG_STATUS(LAG_NOT(lag_finite(zd, LAG_NZ)), LAG_ENAN));\n", h->upper, h->lower, h->out);
+  sb_puts(h->out, "  return status;\n}\n");
 }
 
 /* --- parameters and the start --- */
@@ -193,11 +202,53 @@ const char *header_constant(const Header *h, double x) {
   return arena_printf(h->a, "%s_C(%s%s)", h->upper, text, strpbrk(text, ".en") ? "" : ".0");
 }
 
+/* What p->NAME, or a size, must be: comparisons by > alone, which types that differentiate have. */
+static const char *demand(const Header *h, const char *x, int sign) {
+  return arena_printf(h->a, sign == 1 ? "%s > zero" : sign == -1 ? "zero > %s" : sign == 2 ? "LAG_NOT(zero > %s)" : "LAG_NOT(%s > zero)", x);
+}
+
+static void write_demand(const Header *h, const char *demand) { csupport_expand(arena_printf(h->a, "  good = LAG_AND(good, %s);\n", demand), h->upper, h->lower, h->out); }
+
+/* lag_sizes: whether parameters have their declared signs, and the sizes that they determine. */
+static void sizes(const Header *h) {
+  static const char *const own[] = {"p", "out", NULL}, *const out[] = {"out"};
+  const IrUnit *u = h->u;
+  if (u->size_values) {
+    CStyle st = style_for(h, own, out);
+    CFunction c = {.comment = "Sizes of friction, inertias and coefficients, of parameters alone.", .own_work = 1};
+    c.head = arena_printf(h->a, "static void %s_size_values(const %s_params *p, %s_REAL *out)", h->lower, h->lower, h->upper);
+    cfunction(u->size_values, &st, &c, h->out);
+  }
+  csupport_expand("\nstatic int lag_sizes(const lag_params *p) {\n#ifdef LAG_COMPLEX /* has no order */\n  (void)p;\n  return LAG_OK;\n#else\n"
+                  "  const LAG_REAL zero = LAG_C(0.0);\n  LAG_MASK good = LAG_IS_FINITE(zero);\n", h->upper, h->lower, h->out);
+  if (u->size_values) csupport_expand(arena_printf(h->a, "  LAG_REAL size[%u];\n  lag_size_values(p, size);\n", u->sizes.n), h->upper, h->lower, h->out);
+  else sb_puts(h->out, "  (void)p;\n");
+  for (uint32_t i = 0; i < u->p.n; i++)
+    if (u->p.at[i].sign) write_demand(h, demand(h, arena_printf(h->a, "p->%s", h->fields[i]), u->p.at[i].sign));
+  for (uint32_t i = 0; i < u->sizes.n; i++) {
+    const char *size = arena_printf(h->a, "size[%u]", i);
+    write_demand(h, demand(h, size, u->sizes.at[i].open ? 1 : 2));
+    if (u->sizes.at[i].part) write_demand(h, arena_printf(h->a, "LAG_NOT(%s > LAG_C(1.0))", size));
+  }
+  csupport_expand("  return LAG_STATUS(LAG_NOT(good), LAG_ESIZE);\n#endif\n}\n", h->upper, h->lower, h->out);
+}
+
+/* Whether parameters can be wrong. */
+static int has_sizes(const IrUnit *u) {
+  int some = u->size_values != NULL;
+  for (uint32_t i = 0; i < u->p.n; i++) some |= u->p.at[i].sign != 0;
+  return some;
+}
+
 static void start(const Header *h) {
   static const char *const own[] = {"p", "s", NULL}, *const out[] = {"s->q", "s->v", "s->z"};
   CStyle st = style_for(h, own, out);
+  int checks = has_sizes(h->u);
+  if (checks) sizes(h);
   sb_printf(h->out, "\n%s {\n", header_api(h, FN_START));
-  if (!prog_reads(h->scene->start, ARR_P) && !header_has(h, FN_HOLD)) sb_puts(h->out, "  (void)p;\n");
+  if (checks || header_has(h, FN_HOLD)) sb_printf(h->out, "  int status = %s_OK;\n", h->upper);
+  if (checks) csupport_expand("  LAG_TRY(lag_sizes(p));\n", h->upper, h->lower, h->out);
+  else if (!prog_reads(h->scene->start, ARR_P) && !header_has(h, FN_HOLD)) sb_puts(h->out, "  (void)p;\n");
   sb_printf(h->out, "  s->t = %s;\n", header_constant(h, h->scene->t0));
   if (h->u->q.n) sb_printf(h->out, "  for (int i = 0; i < %s_NQ; i++) s->q[i] = s->v[i] = %s_C(0.0);\n", h->upper, h->upper);
   if (h->u->z.n) sb_printf(h->out, "  for (int i = 0; i < %s_NZ; i++) s->z[i] = %s_C(0.0);\n", h->upper, h->upper);
@@ -211,8 +262,8 @@ static void start(const Header *h) {
   }
   if (header_has(h, FN_HOLD) && h->u->u.n)
     sb_printf(h->out, "  %s_REAL u[%s_NU];\n  %s_inputs(s->t, p, u);\n", h->upper, h->upper, h->lower);
-  if (header_has(h, FN_HOLD)) sb_printf(h->out, "  return %s_hold(p, s%s);\n", h->lower, h->u->u.n ? ", u" : "");
-  sb_puts(h->out, "}\n");
+  if (header_has(h, FN_HOLD)) csupport_expand(arena_printf(h->a, "  LAG_TRY(lag_hold(p, s%s));\n", h->u->u.n ? ", u" : ""), h->upper, h->lower, h->out);
+  sb_printf(h->out, "  return %s;\n}\n", checks || header_has(h, FN_HOLD) ? "status" : arena_printf(h->a, "%s_OK", h->upper));
 }
 
 static void inputs(const Header *h) {
@@ -355,7 +406,7 @@ static void scalar_macros(const Header *h) {
 
 void header_implementation(const Header *h) {
   static const char *const e[] = {"e", NULL}, *const out[] = {"out", NULL}, *const g[] = {"g", NULL};
-  sb_puts(h->out, "#include <math.h>\n\n");
+  sb_puts(h->out, "#if " FAST_MATH "\n#error \"this header needs NaN and exact sums: compile it without -ffast-math, -Ofast and /fp:fast\"\n#endif\n#include <math.h>\n\n");
   math_lanes(h->upper, h->lower, h->out);
   scalar_macros(h);
   csupport_logic(h->upper, h->out);
@@ -367,6 +418,7 @@ void header_implementation(const Header *h) {
   if (h->u->inputs->tables.n) csupport_spline(h->upper, h->lower, h->out);
   defaults(h);
   param(h);
+  header_failures(h);
   start(h);
   inputs(h);
   accel(h);

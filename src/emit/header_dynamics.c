@@ -388,7 +388,7 @@ static const char *const until_event_after =
   "u|  LAG_REAL now[LAG_NU];\n"
   " |  int status = LAG_OK;\n"
   " |  *end = *s;\n"
-  " |  if (h < LAG_C(0.0) || h > LAG_C(0.0)) status = lag_rk4_step(p, end, hWITH);\n"
+  " |  if (!(h <= LAG_C(0.0) && h >= LAG_C(0.0))) status = lag_rk4_step(p, end, hWITH);\n"
   " |  if (status != LAG_OK) return status;\n"
   "u|  if (!u) lag_inputs(end->t, p, now);\n"
   " |  status = lag_events(AFTER, g);\n"

@@ -192,6 +192,7 @@ static const char *const step =
   " |    end.touch[j] = part < LAG_C(1.0) || part > LAG_C(1.0) ? (LAG_REAL)LAG_STICKS : (LAG_REAL)LAG_SLIPS;\n"
   " |  }\n"
   "h|  status = lag_onto(p, &endAT_END, end.lost + 1);\n"
+  " |  if (status == LAG_OK) status = lag_check(&end);\n"
   " |  if (status == LAG_OK) *s = end;\n"
   " |  return status;\n"
   " |}\n"

@@ -388,6 +388,7 @@ static const char *const step =
   " |  lag_moreau_note(&w, &end);\n"
   "h|  lag_contact_inputs(p, end.tPASS, -2, now);\n"
   "h|  status = lag_onto(p, &end, now, end.lost + 1);\n"
+  " |  if (status == LAG_OK) status = lag_check(&end);\n"
   " |  if (status == LAG_OK) *s = end;\n"
   " |  return status;\n"
   " |}\n"

@@ -216,7 +216,7 @@ static const char *const support =
   " |static int lag_rates(const lag_params *p, LAG_REAL t, const LAG_REAL *yHELD, LAG_REAL *k) {\n"
   "u|  LAG_REAL now[LAG_NU];\n"
   "q|  for (int i = 0; i < LAG_NQ; i++) k[i] = y[LAG_NQ + i];\n"
-  " |  return lag_accel(CALL);\n"
+  " |  return lag_rates_at(CALL);\n"
   " |}\n";
 
 /* Steps of one size. */
@@ -229,6 +229,7 @@ static const char *const fixed_step =
   " |  int status = LAG_OK;\n"
   " |  LAG_TRY(lag_rates(p, s->t, yPASS, k[0]));\n"
   " |  LAG_TRY(lag_METHOD_trial(p, s, hPASS, k, &end));\n"
+  " |  LAG_TRY(lag_check(&end));\n"
   " |  LAG_MOVE(LAG_NOT(LAG_FAILED(status)), s, &end);\n"
   " |  return status;\n"
   " |}\n";
@@ -266,12 +267,13 @@ static const char *const splitting_step =
   " |  end.t = lag_sum(s->t, h, &end.lost[0]);\n"
   " |  for (int i = 0; i < LAG_NQ; i++) end.q[i] = lag_sum(s->q[i], dq[i], &end.lost[1 + i]);\n"
   " |  LAG_TRY(lag_accel(end.t, end.q, end.v, pAT_END, b));\n"
-  " |  const LAG_MASK taken = LAG_NOT(LAG_FAILED(status));\n"
   " |  for (int i = 0; i < LAG_NQ; i++) {\n"
   " |    dv[i] += kick[STAGES]*h*b[i];\n"
   " |    end.v[i] = lag_sum(s->v[i], dv[i], &end.lost[1 + LAG_NQ + i]);\n"
-  " |    a[i] = LAG_SELECT(taken, b[i], a[i]);\n"
   " |  }\n"
+  " |  LAG_TRY(lag_check(&end));\n"
+  " |  const LAG_MASK taken = LAG_NOT(LAG_FAILED(status));\n"
+  " |  for (int i = 0; i < LAG_NQ; i++) a[i] = LAG_SELECT(taken, b[i], a[i]);\n"
   " |  LAG_MOVE(taken, s, &end);\n"
   " |  return status;\n"
   " |}\n";
@@ -360,7 +362,7 @@ static void declare_both(const Header *h, const HeaderMethod *m) {
 }
 
 void header_steps_declare(const Header *h) {
-  if (has_status(h)) line(h, "\n/* Status codes of steps: no step is short enough, or Newton's method does not converge. */\nenum { LAG_ESTEP = -2, LAG_ENEWTON = -3 };\n");
+  if (has_status(h)) line(h, "\n/* Status codes of steps: no step is short enough, Newton's method does not converge, a tolerance is not positive. */\nenum { LAG_ESTEP = -2, LAG_ENEWTON = -3, LAG_ETOLERANCE = -8 };\n");
   if (some_adaptive(h)) {
     line(h, ordered);
     header_adaptive_declare(h);
@@ -520,7 +522,6 @@ static void define_single(const Header *h) {
 
 void header_steps_define(const Header *h) {
   header_template(h, support, NULL);
-  header_failures(h);
   if (header_has(h, FN_HOLD)) {
     header_template(h, epsilon, NULL);
     header_hold_define(h);

@@ -91,13 +91,6 @@ static const char *const begin =
 
 static const char *const parts =
   " |\n"
-  " |/* Whether all of x[n] is finite. */\n"
-  " |static LAG_MASK lag_finite(const LAG_REAL *x, int n) {\n"
-  " |  LAG_REAL zero = LAG_C(0.0);\n"
-  " |  for (int i = 0; i < n; i++) zero += x[i]*LAG_C(0.0);\n"
-  " |  return zero == LAG_C(0.0);\n"
-  " |}\n"
-  " |\n"
   " |/* The largest power of 2 that is not above x > 0. */\n"
   " |static LAG_REAL lag_power_below(LAG_REAL x) {\n"
   " |#ifdef LAG_LANES\n"
@@ -183,6 +176,7 @@ static const char *const try =
   " |  LAG_REAL y[LAG_NY], y1[LAG_NY];\n"
   " |  int status = LAG_OK;\n"
   " |  lag_gather(s, y);\n"
+  " |  LAG_TRY(LAG_STATUS(LAG_NOT(LAG_AND(w->tolerance > zero, w->absolute >= zero)), LAG_ETOLERANCE));\n"
   " |  LAG_TRY(lag_taylor_order_0(p, s->t, y, w->x[0], &w->workGIVEN));\n"
   " |  LAG_TRY(lag_taylor_expand(w, y, dir, LAG_AND(busy, LAG_NOT(LAG_FAILED(status)))));\n"
   " |  LAG_REAL h = lag_taylor_size(w, y);\n"
@@ -225,11 +219,12 @@ static const char *const step =
   " |  const LAG_MASK busy = until != s->t;\n"
   " |  return LAG_ANY(busy) ? lag_taylor_try(p, s, w, until, busy, &whyGIVEN) : (int)LAG_OK;\n"
   " |#else\n"
-  " |  for (const LAG_REAL t = s->t;;) {\n"
+  " |  for (const LAG_REAL t = s->t; until < t || !(until <= t);) {\n"
   " |    const int before = why, status = lag_taylor_try(p, s, w, until, 1, &whyGIVEN);\n"
   " |    if (status != LAG_OK) return before != LAG_OK ? before : status;\n"
   " |    if (s->t > t || s->t < t) return LAG_OK;\n"
   " |  }\n"
+  " |  return LAG_OK;\n"
   " |#endif\n"
   " |}\n";
 

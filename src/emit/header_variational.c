@@ -454,6 +454,8 @@ static const char *const steps =
   " |    w->v[i] = end.v[i] = w->next[i];\n"
   " |    end.lost[1 + LAG_NQ + i] = LAG_C(0.0);\n"
   " |  }\n"
+  " |  status = lag_check(&end);\n"
+  " |  if (status != LAG_OK) return status;\n"
   " |  w->t = end.t;\n"
   " |  w->ready = LAG_C(1.0);\n"
   " |  *s = end;\n"

@@ -136,6 +136,12 @@ typedef struct {
   int is_tangent, conditional, law, holds;
 } IrContact;
 
+/* A size that parameters determine, at least 0; open: more than 0; part: at most 1. */
+typedef struct {
+  const char *what, *text; /* "this friction has a size", "mu*m*g" */
+  int open, part;
+} IrSize;
+
 /* A switching function of mech/switches.h. */
 typedef struct {
   const char *surface, *text;
@@ -177,6 +183,8 @@ typedef struct {
   VEC(IrVar) q, z, p, u;
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
+  VEC(IrSize) sizes;
+  const Prog *size_values;      /* NULL: no size needs a check */
   const Prog *derived;          /* computes parameters p.n ... p.n + nderived - 1 from the others; NULL, 0: none, or before unit_hoist */
   uint32_t nderived;
   VEC(IrCharge) charges;        /* the energy first; empty where the energy is the only one, conserved, without unit */

@@ -29,7 +29,7 @@ int self_check(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *statis
 /* Appends the statistics, in a sentence or two. */
 void self_check_print(const Eqns *e, const SelfCheck *statistics, StrBuf *out);
 
-/* nonfinite.c: finds the expression of the text without a finite value that ended a run. number[n] is t, q, v, z, p of the last good state, in the order of the scene's simulator. Searches from there along the motion, for
- * 0.1 (1 + |t|) seconds, for the first expression whose value or derivatives are not finite, and adds a note to the model's diags.
+/* nonfinite.c: finds the expression of the text without a finite value that ended a run, or was missed in it. number[n] is t, q, v, z, p of a state, in the order of the scene's simulator, and behind them
+ * whether the run ended there. Searches from there along the motion, for 1 + |t| seconds, for the first expression whose value or derivatives are not finite, and adds a note to the model's diags.
  * 0: none was found, or n does not fit the model. */
 int nonfinite_note(const Eqns *e, const IrUnit *u, const double *number, uint32_t n);

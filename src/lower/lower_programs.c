@@ -302,6 +302,16 @@ Prog *lower_contact_laws(const Eqns *e) { return lower_contacts(e, 3); }
 
 Prog *lower_contact_coefficients(const Eqns *e) { return lower_contacts(e, 2); }
 
+Prog *lower_sizes(const Eqns *e) {
+  Lower l = lower_new(e);
+  Expr *values = ARENA_ARRAY(e->m->arena, Expr, e->sizes.n + 1);
+  if (!e->sizes.n) return NULL;
+  for (uint32_t i = 0; i < e->sizes.n; i++) values[i] = e->sizes.at[i].value;
+  lower_roots(&l, values, e->sizes.n);
+  for (uint32_t i = 0; i < e->sizes.n; i++) prog_store(l.p, 0, i, lower_slot(&l, values[i]), e->sizes.at[i].what);
+  return lower_finish_seldom(&l);
+}
+
 Prog *lower_switch_grips(const Eqns *e) {
   Lower l = lower_new(e);
   uint32_t n = e->switches.nmodes, some = 0;

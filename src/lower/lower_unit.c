@@ -6,6 +6,7 @@
 #include "lower/lower.h"
 #include "mech/lagrange.h"
 #include "mech/switches.h"
+#include "sym/print.h"
 #include "symmetry/charges.h"
 
 static IrVar ir_var(const Model *m, Name name, const Unit *u, int periodic, AstSign sign) {
@@ -144,6 +145,18 @@ static void add_taylor(IrUnit *u, const Eqns *e) {
   u->taylor = series_new(&system, &why);
 }
 
+static void add_sizes(IrUnit *u, const Eqns *e) {
+  for (uint32_t i = 0; i < e->sizes.n; i++) {
+    const ModelSize *s = &e->sizes.at[i];
+    StrBuf what = strbuf(u->arena), text = strbuf(u->arena);
+    for (const char *c = s->what; *c; c++)
+      if (*c != '`') sb_putc(&what, *c);
+    expr_print(e->g, s->value, PRINT_TEXT, &text);
+    vec_push(u->arena, &u->sizes, ((IrSize){sb_text(&what), sb_text(&text), s->open, s->part}));
+  }
+  u->size_values = lower_sizes(e);
+}
+
 IrUnit *unit_head(const Eqns *e, const char *source, int libm) {
   const Model *m = e->m;
   IrUnit *u = ARENA_NEW(m->arena, IrUnit);
@@ -161,6 +174,7 @@ IrUnit *unit_head(const Eqns *e, const char *source, int libm) {
   for (uint32_t i = 0; i < m->inputs.n; i++)
     vec_push(m->arena, &u->u, ir_var(m, m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
   u->inputs = lower_inputs(e);
+  add_sizes(u, e);
   return u;
 }
 
@@ -181,7 +195,8 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
 }
 
 int unit_accepts_scenes(const IrUnit *a, const IrUnit *b) {
-  return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs);
+  return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs) && a->sizes.n == b->sizes.n &&
+         (!a->sizes.n || prog_same(a->size_values, b->size_values));
 }
 
 /* Quaternion coordinates of rotations with an implied start, except those to which the scene gives a value. */

@@ -12,6 +12,7 @@
 #include "mech/first_order.h"
 #include "mech/idle_time.h"
 #include "mech/lagrange.h"
+#include "mech/mass_definiteness.h"
 #include "mech/constraint_regularise.h"
 #include "sym/diff.h"
 #include "sym/simplify.h"
@@ -274,6 +275,7 @@ Eqns *eqns_derive(const Model *m) {
   if (m->first_order && !first_order_derive(e, m)) return NULL;
   if (!e->n) drop_idle_time(e);
   classify(e);
+  sizes_find(e);
   return check_method(e) ? e : NULL;
 }
 

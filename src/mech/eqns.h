@@ -134,6 +134,7 @@ typedef struct {
   uint32_t nactions;
   const Expr *definitions; /* by symbol: expressions substituted for parameters that others define; or NULL */
   int definite_by_values; /* definite_mass, or definite for parameters with the signs of their values; a run checks the pivots */
+  VEC(ModelSize) sizes;  /* of the model, and inertias of parameters alone, each once: what a run checks at its start */
   int constant_mass, definite_mass, singular_mass, autonomous, smooth;
   int conserves_energy;  /* dE/dt = 0 is proved along all motions, for any inputs: charges[0] */
   int energy_jumps;      /* the energy is discontinuous somewhere, as L is; the facts about it hold between such places */

@@ -1,6 +1,10 @@
 /* Positive definiteness from L = sum of terms: signs of the terms, and squares against products of velocities (Gershgorin). */
 #include "mech/mass_definiteness.h"
 
+#include <math.h>
+
+#include "base/sparse_solve.h"
+#include "mech/consistent_start.h"
 #include "mech/degree.h"
 #include "sym/diff.h"
 #include "sym/eval.h"
@@ -133,12 +137,40 @@ static int may_be_positive(const Eqns *e, Expr entry) {
   return sign != SIGN_NEGATIVE && sign != SIGN_NONPOSITIVE;
 }
 
-void mass_warn_nonpositive(const Eqns *e) {
+/* Values by symbol of the scene's parameters. */
+static long double *parameter_values(const Eqns *e) {
   const Model *m = e->m;
-  long double *value = model_constants(m), inertia;
-  ExprMap judged = expr_map(m->arena);
+  long double *value = model_constants(m);
   for (uint32_t i = 0; i < m->params.n; i++)
     if (m->params.at[i].value) expr_eval(e->g, &m->params.at[i].value, 1, value, &value[m->params.at[i].sym]);
+  return value;
+}
+
+static void add_once(Eqns *e, ExprMap *known, ModelSize one) {
+  if (expr_is_num(e->g, one.value) || expr_map_get(known, one.value) == (one.part ? 2u : 1u)) return;
+  expr_map_set(known, one.value, one.part ? 2u : 1u);
+  vec_push(e->m->arena, &e->sizes, one);
+}
+
+void sizes_find(Eqns *e) {
+  const Model *m = e->m;
+  long double *value = parameter_values(e), inertia;
+  ExprMap known = expr_map(m->arena);
+  for (uint32_t i = 0; i < m->sizes.n; i++) add_once(e, &known, m->sizes.at[i]);
+  for (uint32_t i = 0; i < e->mass.n; i++) {
+    MassEntry x = e->mass.at[i];
+    ExprSign sign = x.row == x.col && expr_is_constant(e->g, x.e) ? expr_sign(e->g, x.e) : SIGN_POSITIVE;
+    if (sign == SIGN_POSITIVE || (sign == SIGN_NONNEGATIVE && m->constraints.n)) continue;
+    expr_eval(e->g, &x.e, 1, value, &inertia);
+    const char *what = arena_printf(m->arena, "the coordinate `%s` has an inertia", m->coords.at[x.row].name);
+    if (inertia > 0) add_once(e, &known, (ModelSize){x.e, what, m->coords.at[x.row].span, !m->constraints.n, 0});
+  }
+}
+
+void mass_warn_nonpositive(const Eqns *e) {
+  const Model *m = e->m;
+  long double *value = parameter_values(e), inertia;
+  ExprMap judged = expr_map(m->arena);
   for (uint32_t i = 0; i < e->mass.n; i++) {
     MassEntry x = e->mass.at[i];
     if (x.row != x.col || !expr_is_constant(e->g, x.e) || expr_map_get(&judged, x.e)) continue;
@@ -150,4 +182,32 @@ void mass_warn_nonpositive(const Eqns *e) {
     diag_warning(m->diags, m->coords.at[x.row].span, "the values of the parameters make the inertia of `%s` %s", m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
     diag_help(m->diags, "give them values that make %s positive; with `> 0` after a parameter a run refuses others", sb_text(&entry));
   }
+}
+
+/* The coordinate without inertia at these values: the largest part of a vector that M makes 0; e->n: M is regular. */
+static uint32_t without_inertia(const Eqns *e, const long double *at) {
+  uint32_t n = e->n, most = 0;
+  SparseElements M = {0};
+  long double *null = ARENA_ARRAY(e->m->arena, long double, n), x;
+  for (uint32_t i = 0; i < e->mass.n; i++) {
+    MassEntry m = e->mass.at[i];
+    expr_eval(e->g, &m.e, 1, at, &x);
+    if (!isfinite(x)) return n; /* another message */
+    sparse_put(e->m->arena, &M, m.row, m.col, x);
+    if (m.row != m.col) sparse_put(e->m->arena, &M, m.col, m.row, x);
+  }
+  if (sparse_solve(e->m->arena, n, &M, NULL, 1e-15L, null) == n) return n;
+  for (uint32_t i = 1; i < n; i++)
+    if (fabsl(null[i]) > fabsl(null[most])) most = i;
+  return most;
+}
+
+int mass_regular_at_start(const Eqns *e) {
+  const Model *m = e->m;
+  if (!e->n || !e->mass_known || e->constant_mass || m->constraints.n || e->singular_mass || !m->scene.span.end) return 1; /* constant: mass_warn_nonpositive */
+  uint32_t k = without_inertia(e, start_requested(e));
+  if (k == e->n) return 1;
+  diag_error(m->diags, m->scene.span, "the mass matrix is singular at the start of the scene `%s`, where `%s` has no inertia: no acceleration follows there", m->scene.name, m->coords.at[k].name);
+  diag_help(m->diags, "begin elsewhere, as with `start %s = 0.1`, or describe this position by other coordinates", m->coords.at[k].name);
+  return 0;
 }

@@ -12,3 +12,9 @@ int mass_is_definite_by_values(const Eqns *e, const LinearSystem *s, Expr lagran
 
 /* Warns of diagonal entries of M, made of parameters alone, that the scene's values make negative or zero. */
 void mass_warn_nonpositive(const Eqns *e);
+
+/* e->sizes: sizes of the model, and diagonal entries of M made of parameters alone that the scene's values make positive, as others must. */
+void sizes_find(Eqns *e);
+
+/* 0, reported: the mass matrix is singular at the start of a scene without constraints, and no acceleration follows there. */
+int mass_regular_at_start(const Eqns *e);

@@ -184,7 +184,7 @@ static void add_force(Builder *b, const AstStmt *st, Name effect, Energies *en) 
 static void add_grip(Builder *b, const AstStmt *st, Name effect) {
   AstId rate = st->args, size = ast_expr(b->ast, rate)->next, most = ast_expr(b->ast, size)->next;
   Value f = resolve(b, size, IN_DYNAMICS, effect);
-  if (f.e && !f.n) vec_push(b->arena, &b->friction_sizes, ((FrictionSize){f.e, ast_expr(b->ast, size)->span}));
+  if (f.e && !f.n) add_size(b, f.e, "this friction has a size", ast_expr(b->ast, size)->span, 0);
   if (!most) return;
   Value v = resolve(b, rate, IN_DYNAMICS, effect), g = resolve(b, most, IN_DYNAMICS, effect);
   Span span = ast_expr(b->ast, most)->span;
@@ -535,7 +535,7 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   fill_inferred_units(b);
   if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
-  check_friction_sizes(b);
+  check_sizes(b);
   command_values(b, choice->values, choice->nvalues);
   b->m->declared = declarations_of(b);
   return ast->diags->errors ? NULL : b->m;

@@ -55,11 +55,6 @@ typedef struct {
 } Evaluated;
 
 /* The size of a friction, as it is written. */
-typedef struct {
-  Expr size;
-  Span span;
-} FrictionSize;
-
 /* Instance of a user function for given argument shapes. Its body is evaluated once, with symbols as arguments and unknown
  * dimensions; each call substitutes its own. */
 typedef struct {
@@ -107,7 +102,6 @@ struct Builder {
   VEC(SpinStart) spins; /* start values of angular velocities */
   Scope *named; /* names of events, constraints and expectations; NULL: none yet */
   IndexVars index; /* indices of the `for` around the current statement */
-  VEC(FrictionSize) friction_sizes; /* check_friction_sizes */
   VEC(struct Eval *) idle; /* free list of evaluations */
   VEC(Expr) scratch;
   uint32_t *start_index; /* [SymId] index into Scene.starts + 1; 0: no start value */
@@ -348,8 +342,10 @@ void check_sign(Builder *b, const Param *p, Span span);
 
 /* Warns of parameters whose value, computed from others, contradicts their declared sign: a run refuses them. */
 void warn_signs(Builder *b);
-/* An error where the size of a friction follows from parameters, and is negative. */
-void check_friction_sizes(Builder *b);
+/* Adds a size made of parameters, or of them and of a factor that is not negative; others are left out, as are those whose sign is proved. */
+void add_size(Builder *b, Expr value, const char *what, Span span, int part);
+/* Errors where the values of the scene make sizes of friction and contacts negative, or too large. */
+void check_sizes(Builder *b);
 
 /* name_hints.c: adds a hint to the message about an unknown name. */
 void advise_unknown_name(Builder *b, Name name, Span span, Name effect, const char *declare);

@@ -91,18 +91,20 @@ static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *
   double value = expr_is_num(b->g, e->e) ? num_value(expr_number(b->g, e->e)) : 0.5;
   if (!expr_is_constant(b->g, e->e) || value < 0 || value > 1)
     return diag_error(b->diags, bounce, "a coefficient of restitution is a number from 0 to 1, or made of parameters");
+  add_size(b, e->e, arena_printf(b->arena, "the contact `%s` has a restitution", name), bounce, 1);
   return dims_agree(b, e, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, bounce) ||
          diag_error(b->diags, bounce, "a coefficient of restitution is a pure number, and this is %s", in_dim(b, e->dim));
 }
 
 /* A pure number made of parameters, at least 0 and at most `most`; what: its name. */
-static int check_coefficient(Builder *b, AstId id, const Value *x, double most, const char *what) {
+static int check_coefficient(Builder *b, Name contact, AstId id, const Value *x, double most, const char *what) {
   Span span = ast_expr(b->ast, id)->span;
   if (!x->e) return 0;
   if (x->n) return diag_error(b->diags, span, "this is %s, but a number is needed here", shape_text(b, x->n));
   double value = expr_is_num(b->g, x->e) ? num_value(expr_number(b->g, x->e)) : 0;
   if (!expr_is_constant(b->g, x->e)) return diag_error(b->diags, span, "%s is a number, or made of parameters", what);
   if (value < 0 || value > most) return diag_error(b->diags, span, most > 1 ? "%s is at least 0" : "%s is a number from 0 to 1", what);
+  add_size(b, x->e, arena_printf(b->arena, "the contact `%s` has %s", contact, what), span, !(most > 1));
   return dims_agree(b, x, &(Value){.e = expr_int(b->g, 1), .dim = DIM_NONE}, span) ||
          diag_error(b->diags, span, "%s is a pure number, and this is %s", what, in_dim(b, x->dim));
 }
@@ -175,7 +177,7 @@ static Expr coefficient(Builder *b, const AstStmt *st, Name effect, const char *
   AstId id = ast_option_value(b->ast, st, word);
   if (!id) return other;
   Value x = resolve(b, id, IN_DYNAMICS, effect);
-  return check_coefficient(b, id, &x, most, what) ? x.e : 0;
+  return check_coefficient(b, st->name, id, &x, most, what) ? x.e : 0;
 }
 
 /* The friction of contact c: its tangents. */

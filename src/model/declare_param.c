@@ -32,15 +32,39 @@ void warn_signs(Builder *b) {
   }
 }
 
-void check_friction_sizes(Builder *b) {
-  long double *x = model_constants(b->m), f;
-  for (uint32_t i = 0; i < b->m->params.n; i++)
-    if (b->m->params.at[i].value) expr_eval(b->g, &b->m->params.at[i].value, 1, x, &x[b->m->params.at[i].sym]);
-  for (uint32_t i = 0; i < b->friction_sizes.n; i++) {
-    const FrictionSize *one = &b->friction_sizes.at[i];
-    if (expr_kinds(b->g, one->size) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) continue;
-    expr_eval(b->g, &one->size, 1, x, &f);
-    if (f < 0) diag_error(b->diags, one->span, "this friction has a size of %s, and would drive the motion" HELP "it acts against the velocity by itself: let its size be at least 0, `param mu = 0.3 >= 0`", arena_printf(b->arena, "%.6Lg", f));
+static int is_of_parameters(const ExprGraph *g, Expr e) { return !(expr_kinds(g, e) & ~(1u << SYM_PARAM | 1u << SYM_CONST)); }
+
+/* The factor of parameters of a size; 0: none, or the rest may be negative. */
+static Expr parameter_factor(ExprGraph *g, Expr size) {
+  Expr of = expr_int(g, 1), rest = of;
+  if (is_of_parameters(g, size)) return size;
+  for (uint32_t i = 0; i < expr_pairs(g, size, EX_PROD); i++) {
+    Num exponent;
+    Expr base = expr_pair(g, size, EX_PROD, i, &exponent), factor = expr_pow_num(g, base, exponent);
+    if (is_of_parameters(g, factor)) of = expr_mul(g, of, factor);
+    else rest = expr_mul(g, rest, factor);
+  }
+  return sign_is_nonnegative(expr_sign(g, rest)) ? of : 0;
+}
+
+void add_size(Builder *b, Expr value, const char *what, Span span, int part) {
+  Expr of = parameter_factor(b->g, value);
+  if (!of || (!part && sign_is_nonnegative(expr_sign(b->g, of)))) return;
+  vec_push(b->arena, &b->m->sizes, ((ModelSize){of, what, span, 0, part}));
+}
+
+void check_sizes(Builder *b) {
+  const Model *m = b->m;
+  long double *x = model_constants(m), f;
+  for (uint32_t i = 0; i < m->params.n; i++)
+    if (m->params.at[i].value) expr_eval(b->g, &m->params.at[i].value, 1, x, &x[m->params.at[i].sym]);
+  for (uint32_t i = 0; i < m->sizes.n; i++) {
+    const ModelSize *one = &m->sizes.at[i];
+    expr_eval(b->g, &one->value, 1, x, &f);
+    const char *size = arena_printf(b->arena, "%.6Lg", f);
+    if (!(f < 0) && !(one->part && f > 1)) continue;
+    if (one->part) diag_error(b->diags, one->span, "%s of %s, which must be between 0 and 1", one->what, size);
+    else diag_error(b->diags, one->span, "%s of %s, and would drive the motion" HELP "it acts against the velocity by itself: let its size be at least 0, `param mu = 0.3 >= 0`", one->what, size);
   }
 }
 

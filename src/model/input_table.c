@@ -3,7 +3,8 @@
  * A row has time in s, and value in the input's unit, separated by commas, semicolons, tabs or, in a table without these, blanks. Blank lines and
  * lines that begin with # are skipped. A first line whose first field is not a number is a head: the time is the column `t` (or `time`), else the
  * first; the value is the column named like the input, or, of two columns, the other one. A head may state units, as lagc's own output does: `t [s],u
- * [N]`; they must be the input's. Without a head, columns 1 and 2 are read. Two rows with the same time are a jump. */
+ * [N]`; they must be the input's. Without a head there are two columns. Each row has as many numbers as the head has names: decimal commas do not pass
+ * as other columns. Two rows with the same time are a jump. A file that is no table is not quoted. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +28,7 @@ typedef struct {
   char separator;    /* ' ': any number of blanks */
   VEC(Piece) fields; /* of the current line, without blanks and quotes */
   uint32_t time, value; /* columns, from 0 */
+  uint32_t columns;  /* of the head, or the first row */
   int begun;         /* the head or the first row was read */
   int wrong_head;    /* error in the head: rows are not read */
   int mistakes;
@@ -85,6 +87,12 @@ static void mistake(Table *t, Piece p, const char *what) {
   t->mistakes++;
 }
 
+/* A file of another kind: the mistake stands in the model, and the file is not shown. */
+static void no_table(Table *t, const char *why) {
+  diag_error(t->b->diags, ast_expr(t->b->ast, t->id)->span, "`%s` is not a table: %s" HELP "a table is a text with a row `time, value` in each line; a first line may name the columns", t->file.path, why);
+  t->mistakes++;
+}
+
 /* --- the head --- */
 
 /* 1 if a field of the head is `name`, without unit; *unit is the text in brackets after it. */
@@ -137,22 +145,34 @@ static void check_unit(Table *t, Piece field, const Unit *want, const char *whos
   }
 }
 
+/* Reports another column with the name of column k, units aside. */
+static void check_twins(Table *t, uint32_t k) {
+  Piece unit;
+  is_called(t, t->fields.at[k], "", &unit);
+  Piece name = trimmed(t, (Piece){t->fields.at[k].begin, unit.begin < unit.end ? unit.begin - 1 : t->fields.at[k].end});
+  uint32_t again = find_column(t, k + 1, text_of(t, name), t->fields.n);
+  if (again == t->fields.n) return;
+  mistake(t, t->fields.at[again], arena_printf(t->b->arena, "two columns are called `%s`", text_of(t, name)));
+  diag_help(t->b->diags, "give one of them another name");
+}
+
 static void read_head(Table *t, Piece line) {
   uint32_t n = t->fields.n, again;
   t->time = find_column(t, 0, "t", find_column(t, 0, "time", 0));
   t->value = find_column(t, 0, t->stem, n > 2 ? n : 1 - t->time);
-  if (n < 2) mistake(t, t->fields.at[0], "a table has two columns: time and value");
-  else if (t->value == n) {
+  if (n < 2) no_table(t, "it has one column");
+  else if ((again = find_column(t, 0, "", n)) < n) {
+    mistake(t, again + 1 < n ? (Piece){t->fields.at[again].begin, t->fields.at[again + 1].begin} : line, arena_printf(t->b->arena, "column %u has no name", again + 1));
+    diag_help(t->b->diags, "name every column, as in `t,%s`, and end no line with a separator", t->stem);
+  } else if (t->value == n) {
     mistake(t, line, arena_printf(t->b->arena, "none of these %u columns is called `%s`", n, t->stem));
     diag_help(t->b->diags, "give the column of the values that name");
   } else if (t->value == t->time) mistake(t, t->fields.at[0], "the column of the time is also that of the value");
   else {
     check_unit(t, t->fields.at[t->time], NULL, "the time");
     check_unit(t, t->fields.at[t->value], &t->in->unit, arena_printf(t->b->arena, "`%s`", t->stem));
-    if ((again = find_column(t, t->value + 1, t->stem, n)) < n) {
-      mistake(t, t->fields.at[again], arena_printf(t->b->arena, "two columns are called `%s`", t->stem));
-      diag_help(t->b->diags, "give one of them another name");
-    }
+    check_twins(t, t->time);
+    check_twins(t, t->value);
   }
   t->wrong_head = t->mistakes > 0;
 }
@@ -181,9 +201,13 @@ static void read_row(Table *t, Piece line) {
   Piece at, of;
   const char *nul = memchr(t->file.text + line.begin, '\0', line.end - line.begin);
   if (nul) {
-    uint32_t place = (uint32_t)(nul - t->file.text);
-    mistake(t, (Piece){place, place + 1}, "this byte is not text");
-    diag_help(t->b->diags, "a table is a text of numbers");
+    no_table(t, "it has bytes that are not text");
+    t->wrong_head = 1;
+    return;
+  }
+  if (t->fields.n != t->columns && t->fields.n > t->time && t->fields.n > t->value) {
+    mistake(t, line, arena_printf(t->b->arena, "this row has %u fields, and the first line %u", t->fields.n, t->columns));
+    diag_help(t->b->diags, t->separator == ',' ? "numbers are written with a point, `0.5`, and separated by commas" : "each row has one number for each column");
     return;
   }
   if (!read_number(t, line, t->time, "time", &time, &at) || !read_number(t, line, t->value, "value", &value, &of)) return;
@@ -212,8 +236,13 @@ static void read_line(Table *t, Piece line) {
   t->begun = 1;
   if (first) t->separator = find_separator(t, line);
   split(t, line);
+  if (first) t->columns = t->fields.n;
   if (first && !number(t, t->fields.at[0], &x)) read_head(t, line);
-  else read_row(t, line);
+  else if (first && t->columns > 2) {
+    mistake(t, line, arena_printf(t->b->arena, "this table has %u columns, and no first line that names them", t->columns));
+    diag_help(t->b->diags, "begin with a line of names, `t,%s,...`; numbers are written with a point, `0.5`", t->stem);
+    t->wrong_head = 1;
+  } else read_row(t, line);
 }
 
 static void read_lines(Table *t) {

@@ -192,6 +192,14 @@ typedef struct {
   VEC(Move) moves;         /* coordinates without an entry are left unchanged */
 } Symmetry;
 
+/* A size that parameters determine: at least 0, more than 0 where open, at most 1 where it is a part. */
+typedef struct {
+  Expr value;
+  const char *what; /* "this friction has a size" */
+  Span span;
+  int open, part;
+} ModelSize;
+
 typedef struct {
   SymId target;
   Expr value; /* of parameters */
@@ -236,6 +244,7 @@ typedef struct {
 
 typedef struct {
   Name name;
+  Span span; /* of its name; empty: the file has no scene */
   const char *doc;
   VEC(Start) starts;
   Span exactly; /* the first `start exactly`; empty: none */
@@ -285,6 +294,7 @@ typedef struct {
   VEC(Grip) grips;
   VEC(Constraint) constraints;
   VEC(Contact) contacts;
+  VEC(ModelSize) sizes; /* of friction and contacts */
   VEC(Symmetry) symmetries;
   VEC(Expect) expects;
   VEC(Canonical) canonicals;

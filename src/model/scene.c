@@ -95,6 +95,7 @@ void scene_select(Builder *b, const ModelChoice *choice) {
   check_file(b, file);
   const AstStmt *st = choice->bare ? NULL : pick_scene(b, choice->scene);
   b->m->scene.name = st ? st->name : intern(b->ast->names, "default");
+  if (st) b->m->scene.span = st->name_span;
   b->m->scene.doc = st && st->doc ? st->doc : "";
   b->chain = scene_chain(b, st);
   for (const AstStmt **s = b->chain; *s; s++) {

@@ -70,7 +70,7 @@ static GeneratorTable table_new(Arena *a, uint32_t rows, uint32_t blocks, uint32
 }
 
 int table_same_shape(const GeneratorTable *a, const GeneratorTable *b) {
-  return a->rows == b->rows && a->shown == b->shown && memcmp(a->pivot, b->pivot, a->rows * sizeof *a->pivot) == 0;
+  return a->rows == b->rows && a->shown == b->shown && (!a->rows || memcmp(a->pivot, b->pivot, a->rows * sizeof *a->pivot) == 0);
 }
 
 static void reduce(GeneratorTable *t) {

@@ -111,6 +111,16 @@ static int seen_before(const Includes *in, const AstStmt *s, const char *path) {
   }
 }
 
+/* Whether the first message since `before` is about the first word of the file. */
+static int begins_wrong(const Ast *ast, const Source *source, uint32_t before) {
+  uint32_t at = 0;
+  while (at < source->len && (strchr(" \t\r\n", source->text[at]) || source->text[at] == '#')) {
+    const char *end = source->text[at] == '#' ? memchr(source->text + at, '\n', source->len - at) : source->text + at;
+    at = end ? (uint32_t)(end - source->text) + 1 : source->len;
+  }
+  return ast->diags->list.n > before && ast->diags->list.at[before].span.begin <= source->base + at;
+}
+
 /* The statements of the file that s includes; none when it was included before or cannot be read. */
 static StmtList included(Includes *in, AstStmt *s) {
   Ast *ast = in->ast;
@@ -123,8 +133,12 @@ static StmtList included(Includes *in, AstStmt *s) {
     return (StmtList){NULL, NULL};
   }
   add_file(in, source, path, s);
+  Diags before = *ast->diags;
   Parse cx;
   run(&cx, ast, source, TOK_BEGIN_FILE);
+  if (cx.stmts.first || !begins_wrong(ast, source, before.list.n)) return cx.stmts;
+  *ast->diags = before; /* a file of another kind, perhaps with secrets, is not quoted */
+  diag_error(ast->diags, s->name_span, "`%s` is not a model: it has no statement" HELP "`lagc check %s` shows its lines", path, path);
   return cx.stmts;
 }
 

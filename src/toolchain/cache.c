@@ -1,6 +1,10 @@
 /* The cache of simulators: finds a safe folder, makes locked folders for builds there, removes the least recently used entries. */
 #include "toolchain/cache.h"
 
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "base/hash.h"
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "base/vec.h"
 
@@ -127,17 +131,50 @@ static int file_is_own(const char *path) {
   return lstat(path, &st) == 0 && S_ISREG(st.st_mode) && st.st_uid == geteuid() && !(st.st_mode & 022) && st.st_nlink == 1 && st.st_size > 0;
 }
 
-int cache_has(const char *path) {
-  int whole = file_is_own(path) && access(path, X_OK) == 0;
-  if (whole) utimensat(AT_FDCWD, path, NULL, 0);
+/* A seal, the last CACHE_SEAL bytes of an entry: size and hash of the bytes before it. Loaders of programs do not read so far. */
+static const char seal_form[] = "\n#lagc %016" PRIx64 " %016" PRIx64 "\n";
+
+/* Hash of the next n bytes, or of all (n < 0); *n := their number. */
+static uint64_t hash_file(FILE *f, int64_t *n) {
+  char block[65536];
+  uint64_t h = FNV1A_START;
+  int64_t left = *n < 0 ? INT64_MAX : *n;
+  *n = 0;
+  for (size_t some; left > 0 && (some = fread(block, 1, left < (int64_t)sizeof block ? (size_t)left : sizeof block, f)) > 0; left -= (int64_t)some, *n += (int64_t)some)
+    h = hash_bytes(h, block, some);
+  return h;
+}
+
+int cache_seal(const char *path) {
+  FILE *f = fopen(path, "r+b");
+  int64_t n = -1;
+  if (!f) return 0;
+  uint64_t h = hash_file(f, &n);
+  int ok = !ferror(f) && fseek(f, 0, SEEK_END) == 0 && fprintf(f, seal_form, (uint64_t)n, h) == CACHE_SEAL;
+  return (fclose(f) == 0) & ok;
+}
+
+/* Whether the file is whole, as it was sealed. */
+static int has_seal(const char *path) {
+  char is[CACHE_SEAL + 1] = "", should[CACHE_SEAL + 1];
+  struct stat st;
+  FILE *f = fopen(path, "rb");
+  if (!f) return 0;
+  int64_t n = fstat(fileno(f), &st) == 0 ? (int64_t)st.st_size - CACHE_SEAL : 0, asked = n;
+  uint64_t h = n > 0 ? hash_file(f, &n) : 0;
+  snprintf(should, sizeof should, seal_form, (uint64_t)n, h);
+  int whole = n > 0 && n == asked && fread(is, 1, CACHE_SEAL, f) == CACHE_SEAL && strcmp(is, should) == 0;
+  fclose(f);
   return whole;
 }
 
 int cache_has_data(const char *path) {
-  int whole = file_is_own(path);
+  int whole = file_is_own(path) && has_seal(path);
   if (whole) utimensat(AT_FDCWD, path, NULL, 0);
   return whole;
 }
+
+int cache_has(const char *path) { return access(path, X_OK) == 0 && cache_has_data(path); }
 
 static const char *lock_of(Arena *a, const char *path) { return arena_printf(a, "%s.lock", path); }
 

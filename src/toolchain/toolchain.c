@@ -327,7 +327,7 @@ const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *
   int lock = path ? cache_take(a, path) : -1, there = lock >= 0 && cache_has(path), ok = there;
   if (!there && build(a, t, texts, n, &f, error)) {
     const char *made = made_in(a, t, f.path);
-    ok = chmod(made, 0700) == 0 && rename(made, path) == 0;
+    ok = cache_seal(made) && chmod(made, 0700) == 0 && rename(made, path) == 0;
     if (!ok) *error = arena_printf(a, "cannot write %s: %s", path, strerror(errno));
     build_folder_remove(&f);
     if (ok) cache_limit(a, path);

@@ -37,10 +37,12 @@ instructions() {
   for n in "$calls" $((2*calls)); do
     valgrind --tool=callgrind --toggle-collect="$function" --callgrind-out-file=/dev/null "$TMP/driver" count "$1" "$n" 2>&1 |
       sed -n 's/.*Collected : *//p'
-  done | awk -v calls="$calls" '{ n[NR] = $1 } END { printf "%.0f", (n[2] - n[1])/calls }'
+  done | awk -v calls="$calls" '{ n[NR] = $1 }
+    END { if (!(n[2] > n[1])) { print "bench code: callgrind sees no call of the function: is it inlined or stripped?" >"/dev/stderr"; exit 1 }
+          printf "%.0f", (n[2] - n[1])/calls }'
 }
 instructions_of_all() { # "PEERS" [CALLS]: `name count` lines in $TMP/counts
-  for f in ours $1; do echo "$f $(instructions "$f" ${2:-})"; done >"$TMP/counts"
+  for f in ours $1; do count=$(instructions "$f" ${2:-}) || exit 1; echo "$f $count"; done >"$TMP/counts"
 }
 of() { awk -v n="$1" -v c="${3:-2}" '$1 == n { print $c }' "$TMP/$2"; } # NAME counts|times [COLUMN]
 

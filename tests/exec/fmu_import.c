@@ -125,6 +125,9 @@ static const struct {
 static Instance instance_new(const char *token, int cosim) {
   return ((Instance (*)(const char *, int, const char *, const char *, const void *, int, int))function("fmi2Instantiate"))("one", cosim, token, "", &callbacks, 0, 0);
 }
+static int set_up(double tolerance, double start) {
+  return CALL("fmi2SetupExperiment", (Instance, int, double, double, int, double), c, 1, tolerance, start, 0, 0.0);
+}
 static void initialize(double tolerance, double start) {
   ok(CALL("fmi2SetupExperiment", (Instance, int, double, double, int, double), c, 1, tolerance, start, 0, 0.0), "SetupExperiment");
   ok(CALL("fmi2EnterInitializationMode", (Instance), c), "EnterInitializationMode");
@@ -156,6 +159,9 @@ static Instance instance_new(const char *token, int cosim) {
            ("one", token, "", false, false, NULL, logged);
   return ((Instance (*)(const char *, const char *, const char *, bool, bool, bool, bool, const Ref *, size_t, void *, void (*)(void), void *))
           function("fmi3InstantiateCoSimulation"))("one", token, "", false, false, false, false, NULL, 0, NULL, logged, NULL);
+}
+static int set_up(double tolerance, double start) {
+  return CALL("fmi3EnterInitializationMode", (Instance, bool, double, double, bool, double), c, true, tolerance, start, false, 0.0);
 }
 static void initialize(double tolerance, double start) {
   ok(CALL("fmi3EnterInitializationMode", (Instance, bool, double, double, bool, double), c, true, tolerance, start, false, 0.0), "EnterInitializationMode");
@@ -366,6 +372,13 @@ static void refusals(const char *token) {
   refuses("a parameter that is infinite", set_real(&p, 1, &endless));
   refuses("a start that is not a number", set_real(&start, 1, &nothing));
   refuses("an integer", CALL(SPELLED("GetInteger", "GetInt32"), (Instance, const Ref *, size_t, int *, size_t), c, &p, 1, (int *)&x, 1));
+  refuses("values without an array", get_real(&p, 1, NULL));
+  refuses("a start time that is not a number", set_up(1e-9, nothing));
+  refuses("an infinite start time", set_up(1e-9, endless));
+  refuses("a negative tolerance", set_up(-1e-9, 0));
+  refuses("a step before the initialization", step(0, 0.1));
+  refuses("an end of the initialization before its beginning", CALL(PREFIX "ExitInitializationMode", (Instance), c));
+  refuses("an end before the beginning", CALL(PREFIX "Terminate", (Instance), c));
   initialize(1e-9, 0);
   refuses("a derivative by a parameter before the initialization ends", derivative(&rate, 1, p, 1, &x));
   ok(CALL(PREFIX "ExitInitializationMode", (Instance), c), "ExitInitializationMode");
@@ -380,6 +393,15 @@ static void refusals(const char *token) {
   ok(step(0, 0.1), "DoStep");
   ok(get_real(&start, 1, &a[1]), "get");
   if (a[0] != a[1]) fail("a run after a reset has other bits");
+  refuses("an infinite step", step(0.1, endless));
+  refuses("a step that is not a number", step(0.1, nothing));
+  ok(CALL(PREFIX "Terminate", (Instance), c), "Terminate");
+  refuses("a step after the end", step(0.1, 0.1));
+  refuses("events after the end", CALL(PREFIX "EnterEventMode", (Instance), c));
+  Instance was = c;
+  c = NULL;
+  if (step(0, 0.1) != 3 || get_real(&p, 1, &x) != 3 || CALL(PREFIX "Reset", (Instance), c) != 3 || CALL(PREFIX "Terminate", (Instance), c) != 3) fail("no instance");
+  c = was;
 }
 
 /* ---- a motion that comes to a halt ---- */
@@ -399,6 +421,9 @@ static void halts(const char *token) {
   if (!(now > 0.99 && now <= 1)) fail("the time reached is not the end of the motion");
   messages = 0;
   refuses("a step that cannot begin", step(now, 0.75));
+  refuses("a step after a failure", step(now, 0.01));
+  refuses("a value after a failure", set_real((const Ref[]){1}, 1, x));
+  refuses("an end after a failure", CALL(PREFIX "Terminate", (Instance), c));
   begin(token, 0);
   nx = 2;
   put(0.75, x);

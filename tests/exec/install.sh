@@ -105,6 +105,9 @@ add_executable(game game.c)
 target_link_libraries(game PRIVATE pend swinging)
 add_executable(with_shared "${MAIN}")
 target_link_libraries(with_shared PRIVATE lagc::lag_shared)
+if(TWICE)
+  lagc_add_model(game pendulum.lag)
+endif()
 END
   cat >"$away/game.c" <<'END'
 #include <lag.h>
@@ -133,6 +136,8 @@ END
   check "a project of C++ alone, in a folder with a space" plus
   no_c() { ! cmake -DREFUSED=1 "$away/plus plus/made" >"$TMP/out" 2>&1 && tr -s ' \n' ' ' <"$TMP/out" | grep -F 'write project(... C) or enable_language(C)'; }
   check "which is told what C for the runtime needs" no_c
+  twice() { ! cmake -DREFUSED=0 -DTWICE=1 "$away/plus plus/made" >"$TMP/out" 2>&1 && tr -s ' \n' ' ' <"$TMP/out" | grep -F 'there is a target game already'; }
+  check "and that a model needs a target of its own" twice
   remade() {
     sed -i.bak 's/(y + l)/y/' "$away/pendulum.lag" && ! cmp -s "$away/pendulum.lag" models/pendulum.lag && cmake --build "$away/made" && "$away/made/game" >"$TMP/game"
   }

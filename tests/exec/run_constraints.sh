@@ -214,4 +214,9 @@ run $models/kept.lag cut --until 5 --save-state "$TMP/state" && run $models/kept
 whole=$(number x)
 run $models/kept.lag cut --until 10 --json
 is "with what constraints keep" "$(number x)" "$whole"
+
+# A constraint on velocities that keeps a function of positions and t: d/dt (x - t^2 y - w t) = 0.
+printf 'model leaf\ncoord x, y\nparam w = 2\nkinetic = x'"'"'^2/2 + y'"'"'^2/2\nconstraint c: x'"'"' = 2*t*y + t^2*y'"'"' + w\nscene s { start y = 1; span 3 }\n' >"$TMP/leaf.lag"
+leaf() { "$LAGC" check "$TMP/leaf.lag" >"$TMP/out" 2>&1; cat "$TMP/out"; grep -q 'constraint c keeps x - t^2\*y - w\*t as it is at the start' "$TMP/out"; }
+check "a constraint on velocities that keeps a function of t, too" leaf
 tap_end

@@ -312,7 +312,7 @@ check "a run in two parts is the same run" split
 for method in verlet variational symplectic_euler gauss taylor; do
   check "refused: $method" refuses 2 "method $method cannot follow contacts with friction (plane); rk45, dop853, radau, rk4 and moreau can" slope s --method $method
 done
-check "negative friction" refuses 2 'the contact plane has a friction of -1, which must be at least 0' slope s mu=-1
+check "negative friction" refuses 2 'the contact plane has a coefficient of friction of -1, which must be at least 0' slope s mu=-1
 check "restitution above 1" refuses 2 'the contact plane has a tangential restitution of 1.5, which must be between 0 and 1' slope s et=1.5
 check "a start inside, with its depth" refuses 2 'the start is inside the contact plane: its gap is -0.1 m' slope s y=-0.1
 check "backwards" refuses 2 'contacts with friction are not followed backwards in time' slope s --until -1

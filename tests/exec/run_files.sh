@@ -26,7 +26,7 @@ refused() {
   [ -z "$left" ] || { echo "left: $left"; return 1; }
 }
 # With files limited to 512 bytes, as on a full disk.
-full_disk() { (trap '' XFSZ; ulimit -f 1; "$@"); }
+full_disk() { (ulimit -f 1; "$@"); }
 is_fifo() { [ -p "$dir/fifo" ]; }
 
 if [ -c /dev/full ]; then
@@ -35,6 +35,8 @@ if [ -c /dev/full ]; then
   done
   check 'a full standard output' refused 2 'cannot write standard output' sh -c '"$0" derive "$1" >/dev/full' "$LAGC" "$model"
   check 'check, a full standard output' refused 2 'cannot write standard output' sh -c '"$0" check "$1" >/dev/full' "$LAGC" "$model"
+  check 'methods, a full standard output' refused 2 'cannot write standard output: No space' sh -c '"$0" methods >/dev/full' "$LAGC"
+  "$LAGC" cache --clear >/dev/null
   check 'version, a full standard output' refused 2 'cannot write standard output' sh -c '"$0" --version >/dev/full' "$LAGC"
 fi
 for c in emit header derive build; do
@@ -50,10 +52,20 @@ check 'run: the disk is full' refused 2 'cannot write' full_disk "$LAGC" run "$m
 check 'run: the cache is empty after that' sh -c '[ -z "$(ls -A "$0")" ]' "$dir/cache/lagc"
 
 
-# An entry of the cache that a crash of the system left empty is built anew.
+# An entry of the cache that a loss of power has cut short, or that holds other bytes, is built anew.
 "$LAGC" run "$model" --quiet
-for f in "$dir"/cache/lagc/*; do : >"$f"; done
-check 'run: an empty simulator in the cache' "$LAGC" run "$model" --quiet --until 1
+entry=$(ls -d "$dir"/cache/lagc/*)
+size=$(wc -c <"$entry")
+head -c $((size*2/3)) "$entry" >"$dir/cut" && cat "$dir/cut" >"$entry"
+check 'run: a simulator that is cut short' "$LAGC" run "$model" --quiet --until 1
+is 'it is whole again' "$size" "$(wc -c <"$entry")"
+dd if=/dev/zero of="$entry" bs=1000 seek=8 count=9 conv=notrunc 2>/dev/null
+check 'run: a simulator with zeroed bytes' "$LAGC" run "$model" --quiet --until 1
+# A limit of file sizes does not end a run without a word; rows that were begun do not stay.
+for type in csv npy; do
+  check "run: no room for rows of .$type" refused 2 "cannot write $dir/out/rows.$type: File too large" \
+    full_disk "$entry" --until 100 --every 0.01 -o "$dir/out/rows.$type"
+done
 
 mkfifo "$dir/fifo"
 mkdir "$dir/own"

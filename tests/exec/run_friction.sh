@@ -300,4 +300,38 @@ sed "s/x' = 2 .m.s./x = x + 1 [m]/" "$TMP/struck.lag" >"$TMP/shifted.lag"
 check "no tangent over an event under which it goes on sticking" refuses 3 "an event changes the state where the motion meets a surface or slides" shifted --tangent
 stops() { "$LAGC" run "$TMP/slide.lag" --tangent --json | grep -q "\"tangent\": {\"x\": {\"x\": 1, \"x'\": 0.6795786[0-9]*}, \"x'\": {\"x\": 0, \"x'\": 0}}"; }
 check "where it stops, v^2/(2 mu g), has one: v/(mu g), with x = v^2/(2 mu g) = x/(v/2)" stops
+
+# Sizes that parameters determine, from the command line, in sweeps, in headers: a negative friction would drive the motion, v = 3 + 0.1 g t.
+cat >"$TMP/sizes.lag" <<'END'
+model sizes
+coord x [m], th [rad]
+param m = 2 [kg] > 0, g = 9.81 [m/s^2] > 0, mu = 0.3, J = 1 [kg*m^2]
+kinetic = m*x'^2/2 + J*th'^2/2
+friction f on x: mu*m*g
+scene s { start x' = 3 [m/s]; span 3; output x, x' every 0.5 }
+END
+check "a negative friction" says 2 "this friction has a size of -1.962, which must be at least 0: it is m*g*mu" "$LAGC" run "$TMP/sizes.lag" mu=-0.1
+check "no inertia" says 2 'the coordinate th has an inertia of 0, which must be more than 0: it is J' "$LAGC" run "$TMP/sizes.lag" J=0
+check "a friction of 0" "$LAGC" run "$TMP/sizes.lag" mu=0 --quiet
+"$LAGC" sweep "$TMP/sizes.lag" mu=-0.1..0.3:3 -o "$TMP/sizes.csv" --quiet
+is "rows of a sweep" "value ok ok" "$(awk -F , 'NR > 1 { printf "%s%s", s, $NF; s = " " }' "$TMP/sizes.csv")"
+start() {
+  "$LAGC" header "$TMP/sizes.lag" -o "$TMP/sizes.h" && cat >"$TMP/start.c" <<'END' && "$CC" -std=c99 -Wall -Wextra -Werror -I"$TMP" "$TMP/start.c" -o "$TMP/start" -lm && "$TMP/start"
+#define SIZES_IMPLEMENTATION
+#include "sizes.h"
+int main(void) {
+  sizes_params p;
+  sizes_state s;
+  sizes_defaults(&p);
+  if (sizes_start(&p, &s) != SIZES_OK || s.v[0] != 3) return 1;
+  p.mu = -0.1;
+  if (sizes_start(&p, &s) != SIZES_ESIZE) return 2;
+  p.mu = 0.1, p.J = 0;
+  if (sizes_start(&p, &s) != SIZES_ESIZE) return 3;
+  p.J = 1, p.g = 0;
+  return sizes_start(&p, &s) == SIZES_ESIZE ? 0 : 4;
+}
+END
+}
+check "_start of a header" start
 tap_end

@@ -89,6 +89,12 @@ for method in dop853 radau taylor variational gsl-rk8pd ${SLOW:+gsl-msadams gsl-
   with="--method $method"
   check "$method" each "$method" models/double_pendulum.lag --method $method --until 0.1 --json
 done
+MOST=60
+with="--method taylor"
+check "a method that is chosen: no other one for want of memory" each chosen models/double_pendulum.lag --tol 1e-12 --until 0.1 --json
+with="--method radau"
+slow check "the same of a stiff model" each stiff models/tippe_top.lag --until 0.1 --json
+MOST=400
 with="--with linear"
 check "modes, by GSL's algebra" each spring models/spring_pendulum.lag --modes
 check "exponents" each henon models/henon_heiles.lag --lyapunov --until 5

@@ -130,6 +130,12 @@ lost() { # SIGNAL: rank 1 loses its chunks; mpirun leaves the others
   cat "$TMP/err"
   same && grep -q "1 of 3 processes do not answer" "$TMP/err"
 }
+orphaned() { # rank 0 is killed, and mpirun leaves the others: no file, and no status of success
+  # shellcheck disable=SC2086
+  begin timeout 100 mpirun --enable-recovery -n 3 "$LAGC" sweep $words
+  kill -KILL "$(rank_pid 0)"
+  ! wait $! && [ ! -e "$TMP/two.csv" ] && grep -q "rank 0 does not answer" "$TMP/err"
+}
 slow check "a longer sweep" long --threads 2 -o "$TMP/one.csv"
 slow check "rank 1 is killed" killed KILL 1
 slow check "the rest, by two" kept --mpi 2
@@ -140,5 +146,6 @@ slow check "the rest, by two" kept --mpi 2
 slow check "a rank is terminated" killed TERM 1
 slow check "and goes on" kept --mpi 2
 slow check "a killed rank with --enable-recovery" lost KILL --enable-recovery
+slow check "rank 0 is killed with --enable-recovery" orphaned
 slow check "a rank that stands still" lost STOP ""
 tap_end

@@ -75,4 +75,24 @@ model start "m/2*(x'^2*x^2 + y'^2 + z'^2)" "x = 0"
 model reached "m/2*(x'^2*x^2 + y'^2 + z'^2)" "x = -1"
 check "singular at the start, with its condition" ends start dop853 "the mass matrix is singular" "the condition of that is above 1e+15" "by the inertia of x"
 check "steps that shrink before it say why" ends reached dop853 "the step became too small" "the condition of the mass matrix is " "by the inertia of x"
+
+# A value that the motion does not need: the energy, an output. cosh(x) overflows beyond 710.47.
+lacks() { # WORDS WORDS <MODEL: a run that goes on; its report and the note have these words
+  cat >"$TMP/lacks.lag"
+  "$LAGC" run "$TMP/lacks.lag" -o "$TMP/lacks.csv" >"$TMP/out" 2>&1 && cat "$TMP/out" && grep -q -e "$1" "$TMP/out" && grep -q -e "$2" "$TMP/out"
+}
+check "the energy: expression and state" lacks "^energy: not finite at t = 1 s: x = 899.9, x' = " 'lacks.lag:4:17: note: this expression has no finite value at 899.9' <<'EOF'
+model m
+coord x
+kinetic = x'^2/2
+potential = log(cosh(x))
+scene s { start x = 900.4; span 1; output x }
+EOF
+check "an output: expression and state" lacks '^note: the output w has no finite value at t = 1.05 s' 'lacks.lag:4:17: note: this expression has no finite value at 710.5' <<'EOF'
+model m
+coord x
+kinetic = x'^2/2
+observe w = log(cosh(x))
+scene s { start x = 700, x' = 10; span 2; output x, w every 0.05 }
+EOF
 tap_end

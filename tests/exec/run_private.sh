@@ -162,6 +162,10 @@ for what in pipe /dev/zero "$dir/tmp"; do
   printf 'model m\ncoord x [m]\ninput u [N] = "%s"\nparam m = 1 [kg]\nkinetic = m/2*x'"'"'^2\nforce x = u\n' "$what" >tab.lag
   check "table $what" refuses tab.lag
 done
+unwritten() { timeout 20 "$LAGC" check pipe >log 2>&1; got=$?; cat log; [ $got = 2 ] && grep -q 'nothing writes to this pipe' log; }
+slow check 'a model that is a pipe without a writer' unwritten
+late() { { sleep 0.2; cat "$model"; } >pipe & "$LAGC" check pipe; }
+check 'a model through a pipe, late' late
 
 # ---- invisible characters
 rlo=$(printf '\342\200\256')

@@ -182,7 +182,7 @@ END
 inside() { ! checks "$TMP/floor.lag" && says 'inside the contact `ground`: its gap is -0.1' "$TMP/check" && ! runs "$TMP/floor.lag" && says 'inside the contact ground: its gap is -0.1 m' "$TMP/run"; }
 check "inside a contact" inside
 sed -i 's/y = 0.9 .*; span/y = 2 [m]; e = 1.5; span/' "$TMP/floor.lag"
-more() { ! checks "$TMP/floor.lag" && says '`ground` has a restitution of 1.5' "$TMP/check" && ! runs "$TMP/floor.lag" && says 'ground has a restitution of 1.5' "$TMP/run"; }
+more() { ! checks "$TMP/floor.lag" && says '`ground` has a restitution of 1.5' "$TMP/check" && ! runs "$TMP/floor.lag" && says '`ground` has a restitution of 1.5' "$TMP/run"; }
 check "a restitution of more than 1" more
 
 # ---- headers start where runs do
@@ -257,4 +257,9 @@ smooth() { runs "$TMP/one.lag" "$@" && near "$(value x)" 8 1e-9 && near "$(value
 for m in 'dop853' 'rk4 --step 0.2' 'verlet --step 0.2' 'variational --step 0.2' 'verlet8 --step 0.2'; do
   check "what moves fast does not jump: $m" smooth --method $m
 done
+
+printf 'model heap\ncoord x [m]\nparam rho = 0.5 [kg/m] > 0, g = 9.81 [m/s^2]\nlagrangian = rho*x*x'"'"'^2/2 + rho*g*x^2/2\nscene zero { span 1 [s] }\nscene some { start x = 0.1; span 1 [s] }\n' >"$TMP/heap.lag"
+heap() { ! checks "$TMP/heap.lag" && says 'heap.lag:5:7: error: the mass matrix is singular at the start of the scene `zero`, where `x` has no inertia' "$TMP/check"; }
+check "a start without inertia is an error of check" heap
+check "a start with inertia beside it" "$LAGC" check "$TMP/heap.lag" some
 tap_end

@@ -530,6 +530,7 @@ folder() { says 2 "cannot write $TMP: Is a directory" "$LAGC" sweep "$osc" w=1,2
 check "a folder as output" folder
 check "standard output is not resumed" says 2 "runs are kept beside a file only" "$LAGC" sweep "$osc" w=1,2 -o - --resume
 check "runs for years" no "1000000000000 runs would take about" "$osc" w=1..2:1000000 m=1..2:1000000
+check "runs for days, and more than 10 GB" no "GB on this machine: take fewer values, --shard i/n on many, or --yes" "$osc" w=1..2:30000 m=1..2:30000
 check "more runs than can be counted" no "take fewer values" "$osc" w=1..2:1000000000 m=1..2:1000000
 check "samples of nothing" no "no name has a distribution" "$osc" w=1,2 --samples 10
 check "a constant span" no "nothing to compute" "$osc" w=1,2 --until 0

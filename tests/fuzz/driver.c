@@ -65,6 +65,7 @@ static void read_folder(const char *folder) {
 }
 
 static void replay(void) {
+  setenv("FUZZ_REPLAY", "1", 1);
   printf("1..%zu\n", nseeds);
   for (size_t i = 0; i < nseeds; i++) {
     printf("# %s\n", seeds[i].path);

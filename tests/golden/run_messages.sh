@@ -21,7 +21,9 @@ is left out: liblag computes action variables
 this is not a finite number
 this is nested too deep
 deep here, and at most
-name an inner part'
+name an inner part
+the mass matrix is singular at the start of the scene
+begin elsewhere, as with'
 
 # The texts in the calls that report, one a line, as FILE:LINE<tab>TEXT; texts that are not sentences are left out.
 texts() {

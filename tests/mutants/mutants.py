@@ -27,7 +27,7 @@ TOP = os.path.dirname(os.path.dirname(HERE))
 WORK = os.path.join(TOP, "build", "mutants")
 MEASURED = os.path.join(WORK, "tree")  # where the lines that suites reach are measured
 TREE = MEASURED  # of this process
-SAN = "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
+SAN = os.environ.get("SAN_FLAGS") or "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
 # Suites that would need more builds, or that judge the text of the sources.
 LEFT_OUT = {"exec/includes", "exec/install", "exec/run_precision", "exec/editor", "golden/gallery"}
 
@@ -47,6 +47,11 @@ def copy_tree():
         if not os.path.exists(b) or open(a, "rb").read() != open(b, "rb").read():
             shutil.copyfile(a, b)
             shutil.copymode(a, b)
+
+
+def programs():
+    """All built test programs."""
+    return [f[:-2] for d in ("unit", "fuzz") for f in sorted(os.listdir(os.path.join(TREE, "tests", d))) if f.endswith(".c") and f != "driver.c"]
 
 
 def suites():
@@ -84,7 +89,9 @@ def run_suite(suite, build, env, limit):
     """Status of a suite, 0: green; and its seconds."""
     logs = os.path.join(TREE, build, "test", "log")
     begin = time.time()
-    sh("sh tests/run.sh --run-one %s %d" % (suite, limit), env=env)
+    said = sh("sh tests/run.sh --run-one %s %d %s" % (suite, limit, logs), env=env).stdout.decode(errors="replace")
+    if not os.path.exists(os.path.join(logs, suite + ".done")):
+        sys.exit("mutants: tests/run.sh does not run %s:\n%s" % (suite, said[-2000:]))
     log = open(os.path.join(logs, suite + ".log"), errors="replace").read()
     status = int(open(os.path.join(logs, suite + ".done")).read().split()[0])
     return status or (1 if re.search("^not ok", log, re.M) else 0), time.time() - begin
@@ -105,11 +112,12 @@ class Map:
         missing = [s for s in all_suites if s not in self.seconds]
         if not missing:
             return
-        bins = " ".join("cov/test/bin/" + os.path.basename(f)[:-2] for d in ("unit", "fuzz") for f in sorted(os.listdir(TREE + "/tests/" + d)) if f.endswith(".c") and f != "driver.c")
+        scripts = any(not s.startswith(("unit/", "fuzz/")) for s in missing)  # their helpers are built with all others
+        bins = " ".join("cov/test/bin/" + n for n in (programs() if scripts else [s.split("/")[1] for s in missing]))
         os.makedirs(self.folder, exist_ok=True)
         counted = os.path.join(TREE, "tests", "coverage", "counted.h")
         flags = "BUILD=cov SAN_BUILD=cov PRECISIONS= CLANG= CFLAGS='-O0 -include %s' SAN=--coverage SAN_FLAGS=--coverage" % counted
-        made = sh("make -s -j2 %s all %s" % (flags, bins))
+        made = sh("make -s -j2 %s CCACHE= %s %s" % (flags, "all" if scripts else "", bins))
         make_home("cov")
         if not os.path.islink(os.path.join(TREE, "cov", "san")):
             os.symlink(".", os.path.join(TREE, "cov", "san"))
@@ -130,6 +138,10 @@ class Map:
                 self.seconds[s] = took
                 print("reached by %s, %.0f s" % (s, took), flush=True)
                 json.dump(self.seconds, open(os.path.join(self.folder, "seconds.json"), "w"))
+
+    def keep(self, asked):
+        """Forgets the suites of another run."""
+        self.seconds = {s: t for s, t in self.seconds.items() if s in asked}
 
     def of(self, suite, path):
         """The lines of a file that a suite executes."""
@@ -181,6 +193,12 @@ class Builds:
 
     def plain(self):
         return sh("make -s -j2 " + self.settings + " all build/test/bin/mutate build/test/bin/dump_words build/test/bin/dump_syntax build/test/bin/cut_effects")
+
+    def first(self, asked):
+        """The libraries, and the compiler where scripts are asked."""
+        self.san([])
+        if any(not s.startswith(("unit/", "fuzz/")) for s in asked):
+            self.plain()
 
     def is_red(self, suite, limit):
         return run_suite(suite, "build", environment("build"), limit)[0] != 0
@@ -311,8 +329,7 @@ class Judge:
         n = (multiprocessing.current_process()._identity or (1,))[-1] - 1
         TREE = MEASURED + (str(n + 1) if n else "")
         builds = Builds()
-        builds.san([])
-        builds.plain()
+        builds.first(self.reach.seconds)
         self.trial, self.rows = Trial(self.reach, builds, self.longest), equivalents()
 
     def verdict(self, i):
@@ -346,9 +363,12 @@ def main():
     a = p.parse_args()
     copy_tree()
     reach, builds = Map(), Builds()
-    builds.san([])
-    builds.plain()
-    reach.measure([s for s in suites() if s.startswith(tuple(a.suites.split(",")))], a.jobs)
+    asked = [s for s in suites() if s.startswith(tuple(a.suites.split(",")))]
+    if not asked:
+        sys.exit("mutants: no suite's name begins with " + a.suites)
+    builds.first(asked)
+    reach.measure(asked, a.jobs)
+    reach.keep(asked)
     pool = draw(a.seed, a.only)
     if a.change:
         pool = [x for x in pool if x[0].new.strip() == a.change.strip()]

@@ -237,6 +237,39 @@ for name, call in (("of a batch", lambda m: m.batch(u=lambda t: 1 / 0, x=[0, 1],
         ok(f"an input {name} that raises", True)
 raises("an input as an array", lagc.Error, "one value or one function", lambda: lagc.load(path).batch(u=[0, 1], times=[1]))
 near("a constant", lagc.load(path, {"N": 3}).run(u=6)["x"][-1], 1, 1e-9)
+# ---- what is no method, name, number of threads, sign ----
+raises("a method that is a number", lagc.Error, "method = 7: give a text", lambda: twice.run(method=7))
+raises("a name that is a number", lagc.Error, "1 is not a name", lambda: twice.run(values={1: 2}))
+raises("values that are no dictionary", lagc.Error, "give a dictionary", lambda: twice.batch(values=3, times=[1]))
+raises("a scene that is a number", lagc.Error, "has no scene 7", lambda: twice.run(7))
+raises("threads below 1", lagc.Error, "threads = -3", lambda: twice.batch(times=[1], threads=-3))
+raises("a motion with a wrong sign", lagc.Error, "motion 1: m1 = -2: the model declares m1 > 0", lambda: double.batch("swing", m1=[1, -2, 3], times=[1]))
+ends, block = double.batch("swing", th1=[1, 2, 3], times=[1], method="rk4", step=0.01).y, np.zeros(13)
+starts = block[:12].reshape(3, 4)
+starts[:] = double.batch("swing", times=[0]).y[0, 0]
+starts[:, 0] = 1, 2, 3
+ok("states that overwrite their starts", np.array_equal(double.batch("swing", y0=starts, times=[1], method="rk4", step=0.01, out=block[1:].reshape(3, 1, 4)).y, ends))
+
+# ---- the text of a model is that of its loading; Ctrl-C ends a run ----
+import os, signal, threading, time  # noqa: E401
+with open(path, "w") as f:
+    f.write("model ball\ncoord x [m]\nparam g = 1 [m/s^2]\nkinetic = x'^2/2\nforce x = g\nscene run { span 1 [s] }\n")
+ball = lagc.load(path)
+with open(path, "w") as f:
+    f.write("model ball\ncoord x [m]\nparam g = 2 [m/s^2]\nkinetic = x'^2/2\nforce x = g\nscene run { span 1 [s] }\n")
+near("a method that is compiled after the file was edited: the text as it was loaded", ball.run(method="gauss", step=0.1)["x"][-1], 0.5, 1e-12)
+near("sweeps, too", ball.sweep(x=[0, 1], measure={"X": "x"}, method="rk4", step=0.1)["X"], [0.5, 1.5], 1e-12)
+ball.run(times=[1], method="rk4", step=1e-3)
+threading.Timer(0.1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+began = time.time()
+try:
+    ball.run(times=[1e9], method="rk4", step=1e-3)
+except KeyboardInterrupt:
+    pass
+ok("Ctrl-C in a long run is heard within a second", time.time() - began < 1.1, time.time() - began)
+lagc._PATIENCE = 1e-9
+near("a run that looks for it at each step has the same bits", ball.run(method="rk4", step=0.001)["x"][-1] - lagc.load(path).run(g=1, method="rk4", step=0.001)["x"][-1], 0, 0)
+
 # ---- sweeps: x(1) = x + v t of a free body ----
 with open(path, "w") as f:
     f.write("model free\ncoord x\nconst N = 1\nlagrangian = N*x'^2/2\nscene run { span 1 [s] }\n")
