@@ -292,6 +292,21 @@ $(BUILD)/gen/commands/language.h: grammar/LANGUAGE.md
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
 	@mv $@.part $@
+# Documents that help shows and searches.
+$(BUILD)/gen/commands/tutorial.h: models/TUTORIAL.md
+	@mkdir -p $(@D)
+	$(AS_C) >$@.part
+	@mv $@.part $@
+$(BUILD)/gen/commands/readme.h: README.md
+	@mkdir -p $(@D)
+	$(AS_C) >$@.part
+	@mv $@.part $@
+$(BUILD)/gen/commands/python.txt: runtime/python/README.md
+	@mkdir -p $(@D)
+	@sed '/^Tests:/,$$d' $< >$@
+$(BUILD)/gen/commands/python.h: $(BUILD)/gen/commands/python.txt
+	$(AS_C) >$@.part
+	@mv $@.part $@
 $(BUILD)/gen/commands/complete_%.h: src/commands/complete.%
 	@mkdir -p $(@D)
 	$(AS_C) >$@.part
@@ -309,7 +324,7 @@ $(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen
 $(BUILD)/obj/src/emit/header_steps.o: $(patsubst %,$(BUILD)/gen/emit/%_text.h,composition dop853 rk4 rk45)
 $(BUILD)/obj/src/toolchain/toolchain.o: $(BUILD)/gen/toolchain/probe_text.h
 $(BUILD)/obj/src/fmu/fmu.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)
-$(BUILD)/obj/src/commands/help.o: $(BUILD)/gen/commands/language.h
+$(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,language python readme tutorial)
 $(BUILD)/obj/src/commands/verify.o: $(BUILD)/gen/commands/verify_driver.h
 $(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
 $(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(BUILD)/gen/numeric/edit_distance.h

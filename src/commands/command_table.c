@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "base/words.h"
+
 /* ---- the commands ---- */
 
 static const CommandRow commands[] = {
@@ -148,7 +150,8 @@ static const CommandRow commands[] = {
   {CMD_CACHE, "cache", NULL, "[--clear]", "show or empty the cache of simulators",
    "Shows the folder of built simulators, their number, their size and its limit; beyond the limit, simulators that were used longest ago are removed. "
    "Simulators are run only from a folder of yours that nobody else can write. LAGC_CACHE_MIB sets another limit, in MiB."},
-  {CMD_HELP, "help", NULL, "[TOPIC]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics."},
+  {CMD_HELP, "help", NULL, "[WORDS]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics. "
+   "Other words are searched in all pages, in the reference, the tutorial and README, and what answers them is shown, the best first: `lagc help normal modes`."},
   {CMD_COMPLETION, "completion", NULL, "bash|zsh|fish", "print the completion script of a shell",
    "Prints the script by which a shell completes the commands and options of lagc, and the scenes, parameters, methods and names of "
    "the model in question. `make install` puts it where these shells look; without `make install`,\n\n"
@@ -367,6 +370,8 @@ int option_takes_next(Command c, const char *word) {
   const OptionRow *row = option_find(c, word, &joined);
   return row && row->takes != TAKES_NOTHING && !joined;
 }
+
+int option_expert(const OptionRow *o) { return has_word("--math --fix --dump --no-gsl --define --precision", o->name); }
 
 int command_simulates(Command c) { return ((STEPS | C(MODES) | C(COST) | C(SWEEP)) & 1u << c) != 0; }
 int command_takes_values(Command c) { return command_simulates(c) || c == CMD_VERIFY || c == CMD_ACTION; }

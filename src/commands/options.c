@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/words.h"
+#include "commands/help_search.h"
 #include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
 static const char *usage(Arena *a, Command c) {
@@ -18,7 +19,9 @@ static const char *unknown_command(Arena *a, const char *word) {
   size_t len = strlen(word);
   if (len > 4 && strcmp(word + len - 4, ".lag") == 0) return arena_printf(a, "a command is missing before %s: `lagc run %s`, `lagc derive %s`, `lagc check %s`", word, word, word, word);
   Name near = suggest(word, names, n);
+  const char *way = help_way(word);
   if (near) return arena_printf(a, "unknown command `%s`: did you mean `%s`?", word, near);
+  if (way) return arena_printf(a, "unknown command `%s`: %s; `lagc help %s` says more", word, way, word);
   return arena_printf(a, "unknown command `%s`; `lagc help` lists them", word);
 }
 
@@ -222,7 +225,9 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
 /* Commands that read no model take at most one word. */
 static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char **error) {
   const char *arg = argc > 2 ? argv[2] : NULL;
-  if (argc > 3) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", argv[3], usage(a, o->command)));
+  if (o->command == CMD_HELP && arg) /* several words are a search */
+    for (int i = 3; i < argc; i++) arg = arena_printf(a, "%s %s", arg, argv[i]);
+  else if (argc > 3) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", argv[3], usage(a, o->command)));
   o->topic = arg;
   if (arg && (strcmp(arg, "--help") == 0 || strcmp(arg, "-h") == 0)) {
     o->topic = o->command == CMD_HELP ? NULL : command_find(o->command)->name;
