@@ -186,9 +186,28 @@ static void constraints(const App *app, const lag_stats *st, FILE *f) {
 }
 
 /* Notes: steps too long for the fastest oscillation; a symplectic method on a model for which it is not symplectic. */
+/* 1: the run ends in the state in which it began, without velocities. *started: a start is not 0. */
+static int stands_still(const App *app, int *started) {
+  const lag_model *m = app->scene->model;
+  *started = 0;
+  for (int i = 0; i < 2 * m->nq + m->nz; i++) {
+    double x = lag_sim_state_value(app->sim, i);
+    if (x != lag_sim_actual_start(app->sim, i) || (i >= m->nq && i < 2 * m->nq && x != 0)) return 0;
+    *started |= x != 0;
+  }
+  return app->status >= 0;
+}
+
 static void caveat(const App *app, const lag_stats *st, FILE *f) {
   const lag_method *m = lag_sim_method(app->sim);
   unsigned has = app->scene->model->flags;
+  int started;
+  if (st->steps > 0 && stands_still(app, &started)) {
+    const char *name = lag_state_column(app->sim, 0).name;
+    fputs("note: nothing moves: the scene begins at rest, where no force acts", f);
+    if (!started) fprintf(f, "; write a start into it, `start %s = 0.1`, or give one here: %s=0.1", name, name);
+    putc('\n', f);
+  }
   if (isfinite(st->unresolved)) {
     fprintf(f, "note: steps are longer than half a period, about %.2g s, of the fastest oscillation: its motion is wrong, even if the energy is kept; take "
                "--step %.0e or less, or radau, which damps the oscillation, or dop853, which resolves it\n", st->unresolved, st->unresolved / 20);
