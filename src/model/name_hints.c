@@ -120,6 +120,7 @@ static const char *const foreign_functions[][2] = {
   {"arcsin arccos arctan arctan2", "the inverse functions are `asin`, `acos`, `atan`, `atan2`"},
   {"sec csc cot", "write `1/cos(x)`, `1/sin(x)`, `1/tan(x)`"}, {"sqr square", "write `x^2`"}, {"fabs", "did you mean `abs`?"}, {"sgn signum", "did you mean `sign`?"},
   {"heaviside step", "write `if(x > 0, 1, 0)`"}, {"diff Diff dt D grad", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
+  {"delay delayed lag history", "a delay does not exist: equations hold the state of one moment; a lag of first order is a state, `flow z' = (x - z)/T`"},
   {"length mag magnitude", "the length of a vector is `norm(r)`"},
 };
 

@@ -121,5 +121,9 @@ LAG
 sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
 check "a contact opens" near a 0.5 s 1e-9
 check "once" grep -q '^ *n  *1' vals
+sed 's/span 1;/span 1; measure lifts = hit(table opens);/' lift.lag >lifts.lag
+"$LAGC" run lifts.lag --until 0.9 >out 2>err
+sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
+check "a contact opens, as a measure of the scene" near lifts 0.5 s 1e-9
 check "an event that does not" refused 'no event is called half opens' --measure 'hit(half opens)'
 tap_end
