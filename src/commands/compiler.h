@@ -37,6 +37,8 @@ int compiler_is_source(Compiler *c, const char *path);
 
 /* Writes the text to a file (NULL, "-": standard output), whole or not at all. Returns a STATUS. */
 int compiler_write(Compiler *c, const char *path, const StrBuf *text);
+/* The same of a report, unless an error was found while it was made. */
+int compiler_report(Compiler *c, const char *path, const StrBuf *text);
 
 /* Reads c->o.file into c->ast. Returns a STATUS. */
 int compiler_read(Compiler *c);

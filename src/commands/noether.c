@@ -29,5 +29,5 @@ int noether_print(Compiler *c, const char *scene, const char *format, StrBuf *ou
 
 int command_noether(Compiler *c) {
   StrBuf out = strbuf(c->arena);
-  return noether_print(c, c->o.scene, c->o.format, &out) ? compiler_write(c, c->o.output, &out) : STATUS_MODEL;
+  return noether_print(c, c->o.scene, c->o.format, &out) ? compiler_report(c, c->o.output, &out) : STATUS_MODEL;
 }

@@ -1,6 +1,7 @@
 /* Headings, equations, names and definitions of listings; each line has a form for text and one for LaTeX. */
 #include "report/listing_text.h"
 
+#include "model/printed_text.h"
 #include "symmetry/charges.h"
 
 int text_latex(const Text *t) { return t->style == PRINT_LATEX; }
@@ -13,12 +14,20 @@ void text_heading(Text *t, const char *title) {
 
 void text_end(Text *t) { text_put(t, "", "\\end{align*}\n"); }
 
+/* Compares e as printed with e; LaTeX, by the same printer in another style, is compared as text. A difference is an internal error. */
+static void check_printed(Text *t, Expr e) {
+  StrBuf as_text = strbuf(t->e->m->arena);
+  expr_print(t->g, e, PRINT_TEXT, &as_text);
+  if (!printed_says(t->e->m, sb_text(&as_text), e)) diag_error(t->e->m->diags, (Span){0}, "internal error: `%s` is not the formula that was to be printed", sb_text(&as_text));
+}
+
 void text_expr(Text *t, Expr e) {
   const double longest = 1e5, most_repeated = 8;
   uint32_t distinct;
   double size = expr_tree_size(t->g, e, &distinct);
   if (size <= longest || size <= most_repeated*distinct) {
     expr_print(t->g, e, t->style, t->out);
+    check_printed(t, e);
     return;
   }
   text_put(t, "(", "\\text{(");
