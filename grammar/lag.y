@@ -399,6 +399,7 @@ reach: primary[a] "[" indices[l] "]"        { $$ = ast_index(ast, @$, $a, $l); }
 tuple: "(" expr[e] "," exprs[l] ")" { $$ = ast_tuple(ast, @$, $e, $l); };
 args: %empty   { $$ = NONE_LIST; }
     | exprs[l] { $$ = $l; }
+    | exprs[l] "," arith[lo] ".." arith[hi] { $$ = ast_list_add(ast, $l, ast_window(ast, @$, $lo, $hi)); }
     | happening[e]               { $$ = ast_list($e); }
     | happening[e] "," exprs[l]  { $$ = ast_list_before(ast, $e, $l); }
     ;

@@ -82,7 +82,7 @@ static const Option options[] = {
     {"method", offsetof(Args, method), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP},
     {"tol", offsetof(Args, tol), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP}, {"accuracy", offsetof(Args, accuracy), 0, RUN},
     {"step", offsetof(Args, step), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP}, {"until", offsetof(Args, until), 0, ANY & ~MODES},
-    {"every", offsetof(Args, every), 0, RUN | SWEEP}, {"svg", offsetof(Args, svg), 0, RUN | LYAPUNOV | SWEEP},
+    {"every", offsetof(Args, every), 0, RUN | SWEEP}, {"skip", offsetof(Args, skip), 0, RUN}, {"svg", offsetof(Args, svg), 0, RUN | LYAPUNOV | SWEEP},
     {"plot-x", offsetof(Args, plot_x), 0, ANY}, {"plot-y", offsetof(Args, plot_ys), 2, ANY},
     {"portrait", offsetof(Args, portrait), 1, RUN}, {"potential", offsetof(Args, potential), 1, RUN},
     {"distance", offsetof(Args, distance), 1, RUN}, {"energy-error", offsetof(Args, energy_error), 1, RUN},
