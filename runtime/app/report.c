@@ -5,7 +5,7 @@
 #include "analysis/effect_variants.h"
 #include "app/app.h"
 
-enum { MOST_LINES = 24 };
+enum { MOST_LINES = 24, BESIDE_PICTURE = 4 };
 
 void lag_report_method(const App *app, char *s, size_t n) {
   const lag_method *m = lag_sim_method(app->sim);
@@ -136,12 +136,12 @@ static void charges_json(const App *app, Json *j) {
 
 static void final_state(const App *app, FILE *f) {
   const lag_model *m = app->scene->model;
-  int n = 2 * m->nq + m->nz;
-  for (int i = 0; i < n && i < MOST_LINES; i++) {
+  int n = 2 * m->nq + m->nz, most = n > MOST_LINES && (app->args.html || app->args.svg) ? BESIDE_PICTURE : MOST_LINES;
+  for (int i = 0; i < n && i < most; i++) {
     Column c = lag_state_column(app->sim, i);
     fprintf(f, "  %-14s %.15g%s%s\n", c.name, lag_sim_state_value(app->sim, i), c.unit[0] ? " " : "", c.unit);
   }
-  if (n > MOST_LINES) fprintf(f, "  (and %d more)\n", n - MOST_LINES);
+  if (n > most) fprintf(f, "  (and %d more)\n", n - most);
 }
 
 /* Whether constraint k is redundant at the start; contacts do not count. */

@@ -8,7 +8,7 @@
 /* ---- the commands ---- */
 
 static const CommandRow commands[] = {
-  {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric] [--verbose]", "parse, derive, prove symmetries and `expect` lines",
+  {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric] [--verbose] [--json]", "parse, derive, prove symmetries and `expect` lines",
    "Parses and derives the model for every scene (or the one named), and proves or refutes its `expect` lines. "
    "A proved line holds for all states at which both sides have real values; a refuted line comes with a state at which its sides differ. "
    "Exit status 0 if all is well, 1 if not.\n\n"
@@ -175,6 +175,7 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 static const OptionRow options[] = {
   {"--allow-numeric", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(allow_numeric),
    "an expectation that is not proved, but holds numerically to rounding, does not fail the check"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(json), "messages with their places, facts, scenes and verdicts as one JSON object"},
   {"--against", NULL, "FILE.c:FUNCTION", TAKES_TEXT, "", C(VERIFY), OWN(against), "the function to compare, and the file that has it"},
   {"--map", NULL, "NAME,NAME", TAKES_TEXT, "", C(VERIFY), OWN(map), "the order of the function's y, if it is another: th1,th1',th2,th2'"},
   {"--verbose", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(verbose), "also list the parts of the compiled programs that were compared with the text, and the number of states"},

@@ -24,6 +24,7 @@
 void compiler_print_messages(const Compiler *c) {
   StrBuf messages = strbuf(c->arena);
   if (!c->diags->errors) model_warn_unused(c->ast); /* by now the command line's expressions are read, too */
+  if (c->o.command == CMD_CHECK && c->o.json) return;
   diags_print(c->diags, &messages);
   fputs(sb_text(&messages), stderr);
 }
