@@ -160,15 +160,19 @@ cluster|lagc sweep MODEL RANGES --mpi
 air resistance|dissipation
 latex|--format text|latex|c
 conserved quantities|lagc noether
+moment of inertia|bodies.lag
+rolling without slipping|constraint roll
+run faster|lagc cost
+licence|0BSD
 stop a run|`stop` ends
 microcontroller|lagc header
 END
 is "options for experts stand in one place" "0 1" "$("$LAGC" help run | grep -c -e '--math\|--dump\|--fix\|--no-gsl\|--define\|--precision') $(chapter expert | grep -c -e '--math own')"
 check "the tutorial" finds "A first quarter of an hour" tutorial
-sed -n 's/^brought //p' "$TMP/words" >"$TMP/brought" # words | meanings
+sed -n 's/^BROUGHT //p' "$TMP/words" >"$TMP/brought" # words | meanings
 every_word() { sed 's/ *|.*//' "$TMP/brought" | tr ' ' '\n' | while read -r w; do explains "$w" || echo "$w"; done; }
 [ -z "${SLOW:-}" ] || empty "every word of the table of synonyms has an answer" "$(every_word)"
-shown() { sed -n 's/^way //p' "$TMP/words" | grep -o '`lagc [a-z]*' | sort -u; }
+shown() { sed -n 's/^WAY //p' "$TMP/words" | grep -o '`lagc [a-z]*' | sort -u; }
 empty "the table names commands that exist" "$(shown | while read -r _ c; do words command | grep -q -x "$c" || echo "$c"; done)"
 meant() { sed 's/.*| *//' "$TMP/brought" | tr ' ' '\n' | sort -u; }
 unsaid() { meant | while read -r w; do cat grammar/LANGUAGE.md README.md models/TUTORIAL.md runtime/python/README.md src/commands/command_table.c | grep -qiwF -e "$w" || echo "$w"; done; }
