@@ -114,13 +114,16 @@ static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, do
   }
 }
 
-/* Number of times that the column turns back. */
-static double turns_of(const Table *t, int ycol) {
-  double turns = 0, before = 0;
-  for (size_t i = 1; i < t->nrows; i++) {
-    double step = lag_table_cell(t, i, ycol) - lag_table_cell(t, i - 1, ycol);
-    turns += step * before < 0;
-    if (step != 0) before = step;
+/* Number of times that the column turns back, by more than a pixel. */
+static double turns_of(const Panel *p, const Table *t, int ycol) {
+  double turns = 0, way = 0, farthest = NAN, pixel = (p->y1 - p->y0) / p->h;
+  for (size_t i = 0; i < t->nrows; i++) {
+    double y = lag_table_cell(t, i, ycol), back = way * (farthest - y);
+    if (!isfinite(y)) continue;
+    if (isnan(farthest)) farthest = y;
+    else if (way == 0 && fabs(y - farthest) > pixel) way = y > farthest ? 1 : -1, farthest = y;
+    else if (way != 0 && back > pixel) way = -way, farthest = y, turns++;
+    else if (way * (y - farthest) > 0) farthest = y;
   }
   return turns;
 }
@@ -141,7 +144,7 @@ static void envelope(FILE *f, const Panel *p, const Table *t, int ycol, double t
 }
 
 static void one_curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, const char *stroke) {
-  double turns = xcol == 0 ? turns_of(t, ycol) : 0;
+  double turns = xcol == 0 ? turns_of(p, t, ycol) : 0;
   if (turns > p->w) { /* one cannot follow such a curve */
     envelope(f, p, t, ycol, turns, stroke);
     return;
