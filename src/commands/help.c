@@ -313,7 +313,7 @@ static int help_methods(Compiler *c, const char *name) {
 /* What the words of no page lead to: advice, the passages found, models. */
 static int search(Compiler *c, const char *topic) {
   StrBuf out = strbuf(c->arena), models = strbuf(c->arena);
-  const char *advice = help_way(topic) ? NULL : parse_advice(topic);
+  const char *advice = help_way(c->arena, topic) ? NULL : parse_advice(topic);
   if (advice) page_words(&out, advice, strlen(advice), 0, 0);
   int found = help_search(&out, topic);
   uint32_t n = models_list(c, topic, &models);

@@ -132,27 +132,24 @@ static unsigned count(const char *text, const char *stem_) {
   return found;
 }
 
-static size_t way_of(const char *word) {
-  Arena *a = arena_new(NULL);
-  const char *want = a ? stem(a, word) : "", *w;
+static size_t way_of(Arena *a, const char *word) {
+  const char *want = stem(a, word), *w = NULL;
   size_t found = 0, n = sizeof ways / sizeof *ways;
-  for (; a && found < n; found++) {
+  for (; found < n && !w; found += !w) {
     size_t k = 0;
     while ((w = word_at(a, ways[found].words, k)) != NULL && strcmp(stem(a, w), want) != 0) k++;
-    if (w) break;
   }
-  arena_free(a);
   return found;
 }
 
-const char *help_way(const char *word) {
-  size_t i = way_of(word);
+const char *help_way(Arena *a, const char *word) {
+  size_t i = way_of(a, word);
   return i < sizeof ways / sizeof *ways ? ways[i].way : NULL;
 }
 
 static Question question(Arena *a, const char *word) {
   Question q = {0};
-  size_t way = way_of(word);
+  size_t way = way_of(a, word);
   vec_push(a, &q.stems, stem(a, word));
   for (size_t k = 0; way < sizeof ways / sizeof *ways && word_at(a, ways[way].means, k); k++) vec_push(a, &q.stems, word_at(a, ways[way].means, k));
   return q;
@@ -256,7 +253,7 @@ int help_search(StrBuf *out, const char *words) {
   for (const char *s = words; *s && n < MOST;) {
     size_t len = strcspn(s, " "), next = strcspn(s + len + (s[len] == ' '), " ");
     const char *word = arena_strndup(a, s, len), *both = arena_printf(a, "%s%.*s", word, (int)next, s + len + (s[len] == ' '));
-    const char *way = help_way(both) ? help_way(both) : help_way(word); /* time step: timestep */
+    const char *way = help_way(a, both) ? help_way(a, both) : help_way(a, word); /* time step: timestep */
     s += len + (s[len] == ' ');
     if (!len || has_word(idle, word)) continue;
     asked[n++] = question(a, word);

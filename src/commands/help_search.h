@@ -7,4 +7,4 @@
 int help_search(StrBuf *out, const char *words);
 
 /* The way to do what a word from elsewhere means, as a sentence: "jacobian", "fit"; NULL. */
-const char *help_way(const char *word);
+const char *help_way(Arena *a, const char *word);

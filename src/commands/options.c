@@ -19,7 +19,7 @@ static const char *unknown_command(Arena *a, const char *word) {
   size_t len = strlen(word);
   if (len > 4 && strcmp(word + len - 4, ".lag") == 0) return arena_printf(a, "a command is missing before %s: `lagc run %s`, `lagc derive %s`, `lagc check %s`", word, word, word, word);
   Name near = suggest(word, names, n);
-  const char *way = help_way(word);
+  const char *way = help_way(a, word);
   if (near) return arena_printf(a, "unknown command `%s`: did you mean `%s`?", word, near);
   if (way) return arena_printf(a, "unknown command `%s`: %s; `lagc help %s` says more", word, way, word);
   return arena_printf(a, "unknown command `%s`; `lagc help` lists them", word);

@@ -123,12 +123,23 @@ static Expr read(const Model *m, Arena *scratch, const char *text, Expr like, Kn
   return r.value[root - r.first];
 }
 
+typedef struct {
+  const Model *m;
+  const char *text;
+  Expr like, value;
+  KnownPart known;
+  const void *data;
+} Reading;
+
+static void read_in(Arena *scratch, void *data) {
+  Reading *r = data;
+  r->value = read(r->m, scratch, r->text, r->like, r->known, r->data);
+}
+
 Expr printed_value(const Model *m, const char *text, Expr like, KnownPart known, const void *data) {
-  Arena *scratch = arena_new(NULL);
-  if (!scratch) return 0;
-  Expr e = read(m, scratch, text, like, known, data);
-  arena_free(scratch);
-  return e;
+  Reading r = {m, text, like, 0, known, data};
+  arena_with_scratch(m->arena, read_in, &r);
+  return r.value;
 }
 
 /* ---- comparison ---- */
