@@ -163,3 +163,10 @@ int printed_says(const Model *m, const char *text, Expr e) {
   for (uint32_t seed = 1; seed <= STATES; seed++) wrong += differs(m->g, tape, seed, symbols);
   return wrong <= MOST;
 }
+
+void expr_print_checked(const Model *m, Expr e, PrintStyle style, StrBuf *out) {
+  StrBuf as_text = strbuf(m->arena);
+  expr_print(m->g, e, style, out);
+  expr_print(m->g, e, PRINT_TEXT, &as_text);
+  if (!printed_says(m, sb_text(&as_text), e)) diag_error(m->diags, (Span){0}, "internal error: `%s` is not the formula that was to be printed", sb_text(&as_text));
+}

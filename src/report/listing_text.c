@@ -14,20 +14,12 @@ void text_heading(Text *t, const char *title) {
 
 void text_end(Text *t) { text_put(t, "", "\\end{align*}\n"); }
 
-/* Compares e as printed with e; LaTeX, by the same printer in another style, is compared as text. A difference is an internal error. */
-static void check_printed(Text *t, Expr e) {
-  StrBuf as_text = strbuf(t->e->m->arena);
-  expr_print(t->g, e, PRINT_TEXT, &as_text);
-  if (!printed_says(t->e->m, sb_text(&as_text), e)) diag_error(t->e->m->diags, (Span){0}, "internal error: `%s` is not the formula that was to be printed", sb_text(&as_text));
-}
-
 void text_expr(Text *t, Expr e) {
   const double longest = 1e5, most_repeated = 8;
   uint32_t distinct;
   double size = expr_tree_size(t->g, e, &distinct);
   if (size <= longest || size <= most_repeated*distinct) {
-    expr_print(t->g, e, t->style, t->out);
-    check_printed(t, e);
+    expr_print_checked(t->e->m, e, t->style, t->out);
     return;
   }
   text_put(t, "(", "\\text{(");
