@@ -199,7 +199,8 @@ static int skip_transient(App *app) {
 
 static void run(App *app) {
   int skipped = skip_transient(app);
-  int rows = app->section < 0 && (app->args.out || (app->table.keep && (app->args.every || !app->sampling.on))), rc = skipped ? skipped : lag_app_measures_begin(app), begun = !skipped && rc >= 0;
+  int rows = app->section < 0 && (app->args.out || (app->table.keep && (app->args.every || !app->sampling.on))),
+      rc = skipped ? skipped : lag_app_measures_begin(app), begun = !skipped && rc >= 0;
   rc = rows && rc == 0 ? run_rows(app) : rc;
   if (rc == 0) {
     rc = lag_sampling_advance(app, app->until);
@@ -355,7 +356,8 @@ int lag_app_interrupted(void) { return EXIT_SIGNAL + interrupted; }
 
 int lag_app_run(App *app) {
   int rc = lag_app_set_up(app);
-  if (rc || (rc = lag_section_choose(app)) != 0 || (rc = lag_app_check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_skip(app)) != 0 || (rc = choose_grid(app)) != 0)
+  if (rc || (rc = lag_section_choose(app)) != 0 || (rc = lag_app_check_outputs(app)) != 0 ||
+      (rc = choose_end(app)) != 0 || (rc = choose_skip(app)) != 0 || (rc = choose_grid(app)) != 0)
     return rc;
   if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {
     return lag_app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",

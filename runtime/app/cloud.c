@@ -14,7 +14,8 @@ enum { LEAST_STARTS = 8, MOST_STARTS = 10000, MOST_TIMES = 100, SAMPLES = 400, T
 typedef struct Cloud {
   App *app;          /* the command line; its table and curves are those of the picture */
   App run;           /* the method at work: set up, its table without rows */
-  int asked, n, times, reached; /* starts of the command line; of the method at work; times at which they are drawn; those that all starts of the method at work have reached */
+  int asked, n, times, reached; /* starts of the command line; of the method at work; times at which they are drawn;
+                                   those that all starts of the method at work have reached */
   double part;       /* half-axes of the ellipse, as a part of the half-range of the motion */
   double until, every;
   int component[2];  /* of the state, that are displaced, */
@@ -253,7 +254,9 @@ static int one_method(Cloud *c, int method) {
     rc = rc ? rc : choose_plane(c);
     rc = rc ? rc : find_half_axes(c);
     rc = rc ? rc : open_table(c);
-    if (rc == 0) snprintf(c->title, sizeof c->title, "%s: %s, %d starts, drawn each %.6g s", c->run.scene->model->name, c->run.scene->name, c->asked, fabs(c->every));
+    if (rc == 0)
+      snprintf(c->title, sizeof c->title, "%s: %s, %d starts, drawn each %.6g s", c->run.scene->model->name,
+               c->run.scene->name, c->asked, fabs(c->every));
   }
   rc = rc ? rc : carry_enough(c);
   rc = rc ? rc : add_curves(c, method);

@@ -390,7 +390,10 @@ static int not_found(const App *app, const Equilibrium *r) {
   const lag_model *m = app->scene->model;
   if (runs_steadily(app)) {
     json_none(app);
-    lag_app_error(&app->args, "no equilibrium found from the start of scene %s, but a motion that runs steadily, along which only cyclic coordinates change: write --steady", app->scene->name);
+    lag_app_error(
+        &app->args,
+        "no equilibrium found from the start of scene %s, but a motion that runs steadily, along which only cyclic coordinates change: write --steady",
+        app->scene->name);
     return EXIT_RUN;
   }
   int i = r->worst, nq = m->nq, at = nq + i;

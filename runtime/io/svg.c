@@ -11,9 +11,8 @@
 
 enum { GAP = 26, MOST_PANELS = 6, MOST_LEGEND = 24, MOST_NAME = 48, LINE = 18, MEMBER = 1024 };
 
-
-/* text[n] := stroke attributes of series k: the second eight series are dashed, the third dotted; of a family's n members, k = MEMBER*n + i, colours run from
- * blue over violet to orange. */
+/* text[n] := stroke attributes of series k: the second eight series are dashed, the third dotted; of a family's n
+ * members, k = MEMBER*n + i, colours run from blue over violet to orange. */
 static void stroke_of(int k, char *text, size_t n) {
   static const char *const dashes[] = {"", " stroke-dasharray=\"5 3\"", " stroke-dasharray=\"1.5 2.5\""};
   static const int by_index[3][3] = {{0, 60, 160}, {170, 50, 150}, {235, 150, 20}};
@@ -23,7 +22,8 @@ static void stroke_of(int k, char *text, size_t n) {
   }
   double at = 2.0 * (k % MEMBER) / (k / MEMBER - 1), part = at < 1 ? at : at - 1;
   const int *from = by_index[at < 1 ? 0 : 1], *to = by_index[at < 1 ? 1 : 2];
-  snprintf(text, n, "stroke=\"#%02x%02x%02x\"", (int)(from[0] + part * (to[0] - from[0])), (int)(from[1] + part * (to[1] - from[1])), (int)(from[2] + part * (to[2] - from[2])));
+  snprintf(text, n, "stroke=\"#%02x%02x%02x\"", (int)(from[0] + part * (to[0] - from[0])),
+           (int)(from[1] + part * (to[1] - from[1])), (int)(from[2] + part * (to[2] - from[2])));
 }
 
 static int same_family(const char *a, const char *b) {
@@ -31,8 +31,8 @@ static int same_family(const char *a, const char *b) {
   return a[n] == '[' && strncmp(a, b, n + 1) == 0;
 }
 
-/* The colour of series i, the k-th of its panel's `total`, which has the columns of a unit (NULL: all): by its index in a range of runs, or among three or more
- * members of a family x[1], x[2], ...; else by its run, or its place. */
+/* The colour of series i, the k-th of its panel's `total`, which has the columns of a unit (NULL: all): by its index in
+ * a range of runs, or among three or more members of a family x[1], x[2], ...; else by its run, or its place. */
 static int series_stroke(const Table *t, const PlottedCurves *d, const char *unit, int i, int k, int total) {
   const char *name = t->cols[d->y[i]].name;
   int n = 0, index = 0;
@@ -128,10 +128,12 @@ static double turns_of(const Panel *p, const Table *t, int ycol) {
   return turns;
 }
 
-/* The area between the least and the largest value of each part, with its edges; a part has a pixel or more, and four turns of the curve. */
+/* The area between the least and the largest value of each part, with its edges; a part has a pixel or more, and four
+ * turns of the curve. */
 static void envelope(FILE *f, const Panel *p, const Table *t, int ycol, double turns, const char *stroke) {
   size_t per = (size_t)((double)t->nrows / fmin(p->w, turns / 4)) + 1, n = (t->nrows + per - 1) / per;
-  fprintf(f, "<path %s stroke-width=\"1\" fill-opacity=\"0.25\" fill=\"%.7s\" d=\"", stroke, strchr(stroke, '#') ? strchr(stroke, '#') : "#000000");
+  fprintf(f, "<path %s stroke-width=\"1\" fill-opacity=\"0.25\" fill=\"%.7s\" d=\"", stroke,
+          strchr(stroke, '#') ? strchr(stroke, '#') : "#000000");
   for (size_t k = 0, pen = 0; k < 2 * n; k++) {
     size_t from = (k < n ? k : 2 * n - 1 - k) * per, end = from + per < t->nrows ? from + per : t->nrows;
     double most = NAN, sign = k < n ? 1 : -1;
@@ -236,7 +238,8 @@ static void draw_series(FILE *f, const Panel *p, const Table *t, const PlottedCu
     if (unit && strcmp(t->cols[y].unit, unit) != 0) continue;
     int stroke = series_stroke(t, d, unit, i, shown, total);
     curve(f, p, t, x, y, d->beneath.period, stroke);
-    int some = d->ordered && total > LISTED, told = !some || shown * SOME % (total - 1) < SOME; /* of many runs about SOME, the first and the last */
+    int some = d->ordered && total > LISTED,
+        told = !some || shown * SOME % (total - 1) < SOME; /* of many runs about SOME, the first and the last */
     if (told && (unit || total > 1)) legend(f, p, line++, some ? SOME + 1 : total, stroke, t->cols[y].name);
     shown++;
   }
@@ -372,7 +375,9 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   else if (d->beneath.value) lag_svg_levels(f, &p, &d->beneath);
   draw_series(f, &p, t, d, NULL);
   for (const PictureNote *note = d->note; note && note < d->note + d->nnotes; note++)
-    lag_svg_text(f, lag_panel_x(&p, note->x), lag_panel_y(&p, note->y) + 4, "font-size=\"11\" text-anchor=\"middle\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"", note->text);
+    lag_svg_text(f, lag_panel_x(&p, note->x), lag_panel_y(&p, note->y) + 4,
+                 "font-size=\"11\" text-anchor=\"middle\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"",
+                 note->text);
   if (!x) put_horizon(f, &p, t, 1);
   if (x && t->certain && !t->points) {
     double at = p.x + p.w + 14, below = p.y + p.h - 8;

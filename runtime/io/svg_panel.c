@@ -68,8 +68,9 @@ static double label_stride(const Panel *p, double dx) {
 static void put_label(FILE *f, double x, double y, const char *attributes, const char *s) {
   const char *power = strstr(s, "10^");
   if (!power) lag_svg_text(f, x, y, attributes, s);
-  else fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>%.*s%s10<tspan dy=\"-5\" font-size=\"9\">%s</tspan></text>\n", x, y, attributes, (int)strcspn(s, "*1"), s,
-               power > s ? "\302\267" : "", power + 3);
+  else
+    fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>%.*s%s10<tspan dy=\"-5\" font-size=\"9\">%s</tspan></text>\n", x, y,
+            attributes, (int)strcspn(s, "*1"), s, power > s ? "\302\267" : "", power + 3);
 }
 
 /* A line of the grid at x, and its label, if it has one. */

@@ -219,7 +219,8 @@ static void guess_number(EditSearch *md, const Site *s, const char *text, Expr r
     guess(md, s, with, COST_SLIP, s->span, arena_printf(md->arena, "the factor `%s` should not be there", text));
     return;
   }
-  Guess *g = guess_text(md, s, with, COST_SLIP + (num_sign(n) < 0), number->span, arena_printf(md->arena, "`%s` should be", text), text_of(md, shown));
+  Guess *g = guess_text(md, s, with, COST_SLIP + (num_sign(n) < 0), number->span,
+                        arena_printf(md->arena, "`%s` should be", text), text_of(md, shown));
   g->caret = s->span;
   if (x != number) g->after = arena_printf(md->arena, " [%s]", x->unit.text);
 }
@@ -240,8 +241,12 @@ static void guess_power(EditSearch *md, const Site *s, const char *text, const N
   if (exponent) {
     const char *old = short_text(md->m->ast, exponent->span);
     Expr shown = expr_num(md->g, n);
-    if (num_is_one(n)) guess(md, s, with, COST_SLIP, span_join(x->op_span, exponent->span), arena_printf(md->arena, "the exponent `%s` should not be there", old));
-    else guess_text(md, s, with, COST_SLIP, exponent->span, arena_printf(md->arena, "the exponent `%s` should be", old), text_of(md, shown));
+    if (num_is_one(n))
+      guess(md, s, with, COST_SLIP, span_join(x->op_span, exponent->span),
+            arena_printf(md->arena, "the exponent `%s` should not be there", old));
+    else
+      guess_text(md, s, with, COST_SLIP, exponent->span, arena_printf(md->arena, "the exponent `%s` should be", old),
+                 text_of(md, shown));
     return;
   }
   int product = s->role == SITE_FACTOR || s->role == SITE_DIVISOR;
@@ -251,7 +256,8 @@ static void guess_power(EditSearch *md, const Site *s, const char *text, const N
   }
   if (s->role == SITE_BASE || num_sign(n) <= 0) return;
   const char *power = text_of(md, expr_num(md->g, n)), *whole = num_is_int(n) ? "^%s" : "^(%s)";
-  int alone = x->kind == AST_NAME || x->kind == AST_CALL || x->kind == AST_PRIME || x->kind == AST_MEMBER || x->kind == AST_INDEX || s->span.begin < x->span.begin;
+  int alone = x->kind == AST_NAME || x->kind == AST_CALL || x->kind == AST_PRIME || x->kind == AST_MEMBER ||
+              x->kind == AST_INDEX || s->span.begin < x->span.begin;
   guess_text(md, s, with, COST_POWER, s->span, arena_printf(md->arena, "`%s` should be", text),
              arena_printf(md->arena, alone ? "%s%s" : "(%s)%s", text, arena_printf(md->arena, whole, power)))->own = alone ? 1 : 2;
 }
@@ -467,7 +473,8 @@ static int pasted_is_proved(EditSearch *md, const Guess *guess, const char *text
   return value && prove_by_motion(md->e, right ? md->x->lhs : value, right ? value : md->x->rhs) == PROVED_ZERO;
 }
 
-/* The sentence of a guess that is proved, with parentheses around the new text where its place needs them; NULL: the text would say something else. */
+/* The sentence of a guess that is proved, with parentheses around the new text where its place needs them; NULL: the
+ * text would say something else. */
 static const char *proved_sentence(EditSearch *md, const Guess *guess) {
   if (!guess_is_proved(md, guess)) return NULL;
   if (!guess->text) return guess->edit;

@@ -32,7 +32,8 @@ static void put_span(StrBuf *out, const Sources *sources, Span span) {
   if (!p.file) sb_puts(out, ", \"file\": null, \"line\": null, \"column\": null, \"end_line\": null, \"end_column\": null");
   else {
     put_member(out, "file", p.file->path);
-    sb_printf(out, ", \"line\": %u, \"column\": %u, \"end_line\": %u, \"end_column\": %u", p.line, p.column, end.file ? end.line : p.line, end.file ? end.column : p.column);
+    sb_printf(out, ", \"line\": %u, \"column\": %u, \"end_line\": %u, \"end_column\": %u", p.line, p.column,
+              end.file ? end.line : p.line, end.file ? end.column : p.column);
   }
 }
 
@@ -47,7 +48,8 @@ void check_json_facts(Compiler *c, const Eqns *e, const StrBuf *lines) {
   StrBuf *out = begin(c, JSON_FACTS);
   const Model *m = e->m;
   const char *energy = strstr(sb_text(lines), "energy is ");
-  sb_printf(out, "\"coordinates\": %u, \"states\": %u, \"parameters\": %u, \"constraints\": %u, \"contacts\": %u", eqns_coordinates(e), m->states.n - e->first.n, m->params.n, m->constraints.n, m->contacts.n);
+  sb_printf(out, "\"coordinates\": %u, \"states\": %u, \"parameters\": %u, \"constraints\": %u, \"contacts\": %u",
+            eqns_coordinates(e), m->states.n - e->first.n, m->params.n, m->constraints.n, m->contacts.n);
   put_member(out, "energy", energy ? arena_strndup(c->arena, energy + 10, strcspn(energy + 10, "\n")) : NULL);
 }
 
@@ -130,12 +132,15 @@ static void put_messages(StrBuf *out, const Diags *d) {
 }
 
 int check_json_print(Compiler *c) {
-  static const char *const names[] = {"facts", "scenes", "symmetries", "expectations", "units", "report"}, brackets[][3] = {"{}", "[]", "[]", "[]", "{}", "[]"};
+  static const char *const names[] = {"facts", "scenes", "symmetries", "expectations", "units", "report"},
+                           brackets[][3] = {"{}", "[]", "[]", "[]", "{}", "[]"};
   StrBuf out = strbuf(c->arena);
   sb_puts(&out, "{\"schema\": \"lagc-check-1\"");
   put_member(&out, "file", c->o.file);
   sb_printf(&out, ", \"ok\": %s", c->diags->errors ? "false" : "true");
-  for (int k = 0; k < JSON_LISTS; k++) sb_printf(&out, ",\n \"%s\": %c%s%c", names[k], brackets[k][0], c->json[k].n ? sb_text(&c->json[k]) : "", brackets[k][1]);
+  for (int k = 0; k < JSON_LISTS; k++)
+    sb_printf(&out, ",\n \"%s\": %c%s%c", names[k], brackets[k][0], c->json[k].n ? sb_text(&c->json[k]) : "",
+              brackets[k][1]);
   sb_puts(&out, ",\n \"messages\": [");
   put_messages(&out, c->diags);
   sb_printf(&out, "],\n \"messages_not_shown\": %u}\n", c->diags->list.n > DIAG_MAX ? c->diags->unshown + 1 : 0);

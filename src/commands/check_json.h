@@ -1,4 +1,5 @@
-/* `lagc check --json`: all messages with their spans, facts, scenes and verdicts as one JSON object, schema lagc-check-1 (grammar/LANGUAGE.md, the command line). */
+/* `lagc check --json`: all messages with their spans, facts, scenes and verdicts as one JSON object, schema
+ * lagc-check-1 (grammar/LANGUAGE.md, the command line). */
 #pragma once
 
 #include "claims/expect.h"

@@ -59,7 +59,9 @@ int compiler_write(Compiler *c, const char *path, const StrBuf *text) {
   return usage_error(arena_printf(c->arena, "cannot write %s: %s", path ? path : "standard output", why));
 }
 
-int compiler_report(Compiler *c, const char *path, const StrBuf *text) { return c->diags->errors ? STATUS_MODEL : compiler_write(c, path, text); }
+int compiler_report(Compiler *c, const char *path, const StrBuf *text) {
+  return c->diags->errors ? STATUS_MODEL : compiler_write(c, path, text);
+}
 
 /* --- the stages --- */
 

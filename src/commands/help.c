@@ -228,8 +228,10 @@ static void put_overview(StrBuf *out) {
                "usage: lagc COMMAND MODEL [SCENE] [options]\n\n");
   for (size_t i = 0; command_row(i); i++)
     if (command_row(i)->does) page_term(out, command_row(i)->name, command_row(i)->does, TERMS);
-  sb_puts(out, "\nlagc help tutorial is a quarter of an hour, lagc help python the way from Python.\n"
-               "lagc help WORDS searches all of them (lagc help normal modes). Topics: each command,\nfunction, unit and option; expert; and\n\n");
+  sb_puts(
+      out,
+      "\nlagc help tutorial is a quarter of an hour, lagc help python the way from Python.\n"
+      "lagc help WORDS searches all of them (lagc help normal modes). Topics: each command,\nfunction, unit and option; expert; and\n\n");
   for (uint32_t i = 0; i < chapters.n; i++) {
     const char *words = chapters.at[i].words, *first = word_at(a, words, 0);
     uint32_t before = shown.n;

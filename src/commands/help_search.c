@@ -1,5 +1,6 @@
-/* Ranked search: every passage (a paragraph, item or row of a document, a command, an option) gets a weight for each word of the question, more where the word
- * is rare, stands in the title, or is the user's own and not a synonym; passages that have all words come first. */
+/* Ranked search: every passage (a paragraph, item or row of a document, a command, an option) gets a weight for each
+ * word of the question, more where the word is rare, stands in the title, or is the user's own and not a synonym;
+ * passages that have all words come first. */
 #include "commands/help_search.h"
 
 #include <ctype.h>
@@ -45,7 +46,8 @@ static void add_document(Arena *a, Passages *to, const Document *d) {
     int code;
     n = page_block(&text, d->lines + i, d->n - i, &code);
     if (document_heading(d->lines[i])) {
-      const char *heading = d->lines[i] + strspn(d->lines[i], "# "), *word = i + 1 < d->n ? word_at(a, document_words(a, d->lines[i + 1]), 0) : NULL;
+      const char *heading = d->lines[i] + strspn(d->lines[i], "# "),
+                 *word = i + 1 < d->n ? word_at(a, document_words(a, d->lines[i + 1]), 0) : NULL;
       title = arena_strndup(a, heading, strcspn(heading, "\n"));
       topic = word ? word : d->topic;
     }
@@ -91,8 +93,9 @@ static const struct {
 
 static int is_letter(char c) { return isalnum((unsigned char)c) || c == '_' || (unsigned char)c >= 0x80; }
 
-static const char *const endings[] = {"isations", "izations", "isation", "ization", "ations", "ising", "izing", "ation", "ised", "ized", "ises", "izes", "ings", "ise", "ize",
-                                      "ies", "ing", "ed", "es", "ic", "s", "e", "y"};
+static const char *const endings[] = {"isations", "izations", "isation", "ization", "ations", "ising", "izing", "ation",
+                                      "ised",     "ized",     "ises",    "izes",    "ings",   "ise",   "ize",   "ies",
+                                      "ing",      "ed",       "es",      "ic",      "s",      "e",     "y"};
 enum { N_ENDINGS = sizeof endings / sizeof *endings };
 
 /* The word in small letters without its ending: linearizing, linearisation -> linear; at least four letters stay. */
@@ -151,7 +154,8 @@ static Question question(Arena *a, const char *word) {
   Question q = {0};
   size_t way = way_of(a, word);
   vec_push(a, &q.stems, stem(a, word));
-  for (size_t k = 0; way < sizeof ways / sizeof *ways && word_at(a, ways[way].means, k); k++) vec_push(a, &q.stems, word_at(a, ways[way].means, k));
+  for (size_t k = 0; way < sizeof ways / sizeof *ways && word_at(a, ways[way].means, k); k++)
+    vec_push(a, &q.stems, word_at(a, ways[way].means, k));
   return q;
 }
 
@@ -243,7 +247,8 @@ static void put_answers(StrBuf *out, const Passages *in, const Question *asked, 
 }
 
 int help_search(StrBuf *out, const char *words) {
-  static const char idle[] = "a an the how to do does i is are of for with and or in on my me can what find make get use using lagc it from by as at";
+  static const char idle[] =
+      "a an the how to do does i is are of for with and or in on my me can what find make get use using lagc it from by as at";
   enum { MOST = 8 };
   Arena *a = out->arena;
   Question asked[MOST];

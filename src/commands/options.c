@@ -126,10 +126,14 @@ static int set_value(Arena *a, Options *o, const OptionRow *row, const char *val
 
 /* The option that other programs write as `arg`; NULL: unknown. */
 static const char *meant_option(const char *arg) {
-  static const char *const other[][2] = {{"--dt --timestep --stepsize --h", "--step"}, {"--tolerance --rtol --atol --eps --accuracy", "--tol"},
-                                         {"--time --tmax --tend --end --t1 --span --duration", "--until"}, {"--integrator --solver", "--method"},
-                                         {"--plot --image --figure --png --pdf --picture", "--svg"}, {"--sampling --interval --fps", "--every"},
-                                         {"--float --single --double --long-double --quad --float128 --digits", "--precision"}};
+  static const char *const other[][2] = {
+      {"--dt --timestep --stepsize --h", "--step"},
+      {"--tolerance --rtol --atol --eps --accuracy", "--tol"},
+      {"--time --tmax --tend --end --t1 --span --duration", "--until"},
+      {"--integrator --solver", "--method"},
+      {"--plot --image --figure --png --pdf --picture", "--svg"},
+      {"--sampling --interval --fps", "--every"},
+      {"--float --single --double --long-double --quad --float128 --digits", "--precision"}};
   for (size_t i = 0; i < sizeof other / sizeof *other; i++)
     if (has_word(other[i][0], arg)) return other[i][1];
   return NULL;
@@ -147,8 +151,12 @@ static const char *unknown_option(Arena *a, const Options *o, const char *word) 
   for (size_t i = 0; option_row(i); i++)
     if (option_row(i)->commands & 1u << o->command && n < 64) names[n++] = option_row(i)->name;
   Name near = suggest(arg, names, n), meant = meant_option(arg);
-  const char *says = !meant ? NULL : strcmp(arg, "--fps") == 0 ? "--every DT is the time between two frames in s: --every 0.0333 shows 30 a second"
-                   : o->command == CMD_HEADER && strcmp(meant, "--precision") == 0 ? "the type of numbers is chosen where the header is included: `#define NAME_REAL float` before it" : NULL;
+  const char *says =
+      !meant                      ? NULL
+      : strcmp(arg, "--fps") == 0 ? "--every DT is the time between two frames in s: --every 0.0333 shows 30 a second"
+      : o->command == CMD_HEADER && strcmp(meant, "--precision") == 0
+          ? "the type of numbers is chosen where the header is included: `#define NAME_REAL float` before it"
+          : NULL;
   if (says) return arena_printf(a, "`lagc %s` has no option `%s`; %s", row->name, arg, says);
   for (size_t i = 0; i < n && meant; i++)
     if (strcmp(names[i], meant) == 0) return arena_printf(a, "`lagc %s` has no option `%s`; here it is called `%s`", row->name, arg, meant);

@@ -74,8 +74,13 @@ static int read_target(Verification *v, const char **error) {
   if (!given) return fail_with(error, "which function? write --against FILE.c:FUNCTION");
   const char *other = colon ? arena_strndup(v->arena, given, (size_t)(colon - given)) : given, *dot = strrchr(other, '.');
   if (dot && has_word(".py .ipynb .m .jl .f .f90 .rs .js .java .nb", dot))
-    return fail_with(error, arena_printf(v->arena, "%s is not C: `lagc verify` compiles and calls a C function; from Python compare with `lagc.load(MODEL).rhs(t, y)`, or write the formula "
-                                                   "into the model: `expect x'' = ...`", other));
+    return fail_with(
+        error,
+        arena_printf(
+            v->arena,
+            "%s is not C: `lagc verify` compiles and calls a C function; from Python compare with `lagc.load(MODEL).rhs(t, y)`, or write the formula "
+            "into the model: `expect x'' = ...`",
+            other));
   if (!colon || !is_identifier(colon + 1)) return fail_with(error, arena_printf(v->arena, "--against %s names no function: write FILE.c:FUNCTION", given));
   v->file = arena_strndup(v->arena, given, (size_t)(colon - given));
   v->function = colon + 1;
@@ -525,7 +530,15 @@ static int verify_equations(Verification *v, Compiler *c, Eqns *e, const char *p
 }
 
 static void prepare(Verification *v, Compiler *c, Eqns *e) {
-  *v = (Verification){.c = c, .given = v->given, .quiet = v->quiet, .e = e, .m = e->m, .g = e->g, .arena = c->arena, .points = sample_points_new(e), .nq = e->m->coords.n};
+  *v = (Verification){.c = c,
+                      .given = v->given,
+                      .quiet = v->quiet,
+                      .e = e,
+                      .m = e->m,
+                      .g = e->g,
+                      .arena = c->arena,
+                      .points = sample_points_new(e),
+                      .nq = e->m->coords.n};
   v->ny = sample_state_symbols(v->points).n;
   v->np = sample_parameters(v->points).n;
   v->na = v->ny - v->nq;
@@ -543,8 +556,8 @@ static int begin(Verification *v, const char **path, const char **error) {
   return !*error;
 }
 
-/* Searches for another set of the model's effects with which the function agrees: all sets of up to four effects, of more those that differ by one.
- * Returns the advice, or NULL. */
+/* Searches for another set of the model's effects with which the function agrees: all sets of up to four effects, of
+ * more those that differ by one. Returns the advice, or NULL. */
 static const char *agreeing_effects(Verification *v) {
   enum { ALL = 4 };
   Compiler *c = v->c;
@@ -555,7 +568,9 @@ static const char *agreeing_effects(Verification *v) {
     EffectSet set = s->graph.n > ALL ? s->variants.at[i] : i;
     EffectList names = effect_names(s, set);
     if (set == s->used || !effect_set_valid(s, set)) continue;
-    Eqns *e = compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .only = &names, .given = c->given.at, .ngiven = c->given.n, .domains = 1});
+    Eqns *e = compiler_derive(
+        c,
+        &(ModelChoice){.scene = c->o.scene, .only = &names, .given = c->given.at, .ngiven = c->given.n, .domains = 1});
     Verification other = {.given = v->given, .quiet = 1};
     const char *path = NULL, *error = NULL;
     if (!e) continue;
@@ -563,8 +578,10 @@ static const char *agreeing_effects(Verification *v) {
     if (!other.ny || !begin(&other, &path, &error) || verify_equations(&other, c, e, path) != STATUS_OK) continue;
     StrBuf b = strbuf(c->arena);
     for (uint32_t k = 0; k < names.n; k++) sb_printf(&b, "%s%s", k ? ", " : "", names.at[k]);
-    return arena_printf(c->arena, "it agrees with the model %s%s, and the scene `%s` has other effects: compare it with a scene that says `use %s`", names.n ? "with " : "without effects",
-                        sb_text(&b), v->m->scene.name, names.n ? sb_text(&b) : "none");
+    return arena_printf(
+        c->arena,
+        "it agrees with the model %s%s, and the scene `%s` has other effects: compare it with a scene that says `use %s`",
+        names.n ? "with " : "without effects", sb_text(&b), v->m->scene.name, names.n ? sb_text(&b) : "none");
   }
   return NULL;
 }

@@ -181,7 +181,9 @@ static void declare_motion(Builder *b, const AstStmt *st, Name effect) {
   EntKind kind = is_state ? ENT_STATE : ENT_COORD;
   uint32_t first = is_state ? b->m->states.n : b->m->coords.n;
   if (has_word("energy lagrangian if end lyapunov", st->name))
-    diag_error(b->diags, st->name_span, "`%s` is a word of formulas, outputs and measures, and cannot be %s" HELP "choose another name", st->name, ent_kind_text(kind));
+    diag_error(b->diags, st->name_span,
+               "`%s` is a word of formulas, outputs and measures, and cannot be %s" HELP "choose another name",
+               st->name, ent_kind_text(kind));
   if (!read_type(b, st, effect, &parts)) return;
   if (!declare_family(b, st, effect, kind, first, parts, &e)) return;
   Unit unit = parts == ROTATION ? unit_si(DIM_NONE, "") : declared_unit(b, st, effect);

@@ -43,7 +43,9 @@ static const Entity *entity_named(Builder *b, Name name) {
 static CallKind call_kind(MeasureReader *r, const AstExpr *x) {
   const Entity *e = entity_named(r->b, x->name);
   AstId second = x->args ? ast_expr(r->b->ast, x->args)->next : 0;
-  if (is_word("max min mean rms drift period", x->name) && x->args && (!second || ast_expr(r->b->ast, second)->kind == AST_BIND)) return CALL_TRACK;
+  if (is_word("max min mean rms drift period", x->name) && x->args &&
+      (!second || ast_expr(r->b->ast, second)->kind == AST_BIND))
+    return CALL_TRACK;
   if (strcmp(x->name, "hit") == 0) return CALL_HIT;
   if (strcmp(x->name, "count") == 0) return CALL_COUNT;
   if (e && e->kind != ENT_FUNCTION && e->kind != ENT_NONE) return CALL_AT;
@@ -124,8 +126,11 @@ static Part wrong_call(MeasureReader *r, const AstExpr *x, const char *form) {
 static const char *window_end(Builder *b, AstId id) {
   Value v = resolve(b, id, IN_CONST, NULL);
   if (!v.e) return NULL;
-  if (expr_is_num(b->g, v.e) && (v.bare || dim_equate(b->dims, v.dim, seconds(b), ast_expr(b->ast, id)->span))) return number_text(b, num_value(expr_number(b->g, v.e)));
-  diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is no end of a window of time" HELP "write numbers: `max(x, 10..20)`, `max(x, 1 [min]..2 [min])`", ast_short(b, id));
+  if (expr_is_num(b->g, v.e) && (v.bare || dim_equate(b->dims, v.dim, seconds(b), ast_expr(b->ast, id)->span)))
+    return number_text(b, num_value(expr_number(b->g, v.e)));
+  diag_error(b->diags, ast_expr(b->ast, id)->span,
+             "`%s` is no end of a window of time" HELP "write numbers: `max(x, 10..20)`, `max(x, 1 [min]..2 [min])`",
+             ast_short(b, id));
   return NULL;
 }
 

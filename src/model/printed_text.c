@@ -30,7 +30,8 @@ static NameTable names_in(ExprGraph *g, Arena *a, Expr e) {
   NameTable t = {ARENA_ARRAY(a, Named, l.n + 1), 0};
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(g, l.at[i]);
-    if (op == EX_SYM || op == EX_DEF) t.at[t.n++] = (Named){op == EX_SYM ? expr_sym_of(g, l.at[i])->name : expr_def_name(g, l.at[i]), l.at[i]};
+    if (op == EX_SYM || op == EX_DEF)
+      t.at[t.n++] = (Named){op == EX_SYM ? expr_sym_of(g, l.at[i])->name : expr_def_name(g, l.at[i]), l.at[i]};
   }
   if (t.n) qsort(t.at, t.n, sizeof *t.at, by_name);
   return t;
@@ -73,7 +74,8 @@ static Expr call(const Reader *r, const AstExpr *x) {
   if (n == 1 && strcmp(x->name, "sqrt") == 0) return expr_sqrt(r->g, arg[0]);
   if (n == 3 && strcmp(x->name, "if") == 0) return expr_select(r->g, arg[0], arg[1], arg[2]);
   for (ExprOp op = EX_SIN; op <= EX_MAX && n && n < 3; op++)
-    if (strcmp(x->name, expr_op_text(op)) == 0 && (op >= EX_ATAN2) == (n == 2)) return n == 1 ? expr_fn(r->g, op, arg[0]) : expr_fn2(r->g, op, arg[0], arg[1]);
+    if (strcmp(x->name, expr_op_text(op)) == 0 && (op >= EX_ATAN2) == (n == 2))
+      return n == 1 ? expr_fn(r->g, op, arg[0]) : expr_fn2(r->g, op, arg[0], arg[1]);
   return 0;
 }
 
@@ -116,7 +118,8 @@ static Expr read(const Model *m, Arena *scratch, const char *text, Expr like, Kn
     const AstExpr *x = ast_expr(ast, id);
     uint32_t begin = x->span.begin - source->base, end = x->span.end - source->base;
     Expr v = known ? known(data, ast, x, begin, end) : 0;
-    int a_name = x->kind == AST_NAME || x->kind == AST_PRIME || x->kind == AST_INDEX || x->kind == AST_MEMBER || x->kind == AST_CALL || x->kind == AST_AT;
+    int a_name = x->kind == AST_NAME || x->kind == AST_PRIME || x->kind == AST_INDEX || x->kind == AST_MEMBER ||
+                 x->kind == AST_CALL || x->kind == AST_AT;
     if (!v && a_name) v = find_name(&names, arena_strndup(scratch, text + begin, end - begin));
     r.value[id - r.first] = v ? v : operation(&r, x);
   }
@@ -168,5 +171,7 @@ void expr_print_checked(const Model *m, Expr e, PrintStyle style, StrBuf *out) {
   StrBuf as_text = strbuf(m->arena);
   expr_print(m->g, e, style, out);
   expr_print(m->g, e, PRINT_TEXT, &as_text);
-  if (!printed_says(m, sb_text(&as_text), e)) diag_error(m->diags, (Span){0}, "internal error: `%s` is not the formula that was to be printed", sb_text(&as_text));
+  if (!printed_says(m, sb_text(&as_text), e))
+    diag_error(m->diags, (Span){0}, "internal error: `%s` is not the formula that was to be printed",
+               sb_text(&as_text));
 }

@@ -229,7 +229,10 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
   if (strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0) diag_help(b->diags, "`%s(q)` may stand in `output` and `monitor`, in a scene that says `exact q = ...`", x->name);
   else if (e && is_of_time(ev, x)) diag_help(b->diags, "`%s` is %s: write `%s`; its dependence on time is implied", x->name, ent_kind_text(e->kind), x->name);
   else if (e && argument[0] == 't' && argument[1] && strchr(" -+", argument[1]))
-    diag_help(b->diags, "a delay does not exist: equations hold the state of one moment; a lag of first order is a state, `flow z' = (%s - z)/T`", x->name);
+    diag_help(
+        b->diags,
+        "a delay does not exist: equations hold the state of one moment; a lag of first order is a state, `flow z' = (%s - z)/T`",
+        x->name);
   else if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else diag_help(b->diags, "`lagc help functions` lists them; declare your own: `function %s(x) = ...`", x->name);

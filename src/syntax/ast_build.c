@@ -178,8 +178,13 @@ AstList ast_list_before(Ast *ast, AstId item, AstList list) {
 
 AstId ast_happening(Ast *ast, Span span, Ident contact, Ident does) {
   if (!has_word("opens sticks slips", does.name)) {
-    diag_error(ast->diags, does.span, "expected an operator, `)` or `,` after `%s`, found `%s`" HELP "a product is written with `*`", contact.name, does.name);
+    diag_error(ast->diags, does.span,
+               "expected an operator, `)` or `,` after `%s`, found `%s`" HELP "a product is written with `*`",
+               contact.name, does.name);
     return append(ast, (AstExpr){.kind = AST_ERROR, .span = span});
   }
-  return append(ast, (AstExpr){.kind = AST_NAME, .span = span, .op_span = span, .name = intern(ast->names, arena_printf(ast->arena, "%s %s", contact.name, does.name))});
+  return append(ast, (AstExpr){.kind = AST_NAME,
+                               .span = span,
+                               .op_span = span,
+                               .name = intern(ast->names, arena_printf(ast->arena, "%s %s", contact.name, does.name))});
 }

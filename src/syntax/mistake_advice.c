@@ -218,7 +218,8 @@ static const char *foreign_sign(const Parse *cx) {
   const Source *source = cx->filter->scan->source;
   const char *s = source->text + (t->span.begin - source->base), *comma = t->kind == TOK_COMMA ? s : s - 1;
   int in_text = t->span.begin > source->base + 1 && cx->before.span.end;
-  if (in_text && (t->kind == TOK_COMMA || t->kind == TOK_NUMBER) && *comma == ',' && isdigit((unsigned char)comma[-1]) && isdigit((unsigned char)comma[1]))
+  if (in_text && (t->kind == TOK_COMMA || t->kind == TOK_NUMBER) && *comma == ',' &&
+      isdigit((unsigned char)comma[-1]) && isdigit((unsigned char)comma[1]))
     return "a number has a decimal point: `9.81`";
   if (t->kind == TOK_STRING && cx->before.span.end == t->span.begin) return "a second derivative has two primes: `x''`";
   return NULL;
