@@ -225,6 +225,9 @@ $(eval $(call as_text,emit/%_types.h,runtime/numeric/%.h))
 $(eval $(call as_text,emit/%_types.h,runtime/methods/%.h))
 $(eval $(call as_text,fmu/%_text.h,src/fmu/%.in))
 $(eval $(call as_text,commands/language.h,grammar/LANGUAGE.md))
+$(eval $(call as_text,commands/tutorial.h,models/TUTORIAL.md))
+$(eval $(call as_text,commands/readme.h,README.md))
+$(eval $(call as_text,commands/python.h,$(BUILD)/gen/commands/python.txt))
 $(eval $(call as_text,commands/complete_%.h,src/commands/complete.%))
 # How files are written is one text in the compiler and in the runtime, of which neither includes a header of the other's.
 $(BUILD)/gen/toolchain/outfile.%: runtime/io/outfile.%
@@ -245,6 +248,10 @@ $(BUILD)/gen/emit/lag_math.txt: runtime/include/lag_math.h runtime/include/lag_s
 	@mkdir -p $(@D)
 	{ sed '/^#include "lag_sincos.h"$$/,$$d' $<; sed 1d runtime/include/lag_sincos.h; sed '1,/^#include "lag_sincos.h"$$/d' $<; } >$@.part
 	@mv $@.part $@
+# Documents that help shows and searches.
+$(BUILD)/gen/commands/python.txt: runtime/python/README.md
+	@mkdir -p $(@D)
+	@sed '/^Tests:/,$$d' $< >$@
 # One version: LAG_VERSION of lag.h.
 $(BUILD)/obj/src/main.o: SRC_FLAGS += -DLAGC_VERSION='"$(VERSION)"'
 $(BUILD)/obj/src/main.o: runtime/include/lag.h
@@ -258,7 +265,7 @@ $(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen
 $(BUILD)/obj/src/emit/header_steps.o: $(patsubst %,$(BUILD)/gen/emit/%_text.h,composition dop853 rk4 rk45)
 $(BUILD)/obj/src/toolchain/toolchain.o: $(BUILD)/gen/toolchain/probe_text.h
 $(BUILD)/obj/src/fmu/fmu.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)
-$(BUILD)/obj/src/commands/help.o: $(BUILD)/gen/commands/language.h
+$(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,language python readme tutorial)
 $(BUILD)/obj/src/commands/verify.o: $(BUILD)/gen/commands/verify_driver.h
 $(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
 $(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(BUILD)/gen/numeric/edit_distance.h

@@ -74,12 +74,12 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %token STOP "stop" PERIODIC "periodic" RISING "rising" FALLING "falling" CROSSING "crossing"
 %token ON "on" OF "of" STATIC "static" RESTITUTION "restitution" SLIP "slip" TANGENTIAL "tangential" LAW "law" EXACTLY "exactly" EVERY "every" WHILE "while"
 
-%type <stmts> stmts block stmt coords momenta params consts inputs states lets requires excludes assigns maps items
+%type <stmts> stmts block stmt coords momenta params consts inputs states lets observed requires excludes assigns maps items
 %type <stmts> options options_opt uses monitors
-%type <one> single coord momentum param const input_ state let item map map_item each required excluded
+%type <one> single coord momentum param const input_ state let observable item map map_item each required excluded
 %type <one> assign option use monitor
 %type <list> rubbing laws dims indices places_bound exprs args names variables
-%type <id> expr arith primary reach place moved bound value comparison every number literal declared gap law tuple condition
+%type <id> happening expr arith primary reach place moved bound value comparison every number literal declared gap law tuple condition
 %type <text> doc
 %type <unit> unit
 %type <ident> type method_name
@@ -116,6 +116,7 @@ stmt: single[x]                       { $$ = stmts_one($x); }
     | "input" inputs[l]               { $$ = $l; }
     | "state" states[l]               { $$ = $l; }
     | "let" lets[l]                   { $$ = $l; }
+    | "observe" observed[l]           { $$ = $l; }
     | "flow" assigns[l]               { $$ = stmts_set_kind(ast, $l, STMT_FLOW, 0); }
     | "requires" requires[l]          { $$ = $l; }
     | "excludes" excludes[l]          { $$ = $l; }
@@ -145,7 +146,6 @@ single: "model" IDENT[n] doc[d]                 { $$ = stmt_titled(ast, STMT_MOD
       | "event" IDENT[n] dims[d] ":" arith[g] direction[w] block[b] { $$ = stmt_event(ast, @$, $n, $d, $g, $w, $b); }
       | "kick" IDENT[n] dims[d] "every" arith[T] block[b] { $$ = stmt_event(ast, @$, $n, $d, $T, AT_EQUAL_TIMES, $b); }
       | "contact" IDENT[n] dims[d] ":" gap[g] "," "restitution" "=" expr[e] rubbing[r] { $$ = stmt_contact(ast, @$, $n, $d, $g, $e, $r); }
-      | "observe" IDENT[n] dims[d] unit[u] "=" expr[e] { $$ = stmt_define(ast, STMT_OBSERVE, @$, $n, $d, $u, $e); }
       | "for" IDENT[i] "in" arith[lo] ".." arith[hi] block[b] { $$ = stmt_for(ast, @$, $i, $lo, $hi, $b); }
       | "effect" IDENT[n] doc[d] block[b]       { $$ = stmt_titled(ast, STMT_EFFECT, @$, $n, $d, $b); }
       | "scene" IDENT[n] doc[d] block[b]        { $$ = stmt_titled(ast, STMT_SCENE, @$, $n, $d, $b); }
@@ -197,6 +197,11 @@ lets: let[x]             { $$ = stmts_one($x); }
 let: IDENT[n] "=" expr[e]                       { $$ = stmt_define(ast, STMT_LET, @$, $n, NONE_LIST, NONE_UNIT, $e); }
    | IDENT[n] "[" places_bound[d] "]" "=" expr[e] { $$ = stmt_define(ast, STMT_LET, @$, $n, $d, NONE_UNIT, $e); }
    ;
+
+observed: observable[x]                   { $$ = stmts_one($x); }
+        | observed[l] "," observable[x] { $$ = stmts_add($l, $x); }
+        ;
+observable: IDENT[n] dims[d] unit[u] "=" expr[e] { $$ = stmt_define(ast, STMT_OBSERVE, @$, $n, $d, $u, $e); };
 
 requires: required[x]                 { $$ = stmts_one($x); }
         | requires[l] "," required[x] { $$ = stmts_add($l, $x); }
@@ -394,7 +399,14 @@ reach: primary[a] "[" indices[l] "]"        { $$ = ast_index(ast, @$, $a, $l); }
 tuple: "(" expr[e] "," exprs[l] ")" { $$ = ast_tuple(ast, @$, $e, $l); };
 args: %empty   { $$ = NONE_LIST; }
     | exprs[l] { $$ = $l; }
+    | exprs[l] "," arith[lo] ".." arith[hi] { $$ = ast_list_add(ast, $l, ast_window(ast, @$, $lo, $hi)); }
+    | happening[e]               { $$ = ast_list($e); }
+    | happening[e] "," exprs[l]  { $$ = ast_list_before(ast, $e, $l); }
     ;
+/* What a contact does, in hit(floor sticks). */
+happening: IDENT[n] IDENT[does] { $$ = ast_happening(ast, @$, $n, $does); }
+         | reach[a] IDENT[does] { (void)$a; $$ = ast_happening(ast, @$, $does, $does); }
+         ;
 exprs: expr[e]              { $$ = ast_list($e); }
      | exprs[l] "," expr[e] { $$ = ast_list_add(ast, $l, $e); }
      ;

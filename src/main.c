@@ -10,6 +10,7 @@
 
 #include "base/diag.h"
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
+#include "commands/check_json.h"
 #include "commands/commands.h"
 #include "syntax/parse.h"
 #include "toolchain/gallery.h"
@@ -49,6 +50,7 @@ static int compile(Compiler *c) {
   int status = compiler_read(c);
   if (status == STATUS_OK) status = folds_digits(c) ? do_command(c) : STATUS_USAGE;
   compiler_print_messages(c);
+  if (c->o.command == CMD_CHECK && c->o.json && status != STATUS_USAGE && check_json_print(c) != STATUS_OK) status = STATUS_USAGE;
   return c->diags->errors && status == STATUS_OK ? STATUS_MODEL : status;
 }
 

@@ -56,6 +56,9 @@ typedef struct Track {
   double passage, latest; /* first and last upward passage of 0, */
   int passages;         /* and their number */
   double bad;           /* the first time at which the value is not finite; NaN: none */
+  double from, to;      /* the window of time that counts; NaN: the begin, the end of the run */
+  double covered;       /* time of the window that the run has passed */
+  int begun, active;    /* 1: the window has begun; the present part lies in it */
 } Track;
 
 enum { MEASURE_SAMPLES = 16 };

@@ -216,7 +216,7 @@ static void take_samples(Measures *m, double a, double b, int n, int first, int 
     t[k] = k == n ? b : a + k * (b - a) / n;
     take_row(m, t[k]);
     for (int i = 0; i < m->ntracks; i++)
-      if (!is_integral(&m->track[i])) m->sampled[i * (MEASURE_SAMPLES + 1) + k] = evaluate(m, m->track[i].arg);
+      if (!is_integral(&m->track[i]) && m->track[i].active) m->sampled[i * (MEASURE_SAMPLES + 1) + k] = evaluate(m, m->track[i].arg);
   }
 }
 
@@ -236,6 +236,7 @@ static void sample(Measures *m, double a, double b) {
   double t[MEASURE_SAMPLES + 1], few[FEW + 1];
   take_samples(m, a, b, n, 0, stride, t);
   for (int i = 0; i < m->ntracks && stride > 1 && !more; i++) {
+    if (!m->track[i].active) continue;
     for (int k = 0; k <= FEW; k++) few[k] = m->sampled[i * (MEASURE_SAMPLES + 1) + k * stride];
     more = !is_integral(&m->track[i]) && !is_at_ends(m, &m->track[i]) && needs_more(&m->track[i], FEW, few);
   }
@@ -245,7 +246,7 @@ static void sample(Measures *m, double a, double b) {
   for (int i = 0; i < m->ntracks; i++) {
     double *x = m->sampled + i * (MEASURE_SAMPLES + 1);
     for (int k = 0; k * stride <= n; k++) x[k] = x[k * stride];
-    if (is_integral(&m->track[i])) continue;
+    if (is_integral(&m->track[i]) || !m->track[i].active) continue;
     if (!is_at_ends(m, &m->track[i])) follow(m, &m->track[i], n / stride, t, x);
     else note_end(m, &m->track[i], a, x[0]), note_end(m, &m->track[i], b, x[n / stride]);
   }
@@ -260,7 +261,7 @@ static void integrate(Measures *m, double a, double b) {
     double h = (b - a) / n, t = a + (j / s->nodes + s->node[j % s->nodes]) * h, weight = s->weight[j % s->nodes] * h;
     take_row(m, t);
     for (Track *k = m->track; k < m->track + m->ntracks; k++) {
-      if (!is_integral(k)) continue;
+      if (!is_integral(k) || !k->active) continue;
       double x = evaluate(m, k->arg), term = weight * (k->kind == TRACK_RMS ? x * x : x) - k->lost, sum = k->sum + term;
       if (!isfinite(x) && isnan(k->bad)) k->bad = t;
       k->lost = (sum - k->sum) - term;
@@ -281,6 +282,38 @@ static void note_event(void *context, int k, double t, const double *before, con
 
 int lag_measures_follow(const Measures *m) { return m->ntracks > 0; }
 
+/* The end of the part of [a, reach] in which each track is in its window, or out of it. */
+static double same_windows(const Measures *m, double a, double reach) {
+  double dir = reach < a ? -1 : 1;
+  for (const Track *k = m->track; k < m->track + m->ntracks; k++)
+    for (int end = 0; end < 2; end++) {
+      double edge = end ? k->to : k->from;
+      if ((edge - a) * dir > 0 && (reach - edge) * dir > 0) reach = edge;
+    }
+  return reach;
+}
+
+/* Begins a track with its value in the row taken last, at t. */
+static void begin_track(Measures *m, Track *k, double t) {
+  k->first = k->last = k->least = k->most = evaluate(m, k->arg);
+  k->bad = isfinite(k->first) ? NAN : t;
+  k->begun = 1;
+}
+
+/* Which tracks count in [a, b]; those that do for the first time begin at a. */
+static void enter_windows(Measures *m, double a, double b) {
+  int fresh = 0;
+  for (Track *k = m->track; k < m->track + m->ntracks; k++) {
+    double middle = (a + b) / 2;
+    k->active = !(middle < k->from) && !(middle > k->to);
+    k->covered += k->active ? fabs(b - a) : 0;
+    fresh |= k->active && !k->begun;
+  }
+  if (fresh) take_row(m, a);
+  for (Track *k = m->track; k < m->track + m->ntracks && fresh; k++)
+    if (k->active && !k->begun) begin_track(m, k, a);
+}
+
 static int follow_to(Measures *m, double t) {
   lag_sim *s = m->sim;
   int rc = LAG_OK;
@@ -288,11 +321,13 @@ static int follow_to(Measures *m, double t) {
     double reach;
     rc = lag_sim_ensure_step(s, t, &reach);
     double from = lag_sim_time(s); /* behind the jump of a table, where there is one */
-    if (rc == 0 && reach != from) {
-      if (m->samples) sample(m, from, reach);
-      if (m->integrates) integrate(m, from, reach);
-      rc = lag_sim_advance(s, reach);
+    for (double a = from, b; rc == 0 && a != reach; a = b) {
+      b = same_windows(m, a, reach);
+      enter_windows(m, a, b);
+      if (m->samples) sample(m, a, b);
+      if (m->integrates) integrate(m, a, b);
     }
+    if (rc == 0 && reach != from) rc = lag_sim_advance(s, reach);
   }
   return rc ? rc : lag_sim_advance(s, t);
 }
@@ -339,10 +374,11 @@ int lag_measures_begin(Measures *m, lag_sim *sim) {
     if (n->kind != MEASURE_NUMBER) n->result = NAN, n->taken = 0;
   take_row(m, m->t0);
   for (Track *k = m->track; k < m->track + m->ntracks; k++) {
-    k->first = k->last = k->least = k->most = evaluate(m, k->arg);
-    k->sum = k->lost = 0;
-    k->passages = 0;
-    k->bad = isfinite(k->first) ? NAN : m->t0;
+    k->sum = k->lost = k->covered = 0;
+    k->passages = k->begun = 0;
+    k->first = k->last = k->least = k->most = k->bad = NAN;
+    k->active = !(m->t0 < k->from) && !(m->t0 > k->to);
+    if (k->active) begin_track(m, k, m->t0);
   }
   take_times(m, 0);
   next_time(m, 0, m->t0);
@@ -363,15 +399,14 @@ int lag_measures_advance(Measures *m, double t) { return m->status = advance(m, 
 /* ---- Its end */
 
 static double track_value(const Measures *m, const Track *k) {
-  double span = m->t - m->t0;
-  if (!isnan(k->bad)) return NAN;
+  if (!isnan(k->bad) || !k->begun) return NAN;
   switch (k->kind) {
     case TRACK_MAX: return k->most;
     case TRACK_MIN: return k->least;
     case TRACK_DRIFT: return fmax(k->most - k->first, k->first - k->least);
     case TRACK_PERIOD: return k->passages > 1 ? fabs(k->latest - k->passage) / (k->passages - 1) : NAN;
-    case TRACK_MEAN: return span == 0.0 ? k->first : k->sum / span;
-    case TRACK_RMS: return span == 0.0 ? fabs(k->first) : sqrt(k->sum / span);
+    case TRACK_MEAN: return k->covered == 0.0 ? k->first : copysign(1, m->t - m->t0) * k->sum / k->covered;
+    case TRACK_RMS: return k->covered == 0.0 ? fabs(k->first) : sqrt(fabs(k->sum) / k->covered);
     case TRACK_KINDS: break;
   }
   return NAN;
@@ -416,7 +451,8 @@ static void explain(Measures *m, int k, double end) {
     const MeasureNode *n = &m->node[i];
     if (n->kind == MEASURE_TRACK && isnan(n->result)) {
       const Track *track = &m->track[n->index];
-      if (!isnan(track->bad)) snprintf(why, size, "it has no value at t = %s s", LAG_TEXT(track->bad));
+      if (!track->begun) snprintf(why, size, "the run ends at t = %s s, before the window of time begins", LAG_TEXT(end));
+      else if (!isnan(track->bad)) snprintf(why, size, "it has no value at t = %s s", LAG_TEXT(track->bad));
       else snprintf(why, size, "no period: it passes 0 upwards %s", track->passages ? "once" : "never");
       return;
     } else if (n->kind == MEASURE_LYAPUNOV && isnan(n->result)) {
@@ -441,6 +477,7 @@ int lag_measures_end(Measures *m, double *value) {
   lag_sim *sim = m->sim;
   double end = lag_sim_time(sim);
   lag_sim_on_event(sim, m->on_event, m->on_event_context);
+  enter_windows(m, end, end);
   if (m->samples) sample(m, end, end); /* what a last event has changed */
   double exponent = m->exponent ? lag_measure_lyapunov(m, sim, end) : NAN;
   m->t = end;

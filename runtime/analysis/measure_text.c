@@ -294,11 +294,32 @@ static int no_name(Reader *r, const char *at, const char *name, int call) {
 
 static int read_sum(Reader *r);
 
-/* max(x), ...: `which` is read up to its parenthesis. */
+/* An end of a window, up to `stop`: a number of seconds; NaN where it is left out. */
+static int read_window_end(Reader *r, const char *stop, double *t) {
+  char number[64], *end;
+  const char *to = strstr(r->at, stop);
+  r->at += strspn(r->at, " ");
+  if (!to) return fail(r, r->at, "a window of time is written max(x, 10..20), in s");
+  snprintf(number, sizeof number, "%.*s", (int)(to - r->at), r->at);
+  *t = strtod(number, &end);
+  if (end == number) *t = NAN;
+  if (end[strspn(end, " ")]) return fail(r, r->at, "a window of time is written max(x, 10..20), in s; `%s` is no number", number);
+  r->at = to;
+  return 0;
+}
+
+static int read_window(Reader *r, double *from, double *to) {
+  if (read_window_end(r, "..", from)) return -1;
+  r->at += 2;
+  return read_window_end(r, ")", to) ? -1 : !(*to <= *from) ? 0 : fail(r, r->at, "this window of time is empty");
+}
+
+/* max(x), max(x, 10..20), ...: `which` is read up to its parenthesis. */
 static int read_track(Reader *r, const char *at, TrackKind which) {
   Measures *m = r->m;
+  double from = NAN, to = NAN;
   int arg = read_sum(r);
-  if (arg < 0 || need(r, ')')) return -1;
+  if (arg < 0 || (take(r, ',') && read_window(r, &from, &to)) || need(r, ')')) return -1;
   const MeasureNode *of = &m->node[arg];
   if (of->measured) return fail(r, at, "%s takes quantities, as x or x^2 + y^2; a value of the whole run stands outside", track_words[which]);
   if (of->known == MEASURE_STATIC) return fail(r, at, "%s takes something that changes along the run", track_words[which]);
@@ -309,7 +330,7 @@ static int read_track(Reader *r, const char *at, TrackKind which) {
   m->track = track;
   int i = put(r, MEASURE_TRACK, arg, -1, unit);
   if (i < 0) return -1;
-  track[m->ntracks] = (Track){.kind = which, .node = i, .arg = arg};
+  track[m->ntracks] = (Track){.kind = which, .node = i, .arg = arg, .from = from, .to = to};
   m->node[i].index = m->ntracks++;
   m->node[i].measured = 1;
   m->node[i].known = 0;

@@ -90,6 +90,18 @@ int lag_app_check_outputs(const App *app) {
   return 0;
 }
 
+/* app->skip := the end of the transient; NaN: none is left out. */
+static int choose_skip(App *app) {
+  const Args *a = &app->args;
+  app->skip = NAN;
+  if (!a->skip) return 0;
+  if (!lag_args_number(a, "--skip", a->skip, "--skip 100", &app->skip)) return EXIT_USAGE;
+  double t = lag_sim_time(app->sim), dir = app->until < t ? -1 : 1;
+  if ((app->skip - t) * dir < 0 || (app->until - app->skip) * dir <= 0)
+    return lag_app_error(a, "--skip %s: the run is from %g to %g s; what is left out ends between them", a->skip, t, app->until);
+  return 0;
+}
+
 /* Sets the grid of rows, saved with the run: grid[0] origin, [1] spacing, [2] index of the next row. */
 static int choose_grid(App *app) {
   const Args *a = &app->args;
@@ -173,8 +185,21 @@ static int run_rows(App *app) {
   return rc;
 }
 
+/* --skip: advances without rows, points and measures, which begin at that time. */
+static int skip_transient(App *app) {
+  double *grid = lag_sim_output_grid(app->sim), dir = app->until < app->scene->t0 ? -1 : 1, t = app->skip;
+  if (isnan(t)) return LAG_OK;
+  app->skipping = 1;
+  int rc = lag_sim_advance(app->sim, t);
+  app->skipping = 0;
+  grid[2] = ceil(dir * (t - grid[0]) / grid[1] - 1e-9);
+  return rc;
+}
+
 static void run(App *app) {
-  int rows = app->section < 0 && (app->args.out || (app->table.keep && (app->args.every || !app->sampling.on))), rc = lag_app_measures_begin(app), begun = rc >= 0;
+  int skipped = skip_transient(app);
+  int rows = app->section < 0 && (app->args.out || (app->table.keep && (app->args.every || !app->sampling.on))),
+      rc = skipped ? skipped : lag_app_measures_begin(app), begun = !skipped && rc >= 0;
   rc = rows && rc == 0 ? run_rows(app) : rc;
   if (rc == 0) {
     rc = lag_sampling_advance(app, app->until);
@@ -361,7 +386,8 @@ int lag_app_interrupted(void) { return EXIT_SIGNAL + interrupted; }
 
 int lag_app_run(App *app) {
   int rc = lag_app_set_up(app);
-  if (rc || (rc = lag_section_choose(app)) != 0 || (rc = lag_app_check_outputs(app)) != 0 || (rc = choose_end(app)) != 0 || (rc = choose_grid(app)) != 0)
+  if (rc || (rc = lag_section_choose(app)) != 0 || (rc = lag_app_check_outputs(app)) != 0 ||
+      (rc = choose_end(app)) != 0 || (rc = choose_skip(app)) != 0 || (rc = choose_grid(app)) != 0)
     return rc;
   if (app->args.save && (lag_sim_method(app->sim)->flags & LAG_METHOD_NO_SAVE)) {
     return lag_app_error(&app->args, "--save-state: the state of method %s cannot be saved; those of liblag can",
@@ -400,6 +426,7 @@ void lag_app_free(App *app) {
   free(app->show.cols);
   free(app->portrait);
   free(app->drawn.x);
+  free(app->drawn.note);
   free(app->row);
   free(app->empty_state);
   free(app->state.data);

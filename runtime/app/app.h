@@ -14,7 +14,8 @@ enum { MOST_OPTIONS = 16 };
 
 /* The command line as text; numbers are not parsed yet. */
 typedef struct Args {
-  const char *self, *scene, *method, *tol, *step, *until, *every, *out, *svg, *plot_x, *plot_y, *html, *points, *from, *save, *resume, *events, *section, *cloud, *starts;
+  const char *self, *scene, *method, *tol, *step, *until, *every, *skip, *out, *svg, *plot_x, *plot_y, *html, *points,
+      *from, *save, *resume, *events, *section, *cloud, *starts;
   const char *accuracy;
   const char *transient, *exponents; /* for --lyapunov */
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
@@ -84,6 +85,8 @@ typedef struct App {
   int empty_column;             /* column of the first such output */
   double empty_t, *empty_state; /* its time; the state [q|v|z] there */
   double until;
+  double skip;      /* end of the transient that is left out; NaN: none */
+  int skipping;     /* 1: within it */
   int section;      /* --section: event at which rows are written; -1: rows at times */
   int section_rc;   /* failure of its last row */
   char why[200];    /* reason of the automatic choice of the method; "" where one was named */

@@ -32,6 +32,15 @@ int lag_args_decimal(const char *text, double *x) {
   return end != text && *end == '\0' && strspn(text, "+-.0123456789eE") == strlen(text);
 }
 
+/* "60deg" -> '60[deg]' (of an option in s: 5s -> 5), "9,81" -> 9.81. Returns 0 when it is neither. */
+static int meant_number(const char *text, int units, char *out, size_t size) {
+  size_t n = strspn(text, "+-.0123456789"), letters = strspn(text + n, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ/*^0123456789");
+  if (!n || n + letters > size - 8) return 0;
+  if (text[n] == ',' && n + 1 + strspn(text + n + 1, "0123456789") == strlen(text)) return snprintf(out, size, "%.*s.%s", (int)n, text, text + n + 1);
+  if (!letters || text[n + letters]) return 0;
+  return units ? snprintf(out, size, "'%.*s[%s]'", (int)n, text, text + n) : snprintf(out, size, "%.*s, in s", (int)n, text);
+}
+
 int lag_args_number(const Args *a, const char *what, const char *text, const char *example, double *x) {
   int decimal = lag_args_decimal(text, x);
   if (strchr(text, '[')) {
@@ -39,7 +48,9 @@ int lag_args_number(const Args *a, const char *what, const char *text, const cha
     return 0;
   }
   if (!decimal) {
-    lag_app_error(a, "%s: \"%s\" is not a number; write for example %s", what, text, example);
+    char meant[64];
+    if (!meant_number(text, strncmp(what, "--", 2) != 0, meant, sizeof meant)) snprintf(meant, sizeof meant, "for example %s", example);
+    lag_app_error(a, "%s: \"%s\" is not a number; write %s", what, text, meant);
     return 0;
   }
   if (!isfinite(*x)) {
@@ -71,7 +82,7 @@ static const Option options[] = {
     {"method", offsetof(Args, method), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP},
     {"tol", offsetof(Args, tol), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP}, {"accuracy", offsetof(Args, accuracy), 0, RUN},
     {"step", offsetof(Args, step), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP}, {"until", offsetof(Args, until), 0, ANY & ~MODES},
-    {"every", offsetof(Args, every), 0, RUN | SWEEP}, {"svg", offsetof(Args, svg), 0, RUN | LYAPUNOV | SWEEP},
+    {"every", offsetof(Args, every), 0, RUN | SWEEP}, {"skip", offsetof(Args, skip), 0, RUN}, {"svg", offsetof(Args, svg), 0, RUN | LYAPUNOV | SWEEP},
     {"plot-x", offsetof(Args, plot_x), 0, ANY}, {"plot-y", offsetof(Args, plot_ys), 2, ANY},
     {"portrait", offsetof(Args, portrait), 1, RUN}, {"potential", offsetof(Args, potential), 1, RUN},
     {"distance", offsetof(Args, distance), 1, RUN}, {"energy-error", offsetof(Args, energy_error), 1, RUN},

@@ -14,7 +14,8 @@ enum { LEAST_STARTS = 8, MOST_STARTS = 10000, MOST_TIMES = 100, SAMPLES = 400, T
 typedef struct Cloud {
   App *app;          /* the command line; its table and curves are those of the picture */
   App run;           /* the method at work: set up, its table without rows */
-  int n, times, reached; /* starts; times at which they are drawn; those that all starts of the method at work have reached */
+  int asked, n, times, reached; /* starts of the command line; of the method at work; times at which they are drawn;
+                                   those that all starts of the method at work have reached */
   double part;       /* half-axes of the ellipse, as a part of the half-range of the motion */
   double until, every;
   int component[2];  /* of the state, that are displaced, */
@@ -52,7 +53,7 @@ static int read_size(Cloud *c) {
   if (n < LEAST_STARTS || n > MOST_STARTS) return lag_app_error(a, "--cloud %s: from %d to %d starts", a->cloud, LEAST_STARTS, MOST_STARTS);
   if (colon && (!lag_args_number(a, "--cloud", colon + 1, "--cloud 60:0.1", &c->part) || !(c->part > 0)))
     return lag_app_error(a, "--cloud %s: after the colon stands the size of the cloud, as a part of the motion's, for example 60:0.1", a->cloud);
-  c->n = (int)n;
+  c->asked = c->n = (int)n;
   return 0;
 }
 
@@ -152,6 +153,21 @@ static int carry_all(Cloud *c) {
   return rc;
 }
 
+static double area_at(const Cloud *c, int k, int *coarse);
+
+/* Carries the starts that were asked for along, and twice as many as often as areas are not determined, up to MOST_AREA. */
+static int carry_enough(Cloud *c) {
+  enum { MOST_AREA = 4000 };
+  for (c->n = c->asked;; c->n *= 2) {
+    double *room = realloc(c->xy, (size_t)c->times * 2 * (size_t)c->n * sizeof *c->xy);
+    if (!room) return lag_app_error(&c->app->args, "out of memory");
+    c->xy = room;
+    int rc = carry_all(c), coarse = 0;
+    for (int k = 1; k < c->reached && rc == 0 && !coarse; k++) area_at(c, k, &coarse);
+    if (rc || !coarse || 2 * c->n > MOST_AREA || lag_app_interrupted() != EXIT_SIGNAL) return rc;
+  }
+}
+
 /* ---- The picture and the report */
 
 static int open_table(Cloud *c) {
@@ -164,6 +180,24 @@ static int open_table(Cloud *c) {
   if (!t->cols || !d->x || !c->app->row) return lag_app_error(&c->app->args, "out of memory");
   d->y = d->x + c->methods;
   t->cols[0] = c->run.table.cols[0];
+  return 0;
+}
+
+/* Writes the times beside the clouds of the last method: each in the middle of its cloud. */
+static int note_times(Cloud *c) {
+  PlottedCurves *d = &c->app->drawn;
+  free(d->note);
+  d->nnotes = 0;
+  if (!(d->note = calloc((size_t)c->reached + 1, sizeof *d->note))) return lag_app_error(&c->app->args, "out of memory");
+  for (int k = 0; k < c->reached; k++) {
+    const double *from = c->xy + 2 * (size_t)(k * c->n);
+    PictureNote *note = &d->note[d->nnotes++];
+    for (int i = 0; i < c->n; i++) {
+      note->x += from[i] / c->n;
+      note->y += from[c->n + i] / c->n;
+    }
+    snprintf(note->text, sizeof note->text, "%.4g s", c->run.scene->t0 + k * c->every);
+  }
   return 0;
 }
 
@@ -186,24 +220,31 @@ static int add_curves(Cloud *c, int method) {
   return 0;
 }
 
-/* Areas at the times that all starts have reached; "?" where half of the points have another one: the curve through them is too coarse. */
-static void report_areas(const Cloud *c, int method) {
+/* The area at time k; *coarse: half of the points have another one, so that the curve through them is too coarse. */
+static double area_at(const Cloud *c, int k, int *coarse) {
   const double rough = 1e-3; /* of the first area */
+  const double *x = c->xy + 2 * (size_t)(k * c->n), *first = c->xy;
+  double area = area_of(c->n, 1, x, x + c->n);
+  *coarse = k && c->n % 2 == 0 && fabs(area_of(c->n, 2, x, x + c->n) - area) > rough * fabs(area_of(c->n, 1, first, first + c->n));
+  return area;
+}
+
+/* Areas at the times that all starts have reached. */
+static void report_areas(const Cloud *c, int method) {
   double first = 0;
   int coarse = 0;
   if (c->app->args.quiet) return;
   printf("%s: area of %d starts", c->names[method] ? c->names[method] : lag_sim_method(c->run.sim)->name, c->n);
   for (int k = 0; k < c->reached; k++) {
-    const double *x = c->xy + 2 * (size_t)(k * c->n);
-    double area = area_of(c->n, 1, x, x + c->n), t = c->run.scene->t0 + k * c->every;
-    int bad = k && c->n % 2 == 0 && fabs(area_of(c->n, 2, x, x + c->n) - area) > rough * fabs(first);
+    int bad;
+    double area = area_at(c, k, &bad), t = c->run.scene->t0 + k * c->every;
     first = k ? first : area;
     coarse |= bad;
     if (k == 0) printf(" %.6g at first; times", fabs(area));
     else if (bad) printf("%s ? at t = %.6g s", k == 1 ? "" : ",", t);
     else printf("%s %.9g at t = %.6g s", k == 1 ? "" : ",", area / first, t);
   }
-  printf(coarse ? "; ?: more starts are needed\n" : "\n");
+  printf(coarse ? "; ?: not determined by %d starts: fewer times, --until, or a smaller cloud, --cloud %d:0.01\n" : "\n", c->n, c->asked);
 }
 
 static int one_method(Cloud *c, int method) {
@@ -213,10 +254,13 @@ static int one_method(Cloud *c, int method) {
     rc = rc ? rc : choose_plane(c);
     rc = rc ? rc : find_half_axes(c);
     rc = rc ? rc : open_table(c);
-    if (rc == 0) snprintf(c->title, sizeof c->title, "%s: %s, %d starts, drawn each %.6g s", c->run.scene->model->name, c->run.scene->name, c->n, fabs(c->every));
+    if (rc == 0)
+      snprintf(c->title, sizeof c->title, "%s: %s, %d starts, drawn each %.6g s", c->run.scene->model->name,
+               c->run.scene->name, c->asked, fabs(c->every));
   }
-  rc = rc ? rc : carry_all(c);
+  rc = rc ? rc : carry_enough(c);
   rc = rc ? rc : add_curves(c, method);
+  rc = rc ? rc : note_times(c);
   if (rc == 0) report_areas(c, method);
   lag_app_free(&c->run);
   return rc;

@@ -216,7 +216,7 @@ int lag_cost_put_picture(const char *path, const App *app, const Cost *c) {
     if (!known) put_slope(o.f, &r, &all[i]);
   }
   put_names(o.f, &r, all, n);
-  fputs("<path fill=\"#f0c808\" fill-opacity=\"0.35\" d=\"M104 64h26v16h-26z\"/>\n<text x=\"138\" y=\"79\" font-size=\"16\">up to twice the least time</text>\n</svg>\n", o.f);
+  fputs("<path fill=\"#f0c808\" fill-opacity=\"0.35\" d=\"M572 532h20v14h-20z\"/>\n<text x=\"598\" y=\"545\" font-size=\"15\">up to twice the least time</text>\n</svg>\n", o.f);
   free(all);
   return lag_outfile_close(&o, OUTFILE_KEEP);
 }

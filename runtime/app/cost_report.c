@@ -210,9 +210,20 @@ static void put_notes(FILE *f, const App *app, const Cost *c) {
   put_absent(f, c);
 }
 
+/* Whether any component of the reference changes between its rows. */
+static int moves(const Samples *s) {
+  for (int i = 1; i < s->rows; i++)
+    if (memcmp(s->y, s->y + (size_t)i * (size_t)s->n, (size_t)s->n * sizeof *s->y) != 0) return 1;
+  return s->rows < 2;
+}
+
 void lag_cost_put_text(FILE *f, const App *app, const Cost *c) {
   const Samples *s = &c->reference;
   fprintf(f, "model %s, scene %s, to t = %.15g s\n", app->scene->model->name, app->scene->name, s->t[s->rows - 1]);
+  if (!s->output && !moves(s))
+    fputs(
+        "note: nothing moves, so that every method is exact: a scene with a motion compares them, `start x = 1` in it or x=1 here\n",
+        f);
   if (c->event != app->until) fprintf(f, "an event ends the run at about t = %.6g s; errors are compared up to t = %.6g s\n", c->event, s->t[s->rows - 1]);
   else if (!isnan(c->reached))
     fprintf(f, "the reference ends at t = %.15g s (an event ends the run, no digit is left, or it takes too long): errors are compared up to there\n", c->reached);

@@ -44,7 +44,7 @@ int lag_event_log_open(App *app) {
 void lag_event_note(void *context, int k, double t, const double *before, const double *after) {
   App *app = context;
   int n = (app->log.ncols - 2) / 2;
-  if (k == app->section && app->section_rc == 0) app->section_rc = lag_app_put_row(app);
+  if (k == app->section && app->section_rc == 0 && !app->skipping) app->section_rc = lag_app_put_row(app);
   if (lag_marks_event(app, k, t)) app->section_rc = LAG_ENOMEM;
   if (!app->log_rows.open) return;
   app->log_row[0] = t;

@@ -220,7 +220,7 @@ static void put_equilibrium(FILE *f, const App *app, const Equilibrium *r, const
   if (moved(r, far) > 1e-12)
     fprintf(f, "from the start %s moved by %.6g%s%s", v->name, (r->found[far] - r->start[far]) / v->factor, v->unit[0] ? " " : "", v->unit);
   else fputs("the start itself", f);
-  fprintf(f, "%s\n ", moving && !s->steady ? ", at rest" : "");
+  fprintf(f, "%s\n ", moving && !s->steady ? ", at rest (with the velocities of the start: --steady)" : "");
   put_vector(&line, (Vector){.m = m, .re = r->found, .state = 1, .all = 1});
   putc('\n', f);
   if (s->steady) put_velocities(f, m, steady_rates(m, r));
@@ -379,8 +379,26 @@ static int none_near(const App *app) {
   return EXIT_RUN;
 }
 
+/* Whether a steady motion is found from the scene's start, where no rest is. */
+static int runs_steadily(const App *app) {
+  Equilibrium rest = {0};
+  SteadyMotion steady = {0};
+  int found = lag_steady_find(&steady, &rest, app->sim, app->extras.algebra, 1) > 0;
+  lag_steady_free(&steady);
+  lag_equilibrium_free(&rest);
+  return found;
+}
+
 static int not_found(const App *app, const Equilibrium *r) {
   const lag_model *m = app->scene->model;
+  if (runs_steadily(app)) {
+    json_none(app);
+    lag_app_error(
+        &app->args,
+        "no equilibrium found from the start of scene %s, but a motion that runs steadily, along which only cyclic coordinates change: write --steady",
+        app->scene->name);
+    return EXIT_RUN;
+  }
   int i = r->worst, nq = m->nq, at = nq + i;
   const lag_var *v = variable(m, i);
   char unit[80] = "";

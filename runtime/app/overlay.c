@@ -226,7 +226,12 @@ static int open_table(Overlay *o, int common) {
   PlottedCurves *d = &o->app->drawn;
   size_t most = (size_t)(common * o->n);
   *t = (Table){.ncols = 1, .cols = calloc(1 + 2 * most, sizeof *t->cols), .keep = 1, .points = first->table.points};
-  *d = (PlottedCurves){.x = calloc(2 * most, sizeof *d->x), .xname = first->drawn.xname, .yname = first->drawn.yname, .beneath = first->drawn.beneath, .runs = o->n, .unnamed = o->app->args.starts != NULL};
+  *d = (PlottedCurves){.x = calloc(2 * most, sizeof *d->x),
+                       .xname = first->drawn.xname,
+                       .yname = first->drawn.yname,
+                       .beneath = first->drawn.beneath,
+                       .runs = o->n,
+                       .ordered = o->app->args.starts != NULL};
   if (!t->cols || !d->x) return lag_app_error(&o->app->args, "out of memory");
   d->y = d->x + most;
   t->cols[0] = first->table.cols[0];

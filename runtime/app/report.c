@@ -5,7 +5,7 @@
 #include "analysis/effect_variants.h"
 #include "app/app.h"
 
-enum { MOST_LINES = 24 };
+enum { MOST_LINES = 24, BESIDE_PICTURE = 4 };
 
 void lag_report_method(const App *app, char *s, size_t n) {
   const lag_method *m = lag_sim_method(app->sim);
@@ -152,12 +152,12 @@ static void charges_json(const App *app, Json *j) {
 
 static void final_state(const App *app, FILE *f) {
   const lag_model *m = app->scene->model;
-  int n = 2 * m->nq + m->nz;
-  for (int i = 0; i < n && i < MOST_LINES; i++) {
+  int n = 2 * m->nq + m->nz, most = n > MOST_LINES && (app->args.html || app->args.svg) ? BESIDE_PICTURE : MOST_LINES;
+  for (int i = 0; i < n && i < most; i++) {
     Column c = lag_state_column(app->sim, i);
     fprintf(f, "  %-14s %.15g%s%s\n", c.name, lag_sim_state_value(app->sim, i), c.unit[0] ? " " : "", c.unit);
   }
-  if (n > MOST_LINES) fprintf(f, "  (and %d more)\n", n - MOST_LINES);
+  if (n > most) fprintf(f, "  (and %d more)\n", n - most);
 }
 
 /* Whether constraint k is redundant at the start; contacts do not count. */
@@ -202,9 +202,28 @@ static void constraints(const App *app, const lag_stats *st, FILE *f) {
 }
 
 /* Notes: steps too long for the fastest oscillation; a symplectic method on a model for which it is not symplectic. */
+/* 1: the run ends in the state in which it began, without velocities. *started: a start is not 0. */
+static int stands_still(const App *app, int *started) {
+  const lag_model *m = app->scene->model;
+  *started = 0;
+  for (int i = 0; i < 2 * m->nq + m->nz; i++) {
+    double x = lag_sim_state_value(app->sim, i);
+    if (x != lag_sim_actual_start(app->sim, i) || (i >= m->nq && i < 2 * m->nq && x != 0)) return 0;
+    *started |= x != 0;
+  }
+  return app->status >= 0;
+}
+
 static void caveat(const App *app, const lag_stats *st, FILE *f) {
   const lag_method *m = lag_sim_method(app->sim);
   unsigned has = app->scene->model->flags;
+  int started;
+  if (st->steps > 0 && stands_still(app, &started)) {
+    const char *name = lag_state_column(app->sim, 0).name;
+    fputs("note: nothing moves: the scene begins at rest, where no force acts", f);
+    if (!started) fprintf(f, "; write a start into it, `start %s = 0.1`, or give one here: %s=0.1", name, name);
+    putc('\n', f);
+  }
   if (isfinite(st->unresolved)) {
     fprintf(f, "note: steps are longer than half a period, about %.2g s, of the fastest oscillation: its motion is wrong, even if the energy is kept; take "
                "--step %.0e or less, or radau, which damps the oscillation, or dop853, which resolves it\n", st->unresolved, st->unresolved / 20);

@@ -5,6 +5,8 @@
  * The times that the caller asks for do not change the steps. */
 #pragma once
 
+#include <float.h>
+#include <math.h>
 #include <stddef.h>
 
 #include "lag.h"
@@ -132,8 +134,15 @@ struct lag_sim {
   char message[512];
 };
 
-/* An SI value converted to the declared unit of its variable. */
-static inline double lag_declared(const lag_var *v, double si) { return (si - v->offset) / v->factor; }
+/* An SI value converted to the declared unit of its variable: of the numbers that give it back, one with few decimals,
+ * so that a start of 60 [deg] is shown as 60, not 59.99999999999999. */
+static inline double lag_declared(const lag_var *v, double si) {
+  double x = (si - v->offset) / v->factor, few = rint(1e6 * x) / 1e6;
+  return v->factor != 1 && fabs(few - x) <= 4 * DBL_EPSILON * fabs(x) &&
+                 fabs(few * v->factor + v->offset - si) <= DBL_EPSILON * fabs(si)
+             ? few
+             : x;
+}
 
 /* setup.c: whether the option is a step size; why x [s] cannot be the step size of this scene, NULL: it can. */
 int lag_is_step_option(const char *option);

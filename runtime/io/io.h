@@ -68,6 +68,12 @@ typedef struct Beneath {
   int profile; /* 1: y is of the kind of the value, and the curve value(of, x, 0) is drawn; 0: level curves */
 } Beneath;
 
+/* A few words at a place of a picture. */
+typedef struct PictureNote {
+  double x, y;
+  char text[24];
+} PictureNote;
+
 /* The curves of a picture: column y[i] against column x[i]; column 0 is the time. */
 typedef struct PlottedCurves {
   int n, *x, *y;
@@ -75,7 +81,9 @@ typedef struct PlottedCurves {
   const char *xname, *yname; /* axis labels where several columns are drawn; NULL: all columns against time */
   Beneath beneath;
   int runs;   /* 0, or curve i is of run i mod runs, whose colour it has */
-  int unnamed; /* 1: curves have no legend */
+  int ordered; /* 1: the runs are those of a range, and coloured by their place in it */
+  int nnotes;
+  PictureNote *note; /* [nnotes], or NULL */
 } PlottedCurves;
 
 /* Writes the picture as SVG. -1 with errno set. */

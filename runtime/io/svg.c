@@ -9,13 +9,41 @@
 #include "io/io.h"
 #include "io/svg_panel.h"
 
-enum { GAP = 26, MOST_PANELS = 6, MOST_LEGEND = 24, MOST_NAME = 48, LINE = 18 };
+enum { GAP = 26, MOST_PANELS = 6, MOST_LEGEND = 24, MOST_NAME = 48, LINE = 18, MEMBER = 1024 };
 
-
-/* text[n] := stroke attributes of series k: the second eight series are dashed, the third dotted. */
+/* text[n] := stroke attributes of series k: the second eight series are dashed, the third dotted; of a family's n
+ * members, k = MEMBER*n + i, colours run from blue over violet to orange. */
 static void stroke_of(int k, char *text, size_t n) {
   static const char *const dashes[] = {"", " stroke-dasharray=\"5 3\"", " stroke-dasharray=\"1.5 2.5\""};
-  snprintf(text, n, "stroke=\"%s\"%s", lag_colour[k % 8], dashes[k / 8 % 3]);
+  static const int by_index[3][3] = {{0, 60, 160}, {170, 50, 150}, {235, 150, 20}};
+  if (k < MEMBER) {
+    snprintf(text, n, "stroke=\"%s\"%s", lag_colour[k % 8], dashes[k / 8 % 3]);
+    return;
+  }
+  double at = 2.0 * (k % MEMBER) / (k / MEMBER - 1), part = at < 1 ? at : at - 1;
+  const int *from = by_index[at < 1 ? 0 : 1], *to = by_index[at < 1 ? 1 : 2];
+  snprintf(text, n, "stroke=\"#%02x%02x%02x\"", (int)(from[0] + part * (to[0] - from[0])),
+           (int)(from[1] + part * (to[1] - from[1])), (int)(from[2] + part * (to[2] - from[2])));
+}
+
+static int same_family(const char *a, const char *b) {
+  size_t n = strcspn(a, "[");
+  return a[n] == '[' && strncmp(a, b, n + 1) == 0;
+}
+
+/* The colour of series i, the k-th of its panel's `total`, which has the columns of a unit (NULL: all): by its index in
+ * a range of runs, or among three or more members of a family x[1], x[2], ...; else by its run, or its place. */
+static int series_stroke(const Table *t, const PlottedCurves *d, const char *unit, int i, int k, int total) {
+  const char *name = t->cols[d->y[i]].name;
+  int n = 0, index = 0;
+  if (d->ordered && total > 2 && total < MEMBER) return MEMBER * total + k;
+  for (int j = 0; j < d->n && !d->runs; j++)
+    if ((!unit || strcmp(t->cols[d->y[j]].unit, unit) == 0) && same_family(name, t->cols[d->y[j]].name)) {
+      index += j < i;
+      n++;
+    }
+  if (n > 2 && n < MEMBER) return MEMBER * n + index;
+  return d->runs ? i % d->runs + 8 * (k / d->runs) : i;
 }
 
 /* Adds a point to an SVG path: "M" at the start of a piece, "L" within; a value that is not finite ends the piece. */
@@ -28,10 +56,10 @@ static void point(FILE *f, const Panel *p, double x, double y, int *pen) {
   *pen = 1;
 }
 
-/* Dots, as zero-length strokes with round ends in one element; smaller where there are many. */
+/* Dots, as zero-length strokes with round ends in one element; from 8 pixels where they are few to 2 where they are thousands. */
 static void dots(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, const char *stroke) {
-  double width = t->nrows > 2000 ? 2 : t->nrows > 300 ? 2.6 : 4;
-  fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"%.1f\" stroke-linecap=\"round\" d=\"", stroke, width);
+  double width = fmin(8, fmax(2, 40 / pow((double)t->nrows, 0.4)));
+  fprintf(f, "<path fill=\"none\" %s stroke-width=\"%.1f\" stroke-linecap=\"round\" d=\"", stroke, width);
   for (size_t i = 0; i < t->nrows; i++) {
     double x = lag_table_cell(t, i, xcol), y = lag_table_cell(t, i, ycol);
     x -= period > 0 ? period * floor(x / period + 0.5) : 0;
@@ -86,7 +114,43 @@ static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, do
   }
 }
 
+/* Number of times that the column turns back, by more than a pixel. */
+static double turns_of(const Panel *p, const Table *t, int ycol) {
+  double turns = 0, way = 0, farthest = NAN, pixel = (p->y1 - p->y0) / p->h;
+  for (size_t i = 0; i < t->nrows; i++) {
+    double y = lag_table_cell(t, i, ycol), back = way * (farthest - y);
+    if (!isfinite(y)) continue;
+    if (isnan(farthest)) farthest = y;
+    else if (way == 0 && fabs(y - farthest) > pixel) way = y > farthest ? 1 : -1, farthest = y;
+    else if (way != 0 && back > pixel) way = -way, farthest = y, turns++;
+    else if (way * (y - farthest) > 0) farthest = y;
+  }
+  return turns;
+}
+
+/* The area between the least and the largest value of each part, with its edges; a part has a pixel or more, and four
+ * turns of the curve. */
+static void envelope(FILE *f, const Panel *p, const Table *t, int ycol, double turns, const char *stroke) {
+  size_t per = (size_t)((double)t->nrows / fmin(p->w, turns / 4)) + 1, n = (t->nrows + per - 1) / per;
+  fprintf(f, "<path %s stroke-width=\"1\" fill-opacity=\"0.25\" fill=\"%.7s\" d=\"", stroke,
+          strchr(stroke, '#') ? strchr(stroke, '#') : "#000000");
+  for (size_t k = 0, pen = 0; k < 2 * n; k++) {
+    size_t from = (k < n ? k : 2 * n - 1 - k) * per, end = from + per < t->nrows ? from + per : t->nrows;
+    double most = NAN, sign = k < n ? 1 : -1;
+    for (size_t j = from; j < end; j++) most = fmax(most, sign * lag_table_cell(t, j, ycol));
+    if (!isfinite(most)) continue;
+    fprintf(f, "%s%.2f %.2f", pen ? "L" : "M", lag_panel_x(p, lag_table_cell(t, from, 0)), lag_panel_y(p, sign * most));
+    pen = 1;
+  }
+  fputs("z\"/>\n", f);
+}
+
 static void one_curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, const char *stroke) {
+  double turns = xcol == 0 ? turns_of(p, t, ycol) : 0;
+  if (turns > p->w) { /* one cannot follow such a curve */
+    envelope(f, p, t, ycol, turns, stroke);
+    return;
+  }
   fprintf(f, "<path fill=\"none\" %s stroke-width=\"1.6\" stroke-linejoin=\"round\" d=\"", stroke);
   if (xcol == 0 && t->nrows > (size_t)(2 * p->w)) min_max_curve(f, p, t, ycol);
   else path(f, p, t, xcol, ycol, period);
@@ -96,11 +160,11 @@ static void one_curve(FILE *f, const Panel *p, const Table *t, int xcol, int yco
 /* In grey past the horizon; points of a section stay, since the whole of them may still hold. */
 static void curve(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period, int k) {
   char stroke[64];
+  stroke_of(t->points && k < MEMBER ? k % 8 : k, stroke, sizeof stroke);
   if (t->points) {
-    dots(f, p, t, xcol, ycol, period, lag_colour[k % 8]);
+    dots(f, p, t, xcol, ycol, period, stroke);
     return;
   }
-  stroke_of(k, stroke, sizeof stroke);
   Table part = *t;
   if (t->certain) {
     part.data += (t->certain - 1) * (size_t)t->ncols;
@@ -166,14 +230,17 @@ static void mark(FILE *f, double x, double y, const char *fill) {
 
 /* The series of one unit against time, or all against their columns where it is NULL, with their legend. */
 static void draw_series(FILE *f, const Panel *p, const Table *t, const PlottedCurves *d, const char *unit) {
-  int shown = 0, total = 0;
+  enum { LISTED = 12, SOME = 8 };
+  int shown = 0, total = 0, line = 0;
   for (int i = 0; i < d->n; i++) total += !unit || strcmp(t->cols[d->y[i]].unit, unit) == 0;
   for (int i = 0; i < d->n; i++) {
     int x = unit ? 0 : d->x[i], y = d->y[i];
     if (unit && strcmp(t->cols[y].unit, unit) != 0) continue;
-    int stroke = d->runs ? i % d->runs + 8 * (shown / d->runs) : i;
+    int stroke = series_stroke(t, d, unit, i, shown, total);
     curve(f, p, t, x, y, d->beneath.period, stroke);
-    if ((unit || total > 1) && !d->unnamed) legend(f, p, shown, total, stroke, t->cols[y].name);
+    int some = d->ordered && total > LISTED,
+        told = !some || shown * SOME % (total - 1) < SOME; /* of many runs about SOME, the first and the last */
+    if (told && (unit || total > 1)) legend(f, p, line++, some ? SOME + 1 : total, stroke, t->cols[y].name);
     shown++;
   }
 }
@@ -184,7 +251,7 @@ static int legend_width(const Table *t, const PlottedCurves *d) {
   int most = (RIGHT - KEY) / CHARACTER;
   char s[sizeof t->cols->name];
 
-  for (int i = 0; i < d->n && !d->unnamed; i++) {
+  for (int i = 0; i < d->n; i++) {
     truncate_text(t->cols[d->y[i]].name, MOST_NAME, s, sizeof s);
     most = (int)strlen(s) > most ? (int)strlen(s) : most;
   }
@@ -203,9 +270,17 @@ static int units_of(const Table *t, const PlottedCurves *d, const char *units[MO
   return n;
 }
 
+/* s[n] := "x, y" of the drawn columns of one unit, as far as there is room. */
+static const char *names_of(const Table *t, const PlottedCurves *d, const char *unit, char *s, size_t n) {
+  size_t at = 0;
+  for (int i = 0; i < d->n && at + sizeof t->cols->name + 3 < n; i++)
+    if (strcmp(t->cols[d->y[i]].unit, unit) == 0) at += (size_t)snprintf(s + at, n - at, "%s%s", at ? ", " : "", t->cols[d->y[i]].name);
+  return s;
+}
+
 static void against_time(FILE *f, const Table *t, const char *title, const PlottedCurves *d) {
   const char *units[MOST_PANELS];
-  char xlabel[176];
+  char xlabel[176], names[300];
   int n = units_of(t, d, units);
   double h = n == 1 ? 380 : n == 2 ? 230 : 170;
   Panel p = {.x = LEFT, .y = TOP, .w = WIDTH - LEFT - RIGHT, .h = h, .x0 = HUGE_VAL, .x1 = -HUGE_VAL, .xlog = d->xlog, .ylog = d->ylog, .xlabel = xlabel};
@@ -221,7 +296,7 @@ static void against_time(FILE *f, const Table *t, const char *title, const Plott
       if (strcmp(t->cols[d->y[i]].unit, units[k]) == 0) lag_table_range(t, d->y[i], &p.y0, &p.y1);
     lag_widen_range(&p.y0, &p.y1, 1e-12, 0.06);
     if (d->yname) label_of(d->yname, units[k], h + 40, s, sizeof s);
-    else snprintf(s, sizeof s, units[k][0] ? "[%s]" : "%s", units[k]);
+    else label_of(names_of(t, d, units[k], names, sizeof names), units[k], h + 40, s, sizeof s);
     lag_svg_axes(f, &p, s, k == n - 1);
     draw_series(f, &p, t, d, units[k]);
     put_horizon(f, &p, t, k == 0);
@@ -299,6 +374,10 @@ static void paths(FILE *f, const Table *t, const char *title, const PlottedCurve
   if (d->beneath.profile) lag_svg_profile(f, &p, &d->beneath);
   else if (d->beneath.value) lag_svg_levels(f, &p, &d->beneath);
   draw_series(f, &p, t, d, NULL);
+  for (const PictureNote *note = d->note; note && note < d->note + d->nnotes; note++)
+    lag_svg_text(f, lag_panel_x(&p, note->x), lag_panel_y(&p, note->y) + 4,
+                 "font-size=\"11\" text-anchor=\"middle\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"",
+                 note->text);
   if (!x) put_horizon(f, &p, t, 1);
   if (x && t->certain && !t->points) {
     double at = p.x + p.w + 14, below = p.y + p.h - 8;

@@ -11,11 +11,13 @@ enum { LEVELS = 64, SIDE = 512, BAR = 18, MOST_CATEGORIES = 8 };
 typedef struct Scale {
   double least, most;
   int categories; /* 0: colours of LEVELS; else least, least + 1, ... */
+  int sides;      /* 1: values of both signs: blue below 0, red above, white at 0, which is in the middle */
 } Scale;
 
 /* 1: all values are whole, and few. */
 static Scale scale_of(const ValueMap *m) {
-  Scale s = {HUGE_VAL, -HUGE_VAL, 1};
+  const double least_side = 0.05; /* of the other: values a little beyond 0 are not of both signs */
+  Scale s = {HUGE_VAL, -HUGE_VAL, 1, 0};
   for (size_t i = 0, n = (size_t)m->nx * (size_t)m->ny; i < n; i++) {
     if (!isfinite(m->value[i])) continue;
     s.least = fmin(s.least, m->value[i]);
@@ -23,6 +25,8 @@ static Scale scale_of(const ValueMap *m) {
     if (m->value[i] != floor(m->value[i])) s.categories = 0;
   }
   s.categories = s.categories && s.most - s.least < MOST_CATEGORIES ? (int)(s.most - s.least) + 1 : 0;
+  s.sides = !s.categories && fmin(-s.least, s.most) > least_side * fmax(-s.least, s.most);
+  if (s.sides) s.least = -(s.most = fmax(-s.least, s.most));
   return s;
 }
 
@@ -30,6 +34,13 @@ static void put_colour(FILE *f, const Scale *s, int level) {
   const double start = 0.5, turns = -1.5, dark = 0.08, light = 0.92, pi = 3.14159265358979323846;
   if (s->categories) {
     fputs(lag_colour[level], f);
+    return;
+  }
+  if (s->sides) {
+    static const int end[2][3] = {{33, 90, 172}, {178, 24, 43}};
+    double part = 2 * (level + 0.5) / LEVELS - 1;
+    putc('#', f);
+    for (int k = 0; k < 3; k++) fprintf(f, "%02x", (int)(248 + (end[part > 0][k] - 248) * fabs(part)));
     return;
   }
   double lightness = dark + (light - dark) * level / (LEVELS - 1), angle = 2 * pi * (start / 3 + turns * lightness), amplitude = lightness * (1 - lightness) / 2;
@@ -87,6 +98,7 @@ static void put_bar(FILE *f, const Panel *p, const Scale *s, const char *label) 
     snprintf(number, sizeof number, "%.6g", fabs(k * step) < 1e-9 * step ? 0. : k * step);
     lag_svg_text(f, x + BAR + 6, lag_panel_y(&bar, k * step) + 4, "", number);
   }
+  if (s->sides) fprintf(f, "<path d=\"M%.1f %.1fh%d\" stroke=\"#333\"/>\n", x - 3, lag_panel_y(&bar, 0), BAR + 6);
   lag_svg_text(f, x, p->y - 8, "class=\"l\"", label);
 }
 

@@ -64,16 +64,25 @@ static double label_stride(const Panel *p, double dx) {
   return ceil(((double)longest * WIDTH_OF_CHARACTER + ROOM) / (lag_panel_x(p, dx) - lag_panel_x(p, 0)));
 }
 
+/* Writes a label; 2*10^-3 with its exponent above the line. */
+static void put_label(FILE *f, double x, double y, const char *attributes, const char *s) {
+  const char *power = strstr(s, "10^");
+  if (!power) lag_svg_text(f, x, y, attributes, s);
+  else
+    fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>%.*s%s10<tspan dy=\"-5\" font-size=\"9\">%s</tspan></text>\n", x, y,
+            attributes, (int)strcspn(s, "*1"), s, power > s ? "\302\267" : "", power + 3);
+}
+
 /* A line of the grid at x, and its label, if it has one. */
 static void x_tick(FILE *f, const Panel *p, double x, const char *label) {
   fprintf(f, "<path d=\"M%.2f %.1fv%.1f\" class=\"g\"/>\n", lag_panel_x(p, x), p->y, p->h);
-  if (*label) lag_svg_text(f, lag_panel_x(p, x), p->y + p->h + 17, "text-anchor=\"middle\"", label);
+  if (*label) put_label(f, lag_panel_x(p, x), p->y + p->h + 17, "text-anchor=\"middle\"", label);
 }
 
 static void y_tick(FILE *f, const Panel *p, double at, const char *label) {
   double y = lag_panel_y(p, at);
   fprintf(f, "<path d=\"M%.1f %.2fh%.1f\" class=\"g\"/>\n", p->x, y, p->w);
-  if (*label) lag_svg_text(f, p->x - 7, y + 4, "text-anchor=\"end\"", label);
+  if (*label) put_label(f, p->x - 7, y + 4, "text-anchor=\"end\"", label);
 }
 
 static void linear_x(FILE *f, const Panel *p, int labelled) {
@@ -107,7 +116,8 @@ static void log_ticks(FILE *f, const Panel *p, double lo, double hi, int labelle
     for (int i = 0; i < parts; i++) {
       double at = k + log10(between[i]);
       char s[32] = "";
-      if (labelled && i < told && k % every == 0) snprintf(s, sizeof s, "%.6g", between[i] * pow(10, k));
+      if (labelled && i == 0 && k % every == 0) snprintf(s, sizeof s, "10^%d", k);
+      else if (labelled && i < told && k % every == 0) snprintf(s, sizeof s, "%d*10^%d", between[i], k);
       if (at >= lo - 1e-9 && at <= hi + 1e-9) tick(f, p, at, s);
     }
 }

@@ -10,6 +10,7 @@
 #include "claims/feature_pool.h"
 #include "mech/states.h"
 #include "sym/prove.h"
+#include "model/printed_text.h"
 #include "sym/print.h"
 
 /* Costs of edits: slips of the pen first, then larger changes. */
@@ -27,7 +28,11 @@ typedef struct {
   Expr with;
   long double cost;
   Span caret;
-  const char *edit;
+  const char *edit;  /* the sentence; of a replacement its begin, up to the new text */
+  const char *text;  /* what replaces the text at `at`; NULL: the sentence has no text to paste */
+  const char *after; /* of the text in the sentence */
+  Span at;
+  uint32_t own;      /* text has the site's own text from here on; 0: it has not */
 } Guess;
 
 /* Values of a site at the states. */
@@ -169,8 +174,18 @@ static const AstExpr *ast_of(const EditSearch *md, const Site *s) { return ast_e
 
 static void guess(EditSearch *md, const Site *s, Expr with, double cost, Span caret, const char *edit) {
   /* Mistakes are likelier on the right side, where formulas stand. */
-  Guess one = {s, with, cost + (s->side ? 0 : 0.05L), caret, edit};
+  Guess one = {.site = s, .with = with, .cost = cost + (s->side ? 0 : 0.05L), .caret = caret, .edit = edit};
   vec_push(md->arena, &md->guesses, one);
+}
+
+/* The same, where the text at the caret should be `text`. */
+static Guess *guess_text(EditSearch *md, const Site *s, Expr with, double cost, Span at, const char *edit, const char *text) {
+  guess(md, s, with, cost, at, edit);
+  Guess *last = &md->guesses.at[md->guesses.n - 1];
+  last->text = text;
+  last->at = at;
+  last->after = "";
+  return last;
 }
 
 /* Whether the values are those of a monomial that is a number. */
@@ -201,10 +216,14 @@ static void guess_number(EditSearch *md, const Site *s, const char *text, Expr r
   Num n = num_mul(expr_number(md->g, ratio), number->number);
   Expr with = expr_mul(md->g, s->value, ratio), shown = expr_num(md->g, n);
   int superfluous = num_is_one(n) && s->role == SITE_FACTOR && x == number;
-  const char *edit = superfluous ? arena_printf(md->arena, "the factor `%s` should not be there", text)
-                     : x == number ? arena_printf(md->arena, "`%s` should be `%s`", text, text_of(md, shown))
-                                   : arena_printf(md->arena, "`%s` should be `%s [%s]`", text, text_of(md, shown), x->unit.text);
-  guess(md, s, with, COST_SLIP + (num_sign(n) < 0), s->span, edit);
+  if (superfluous) {
+    guess(md, s, with, COST_SLIP, s->span, arena_printf(md->arena, "the factor `%s` should not be there", text));
+    return;
+  }
+  Guess *g = guess_text(md, s, with, COST_SLIP + (num_sign(n) < 0), number->span,
+                        arena_printf(md->arena, "`%s` should be", text), text_of(md, shown));
+  g->caret = s->span;
+  if (x != number) g->after = arena_printf(md->arena, " [%s]", x->unit.text);
 }
 
 /* The site is a power b^n, or a name or a formula in parentheses, and needs another power of it. */
@@ -223,9 +242,12 @@ static void guess_power(EditSearch *md, const Site *s, const char *text, const N
   if (exponent) {
     const char *old = short_text(md->m->ast, exponent->span);
     Expr shown = expr_num(md->g, n);
-    const char *edit = num_is_one(n) ? arena_printf(md->arena, "the exponent `%s` should not be there", old)
-                                     : arena_printf(md->arena, "the exponent `%s` should be `%s`", old, text_of(md, shown));
-    guess(md, s, with, COST_SLIP, num_is_one(n) ? span_join(x->op_span, exponent->span) : exponent->span, edit);
+    if (num_is_one(n))
+      guess(md, s, with, COST_SLIP, span_join(x->op_span, exponent->span),
+            arena_printf(md->arena, "the exponent `%s` should not be there", old));
+    else
+      guess_text(md, s, with, COST_SLIP, exponent->span, arena_printf(md->arena, "the exponent `%s` should be", old),
+                 text_of(md, shown));
     return;
   }
   int product = s->role == SITE_FACTOR || s->role == SITE_DIVISOR;
@@ -233,9 +255,12 @@ static void guess_power(EditSearch *md, const Site *s, const char *text, const N
     const char *how = s->role == SITE_FACTOR ? "should divide, not multiply" : "should multiply, not divide";
     guess(md, s, with, COST_INVERSE, s->with_op, arena_printf(md->arena, "`%s` %s", text, how));
   }
-  Expr shown = expr_num(md->g, n);
-  if (s->role != SITE_BASE && num_sign(n) > 0)
-    guess(md, s, with, COST_POWER, s->span, arena_printf(md->arena, "`%s` should be `%s^%s`", text, text, text_of(md, shown)));
+  if (s->role == SITE_BASE || num_sign(n) <= 0) return;
+  const char *power = text_of(md, expr_num(md->g, n)), *whole = num_is_int(n) ? "^%s" : "^(%s)";
+  int alone = x->kind == AST_NAME || x->kind == AST_CALL || x->kind == AST_PRIME || x->kind == AST_MEMBER ||
+              x->kind == AST_INDEX || s->span.begin < x->span.begin;
+  guess_text(md, s, with, COST_POWER, s->span, arena_printf(md->arena, "`%s` should be", text),
+             arena_printf(md->arena, alone ? "%s%s" : "(%s)%s", text, arena_printf(md->arena, whole, power)))->own = alone ? 1 : 2;
 }
 
 /* Whether all needed values are `value`, up to rounding. */
@@ -247,7 +272,7 @@ static int needs(const Need *need, long double value) {
 
 static void guess_removal(EditSearch *md, const Site *s, const char *text, const Need *need) {
   int is_number = ast_of(md, s)->kind == AST_NUM, zero = needs(need, 0);
-  if (zero && is_number) guess(md, s, expr_int(md->g, 0), COST_SLIP, s->span, arena_printf(md->arena, "`%s` should be `0`", text));
+  if (zero && is_number) guess_text(md, s, expr_int(md->g, 0), COST_SLIP, s->span, arena_printf(md->arena, "`%s` should be", text), "0");
   if (zero && s->role == SITE_TERM) guess(md, s, expr_int(md->g, 0), COST_EXTRA, s->with_op, arena_printf(md->arena, "the term `%s` should not be there", text));
   if (is_number || (s->role != SITE_FACTOR && s->role != SITE_DIVISOR) || !needs(need, 1)) return;
   const char *what = s->role == SITE_FACTOR ? "factor" : "divisor";
@@ -268,7 +293,9 @@ static void guess_factor(EditSearch *md, const Site *s, const char *text, const 
   enum { MOST = 12, MOST_MIXED = 5 };
   int alone = s->role == SITE_ROOT && !s->side && expr_op(md->g, s->value) == EX_SYM, number = is_number(md, missing);
   if (s->role == SITE_FACTOR || alone || missing->size > (missing->mixed ? MOST_MIXED : MOST)) return;
-  const char *what = missing->divisor ? "divisor" : "factor", *formula = text_of(md, missing->divisor ? missing->divisor : missing->e);
+  Expr shown = missing->divisor ? missing->divisor : missing->e;
+  const char *what = missing->divisor ? "divisor" : "factor", *formula = text_of(md, shown);
+  if (!printed_says(md->m, formula, shown)) return;
   double cost = (number ? COST_SCALE + (expr_number(md->g, missing->e).den == 1 ? 0 : 0.2) : COST_VALUE + COST_FACTOR * missing->size) + cost_of_place(md, s);
   guess(md, s, expr_mul(md->g, s->value, missing->e), cost, s->span, arena_printf(md->arena, "`%s` lacks the %s `%s`", text, what, formula));
 }
@@ -276,13 +303,14 @@ static void guess_factor(EditSearch *md, const Site *s, const char *text, const 
 static void guess_term(EditSearch *md, const Site *s, const char *text, const Monomial *missing) {
   int is_sum = ast_is_sum(ast_of(md, s)->kind);
   if (!is_sum && s->role == SITE_TERM) return;
+  if (!printed_says(md->m, text_of(md, missing->e), missing->e)) return;
   const char *edit = arena_printf(md->arena, "`%s` lacks the term `%s`", text, text_of(md, missing->e));
   guess(md, s, expr_add(md->g, s->value, missing->e), COST_VALUE + COST_FACTOR * missing->size + (is_sum ? 0 : 0.1), ast_of(md, s)->span, edit);
 }
 
 static void guess_replacement(EditSearch *md, const Site *s, Expr with, double cost, Span caret) {
   const char *was = short_text(md->m->ast, caret);
-  guess(md, s, with, cost, caret, arena_printf(md->arena, "`%s` should be `%s`", was, text_of(md, with)));
+  guess_text(md, s, with, cost, caret, arena_printf(md->arena, "`%s` should be", was), text_of(md, with));
 }
 
 /* The argument of a function, or a single term of it, should be another. */
@@ -370,6 +398,95 @@ static int guess_is_proved(EditSearch *md, const Guess *guess) {
   return side && prove_by_motion(md->e, s->side ? md->x->lhs : side, s->side ? side : md->x->rhs) == PROVED_ZERO;
 }
 
+/* --- the text as pasted --- */
+
+/* A side with an edit; offsets into its new text. */
+typedef struct {
+  const EditSearch *md;
+  const Guess *guess;
+  const AstExpr *side;  /* its root, as written */
+  AstId root;
+  uint32_t begin, end;  /* the new text */
+  uint32_t was;         /* end of the old one */
+  uint32_t own, own_end; /* the site's own text within the new one; 0: none */
+} Paste;
+
+/* Value as written of the node of this kind and place; 0: none. */
+static AstId written_node(const Paste *p, AstKind kind, uint32_t begin, uint32_t end) {
+  const Ast *ast = p->md->m->ast;
+  for (AstId id = p->side->first; id <= p->root; id++) {
+    const AstExpr *x = ast_expr(ast, id);
+    if (x->kind == kind && x->span.begin - p->side->span.begin == begin && x->span.end - p->side->span.begin == end) return id;
+  }
+  return 0;
+}
+
+/* Whether the node is a number, or a fraction of two. */
+static int is_number_text(const Ast *ast, AstId id, Num *n) {
+  int minus = ast_expr(ast, id)->kind == AST_NEG;
+  const AstExpr *x = ast_expr(ast, minus ? ast_expr(ast, id)->a : id), *top = x->kind == AST_DIV ? ast_expr(ast, x->a) : x;
+  const AstExpr *below = x->kind == AST_DIV ? ast_expr(ast, x->b) : NULL;
+  int negative = top->kind == AST_NEG;
+  if (negative) top = ast_expr(ast, top->a);
+  if (top->kind != AST_NUM || (below && (below->kind != AST_NUM || num_is_zero(below->number)))) return 0;
+  *n = below ? num_div(top->number, below->number) : top->number;
+  if (minus != negative) *n = num_neg(*n);
+  return 1;
+}
+
+/* Nodes beside the edit have their values; so has the site's own text within it; a number before a unit has the unit's scale. */
+static Expr known_part(const void *data, const Ast *ast, const AstExpr *x, uint32_t begin, uint32_t end) {
+  const Paste *p = data;
+  ExprGraph *g = p->md->g;
+  const int side = p->guess->site->side;
+  uint32_t shift = p->end - p->was; /* may wrap: added and subtracted alike */
+  if (p->own && begin == p->own && end == p->own_end) return p->guess->site->value;
+  Num n;
+  int beside = end <= p->begin || begin >= p->end, number = x->kind == AST_UNIT && is_number_text(ast, x->a, &n);
+  if (!beside && !number) return 0;
+  AstId id = written_node(p, x->kind, begin >= p->end ? begin - shift : begin, end > p->begin ? end - shift : end);
+  if (!id || beside) return id ? edit_node(&p->md->sites, side, id) : 0;
+  Expr was = edit_node(&p->md->sites, side, id), before = edit_node(&p->md->sites, side, ast_expr(p->md->m->ast, id)->a);
+  if (!was || !before || expr_is_zero(g, before)) return 0;
+  Expr scale = expr_div(g, was, before);
+  return expr_mul(g, expr_num(g, n), scale);
+}
+
+/* Whether the expectation is proved as it reads with `text` in its place. */
+static int pasted_is_proved(EditSearch *md, const Guess *guess, const char *text, uint32_t own) {
+  int right = guess->site->side;
+  AstId root = right ? md->x->rhs_ast : md->x->lhs_ast;
+  const AstExpr *x = ast_expr(md->m->ast, root);
+  const Source *file = source_place(md->m->ast->sources, x->span.begin).file;
+  if (!file || guess->at.begin < x->span.begin || guess->at.end > x->span.end) return 0;
+  StrBuf b = strbuf(md->arena);
+  sb_putn(&b, file->text + (x->span.begin - file->base), guess->at.begin - x->span.begin);
+  Paste p = {.md = md, .guess = guess, .side = x, .root = root, .begin = (uint32_t)b.n, .was = guess->at.end - x->span.begin};
+  sb_puts(&b, text);
+  p.end = (uint32_t)b.n;
+  if (own) p.own = p.begin + own - 1, p.own_end = p.own + (guess->site->span.end - guess->site->span.begin);
+  if (own && text[own - 1] == '(') p.own++, p.own_end--; /* nodes have no parentheses */
+  sb_putn(&b, file->text + (guess->at.end - file->base), x->span.end - guess->at.end);
+  for (char *s = b.at, *end = b.at + b.n; s < end; s++) /* comments and ends of lines */
+    if (*s == '#') while (s < end && *s != '\n') *s++ = ' ';
+    else if (*s == '\n' || *s == '\r') *s = ' ';
+  Expr value = printed_value(md->m, sb_text(&b), guess->with, known_part, &p);
+  return value && prove_by_motion(md->e, right ? md->x->lhs : value, right ? value : md->x->rhs) == PROVED_ZERO;
+}
+
+/* The sentence of a guess that is proved, with parentheses around the new text where its place needs them; NULL: the
+ * text would say something else. */
+static const char *proved_sentence(EditSearch *md, const Guess *guess) {
+  if (!guess_is_proved(md, guess)) return NULL;
+  if (!guess->text) return guess->edit;
+  const char *text = guess->text;
+  if (!pasted_is_proved(md, guess, text, guess->own)) {
+    text = arena_printf(md->arena, "(%s)", text);
+    if (!pasted_is_proved(md, guess, text, guess->own ? guess->own + 1 : 0)) return NULL;
+  }
+  return arena_printf(md->arena, "%s `%s%s`", guess->edit, text, guess->after);
+}
+
 SuggestedEdit suggest_correction(const Eqns *e, const Expect *x) {
   enum { PROOFS = 12 };
   const Model *m = e->m;
@@ -384,7 +501,9 @@ SuggestedEdit suggest_correction(const Eqns *e, const Expect *x) {
   for (uint32_t i = 0; i < md.sites.n; i++) guess_at(&md, &md.sites.at[i], need);
   const Guess *guesses = md.guesses.at;
   if (md.guesses.n) qsort(md.guesses.at, md.guesses.n, sizeof *guesses, by_cost);
-  for (uint32_t i = 0; i < md.guesses.n && i < PROOFS; i++)
-    if (guess_is_proved(&md, &guesses[i])) return (SuggestedEdit){guesses[i].caret, guesses[i].edit};
+  for (uint32_t i = 0; i < md.guesses.n && i < PROOFS; i++) {
+    const char *sentence = proved_sentence(&md, &guesses[i]);
+    if (sentence) return (SuggestedEdit){guesses[i].caret, sentence};
+  }
   return nowhere;
 }

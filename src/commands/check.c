@@ -1,4 +1,5 @@
 /* `lagc check`: derives every scene and every unused effect, then judges symmetries and expectations. */
+#include "commands/check_json.h"
 #include "commands/commands.h"
 
 #include <string.h>
@@ -21,6 +22,7 @@ static void check_claims(Compiler *c, const Ast *ast, int allow_numeric, ExpectR
     if (!e[i]) continue;
     charges_judge(e[i], where.at[i]);
     charges_print(e[i], where.at[i], out);
+    check_json_symmetries(c, e[i], where.at[i]);
     if (!where.at[i]) canonicals_check(e[i], out);
   }
   for (uint32_t i = 0; i < where.n; i++)
@@ -61,16 +63,20 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
   for (uint32_t i = 0; i < scenes.n; i++) {
     if (scene && strcmp(scene, scenes.at[i]) != 0) continue;
     Eqns *e = compiler_derive_compared(c, &(ModelChoice){.scene = scenes.at[i]});
+    if (!e) check_json_scene(c, "scene", scenes.at[i], NULL, 0);
     if (!e) continue;
     if (!out->n) {
       show_facts(e, out);
       show_cyclic(e, "", out);
+      check_json_facts(c, e, out);
     }
     collect_units(e->m, &found);
     switches_find(e);
     switches_warn(e);
     discontinuity_warn(e);
-    if (!mobility_show(e, out) || !mass_regular_at_start(e)) continue;
+    int moves = mobility_show(e, out) && mass_regular_at_start(e);
+    check_json_scene(c, "scene", scenes.at[i], e->m, moves);
+    if (!moves) continue;
     sb_printf(out, "scene %s: ok%s\n", scenes.at[i], with_effects(e->m));
     if (i == 0 || scene || e->m->effects.n) switches_show(e, out);
     if (e->m->effects.n || has_inputs(e->m) || e->energy_jumps) charges_show_broken(e, out);
@@ -84,11 +90,14 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
     switches_warn(e);
     discontinuity_warn(e);
     collect_units(e->m, &found);
+    check_json_scene(c, "effect in no scene", unused.at[i], e->m, 1);
     sb_printf(out, "effect %s (in no scene): ok\n", unused.at[i]);
   }
   list_units(&found, out);
+  check_json_units(c, found.at, found.n);
   if (ast->diags->errors) return 0; /* expectations of a wrong model say nothing */
   check_claims(c, ast, allow_numeric, &results, out);
+  check_json_expects(c, &results);
   expects_print(&results, ast->sources, out);
   return 1;
 }
@@ -96,8 +105,11 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
 int command_check(Compiler *c) {
   StrBuf out = strbuf(c->arena);
   c->told = strbuf(c->arena);
-  if (!check_print(c, c->o.scene, c->o.allow_numeric, &out)) return STATUS_MODEL;
-  sb_puts(&out, sb_text(&c->told));
+  int judged = check_print(c, c->o.scene, c->o.allow_numeric, &out);
+  if (judged || c->o.json) sb_puts(&out, sb_text(&c->told));
+  check_json_report(c, &out);
+  if (!judged) return STATUS_MODEL;
+  if (c->o.json) return c->diags->errors ? STATUS_MODEL : STATUS_OK; /* main prints it, with the messages */
   int status = compiler_write(c, NULL, &out);
   return c->diags->errors ? STATUS_MODEL : status;
 }

@@ -3,10 +3,12 @@
 
 #include <string.h>
 
+#include "base/words.h"
+
 /* ---- the commands ---- */
 
 static const CommandRow commands[] = {
-  {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric] [--verbose]", "parse, derive, prove symmetries and `expect` lines",
+  {CMD_CHECK, "check", NULL, "MODEL [SCENE] [--allow-numeric] [--verbose] [--json]", "parse, derive, prove symmetries and `expect` lines",
    "Parses and derives the model for every scene (or the one named), and proves or refutes its `expect` lines. "
    "A proved line holds for all states at which both sides have real values; a refuted line comes with a state at which its sides differ. "
    "Exit status 0 if all is well, 1 if not.\n\n"
@@ -150,7 +152,8 @@ static const CommandRow commands[] = {
   {CMD_CACHE, "cache", NULL, "[--clear]", "show or empty the cache of simulators",
    "Shows the folder of built simulators, their number, their size and its limit; beyond the limit, simulators that were used longest ago are removed. "
    "Simulators are run only from a folder of yours that nobody else can write. LAGC_CACHE_MIB sets another limit, in MiB."},
-  {CMD_HELP, "help", NULL, "[TOPIC]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics."},
+  {CMD_HELP, "help", NULL, "[WORDS]", NULL, "Says more on a command, a word of the language, a unit, a function or an option; alone, lists the topics. "
+   "Other words are searched in all pages, in the reference, the tutorial and README, and what answers them is shown, the best first: `lagc help normal modes`."},
   {CMD_COMPLETION, "completion", NULL, "bash|zsh|fish", "print the completion script of a shell",
    "Prints the script by which a shell completes the commands and options of lagc, and the scenes, parameters, methods and names of "
    "the model in question. `make install` puts it where these shells look; without `make install`,\n\n"
@@ -174,6 +177,7 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 static const OptionRow options[] = {
   {"--allow-numeric", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(allow_numeric),
    "an expectation that is not proved, but holds numerically to rounding, does not fail the check"},
+  {"--json", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(json), "messages with their places, facts, scenes and verdicts as one JSON object"},
   {"--against", NULL, "FILE.c:FUNCTION", TAKES_TEXT, "", C(VERIFY), OWN(against), "the function to compare, and the file that has it"},
   {"--map", NULL, "NAME,NAME", TAKES_TEXT, "", C(VERIFY), OWN(map), "the order of the function's y, if it is another: th1,th1',th2,th2'"},
   {"--verbose", NULL, NULL, TAKES_NOTHING, "", C(CHECK), OWN(verbose), "also list the parts of the compiled programs that were compared with the text, and the number of states"},
@@ -247,10 +251,11 @@ static const OptionRow options[] = {
   {"--transient", NULL, "T", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "the time left out at the beginning [s]; default: a tenth"},
   {"--exponents", NULL, "K", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "only the K largest exponents"},
   {"--every", NULL, "DT", TAKES_NUMBER, "", SIMULATE, PASSED, "time between rows [s]; default: as the scene says, or a 1000th of the span; in pictures, as the motion requires"},
+  {"--skip", NULL, "T", TAKES_NUMBER, "", SIMULATE, PASSED, "rows, pictures, sections and measures begin at time T [s]: without the transient"},
   {"--measure", NULL, "EXPR", TAKES_EXPR, "", SIMULATE, PASSED,
-   "a number of the run in the report: max(x), min, mean, rms, drift, period(x), hit(EVENT, 3), count(EVENT), end, x(10), lyapunov, and arithmetic; NAME=EXPR names it; can be repeated"},
+   "a number of the run in the report: max(x), max(x, 10..20) from 10 to 20 s, min, mean, rms, drift, period(x), hit(EVENT, 3), count(EVENT), end, x(10), lyapunov, and arithmetic; NAME=EXPR names it; can be repeated"},
   {"--vs", NULL, "NAME=VALUE", TAKES_TEXT, "", C(PLOT), PASSED, "draws another run with this value beside; can be repeated"},
-  {"--starts", NULL, "NAME=A..B:N", TAKES_TEXT, "", C(PLOT), PASSED, "a run for each value of a range, in one picture without a legend: for sections of many motions; also A..B:log:N and A,B,C"},
+  {"--starts", NULL, "NAME=A..B:N", TAKES_TEXT, "", C(PLOT), PASSED, "a run for each value of a range, in one picture, coloured by its place: for sections of many motions; also A..B:log:N and A,B,C"},
   {"--tangent", NULL, NULL, TAKES_NOTHING, "", C(RUN), PASSED,
    "the tangent of the flow, dx/dy(0) of all coordinates, velocities and states x and y: adds more columns, and a matrix to the report"},
   {"--volume", NULL, NULL, TAKES_NOTHING, "", C(RUN), PASSED,
@@ -282,7 +287,7 @@ static const OptionRow options[] = {
    "continues from a saved state, with the same scene, method and values: the results are those of an uninterrupted run, bit by bit"},
 
   {"--measure", NULL, "EXPR", TAKES_TEXT, "", C(SWEEP), PASSED,
-   "what is kept of a run, x, x(10), max(x), period(th), hit(EVENT), count(EVENT), drift(energy), lyapunov, arithmetic of these; can be repeated. Default: the state at the end"},
+   "what is kept of a run, x, x(10), max(x), max(x, 10..20) from 10 to 20 s, period(th), hit(EVENT), count(EVENT), drift(energy), lyapunov, arithmetic of these; can be repeated. Default: the state at the end"},
   {"--motions", NULL, "FILE", TAKES_FILE, "csv npy h5", C(SWEEP), PASSED, "the whole motion of each run: its number, t and the outputs in a row each --every; CSV, NumPy where FILE ends in .npy, HDF5 where it ends in .h5"},
   {"--every", NULL, "DT", TAKES_NUMBER, "", C(SWEEP), PASSED, "time between the rows of --motions [s]; default: as the scene says, or a 1000th of the span"},
   {"--histogram", NULL, "N", TAKES_NUMBER, "", C(SWEEP), PASSED, "the picture of --svg shows how many runs lie in each of N parts of the range of a measure"},
@@ -370,6 +375,8 @@ int option_takes_next(Command c, const char *word) {
   const OptionRow *row = option_find(c, word, &joined);
   return row && row->takes != TAKES_NOTHING && !joined;
 }
+
+int option_expert(const OptionRow *o) { return has_word("--math --fix --dump --no-gsl --define --precision", o->name); }
 
 int command_simulates(Command c) { return ((STEPS | C(MODES) | C(COST) | C(SWEEP)) & 1u << c) != 0; }
 int command_takes_values(Command c) { return command_simulates(c) || c == CMD_VERIFY || c == CMD_ACTION; }

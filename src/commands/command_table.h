@@ -123,6 +123,9 @@ const OptionRow *option_find(Command c, const char *arg, const char **value);
 /* Whether the word is an option whose value is the next word: in `--method rk4(step=0.01)` the second word is no setting. */
 int option_takes_next(Command c, const char *word);
 
+/* Whether the option is for experts: listed by `lagc help expert`, not on the page of each command. */
+int option_expert(const OptionRow *o);
+
 /* Whether the command runs a simulator; whether name=value is a setting, as it is there; whether it reads a model. */
 int command_simulates(Command c);
 int command_takes_values(Command c);

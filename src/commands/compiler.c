@@ -24,6 +24,7 @@
 void compiler_print_messages(const Compiler *c) {
   StrBuf messages = strbuf(c->arena);
   if (!c->diags->errors) model_warn_unused(c->ast); /* by now the command line's expressions are read, too */
+  if (c->o.command == CMD_CHECK && c->o.json) return;
   diags_print(c->diags, &messages);
   fputs(sb_text(&messages), stderr);
 }
@@ -56,6 +57,10 @@ int compiler_write(Compiler *c, const char *path, const StrBuf *text) {
   if (path && c->sources && compiler_is_source(c, path)) return STATUS_USAGE;
   if (file_write(path ? path : "-", sb_text(text), text->n, &why)) return STATUS_OK;
   return usage_error(arena_printf(c->arena, "cannot write %s: %s", path ? path : "standard output", why));
+}
+
+int compiler_report(Compiler *c, const char *path, const StrBuf *text) {
+  return c->diags->errors ? STATUS_MODEL : compiler_write(c, path, text);
 }
 
 /* --- the stages --- */

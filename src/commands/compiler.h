@@ -11,6 +11,8 @@
 /* Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed (a simulator's status). */
 enum { STATUS_OK, STATUS_MODEL, STATUS_USAGE, STATUS_RUN };
 
+typedef enum { JSON_FACTS, JSON_SCENES, JSON_SYMMETRIES, JSON_EXPECTS, JSON_UNITS, JSON_REPORT, JSON_LISTS } JsonList;
+
 typedef struct {
   Arena *arena;
   Options o;
@@ -22,6 +24,7 @@ typedef struct {
   const char *given_words; /* values, -D and --until of the command line, as a shell reads them: for commands that a report names */
   GivenList given; /* values that the command line gives to names, for run, plot and animate */
   StrBuf told;     /* comparisons with the text, for check --verbose */
+  StrBuf json[JSON_LISTS]; /* lists of check --json (check_json.h) */
   const Eqns *run; /* equations of the scene that the command runs, */
   IrUnit *run_by;  /* and their programs */
 } Compiler;
@@ -37,6 +40,8 @@ int compiler_is_source(Compiler *c, const char *path);
 
 /* Writes the text to a file (NULL, "-": standard output), whole or not at all. Returns a STATUS. */
 int compiler_write(Compiler *c, const char *path, const StrBuf *text);
+/* The same of a report, unless an error was found while it was made. */
+int compiler_report(Compiler *c, const char *path, const StrBuf *text);
 
 /* Reads c->o.file into c->ast. Returns a STATUS. */
 int compiler_read(Compiler *c);

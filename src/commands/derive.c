@@ -51,7 +51,7 @@ static int form_is_wrong(Compiler *c) {
 static int print_form(Compiler *c, Eqns *e) {
   StrBuf out = strbuf(c->arena);
   int ok = (c->o.hamiltonian ? hamiltonian_print : lagrangian_print)(e, style_of(c->o.format), &out);
-  return ok ? compiler_write(c, c->o.output, &out) : STATUS_MODEL;
+  return ok ? compiler_report(c, c->o.output, &out) : STATUS_MODEL;
 }
 
 /* {F, G} = value, in coordinates and momenta. */
@@ -60,7 +60,7 @@ static int print_bracket(Compiler *c, AstId bracket) {
   StrBuf out = strbuf(c->arena);
   if (!e) return STATUS_MODEL;
   show_bracket(e, arena_printf(c->arena, "{%s}", c->o.bracket), expression_brackets_substitute(e, e->m->asked_bracket, 1), style_of(c->o.format), &out);
-  return compiler_write(c, c->o.output, &out);
+  return compiler_report(c, c->o.output, &out);
 }
 
 static const Canonical *find_canonical(const Model *m, const char *name) {
@@ -85,11 +85,11 @@ static int print_in(Compiler *c) {
   if (!to) return STATUS_MODEL;
   const CaseSymbols symbols = cases_symbols(e->m);
   if (!canonical_holds(e, to, &symbols, &how)) return STATUS_MODEL;
-  if (!to->is_point) return show_canonical(e, to, style_of(c->o.format), &out) ? compiler_write(c, c->o.output, &out) : STATUS_MODEL;
+  if (!to->is_point) return show_canonical(e, to, style_of(c->o.format), &out) ? compiler_report(c, c->o.output, &out) : STATUS_MODEL;
   e = compiler_derive_compared(c, &(ModelChoice){.bare = 1, .coordinates = to->name});
   if (!e) return STATUS_MODEL;
   show_equations(e, NULL, style_of(c->o.format), &out);
-  return compiler_write(c, c->o.output, &out);
+  return compiler_report(c, c->o.output, &out);
 }
 
 /* The operation count without --fix. */
@@ -118,5 +118,5 @@ int command_derive(Compiler *c) {
   if (c->o.ops) sb_printf(&out, "%s\n%s", cost, c->o.fix ? unfixed_cost(c) : "");
   else if (strcmp(format, "c") == 0) emit_accel(u, &out);
   else show_equations(e, cost, style_of(format), &out);
-  return compiler_write(c, c->o.output, &out);
+  return compiler_report(c, c->o.output, &out);
 }

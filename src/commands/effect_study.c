@@ -59,6 +59,8 @@ static Name excluding_effect(const EffectStudy *s, EffectSet set) {
   return NULL;
 }
 
+int effect_set_valid(const EffectStudy *s, EffectSet set) { return meets_requirements(s, set) && !excluding_effect(s, set); }
+
 /* --- variants --- */
 
 static uint32_t variant(EffectStudy *s, EffectSet set) {

@@ -53,6 +53,9 @@ EffectStudy *effect_study_plan(const Model *scene);
 
 uint32_t effect_count(EffectSet set);
 EffectList effect_names(const EffectStudy *s, EffectSet set);
+
+/* Whether the set has what its effects require, and no two that exclude each other. */
+int effect_set_valid(const EffectStudy *s, EffectSet set);
 /* "wind, spin". */
 const char *effect_names_joined(const EffectStudy *s, EffectSet set);
 /* The `use` statement of a set, with the scene's values: `use j2, drag(c = 2)`. */

@@ -8,8 +8,9 @@
 
 #include "base/method_table.h"
 #include "base/words.h"
-#include "commands/language.h" /* static const char *const language[]: generated from grammar/LANGUAGE.md */
 #include "commands/command_table.h"
+#include "commands/help_search.h"
+#include "commands/manual.h"
 #include "commands/terminal_page.h"
 #include "model/model.h"
 #include "syntax/parse.h"
@@ -30,25 +31,14 @@ typedef struct {
 
 typedef VEC(Chapter) Chapters;
 
-enum { N_LINES = sizeof language / sizeof *language };
-
-static int is_heading(const char *line) { return strncmp(line, "## ", 3) == 0 || strncmp(line, "### ", 4) == 0; }
-
-static const char *words_of(Arena *a, const char *line) {
-  static const char head[] = "<!-- help: ";
-  size_t n = sizeof head - 1;
-  if (strncmp(line, head, n) != 0) return "";
-  const char *end = strstr(line, " -->");
-  return end ? arena_strndup(a, line + n, (size_t)(end - line) - n) : "";
-}
-
 static void reference_chapters(Arena *a, Chapters *out) {
+  const Document *d = &documents[LANGUAGE];
   int code = 0;
-  for (size_t i = 0; i < N_LINES; i++) {
-    code ^= strncmp(language[i], "```", 3) == 0;
-    if (!code && is_heading(language[i])) {
-      const char *words = i + 1 < N_LINES ? words_of(a, language[i + 1]) : "";
-      vec_push(a, out, ((Chapter){&language[i], 0, words}));
+  for (size_t i = 0; i < d->n; i++) {
+    code ^= strncmp(d->lines[i], "```", 3) == 0;
+    if (!code && document_heading(d->lines[i])) {
+      const char *words = i + 1 < d->n ? document_words(a, d->lines[i + 1]) : "";
+      vec_push(a, out, ((Chapter){&d->lines[i], 0, words}));
     }
     if (out->n) out->at[out->n - 1].n++;
   }
@@ -117,11 +107,14 @@ static void put_option(StrBuf *out, const OptionRow *o) {
 
 /* Lists a command's options; those passed on to the simulator are listed under `run` only. */
 static void put_options(StrBuf *out, Command c) {
+  int experts = 0;
   for (size_t i = 0; option_row(i); i++) {
     const OptionRow *o = option_row(i);
     if (!(o->commands & 1u << c) || (c != CMD_RUN && o->passed && o->commands & 1u << CMD_RUN)) continue;
-    put_option(out, o);
+    experts |= option_expert(o);
+    if (!option_expert(o)) put_option(out, o);
   }
+  if (experts) sb_puts(out, "\nMore: `lagc help expert`.\n");
 }
 
 static int put_command(StrBuf *out, const char *topic) {
@@ -215,7 +208,10 @@ void help_topics(Arena *a, Topics *out) {
     if (command_row(i)->help) add_topic(a, out, command_row(i)->name);
   for (uint32_t i = 0; i < chapters.n; i++)
     for (size_t k = 0; word_at(a, chapters.at[i].words, k); k++) add_topic(a, out, word_at(a, chapters.at[i].words, k));
+  for (size_t i = 0; i < N_DOCUMENTS; i++)
+    if (i != LANGUAGE) add_topic(a, out, documents[i].topic);
   add_topic(a, out, "methods");
+  add_topic(a, out, "expert");
 }
 
 static const char *all_functions(Arena *a) {
@@ -233,7 +229,10 @@ static void put_overview(StrBuf *out) {
                "usage: lagc COMMAND MODEL [SCENE] [options]\n\n");
   for (size_t i = 0; command_row(i); i++)
     if (command_row(i)->does) page_term(out, command_row(i)->name, command_row(i)->does, TERMS);
-  sb_puts(out, "\nlagc help TOPIC says more on a command, on each function, unit and option, and on\n\n");
+  sb_puts(
+      out,
+      "\nlagc help tutorial is a quarter of an hour, lagc help python the way from Python.\n"
+      "lagc help WORDS searches all of them (lagc help normal modes). Topics: each command,\nfunction, unit and option; expert; and\n\n");
   for (uint32_t i = 0; i < chapters.n; i++) {
     const char *words = chapters.at[i].words, *first = word_at(a, words, 0);
     uint32_t before = shown.n;
@@ -257,16 +256,29 @@ static Name nearest(Arena *a, const char *topic) {
   return suggest(topic, known.at, known.n);
 }
 
-/* Appends help on a topic (NULL: the list of topics). Returns 0 for an unknown topic; then *near is the nearest known one, or NULL. */
-static int print_help(StrBuf *out, const char *topic, Name *near) {
-  *near = NULL;
-  if (!topic) {
-    put_overview(out);
-    return 1;
-  }
+/* A document that has a name; the rest of `expert`: the options that pages of commands leave out. */
+static int put_document(StrBuf *out, const char *topic) {
+  for (size_t i = 0; i < N_DOCUMENTS; i++)
+    if (i != LANGUAGE && strcmp(documents[i].topic, topic) == 0) {
+      page_markdown(out, documents[i].lines, documents[i].n);
+      return 1;
+    }
+  if (strcmp(topic, "expert") != 0) return 0;
+  for (size_t i = 0; option_row(i); i++)
+    if (option_expert(option_row(i))) {
+      const char *of = arena_printf(out->arena, "%s (%s)", option_row(i)->does, commands_text(out->arena, option_row(i)->commands));
+      OptionRow row = *option_row(i);
+      row.does = of;
+      put_option(out, &row);
+    }
+  return 1;
+}
+
+/* Appends help on a topic: everything of this name. Returns 0 for an unknown topic. */
+static int print_topic(StrBuf *out, const char *topic) {
   Chapters chapters = {0};
   reference_chapters(out->arena, &chapters);
-  int found = put_command(out, topic);
+  int found = put_command(out, topic) || put_document(out, topic);
   for (uint32_t i = 0; i < chapters.n; i++) {
     StrBuf says = strbuf(out->arena);
     if (!chapter_print(&says, &chapters.at[i], topic)) continue;
@@ -277,11 +289,6 @@ static int print_help(StrBuf *out, const char *topic, Name *near) {
   found |= put_named_options(out, topic, found);
   if (strcmp(topic, "units") == 0) put_units(out);
   else found |= put_unit(out, topic, found);
-  if (!found && parse_advice(topic)) {
-    page_words(out, parse_advice(topic), strlen(parse_advice(topic)), 0, 0);
-    found = 1;
-  }
-  if (!found) *near = nearest(out->arena, topic);
   return found;
 }
 
@@ -306,18 +313,28 @@ static int help_methods(Compiler *c, const char *name) {
   return usage_error(arena_printf(c->arena, "cannot run %s: %s", path, strerror(errno)));
 }
 
+/* What the words of no page lead to: advice, the passages found, models. */
+static int search(Compiler *c, const char *topic) {
+  StrBuf out = strbuf(c->arena), models = strbuf(c->arena);
+  const char *advice = help_way(c->arena, topic) ? NULL : parse_advice(topic);
+  if (advice) page_words(&out, advice, strlen(advice), 0, 0);
+  int found = help_search(&out, topic);
+  uint32_t n = models_list(c, topic, &models);
+  if (n) sb_printf(&out, "%sModels: `lagc models %s`\n", out.n ? "\n" : "", topic);
+  if (found || n) return compiler_write(c, NULL, &out);
+  Name near = nearest(c->arena, topic);
+  if (!near) near = method_suggest(c->arena, topic);
+  if (near) return usage_error(arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near));
+  return usage_error(arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics", topic));
+}
+
 int command_help(Compiler *c) {
   StrBuf out = strbuf(c->arena);
   const char *topic = c->o.topic;
-  Name near;
   if (topic && strcmp(topic, "methods") == 0) return help_methods(c, NULL);
-  if (print_help(&out, topic, &near)) return compiler_write(c, NULL, &out);
-  if (method_find(topic, strlen(topic))) return help_methods(c, topic);
-  if (!near) near = method_suggest(c->arena, topic);
-  if (near) return usage_error(arena_printf(c->arena, "no help on `%s`: did you mean `%s`?", topic, near));
-  StrBuf models = strbuf(c->arena);
-  const char *more = models_list(c, topic, &models) ? arena_printf(c->arena, ", `lagc models %s` models of it", topic) : "";
-  return usage_error(arena_printf(c->arena, "no help on `%s`; `lagc help` lists the topics%s", topic, more));
+  if (!topic) put_overview(&out);
+  else if (!print_topic(&out, topic)) return method_find(topic, strlen(topic)) ? help_methods(c, topic) : search(c, topic);
+  return compiler_write(c, NULL, &out);
 }
 
 int command_methods(Compiler *c) { return help_methods(c, NULL); }

@@ -44,5 +44,5 @@ int command_noether(Compiler *c) {
   double seconds = 10;
   if (c->o.seconds && (!num_parse_double(c->o.seconds, &seconds) || !(seconds > 0)))
     return usage_error(arena_printf(c->arena, "--seconds %s: the time for the search, for example --seconds 60", c->o.seconds));
-  return noether_print(c, c->o.scene, seconds, c->o.format, &out) ? compiler_write(c, c->o.output, &out) : STATUS_MODEL;
+  return noether_print(c, c->o.scene, seconds, c->o.format, &out) ? compiler_report(c, c->o.output, &out) : STATUS_MODEL;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/words.h"
+#include "commands/help_search.h"
 #include "toolchain/outfile.h" /* generated: a copy of runtime/io/outfile.h */
 
 static const char *usage(Arena *a, Command c) {
@@ -18,7 +19,9 @@ static const char *unknown_command(Arena *a, const char *word) {
   size_t len = strlen(word);
   if (len > 4 && strcmp(word + len - 4, ".lag") == 0) return arena_printf(a, "a command is missing before %s: `lagc run %s`, `lagc derive %s`, `lagc check %s`", word, word, word, word);
   Name near = suggest(word, names, n);
+  const char *way = help_way(a, word);
   if (near) return arena_printf(a, "unknown command `%s`: did you mean `%s`?", word, near);
+  if (way) return arena_printf(a, "unknown command `%s`: %s; `lagc help %s` says more", word, way, word);
   return arena_printf(a, "unknown command `%s`; `lagc help` lists them", word);
 }
 
@@ -123,9 +126,14 @@ static int set_value(Arena *a, Options *o, const OptionRow *row, const char *val
 
 /* The option that other programs write as `arg`; NULL: unknown. */
 static const char *meant_option(const char *arg) {
-  static const char *const other[][2] = {{"--dt --timestep --stepsize --h", "--step"}, {"--tolerance --rtol --atol --eps --accuracy", "--tol"},
-                                         {"--time --tmax --tend --end --t1 --span --duration", "--until"}, {"--integrator --solver", "--method"},
-                                         {"--plot --image --figure --png --pdf --picture", "--svg"}, {"--sampling --interval --fps", "--every"}};
+  static const char *const other[][2] = {
+      {"--dt --timestep --stepsize --h", "--step"},
+      {"--tolerance --rtol --atol --eps --accuracy", "--tol"},
+      {"--time --tmax --tend --end --t1 --span --duration", "--until"},
+      {"--integrator --solver", "--method"},
+      {"--plot --image --figure --png --pdf --picture", "--svg"},
+      {"--sampling --interval --fps", "--every"},
+      {"--float --single --double --long-double --quad --float128 --digits", "--precision"}};
   for (size_t i = 0; i < sizeof other / sizeof *other; i++)
     if (has_word(other[i][0], arg)) return other[i][1];
   return NULL;
@@ -143,6 +151,13 @@ static const char *unknown_option(Arena *a, const Options *o, const char *word) 
   for (size_t i = 0; option_row(i); i++)
     if (option_row(i)->commands & 1u << o->command && n < 64) names[n++] = option_row(i)->name;
   Name near = suggest(arg, names, n), meant = meant_option(arg);
+  const char *says =
+      !meant                      ? NULL
+      : strcmp(arg, "--fps") == 0 ? "--every DT is the time between two frames in s: --every 0.0333 shows 30 a second"
+      : o->command == CMD_HEADER && strcmp(meant, "--precision") == 0
+          ? "the type of numbers is chosen where the header is included: `#define NAME_REAL float` before it"
+          : NULL;
+  if (says) return arena_printf(a, "`lagc %s` has no option `%s`; %s", row->name, arg, says);
   for (size_t i = 0; i < n && meant; i++)
     if (strcmp(names[i], meant) == 0) return arena_printf(a, "`lagc %s` has no option `%s`; here it is called `%s`", row->name, arg, meant);
   if (near) return arena_printf(a, "`lagc %s` has no option `%s`: did you mean `%s`?", row->name, arg, near);
@@ -222,7 +237,9 @@ static int read_arguments(Arena *a, int argc, char **argv, Options *o, const cha
 /* Commands that read no model take at most one word. */
 static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char **error) {
   const char *arg = argc > 2 ? argv[2] : NULL;
-  if (argc > 3) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", argv[3], usage(a, o->command)));
+  if (o->command == CMD_HELP && arg) /* several words are a search */
+    for (int i = 3; i < argc; i++) arg = arena_printf(a, "%s %s", arg, argv[i]);
+  else if (argc > 3) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", argv[3], usage(a, o->command)));
   o->topic = arg;
   if (arg && (strcmp(arg, "--help") == 0 || strcmp(arg, "-h") == 0)) {
     o->topic = o->command == CMD_HELP ? NULL : command_find(o->command)->name;

@@ -329,11 +329,27 @@ static int find_vectors(RequestBuilder *k, FoundPoints *f) {
   return 1;
 }
 
+/* Whether the let `name` contains the quantity `other`. */
+static int contains(RequestBuilder *k, const char *name, const char *other) {
+  const AstStmt *s = find_quantity(k->ast, name);
+  if (s->kind != STMT_LET) return 0;
+  for (AstId id = ast_expr(k->ast, s->rhs)->first; id <= s->rhs; id++)
+    if (ast_expr(k->ast, id)->kind == AST_NAME && strcmp(ast_expr(k->ast, id)->name, other) == 0) return 1;
+  return 0;
+}
+
+/* x1,y1 x2,y2 ...: joined by rods where each hangs on the one before, and not where two hang beside each other. */
+static void find_chain(RequestBuilder *k, StrBuf *points, int *rods) {
+  int chain = 1;
+  for (int i = 1; find_pair(k, arena_printf(k->arena, "x%d", i), arena_printf(k->arena, "y%d", i), points, rods); i++)
+    chain = chain && (i == 1 || contains(k, arena_printf(k->arena, "x%d", i), arena_printf(k->arena, "x%d", i - 1)));
+  *rods = *rods && chain;
+}
+
 static FoundPoints find_points(RequestBuilder *k) {
   FoundPoints f = {0};
   StrBuf points = strbuf(k->arena);
-  if (!find_pair(k, "x", "y", &points, &f.rods))
-    for (int i = 1; find_pair(k, arena_printf(k->arena, "x%d", i), arena_printf(k->arena, "y%d", i), &points, &f.rods);) i++;
+  if (!find_pair(k, "x", "y", &points, &f.rods)) find_chain(k, &points, &f.rods);
   if (!points.n && find_pair(k, "px", "py", &points, &f.rods) && find_quantity(k->ast, "x")) f.from = "x,0";
   if (points.n) f.points = sb_text(&points);
   else find_only(k, &f);

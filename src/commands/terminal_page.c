@@ -166,22 +166,27 @@ static size_t put_table(StrBuf *out, const char *const *lines, size_t n) {
   return rows;
 }
 
-static size_t put_code(StrBuf *out, const char *const *lines, size_t n) {
+size_t page_code(StrBuf *out, const char *const *lines, size_t n) {
   size_t i = 1;
   for (; i < n && line_kind(lines[i]) != LINE_FENCE; i++) sb_printf(out, "%s%s", *lines[i] == '\n' ? "" : "    ", lines[i]);
   return i + 1;
 }
 
 /* A paragraph or an item of a list: its first line and the text lines that follow. */
-static size_t put_text(StrBuf *out, const char *const *lines, size_t n) {
-  StrBuf text = strbuf(out->arena);
-  size_t i = 0, indent = line_kind(lines[0]) == LINE_ITEM ? 2 : 0;
+static size_t plain_text(StrBuf *plain, const char *const *lines, size_t n) {
+  StrBuf text = strbuf(plain->arena);
+  size_t i = 0;
   do sb_puts(&text, lines[i++]);
   while (i < n && line_kind(lines[i]) == LINE_TEXT);
-  StrBuf plain = strbuf(out->arena);
-  put_plain(&plain, sb_text(&text), text.n);
-  page_words(out, sb_text(&plain), plain.n, 0, indent);
+  put_plain(plain, sb_text(&text), text.n);
   return i;
+}
+
+static size_t put_text(StrBuf *out, const char *const *lines, size_t n) {
+  StrBuf plain = strbuf(out->arena);
+  size_t used = plain_text(&plain, lines, n);
+  page_words(out, sb_text(&plain), plain.n, 0, line_kind(lines[0]) == LINE_ITEM ? 2 : 0);
+  return used;
 }
 
 static size_t put_heading(StrBuf *out, const char *line) {
@@ -193,13 +198,26 @@ static size_t put_heading(StrBuf *out, const char *line) {
   return 1;
 }
 
+size_t page_block(StrBuf *out, const char *const *lines, size_t n, int *code) {
+  LineKind kind = line_kind(lines[0]);
+  *code = kind == LINE_FENCE;
+  if (kind == LINE_ITEM || kind == LINE_TEXT) return plain_text(out, lines, n);
+  if (kind == LINE_TABLE && !strstr(lines[0], "| ---")) {
+    StrBuf term = cell(out->arena, lines[0], 0), meaning = cell(out->arena, lines[0], 1);
+    sb_printf(out, "%s: %s", sb_text(&term), sb_text(&meaning));
+  }
+  size_t i = 1;
+  while (*code && i < n && line_kind(lines[i]) != LINE_FENCE) i++;
+  return i + (size_t)*code < n ? i + (size_t)*code : n;
+}
+
 void page_markdown(StrBuf *out, const char *const *lines, size_t n) {
   for (size_t i = 0; i < n;) {
     switch (line_kind(lines[i])) {
       case LINE_EMPTY: sb_putc(out, '\n'); i++; break;
       case LINE_COMMENT: i++; break;
       case LINE_HEADING: i += put_heading(out, lines[i]); break;
-      case LINE_FENCE: i += put_code(out, lines + i, n - i); break;
+      case LINE_FENCE: i += page_code(out, lines + i, n - i); break;
       case LINE_TABLE: i += put_table(out, lines + i, n - i); break;
       case LINE_ITEM: case LINE_TEXT: i += put_text(out, lines + i, n - i); break;
     }

@@ -23,3 +23,10 @@ void page_markdown(StrBuf *out, const char *const *lines, size_t n);
 
 /* A row of a table, "| a | b |", as a term and its meaning. */
 void page_row(StrBuf *out, const char *line);
+
+/* Appends the block that begins at lines[0], a paragraph, an item or a row "term: meaning", as plain text; nothing of
+ * headings, comments and code. Returns its number of lines; *code: whether it is code. */
+size_t page_block(StrBuf *out, const char *const *lines, size_t n, int *code);
+
+/* The code of a block that page_block measured. */
+size_t page_code(StrBuf *out, const char *const *lines, size_t n);

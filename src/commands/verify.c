@@ -15,6 +15,7 @@
 #include "claims/difference_cause.h"
 #include "claims/sample_points.h"
 #include "commands/commands.h"
+#include "commands/effect_study.h"
 #include "commands/simulator.h"
 #include "commands/verify_driver.h" /* static const char *const verify_driver[]: generated from verify_driver.in */
 #include "emit/emit_model.h"
@@ -57,6 +58,7 @@ typedef struct {
   uint32_t n, point[POINTS];     /* points that are evaluated */
   double *results;
   Component *component;          /* [ny] */
+  int quiet;                     /* a trial of other effects: nothing is printed */
 } Verification;
 
 /* ---- the command line ---- */
@@ -70,6 +72,15 @@ static int is_identifier(const char *s) {
 static int read_target(Verification *v, const char **error) {
   const char *given = v->c->o.against, *colon = given ? strrchr(given, ':') : NULL;
   if (!given) return fail_with(error, "which function? write --against FILE.c:FUNCTION");
+  const char *other = colon ? arena_strndup(v->arena, given, (size_t)(colon - given)) : given, *dot = strrchr(other, '.');
+  if (dot && has_word(".py .ipynb .m .jl .f .f90 .rs .js .java .nb", dot))
+    return fail_with(
+        error,
+        arena_printf(
+            v->arena,
+            "%s is not C: `lagc verify` compiles and calls a C function; from Python compare with `lagc.load(MODEL).rhs(t, y)`, or write the formula "
+            "into the model: `expect x'' = ...`",
+            other));
   if (!colon || !is_identifier(colon + 1)) return fail_with(error, arena_printf(v->arena, "--against %s names no function: write FILE.c:FUNCTION", given));
   v->file = arena_strndup(v->arena, given, (size_t)(colon - given));
   v->function = colon + 1;
@@ -364,6 +375,7 @@ static const char *signature(const Verification *v) {
 static const char *rate_name(const Verification *v, uint32_t i) { return arena_printf(v->arena, "%s'", name_of(v, i)); }
 
 static int differs(Verification *v, const char *what, uint32_t k, const char *how) {
+  if (v->quiet) return STATUS_RUN;
   const char *at = sample_text(v->points, v->symbols[v->point[k]]);
   usage_error(arena_printf(v->arena, "%s:%s %s%s\n  at %s\n  called with %s", v->file, v->function, what, how ? how : "", at, signature(v)));
   return STATUS_RUN;
@@ -403,13 +415,16 @@ static const char *cause_of(Verification *v) {
   return difference_cause(v->e, &d);
 }
 
+static const char *agreeing_effects(Verification *v);
+
 static int report_difference(Verification *v, uint32_t i) {
+  if (v->quiet) return STATUS_RUN;
   const Component *c = &v->component[i];
   uint32_t place = 0;
   while (v->map[place] != i) place++;
   Evaluation x = evaluation(v, c->worst_at, 0);
   Real low, value = derived(v, &x, v->symbols[v->point[c->worst_at]], i, &low), yours = x.dydt[0][place];
-  const char *cause = cause_of(v), *a = arena_strdup(v->arena, ""), *b = a;
+  const char *effects = agreeing_effects(v), *cause = effects ? effects : cause_of(v), *a = arena_strdup(v->arena, ""), *b = a;
   for (int digits = 6; digits <= 21 && strcmp(a, b) == 0; digits += 5) {
     a = isnan(yours) ? "nan, or not set, or computed from a place outside y or p" : arena_printf(v->arena, "%.*Lg", digits, yours);
     b = arena_printf(v->arena, "%.*Lg", digits, value);
@@ -461,6 +476,7 @@ static int report(Verification *v, const char *precision) {
   if (v->component[worst].differs) return report_difference(v, worst);
   if (v->component[scattered].scattered > POINTS_RANDOM / 2)
     return differs(v, arena_printf(v->arena, "has fewer than 9 digits in %s, where the derived value keeps theirs when arguments are rounded: is a float in it?", rate_name(v, scattered)), 0, NULL);
+  if (v->quiet) return fewest < FEWEST ? STATUS_RUN : STATUS_OK;
   if (fewest < FEWEST) {
     usage_error(arena_printf(v->arena, "not decided: only %u states give the derived equations and %s:%s a value with digits; "
                              "declare signs of coordinates and parameters, so that states are drawn inside the domain", fewest, v->file, v->function));
@@ -491,15 +507,42 @@ static int compare(Verification *v, const IrUnit *u, const char *path, FILE *in,
   if (!v->n) return usage_error("no state inside the model's domain was found: declare signs of coordinates and parameters");
   int built = run_with(v, u, precision, path, in, out, &status, &error);
   if (!built) built = run_with(v, u, precision = "long", path, in, out, &status, &error);
+  if (!built && v->quiet) return STATUS_USAGE;
   if (!built && !strstr(error, " failed:\n")) return usage_error(error);
   if (!built) return usage_error(arena_printf(v->arena, "%s\nthe function is called as %s(t, y, dydt, p), where t is a double, and the others are arrays of doubles; it takes all four, also those that it does not use", error, v->function));
   size_t want = (size_t)v->n * (BESIDE + 1) + 1, size = result_size(v);
   v->results = ARENA_ARRAY(v->arena, double, want * size);
   rewind(out);
   size_t got = fread(v->results, sizeof(double), want * size, out) / size;
-  if (got < want) return report_break(v, status, got);
+  if (got < want) return v->quiet ? STATUS_RUN : report_break(v, status, got);
   status = judge_calls(v);
   return status == STATUS_OK ? report(v, precision) : status;
+}
+
+/* The verification by the equations e, whose arguments and results go through temporary files. */
+static int verify_equations(Verification *v, Compiler *c, Eqns *e, const char *path) {
+  IrUnit *u = compiler_lower_scene(c, e, 1);
+  FILE *in = u ? tmpfile() : NULL, *out = u ? tmpfile() : NULL;
+  int status = !u ? STATUS_MODEL : in && out ? compare(v, u, path, in, out) : usage_error("cannot write a temporary file");
+  if (in) fclose(in);
+  if (out) fclose(out);
+  return status;
+}
+
+static void prepare(Verification *v, Compiler *c, Eqns *e) {
+  *v = (Verification){.c = c,
+                      .given = v->given,
+                      .quiet = v->quiet,
+                      .e = e,
+                      .m = e->m,
+                      .g = e->g,
+                      .arena = c->arena,
+                      .points = sample_points_new(e),
+                      .nq = e->m->coords.n};
+  v->ny = sample_state_symbols(v->points).n;
+  v->np = sample_parameters(v->points).n;
+  v->na = v->ny - v->nq;
+  v->component = ARENA_ARRAY(c->arena, Component, v->ny + 1);
 }
 
 static int begin(Verification *v, const char **path, const char **error) {
@@ -511,6 +554,36 @@ static int begin(Verification *v, const char **path, const char **error) {
   *path = file_absolute(v->arena, v->file);
   if (!*error && (!*path || strpbrk(*path, "\"\\\n"))) *error = arena_printf(v->arena, "%s: C cannot include a file of such a name", v->file);
   return !*error;
+}
+
+/* Searches for another set of the model's effects with which the function agrees: all sets of up to four effects, of
+ * more those that differ by one. Returns the advice, or NULL. */
+static const char *agreeing_effects(Verification *v) {
+  enum { ALL = 4 };
+  Compiler *c = v->c;
+  if (!effect_graph(c->ast).n) return NULL;
+  EffectStudy *s = effect_study_plan(v->m);
+  uint32_t n = !s ? 0 : s->graph.n > ALL ? s->variants.n : 1u << s->graph.n;
+  for (uint32_t i = 0; i < n; i++) {
+    EffectSet set = s->graph.n > ALL ? s->variants.at[i] : i;
+    EffectList names = effect_names(s, set);
+    if (set == s->used || !effect_set_valid(s, set)) continue;
+    Eqns *e = compiler_derive(
+        c,
+        &(ModelChoice){.scene = c->o.scene, .only = &names, .given = c->given.at, .ngiven = c->given.n, .domains = 1});
+    Verification other = {.given = v->given, .quiet = 1};
+    const char *path = NULL, *error = NULL;
+    if (!e) continue;
+    prepare(&other, c, e);
+    if (!other.ny || !begin(&other, &path, &error) || verify_equations(&other, c, e, path) != STATUS_OK) continue;
+    StrBuf b = strbuf(c->arena);
+    for (uint32_t k = 0; k < names.n; k++) sb_printf(&b, "%s%s", k ? ", " : "", names.at[k]);
+    return arena_printf(
+        c->arena,
+        "it agrees with the model %s%s, and the scene `%s` has other effects: compare it with a scene that says `use %s`",
+        names.n ? "with " : "without effects", sb_text(&b), v->m->scene.name, names.n ? sb_text(&b) : "none");
+  }
+  return NULL;
 }
 
 /* ", g=9.81, th=1" */
@@ -526,22 +599,14 @@ int command_verify(Compiler *c) {
   if (!settings_compiled(c->ast, &c->o, 1, &c->given, &error)) return error ? usage_error(error) : STATUS_MODEL;
   if (c->o.rest.n) return usage_error(arena_printf(c->arena, "%s has no value: write name=value", c->o.rest.at[0]));
   Eqns *e = compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .given = c->given.at, .ngiven = c->given.n, .domains = 1});
-  IrUnit *u = e ? compiler_lower_scene(c, e, 1) : NULL;
-  if (!u) return STATUS_MODEL;
-  Verification v = {.c = c, .given = given, .e = e, .m = e->m, .g = e->g, .arena = c->arena, .points = sample_points_new(e), .nq = e->m->coords.n};
-  v.ny = sample_state_symbols(v.points).n;
-  v.np = sample_parameters(v.points).n;
-  v.na = v.ny - v.nq;
-  v.component = ARENA_ARRAY(c->arena, Component, v.ny + 1);
+  if (!e) return STATUS_MODEL;
+  Verification v = {.given = given};
+  prepare(&v, c, e);
   Name conditional = model_conditional(v.m);
   if (conditional)
     return usage_error(arena_printf(c->arena, "a function is compared with one set of equations, and those change where `%s` begins to hold: compare models with and "
                                     "without that constraint", conditional));
   if (!v.ny) return usage_error("the model has no coordinates and no states: there is nothing to compare");
   if (!begin(&v, &path, &error)) return usage_error(error);
-  FILE *in = tmpfile(), *out = tmpfile();
-  int status = in && out ? compare(&v, u, path, in, out) : usage_error("cannot write a temporary file");
-  if (in) fclose(in);
-  if (out) fclose(out);
-  return status;
+  return verify_equations(&v, c, e, path);
 }

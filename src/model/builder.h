@@ -25,7 +25,7 @@ typedef enum { TODO, DOING, DONE } Progress;
 typedef enum {
   IN_CONST,    /* numbers, constants declared before */
   IN_PARAM,    /* + parameters declared before */
-  IN_START,    /* + all parameters */
+  IN_START,    /* + all parameters; lets and functions of them */
   IN_INPUT,    /* + t */
   IN_DYNAMICS, /* + q, q', z, inputs, lets, functions */
   IN_EXACT,    /* + start values x(0) */

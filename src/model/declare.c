@@ -2,6 +2,7 @@
  * Lets and functions are only recorded: resolve.c evaluates them when needed. Parameters and constants: declare_param.c. */
 #include <stdlib.h>
 
+#include "base/words.h"
 #include "model/builder.h"
 
 enum { FAMILY_MAX = 1000000 };
@@ -179,6 +180,10 @@ static void declare_motion(Builder *b, const AstStmt *st, Name effect) {
   int is_state = st->kind == STMT_STATE || b->m->first_order;
   EntKind kind = is_state ? ENT_STATE : ENT_COORD;
   uint32_t first = is_state ? b->m->states.n : b->m->coords.n;
+  if (has_word("energy lagrangian if end lyapunov", st->name))
+    diag_error(b->diags, st->name_span,
+               "`%s` is a word of formulas, outputs and measures, and cannot be %s" HELP "choose another name",
+               st->name, ent_kind_text(kind));
   if (!read_type(b, st, effect, &parts)) return;
   if (!declare_family(b, st, effect, kind, first, parts, &e)) return;
   Unit unit = parts == ROTATION ? unit_si(DIM_NONE, "") : declared_unit(b, st, effect);

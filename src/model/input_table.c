@@ -276,8 +276,15 @@ static int find_table_file(Table *t, const char *path) {
     t->file = *file;
     return 1;
   }
-  return diag_error(b->diags, ast_expr(b->ast, t->id)->span, "cannot read `%s`: %s" HELP "the path is relative to the file that names it", path,
-                    error);
+  diag_error(b->diags, ast_expr(b->ast, t->id)->span, "cannot read `%s`: %s", path, error);
+  const char *from = source_place(all, ast_expr(b->ast, t->id)->span.begin).file->path,
+             *beside = path_relative_to(b->arena, all->files.at[0].path, path);
+  if (!strchr(from, '=')) diag_help(b->diags, "the path is relative to the file that names it");
+  else if (source_read(b->ast->sources, beside, &error))
+    diag_help(b->diags, "on the command line a path is relative to the folder where lagc is called: write `%s`",
+              beside);
+  else diag_help(b->diags, "on the command line a path is relative to the folder where lagc is called");
+  return 0;
 }
 
 /* Warns of overshoot by more than half the range of values: a cubic overshoots where rows are sparse near a steep rise.

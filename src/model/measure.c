@@ -42,7 +42,10 @@ static const Entity *entity_named(Builder *b, Name name) {
 
 static CallKind call_kind(MeasureReader *r, const AstExpr *x) {
   const Entity *e = entity_named(r->b, x->name);
-  if (is_word("max min mean rms drift period", x->name) && ast_list_length(r->b->ast, x->args) == 1) return CALL_TRACK;
+  AstId second = x->args ? ast_expr(r->b->ast, x->args)->next : 0;
+  if (is_word("max min mean rms drift period", x->name) && x->args &&
+      (!second || ast_expr(r->b->ast, second)->kind == AST_BIND))
+    return CALL_TRACK;
   if (strcmp(x->name, "hit") == 0) return CALL_HIT;
   if (strcmp(x->name, "count") == 0) return CALL_COUNT;
   if (e && e->kind != ENT_FUNCTION && e->kind != ENT_NONE) return CALL_AT;
@@ -119,19 +122,46 @@ static Part wrong_call(MeasureReader *r, const AstExpr *x, const char *form) {
   return (Part){0};
 }
 
-/* max(x), ... */
+/* " 10" of a window of time, in s; NULL, reported, if it is none. */
+static const char *window_end(Builder *b, AstId id) {
+  Value v = resolve(b, id, IN_CONST, NULL);
+  if (!v.e) return NULL;
+  if (expr_is_num(b->g, v.e) && (v.bare || dim_equate(b->dims, v.dim, seconds(b), ast_expr(b->ast, id)->span)))
+    return number_text(b, num_value(expr_number(b->g, v.e)));
+  diag_error(b->diags, ast_expr(b->ast, id)->span,
+             "`%s` is no end of a window of time" HELP "write numbers: `max(x, 10..20)`, `max(x, 1 [min]..2 [min])`",
+             ast_short(b, id));
+  return NULL;
+}
+
+/* ", 10..20", "" */
+static const char *window_text(Builder *b, AstId id) {
+  if (!id) return "";
+  const AstExpr *x = ast_expr(b->ast, id);
+  const char *from = window_end(b, x->a), *to = from ? window_end(b, x->b) : NULL;
+  if (to && !(strtod(from, NULL) < strtod(to, NULL))) {
+    diag_error(b->diags, x->span, "this window of time is empty");
+    return NULL;
+  }
+  return to ? arena_printf(b->arena, ", %s..%s", from, to) : NULL;
+}
+
+/* max(x), max(x, 10..20), ... */
 static Part track(MeasureReader *r, const AstExpr *x) {
   Builder *b = r->b;
   Name name = x->name;
   Span span = x->span;
+  AstId window = ast_expr(b->ast, x->args)->next;
   Part of = operand(r, x->args);
   if (!of.text) return of;
+  const char *within = window_text(b, window);
+  if (!within) return (Part){0};
   if (!(expr_kinds(b->g, of.value.e) & ~(1u << SYM_PARAM | 1u << SYM_CONST))) {
     diag_error(b->diags, span, "`%s` does not change along the run", of.text);
     return (Part){0};
   }
   Dim dim = strcmp(name, "period") == 0 ? seconds(b) : of.value.dim;
-  return part_of(arena_printf(b->arena, "%s(%s)", name, of.text), BINDS_PRIMARY, dim, 1);
+  return part_of(arena_printf(b->arena, "%s(%s%s)", name, of.text, within), BINDS_PRIMARY, dim, 1);
 }
 
 /* hit(EVENT, n), count(EVENT) */

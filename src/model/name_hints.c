@@ -115,12 +115,20 @@ static int advise_index(Builder *b, Name name, Span span) {
 
 /* Functions of other languages and books, and what to write instead. */
 static const char *const foreign_functions[][2] = {
-  {FOREIGN_CHOICES, "a choice is written `if(x > 0, a, b)`: a where the condition holds, b where not; of several, `if(x > 1, a, if(x > 0, b, c))`"},
-  {"ln", "did you mean `log`?"}, {"log10 log2", "write `log(x)/log(10)`, `log(x)/log(2)`"},
-  {"arcsin arccos arctan arctan2", "the inverse functions are `asin`, `acos`, `atan`, `atan2`"},
-  {"sec csc cot", "write `1/cos(x)`, `1/sin(x)`, `1/tan(x)`"}, {"sqr square", "write `x^2`"}, {"fabs", "did you mean `abs`?"}, {"sgn signum", "did you mean `sign`?"},
-  {"heaviside step", "write `if(x > 0, 1, 0)`"}, {"diff Diff dt D grad", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
-  {"length mag magnitude", "the length of a vector is `norm(r)`"},
+    {FOREIGN_CHOICES,
+     "a choice is written `if(x > 0, a, b)`: a where the condition holds, b where not; of several, `if(x > 1, a, if(x > 0, b, c))`"},
+    {"ln", "did you mean `log`?"},
+    {"log10 log2", "write `log(x)/log(10)`, `log(x)/log(2)`"},
+    {"arcsin arccos arctan arctan2", "the inverse functions are `asin`, `acos`, `atan`, `atan2`"},
+    {"sec csc cot", "write `1/cos(x)`, `1/sin(x)`, `1/tan(x)`"},
+    {"sqr square", "write `x^2`"},
+    {"fabs", "did you mean `abs`?"},
+    {"sgn signum", "did you mean `sign`?"},
+    {"heaviside step", "write `if(x > 0, 1, 0)`"},
+    {"diff Diff dt D grad", "a time derivative is written `x'`, a partial one `d(expr, name)`"},
+    {"delay delayed lag history",
+     "a delay does not exist: equations hold the state of one moment; a lag of first order is a state, `flow z' = (x - z)/T`"},
+    {"length mag magnitude", "the length of a vector is `norm(r)`"},
 };
 
 int advise_unknown_function(Builder *b, Name name) { return advise_word(b, foreign_functions, sizeof foreign_functions / sizeof *foreign_functions, name); }

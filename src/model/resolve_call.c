@@ -224,9 +224,15 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
   }
   diag_error(b->diags, x->op_span.end ? x->op_span : x->span, "unknown function `%s`", x->name);
   Name near = suggest(x->name, known, n);
+  const char *argument = x->args ? ast_text(b, x->args) : "";
   if (!e && advise_unknown_function(b, x->name)) return FAILED;
   if (strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0) diag_help(b->diags, "`%s(q)` may stand in `output` and `monitor`, in a scene that says `exact q = ...`", x->name);
   else if (e && is_of_time(ev, x)) diag_help(b->diags, "`%s` is %s: write `%s`; its dependence on time is implied", x->name, ent_kind_text(e->kind), x->name);
+  else if (e && argument[0] == 't' && argument[1] && strchr(" -+", argument[1]))
+    diag_help(
+        b->diags,
+        "a delay does not exist: equations hold the state of one moment; a lag of first order is a state, `flow z' = (%s - z)/T`",
+        x->name);
   else if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
   else diag_help(b->diags, "`lagc help functions` lists them; declare your own: `function %s(x) = ...`", x->name);

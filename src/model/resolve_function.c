@@ -138,14 +138,14 @@ Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
   Builder *b = ev->b;
   const Definition *f = &b->functions.at[e->index];
   uint32_t nargs = ast_list_length(b->ast, f->stmt->args), n = 0, *shapes = ARENA_ARRAY(b->arena, uint32_t, nargs + 1);
-  if (ev->where < IN_DYNAMICS) return refuse(b, x->span, "`%s` is a function of the model's own, and may not be used here", x->name);
+  if (ev->where < IN_START) return refuse(b, x->span, "`%s` is a function of the model's own, and may not be used here", x->name);
   if (!arity_is(ev, x, nargs)) return FAILED;
   for (AstId arg = x->args; arg; arg = ast_expr(b->ast, arg)->next) {
     if (!value_of(ev, arg)->e) return FAILED;
     shapes[n++] = value_of(ev, arg)->n;
   }
   uint32_t place = find_instance(b, e->index, nargs, shapes, x->span);
-  if (b->instances.at[place]->done) return call_instance(ev, x, b->instances.at[place]);
+  if (b->instances.at[place]->done) return known_at_start(ev, call_instance(ev, x, b->instances.at[place]), x->name, x->span);
   suspend_for(ev, ENT_FUNCTION, place, b->state[ENT_FUNCTION].at[e->index].progress, x->name, x->span);
   return FAILED;
 }

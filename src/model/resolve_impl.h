@@ -84,6 +84,9 @@ Value member_value(Eval *ev, const AstExpr *x);
 /* Argument `name` of the function whose body is being evaluated, or NULL. */
 const Value *function_argument(const Builder *b, const Instance *function, Name name);
 
+/* v, the value of a let or of a call; where a start is given, refused if anything but parameters is in it. */
+Value known_at_start(Eval *ev, Value v, Name name, Span span);
+
 /* Suspends the evaluation until a let, an observable or a function instance has a value. If that one is in progress, the
  * definition is circular: reported. */
 void suspend_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span);

@@ -45,7 +45,7 @@ static const char *place_text(Context where) {
   switch (where) {
     case IN_CONST: return "only numbers and constants are known here";
     case IN_PARAM: return "a parameter's value may contain numbers and parameters declared before it";
-    case IN_START: return "a start value may contain numbers and parameters";
+    case IN_START: return "a start or a value in a scene may contain numbers, parameters, and lets and functions of them";
     case IN_INPUT: return "an input may contain numbers, parameters and t";
     case IN_DYNAMICS: return "declare a name that equations contain by `let`; observables are for outputs";
     case IN_EXACT: case IN_OBSERVE: case IN_OUTPUT: break;
@@ -58,7 +58,8 @@ static Context least_context(EntKind kind) {
     case ENT_CONST: return IN_CONST;
     case ENT_PARAM: return IN_PARAM;
     case ENT_OBSERVE: case ENT_SYMMETRY: return IN_OBSERVE;
-    case ENT_NONE: case ENT_COORD: case ENT_STATE: case ENT_INPUT: case ENT_LET: case ENT_FUNCTION: case ENT_BUILTIN: break;
+    case ENT_LET: case ENT_FUNCTION: return IN_START;
+    case ENT_NONE: case ENT_COORD: case ENT_STATE: case ENT_INPUT: case ENT_BUILTIN: break;
   }
   return IN_DYNAMICS;
 }
@@ -68,6 +69,20 @@ static SymId symbol_of(const Model *m, EntKind kind, uint32_t index) {
   if (kind == ENT_STATE) return m->states.at[index].z;
   if (kind == ENT_PARAM) return m->params.at[index].sym;
   return m->inputs.at[index].sym;
+}
+
+static int moves(const Symbol *s, const void *found) {
+  if (s->kind == SYM_PARAM || s->kind == SYM_CONST) return 0;
+  **(Name *const *)found = s->name;
+  return 1;
+}
+
+Value known_at_start(Eval *ev, Value v, Name name, Span span) {
+  Name moving = NULL, *found = &moving;
+  for (uint32_t k = 0; ev->where == IN_START && v.e && k < component_count(&v); k++)
+    if (expr_contains(ev->b->g, v.at[k], moves, &found))
+      return refuse(ev->b, span, "`%s` contains `%s` and may not be used here" HELP "%s", name, moving, place_text(IN_START));
+  return v;
 }
 
 /* Value of a plain name, or of member `at` of a family. */
@@ -92,7 +107,7 @@ static Value entity_value(Eval *ev, const Entity *e, const int64_t *at, Span spa
       v.unit = y->unit.text;
       return v;
     }
-    case ENT_LET: case ENT_OBSERVE: return defined_value(ev, e, span);
+    case ENT_LET: case ENT_OBSERVE: return known_at_start(ev, defined_value(ev, e, span), e->name, span);
     case ENT_FUNCTION:
       return refuse(b, span, "`%s` is a function" HELP "give it its arguments: `%s(...)`", e->name, e->name);
     case ENT_NONE: case ENT_BUILTIN: break;

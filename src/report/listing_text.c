@@ -1,6 +1,7 @@
 /* Headings, equations, names and definitions of listings; each line has a form for text and one for LaTeX. */
 #include "report/listing_text.h"
 
+#include "model/printed_text.h"
 #include "symmetry/charges.h"
 
 int text_latex(const Text *t) { return t->style == PRINT_LATEX; }
@@ -18,7 +19,7 @@ void text_expr(Text *t, Expr e) {
   uint32_t distinct;
   double size = expr_tree_size(t->g, e, &distinct);
   if (size <= longest || size <= most_repeated*distinct) {
-    expr_print(t->g, e, t->style, t->out);
+    expr_print_checked(t->e->m, e, t->style, t->out);
     return;
   }
   text_put(t, "(", "\\text{(");

@@ -30,7 +30,9 @@ void text_charges(Text *t);
 void text_heading(Text *t, const char *title);
 void text_end(Text *t);
 
-/* Appends an expression; past a limit its length instead, as an expression that shares its parts can be far longer in writing than to compute. */
+/* Appends an expression, which is read again and compared (an internal error in the model's diags where it is another);
+ * past a limit its length instead, as an expression that shares its parts can be far longer in writing than to compute.
+ */
 void text_expr(Text *t, Expr e);
 
 /* Appends "  left = right", aligned in LaTeX; last: the block's last line. */

@@ -1,12 +1,13 @@
 /* `lagc noether` as one JSON object: names and formulas are text of the language, in which no character needs an escape. */
 #include "symmetry/charges.h"
+#include "model/printed_text.h"
 #include "symmetry/noether_report.h"
 
 static const char *comma(uint32_t k) { return k ? ", " : ""; }
 
-static void put_expr(StrBuf *out, ExprGraph *g, Expr x) {
+static void put_expr(StrBuf *out, const Model *m, Expr x) {
   sb_putc(out, '"');
-  expr_print(g, x, PRINT_TEXT, out);
+  expr_print_checked(m, x, PRINT_TEXT, out);
   sb_putc(out, '"');
 }
 
@@ -18,9 +19,9 @@ static const char *energy_word(const Eqns *e) {
 }
 
 /* The power; null where it is not known, or there is no charge. */
-static void put_power(StrBuf *out, ExprGraph *g, const Noether *is) {
+static void put_power(StrBuf *out, const Model *m, const Noether *is) {
   if (!is->charge || is->power_unknown) sb_puts(out, "null");
-  else put_expr(out, g, is->power);
+  else put_expr(out, m, is->power);
 }
 
 static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
@@ -32,25 +33,25 @@ static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
   for (uint32_t i = 0; i < eqns_coordinates(e); i++) {
     if (expr_is_zero(e->g, s->by.xi[i])) continue;
     sb_printf(out, "%s\"%s\": ", comma(shown++), expr_symbol(e->g, eqns_coordinate(e, i))->name);
-    put_expr(out, e->g, s->by.xi[i]);
+    put_expr(out, e->m, s->by.xi[i]);
   }
   sb_puts(out, "}, \"delta_t\": ");
-  put_expr(out, e->g, s->by.tau);
+  put_expr(out, e->m, s->by.tau);
   sb_puts(out, ", \"F\": ");
-  put_expr(out, e->g, s->is.F);
+  put_expr(out, e->m, s->is.F);
   sb_puts(out, ", \"charge\": ");
-  put_expr(out, e->g, s->is.charge);
+  put_expr(out, e->m, s->is.charge);
   sb_printf(out, ", \"is\": \"%s\", \"power\": ", drift_words[s->is.drift]);
-  put_power(out, e->g, &s->is);
+  put_power(out, e->m, &s->is);
   Conditions positive = noether_conditions(r, k);
   for (uint32_t i = 0; i < positive.n; i++) {
     sb_puts(out, i ? ", " : ", \"positive\": [");
-    put_expr(out, e->g, positive.at[i]);
+    put_expr(out, e->m, positive.at[i]);
   }
   if (positive.n) sb_putc(out, ']');
   if (s->is.over_time) {
     sb_puts(out, ", \"F_integral_of\": ");
-    put_expr(out, e->g, s->is.over_time);
+    put_expr(out, e->m, s->is.over_time);
   }
   if (s->is.jumps) sb_puts(out, ", \"between_jumps\": true");
   if (declared) sb_printf(out, ", \"declared\": \"%s\"", declared);
@@ -64,17 +65,17 @@ static void put_bracket(StrBuf *out, const NoetherReport *r, const Bracket *k) {
   sb_printf(out, "{\"of\": [%u, %u], \"proved\": %s, ", k->a + 1, k->b + 1, k->proved ? "true" : "false");
   if (!k->c) {
     sb_printf(out, "\"is_combination\": %s, \"value\": ", k->is_outside ? "false" : "true");
-    put_expr(out, g, k->value);
+    put_expr(out, r->e->m, k->value);
     sb_putc(out, '}');
     return;
   }
   sb_puts(out, "\"constant\": ");
-  put_expr(out, g, k->constant);
+  put_expr(out, r->e->m, k->constant);
   sb_puts(out, ", \"charges\": {");
   for (uint32_t i = 0; i < r->algebra.n; i++) {
     if (expr_is_zero(g, k->c[i])) continue;
     sb_printf(out, "%s\"%u\": ", comma(shown++), i + 1);
-    put_expr(out, g, k->c[i]);
+    put_expr(out, r->e->m, k->c[i]);
   }
   sb_puts(out, "}}");
 }
@@ -102,7 +103,7 @@ static void put_effect(StrBuf *out, const NoetherReport *r, const EffectVerdict 
   sb_printf(out, "{\"effect\": \"%s\", \"note\": \"%s\", \"powers\": [", v->effect, note ? note : "");
   for (uint32_t k = 0; k < r->found.all.n; k++) {
     sb_puts(out, comma(k));
-    put_power(out, v->e->g, &v->is[k]);
+    put_power(out, v->e->m, &v->is[k]);
   }
   sb_puts(out, "]}");
 }
@@ -117,7 +118,7 @@ static void put_polynomial_charges(StrBuf *out, const NoetherReport *r) {
   sb_puts(out, "], \"charges\": [");
   for (uint32_t k = 0; k < f->all.n; k++) {
     sb_printf(out, "%s{\"degree\": %u, \"charge\": ", k ? ",\n  " : "\n  ", f->all.at[k].degree);
-    put_expr(out, r->e->g, f->all.at[k].charge);
+    put_expr(out, r->e->m, f->all.at[k].charge);
     sb_putc(out, '}');
   }
   sb_puts(out, "]}");
@@ -135,7 +136,7 @@ static void put_involution(StrBuf *out, const NoetherReport *r) {
     if (x->kind == INVOLUTION_SQUARES) sb_printf(out, "\"squares_of\": [%u, %u, %u], ", x->of[0] + 1, x->of[1] + 1, x->of[2] + 1);
     if (x->name) sb_printf(out, "\"declared\": \"%s\", ", x->name);
     sb_puts(out, "\"charge\": ");
-    put_expr(out, r->e->g, x->charge);
+    put_expr(out, r->e->m, x->charge);
     sb_putc(out, '}');
   }
   sb_puts(out, "]}");

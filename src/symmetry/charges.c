@@ -1,4 +1,5 @@
 /* Generators of declared symmetries, their charges, and messages about symmetries that do not hold. */
+#include "model/printed_text.h"
 #include "symmetry/charges.h"
 
 #include "mech/constrain.h"
@@ -134,7 +135,7 @@ static const char *text_of(const Eqns *e, Expr x) {
   StrBuf b = strbuf(e->m->arena);
   x = in_own_names(e, x);
   if (expr_tree_size(e->g, x, &distinct) > LONGEST) return "(too long to print)";
-  expr_print(e->g, x, PRINT_TEXT, &b);
+  expr_print_checked(e->m, x, PRINT_TEXT, &b);
   return sb_text(&b);
 }
 

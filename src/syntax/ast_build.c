@@ -4,6 +4,8 @@
  * Must hold: children before parents; exprs.at[id].first is the lowest id below id. */
 #include "syntax/ast_build.h"
 
+#include "base/words.h"
+
 Ast *ast_new(Arena *a, Interner *names, Sources *sources, Diags *diags) {
   Ast *ast = ARENA_NEW(a, Ast);
   *ast = (Ast){.arena = a, .names = names, .sources = sources, .diags = diags};
@@ -161,4 +163,28 @@ AstList ast_list(AstId item) { return (AstList){item, item}; }
 AstList ast_list_add(Ast *ast, AstList list, AstId item) {
   at(ast, list.last)->next = item;
   return (AstList){list.first, item};
+}
+
+/* 10..20 of max(x, 10..20): a range without a name. */
+AstId ast_window(Ast *ast, Span span, AstId lo, AstId hi) {
+  Span own = span_join(ast_expr(ast, lo)->span, (Span){span.end, span.end});
+  return append(ast, (AstExpr){.kind = AST_BIND, .span = own, .op_span = own, .name = intern(ast->names, ""), .a = lo, .b = hi});
+}
+
+AstList ast_list_before(Ast *ast, AstId item, AstList list) {
+  at(ast, item)->next = list.first;
+  return (AstList){item, list.last};
+}
+
+AstId ast_happening(Ast *ast, Span span, Ident contact, Ident does) {
+  if (!has_word("opens sticks slips", does.name)) {
+    diag_error(ast->diags, does.span,
+               "expected an operator, `)` or `,` after `%s`, found `%s`" HELP "a product is written with `*`",
+               contact.name, does.name);
+    return append(ast, (AstExpr){.kind = AST_ERROR, .span = span});
+  }
+  return append(ast, (AstExpr){.kind = AST_NAME,
+                               .span = span,
+                               .op_span = span,
+                               .name = intern(ast->names, arena_printf(ast->arena, "%s %s", contact.name, does.name))});
 }

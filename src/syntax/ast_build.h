@@ -48,6 +48,11 @@ void check_declared(Ast *ast, Ident name);
 
 AstList ast_list(AstId item);
 AstList ast_list_add(Ast *ast, AstList list, AstId item);
+AstId ast_window(Ast *ast, Span span, AstId lo, AstId hi);
+AstList ast_list_before(Ast *ast, AstId item, AstList list);
+
+/* `floor sticks`, the name of an event of a contact; other words behind a name are a mistake, reported. */
+AstId ast_happening(Ast *ast, Span span, Ident contact, Ident does);
 
 /* ---- statements (ast_stmt.c) ---- */
 StmtList stmts_one(AstStmt *s);

@@ -1,6 +1,7 @@
 /* Advice for known mistakes: a table of words from other languages, and one function for each kind of unexpected token. */
 #include "syntax/parse_state.h"
 
+#include <ctype.h>
 #include <string.h>
 
 #include "base/words.h"
@@ -84,7 +85,7 @@ static const char *missing_comma(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current;
   if (t->kind != TOK_IDENT || !token_is_in(set, n, TOK_COMMA) || cx->open.span.end) return NULL;
   switch (cx->filter->word) {
-    case TOK_PARAM: case TOK_CONST: case TOK_INPUT: case TOK_LET: case TOK_START: case TOK_FLOW: case TOK_EXACT:
+    case TOK_PARAM: case TOK_CONST: case TOK_INPUT: case TOK_LET: case TOK_OBSERVE: case TOK_START: case TOK_FLOW: case TOK_EXACT:
       return sets_next(cx) ? arena_printf(cx->ast->arena, "put a `,` before `%s`", t->name) : NULL;
     case TOK_COORD: case TOK_STATE: case TOK_USE: case TOK_REQUIRES: case TOK_EXCLUDES:
       return arena_printf(cx->ast->arena, "put a `,` before `%s`", t->name);
@@ -211,8 +212,22 @@ static const char *slip_advice(const Parse *cx, const TokKind *set, int n) {
   return NULL;
 }
 
+/* 9,81 and x": the letters before and behind the token tell. */
+static const char *foreign_sign(const Parse *cx) {
+  const Token *t = &cx->current;
+  const Source *source = cx->filter->scan->source;
+  const char *s = source->text + (t->span.begin - source->base), *comma = t->kind == TOK_COMMA ? s : s - 1;
+  int in_text = t->span.begin > source->base + 1 && cx->before.span.end;
+  if (in_text && (t->kind == TOK_COMMA || t->kind == TOK_NUMBER) && *comma == ',' &&
+      isdigit((unsigned char)comma[-1]) && isdigit((unsigned char)comma[1]))
+    return "a number has a decimal point: `9.81`";
+  if (t->kind == TOK_STRING && cx->before.span.end == t->span.begin) return "a second derivative has two primes: `x''`";
+  return NULL;
+}
+
 const char *advice_for_token(const Parse *cx, const TokKind *set, int n) {
   const Token *t = &cx->current, *b = &cx->before;
+  if (foreign_sign(cx)) return foreign_sign(cx);
   const char *end = missing_end(cx), *comma = end ? end : missing_comma(cx, set, n), *title = comma ? comma : misshapen_title(cx, set, n);
   const char *word = title ? title : word_in_list(cx, set, n), *slip = word ? word : slip_advice(cx, set, n);
   if (slip) return slip;

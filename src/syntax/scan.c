@@ -197,7 +197,8 @@ int scan_string(Scan *s, Token *t, const char *text, int n) {
   if (n < 2 || text[n - 1] != '"') {
     uint32_t shown = (uint32_t)n;
     while (shown > 1 && text[shown - 1] == '\r') shown--;
-    bad(s, t, 0, shown, "this quoted text is not closed on its line", "put a `\"` at its end");
+    bad(s, t, 0, shown, "this quoted text is not closed on its line",
+        s->touch == s->begin ? "a second derivative has two primes, `x''`; a text is closed by another `\"`" : "put a `\"` at its end");
     return n;
   }
   for (int k = 1; k < n - 1; k++)

@@ -51,7 +51,7 @@ static void add_groups(Words *w, const TokKind *set, int n) {
   int operators = token_is_in(set, n, TOK_TIMES);
   if (token_is_in(set, n, TOK_LAGRANGIAN)) add_word(w, "a statement");
   else if (number && name) add_word(w, "an expression");
-  else if (name) add_word(w, "a name");
+  else if (name && !operators) add_word(w, "a name"); /* behind an operand it is a word of `hit(floor sticks)` alone */
   else if (number) add_word(w, "a number");
   if (operators) add_word(w, "an operator");
 }

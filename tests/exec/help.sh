@@ -35,7 +35,7 @@ is "an option" 'option of run, plot, animate, lyapunov, cost, sweep, effects:
   --tol X               tolerance, absolute and relative' "$(chapter tol)"
 is "an option with its dashes" "$(chapter tol)" "$(chapter --tol)"
 check "a value of an option" sh -c '"$0" help latex | grep -q "^  --format text|latex|c$" && "$0" help long | grep -q -- "--precision"' "$LAGC"
-is "a word of paper" "losses are a Rayleigh function, \`dissipation = c/2*x'^2\`, or a \`force\`" "$(chapter damping)"
+is "a word of paper" "losses are a Rayleigh function, \`dissipation = c/2*x'^2\`, or a \`force\`" "$(chapter damping | head -n 1)"
 check "a word that is a function and a unit" sh -c '"$0" help min | grep -q "smaller" && "$0" help min | grep -q "60 s"' "$LAGC"
 check "embedding is what header does" sh -c '"$0" help embedding | cmp - "$1"' "$LAGC" /dev/stdin <<END
 $(chapter header)
@@ -104,8 +104,9 @@ check "a mistyped statement" says 'no help on `lagrangain`: did you mean `lagran
 check "a mistyped option" says 'no help on `--metod`: did you mean `--method`?' help --metod
 check "a mistyped function" says 'no help on `sinn`: did you mean `sin`?' help sinn
 check "nothing near" says 'no help on `xyzzy`; `lagc help` lists the topics' help xyzzy
-check "two words" says 'one word too many: `b`; usage: lagc help [TOPIC]' help a b
 m=models/pendulum.lag
+check "a command of other tools leads to what does exist" says 'unknown command `linearize`: `lagc modes MODEL` linearizes about the equilibrium' linearize $m
+check "a command for what lagc does not do" says 'unknown command `fit`: parameters are not fitted here; call the model from an optimizer' fit $m
 check "a mistyped command" says 'unknown command `rum`: did you mean `run`?' rum $m
 check "no command" says "a command is missing before $m: \`lagc run $m\`" $m
 check "no model" says 'a model is missing; usage: lagc check MODEL [SCENE] [--allow-numeric] [--verbose]' check
@@ -125,6 +126,57 @@ check "a definition that is none" says '-D takes CONST=VALUE, for example -D N=5
 check "completion for no shell" says 'which shell? write `lagc completion bash`' completion
 check "-DN=3, -D N=3, --define N=3" sh -c '
   for d in "-DN=3" "-D N=3" "--define=N=3" "--define N=3"; do "$0" derive models/string.lag $d --ops; done | sort -u | awk "END { exit NR != 1 }"' "$LAGC"
+
+# ---- natural words: the first screen has the command, the statement or the call ----
+finds() { # finds ANSWER WORDS...: the answer stands in the first 40 lines
+  want=$1
+  shift
+  "$LAGC" help "$@" 2>&1 | head -n 40 >"$TMP/found"
+  grep -qF -e "$want" "$TMP/found" || { head -n 4 "$TMP/found"; return 1; }
+}
+while IFS='|' read -r words answer; do
+  check "help $words" finds "$answer" $words
+done <<'END'
+linearize|lagc modes
+linearisation of my model|--with linear
+eigenfrequencies|lagc modes
+normal modes|lagc modes
+python example|m = lagc.load(
+monte carlo|--samples
+the Jacobian in C|lagc header MODEL --with jac
+bounce|contact floor: y >= 0, restitution
+a ball bounces off a wall|restitution
+chaos|lagc lyapunov
+poincaré section|--section
+stiff equations|radau
+time step|--step
+save a table|-o FILE.csv
+read csv|input u [N] = "FILE.csv"
+gif|lagc animate
+delay|cannot be written
+noise|stochastic forces are not followed
+fit parameters|least_squares
+cluster|lagc sweep MODEL RANGES --mpi
+air resistance|dissipation
+latex|--format text|latex|c
+conserved quantities|lagc noether
+moment of inertia|bodies.lag
+rolling without slipping|constraint roll
+run faster|lagc cost
+licence|0BSD
+stop a run|`stop` ends
+microcontroller|lagc header
+END
+is "options for experts stand in one place" "0 1" "$("$LAGC" help run | grep -c -e '--math\|--dump\|--fix\|--no-gsl\|--define\|--precision') $(chapter expert | grep -c -e '--math own')"
+check "the tutorial" finds "A first quarter of an hour" tutorial
+sed -n 's/^BROUGHT //p' "$TMP/words" >"$TMP/brought" # words | meanings
+every_word() { sed 's/ *|.*//' "$TMP/brought" | tr ' ' '\n' | while read -r w; do explains "$w" || echo "$w"; done; }
+[ -z "${SLOW:-}" ] || empty "every word of the table of synonyms has an answer" "$(every_word)"
+shown() { sed -n 's/^WAY //p' "$TMP/words" | grep -o '`lagc [a-z]*' | sort -u; }
+empty "the table names commands that exist" "$(shown | while read -r _ c; do words command | grep -q -x "$c" || echo "$c"; done)"
+meant() { sed 's/.*| *//' "$TMP/brought" | tr ' ' '\n' | sort -u; }
+unsaid() { meant | while read -r w; do cat grammar/LANGUAGE.md README.md models/TUTORIAL.md runtime/python/README.md src/commands/command_table.c | grep -qiwF -e "$w" || echo "$w"; done; }
+empty "synonyms are words that the documents have" "$(unsaid)"
 
 # ---- commands that help shows ----
 embeds() {

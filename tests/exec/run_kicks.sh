@@ -104,7 +104,7 @@ check "each where it starts" near_all 0.02 "284 317.33 350.67 384 417.33 450.67 
 plot $map K=0 q=0 --section pulse --x q --y p --starts 'p=0.1..1.6:log:5' --until 3.5 >"$TMP/out"
 # Places have two decimals, of 30 pixels.
 check "in equal ratios: their distances double" near_all 3e-3 "1 2 4 8" "$(marks 2 | awk '{ for (i = 2; i <= NF; i++) printf "%.4f ", ($(i) - $(i - 1))/($2 - $1) }')"
-check "without a legend" sh -c '! grep -q "q=" "$1"' sh "$TMP/p.svg"
+check "coloured by their place, with a legend" sh -c 'grep -q ">p=0.1<" "$1" && grep -q ">p=1.6<" "$1" && [ "$(grep -c "stroke-width=\"2.5\"" "$1")" = 5 ]' sh "$TMP/p.svg"
 is "a list" "3 runs" "$(plot $map --section pulse --x q --y p --starts p=0,1,2 --until 9.5 | head -1)"
 check "an angle is drawn from -pi to pi" sh -c '"$1" plot "$2" p=2.5 --section pulse --x q --y p --until 50.5 -o "$3" >/dev/null && ! grep -q ">10<" "$3" && grep -q ">3<" "$3"' sh "$LAGC" $map "$TMP/q.svg"
 check "no range" says 2 "write a range" "$LAGC" plot $map --starts q -o "$TMP/p.svg"

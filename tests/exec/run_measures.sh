@@ -106,6 +106,35 @@ check "an exponent of a resumed run" saved
 check "an exponent backwards" refused 'a mean over a long time, forwards' --measure lyapunov --until=-3
 check "an extreme of an extreme" refused 'a value of the whole run stands outside' --measure 'max(max(y))'
 
+# ---- windows of time: of cos(t), whose extremes and integrals are known ----
+cat >cosine.lag <<'LAG'
+model cosine
+coord x [m]
+param w = 1 [1/s]
+lagrangian = x'^2/2 - w^2*x^2/2
+scene s { start x = 1; span 20; tolerance 1e-12; output x every 0.5; measure top = max(x, 1..2); measure square = mean(x^2, 1 [s]..2 [s]) }
+LAG
+"$LAGC" run cosine.lag --measure 'least=min(x, 1..2)' --measure 'mean=mean(x, 1..2)' --measure 'rms=rms(x, 1..2)' --measure 'drift=drift(x, 1..2)' --measure 'early=max(x, ..0.5)' \
+  --measure 'late=min(x, 15..)' --measure 'T=period(x, 5..)' --measure 'never=max(x, 30..)' >out 2>err
+sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
+check "an extreme at an end of a window" near top 0.5403023058681397 m 1e-11
+check "the other" near least -0.4161468365471424 m 1e-11
+check "a mean" near mean 0.0678264420177852 m 1e-11    # sin 2 - sin 1
+check "a mean square, in a scene" near square 0.0834750194665974 m^2 1e-11 # 1/2 + (sin 4 - sin 2)/4
+check "its root" near rms 0.2889204379523843 m 1e-11
+check "a drift" near drift 0.9564491424152821 m 1e-11
+check "a window from the begin" near early 1 m 1e-11
+check "a window to the end" near late -1 m 1e-11       # at 5 pi = 15.7
+check "a period" near T 6.283185307179586 s 1e-9
+check "a window behind the end" grep -q 'never .*none: the run ends at t = 20 s, before the window of time begins' out
+check "a window that is empty" refused 'this window of time is empty' --measure 'max(y, 3..2)'
+check "no window" refused 'a window of time is written max(x, 10..20), in s' --measure 'max(y, 3)'
+"$LAGC" run cosine.lag --skip 3 --until 5.25 --measure 'late=max(x)' -o rows.csv >out 2>err
+sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
+check "--skip: measures begin there" near late 0.51208547 m 1e-7 # cos 5.25
+is "rows too" "3 5.25 6" "$(sed -n 2p rows.csv | cut -d, -f1) $(tail -n 1 rows.csv | cut -d, -f1) $(sed 1d rows.csv | grep -c ,)"
+check "--skip beyond the end" says 2 '--skip 30: the run is from 0 to 20 s' "$LAGC" run cosine.lag --skip 30
+
 # ---- contacts: a body on a table that is lifted by 20 t newtons leaves when that is its weight; it falls before from 0.5 m ----
 cat >lift.lag <<'LAG'
 model lift
@@ -121,5 +150,9 @@ LAG
 sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
 check "a contact opens" near a 0.5 s 1e-9
 check "once" grep -q '^ *n  *1' vals
+sed 's/span 1;/span 1; measure lifts = hit(table opens);/' lift.lag >lifts.lag
+"$LAGC" run lifts.lag --until 0.9 >out 2>err
+sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
+check "a contact opens, as a measure of the scene" near lifts 0.5 s 1e-9
 check "an event that does not" refused 'no event is called half opens' --measure 'hit(half opens)'
 tap_end

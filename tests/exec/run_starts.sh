@@ -262,4 +262,20 @@ printf 'model heap\ncoord x [m]\nparam rho = 0.5 [kg/m] > 0, g = 9.81 [m/s^2]\nl
 heap() { ! checks "$TMP/heap.lag" && says 'heap.lag:5:7: error: the mass matrix is singular at the start of the scene `zero`, where `x` has no inertia' "$TMP/check"; }
 check "a start without inertia is an error of check" heap
 check "a start with inertia beside it" "$LAGC" check "$TMP/heap.lag" some
+# Starts by functions and lets of parameters are the numbers of the same formula by hand: h of 1/4, A*sqrt(k)
+cat >"$TMP/given.lag" <<'EOF2'
+model given
+coord q[3] [m], th [deg]
+param A = 2 [m], k = 9 [1/s^2], a = 60 [deg]
+function h(x) = if(x <= 1, 1 - 3*x^2/2 + 3*x^3/4, 0)
+let rate = A*sqrt(k)
+kinetic = sum(i in 1..3, q[i]'^2/2) + th'^2/2*(1 [m^2])
+potential = sum(i in 1..3, k*q[i]^2/2)
+scene s { start q[i in 1..3] = h(i/4)*A, q[1]' = rate, th = 60; A = h(1/2)*8/3 [m]; output q, q[1]', th every 1 }
+EOF2
+given() { "$LAGC" run "$TMP/given.lag" "$@" -o - --until 1 --quiet | sed -n 2p; }
+# h(1/4) = 1 - 3/32 + 3/256 = 0.91796875, h(1/2) = 0.71875, h(3/4) = 0.47265625; A = 1.91666...: products of these, to a rounding
+near_given() { given "$@" | awk -F, -v A="$A" '{ split("0.91796875 0.71875 0.47265625", h, " "); for (i = 1; i <= 3; i++) bad += ($(i + 1) - h[i]*A)^2 > 1e-30; exit bad || ($5 - 3*A)^2 > 1e-29 || $6 != "60" }'; }
+A=1.9166666666666667 check "starts by functions and lets" near_given
+A=5 check "starts by functions and lets, with another parameter" near_given A=5
 tap_end

@@ -388,7 +388,7 @@ check "with the name of what varies" grep -q '>x \[m\]<' "$TMP/curves.svg"
 # A logarithmic axis: decades at equal distances; 1 in the middle of 0.001 .. 1000.
 check "curves over equal ratios" sweep "$osc" swing k=1e-3..1e3:log:7 --measure x --until 1 --svg "$TMP/log.svg"
 check "say so" grep -q '>k \[N/m\], logarithmic<' "$TMP/log.svg"
-is "with labels at equal distances" "0.001 0 0.01 1 0.1 2 1 3 10 4 100 5 1000 6" "$(sed -n 's/.*<text x="\([0-9.]*\)" y="[0-9.]*" text-anchor="middle">\([0-9.]*\)<.*/\1 \2/p' "$TMP/log.svg" | awk '{ if (!n++) a = $1; printf "%s%s %.0f", s, $2, 6*($1 - a)/626; s = " " }')"
+is "with labels at equal distances" "1e-3 0 1e-2 1 1e-1 2 1e0 3 1e1 4 1e2 5 1e3 6" "$(sed -n 's/.*<text x="\([0-9.]*\)" y="[0-9.]*" text-anchor="middle">10<tspan[^>]*>\([-0-9]*\)<.*/\1 1e\2/p' "$TMP/log.svg" | awk '{ if (!n++) a = $1; printf "%s%s %.0f", s, $2, 6*($1 - a)/626; s = " " }')"
 check "a map over equal ratios" sweep "$osc" swing k=1..100:log:3 m=1..2:2 --measure k --until 1 --svg "$TMP/log.svg"
 is "has columns of the same width" 6 "$(grep -o 'h[0-9]*v1h' "$TMP/log.svg" | sed 's/h\([0-9]*\)v.*/\1/' | awk '{ n += $1 } END { print n }')"
 check "and says so" grep -q '>k \[N/m\], logarithmic<' "$TMP/log.svg"

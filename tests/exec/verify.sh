@@ -226,6 +226,26 @@ potential = m*g*z + k/2*(w^2 + x*y*z)
 constraint wall: x = 0
 scene s { start y = 0.1, z = -0.3, y' = 1; span 1 }
 EOF2
+# ---- other effects, other languages ----
+cat >"$TMP/effects.lag" <<'EOF2'
+model effects
+coord th [rad]
+param l = 1 [m] > 0, g = 9.81 [m/s^2] > 0
+lagrangian = l^2*th'^2/2 + g*l*cos(th)
+effect drag { param c = 0.3 [m^2/s]; dissipation = c/2*th'^2 }
+effect push { param F = 0.2 [m^2/s^2]; force th = F }
+scene both { use drag, push; start th = 1 }
+scene none_on { start th = 1 }
+EOF2
+cat >"$TMP/effects.c" <<'EOF2'
+#include <math.h>
+void plain(double t, const double *y, double *d, const double *p) { d[0] = y[1]; d[1] = -p[1]/p[0]*sin(y[0]); (void)t; }
+void drag(double t, const double *y, double *d, const double *p) { plain(t, y, d, p); d[1] -= p[2]*y[1]/(p[0]*p[0]); }
+EOF2
+check "a function without the scene's effects" says 3 "it agrees with the model without effects" verify "$TMP/effects.lag" both --against "$TMP/effects.c:plain"
+check "a function with one of them" says 3 "it agrees with the model with drag" verify "$TMP/effects.lag" both --against "$TMP/effects.c:drag"
+slow check "a function with an effect that the scene has not" says 3 "use drag" verify "$TMP/effects.lag" none_on --against "$TMP/effects.c:drag"
+check "Python is no C" says 2 "is not C: \`lagc verify\` compiles and calls a C function; from Python" verify models/pendulum.lag --against pendulum.py:rhs
 held() { sh "$TMP/emitted.sh" "$TMP/held.lag" >"$TMP/said" && grep -qx "  x''  *0 up to roundings" "$TMP/said"; }
 check "a rate that a constraint holds at 0: rounding alone is no float" held
 check "inputs by tables: the emitted function agrees" sh "$TMP/emitted.sh" tests/exec/models/tables.lag

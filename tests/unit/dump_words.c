@@ -1,5 +1,6 @@
 /* dump_words: the words that the compiler knows, from its own tables, one a line: `statement coord`, `slot every`,
- * `function sin`, `unit m` (`prefixed m` where it takes SI prefixes), `command run`, `option run --tol`. Help, the man page,
+ * `function sin`, `unit m` (`prefixed m` where it takes SI prefixes), `command run`, `option run --tol`, `BROUGHT python | load`: words that
+ * users bring along and what they mean. Help, the man page,
  * completion and the editors' grammar are held against them. */
 #include <stdio.h>
 
@@ -27,5 +28,7 @@ int main(void) {
     printf("command %s\n", command_row(i)->name);
     dump_options(command_row(i));
   }
+#define WORDS(words, means, way) printf("BROUGHT %s | %s\n", words, means), printf("WAY %s\n", (way) ? (way) : "");
+#include "commands/help_words.def"
   return 0;
 }

@@ -10,6 +10,7 @@
 
 #include "compile_text.h"
 #include "mech/hamilton.h"
+#include "model/printed_text.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 
@@ -104,9 +105,21 @@ static void open_forms(void **state) {
   arena_free(s.arena);
 }
 
+/* A printed formula is read again: slips that a printer could make are seen. The force is -k*(x - l)/(a + b) - c*x'*exp(-x) */
+static void printed(void **state) {
+  (void)state;
+  static const char *const wrong[] = {"k*(x - l)/(a + b) - c*x'*exp(-x)", "-k*(x - l)/(a + b) + c*x'*exp(-x)", "-k*(x - l)/a + b - c*x'*exp(-x)", "-k*x - l/(a + b) - c*x'*exp(-x)",
+                                      "-k*(x - l)/(a + b) - c*x'*exp(x)", "-k*(x - l)/(a + b) - c*x'", "-k*(x - l)/(a + b) - c x'*exp(-x)", "-k*(x - l)/(a + b) - c*y'*exp(-x)", ""};
+  static const char *const right[] = {"-k*(x - l)/(a + b) - c*x'*exp(-x)", "c*x'*exp(-x)*(-1) + (l - x)*k/(b + a)", "-(k*x - k*l)/(a + b) - c*x'/exp(x)"};
+  Side s = side("model f\ncoord x, y\nparam k = 1, l = 2, a = 3, b = 4, c = 5\nlagrangian = (x'^2 + y'^2)/2\nforce x = -k*(x - l)/(a + b) - c*x'*exp(-x)\n");
+  for (size_t i = 0; i < sizeof right / sizeof *right; i++) assert_true(printed_says(s.e->m, right[i], s.e->f[0]));
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) assert_false(printed_says(s.e->m, wrong[i], s.e->f[0]));
+  arena_free(s.arena);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(diagonal), cmocka_unit_test(coupled), cmocka_unit_test(magnetic), cmocka_unit_test(forces), cmocka_unit_test(open_forms),
+    cmocka_unit_test(diagonal), cmocka_unit_test(coupled), cmocka_unit_test(magnetic), cmocka_unit_test(forces), cmocka_unit_test(open_forms), cmocka_unit_test(printed),
   };
   return cmocka_run_group_tests_name("hamilton", tests, NULL, NULL);
 }
