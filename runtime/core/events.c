@@ -57,8 +57,13 @@ int lag_events_inputs_jump(lag_sim *s) {
   return rc;
 }
 
-/* Intervals below this part of the run so far count as 0. */
+/* Intervals below this part of a series, or of the run so far, count as 0. */
 static const double at_once = 1e-7;
+
+/* Whether an event that follows another by dt does so at once: also within a hundredth of the step, as late in a run 1e-7 of it is long. */
+static int follows_at_once(const lag_sim *s, double dt) {
+  return dt <= at_once * fabs(s->run->t - s->scene->t0) && dt <= 0.01 * fabs(s->run->step_t1 - s->run->step_t0);
+}
 
 /* Time in which event k will fire for ever, dt after it fired last: the rest of the geometric series of its intervals; HUGE_VAL: they do not become
  * shorter. Others may fire between. */
@@ -94,7 +99,7 @@ static int fail_chatter(lag_sim *s, int k, const lag_contact *c, double dt) {
   const int most = 1000;
   const double pace = 1e-5; /* of the run so far */
   Run *r = s->run;
-  if (lag_contact_is_closed(s, c) || s->shorter[k] > 2 || !(dt <= at_once * fabs(r->t - s->scene->t0))) return LAG_OK;
+  if (lag_contact_is_closed(s, c) || s->shorter[k] > 2 || !follows_at_once(s, dt)) return LAG_OK;
   if (!(fabs(r->t - r->chatter_since) <= pace * fabs(r->t - s->scene->t0))) {
     r->chatter_since = r->t;
     r->chatter = 0;
@@ -217,10 +222,10 @@ static int next_due(const lag_sim *s) {
 static int meet_switch(lag_sim *s, int k) {
   const int most = 100;
   Run *r = s->run;
-  double since = s->count[k] > 0 ? fabs(r->t - s->last[k]) : HUGE_VAL, elapsed = fabs(r->t - s->scene->t0);
+  double since = s->count[k] > 0 ? fabs(r->t - s->last[k]) : HUGE_VAL;
   s->last[k] = r->t;
   s->count[k]++;
-  r->rattles = since <= at_once * elapsed ? r->rattles + 1 : 0;
+  r->rattles = follows_at_once(s, since) ? r->rattles + 1 : 0;
   int which = k - s->scene->model->nev;
   if (is_zeno(s, k, series_rest(s, k, since), 10) || r->rattles > most) return lag_switch_fail_zeno(s, which);
   lag_switch_meet(s, which);
