@@ -81,10 +81,11 @@ static double series_rest(lag_sim *s, int k, double dt) {
   return ratio < 1 ? dt * ratio / (1 - ratio) : HUGE_VAL;
 }
 
-/* Whether the event accumulates: `few` intervals in a row became shorter, and the rest of the series is below the tolerance, in units of its first
- * interval, or time does not resolve it. A block that rocks loses most of its speed at once. */
-static int is_zeno(const lag_sim *s, int k, double rest, int few) {
-  return s->shorter[k] >= few && (rest <= fmin(s->tol, at_once) * s->flight[k] || s->interval[k] <= 64 * DBL_EPSILON * fabs(s->run->t));
+/* Whether the event accumulates: some intervals in a row became shorter, and the rest of the series is next to nothing, in units of its first
+ * interval, or time does not resolve it. A contact, which goes on at rest, takes the tolerance; a block that rocks loses most of its speed at once. */
+static int is_zeno(const lag_sim *s, int k, double rest, int contact) {
+  const double part = contact ? fmin(s->tol, at_once) : at_once;
+  return s->shorter[k] >= (contact ? 3 : 10) && (rest <= part * s->flight[k] || s->interval[k] <= 64 * DBL_EPSILON * fabs(s->run->t));
 }
 
 static int fail_zeno(lag_sim *s, int k) {
@@ -159,7 +160,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
                     LAG_TEXT(r->t));
   }
   double rest = series_rest(s, k, since);
-  int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact ? 3 : 10), moved = memcmp(s->yb, s->now, bytes) != 0;
+  int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact != NULL), moved = memcmp(s->yb, s->now, bytes) != 0;
   int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
   if (of || moved) {
     char who[128];
@@ -227,7 +228,7 @@ static int meet_switch(lag_sim *s, int k) {
   s->count[k]++;
   r->rattles = follows_at_once(s, since) ? r->rattles + 1 : 0;
   int which = k - s->scene->model->nev;
-  if (is_zeno(s, k, series_rest(s, k, since), 10) || r->rattles > most) return lag_switch_fail_zeno(s, which);
+  if (is_zeno(s, k, series_rest(s, k, since), 0) || r->rattles > most) return lag_switch_fail_zeno(s, which);
   lag_switch_meet(s, which);
   return lag_tangent_meet(s, k);
 }
