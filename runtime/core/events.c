@@ -57,8 +57,13 @@ int lag_events_inputs_jump(lag_sim *s) {
   return rc;
 }
 
-/* Intervals below this part of the run so far count as 0. */
+/* Intervals below this part of a series, or of the run so far, count as 0. */
 static const double at_once = 1e-7;
+
+/* Whether an event that follows another by dt does so at once: also within a hundredth of the step, as late in a run 1e-7 of it is long. */
+static int follows_at_once(const lag_sim *s, double dt) {
+  return dt <= at_once * fabs(s->run->t - s->scene->t0) && dt <= 0.01 * fabs(s->run->step_t1 - s->run->step_t0);
+}
 
 /* Time in which event k will fire for ever, dt after it fired last: the rest of the geometric series of its intervals; HUGE_VAL: they do not become
  * shorter. Others may fire between. */
@@ -76,10 +81,11 @@ static double series_rest(lag_sim *s, int k, double dt) {
   return ratio < 1 ? dt * ratio / (1 - ratio) : HUGE_VAL;
 }
 
-/* Whether the event accumulates: `few` intervals in a row became shorter, and the rest of the series is below the tolerance, in units of its first
- * interval, or time does not resolve it. A block that rocks loses most of its speed at once. */
-static int is_zeno(const lag_sim *s, int k, double rest, int few) {
-  return s->shorter[k] >= few && (rest <= fmin(s->tol, at_once) * s->flight[k] || s->interval[k] <= 64 * DBL_EPSILON * fabs(s->run->t));
+/* Whether the event accumulates: some intervals in a row became shorter, and the rest of the series is next to nothing, in units of its first
+ * interval, or time does not resolve it. A contact, which goes on at rest, takes the tolerance; a block that rocks loses most of its speed at once. */
+static int is_zeno(const lag_sim *s, int k, double rest, int contact) {
+  const double part = contact ? fmin(s->tol, at_once) : at_once;
+  return s->shorter[k] >= (contact ? 3 : 10) && (rest <= part * s->flight[k] || s->interval[k] <= 64 * DBL_EPSILON * fabs(s->run->t));
 }
 
 static int fail_zeno(lag_sim *s, int k) {
@@ -94,7 +100,7 @@ static int fail_chatter(lag_sim *s, int k, const lag_contact *c, double dt) {
   const int most = 1000;
   const double pace = 1e-5; /* of the run so far */
   Run *r = s->run;
-  if (lag_contact_is_closed(s, c) || s->shorter[k] > 2 || !(dt <= at_once * fabs(r->t - s->scene->t0))) return LAG_OK;
+  if (lag_contact_is_closed(s, c) || s->shorter[k] > 2 || !follows_at_once(s, dt)) return LAG_OK;
   if (!(fabs(r->t - r->chatter_since) <= pace * fabs(r->t - s->scene->t0))) {
     r->chatter_since = r->t;
     r->chatter = 0;
@@ -154,7 +160,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
                     LAG_TEXT(r->t));
   }
   double rest = series_rest(s, k, since);
-  int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact ? 3 : 10), moved = memcmp(s->yb, s->now, bytes) != 0;
+  int kick = lag_is_kick(m, k), ends = !kick && is_zeno(s, k, rest, contact != NULL), moved = memcmp(s->yb, s->now, bytes) != 0;
   int elsewhere = memcmp(s->yb, s->now, (size_t)nq * sizeof(double)) != 0;
   if (of || moved) {
     char who[128];
@@ -217,12 +223,12 @@ static int next_due(const lag_sim *s) {
 static int meet_switch(lag_sim *s, int k) {
   const int most = 100;
   Run *r = s->run;
-  double since = s->count[k] > 0 ? fabs(r->t - s->last[k]) : HUGE_VAL, elapsed = fabs(r->t - s->scene->t0);
+  double since = s->count[k] > 0 ? fabs(r->t - s->last[k]) : HUGE_VAL;
   s->last[k] = r->t;
   s->count[k]++;
-  r->rattles = since <= at_once * elapsed ? r->rattles + 1 : 0;
+  r->rattles = follows_at_once(s, since) ? r->rattles + 1 : 0;
   int which = k - s->scene->model->nev;
-  if (is_zeno(s, k, series_rest(s, k, since), 10) || r->rattles > most) return lag_switch_fail_zeno(s, which);
+  if (is_zeno(s, k, series_rest(s, k, since), 0) || r->rattles > most) return lag_switch_fail_zeno(s, which);
   lag_switch_meet(s, which);
   return lag_tangent_meet(s, k);
 }
