@@ -122,8 +122,10 @@ static double scale_at(Curve *c, double q, double *most) {
   double size = fabs(q) > 0 ? fabs(q) : 1, left = fabs(room(c, q)), slope = fabs(x.force), bend = 0, h = size;
   for (int k = 0; k < DECADES; k += 2, h /= 100)
     for (int side = -1; side <= 1; side += 2) {
-      double mean = fabs(point_at(c, q + side * h, c->middle).force - x.force) / h;
-      if (isfinite(mean) && mean > bend) bend = mean;
+      lag_phase_point there = point_at(c, q + side * h, c->middle);
+      double mean = fabs(there.force - x.force) / h;
+      int beyond = !(c->sign * (c->E - there.H) > -1e3 * left); /* a wall far outside says nothing about the curve */
+      if (isfinite(mean) && mean > bend && !beyond) bend = mean;
     }
   *most = bend;
   double length = bend > 0 ? (slope + sqrt(slope * slope + 2 * bend * left)) / bend : left / slope;
