@@ -17,7 +17,7 @@ static const double no_digit = 0.3;
 
 int lag_error_estimate_init(ErrorEstimate *e, const lag_sim *sim) {
   const lag_model *m = lag_sim_scene(sim)->model;
-  *e = (ErrorEstimate){.stride = 1, .largest = NAN, .horizon = NAN, .t0 = lag_sim_time(sim)};
+  *e = (ErrorEstimate){.stride = 1, .largest = NAN, .horizon = NAN, .known_to = NAN, .t0 = lag_sim_time(sim)};
   int rc = lag_samples_init(&e->motion, LAG_ERROR_PLACES, 2 * m->nq + m->nz);
   e->motion.rows = 0;
   return rc;
@@ -31,6 +31,7 @@ static void halve(ErrorEstimate *e) {
   size_t n = (size_t)s->n;
   for (int i = 1; 2 * i - 1 < s->rows; i++) {
     s->t[i - 1] = s->t[2 * i - 1];
+    e->met[i - 1] = e->met[2 * i - 1];
     memcpy(s->y + (size_t)(i - 1) * n, s->y + (size_t)(2 * i - 1) * n, n * sizeof(double));
   }
   s->rows /= 2;
@@ -44,9 +45,9 @@ static int is_cut(const lag_sim *sim) {
   return (m->nmodes || m->ncontacts) && sim->run->t != sim->run->step_t1;
 }
 
-/* *t, y[n] := a place within the last step, whose error is that of rows between steps; its end where the method steps to each row, or the step is cut. In the
+/* *t, y[n] := a place within the last step. Returns whether it lies before the end, and so before events there: its error is that of rows between steps. The end where the method steps to each row, or the step is cut. In the
  * middle of a flight between two walls, as in that of a symmetric swing, a coordinate would be 0, and have no size. */
-static void take_place(lag_sim *sim, double *t, double *y) {
+static int take_place(lag_sim *sim, double *t, double *y) {
   const Run *r = sim->run;
   size_t bytes = (size_t)sim->pb.n * sizeof(double);
   double calls = sim->pb.rhs_calls; /* of the run: interpolation may take more */
@@ -55,24 +56,41 @@ static void take_place(lag_sim *sim, double *t, double *y) {
   sim->pb.rhs_calls = calls;
   if (!between) *t = r->t;
   memcpy(y, between ? sim->yc : sim->now, bytes);
+  return between;
 }
 
 void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim) {
   Samples *s = &e->motion;
-  int at_event = sim->run->events != e->events;
-  e->events = sim->run->events;
-  if ((at_event && (sim->method->flags & LAG_METHOD_STEPS_TO || is_cut(sim))) || ++e->seen % e->stride) return;
+  const Run *r = sim->run;
+  double before = e->events;
+  int at_event = r->events != before;
+  e->events = r->events;
+  if ((at_event && (sim->method->flags & LAG_METHOD_STEPS_TO || is_cut(sim) || r->t == r->step_t0)) || ++e->seen % e->stride) return;
   if (s->rows == LAG_ERROR_PLACES) halve(e);
   if (e->seen % e->stride) return;
-  take_place(sim, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
+  e->met[s->rows] = take_place(sim, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n) ? before : e->events;
   s->rows++;
 }
 
-void lag_error_estimate_note_end(ErrorEstimate *e, const lag_sim *sim) {
+/* Whether the energy or another charge that should stand still drifts with a trend. */
+static int has_drift(lag_sim *sim) {
+  enum { MOST = 8 };
+  lag_charge_stats c;
+  int drifts = 0;
+  for (int k = 0; k < lag_sim_ncharges(sim) && k < MOST; k++) {
+    lag_sim_charge(sim, k, &c);
+    drifts |= (c.flags & (LAG_CONSERVED | LAG_BALANCED)) && c.trend == LAG_TREND_GROWS;
+  }
+  return drifts;
+}
+
+void lag_error_estimate_note_end(ErrorEstimate *e, lag_sim *sim) {
   Samples *s = &e->motion;
+  e->drifts = has_drift(sim);
   if (sim->run->events != e->events || (s->rows && s->t[s->rows - 1] == lag_sim_time(sim))) return;
   if (s->rows == LAG_ERROR_PLACES) halve(e);
   s->t[s->rows] = lag_sim_time(sim);
+  e->met[s->rows] = e->events;
   memcpy(s->y + (size_t)s->rows++ * (size_t)s->n, sim->now, (size_t)s->n * sizeof(double));
 }
 
@@ -127,25 +145,54 @@ static int take_levels(const ErrorEstimate *e, double *t, double *y) {
   return n + put_level(pieces, piece, (bin + 0.5) / BINS * end, t + n, y + n);
 }
 
-/* The law of growth: log of the typical error against t, or against log t. *power: exponent of t; *level: typical error at the end of the comparison. */
+/* A line through y over x from element `from` on: its slope, the uncertainty of that, and the squares that it leaves. */
+typedef struct Slope {
+  double slope, uncertain, left, end; /* end: y of the line at the last x */
+} Slope;
+
+static Slope slope_of(int from, int n, const double *x, const double *y) {
+  LineFit f = lag_line_fit(n - from, x + from, y + from);
+  double slope = f.xy / f.xx, left = fmax(f.yy - f.xy * slope, 0);
+  return (Slope){slope, sqrt(left / (n - from - 2) / f.xx), left, f.my + slope * (x[n - 1] - f.mx)};
+}
+
+/* Whether the error grows exponentially: a line over t fits better than one over log t, at the same rate later on, and both rise by more than any power claimed. */
+static int is_exponential(Slope all, Slope late, Slope power_all, Slope power_late, double span) {
+  const double same = 2, rise = 4, steep = 3;
+  return all.left < 0.5 * power_all.left && all.slope * span > rise && power_late.slope > steep && late.slope * same > all.slope && late.slope < same * all.slope;
+}
+
+/* The power of t, 0 to 2, that the error follows from a quarter of the time on, and alike in the second half; -1: none is told apart from others. */
+static int power_of(Slope all, Slope late) {
+  const double near = 0.35, sure = 0.55;
+  int k = (int)lround(fmin(fmax(all.slope, 0), 9));
+  double off = k ? fabs(all.slope - k) : all.slope, off_late = k ? fabs(late.slope - k) : late.slope; /* what decays does not grow */
+  return k <= 2 && off < near && off_late + late.uncertain < sure ? k : -1;
+}
+
+/* The law of growth: log of the typical error over t and over log t, from a quarter of the time on. *power: exponent of t; *level: typical error at the end of the comparison. */
 static void find_growth(ErrorEstimate *e, double *power, double *level) {
-  enum { FEWEST = 8 };
-  double x[BINS], lx[BINS], y[BINS], rate;
-  int n = take_levels(e, x, y), first = n / 8; /* the first ones show rounding, not growth */
+  enum { FEWEST = 6 };
+  double x[BINS], lx[BINS], y[BINS];
+  int n = take_levels(e, x, y), quarter = 0, half = 0;
   *power = 0;
   *level = n ? exp(y[n - 1]) : 0;
-  if (n - first < FEWEST) return;
-  for (int i = 0; i < n; i++) lx[i] = log(x[i]);
-  LineFit by_power = lag_line_fit(n - first, lx + first, y + first), by_rate = lag_line_fit(n - first, x + first, y + first);
-  double rest_of_power = by_power.yy - by_power.xy * by_power.xy / by_power.xx, rest_of_rate = by_rate.yy - by_rate.xy * by_rate.xy / by_rate.xx;
-  *power = by_power.xy / by_power.xx;
-  rate = by_rate.xy / by_rate.xx;
-  if (rest_of_rate < 0.5 * rest_of_power && rate * (x[n - 1] - x[first]) > 6 && y[n - 1] - y[first] > 6) {
+  for (int i = 0; i < n; i++) {
+    lx[i] = log(x[i]);
+    quarter += x[i] < 0.25 * x[n - 1];
+    half += x[i] < 0.5 * x[n - 1];
+  }
+  if (n - half < FEWEST) return;
+  Slope all = slope_of(quarter, n, x, y), late = slope_of(half, n, x, y), power_all = slope_of(quarter, n, lx, y), power_late = slope_of(half, n, lx, y);
+  int k = power_of(power_all, power_late);
+  if (is_exponential(all, late, power_all, power_late, x[n - 1] - x[quarter])) {
     e->growth = LAG_ERROR_EXPONENTIAL;
-    e->rate = rate;
-  } else {
-    double uncertain = 2 * sqrt(rest_of_power / (n - first - 2) / by_power.xx); /* errors that oscillate show a slope by chance */
-    e->growth = *power < fmax(0.4, uncertain) ? LAG_ERROR_BOUNDED : *power < 1.5 ? LAG_ERROR_LINEAR : LAG_ERROR_QUADRATIC;
+    e->rate = late.slope;
+    *level = exp(late.end);
+  } else if (k > 0 || (k == 0 && !e->drifts)) { /* what drifts in its energy will grow */
+    e->growth = k == 0 ? LAG_ERROR_BOUNDED : k == 1 ? LAG_ERROR_LINEAR : LAG_ERROR_QUADRATIC;
+    *power = k;
+    *level = exp(power_late.end);
   }
 }
 
@@ -172,19 +219,19 @@ double lag_error_reach(ErrorEstimate *e, double factor) {
   if (!e->compared || e->growth == LAG_ERROR_UNKNOWN) return NAN;
   t = fabs((isnan(e->horizon) ? e->motion.t[e->compared - 1] : e->horizon) - e->t0);
   rest = log(no_digit / (factor * level));
-  return e->growth == LAG_ERROR_EXPONENTIAL ? t + rest / e->rate : power > 0.4 ? t * exp(rest / power) : HUGE_VAL;
+  return e->growth == LAG_ERROR_EXPONENTIAL ? t + rest / e->rate : power > 0 ? t * exp(rest / power) : HUGE_VAL;
 }
 
-/* Extends the errors from the last compared time to the end of the run by their law; without one they are not known. */
+/* Extends the errors from the last compared time by their law, for as long again at most. */
 static void extrapolate(ErrorEstimate *e, double until, double power, double level) {
   double t = fabs(e->motion.t[e->compared - 1] - e->t0), rest = fabs(until - e->t0) - t, dir = until < e->t0 ? -1 : 1, reach = HUGE_VAL;
   e->continued = 1;
-  if (e->growth == LAG_ERROR_UNKNOWN) {
-    e->largest = NAN;
-  } else if (e->growth == LAG_ERROR_EXPONENTIAL) {
+  rest = e->growth == LAG_ERROR_UNKNOWN ? 0 : fmin(rest, t);
+  e->known_to = rest < fabs(until - e->t0) - t ? e->t0 + dir * (t + rest) : until;
+  if (e->growth == LAG_ERROR_EXPONENTIAL) {
     reach = fmax(log(no_digit / level) / e->rate, 0);
     e->largest = fmin(e->largest * exp(e->rate * fmin(rest, reach)), fmax(e->largest, 1));
-  } else if (power > 0.4) {
+  } else if (power > 0) {
     reach = fmax(t * (pow(no_digit / level, 1 / power) - 1), 0);
     e->largest = fmin(e->largest * pow((t + fmin(rest, reach)) / t, power), fmax(e->largest, 1));
   }
@@ -211,15 +258,27 @@ static int is_confirmed(const ErrorEstimate *e, Parting *p, double t, double err
   return 0;
 }
 
-/* Compares rows up to the end, the horizon, or where `other` stops. */
+/* Compares rows up to the end, the horizon, or where `other` stops. Two runs meet an event at times that differ by their errors, or take events of one time in another
+ * order: rows between, where one has met it and the other has not, say nothing, unless they go on. */
 static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
+  enum { LONG = 4 };
   Parting parting = {NAN, HUGE_VAL};
+  double apart = 0, skipped = 0, n = 0; /* of the counts of events; rows that differ in a row, and their largest error */
   for (e->compared = 0; e->compared < e->motion.rows && isnan(e->horizon); e->compared++) {
     int i = e->compared, rc = lag_sim_advance(other, e->motion.t[i]);
     if (rc < 0) snprintf(e->why, sizeof e->why, "the second run failed: %s", lag_sim_message(other));
+    if (rc && i && !isnan(parting.t) && is_confirmed(e, &parting, e->motion.t[i - 1], e->error[i - 1], 1)) e->horizon = parting.t;
     if (rc) return rc;
-    e->error[i] = lag_cost_row_error(e->motion.n, e->motion.y + (size_t)i * (size_t)e->motion.n, other->now, scale);
-    e->largest = fmax(e->largest, e->error[i]);
+    double error = lag_cost_row_error(e->motion.n, e->motion.y + (size_t)i * (size_t)e->motion.n, other->now, scale), now = e->met[i] - other->run->events;
+    n = now == apart ? 0 : n + 1;
+    skipped = n > 0 ? fmax(skipped, error) : 0;
+    if (n > 0 && n < LONG) {
+      e->error[i] = i > 0 ? e->error[i - 1] : 0;
+      continue;
+    }
+    if (n > 0) apart = now;
+    e->error[i] = error;
+    e->largest = fmax(e->largest, fmax(error, skipped));
     if (is_confirmed(e, &parting, e->motion.t[i], e->error[i], i + 1 == e->motion.rows)) e->horizon = parting.t;
   }
   return LAG_OK;
@@ -233,6 +292,7 @@ int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
   free(scale);
   if (rc == LAG_ENOMEM) return rc;
   find_growth(e, &power, &level);
+  e->known_to = until;
   if (e->compared && isnan(e->horizon) && e->compared < e->motion.rows) extrapolate(e, until, power, level);
   if (isnan(e->largest) && !e->why[0] && !e->motion.rows) snprintf(e->why, sizeof e->why, "the run ended at an event in its first step");
   if (isnan(e->largest) && !e->why[0]) snprintf(e->why, sizeof e->why, "a second run reached only t = %.3g s", lag_sim_time(other));

@@ -16,9 +16,12 @@ typedef struct ErrorEstimate {
   double t0;
   double error[LAG_ERROR_PLACES]; /* [compared] */
   int compared;          /* rows that the second run reached, */
+  double met[LAG_ERROR_PLACES]; /* [rows] events of the run before each place */
   int continued;         /* 1: fewer than all; `largest` and `horizon` follow from the law of growth */
-  double largest;        /* largest error up to the end of the run, extrapolated where compared < rows; NaN: no estimate */
-  double horizon;        /* NaN: beyond the end of the run */
+  int drifts;            /* 1: a charge of the run drifts with a trend */
+  double largest;        /* largest error up to known_to; NaN: no estimate */
+  double known_to;       /* the end of the run, or at most twice as far as the second run: later errors are not known */
+  double horizon;        /* NaN: not before known_to */
   ErrorGrowth growth;
   double rate;           /* of exponential growth [1/s] */
   double events;         /* events of the run so far: a step that ends at an event has no place */
@@ -33,7 +36,7 @@ void lag_error_estimate_free(ErrorEstimate *e);
 void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim);
 
 /* Notes the state at the end of the run, unless it ended at an event. */
-void lag_error_estimate_note_end(ErrorEstimate *e, const lag_sim *sim);
+void lag_error_estimate_note_end(ErrorEstimate *e, lag_sim *sim);
 
 /* Runs `other`, a simulation of the same scene at its start with a more accurate setting, along the noted motion, until it fails or its hook (lag_sim_on_step)
  * ends it, and fills in the rest of *e; until: end of the run. LAG_OK, also where `other` fails (e->why), or LAG_ENOMEM. */

@@ -47,7 +47,7 @@ static int try_setting(App *app, ErrorEstimate *e) {
     if (rc < 0) lag_fail(app->sim, rc, "%s", lag_sim_message(trial));
     if (rc == LAG_INTERRUPTED) rc = lag_fail(app->sim, LAG_ESTEP, "%s would take more than %g steps", app->sim->method->name, LAG_ACCURACY_STEPS);
   }
-  if (rc >= 0) rc = lag_app_compare_errors(app, e, trial, fmin(LAG_ACCURACY_STEPS, 1000 + 30. * trial->run->steps)); /* more of them creep where errors are rounding */
+  if (rc >= 0) rc = lag_app_compare_errors(app, e, trial, 1e6 + 30 * lag_app_work(trial)); /* more of it creeps where errors are rounding */
   lag_sim_free(trial);
   return rc < 0 ? rc : LAG_OK;
 }

@@ -23,8 +23,21 @@ int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times) {
   return rc ? rc : lag_sim_set_tolerance(to, fmax(times * from->tol, 4.5 * DBL_EPSILON));
 }
 
-/* Ends the second run after a number of steps, or on Ctrl-C. */
-static int enough(void *app, const lag_sim *other) { return other->run->steps >= ((App *)app)->second_most || lag_app_interrupted() != EXIT_SIGNAL; }
+/* Work of a run so far, in operations: a nanosecond or so each. Constraints add the factors of a matrix at each call, events their functions, a Taylor series
+ * the square of its order. Contacts that are open are no constraints. */
+double lag_app_work(const lag_sim *run) {
+  const double each_event = 1000;
+  const lag_model *m = run->scene->model;
+  double size = m->constraints ? m->nq + m->constraints->n - m->ncontacts : 0;
+  double order = m->taylor && run->method == &lag_taylor_method && run->method_work ? lag_taylor_order(run->method_work) : 0;
+  return run->pb.rhs_calls * (m->ops * (1 + order * order / 8) + 5 * run->pb.n + size * size * size / 3) + run->run->steps * (each_event * m->nev + 20 * run->pb.n);
+}
+
+/* Ends the second run after its share of work, or on Ctrl-C. */
+static int enough(void *app, const lag_sim *other) {
+  const int fewest = 24; /* fewer show no law of growth */
+  return (other->run->steps >= fewest && lag_app_work(other) >= ((App *)app)->second_most) || lag_app_interrupted() != EXIT_SIGNAL;
+}
 
 /* A setting whose error is small beside the run's; near the smallest tolerance, one whose error is of another making, and about as small: taylor with a
  * lower order, or, where there is no series, a larger tolerance, which shows an error that is too large, but not 0. */
@@ -70,26 +83,19 @@ static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double m
   return rc == LAG_ENOMEM ? rc : LAG_OK;
 }
 
-int lag_app_compare_errors(App *app, ErrorEstimate *e, const lag_sim *run, double most) {
+int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most) {
   lag_error_estimate_note_end(e, run);
   int rc = compare_once(app, e, run, most, 0);
   /* Flights on straight lines have the same roundings with any setting; what impacts make of these, a start that is off by one shows. */
   return rc == LAG_OK && lag_error_estimate_is_blind(e) ? compare_once(app, e, run, most, 1) : rc;
 }
 
-/* Work of a step, in units of one unknown without constraints: these add the factors of a dense matrix at each stage. */
-static double work_of_step(const lag_sim *run) {
-  const lag_model *m = run->scene->model;
-  double size = m->constraints ? m->nq + m->constraints->n : 0;
-  return run->pb.n + size * size * size / 50;
-}
-
 void lag_app_error_end(App *app) {
-  const double part = 1. / 15, work = 20000, fewest = 24; /* fewer show no law of growth */
+  const double part = 1. / 15, cheap = 5e7; /* a twentieth of a second: a whole second run */
   const lag_sim *run = app->sim;
   if (!app->watched || app->status < 0 || app->status == LAG_INTERRUPTED) return;
-  double most = app->asked > 0 ? LAG_ACCURACY_STEPS : fmax(fmax(part * run->run->steps, work / work_of_step(run)), fewest);
-  if (lag_app_compare_errors(app, &app->error, run, most)) app->status = LAG_ENOMEM;
+  double most = app->asked > 0 ? HUGE_VAL : fmax(part * lag_app_work(run), cheap);
+  if (lag_app_compare_errors(app, &app->error, app->sim, most)) app->status = LAG_ENOMEM;
 }
 
 const char *lag_growth_name(ErrorGrowth growth) {
@@ -97,31 +103,41 @@ const char *lag_growth_name(ErrorGrowth growth) {
   return names[growth];
 }
 
-static const char *const growth_text[] = {"", ", does not grow", ", grows as t", ", grows as t^2", ", grows exponentially"};
+static const char *const growth_text[] = {", its growth is not seen", ", does not grow", ", grows as t", ", grows as t^2", ", grows exponentially"};
 
 /* Rounding has no law that is worth telling. */
-static ErrorGrowth growth_of(const ErrorEstimate *e) { return e->largest < 500 * DBL_EPSILON ? LAG_ERROR_UNKNOWN : e->growth; }
+static int is_rounding(const ErrorEstimate *e) { return e->largest < 500 * DBL_EPSILON; }
+static ErrorGrowth growth_of(const ErrorEstimate *e) { return is_rounding(e) ? LAG_ERROR_UNKNOWN : e->growth; }
+
+/* Whether the end of the run is beyond what is known of its error. */
+static int is_beyond(const App *app) { return isnan(app->error.horizon) && app->error.known_to != lag_sim_time(app->sim); }
+
+/* The number that text and JSON show: less than an epsilon is less than rounding makes in two runs alike. */
+static double shown(const ErrorEstimate *e) { return e->largest < DBL_EPSILON ? DBL_EPSILON : e->largest; }
 
 void lag_report_error(const App *app, FILE *f) {
   const ErrorEstimate *e = &app->error;
   char from[96] = "";
   if (app->watched && isnan(e->largest) && e->why[0]) fprintf(f, "the error is not known: %s\n", e->why);
   if (!app->watched || isnan(e->largest)) return;
-  if (e->continued) snprintf(from, sizeof from, " (continued from t = %.3g s)", (double)e->motion.t[e->compared - 1]);
+  if (e->continued && growth_of(e)) snprintf(from, sizeof from, " (continued from t = %.3g s)", (double)e->motion.t[e->compared - 1]);
   if (!isnan(e->horizon)) {
     fprintf(f, "after t = %.3g s no digit is left%s: the motion there is the integrator's; averages may still hold\n", e->horizon, from);
-  } else {
-    int shown = e->largest >= DBL_EPSILON; /* less is less than rounding makes in two runs alike */
-    fprintf(f, "error %s %.1g", shown ? "about" : "below", shown ? e->largest : DBL_EPSILON);
-    if (app->asked > 0) fprintf(f, " (asked %g)", app->asked);
-    fprintf(f, "%s%s\n", growth_text[growth_of(e)], from);
+    return;
   }
+  if (is_beyond(app)) fprintf(f, "the error is not known after t = %.3g s; up to there ", e->known_to);
+  fprintf(f, "%s%s %.1g", is_beyond(app) ? "" : "error ", e->largest >= DBL_EPSILON ? "about" : "below", shown(e));
+  if (app->asked > 0) fprintf(f, " (asked %g)", app->asked);
+  fprintf(f, "%s%s\n", is_rounding(e) ? "" : growth_text[growth_of(e)], from);
 }
 
 void lag_report_error_json(const App *app, Json *j) {
   const ErrorEstimate *e = &app->error;
-  lag_json_number(j, "error", app->watched ? e->largest : NAN);
-  lag_json_string(j, "error_growth", app->watched && growth_of(e) ? lag_growth_name(growth_of(e)) : NULL);
+  int known = app->watched && !isnan(e->largest);
+  lag_json_number(j, "error", known && !is_beyond(app) ? shown(e) : NAN);
+  lag_json_string(j, "error_growth", known && growth_of(e) ? lag_growth_name(growth_of(e)) : NULL);
   lag_json_number(j, "error_seen_to", app->watched && e->compared ? e->motion.t[e->compared - 1] : NAN);
+  lag_json_number(j, "error_known_to", known ? isnan(e->horizon) ? e->known_to : e->horizon : NAN);
+  lag_json_number(j, "error_up_to_there", known ? shown(e) : NAN);
   lag_json_number(j, "horizon", app->watched ? e->horizon : NAN);
 }
