@@ -16,9 +16,10 @@
 static const double no_digit = 0.3;
 
 int lag_error_estimate_init(ErrorEstimate *e, const lag_sim *sim) {
+  enum { FEW = 64 }; /* unknowns */
   const lag_model *m = lag_sim_scene(sim)->model;
-  *e = (ErrorEstimate){.stride = 1, .largest = NAN, .horizon = NAN, .known_to = NAN, .t0 = lag_sim_time(sim)};
-  int rc = lag_samples_init(&e->motion, LAG_ERROR_PLACES, 2 * m->nq + m->nz);
+  *e = (ErrorEstimate){.room = sim->pb.n <= FEW ? LAG_ERROR_PLACES : LAG_ERROR_PLACES / 8, .stride = 1, .largest = NAN, .horizon = NAN, .known_to = NAN, .t0 = lag_sim_time(sim)};
+  int rc = lag_samples_init(&e->motion, e->room, 2 * m->nq + m->nz);
   e->motion.rows = 0;
   return rc;
 }
@@ -66,7 +67,7 @@ void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim) {
   int at_event = r->events != before;
   e->events = r->events;
   if ((at_event && (sim->method->flags & LAG_METHOD_STEPS_TO || is_cut(sim) || r->t == r->step_t0)) || ++e->seen % e->stride) return;
-  if (s->rows == LAG_ERROR_PLACES) halve(e);
+  if (s->rows == e->room) halve(e);
   if (e->seen % e->stride) return;
   e->met[s->rows] = take_place(sim, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n) ? before : e->events;
   s->rows++;
@@ -88,7 +89,7 @@ void lag_error_estimate_note_end(ErrorEstimate *e, lag_sim *sim) {
   Samples *s = &e->motion;
   e->drifts = has_drift(sim);
   if (sim->run->events != e->events || (s->rows && s->t[s->rows - 1] == lag_sim_time(sim))) return;
-  if (s->rows == LAG_ERROR_PLACES) halve(e);
+  if (s->rows == e->room) halve(e);
   s->t[s->rows] = lag_sim_time(sim);
   e->met[s->rows] = e->events;
   memcpy(s->y + (size_t)s->rows++ * (size_t)s->n, sim->now, (size_t)s->n * sizeof(double));
@@ -299,13 +300,16 @@ int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
   return LAG_OK;
 }
 
+void lag_error_estimate_reset(ErrorEstimate *e) {
+  e->continued = 0;
+  e->largest = e->horizon = e->known_to = NAN;
+  e->growth = LAG_ERROR_UNKNOWN;
+  e->why[0] = 0;
+}
+
 int lag_error_estimate_is_blind(ErrorEstimate *e) {
   int alike = e->compared > 0;
   for (int i = 0; i < e->compared; i++) alike = alike && e->error[i] == 0;
-  if (!alike) return 0;
-  e->continued = 0;
-  e->largest = e->horizon = NAN;
-  e->growth = LAG_ERROR_UNKNOWN;
-  e->why[0] = 0;
-  return 1;
+  if (alike) lag_error_estimate_reset(e);
+  return alike;
 }

@@ -8,10 +8,11 @@
 /* How an error grows with the time t since the start. */
 typedef enum ErrorGrowth { LAG_ERROR_UNKNOWN, LAG_ERROR_BOUNDED, LAG_ERROR_LINEAR, LAG_ERROR_QUADRATIC, LAG_ERROR_EXPONENTIAL } ErrorGrowth;
 
-enum { LAG_ERROR_PLACES = 512 };
+enum { LAG_ERROR_PLACES = 4096 };
 
 typedef struct ErrorEstimate {
-  Samples motion;        /* the run at `motion.rows` places; [LAG_ERROR_PLACES] rows of room */
+  Samples motion;        /* the run at `motion.rows` places; [room] */
+  int room;
   long long stride, seen; /* each stride-th step has a place; steps seen */
   double t0;
   double error[LAG_ERROR_PLACES]; /* [compared] */
@@ -41,6 +42,9 @@ void lag_error_estimate_note_end(ErrorEstimate *e, lag_sim *sim);
 /* Runs `other`, a simulation of the same scene at its start with a more accurate setting, along the noted motion, until it fails or its hook (lag_sim_on_step)
  * ends it, and fills in the rest of *e; until: end of the run. LAG_OK, also where `other` fails (e->why), or LAG_ENOMEM. */
 int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until);
+
+/* *e as before the last comparison, for another one. */
+void lag_error_estimate_reset(ErrorEstimate *e);
 
 /* After a comparison: whether the motions are the same to the last bit. If so, *e is as before it, for another one. */
 int lag_error_estimate_is_blind(ErrorEstimate *e);

@@ -2,6 +2,7 @@
  * error, how it grows, and the horizon. Holds: the second run makes few steps beside the run; then its law of growth tells the rest. */
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "app/app.h"
 #include "core/core.h"
@@ -43,7 +44,7 @@ static int enough(void *app, const lag_sim *other) {
  * lower order, or, where there is no series, a larger tolerance, which shows an error that is too large, but not 0. */
 static int set_more_accurate(const lag_sim *run, lag_sim *other) {
   const double lower = 3; /* for shorter steps: a higher one would make longer ones, and cancel more digits */
-  const double least = 4.5 * DBL_EPSILON, apart = 3; /* tolerances whose errors differ enough */
+  const double least = 4.5 * DBL_EPSILON, apart = 3, small = 50 * DBL_EPSILON; /* tolerances whose errors differ enough; of a run beside equal steps */
   const lag_taylor *series = run->scene->model->constraints ? NULL : run->scene->model->taylor;
   int equal = lag_equal_step(run) > 0, rc;
   if (!equal && run->tol >= apart * least) return lag_app_copy_method(run, other, tighter);
@@ -55,7 +56,7 @@ static int set_more_accurate(const lag_sim *run, lag_sim *other) {
   } else {
     rc = lag_sim_set_method(other, &lag_dop853, NULL, 0);
   }
-  return rc ? rc : lag_sim_set_tolerance(other, equal ? pow(DBL_EPSILON, 0.75) : run->tol);
+  return rc ? rc : lag_sim_set_tolerance(other, equal ? small : run->tol);
 }
 
 /* Moves the start by a rounding: a factor of 1 + epsilon or 1 - epsilon in turns. What cannot be set stays. */
@@ -68,14 +69,32 @@ static void nudge(lag_sim *sim) {
   }
 }
 
-static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double most, int nudged) {
+/* Limits the steps of an adaptive method. */
+static int limit_steps(lag_sim *sim, double longest) {
+  lag_option opt[MOST_OPTIONS];
+  lag_app_options(sim->method, sim->options, 1, opt);
+  for (int i = 0; i < sim->method->noptions; i++)
+    if (strcmp(opt[i].name, "max_step") == 0) opt[i].value = longest;
+  return lag_sim_set_method(sim, sim->method, opt, sim->method->noptions);
+}
+
+/* How the second run differs from a more accurate setting alone; steps: that it took. */
+typedef struct Second {
+  int nudged;
+  double longest; /* step [s]; 0: any */
+  double steps;
+} Second;
+
+static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double most, Second *second) {
   lag_sim *other = lag_app_fresh_bare_sim(app);
   int rc = other ? set_more_accurate(run, other) : LAG_ENOMEM;
   app->second_most = most;
+  if (rc == LAG_OK && second->longest > 0) rc = limit_steps(other, second->longest);
   if (rc == LAG_OK) {
-    if (nudged) nudge(other);
+    if (second->nudged) nudge(other);
     lag_sim_on_step(other, enough, app);
     rc = lag_error_estimate_compare(e, other, lag_sim_time(run));
+    second->steps = other->run->steps;
   } else if (other) {
     snprintf(e->why, sizeof e->why, "%s", lag_sim_message(other));
   }
@@ -83,11 +102,27 @@ static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double m
   return rc == LAG_ENOMEM ? rc : LAG_OK;
 }
 
+/* The mean step of the run where its steps, as those of the second run, are set by their limit, rows of a table or kicks, not by the tolerance; else 0. */
+static double forced_step(const ErrorEstimate *e, const lag_sim *run, double steps) {
+  double part = e->motion.rows ? (double)e->compared / e->motion.rows : 0, own = run->run->steps * part;
+  int follows = (run->method->flags & LAG_METHOD_ADAPTIVE) && run->method->order_most == 0 && isnan(e->horizon) && e->compared;
+  return follows && own > 0 && steps < 1.1 * own ? fabs(lag_sim_time(run) - e->t0) / run->run->steps : 0;
+}
+
 int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most) {
+  Second second = {0};
   lag_error_estimate_note_end(e, run);
-  int rc = compare_once(app, e, run, most, 0);
+  int rc = compare_once(app, e, run, most, &second);
+  double step = rc ? 0 : forced_step(e, run, second.steps);
+  if (step > 0) {
+    lag_error_estimate_reset(e);
+    second.longest = 0.5 * step;
+    rc = compare_once(app, e, run, 2 * most, &second);
+  }
   /* Flights on straight lines have the same roundings with any setting; what impacts make of these, a start that is off by one shows. */
-  return rc == LAG_OK && lag_error_estimate_is_blind(e) ? compare_once(app, e, run, most, 1) : rc;
+  if (rc || !lag_error_estimate_is_blind(e)) return rc;
+  second = (Second){.nudged = 1};
+  return compare_once(app, e, run, most, &second);
 }
 
 void lag_app_error_end(App *app) {

@@ -58,7 +58,7 @@ def write(folder):
         body = ", ".join(f"{k} = {ranges[k][0]}" for k in starts)
         with open(f"{folder}/{name}.lag", "w", encoding="utf-8") as f:
             use = "; use drag" if "effect drag" in text else ""
-            f.write(f"model {name}\n{text}\nscene s {{ start {EXTRA.get(name, '')}{body}; span 1{use} }}\n")
+            f.write(f"model {name}\n{text}\nscene s {{ start {EXTRA.get(name, '')}{body}; span {MODELS[name][2][1]}{use} }}\n")
 
 
 def read(path):
