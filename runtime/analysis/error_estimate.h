@@ -13,7 +13,7 @@ enum { LAG_ERROR_PLACES = 4096 };
 typedef struct ErrorEstimate {
   Samples motion;        /* the run at `motion.rows` places; [room] */
   int room;
-  long long stride, seen; /* each stride-th step has a place; steps seen */
+  long long stride, seen; /* each stride-th place of the steps is kept; places seen */
   double t0;
   double error[LAG_ERROR_PLACES]; /* [compared] */
   int compared;          /* rows that the second run reached, */
@@ -33,7 +33,7 @@ typedef struct ErrorEstimate {
 int lag_error_estimate_init(ErrorEstimate *e, const lag_sim *sim);
 void lag_error_estimate_free(ErrorEstimate *e);
 
-/* Notes a place of the last step: call it at the end of each. The run goes on as it would have. */
+/* Notes places of the last step: call it at the end of each. The run goes on as it would have. */
 void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim);
 
 /* Notes the state at the end of the run, unless it ended at an event. */

@@ -8,7 +8,7 @@
 #include "core/core.h"
 #include "core/rhs.h"
 
-static const double tighter = 0.1; /* than the tolerance of the run: its error is then small beside the run's */
+static const double tighter = 0.03; /* than the tolerance of the run: its error is then small beside the run's */
 
 int lag_app_error_begin(App *app) {
   const Args *a = &app->args;

@@ -70,12 +70,12 @@ def read(path):
 def deviations(a, b, head):
     """Error at each common time, relative to the largest value of its kind up to the end."""
     kinds = [name.endswith("'") + 2 * (unit != "") for name, unit in head]
-    scale = {}
-    for k in range(1, len(head)):
+    scale, state = {}, [k for k in range(1, len(head)) if head[k][0] != "energy" and not head[k][0].startswith("lambda")]
+    for k in state:
         scale[kinds[k]] = max([scale.get(kinds[k], 0)] + [abs(r[k]) for r in b])
     out = []
     for x, y in zip(a, b):
-        e = max(abs(x[k] - y[k]) / (scale[kinds[k]] or 1) for k in range(1, len(head)))
+        e = max(abs(x[k] - y[k]) / (scale[kinds[k]] or 1) for k in state)
         out.append((x[0], e))
     return out
 
@@ -145,6 +145,8 @@ def grows_as(case, law, errors):
         return None
     T = case.until
     before, after = level(longer, 0.8 * T, T), level(longer, 1.6 * T, 2 * T)
+    if law == "bounded":  # it may have been larger before
+        before = max([before] + [level(longer, 0.2 * k * T, 0.2 * (k + 1) * T) for k in range(5)])
     if not before > 0 or (law != "exponential" and after > 0.03):
         return None
     ratio = after / before
