@@ -43,9 +43,9 @@ static void halve(ErrorEstimate *e) {
 
 /* Whether a switching surface or an event has cut the last step: a dense output that calls the model, or is projected to its constraints, has the
  * wrong branch, or set of constraints, by now. */
-static int is_cut(const lag_sim *sim) {
+static int is_cut(const lag_sim *sim, int at_event) {
   const lag_model *m = sim->scene->model;
-  return (m->nmodes || m->ncontacts) && sim->run->t != sim->run->step_t1;
+  return (m->nmodes || m->ncontacts) && (at_event || sim->run->t != sim->run->step_t1);
 }
 
 /* *t, y[n] := place k within the last step. Returns whether it lies before the end, and so before events there: its error is that of rows between steps. The end where the method
@@ -56,7 +56,7 @@ static int take_place(lag_sim *sim, int k, double *t, double *y) {
   size_t bytes = (size_t)sim->pb.n * sizeof(double);
   double calls = sim->pb.rhs_calls; /* of the run: interpolation may take more */
   *t = r->step_t0 + (k + fmod(golden * r->steps, 1)) / PLACES_A_STEP * (r->t - r->step_t0);
-  int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && !is_cut(sim) && lag_dense_state(sim, *t, sim->yc) == LAG_OK;
+  int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && !is_cut(sim, 0) && lag_dense_state(sim, *t, sim->yc) == LAG_OK;
   sim->pb.rhs_calls = calls;
   if (!between) *t = r->t;
   memcpy(y, between ? sim->yc : sim->now, bytes);
@@ -69,7 +69,7 @@ void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim) {
   double before = e->events;
   int at_event = r->events != before, between = 1;
   e->events = r->events;
-  if (at_event && (sim->method->flags & LAG_METHOD_STEPS_TO || is_cut(sim) || r->t == r->step_t0)) return;
+  if (at_event && (sim->method->flags & LAG_METHOD_STEPS_TO || is_cut(sim, 1) || r->t == r->step_t0)) return;
   for (int k = 0; k < PLACES_A_STEP && between; k++) {
     if (++e->seen % e->stride) continue;
     if (s->rows == e->room) halve(e);
@@ -152,15 +152,22 @@ static int take_levels(const ErrorEstimate *e, double *t, double *y) {
   return n + put_level(pieces, piece, (bin + 0.5) / BINS * end, t + n, y + n);
 }
 
-/* A line through y over x from element `from` on: its slope, the uncertainty of that, and the squares that it leaves. */
+/* A line through y over x from element `from` on: its slope, the uncertainty of that, and the squares that it leaves. Residuals that follow one another, as where the error swings
+ * more slowly than a bin, count as fewer: by their autocorrelation (G. Bayley, J. Hammersley, J. R. Stat. Soc. Suppl. 8 (1946) 184, DOI 10.2307/2983560). */
 typedef struct Slope {
   double slope, uncertain, left, end; /* end: y of the line at the last x */
 } Slope;
 
 static Slope slope_of(int from, int n, const double *x, const double *y) {
   LineFit f = lag_line_fit(n - from, x + from, y + from);
-  double slope = f.xy / f.xx, left = fmax(f.yy - f.xy * slope, 0);
-  return (Slope){slope, sqrt(left / (n - from - 2) / f.xx), left, f.my + slope * (x[n - 1] - f.mx)};
+  double slope = f.xy / f.xx, left = fmax(f.yy - f.xy * slope, 0), follow = 0, before = 0;
+  for (int i = from; i < n; i++) {
+    double rest = y[i] - f.my - slope * (x[i] - f.mx);
+    follow += rest * before;
+    before = rest;
+  }
+  double alike = left > 0 ? fmin(fmax(follow / left, 0), 0.9) : 0;
+  return (Slope){slope, sqrt(left * (1 + alike) / (1 - alike) / (n - from - 2) / f.xx), left, f.my + slope * (x[n - 1] - f.mx)};
 }
 
 /* Whether the error grows exponentially: a line over t fits better than one over log t, at the same rate later on, and both rise by more than any power claimed. */
@@ -172,10 +179,10 @@ static int is_exponential(Slope all, Slope late, Slope power_all, Slope power_la
 /* The power of t, 0 to 2, that the error follows from a quarter of the time on, and alike in the second half; -1: none is told apart from others. Where a charge drifts, the error
  * will grow by more than its present law: it is bounded never, and as t only where that fits well. */
 static int power_of(Slope all, Slope late, int drifts) {
-  const double near = 0.35, sure = 0.45, well = 0.13, flat = 0.1; /* tests/accuracy/estimates.py: right in 95 % */
+  const double near = 0.35, sure = 0.4, well = 0.13, flat = 0.1; /* tests/accuracy/estimates.py: right in 95 % */
   int k = (int)lround(fmin(fmax(all.slope, 0), 9));
   double off = fabs(all.slope - k), off_late = fabs(late.slope - k);
-  if (k == 0) return !drifts && all.slope < flat && late.slope + late.uncertain < flat ? 0 : -1; /* what decays does not grow */
+  if (k == 0) return !drifts && all.slope + 1.5 * all.uncertain < flat && late.slope + 2 * late.uncertain < flat ? 0 : -1; /* what decays does not grow */
   if (k == 1 && drifts && fmax(off, fmax(off_late, late.uncertain)) > well) return -1;
   return k <= 2 && off < near && off_late + late.uncertain < sure ? k : -1;
 }
