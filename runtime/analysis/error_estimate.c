@@ -48,14 +48,15 @@ static int is_cut(const lag_sim *sim, int at_event) {
   return (m->nmodes || m->ncontacts) && (at_event || sim->run->t != sim->run->step_t1);
 }
 
-/* *t, y[n] := place k within the last step. Returns whether it lies before the end, and so before events there: its error is that of rows between steps. The end where the method
+/* *t, y[n] := place k within the last step; few: there are several in a step, else one. Returns whether it lies before the end, and so before events there: its error is that of rows between steps. The end where the method
  * steps to each row, or the step is cut. In the middle of a flight between two walls, as in that of a symmetric swing, a coordinate would be 0, and have no size. */
-static int take_place(lag_sim *sim, int k, double *t, double *y) {
+static int take_place(lag_sim *sim, int k, int few, double *t, double *y) {
   const double golden = 0.6180339887498949; /* any part of all steps has places everywhere in a step */
   const Run *r = sim->run;
   size_t bytes = (size_t)sim->pb.n * sizeof(double);
   double calls = sim->pb.rhs_calls; /* of the run: interpolation may take more */
-  *t = r->step_t0 + (k + fmod(golden * r->steps, 1)) / PLACES_A_STEP * (r->t - r->step_t0);
+  double part = few ? (k + fmod(golden * r->steps, 1)) / PLACES_A_STEP : fmod(golden * r->steps, 1);
+  *t = r->step_t0 + part * (r->t - r->step_t0);
   int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && !is_cut(sim, 0) && lag_dense_state(sim, *t, sim->yc) == LAG_OK;
   sim->pb.rhs_calls = calls;
   if (!between) *t = r->t;
@@ -74,7 +75,7 @@ void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim) {
     if (++e->seen % e->stride) continue;
     if (s->rows == e->room) halve(e);
     if (e->seen % e->stride) continue;
-    between = take_place(sim, k, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
+    between = take_place(sim, k, e->stride < PLACES_A_STEP, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
     e->met[s->rows++] = between ? before : e->events;
   }
 }
