@@ -302,10 +302,16 @@ static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
   return LAG_OK;
 }
 
+int lag_formula_is_lossy(const ErrorEstimate *e) {
+  const double many = 1e-6; /* other rounding modes overstate by some digits */
+  return e->formula.of >= 0 && e->formula.part > many;
+}
+
 int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
   double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale), power, level;
   if (!scale) return LAG_ENOMEM;
   lag_cost_scales(&e->motion, other, scale);
+  e->formula = lag_formula_noise(other, &e->motion);
   int rc = compare_rows(e, other, scale);
   free(scale);
   if (rc == LAG_ENOMEM) return rc;

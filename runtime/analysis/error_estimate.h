@@ -3,7 +3,7 @@
  * horizon, the time from which no digit is left. Holds: the run is the same, bit by bit, with an estimate or without. */
 #pragma once
 
-#include "analysis/work_precision.h"
+#include "analysis/formula_noise.h"
 
 /* How an error grows with the time t since the start. */
 typedef enum ErrorGrowth { LAG_ERROR_UNKNOWN, LAG_ERROR_BOUNDED, LAG_ERROR_LINEAR, LAG_ERROR_QUADRATIC, LAG_ERROR_EXPONENTIAL } ErrorGrowth;
@@ -23,6 +23,7 @@ typedef struct ErrorEstimate {
   double largest;        /* largest error up to known_to; NaN: no estimate */
   double known_to;       /* the end of the run, or at most twice as far as the second run: later errors are not known */
   double horizon;        /* NaN: not before known_to */
+  FormulaNoise formula;  /* rounding that both runs share */
   ErrorGrowth growth;
   double rate;           /* of exponential growth [1/s] */
   double events;         /* events of the run so far: a step that ends at an event has no place */
@@ -48,6 +49,9 @@ void lag_error_estimate_reset(ErrorEstimate *e);
 
 /* After a comparison: whether the motions are the same to the last bit. If so, *e is as before it, for another one. */
 int lag_error_estimate_is_blind(ErrorEstimate *e);
+
+/* After a comparison: whether a formula has lost many digits. */
+int lag_formula_is_lossy(const ErrorEstimate *e);
 
 /* After a comparison: time since the start at which errors `factor` times as large leave no digit, by their law of growth; HUGE_VAL: never; NaN: no law
  * is known. */

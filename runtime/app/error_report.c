@@ -150,6 +150,14 @@ static int is_beyond(const App *app) { return isnan(app->error.horizon) && app->
 /* The number that text and JSON show: less than an epsilon is less than rounding makes in two runs alike. */
 static double shown(const ErrorEstimate *e) { return e->largest < DBL_EPSILON ? DBL_EPSILON : e->largest; }
 
+/* A formula cancels, in both runs alike. */
+static void put_lost_formula(const App *app, FILE *f) {
+  const ErrorEstimate *e = &app->error;
+  int nq = app->scene->model->nq, second = e->formula.of < 2 * nq;
+  fprintf(f, "the error is not known: the formula of %s%s cancels along this motion, and has lost digits in any run; two runs agree to %.1g. Write terms that cancel in another form, as "
+             "2*sin(x/2)^2 for 1 - cos(x)%s\n", lag_state_column(app->sim, second ? e->formula.of - nq : e->formula.of).name, second ? "''" : "'", shown(e), LAG_MORE_PRECISION);
+}
+
 void lag_report_error(const App *app, FILE *f) {
   const ErrorEstimate *e = &app->error;
   char from[96] = "";
@@ -158,6 +166,10 @@ void lag_report_error(const App *app, FILE *f) {
   if (e->continued && growth_of(e)) snprintf(from, sizeof from, " (continued from t = %.3g s)", (double)e->motion.t[e->compared - 1]);
   if (!isnan(e->horizon)) {
     fprintf(f, "after t = %.3g s no digit is left%s: the motion there is the integrator's; averages may still hold\n", e->horizon, from);
+    return;
+  }
+  if (lag_formula_is_lossy(e)) {
+    put_lost_formula(app, f);
     return;
   }
   if (is_beyond(app)) fprintf(f, "the error is not known after t = %.3g s; up to there ", e->known_to);
@@ -169,10 +181,11 @@ void lag_report_error(const App *app, FILE *f) {
 void lag_report_error_json(const App *app, Json *j) {
   const ErrorEstimate *e = &app->error;
   int known = app->watched && !isnan(e->largest);
-  lag_json_number(j, "error", known && !is_beyond(app) ? shown(e) : NAN);
+  lag_json_number(j, "error", known && !is_beyond(app) && !lag_formula_is_lossy(e) ? shown(e) : NAN);
   lag_json_string(j, "error_growth", known && growth_of(e) ? lag_growth_name(growth_of(e)) : NULL);
   lag_json_number(j, "error_seen_to", app->watched && e->compared ? e->motion.t[e->compared - 1] : NAN);
-  lag_json_number(j, "error_known_to", known ? isnan(e->horizon) ? e->known_to : e->horizon : NAN);
+  lag_json_number(j, "error_known_to", known ? lag_formula_is_lossy(e) ? app->scene->t0 : isnan(e->horizon) ? e->known_to : e->horizon : NAN);
   lag_json_number(j, "error_up_to_there", known ? shown(e) : NAN);
+  lag_json_number(j, "formula_noise", known && e->formula.of >= 0 ? e->formula.part : NAN);
   lag_json_number(j, "horizon", app->watched ? e->horizon : NAN);
 }
