@@ -302,6 +302,14 @@ static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
   return LAG_OK;
 }
 
+double lag_error_least_scale(const ErrorEstimate *e, lag_sim *other) {
+  double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale), least = HUGE_VAL;
+  if (scale) lag_cost_scales(&e->motion, other, scale);
+  for (int i = 0; scale && i < e->motion.n; i++) least = fmin(least, scale[i]);
+  free(scale);
+  return least < HUGE_VAL ? least : 0;
+}
+
 int lag_formula_is_lossy(const ErrorEstimate *e) {
   const double many = 1e-6; /* other rounding modes overstate by some digits */
   return e->formula.of >= 0 && e->formula.part > many;

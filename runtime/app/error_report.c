@@ -42,7 +42,7 @@ static int enough(void *app, const lag_sim *other) {
 
 /* A setting whose error is small beside the run's; near the smallest tolerance, one whose error is of another making, and about as small: taylor with a
  * lower order, or, where there is no series, a larger tolerance, which shows an error that is too large, but not 0. */
-static int set_more_accurate(const lag_sim *run, lag_sim *other) {
+static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim *other) {
   const double lower = 3; /* for shorter steps: a higher one would make longer ones, and cancel more digits */
   const double least = 4.5 * DBL_EPSILON, apart = 3, small = 50 * DBL_EPSILON; /* tolerances whose errors differ enough; of a run beside equal steps */
   const lag_taylor *series = run->scene->model->constraints ? NULL : run->scene->model->taylor;
@@ -54,7 +54,8 @@ static int set_more_accurate(const lag_sim *run, lag_sim *other) {
   } else if (!equal) {
     return lag_app_copy_method(run, other, 3);
   } else {
-    rc = lag_sim_set_method(other, &lag_dop853, NULL, 0);
+    const lag_option atol = {.name = "atol", .value = small * lag_error_least_scale(e, other)};
+    rc = lag_sim_set_method(other, &lag_dop853, &atol, atol.value > 0);
   }
   return rc ? rc : lag_sim_set_tolerance(other, equal ? small : run->tol);
 }
@@ -87,7 +88,7 @@ typedef struct Second {
 
 static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double most, Second *second) {
   lag_sim *other = lag_app_fresh_bare_sim(app);
-  int rc = other ? set_more_accurate(run, other) : LAG_ENOMEM;
+  int rc = other ? set_more_accurate(e, run, other) : LAG_ENOMEM;
   app->second_most = most;
   if (rc == LAG_OK && second->longest > 0) rc = limit_steps(other, second->longest);
   if (rc == LAG_OK) {
