@@ -156,7 +156,7 @@ static int take_levels(const ErrorEstimate *e, double *t, double *y) {
 /* A line through y over x from element `from` on: its slope, the uncertainty of that, and the squares that it leaves. Residuals that follow one another, as where the error swings
  * more slowly than a bin, count as fewer: by their autocorrelation (G. Bayley, J. Hammersley, J. R. Stat. Soc. Suppl. 8 (1946) 184, DOI 10.2307/2983560). */
 typedef struct Slope {
-  double slope, uncertain, left, end; /* end: y of the line at the last x */
+  double slope, uncertain, plain, left, end; /* plain: as if residuals were independent; end: y of the line at the last x */
 } Slope;
 
 static Slope slope_of(int from, int n, const double *x, const double *y) {
@@ -168,7 +168,8 @@ static Slope slope_of(int from, int n, const double *x, const double *y) {
     before = rest;
   }
   double alike = left > 0 ? fmin(fmax(follow / left, 0), 0.9) : 0;
-  return (Slope){slope, sqrt(left * (1 + alike) / (1 - alike) / (n - from - 2) / f.xx), left, f.my + slope * (x[n - 1] - f.mx)};
+  double plain = sqrt(left / (n - from - 2) / f.xx);
+  return (Slope){slope, plain * sqrt((1 + alike) / (1 - alike)), plain, left, f.my + slope * (x[n - 1] - f.mx)};
 }
 
 /* Whether the error grows exponentially: a line over t fits better than one over log t, at the same rate later on, and both rise by more than any power claimed. */
@@ -179,10 +180,11 @@ static int is_exponential(Slope all, Slope late, Slope power_all, Slope power_la
 
 /* The power of t, 0 to 2, that the error follows from a quarter of the time on, and alike in the second half; -1: none is told apart from others. Where a charge drifts, the error
  * will grow by more than its present law: it is bounded never, and as t only where that fits well. */
-static int power_of(Slope all, Slope late, int drifts) {
-  const double near = 0.35, sure = 0.4, well = 0.13, flat = 0.1; /* tests/accuracy/estimates.py: right in 95 % */
+static int power_of(Slope all, Slope late, int drifts, int rough) {
+  const double near = 0.35, sure = 0.4, well = 0.13, flat = 0.1, nearest = 0.45; /* tests/accuracy/estimates.py: right in 95 % */
   int k = (int)lround(fmin(fmax(all.slope, 0), 9));
   double off = fabs(all.slope - k), off_late = fabs(late.slope - k);
+  if (rough) return all.slope < fmax(nearest, 2 * all.plain) ? 0 : k && k <= 2 && off < nearest ? k : -1;
   if (k == 0) return !drifts && all.slope + 1.5 * all.uncertain < flat && late.slope + 2 * late.uncertain < flat ? 0 : -1; /* what decays does not grow */
   if (k == 1 && drifts && fmax(off, fmax(off_late, late.uncertain)) > well) return -1;
   return k <= 2 && off < near && off_late + late.uncertain < sure ? k : -1;
@@ -202,7 +204,7 @@ static void find_growth(ErrorEstimate *e, double *power, double *level) {
   }
   if (n - half < FEWEST) return;
   Slope all = slope_of(quarter, n, x, y), late = slope_of(half, n, x, y), power_all = slope_of(quarter, n, lx, y), power_late = slope_of(half, n, lx, y);
-  int k = power_of(power_all, power_late, e->drifts);
+  int k = power_of(power_all, power_late, e->drifts, e->rough);
   if (is_exponential(all, late, power_all, power_late, x[n - 1] - x[quarter])) {
     e->growth = LAG_ERROR_EXPONENTIAL;
     e->rate = late.slope;
@@ -215,7 +217,7 @@ static void find_growth(ErrorEstimate *e, double *power, double *level) {
 }
 
 ErrorGrowth lag_error_growth(int n, double *t, const double *error) {
-  ErrorEstimate e = {.motion = {.rows = n, .t = t}, .t0 = n ? t[0] : 0, .horizon = NAN, .compared = n < LAG_ERROR_PLACES ? n : LAG_ERROR_PLACES};
+  ErrorEstimate e = {.rough = 1, .motion = {.rows = n, .t = t}, .t0 = n ? t[0] : 0, .horizon = NAN, .compared = n < LAG_ERROR_PLACES ? n : LAG_ERROR_PLACES};
   double power, level;
   for (int i = 0; i < e.compared; i++) {
     e.error[i] = error[i];

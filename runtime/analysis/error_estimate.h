@@ -19,6 +19,7 @@ typedef struct ErrorEstimate {
   int compared;          /* rows that the second run reached, */
   double met[LAG_ERROR_PLACES]; /* [rows] events of the run before each place */
   int continued;         /* 1: fewer than all; `largest` and `horizon` follow from the law of growth */
+  int rough;             /* 1: errors at a few times only, where laws are a guess */
   int drifts;            /* 1: a charge of the run drifts with a trend */
   double largest;        /* largest error up to known_to; NaN: no estimate */
   double known_to;       /* the end of the run, or at most twice as far as the second run: later errors are not known */
