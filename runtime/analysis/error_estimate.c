@@ -203,6 +203,7 @@ static void find_growth(ErrorEstimate *e, double *power, double *level) {
     half += x[i] < 0.5 * x[n - 1];
   }
   if (n - half < FEWEST) return;
+  if (e->rough) quarter = n / 8;
   Slope all = slope_of(quarter, n, x, y), late = slope_of(half, n, x, y), power_all = slope_of(quarter, n, lx, y), power_late = slope_of(half, n, lx, y);
   int k = power_of(power_all, power_late, e->drifts, e->rough);
   if (is_exponential(all, late, power_all, power_late, x[n - 1] - x[quarter])) {
