@@ -58,7 +58,8 @@ static double row_difference(const double *a, const double *b, const int *at, co
   return most;
 }
 
-/* Scales of a, of a component that rests in it those of b: the motion that an effect brings about has a size, its absence has none. own: scratch. */
+/* Scales of a, of a component that rests in it those of b: a motion that an effect makes has a size, its absence none.
+ * own: scratch. */
 static void take_scales(const Variant *a, const Variant *b, const int *at, double *scale, double *own) {
   const Samples *s = &a->run;
   lag_cost_scales(s, a->sim, scale);
@@ -126,7 +127,8 @@ int lag_variant_weight(const Variant *along, const Variant *with, const Variant 
   size_t n = (size_t)(with->run.n > without->run.n ? with->run.n : without->run.n);
   int *at_with = places(&pool, along, with), *at_without = places(&pool, along, without), *same = places(&pool, with, without);
   int *group = (int *)(void *)lag_pool_doubles(&pool, n), groups = 0, states = 0;
-  double *y = lag_pool_doubles(&pool, n), *one = lag_pool_doubles(&pool, n), *two = lag_pool_doubles(&pool, n), *beside = lag_pool_doubles(&pool, n);
+  double *y = lag_pool_doubles(&pool, n), *one = lag_pool_doubles(&pool, n), *two = lag_pool_doubles(&pool, n);
+  double *beside = lag_pool_doubles(&pool, n);
   double *size = lag_pool_doubles(&pool, LAG_VARIANT_ROWS * n), *differs = lag_pool_doubles(&pool, LAG_VARIANT_ROWS * n);
   const double moved = 1. / 1024; /* shows the terms of rates that cancel */
   *weight = NAN;
@@ -137,7 +139,8 @@ int lag_variant_weight(const Variant *along, const Variant *with, const Variant 
     if (lag_rhs(&with->sim->pb, along->run.t[state], y, beside)) continue;
     for (int i = 0; i < with->run.n; i++) {
       if (group[i] < 0) continue;
-      double d = same[i] < 0 ? 0 : one[i] - two[same[i]], of = lag_above_rounding(fabs(one[i]), fabs(beside[i] - one[i]) / moved);
+      double d = same[i] < 0 ? 0 : one[i] - two[same[i]];
+      double of = lag_above_rounding(fabs(one[i]), fabs(beside[i] - one[i]) / moved);
       size[states * groups + group[i]] += of * of;
       differs[states * groups + group[i]] += d * d;
     }

@@ -20,7 +20,8 @@ static const double no_digit = 0.3;
 int lag_error_estimate_init(ErrorEstimate *e, const lag_sim *sim) {
   enum { FEW = 64 }; /* unknowns */
   const lag_model *m = lag_sim_scene(sim)->model;
-  *e = (ErrorEstimate){.room = sim->pb.n <= FEW ? LAG_ERROR_PLACES : LAG_ERROR_PLACES / 8, .stride = 1, .largest = NAN, .horizon = NAN, .known_to = NAN, .t0 = lag_sim_time(sim)};
+  *e = (ErrorEstimate){.stride = 1, .largest = NAN, .horizon = NAN, .known_to = NAN, .t0 = lag_sim_time(sim)};
+  e->room = sim->pb.n <= FEW ? LAG_ERROR_PLACES : LAG_ERROR_PLACES / 8;
   int rc = lag_samples_init(&e->motion, e->room, 2 * m->nq + m->nz);
   e->motion.rows = 0;
   return rc;
@@ -48,8 +49,8 @@ static int is_cut(const lag_sim *sim, int at_event) {
   return (m->nmodes || m->ncontacts) && (at_event || sim->run->t != sim->run->step_t1);
 }
 
-/* *t, y[n] := place k within the last step; few: there are several in a step, else one. Returns whether it lies before the end, and so before events there: its error is that of rows between steps. The end where the method
- * steps to each row, or the step is cut. In the middle of a flight between two walls, as in that of a symmetric swing, a coordinate would be 0, and have no size. */
+/* *t, y[n] := place k within the last step; few: there are several in a step, else one. Returns whether it lies before the
+ * end, and so before events there; the end where the method steps to each row, or the step is cut. */
 static int take_place(lag_sim *sim, int k, int few, double *t, double *y) {
   const double golden = 0.6180339887498949; /* any part of all steps has places everywhere in a step */
   const Run *r = sim->run;
@@ -57,7 +58,8 @@ static int take_place(lag_sim *sim, int k, int few, double *t, double *y) {
   double calls = sim->pb.rhs_calls; /* of the run: interpolation may take more */
   double part = few ? (k + fmod(golden * r->steps, 1)) / PLACES_A_STEP : fmod(golden * r->steps, 1);
   *t = r->step_t0 + part * (r->t - r->step_t0);
-  int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && !is_cut(sim, 0) && lag_dense_state(sim, *t, sim->yc) == LAG_OK;
+  int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && !is_cut(sim, 0);
+  between = between && lag_dense_state(sim, *t, sim->yc) == LAG_OK;
   sim->pb.rhs_calls = calls;
   if (!between) *t = r->t;
   memcpy(y, between ? sim->yc : sim->now, bytes);
@@ -153,10 +155,11 @@ static int take_levels(const ErrorEstimate *e, double *t, double *y) {
   return n + put_level(pieces, piece, (bin + 0.5) / BINS * end, t + n, y + n);
 }
 
-/* A line through y over x from element `from` on: its slope, the uncertainty of that, and the squares that it leaves. Residuals that follow one another, as where the error swings
- * more slowly than a bin, count as fewer: by their autocorrelation (G. Bayley, J. Hammersley, J. R. Stat. Soc. Suppl. 8 (1946) 184, DOI 10.2307/2983560). */
+/* A line through y over x from element `from` on. Residuals that follow one another, where the error swings more
+ * slowly than a bin, count as fewer: G. Bayley, J. Hammersley, J. R. Stat. Soc. Suppl. 8 (1946) 184. */
 typedef struct Slope {
-  double slope, uncertain, plain, left, end; /* plain: as if residuals were independent; end: y of the line at the last x */
+  double slope, uncertain, plain; /* plain: uncertainty of independent residuals */
+  double left, end;               /* squares that are left; y of the line at the last x */
 } Slope;
 
 static Slope slope_of(int from, int n, const double *x, const double *y) {
@@ -172,25 +175,30 @@ static Slope slope_of(int from, int n, const double *x, const double *y) {
   return (Slope){slope, plain * sqrt((1 + alike) / (1 - alike)), plain, left, f.my + slope * (x[n - 1] - f.mx)};
 }
 
-/* Whether the error grows exponentially: a line over t fits better than one over log t, at the same rate later on, and both rise by more than any power claimed. */
+/* Whether the error grows exponentially: a line over t fits better than one over log t, at the same rate later on, and
+ * both rise by more than any power that is claimed. */
 static int is_exponential(Slope all, Slope late, Slope power_all, Slope power_late, double span) {
   const double same = 2, rise = 4, steep = 3;
-  return all.left < 0.5 * power_all.left && all.slope * span > rise && power_late.slope > steep && late.slope * same > all.slope && late.slope < same * all.slope;
+  int fits = all.left < 0.5 * power_all.left && late.slope * same > all.slope && late.slope < same * all.slope;
+  return fits && all.slope * span > rise && power_late.slope > steep;
 }
 
-/* The power of t, 0 to 2, that the error follows from a quarter of the time on, and alike in the second half; -1: none is told apart from others. Where a charge drifts, the error
- * will grow by more than its present law: it is bounded never, and as t only where that fits well. */
+/* The power of t, 0 to 2, that the error follows from a quarter of the time on, and alike in the second half; -1: none is
+ * told apart from others. Where a charge drifts, it is bounded never, and as t only where that fits well: it grows by
+ * more later. rough: of a few errors, the nearest power. */
 static int power_of(Slope all, Slope late, int drifts, int rough) {
-  const double near = 0.35, sure = 0.4, well = 0.13, flat = 0.1, nearest = 0.45; /* tests/accuracy/estimates.py: right in 95 % */
+  const double near = 0.35, sure = 0.4, well = 0.13, flat = 0.1, nearest = 0.45; /* by tests/accuracy/estimates.py */
   int k = (int)lround(fmin(fmax(all.slope, 0), 9));
   double off = fabs(all.slope - k), off_late = fabs(late.slope - k);
+  double most = fmax(all.slope + 1.5 * all.uncertain, late.slope + 2 * late.uncertain);
   if (rough) return all.slope < fmax(nearest, 2 * all.plain) ? 0 : k && k <= 2 && off < nearest ? k : -1;
-  if (k == 0) return !drifts && all.slope + 1.5 * all.uncertain < flat && late.slope + 2 * late.uncertain < flat ? 0 : -1; /* what decays does not grow */
+  if (k == 0) return !drifts && most < flat ? 0 : -1; /* what decays does not grow */
   if (k == 1 && drifts && fmax(off, fmax(off_late, late.uncertain)) > well) return -1;
   return k <= 2 && off < near && off_late + late.uncertain < sure ? k : -1;
 }
 
-/* The law of growth: log of the typical error over t and over log t, from a quarter of the time on. *power: exponent of t; *level: typical error at the end of the comparison. */
+/* The law of growth: log of the typical error over t and over log t, from a quarter of the time on. *power: exponent of
+ * t; *level: typical error at the end of the comparison. */
 static void find_growth(ErrorEstimate *e, double *power, double *level) {
   enum { FEWEST = 6 };
   double x[BINS], lx[BINS], y[BINS];
@@ -204,7 +212,8 @@ static void find_growth(ErrorEstimate *e, double *power, double *level) {
   }
   if (n - half < FEWEST) return;
   if (e->rough) quarter = n / 8;
-  Slope all = slope_of(quarter, n, x, y), late = slope_of(half, n, x, y), power_all = slope_of(quarter, n, lx, y), power_late = slope_of(half, n, lx, y);
+  Slope all = slope_of(quarter, n, x, y), late = slope_of(half, n, x, y);
+  Slope power_all = slope_of(quarter, n, lx, y), power_late = slope_of(half, n, lx, y);
   int k = power_of(power_all, power_late, e->drifts, e->rough);
   if (is_exponential(all, late, power_all, power_late, x[n - 1] - x[quarter])) {
     e->growth = LAG_ERROR_EXPONENTIAL;
@@ -218,7 +227,8 @@ static void find_growth(ErrorEstimate *e, double *power, double *level) {
 }
 
 ErrorGrowth lag_error_growth(int n, double *t, const double *error) {
-  ErrorEstimate e = {.rough = 1, .motion = {.rows = n, .t = t}, .t0 = n ? t[0] : 0, .horizon = NAN, .compared = n < LAG_ERROR_PLACES ? n : LAG_ERROR_PLACES};
+  ErrorEstimate e = {.rough = 1, .motion = {.rows = n, .t = t}, .t0 = n ? t[0] : 0, .horizon = NAN};
+  e.compared = n < LAG_ERROR_PLACES ? n : LAG_ERROR_PLACES;
   double power, level;
   for (int i = 0; i < e.compared; i++) {
     e.error[i] = error[i];
@@ -279,18 +289,21 @@ static int is_confirmed(const ErrorEstimate *e, Parting *p, double t, double err
   return 0;
 }
 
-/* Compares rows up to the end, the horizon, or where `other` stops. Two runs meet an event at times that differ by their errors, or take events of one time in another
- * order: rows between, where one has met it and the other has not, say nothing, unless they go on. */
+/* Compares rows up to the end, the horizon, or where `other` stops. Two runs meet an event at times that differ by their
+ * errors: rows between, where one has met it and the other has not, say nothing, unless they go on. */
 static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
   enum { LONG = 4 };
   Parting parting = {NAN, HUGE_VAL};
-  double apart = 0, skipped = 0, n = 0; /* of the counts of events; rows that differ in a row, and their largest error */
+  double apart = 0, skipped = 0; /* of the counts of events; largest error of rows that differ */
+  int n = 0;                     /* rows in turn that differ */
   for (e->compared = 0; e->compared < e->motion.rows && isnan(e->horizon); e->compared++) {
     int i = e->compared, rc = lag_sim_advance(other, e->motion.t[i]);
     if (rc < 0) snprintf(e->why, sizeof e->why, "the second run failed: %s", lag_sim_message(other));
-    if (rc && i && !isnan(parting.t) && is_confirmed(e, &parting, e->motion.t[i - 1], e->error[i - 1], 1)) e->horizon = parting.t;
+    int parted = rc && i && !isnan(parting.t) && is_confirmed(e, &parting, e->motion.t[i - 1], e->error[i - 1], 1);
+    if (parted) e->horizon = parting.t;
     if (rc) return rc;
-    double error = lag_cost_row_error(e->motion.n, e->motion.y + (size_t)i * (size_t)e->motion.n, other->now, scale), now = e->met[i] - other->run->events;
+    double now = e->met[i] - other->run->events, *y = e->motion.y + (size_t)i * (size_t)e->motion.n;
+    double error = lag_cost_row_error(e->motion.n, y, other->now, scale);
     n = now == apart ? 0 : n + 1;
     skipped = n > 0 ? fmax(skipped, error) : 0;
     if (n > 0 && n < LONG) {

@@ -1,5 +1,5 @@
-/* Rounding of the formulas of the rates of change, which all runs of a precision share: their values in other rounding modes, after W. Kahan, How futile are
- * mindless assessments of roundoff in floating-point computation? (2006), section 4. */
+/* Rounding of the formulas of the rates of change, which all runs of a precision share: their values in other rounding
+ * modes. W. Kahan, How futile are mindless assessments of roundoff in floating-point computation? (2006), section 4. */
 #include "analysis/formula_noise.h"
 
 #include <fenv.h>
@@ -14,17 +14,20 @@ static int rates(lag_sim *sim, int mode, double t, const double *y, double *dy) 
   return fesetround(before) || rc;
 }
 
-/* noise[n] += rounding of the rates at t, y; size[n] := the largest of itself and of their sizes. scratch[5 n]. Not 0: no values. */
+/* noise[n] += rounding of the rates at t, y; size[n] := the largest of itself and of their sizes. scratch[5 n]. Not 0: no
+ * values. */
 static int add_noise(lag_sim *sim, double t, const double *y, double *noise, double *size, double *scratch) {
 #if defined FE_UPWARD && defined FE_DOWNWARD && defined FE_TONEAREST
   const double moved = 1. / 1024, usual = 1. / 3; /* these roundings are twice as large as others, and of one sign */
   int n = sim->pb.n;
   double *up = scratch, *down = up + n, *beside = down + n, *state = beside + n, *f = state + n;
   for (int i = 0; i < n; i++) state[i] = y[i] * (1 + moved);
-  if (rates(sim, FE_TONEAREST, t, y, f) || rates(sim, FE_UPWARD, t, y, up) || rates(sim, FE_DOWNWARD, t, y, down) || rates(sim, FE_TONEAREST, t, state, beside)) return 1;
+  if (rates(sim, FE_TONEAREST, t, y, f) || rates(sim, FE_TONEAREST, t, state, beside)) return 1;
+  if (rates(sim, FE_UPWARD, t, y, up) || rates(sim, FE_DOWNWARD, t, y, down)) return 1;
   for (int i = 0; i < n; i++) {
     double over = fabs(up[i] - f[i]), under = fabs(down[i] - f[i]);
-    double off = over > 0 && under > 0 ? fmin(over, under) : fmax(over, under); /* one of them costs lag_math.h digits of a small angle, by its sign */
+    /* One of the modes costs lag_math.h digits of a small angle, by its sign. */
+    double off = over > 0 && under > 0 ? fmin(over, under) : fmax(over, under);
     noise[i] += usual * off;
     size[i] = fmax(size[i], lag_above_rounding(fabs(f[i]) + off, fabs(beside[i] - f[i]) / moved));
   }
@@ -34,7 +37,8 @@ static int add_noise(lag_sim *sim, double t, const double *y, double *noise, dou
 #endif
 }
 
-/* The rate whose rounding is the largest part of the sizes of its kind. beside[nq]: velocities of the energy's size, in the time of the run, are a size where accelerations are rounding. */
+/* The rate whose rounding is the largest part of the sizes of its kind. beside[nq]: size of accelerations that are
+ * rounding: velocities of the energy's size, in the time of the run. */
 static FormulaNoise worst_rate(lag_sim *sim, const double *noise, double *size, const double *beside, int states) {
   FormulaNoise worst = {.of = -1};
   int nq = sim->pb.nq, n = sim->pb.n;

@@ -142,8 +142,8 @@ int lag_previous_alike(const lag_sim *sim, int i) {
   return -1;
 }
 
-/* terms[n] := the largest of itself and of the size that each component has at state y, t of a run that lasts `span`, where its values are rounding: that of velocities by the
- * energy, of coordinates with such velocities over the run, of states that rest by the terms of their rates. */
+/* terms[n] := the largest of itself and of each component's size at y, t of a run that lasts `span`, where its values are
+ * rounding: of velocities by the energy, of coordinates with these over the run, of states by the terms of their rates. */
 static void add_state_terms(lag_sim *sim, double t, const double *y, double span, double *terms, double *v) {
   int nq = sim->pb.nq, n = sim->pb.n;
   double calls = sim->pb.rhs_calls, *rate = sim->yb, *beside = sim->yc;
@@ -158,12 +158,13 @@ static void add_state_terms(lag_sim *sim, double t, const double *y, double span
   if (n > 2 * nq && lag_rhs(&sim->pb, t, y, rate) == LAG_OK && lag_rhs(&sim->pb, t, beside, v) == LAG_OK)
     for (int i = 2 * nq; i < n; i++) {
       double of = fabs(v[i] - rate[i]) / moved;
-      terms[i] = lag_above_rounding(fabs(rate[i]), of) > fabs(rate[i]) ? fmax(terms[i], of * span) : HUGE_VAL; /* it moves */
+      int rests = lag_above_rounding(fabs(rate[i]), of) > fabs(rate[i]);
+      terms[i] = rests ? fmax(terms[i], of * span) : HUGE_VAL;
     }
   sim->pb.rhs_calls = calls;
 }
 
-/* terms[n] := the sizes of components where their values are rounding, over some rows; 0 or HUGE_VAL: none is known. v: scratch. */
+/* terms[n] := sizes of components where their values are rounding, over some rows; 0, HUGE_VAL: not known. v: scratch. */
 static void take_terms(const Samples *s, lag_sim *sim, double *terms, double *v) {
   enum { ROWS = 5 };
   int n = s->n, last = s->rows - 1;
@@ -192,7 +193,8 @@ void lag_cost_scales(const Samples *reference, lag_sim *sim, double *scale) {
     if (terms && alike >= 0) terms[i] = fmax(terms[i], terms[alike]);
   }
   for (int i = n - 1; i >= 0; i--) { /* the last of a kind has the largest */
-    int alike = reference->output > 0 ? -1 : lag_previous_alike(sim, i), velocity = reference->output == 0 && i < nq ? nq + i : i;
+    int alike = reference->output > 0 ? -1 : lag_previous_alike(sim, i);
+    int velocity = reference->output == 0 && i < nq ? nq + i : i;
     const double *of = terms ? &terms[i] : &none;
     if (alike >= 0) scale[alike] = scale[i];
     if (alike >= 0 && terms) terms[alike] = terms[i];

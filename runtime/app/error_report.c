@@ -30,21 +30,25 @@ double lag_app_work(const lag_sim *run) {
   const double each_event = 1000;
   const lag_model *m = run->scene->model;
   double size = m->constraints ? m->nq + m->constraints->n - m->ncontacts : 0;
-  double order = m->taylor && run->method == &lag_taylor_method && run->method_work ? lag_taylor_order(run->method_work) : 0;
-  return run->pb.rhs_calls * (m->ops * (1 + order * order / 8) + 5 * run->pb.n + size * size * size / 3) + run->run->steps * (each_event * m->nev + 20 * run->pb.n);
+  int series = m->taylor && run->method == &lag_taylor_method && run->method_work;
+  double order = series ? lag_taylor_order(run->method_work) : 0;
+  double call = m->ops * (1 + order * order / 8) + 5 * run->pb.n + size * size * size / 3;
+  return run->pb.rhs_calls * call + run->run->steps * (each_event * m->nev + 20 * run->pb.n);
 }
 
 /* Ends the second run after its share of work, or on Ctrl-C. */
 static int enough(void *app, const lag_sim *other) {
   const int fewest = 24; /* fewer show no law of growth */
-  return (other->run->steps >= fewest && lag_app_work(other) >= ((App *)app)->second_most) || lag_app_interrupted() != EXIT_SIGNAL;
+  int done = other->run->steps >= fewest && lag_app_work(other) >= ((App *)app)->second_most;
+  return done || lag_app_interrupted() != EXIT_SIGNAL;
 }
 
 /* A setting whose error is small beside the run's; near the smallest tolerance, one whose error is of another making, and about as small: taylor with a
  * lower order, or, where there is no series, a larger tolerance, which shows an error that is too large, but not 0. */
 static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim *other) {
   const double lower = 3; /* for shorter steps: a higher one would make longer ones, and cancel more digits */
-  const double least = 4.5 * DBL_EPSILON, apart = 3, small = 50 * DBL_EPSILON; /* tolerances whose errors differ enough; of a run beside equal steps */
+  const double least = 4.5 * DBL_EPSILON, apart = 3; /* tolerances whose errors differ enough */
+  const double small = 50 * DBL_EPSILON;             /* of the run beside equal steps */
   const lag_taylor *series = run->scene->model->constraints ? NULL : run->scene->model->taylor;
   int equal = lag_equal_step(run) > 0, rc;
   if (!equal && run->tol >= apart * least) return lag_app_copy_method(run, other, tighter);
@@ -103,11 +107,12 @@ static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double m
   return rc == LAG_ENOMEM ? rc : LAG_OK;
 }
 
-/* The mean step of the run where its steps, as those of the second run, are set by their limit, rows of a table or kicks, not by the tolerance; else 0. */
+/* The mean step of the run where a limit, rows of a table or kicks set its steps, and the second run's, not the tolerance;
+ * else 0. */
 static double forced_step(const ErrorEstimate *e, const lag_sim *run, double steps) {
   double part = e->motion.rows ? (double)e->compared / e->motion.rows : 0, own = run->run->steps * part;
-  int follows = (run->method->flags & LAG_METHOD_ADAPTIVE) && run->method->order_most == 0 && isnan(e->horizon) && e->compared;
-  return follows && own > 0 && steps < 1.1 * own ? fabs(lag_sim_time(run) - e->t0) / run->run->steps : 0;
+  int follows = (run->method->flags & LAG_METHOD_ADAPTIVE) && run->method->order_most == 0 && e->compared;
+  return follows && isnan(e->horizon) && own > 0 && steps < 1.1 * own ? fabs(lag_sim_time(run) - e->t0) / run->run->steps : 0;
 }
 
 int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most) {
@@ -139,14 +144,17 @@ const char *lag_growth_name(ErrorGrowth growth) {
   return names[growth];
 }
 
-static const char *const growth_text[] = {", its growth is not seen", ", does not grow", ", grows as t", ", grows as t^2", ", grows exponentially"};
+static const char *const growth_text[] = {", its growth is not seen", ", does not grow", ", grows as t", ", grows as t^2",
+                                          ", grows exponentially"};
 
 /* Rounding has no law that is worth telling. */
 static int is_rounding(const ErrorEstimate *e) { return e->largest < 500 * DBL_EPSILON; }
 static ErrorGrowth growth_of(const ErrorEstimate *e) { return is_rounding(e) ? LAG_ERROR_UNKNOWN : e->growth; }
 
 /* Whether the end of the run is beyond what is known of its error. */
-static int is_beyond(const App *app) { return isnan(app->error.horizon) && app->error.known_to != lag_sim_time(app->sim); }
+static int is_beyond(const App *app) {
+  return isnan(app->error.horizon) && app->error.known_to != lag_sim_time(app->sim);
+}
 
 /* The number that text and JSON show: less than an epsilon is less than rounding makes in two runs alike. */
 static double shown(const ErrorEstimate *e) { return e->largest < DBL_EPSILON ? DBL_EPSILON : e->largest; }
@@ -154,9 +162,10 @@ static double shown(const ErrorEstimate *e) { return e->largest < DBL_EPSILON ? 
 /* A formula cancels, in both runs alike. */
 static void put_lost_formula(const App *app, FILE *f) {
   const ErrorEstimate *e = &app->error;
-  int nq = app->scene->model->nq, second = e->formula.of < 2 * nq;
-  fprintf(f, "the error is not known: the formula of %s%s cancels along this motion, and has lost digits in any run; two runs agree to %.1g. Write terms that cancel in another form, as "
-             "2*sin(x/2)^2 for 1 - cos(x)%s\n", lag_state_column(app->sim, second ? e->formula.of - nq : e->formula.of).name, second ? "''" : "'", shown(e), LAG_MORE_PRECISION);
+  int nq = app->scene->model->nq, second = e->formula.of < 2 * nq, of = second ? e->formula.of - nq : e->formula.of;
+  fprintf(f, "the error is not known: the formula of %s%s cancels along this motion, and has lost digits in any run; two "
+             "runs agree to %.1g. Write terms that cancel in another form, as 2*sin(x/2)^2 for 1 - cos(x)%s\n",
+          lag_state_column(app->sim, of).name, second ? "''" : "'", shown(e), LAG_MORE_PRECISION);
 }
 
 void lag_report_error(const App *app, FILE *f) {
@@ -185,7 +194,8 @@ void lag_report_error_json(const App *app, Json *j) {
   lag_json_number(j, "error", known && !is_beyond(app) && !lag_formula_is_lossy(e) ? shown(e) : NAN);
   lag_json_string(j, "error_growth", known && growth_of(e) ? lag_growth_name(growth_of(e)) : NULL);
   lag_json_number(j, "error_seen_to", app->watched && e->compared ? e->motion.t[e->compared - 1] : NAN);
-  lag_json_number(j, "error_known_to", known ? lag_formula_is_lossy(e) ? app->scene->t0 : isnan(e->horizon) ? e->known_to : e->horizon : NAN);
+  double to = lag_formula_is_lossy(e) ? app->scene->t0 : isnan(e->horizon) ? e->known_to : e->horizon;
+  lag_json_number(j, "error_known_to", known ? to : NAN);
   lag_json_number(j, "error_up_to_there", known ? shown(e) : NAN);
   lag_json_number(j, "formula_noise", known && e->formula.of >= 0 ? e->formula.part : NAN);
   lag_json_number(j, "horizon", app->watched ? e->horizon : NAN);

@@ -328,8 +328,8 @@ int lag_monitors_jump(lag_sim *sim, double t, const double *ya, const double *yb
 
 /* sizes.c: `size` where it is more than rounding of terms of the size `terms`, else `terms`. */
 double lag_above_rounding(double size, double terms);
-/* The size of the terms of the energy, and of output k, at y, t; v[nq]: of each velocity, that at which the coordinates of its unit would have this energy; HUGE_VAL: there is none. NaN:
- * not known. Scratch: ya. */
+/* The size of the terms of the energy, and of output k, at y, t; v[nq] := of each velocity, that at which the coordinates of
+ * its unit would have this energy; HUGE_VAL: there is none. NaN: not known. Scratch: ya. */
 double lag_energy_terms(lag_sim *sim, double t, const double *y);
 double lag_output_terms(lag_sim *sim, double t, const double *y, int k);
 void lag_velocity_terms(lag_sim *sim, double t, const double *y, double *v);

@@ -28,7 +28,8 @@ static void see_constraints(lag_sim *s, double t, const double *y) {
 /* Output k at the start; 0 where it is rounding of its terms. */
 static double first_value(lag_sim *s, int k) {
   double terms = lag_output_terms(s, s->run->t, s->now, k);
-  return outputs_at(s, s->run->t, s->now) || lag_above_rounding(fabs(s->out[k]), terms) > fabs(s->out[k]) ? 0 : s->out[k];
+  if (outputs_at(s, s->run->t, s->now) || lag_above_rounding(fabs(s->out[k]), terms) > fabs(s->out[k])) return 0;
+  return s->out[k];
 }
 
 int lag_monitors_begin(lag_sim *s) {

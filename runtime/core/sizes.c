@@ -1,5 +1,6 @@
-/* Sizes of the quantities of a model: what rounding is relative to. Enters: a state; leaves: the size of the terms that make a quantity, which counts where the
- * quantity itself is their rounding. Holds: with other units, or another part at rest beside, each size has the same ratio to its quantity. */
+/* Sizes of the quantities of a model: what rounding is relative to. Enters: a state; leaves: the size of the terms that
+ * make a quantity, which counts where the quantity is their rounding. Holds: with other units, or another part at rest
+ * beside, each size has the same ratio to its quantity. */
 #include <math.h>
 #include <string.h>
 
@@ -21,8 +22,8 @@ static const double *moved_state(lag_sim *s, const double *y) {
 /* e[2] := the energy and its scale; NaN where there is none. */
 static void energy_at(lag_sim *s, double t, const double *y, double *e) {
   const lag_model *m = s->scene->model;
-  int nq = m->nq, bad = !m->energy || lag_inputs_at(&s->pb, t, y) || m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, e, s->work);
-  if (bad) e[0] = e[1] = NAN;
+  int nq = m->nq, bad = !m->energy || lag_inputs_at(&s->pb, t, y);
+  if (bad || m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, e, s->work)) e[0] = e[1] = NAN;
 }
 
 double lag_energy_terms(lag_sim *s, double t, const double *y) {
@@ -36,7 +37,8 @@ double lag_energy_terms(lag_sim *s, double t, const double *y) {
 double lag_output_terms(lag_sim *s, double t, const double *y, int k) {
   if (lag_observe(s, t, y, s->out)) return NAN;
   double at = s->out[k];
-  return lag_observe(s, t, moved_state(s, y), s->out) ? fabs(at) : lag_above_rounding(fabs(at), fabs(s->out[k] - at) / moved);
+  if (lag_observe(s, t, moved_state(s, y), s->out)) return fabs(at);
+  return lag_above_rounding(fabs(at), fabs(s->out[k] - at) / moved);
 }
 
 /* Whether coordinate i is the first of its unit. */
@@ -46,7 +48,8 @@ static int is_first(const lag_model *m, int i) {
   return 1;
 }
 
-/* The velocity of all coordinates with the unit of coordinate i at which they have the kinetic energy `energy`; HUGE_VAL: there is none. */
+/* The velocity of all coordinates with the unit of coordinate i at which they have this kinetic energy; HUGE_VAL: there is
+ * none. */
 static double velocity_of(lag_sim *s, double t, const double *y, int i, double energy) {
   enum { MOST = 60 };
   const lag_model *m = s->scene->model;
@@ -71,9 +74,10 @@ static double velocity_of(lag_sim *s, double t, const double *y, int i, double e
 void lag_velocity_terms(lag_sim *s, double t, const double *y, double *v) {
   const lag_model *m = s->scene->model;
   double energy = lag_energy_terms(s, t, y);
+  int known = energy > 0 && energy < HUGE_VAL && !(m->flags & LAG_FIRST_ORDER);
   for (int i = 0; i < m->nq; i++) {
     if (!is_first(m, i)) continue;
-    double of = energy > 0 && energy < HUGE_VAL && !(m->flags & LAG_FIRST_ORDER) ? velocity_of(s, t, y, i, energy) : HUGE_VAL;
+    double of = known ? velocity_of(s, t, y, i, energy) : HUGE_VAL;
     for (int k = i; k < m->nq; k++) v[k] = k == i || strcmp(m->q[k].unit, m->q[i].unit) == 0 ? of : v[k];
   }
 }

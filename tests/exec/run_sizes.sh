@@ -17,7 +17,7 @@ param m = 1 [kg] > 0, k = 4 [N/m] > 0, l = 0.5 [m] > 0, g = 9.81 [m/s^2] > 0
 kinetic = m/2*x'^2 + m*l^2/2*th'^2
 potential = k/2*x^2 + m*g*l*cos(th)
 effect soft { param e = 10 [N/m^2]; potential = e*x^3/3 }
-scene s { start x = 0.1, th = 180 [deg]; span 20 [s]; exact x = 0.1*cos(2*t*1 [1/s]); output x every 1 }
+scene s { start x = 0.1, th = 180 [deg]; span 20 [s]; exact x = 0.1 [m]*cos(2 [1/s]*t); output x every 1 }
 scene bent { start x = 0.1, th = 180 [deg]; span 20 [s]; use soft; output x every 1 }
 EOF2
 check "a pendulum that hangs at rest beside a spring" run "$TMP/rest.lag" s
