@@ -253,19 +253,14 @@ double lag_error_reach(ErrorEstimate *e, double factor) {
   return e->growth == LAG_ERROR_EXPONENTIAL ? t + rest / e->rate : power > 0 ? t * exp(rest / power) : HUGE_VAL;
 }
 
-/* Extends the errors from the last compared time by their law, for as long again at most. */
-static void extrapolate(ErrorEstimate *e, double until, double power, double level) {
-  double t = fabs(e->motion.t[e->compared - 1] - e->t0), rest = fabs(until - e->t0) - t, dir = until < e->t0 ? -1 : 1, reach = HUGE_VAL;
-  e->continued = 1;
-  rest = e->growth == LAG_ERROR_UNKNOWN ? 0 : fmin(rest, t);
-  e->known_to = rest < fabs(until - e->t0) - t ? e->t0 + dir * (t + rest) : until;
-  if (e->growth == LAG_ERROR_EXPONENTIAL) {
-    reach = fmax(log(no_digit / level) / e->rate, 0);
-    e->largest = fmin(e->largest * exp(e->rate * fmin(rest, reach)), fmax(e->largest, 1));
-  } else if (power > 0) {
-    reach = fmax(t * (pow(no_digit / level, 1 / power) - 1), 0);
-    e->largest = fmin(e->largest * pow((t + fmin(rest, reach)) / t, power), fmax(e->largest, 1));
-  }
+/* Exponential growth goes on, for as long again at most; other laws may end where the motion changes, as chaos shows late. */
+static void extrapolate(ErrorEstimate *e, double until, double level) {
+  double t = fabs(e->motion.t[e->compared - 1] - e->t0), left = fabs(until - e->t0) - t, dir = until < e->t0 ? -1 : 1;
+  double rest = e->growth == LAG_ERROR_EXPONENTIAL ? fmin(left, t) : 0;
+  e->known_to = rest < left ? e->t0 + dir * (t + rest) : until;
+  if (!(rest > 0)) return;
+  double reach = fmax(log(no_digit / level) / e->rate, 0);
+  e->largest = fmin(e->largest * exp(e->rate * fmin(rest, reach)), fmax(e->largest, 1));
   if (reach < rest) e->horizon = e->t0 + dir * (t + reach);
 }
 
@@ -341,7 +336,10 @@ int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
   if (rc == LAG_ENOMEM) return rc;
   find_growth(e, &power, &level);
   e->known_to = until;
-  if (e->compared && isnan(e->horizon) && e->compared < e->motion.rows) extrapolate(e, until, power, level);
+  if (e->compared && isnan(e->horizon) && e->compared < e->motion.rows) {
+    e->continued = 1;
+    extrapolate(e, until, level);
+  }
   if (isnan(e->largest) && !e->why[0] && !e->motion.rows) snprintf(e->why, sizeof e->why, "the run ended at an event in its first step");
   if (isnan(e->largest) && !e->why[0]) snprintf(e->why, sizeof e->why, "a second run reached only t = %.3g s", lag_sim_time(other));
   return LAG_OK;

@@ -18,11 +18,11 @@ typedef struct ErrorEstimate {
   double error[LAG_ERROR_PLACES]; /* [compared] */
   int compared;          /* rows that the second run reached, */
   double met[LAG_ERROR_PLACES]; /* [rows] events of the run before each place */
-  int continued;         /* 1: fewer than all; `largest` and `horizon` follow from the law of growth */
+  int continued;         /* 1: fewer than all; exponential growth goes on to known_to */
   int rough;             /* 1: errors at a few times only, where laws are a guess */
   int drifts;            /* 1: a charge of the run drifts with a trend */
   double largest;        /* largest error up to known_to; NaN: no estimate */
-  double known_to;       /* the end of the run, or at most twice as far as the second run: later errors are not known */
+  double known_to;       /* the end of the run or of the second one, or beyond it where growth is exponential: later errors are not known */
   double horizon;        /* NaN: not before known_to */
   FormulaNoise formula;  /* rounding that both runs share */
   ErrorGrowth growth;

@@ -173,7 +173,7 @@ void lag_report_error(const App *app, FILE *f) {
   char from[96] = "";
   if (app->watched && isnan(e->largest) && e->why[0]) fprintf(f, "the error is not known: %s\n", e->why);
   if (!app->watched || isnan(e->largest)) return;
-  if (e->continued && growth_of(e)) snprintf(from, sizeof from, " (continued from t = %.3g s)", (double)e->motion.t[e->compared - 1]);
+  if (e->continued && growth_of(e) == LAG_ERROR_EXPONENTIAL) snprintf(from, sizeof from, " (continued from t = %.3g s)", (double)e->motion.t[e->compared - 1]);
   if (!isnan(e->horizon)) {
     fprintf(f, "after t = %.3g s no digit is left%s: the motion there is the integrator's; averages may still hold\n", e->horizon, from);
     return;
