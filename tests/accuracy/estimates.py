@@ -108,10 +108,11 @@ class Case:
         x = log_uniform(rng, *r) * (unit / 3 if kind == "step" else 1)
         if kind == "step":
             x = max(x, self.until / 200000)
+        self.rows = 800
         self.how = (["--method", method] if method else []) + [f"--{kind}", f"{x:.3g}"]
 
     def words(self, until):
-        return ["run", self.path, *self.values, "--until", repr(until), "--every", repr(until / 800)]
+        return ["run", self.path, *self.values, "--until", repr(until), "--every", repr(until / self.rows)]
 
     def double(self, until, out):
         status, text, err = run([*self.words(until), *self.how, "--json", "-o", out])
@@ -173,6 +174,11 @@ def judge(case):
         return "unknown", None, None, "no estimate"
     estimate, true = report["error_up_to_there"], max(e for t, e in errors if t <= to * (1 + 1e-12))
     q = (estimate + ROUNDING) / (true + ROUNDING)
+    if q > 5 and case.rows < 40000:  # close encounters and dense output show at more times: velocities are wrong for a moment
+        case.rows = 40000
+        again = judge(case)
+        case.rows = 800
+        return again
     verdict = "under" if q < 1 / 3 else "over" if q > 5 else "ok"
     right = grows_as(case, law, errors) if law and (true_end is None) else None
     return verdict, law, right, f"estimate {estimate:.2g} true {true:.2g}{'' if to >= case.until else f' to {to:.3g}'}"
