@@ -22,7 +22,7 @@ typedef struct ErrorEstimate {
   int rough;             /* 1: errors at a few times only, where laws are a guess */
   int drifts;            /* 1: a charge of the run drifts with a trend */
   double largest;        /* largest error up to known_to; NaN: no estimate */
-  double known_to;       /* the end of the run or of the second one, or beyond it where growth is exponential: later errors are not known */
+  double known_to;       /* the end of the run or of the second one, or beyond it where growth is exponential */
   double horizon;        /* NaN: not before known_to */
   FormulaNoise formula;  /* rounding that both runs share */
   ErrorGrowth growth;

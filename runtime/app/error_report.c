@@ -113,14 +113,16 @@ static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double m
 static double forced_step(const ErrorEstimate *e, const lag_sim *run, double steps) {
   double part = e->motion.rows ? (double)e->compared / e->motion.rows : 0, own = run->run->steps * part;
   int follows = (run->method->flags & LAG_METHOD_ADAPTIVE) && run->method->order_most == 0 && e->compared;
-  return follows && isnan(e->horizon) && own > 0 && steps < 1.1 * own ? fabs(lag_sim_time(run) - e->t0) / run->run->steps : 0;
+  int forced = follows && isnan(e->horizon) && own > 0 && steps < 1.1 * own;
+  return forced ? fabs(lag_sim_time(run) - e->t0) / run->run->steps : 0;
 }
 
 /* Compares a second time with a start that is off by a rounding, where both runs may have errors of one size and direction:
  * rounding, in motions that part. */
 static int compare_again(App *app, ErrorEstimate *e, const lag_sim *run, double most, Second *second) {
   const double little = 1e7, close = 1e-12; /* work of a second run; tolerance of the first */
-  int near = lag_equal_step(run) > 0 || run->tol < close, parts = e->growth == LAG_ERROR_EXPONENTIAL || e->growth == LAG_ERROR_UNKNOWN;
+  int near = lag_equal_step(run) > 0 || run->tol < close;
+  int parts = e->growth == LAG_ERROR_EXPONENTIAL || e->growth == LAG_ERROR_UNKNOWN;
   if (!near || !parts || !isnan(e->horizon) || !(e->largest > close) || second->work > little) return LAG_OK;
   double before = e->largest;
   lag_error_estimate_reset(e);
@@ -160,8 +162,8 @@ const char *lag_growth_name(ErrorGrowth growth) {
   return names[growth];
 }
 
-static const char *const growth_text[] = {", its growth is not seen", ", does not grow", ", grows as t", ", grows as t^2",
-                                          ", grows exponentially"};
+static const char *const growth_text[] = {", its growth is not seen", ", does not grow", ", grows as t",
+                                          ", grows as t^2", ", grows exponentially"};
 
 /* Rounding has no law that is worth telling. */
 static int is_rounding(const ErrorEstimate *e) { return e->largest < 500 * DBL_EPSILON; }
@@ -189,7 +191,8 @@ void lag_report_error(const App *app, FILE *f) {
   char from[96] = "";
   if (app->watched && isnan(e->largest) && e->why[0]) fprintf(f, "the error is not known: %s\n", e->why);
   if (!app->watched || isnan(e->largest)) return;
-  if (e->continued && growth_of(e) == LAG_ERROR_EXPONENTIAL) snprintf(from, sizeof from, " (continued from t = %.3g s)", (double)e->motion.t[e->compared - 1]);
+  if (e->continued && growth_of(e) == LAG_ERROR_EXPONENTIAL)
+    snprintf(from, sizeof from, " (continued from t = %.3g s)", (double)e->motion.t[e->compared - 1]);
   if (!isnan(e->horizon)) {
     fprintf(f, "after t = %.3g s no digit is left%s: the motion there is the integrator's; averages may still hold\n", e->horizon, from);
     return;
