@@ -58,14 +58,26 @@ static double row_difference(const double *a, const double *b, const int *at, co
   return most;
 }
 
+/* Scales of a, of a component that rests in it those of b: a motion that an effect makes has a size, its absence none.
+ * own: scratch. */
+static void take_scales(const Variant *a, const Variant *b, const int *at, double *scale, double *own) {
+  const Samples *s = &a->run;
+  lag_cost_scales(s, a->sim, scale);
+  lag_cost_scales(&b->run, b->sim, own);
+  for (int i = 0; i < s->n; i++) {
+    double size = lag_size_in(s, i);
+    if (at[i] >= 0 && lag_above_rounding(size, scale[i]) > size) scale[i] = fmin(scale[i], own[at[i]]);
+  }
+}
+
 int lag_variant_difference(const Variant *scene, const Variant *other, double *difference) {
   const Samples *a = &scene->run, *b = &other->run;
   Pool pool = {0};
   int common = a->rows < b->rows ? a->rows : b->rows, *at = places(&pool, scene, other);
-  double *scale = lag_pool_doubles(&pool, (size_t)a->n);
+  double *scale = lag_pool_doubles(&pool, (size_t)a->n), *own = lag_pool_doubles(&pool, (size_t)b->n);
   size_t na = (size_t)a->n, nb = (size_t)b->n, last_a = (size_t)a->rows - 1, last_b = (size_t)b->rows - 1;
   if (!pool.failed) {
-    lag_cost_scales(a, scene->sim, scale);
+    take_scales(scene, other, at, scale, own);
     double most = row_difference(a->y + last_a * na, b->y + last_b * nb, at, scale, a->n);
     for (size_t i = 0; i + 1 < (size_t)common; i++) most = fmax(most, row_difference(a->y + i * na, b->y + i * nb, at, scale, a->n));
     double begun = scene->sim->scene->t0;
@@ -116,15 +128,20 @@ int lag_variant_weight(const Variant *along, const Variant *with, const Variant 
   int *at_with = places(&pool, along, with), *at_without = places(&pool, along, without), *same = places(&pool, with, without);
   int *group = (int *)(void *)lag_pool_doubles(&pool, n), groups = 0, states = 0;
   double *y = lag_pool_doubles(&pool, n), *one = lag_pool_doubles(&pool, n), *two = lag_pool_doubles(&pool, n);
+  double *beside = lag_pool_doubles(&pool, n);
   double *size = lag_pool_doubles(&pool, LAG_VARIANT_ROWS * n), *differs = lag_pool_doubles(&pool, LAG_VARIANT_ROWS * n);
+  const double moved = 1. / 1024; /* shows the terms of rates that cancel */
   *weight = NAN;
   if (!pool.failed) groups = group_rates(with, group);
   for (int state = 0; state < along->run.rows && !pool.failed; state++) {
-    if (rates(with, along, state, at_with, y, one) || rates(without, along, state, at_without, y, two)) continue;
+    if (rates(without, along, state, at_without, y, two) || rates(with, along, state, at_with, y, one)) continue;
+    for (int i = 0; i < with->run.n; i++) y[i] *= 1 + moved;
+    if (lag_rhs(&with->sim->pb, along->run.t[state], y, beside)) continue;
     for (int i = 0; i < with->run.n; i++) {
       if (group[i] < 0) continue;
       double d = same[i] < 0 ? 0 : one[i] - two[same[i]];
-      size[states * groups + group[i]] += one[i] * one[i];
+      double of = lag_above_rounding(fabs(one[i]), fabs(beside[i] - one[i]) / moved);
+      size[states * groups + group[i]] += of * of;
       differs[states * groups + group[i]] += d * d;
     }
     states++;

@@ -12,13 +12,17 @@
 #include "core/core.h"
 #include "numeric/line_fit.h"
 
+enum { PLACES_A_STEP = 4 };
+
 /* The error at which no digit of a value is left. */
 static const double no_digit = 0.3;
 
 int lag_error_estimate_init(ErrorEstimate *e, const lag_sim *sim) {
+  enum { FEW = 64 }; /* unknowns */
   const lag_model *m = lag_sim_scene(sim)->model;
-  *e = (ErrorEstimate){.stride = 1, .largest = NAN, .horizon = NAN, .t0 = lag_sim_time(sim)};
-  int rc = lag_samples_init(&e->motion, LAG_ERROR_PLACES, 2 * m->nq + m->nz);
+  *e = (ErrorEstimate){.stride = 1, .largest = NAN, .horizon = NAN, .known_to = NAN, .t0 = lag_sim_time(sim)};
+  e->room = sim->pb.n <= FEW ? LAG_ERROR_PLACES : LAG_ERROR_PLACES / 8;
+  int rc = lag_samples_init(&e->motion, e->room, 2 * m->nq + m->nz);
   e->motion.rows = 0;
   return rc;
 }
@@ -31,6 +35,7 @@ static void halve(ErrorEstimate *e) {
   size_t n = (size_t)s->n;
   for (int i = 1; 2 * i - 1 < s->rows; i++) {
     s->t[i - 1] = s->t[2 * i - 1];
+    e->met[i - 1] = e->met[2 * i - 1];
     memcpy(s->y + (size_t)(i - 1) * n, s->y + (size_t)(2 * i - 1) * n, n * sizeof(double));
   }
   s->rows /= 2;
@@ -39,40 +44,63 @@ static void halve(ErrorEstimate *e) {
 
 /* Whether a switching surface or an event has cut the last step: a dense output that calls the model, or is projected to its constraints, has the
  * wrong branch, or set of constraints, by now. */
-static int is_cut(const lag_sim *sim) {
+static int is_cut(const lag_sim *sim, int at_event) {
   const lag_model *m = sim->scene->model;
-  return (m->nmodes || m->ncontacts) && sim->run->t != sim->run->step_t1;
+  return (m->nmodes || m->ncontacts) && (at_event || sim->run->t != sim->run->step_t1);
 }
 
-/* *t, y[n] := a place within the last step, whose error is that of rows between steps; its end where the method steps to each row, or the step is cut. In the
- * middle of a flight between two walls, as in that of a symmetric swing, a coordinate would be 0, and have no size. */
-static void take_place(lag_sim *sim, double *t, double *y) {
+/* *t, y[n] := place k within the last step; few: there are several in a step, else one. Returns whether it lies before the
+ * end, and so before events there; the end where the method steps to each row, or the step is cut. */
+static int take_place(lag_sim *sim, int k, int few, double *t, double *y) {
+  const double golden = 0.6180339887498949; /* any part of all steps has places everywhere in a step */
   const Run *r = sim->run;
   size_t bytes = (size_t)sim->pb.n * sizeof(double);
   double calls = sim->pb.rhs_calls; /* of the run: interpolation may take more */
-  *t = r->step_t0 + 0.4 * (r->t - r->step_t0);
-  int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && !is_cut(sim) && lag_dense_state(sim, *t, sim->yc) == LAG_OK;
+  double part = few ? (k + fmod(golden * r->steps, 1)) / PLACES_A_STEP : fmod(golden * r->steps, 1);
+  *t = r->step_t0 + part * (r->t - r->step_t0);
+  int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && !is_cut(sim, 0);
+  between = between && lag_dense_state(sim, *t, sim->yc) == LAG_OK;
   sim->pb.rhs_calls = calls;
   if (!between) *t = r->t;
   memcpy(y, between ? sim->yc : sim->now, bytes);
+  return between;
 }
 
 void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim) {
   Samples *s = &e->motion;
-  int at_event = sim->run->events != e->events;
-  e->events = sim->run->events;
-  if ((at_event && (sim->method->flags & LAG_METHOD_STEPS_TO || is_cut(sim))) || ++e->seen % e->stride) return;
-  if (s->rows == LAG_ERROR_PLACES) halve(e);
-  if (e->seen % e->stride) return;
-  take_place(sim, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
-  s->rows++;
+  const Run *r = sim->run;
+  double before = e->events;
+  int at_event = r->events != before, between = 1;
+  e->events = r->events;
+  if (at_event && (sim->method->flags & LAG_METHOD_STEPS_TO || is_cut(sim, 1) || r->t == r->step_t0)) return;
+  for (int k = 0; k < PLACES_A_STEP && between; k++) {
+    if (++e->seen % e->stride) continue;
+    if (s->rows == e->room) halve(e);
+    if (e->seen % e->stride) continue;
+    between = take_place(sim, k, e->stride < PLACES_A_STEP, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
+    e->met[s->rows++] = between ? before : e->events;
+  }
 }
 
-void lag_error_estimate_note_end(ErrorEstimate *e, const lag_sim *sim) {
+/* Whether the energy or another charge that should stand still drifts with a trend. */
+static int has_drift(lag_sim *sim) {
+  enum { MOST = 8 };
+  lag_charge_stats c;
+  int drifts = 0;
+  for (int k = 0; k < lag_sim_ncharges(sim) && k < MOST; k++) {
+    lag_sim_charge(sim, k, &c);
+    drifts |= (c.flags & (LAG_CONSERVED | LAG_BALANCED)) && c.trend == LAG_TREND_GROWS;
+  }
+  return drifts;
+}
+
+void lag_error_estimate_note_end(ErrorEstimate *e, lag_sim *sim) {
   Samples *s = &e->motion;
+  e->drifts = has_drift(sim);
   if (sim->run->events != e->events || (s->rows && s->t[s->rows - 1] == lag_sim_time(sim))) return;
-  if (s->rows == LAG_ERROR_PLACES) halve(e);
+  if (s->rows == e->room) halve(e);
   s->t[s->rows] = lag_sim_time(sim);
+  e->met[s->rows] = e->events;
   memcpy(s->y + (size_t)s->rows++ * (size_t)s->n, sim->now, (size_t)s->n * sizeof(double));
 }
 
@@ -127,30 +155,80 @@ static int take_levels(const ErrorEstimate *e, double *t, double *y) {
   return n + put_level(pieces, piece, (bin + 0.5) / BINS * end, t + n, y + n);
 }
 
-/* The law of growth: log of the typical error against t, or against log t. *power: exponent of t; *level: typical error at the end of the comparison. */
+/* A line through y over x from element `from` on. Residuals that follow one another, where the error swings more
+ * slowly than a bin, count as fewer: G. Bayley, J. Hammersley, J. R. Stat. Soc. Suppl. 8 (1946) 184. */
+typedef struct Slope {
+  double slope, uncertain, plain; /* plain: uncertainty of independent residuals */
+  double left, end;               /* squares that are left; y of the line at the last x */
+} Slope;
+
+static Slope slope_of(int from, int n, const double *x, const double *y) {
+  LineFit f = lag_line_fit(n - from, x + from, y + from);
+  double slope = f.xy / f.xx, left = fmax(f.yy - f.xy * slope, 0), follow = 0, before = 0;
+  for (int i = from; i < n; i++) {
+    double rest = y[i] - f.my - slope * (x[i] - f.mx);
+    follow += rest * before;
+    before = rest;
+  }
+  double alike = left > 0 ? fmin(fmax(follow / left, 0), 0.9) : 0;
+  double plain = sqrt(left / (n - from - 2) / f.xx);
+  return (Slope){slope, plain * sqrt((1 + alike) / (1 - alike)), plain, left, f.my + slope * (x[n - 1] - f.mx)};
+}
+
+/* Whether the error grows exponentially: a line over t fits better than one over log t, at the same rate later on, and
+ * both rise by more than any power that is claimed. */
+static int is_exponential(Slope all, Slope late, Slope power_all, Slope power_late, double span) {
+  const double same = 2, rise = 4, steep = 3;
+  int fits = all.left < 0.5 * power_all.left && late.slope * same > all.slope && late.slope < same * all.slope;
+  return fits && all.slope * span > rise && power_late.slope > steep;
+}
+
+/* The power of t, 0 to 2, that the error follows from a quarter of the time on, and alike in the second half; -1: none is
+ * told apart from others. Where a charge drifts, it is bounded never, and as t only where that fits well: it grows by
+ * more later. rough: of a few errors, the nearest power. */
+static int power_of(Slope all, Slope late, int drifts, int rough) {
+  const double near = 0.35, sure = 0.4, well = 0.13, flat = 0.1, nearest = 0.45; /* by tests/accuracy/estimates.py */
+  int k = (int)lround(fmin(fmax(all.slope, 0), 9));
+  double off = fabs(all.slope - k), off_late = fabs(late.slope - k);
+  double most = fmax(all.slope + 1.5 * all.uncertain, late.slope + 2 * late.uncertain);
+  if (rough) return all.slope < fmax(nearest, 2 * all.plain) ? 0 : k && k <= 2 && off < nearest ? k : -1;
+  if (k == 0) return !drifts && most < flat ? 0 : -1; /* what decays does not grow */
+  if (k == 1 && drifts && fmax(off, fmax(off_late, late.uncertain)) > well) return -1;
+  return k <= 2 && off < near && off_late + late.uncertain < sure ? k : -1;
+}
+
+/* The law of growth: log of the typical error over t and over log t, from a quarter of the time on. *power: exponent of
+ * t; *level: typical error at the end of the comparison. */
 static void find_growth(ErrorEstimate *e, double *power, double *level) {
-  enum { FEWEST = 8 };
-  double x[BINS], lx[BINS], y[BINS], rate;
-  int n = take_levels(e, x, y), first = n / 8; /* the first ones show rounding, not growth */
+  enum { FEWEST = 6 };
+  double x[BINS], lx[BINS], y[BINS];
+  int n = take_levels(e, x, y), quarter = 0, half = 0;
   *power = 0;
   *level = n ? exp(y[n - 1]) : 0;
-  if (n - first < FEWEST) return;
-  for (int i = 0; i < n; i++) lx[i] = log(x[i]);
-  LineFit by_power = lag_line_fit(n - first, lx + first, y + first), by_rate = lag_line_fit(n - first, x + first, y + first);
-  double rest_of_power = by_power.yy - by_power.xy * by_power.xy / by_power.xx, rest_of_rate = by_rate.yy - by_rate.xy * by_rate.xy / by_rate.xx;
-  *power = by_power.xy / by_power.xx;
-  rate = by_rate.xy / by_rate.xx;
-  if (rest_of_rate < 0.5 * rest_of_power && rate * (x[n - 1] - x[first]) > 6 && y[n - 1] - y[first] > 6) {
+  for (int i = 0; i < n; i++) {
+    lx[i] = log(x[i]);
+    quarter += x[i] < 0.25 * x[n - 1];
+    half += x[i] < 0.5 * x[n - 1];
+  }
+  if (n - half < FEWEST) return;
+  if (e->rough) quarter = n / 8;
+  Slope all = slope_of(quarter, n, x, y), late = slope_of(half, n, x, y);
+  Slope power_all = slope_of(quarter, n, lx, y), power_late = slope_of(half, n, lx, y);
+  int k = power_of(power_all, power_late, e->drifts, e->rough);
+  if (is_exponential(all, late, power_all, power_late, x[n - 1] - x[quarter])) {
     e->growth = LAG_ERROR_EXPONENTIAL;
-    e->rate = rate;
-  } else {
-    double uncertain = 2 * sqrt(rest_of_power / (n - first - 2) / by_power.xx); /* errors that oscillate show a slope by chance */
-    e->growth = *power < fmax(0.4, uncertain) ? LAG_ERROR_BOUNDED : *power < 1.5 ? LAG_ERROR_LINEAR : LAG_ERROR_QUADRATIC;
+    e->rate = late.slope;
+    *level = exp(late.end);
+  } else if (k >= 0) {
+    e->growth = k == 0 ? LAG_ERROR_BOUNDED : k == 1 ? LAG_ERROR_LINEAR : LAG_ERROR_QUADRATIC;
+    *power = k;
+    *level = exp(power_late.end);
   }
 }
 
 ErrorGrowth lag_error_growth(int n, double *t, const double *error) {
-  ErrorEstimate e = {.motion = {.rows = n, .t = t}, .t0 = n ? t[0] : 0, .horizon = NAN, .compared = n < LAG_ERROR_PLACES ? n : LAG_ERROR_PLACES};
+  ErrorEstimate e = {.rough = 1, .motion = {.rows = n, .t = t}, .t0 = n ? t[0] : 0, .horizon = NAN};
+  e.compared = n < LAG_ERROR_PLACES ? n : LAG_ERROR_PLACES;
   double power, level;
   for (int i = 0; i < e.compared; i++) {
     e.error[i] = error[i];
@@ -172,22 +250,17 @@ double lag_error_reach(ErrorEstimate *e, double factor) {
   if (!e->compared || e->growth == LAG_ERROR_UNKNOWN) return NAN;
   t = fabs((isnan(e->horizon) ? e->motion.t[e->compared - 1] : e->horizon) - e->t0);
   rest = log(no_digit / (factor * level));
-  return e->growth == LAG_ERROR_EXPONENTIAL ? t + rest / e->rate : power > 0.4 ? t * exp(rest / power) : HUGE_VAL;
+  return e->growth == LAG_ERROR_EXPONENTIAL ? t + rest / e->rate : power > 0 ? t * exp(rest / power) : HUGE_VAL;
 }
 
-/* Extends the errors from the last compared time to the end of the run by their law; without one they are not known. */
-static void extrapolate(ErrorEstimate *e, double until, double power, double level) {
-  double t = fabs(e->motion.t[e->compared - 1] - e->t0), rest = fabs(until - e->t0) - t, dir = until < e->t0 ? -1 : 1, reach = HUGE_VAL;
-  e->continued = 1;
-  if (e->growth == LAG_ERROR_UNKNOWN) {
-    e->largest = NAN;
-  } else if (e->growth == LAG_ERROR_EXPONENTIAL) {
-    reach = fmax(log(no_digit / level) / e->rate, 0);
-    e->largest = fmin(e->largest * exp(e->rate * fmin(rest, reach)), fmax(e->largest, 1));
-  } else if (power > 0.4) {
-    reach = fmax(t * (pow(no_digit / level, 1 / power) - 1), 0);
-    e->largest = fmin(e->largest * pow((t + fmin(rest, reach)) / t, power), fmax(e->largest, 1));
-  }
+/* Exponential growth goes on, for as long again at most; other laws may end where the motion changes, as chaos shows late. */
+static void extrapolate(ErrorEstimate *e, double until, double level) {
+  double t = fabs(e->motion.t[e->compared - 1] - e->t0), left = fabs(until - e->t0) - t, dir = until < e->t0 ? -1 : 1;
+  double rest = e->growth == LAG_ERROR_EXPONENTIAL ? fmin(left, t) : 0;
+  e->known_to = rest < left ? e->t0 + dir * (t + rest) : until;
+  if (!(rest > 0)) return;
+  double reach = fmax(log(no_digit / level) / e->rate, 0);
+  e->largest = fmin(e->largest * exp(e->rate * fmin(rest, reach)), fmax(e->largest, 1));
   if (reach < rest) e->horizon = e->t0 + dir * (t + reach);
 }
 
@@ -211,41 +284,77 @@ static int is_confirmed(const ErrorEstimate *e, Parting *p, double t, double err
   return 0;
 }
 
-/* Compares rows up to the end, the horizon, or where `other` stops. */
+/* Compares rows up to the end, the horizon, or where `other` stops. Two runs meet an event at times that differ by their
+ * errors: rows between, where one has met it and the other has not, say nothing, unless they go on. */
 static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
+  enum { LONG = 4 };
   Parting parting = {NAN, HUGE_VAL};
+  double apart = 0, skipped = 0; /* of the counts of events; largest error of rows that differ */
+  int n = 0;                     /* rows in turn that differ */
   for (e->compared = 0; e->compared < e->motion.rows && isnan(e->horizon); e->compared++) {
     int i = e->compared, rc = lag_sim_advance(other, e->motion.t[i]);
     if (rc < 0) snprintf(e->why, sizeof e->why, "the second run failed: %s", lag_sim_message(other));
+    int parted = rc && i && !isnan(parting.t) && is_confirmed(e, &parting, e->motion.t[i - 1], e->error[i - 1], 1);
+    if (parted) e->horizon = parting.t;
     if (rc) return rc;
-    e->error[i] = lag_cost_row_error(e->motion.n, e->motion.y + (size_t)i * (size_t)e->motion.n, other->now, scale);
-    e->largest = fmax(e->largest, e->error[i]);
+    double now = e->met[i] - other->run->events, *y = e->motion.y + (size_t)i * (size_t)e->motion.n;
+    double error = lag_cost_row_error(e->motion.n, y, other->now, scale);
+    n = now == apart ? 0 : n + 1;
+    skipped = n > 0 ? fmax(skipped, error) : 0;
+    if (n > 0 && n < LONG) {
+      e->error[i] = i > 0 ? e->error[i - 1] : 0;
+      continue;
+    }
+    if (n > 0) apart = now;
+    e->error[i] = error;
+    e->largest = fmax(e->largest, fmax(error, skipped));
     if (is_confirmed(e, &parting, e->motion.t[i], e->error[i], i + 1 == e->motion.rows)) e->horizon = parting.t;
   }
   return LAG_OK;
+}
+
+double lag_error_least_scale(const ErrorEstimate *e, lag_sim *other) {
+  double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale), least = HUGE_VAL;
+  if (scale) lag_cost_scales(&e->motion, other, scale);
+  for (int i = 0; scale && i < e->motion.n; i++) least = fmin(least, scale[i]);
+  free(scale);
+  return least < HUGE_VAL ? least : 0;
+}
+
+int lag_formula_is_lossy(const ErrorEstimate *e) {
+  const double many = 1e-6; /* other rounding modes overstate by some digits */
+  return e->formula.of >= 0 && e->formula.part > many;
 }
 
 int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
   double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale), power, level;
   if (!scale) return LAG_ENOMEM;
   lag_cost_scales(&e->motion, other, scale);
+  e->formula = lag_formula_noise(other, &e->motion);
   int rc = compare_rows(e, other, scale);
   free(scale);
   if (rc == LAG_ENOMEM) return rc;
   find_growth(e, &power, &level);
-  if (e->compared && isnan(e->horizon) && e->compared < e->motion.rows) extrapolate(e, until, power, level);
+  e->known_to = until;
+  if (e->compared && isnan(e->horizon) && e->compared < e->motion.rows) {
+    e->continued = 1;
+    extrapolate(e, until, level);
+  }
   if (isnan(e->largest) && !e->why[0] && !e->motion.rows) snprintf(e->why, sizeof e->why, "the run ended at an event in its first step");
   if (isnan(e->largest) && !e->why[0]) snprintf(e->why, sizeof e->why, "a second run reached only t = %.3g s", lag_sim_time(other));
   return LAG_OK;
 }
 
+void lag_error_estimate_reset(ErrorEstimate *e) {
+  e->continued = 0;
+  e->largest = e->horizon = e->known_to = NAN;
+  e->growth = LAG_ERROR_UNKNOWN;
+  e->why[0] = 0;
+}
+
 int lag_error_estimate_is_blind(ErrorEstimate *e) {
   int alike = e->compared > 0;
   for (int i = 0; i < e->compared; i++) alike = alike && e->error[i] == 0;
-  if (!alike) return 0;
-  e->continued = 0;
-  e->largest = e->horizon = NAN;
-  e->growth = LAG_ERROR_UNKNOWN;
-  e->why[0] = 0;
-  return 1;
+  if (alike) lag_error_estimate_reset(e);
+  return alike;
 }

@@ -142,18 +142,67 @@ int lag_previous_alike(const lag_sim *sim, int i) {
   return -1;
 }
 
-void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale) {
-  int n = reference->n;
+/* terms[n] := the largest of itself and of each component's size at y, t of a run that lasts `span`, where its values are
+ * rounding: of velocities by the energy, of coordinates with these over the run, of states by the terms of their rates. */
+static void add_state_terms(lag_sim *sim, double t, const double *y, double span, double *terms, double *v) {
+  int nq = sim->pb.nq, n = sim->pb.n;
+  double calls = sim->pb.rhs_calls, *rate = sim->yb, *beside = sim->yc;
+  const double moved = 1. / 1024;
+  lag_velocity_terms(sim, t, y, v);
+  for (int i = 0; i < nq; i++) {
+    double of = v[i] < HUGE_VAL ? v[i] : 0;
+    terms[nq + i] = fmax(terms[nq + i], of);
+    terms[i] = fmax(terms[i], of * span);
+  }
+  for (int i = 0; i < n; i++) beside[i] = y[i] * (1 + moved);
+  if (n > 2 * nq && lag_rhs(&sim->pb, t, y, rate) == LAG_OK && lag_rhs(&sim->pb, t, beside, v) == LAG_OK)
+    for (int i = 2 * nq; i < n; i++) {
+      double of = fabs(v[i] - rate[i]) / moved;
+      int rests = lag_above_rounding(fabs(rate[i]), of) > fabs(rate[i]);
+      terms[i] = rests ? fmax(terms[i], of * span) : HUGE_VAL;
+    }
+  sim->pb.rhs_calls = calls;
+}
+
+/* terms[n] := sizes of components where their values are rounding, over some rows; 0, HUGE_VAL: not known. v: scratch. */
+static void take_terms(const Samples *s, lag_sim *sim, double *terms, double *v) {
+  enum { ROWS = 5 };
+  int n = s->n, last = s->rows - 1;
+  double span = last > 0 ? fabs(s->t[last] - sim->scene->t0) : 0;
+  if (s->output > 0) terms[0] = lag_output_terms(sim, lag_sim_time(sim), sim->now, s->output - 1);
+  if (s->output != 0 || n != sim->pb.n) return;
+  for (int k = 0; k < ROWS && last >= 0; k++) {
+    int row = k * last / (ROWS - 1);
+    add_state_terms(sim, s->t[row], s->y + (size_t)row * (size_t)n, span, terms, v);
+  }
+}
+
+double lag_size_in(const Samples *s, int i) {
+  double size = s->largest ? s->largest[i] : 0;
+  for (int r = 0; r < s->rows; r++) size = fmax(size, fabs(s->y[(size_t)r * (size_t)s->n + (size_t)i]));
+  return size;
+}
+
+void lag_cost_scales(const Samples *reference, lag_sim *sim, double *scale) {
+  int n = reference->n, nq = sim->pb.nq;
+  double *terms = calloc(2 * (size_t)n + 1, sizeof *terms), none = 0;
+  if (terms) take_terms(reference, sim, terms, terms + n);
   for (int i = 0; i < n; i++) {
     int alike = reference->output > 0 ? -1 : lag_previous_alike(sim, i);
-    scale[i] = fmax(alike < 0 ? 0 : scale[alike], reference->largest ? reference->largest[i] : 0);
-    for (int r = 0; r < reference->rows; r++) scale[i] = fmax(scale[i], fabs(reference->y[(size_t)r * (size_t)n + (size_t)i]));
+    scale[i] = fmax(alike < 0 ? 0 : scale[alike], lag_size_in(reference, i));
+    if (terms && alike >= 0) terms[i] = fmax(terms[i], terms[alike]);
   }
   for (int i = n - 1; i >= 0; i--) { /* the last of a kind has the largest */
     int alike = reference->output > 0 ? -1 : lag_previous_alike(sim, i);
-    scale[i] = scale[i] > 0 ? scale[i] : 1;
+    int velocity = reference->output == 0 && i < nq ? nq + i : i;
+    const double *of = terms ? &terms[i] : &none;
     if (alike >= 0) scale[alike] = scale[i];
+    if (alike >= 0 && terms) terms[alike] = terms[i];
+    /* A coordinate rests if its velocity does, whose scale is its terms then. */
+    if (velocity == i || (terms && scale[velocity] == terms[velocity])) scale[i] = lag_above_rounding(scale[i], *of);
+    scale[i] = scale[i] > 0 ? scale[i] : 1;
   }
+  free(terms);
 }
 
 double lag_cost_row_error(int n, const double *a, const double *b, const double *scale) {

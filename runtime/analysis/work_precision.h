@@ -34,9 +34,13 @@ int lag_samples_take(Samples *s, lag_sim *sim);
 /* Notes in s->largest the state, or output, of sim: after each step of a reference. LAG_OK, or a failure of the output. */
 int lag_samples_note(Samples *s, lag_sim *sim);
 
-/* scale[n] := divisor of the error of component i: the largest reference value, at rows and between them, among components of the same kind (coordinate, velocity or state)
- * and unit; 1 where all of them are 0. */
-void lag_cost_scales(const Samples *reference, const lag_sim *sim, double *scale);
+/* scale[n] := divisor of the error of component i: the largest reference value, at rows and between them, among components of
+ * its kind (coordinate, velocity or state) and unit; where that is rounding, the size of the terms that it is the rounding
+ * of (core/sizes.c); 1 where there are none. sim: of the scene; scratch: ya, yb, yc. */
+void lag_cost_scales(const Samples *reference, lag_sim *sim, double *scale);
+
+/* The largest size of component i in a reference, at rows and between them. */
+double lag_size_in(const Samples *reference, int i);
 
 /* The largest |a - b| / scale of n components, or over times and components; HUGE_VAL when one is not finite. */
 double lag_cost_row_error(int n, const double *a, const double *b, const double *scale);

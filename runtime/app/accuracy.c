@@ -47,7 +47,7 @@ static int try_setting(App *app, ErrorEstimate *e) {
     if (rc < 0) lag_fail(app->sim, rc, "%s", lag_sim_message(trial));
     if (rc == LAG_INTERRUPTED) rc = lag_fail(app->sim, LAG_ESTEP, "%s would take more than %g steps", app->sim->method->name, LAG_ACCURACY_STEPS);
   }
-  if (rc >= 0) rc = lag_app_compare_errors(app, e, trial, fmin(LAG_ACCURACY_STEPS, 1000 + 30. * trial->run->steps)); /* more of them creep where errors are rounding */
+  if (rc >= 0) rc = lag_app_compare_errors(app, e, trial, 1e6 + 30 * lag_app_work(trial)); /* more of it creeps where errors are rounding */
   lag_sim_free(trial);
   return rc < 0 ? rc : LAG_OK;
 }
@@ -79,7 +79,8 @@ int lag_app_choose_by_accuracy(App *app) {
     int rc = set_knob(app, knob);
     if (rc) return app->args.method ? lag_app_error(a, "%s", lag_sim_message(app->sim)) : rc;
     rc = try_setting(app, &e);
-    double error = rc || !isnan(e.horizon) || isnan(e.largest) || e.continued ? HUGE_VAL : fmax(e.largest, DBL_EPSILON); /* 0: both runs round alike */
+    int unknown = rc || !isnan(e.horizon) || isnan(e.largest) || e.continued || lag_formula_is_lossy(&e);
+    double error = unknown ? HUGE_VAL : fmax(e.largest, DBL_EPSILON); /* 0: both runs round alike */
     horizon = rc ? NAN : e.horizon;
     lag_error_estimate_free(&e);
     vain = best < HUGE_VAL && !(error < 0.5 * best) ? vain + 1 : 0; /* rounding, which smaller tolerances make larger */

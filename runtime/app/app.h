@@ -100,7 +100,7 @@ typedef struct App {
   ErrorEstimate error; /* of the run, */
   int watched;      /* where it is estimated */
   double asked;     /* --accuracy; 0: none */
-  double second_most; /* most steps of the second run */
+  double second_most; /* most work of the second run [operations] */
   int progress;     /* progress line: 1 shown, 0 not yet, -1 never (no terminal, or --quiet) */
   PhaseVolume volume; /* --volume */
   int volume_rc;    /* failure of its last step */
@@ -248,8 +248,9 @@ int lag_app_error_begin(App *app);
 void lag_app_error_end(App *app);
 /* `to` takes the method and options of `from`, and its tolerance times `times`. LAG_OK, or a refusal. */
 int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times);
-/* Compares the motion noted in *e, of `run`, with a more accurate run of at most `most` steps. LAG_OK, also where that fails (e->why), or LAG_ENOMEM. */
-int lag_app_compare_errors(App *app, ErrorEstimate *e, const lag_sim *run, double most);
+/* Compares the motion noted in *e, of `run`, with a more accurate run of at most `most` operations. LAG_OK, also where that fails (e->why), or LAG_ENOMEM. */
+double lag_app_work(const lag_sim *run); /* operations of a run so far, about */
+int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most);
 /* Steps of a run that --accuracy tries, at most. */
 #define LAG_ACCURACY_STEPS 2e7
 /* accuracy.c: --accuracy: sets method and tolerance or step of app->sim. 0, or EXIT_USAGE after a message. */

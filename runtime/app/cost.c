@@ -77,7 +77,7 @@ static int take_row(lag_sim *sim, const Samples *like, double t, double *y) {
 }
 
 /* Rows of c->reference from both runs, as long as their difference, the uncertainty, stays small enough to judge others by. Returns what ended it. */
-static int fill_rows(Pair *p, Cost *c, const lag_sim *like) {
+static int fill_rows(Pair *p, Cost *c, lag_sim *like) {
   const double judges = c->target > 0 ? fmin(1e-4, 0.1 * c->target) : 1e-4;
   Samples *s = &c->reference;
   double *other = calloc((size_t)s->rows * (size_t)s->n + 1, sizeof *other);

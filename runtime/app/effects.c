@@ -205,7 +205,7 @@ static lag_sim *fresh_variant(void *source) {
 }
 
 /* own := the reference's values of the components that the variant has. LAG_OK, LAG_ENOMEM, or LAG_EINVAL: the scene lacks one. */
-static int take_components(const Cost *c, const lag_model *m, const lag_sim *sim, Cost *own) {
+static int take_components(const Cost *c, const lag_model *m, lag_sim *sim, Cost *own) {
   const Samples *all = &c->reference;
   int n = sim->pb.n, rc = lag_cost_begin(own, all->rows, n, 0, 0);
   for (int k = 0; k < n && rc == LAG_OK; k++) {

@@ -2,12 +2,13 @@
  * error, how it grows, and the horizon. Holds: the second run makes few steps beside the run; then its law of growth tells the rest. */
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "app/app.h"
 #include "core/core.h"
 #include "core/rhs.h"
 
-static const double tighter = 0.1; /* than the tolerance of the run: its error is then small beside the run's */
+static const double tighter = 0.03; /* than the tolerance of the run: its error is then small beside the run's */
 
 int lag_app_error_begin(App *app) {
   const Args *a = &app->args;
@@ -23,14 +24,31 @@ int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times) {
   return rc ? rc : lag_sim_set_tolerance(to, fmax(times * from->tol, 4.5 * DBL_EPSILON));
 }
 
-/* Ends the second run after a number of steps, or on Ctrl-C. */
-static int enough(void *app, const lag_sim *other) { return other->run->steps >= ((App *)app)->second_most || lag_app_interrupted() != EXIT_SIGNAL; }
+/* Work of a run so far, in operations: a nanosecond or so each. Constraints add the factors of a matrix at each call, events their functions, a Taylor series
+ * the square of its order. Contacts that are open are no constraints. */
+double lag_app_work(const lag_sim *run) {
+  const double each_event = 1000;
+  const lag_model *m = run->scene->model;
+  double size = m->constraints ? m->nq + m->constraints->n - m->ncontacts : 0;
+  int series = m->taylor && run->method == &lag_taylor_method && run->method_work;
+  double order = series ? lag_taylor_order(run->method_work) : 0;
+  double call = m->ops * (1 + order * order / 8) + 5 * run->pb.n + size * size * size / 3;
+  return run->pb.rhs_calls * call + run->run->steps * (each_event * m->nev + 20 * run->pb.n);
+}
+
+/* Ends the second run after its share of work, or on Ctrl-C. */
+static int enough(void *app, const lag_sim *other) {
+  const int fewest = 24; /* fewer show no law of growth */
+  int done = other->run->steps >= fewest && lag_app_work(other) >= ((App *)app)->second_most;
+  return done || lag_app_interrupted() != EXIT_SIGNAL;
+}
 
 /* A setting whose error is small beside the run's; near the smallest tolerance, one whose error is of another making, and about as small: taylor with a
  * lower order, or, where there is no series, a larger tolerance, which shows an error that is too large, but not 0. */
-static int set_more_accurate(const lag_sim *run, lag_sim *other) {
+static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim *other) {
   const double lower = 3; /* for shorter steps: a higher one would make longer ones, and cancel more digits */
   const double least = 4.5 * DBL_EPSILON, apart = 3; /* tolerances whose errors differ enough */
+  const double small = 50 * DBL_EPSILON;             /* of the run beside equal steps */
   const lag_taylor *series = run->scene->model->constraints ? NULL : run->scene->model->taylor;
   int equal = lag_equal_step(run) > 0, rc;
   if (!equal && run->tol >= apart * least) return lag_app_copy_method(run, other, tighter);
@@ -40,9 +58,10 @@ static int set_more_accurate(const lag_sim *run, lag_sim *other) {
   } else if (!equal) {
     return lag_app_copy_method(run, other, 3);
   } else {
-    rc = lag_sim_set_method(other, &lag_dop853, NULL, 0);
+    const lag_option atol = {.name = "atol", .value = small * lag_error_least_scale(e, other)};
+    rc = lag_sim_set_method(other, &lag_dop853, &atol, atol.value > 0);
   }
-  return rc ? rc : lag_sim_set_tolerance(other, equal ? pow(DBL_EPSILON, 0.75) : run->tol);
+  return rc ? rc : lag_sim_set_tolerance(other, equal ? small : run->tol);
 }
 
 /* Moves the start by a rounding: a factor of 1 + epsilon or 1 - epsilon in turns. What cannot be set stays. */
@@ -55,14 +74,33 @@ static void nudge(lag_sim *sim) {
   }
 }
 
-static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double most, int nudged) {
+/* Limits the steps of an adaptive method. */
+static int limit_steps(lag_sim *sim, double longest) {
+  lag_option opt[MOST_OPTIONS];
+  lag_app_options(sim->method, sim->options, 1, opt);
+  for (int i = 0; i < sim->method->noptions; i++)
+    if (strcmp(opt[i].name, "max_step") == 0) opt[i].value = longest;
+  return lag_sim_set_method(sim, sim->method, opt, sim->method->noptions);
+}
+
+/* How the second run differs from a more accurate setting alone; steps and work: that it took. */
+typedef struct Second {
+  int nudged;
+  double longest; /* step [s]; 0: any */
+  double steps, work;
+} Second;
+
+static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double most, Second *second) {
   lag_sim *other = lag_app_fresh_bare_sim(app);
-  int rc = other ? set_more_accurate(run, other) : LAG_ENOMEM;
+  int rc = other ? set_more_accurate(e, run, other) : LAG_ENOMEM;
   app->second_most = most;
+  if (rc == LAG_OK && second->longest > 0) rc = limit_steps(other, second->longest);
   if (rc == LAG_OK) {
-    if (nudged) nudge(other);
+    if (second->nudged) nudge(other);
     lag_sim_on_step(other, enough, app);
     rc = lag_error_estimate_compare(e, other, lag_sim_time(run));
+    second->steps = other->run->steps;
+    second->work = lag_app_work(other);
   } else if (other) {
     snprintf(e->why, sizeof e->why, "%s", lag_sim_message(other));
   }
@@ -70,26 +108,53 @@ static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double m
   return rc == LAG_ENOMEM ? rc : LAG_OK;
 }
 
-int lag_app_compare_errors(App *app, ErrorEstimate *e, const lag_sim *run, double most) {
-  lag_error_estimate_note_end(e, run);
-  int rc = compare_once(app, e, run, most, 0);
-  /* Flights on straight lines have the same roundings with any setting; what impacts make of these, a start that is off by one shows. */
-  return rc == LAG_OK && lag_error_estimate_is_blind(e) ? compare_once(app, e, run, most, 1) : rc;
+/* The mean step of the run where a limit, rows of a table or kicks set its steps, and the second run's, not the tolerance;
+ * else 0. */
+static double forced_step(const ErrorEstimate *e, const lag_sim *run, double steps) {
+  double part = e->motion.rows ? (double)e->compared / e->motion.rows : 0, own = run->run->steps * part;
+  int follows = (run->method->flags & LAG_METHOD_ADAPTIVE) && run->method->order_most == 0 && e->compared;
+  int forced = follows && isnan(e->horizon) && own > 0 && steps < 1.1 * own;
+  return forced ? fabs(lag_sim_time(run) - e->t0) / run->run->steps : 0;
 }
 
-/* Work of a step, in units of one unknown without constraints: these add the factors of a dense matrix at each stage. */
-static double work_of_step(const lag_sim *run) {
-  const lag_model *m = run->scene->model;
-  double size = m->constraints ? m->nq + m->constraints->n : 0;
-  return run->pb.n + size * size * size / 50;
+/* Compares a second time with a start that is off by a rounding, where both runs may have errors of one size and direction:
+ * rounding, in motions that part. */
+static int compare_again(App *app, ErrorEstimate *e, const lag_sim *run, double most, Second *second) {
+  const double little = 1e7, close = 1e-12; /* work of a second run; tolerance of the first */
+  int near = lag_equal_step(run) > 0 || run->tol < close;
+  int parts = e->growth == LAG_ERROR_EXPONENTIAL || e->growth == LAG_ERROR_UNKNOWN;
+  if (!near || !parts || !isnan(e->horizon) || !(e->largest > close) || second->work > little) return LAG_OK;
+  double before = e->largest;
+  lag_error_estimate_reset(e);
+  second->nudged = 1;
+  int rc = compare_once(app, e, run, most, second);
+  e->largest = isnan(e->largest) ? before : hypot(e->largest, before);
+  return rc;
+}
+
+int lag_app_compare_errors(App *app, ErrorEstimate *e, lag_sim *run, double most) {
+  Second second = {0};
+  lag_error_estimate_note_end(e, run);
+  int rc = compare_once(app, e, run, most, &second);
+  double step = rc ? 0 : forced_step(e, run, second.steps);
+  if (step > 0) {
+    lag_error_estimate_reset(e);
+    second.longest = 0.5 * step;
+    rc = compare_once(app, e, run, 2 * most, &second);
+  }
+  /* Flights on straight lines have the same roundings with any setting; what impacts make of these, a start that is off by one shows. */
+  if (rc) return rc;
+  if (!lag_error_estimate_is_blind(e)) return compare_again(app, e, run, most, &second);
+  second = (Second){.nudged = 1};
+  return compare_once(app, e, run, most, &second);
 }
 
 void lag_app_error_end(App *app) {
-  const double part = 1. / 15, work = 20000, fewest = 24; /* fewer show no law of growth */
+  const double part = 1. / 15, cheap = 5e7; /* a twentieth of a second: a whole second run */
   const lag_sim *run = app->sim;
   if (!app->watched || app->status < 0 || app->status == LAG_INTERRUPTED) return;
-  double most = app->asked > 0 ? LAG_ACCURACY_STEPS : fmax(fmax(part * run->run->steps, work / work_of_step(run)), fewest);
-  if (lag_app_compare_errors(app, &app->error, run, most)) app->status = LAG_ENOMEM;
+  double most = app->asked > 0 ? HUGE_VAL : fmax(part * lag_app_work(run), cheap);
+  if (lag_app_compare_errors(app, &app->error, app->sim, most)) app->status = LAG_ENOMEM;
 }
 
 const char *lag_growth_name(ErrorGrowth growth) {
@@ -97,31 +162,60 @@ const char *lag_growth_name(ErrorGrowth growth) {
   return names[growth];
 }
 
-static const char *const growth_text[] = {"", ", does not grow", ", grows as t", ", grows as t^2", ", grows exponentially"};
+static const char *const growth_text[] = {", its growth is not seen", ", does not grow", ", grows as t",
+                                          ", grows as t^2", ", grows exponentially"};
 
 /* Rounding has no law that is worth telling. */
-static ErrorGrowth growth_of(const ErrorEstimate *e) { return e->largest < 500 * DBL_EPSILON ? LAG_ERROR_UNKNOWN : e->growth; }
+static int is_rounding(const ErrorEstimate *e) { return e->largest < 500 * DBL_EPSILON; }
+static ErrorGrowth growth_of(const ErrorEstimate *e) { return is_rounding(e) ? LAG_ERROR_UNKNOWN : e->growth; }
+
+/* Whether the end of the run is beyond what is known of its error. */
+static int is_beyond(const App *app) {
+  return isnan(app->error.horizon) && app->error.known_to != lag_sim_time(app->sim);
+}
+
+/* The number that text and JSON show: less than an epsilon is less than rounding makes in two runs alike. */
+static double shown(const ErrorEstimate *e) { return e->largest < DBL_EPSILON ? DBL_EPSILON : e->largest; }
+
+/* A formula cancels, in both runs alike. */
+static void put_lost_formula(const App *app, FILE *f) {
+  const ErrorEstimate *e = &app->error;
+  int nq = app->scene->model->nq, second = e->formula.of < 2 * nq, of = second ? e->formula.of - nq : e->formula.of;
+  fprintf(f, "the error is not known: the formula of %s%s cancels along this motion, and has lost digits in any run; two "
+             "runs agree to %.1g. Write terms that cancel in another form, as 2*sin(x/2)^2 for 1 - cos(x)%s\n",
+          lag_state_column(app->sim, of).name, second ? "''" : "'", shown(e), LAG_MORE_PRECISION);
+}
 
 void lag_report_error(const App *app, FILE *f) {
   const ErrorEstimate *e = &app->error;
   char from[96] = "";
   if (app->watched && isnan(e->largest) && e->why[0]) fprintf(f, "the error is not known: %s\n", e->why);
   if (!app->watched || isnan(e->largest)) return;
-  if (e->continued) snprintf(from, sizeof from, " (continued from t = %.3g s)", (double)e->motion.t[e->compared - 1]);
+  if (e->continued && growth_of(e) == LAG_ERROR_EXPONENTIAL)
+    snprintf(from, sizeof from, " (continued from t = %.3g s)", (double)e->motion.t[e->compared - 1]);
   if (!isnan(e->horizon)) {
     fprintf(f, "after t = %.3g s no digit is left%s: the motion there is the integrator's; averages may still hold\n", e->horizon, from);
-  } else {
-    int shown = e->largest >= DBL_EPSILON; /* less is less than rounding makes in two runs alike */
-    fprintf(f, "error %s %.1g", shown ? "about" : "below", shown ? e->largest : DBL_EPSILON);
-    if (app->asked > 0) fprintf(f, " (asked %g)", app->asked);
-    fprintf(f, "%s%s\n", growth_text[growth_of(e)], from);
+    return;
   }
+  if (lag_formula_is_lossy(e)) {
+    put_lost_formula(app, f);
+    return;
+  }
+  if (is_beyond(app)) fprintf(f, "the error is not known after t = %.3g s; up to there ", e->known_to);
+  fprintf(f, "%s%s %.1g", is_beyond(app) ? "" : "error ", e->largest >= DBL_EPSILON ? "about" : "below", shown(e));
+  if (app->asked > 0) fprintf(f, " (asked %g)", app->asked);
+  fprintf(f, "%s%s\n", is_rounding(e) ? "" : growth_text[growth_of(e)], from);
 }
 
 void lag_report_error_json(const App *app, Json *j) {
   const ErrorEstimate *e = &app->error;
-  lag_json_number(j, "error", app->watched ? e->largest : NAN);
-  lag_json_string(j, "error_growth", app->watched && growth_of(e) ? lag_growth_name(growth_of(e)) : NULL);
+  int known = app->watched && !isnan(e->largest);
+  lag_json_number(j, "error", known && !is_beyond(app) && !lag_formula_is_lossy(e) ? shown(e) : NAN);
+  lag_json_string(j, "error_growth", known && growth_of(e) ? lag_growth_name(growth_of(e)) : NULL);
   lag_json_number(j, "error_seen_to", app->watched && e->compared ? e->motion.t[e->compared - 1] : NAN);
+  double to = lag_formula_is_lossy(e) ? app->scene->t0 : isnan(e->horizon) ? e->known_to : e->horizon;
+  lag_json_number(j, "error_known_to", known ? to : NAN);
+  lag_json_number(j, "error_up_to_there", known ? shown(e) : NAN);
+  lag_json_number(j, "formula_noise", known && e->formula.of >= 0 ? e->formula.part : NAN);
   lag_json_number(j, "horizon", app->watched ? e->horizon : NAN);
 }

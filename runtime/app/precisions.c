@@ -49,7 +49,7 @@ int lag_cost_precisions(App *app, Cost *c, double seconds) {
       lag_sim_advance(course.sim, app->scene->t0 + spans * (app->until - app->scene->t0));
       c->seen = lag_sim_time(course.sim);
     }
-    rc = lag_app_compare_errors(app, &e, course.sim, 4 * (double)course.sim->run->steps);
+    rc = lag_app_compare_errors(app, &e, course.sim, 4 * lag_app_work(course.sim));
     find_horizons(c, &e, DBL_EPSILON, dir);
   }
   lag_error_estimate_free(&e);

@@ -173,7 +173,7 @@ static double median_size(const Charge *c) {
 }
 
 /* The size of the charge in this run, which is not needed at each step. */
-static double size_of(const Charge *c) { return c->bins > 0 ? median_size(c) : c->size; }
+static double size_of(const Charge *c) { return lag_above_rounding(c->bins > 0 ? median_size(c) : c->size, c->terms); }
 
 static double relative(const Charge *c, double x, double size) { return x == 0.0 ? 0 : x / fmax(fabs(c->begin), size); }
 
@@ -190,6 +190,18 @@ static void add_to_trend(Charge *c, double t, double d, double size) {
   if (++c->bins >= LAG_BINS) merge_bins(c);
 }
 
+/* Sizes that charges have if the values at the start are rounding: of momenta, those with the velocities of the energy's size. */
+static void take_terms(lag_sim *s, double t, const double *y) {
+  int n = lag_sim_ncharges(s), nq = s->pb.nq;
+  double *beside = s->yb, *v = beside + nq;
+  memcpy(beside, y, (size_t)s->pb.n * sizeof *beside);
+  if (n > 1) lag_velocity_terms(s, t, y, v);
+  for (int i = 0; i < nq; i++) v[i] = v[i] < HUGE_VAL ? v[i] : y[nq + i];
+  if (n > 1) lag_charges_at(s, t, beside);
+  for (int k = 1; k < n; k++) s->charges[k].terms = s->charge_now[2 * k + 1];
+  if (n > 0) s->charges[0].terms = lag_energy_terms(s, t, y);
+}
+
 void lag_charges_begin(lag_sim *s, double t, const double *y) {
   lag_charges_at(s, t, y);
   s->run->watched = t;
@@ -198,6 +210,7 @@ void lag_charges_begin(lag_sim *s, double t, const double *y) {
     s->charges[k] = (Charge){.begin = s->charge_now[2 * k], .first = s->charge_now[2 * k], .size = fmax(s->charge_now[2 * k + 1], 0), .width = 1};
     s->charges[k].balanced = (lag_charge_flags(s, k) & LAG_BALANCED) != 0;
   }
+  take_terms(s, t, y);
 }
 
 int lag_energy_undefined(lag_sim *s, double t, const double *y) {
@@ -209,12 +222,12 @@ int lag_energy_undefined(lag_sim *s, double t, const double *y) {
 /* Whether the energy, known to be conserved or balanced, is off by d: by several times its size in this run, and by a large part of the work
  * done so far and of `size`, its present one (in free motion |p.v| + |L| is three times the energy). The second condition spares rough
  * tolerances, which lose as much as there is without a pole. Not judged: few bins, since a motion from rest has no size yet; errors below 1e-12
- * of the unit, rounding of unknown terms; constraints that move with time, whose peaks may lie between steps. */
+ * of the terms; constraints that move with time, whose peaks may lie between steps. */
 static int is_lost(const lag_model *m, const Charge *c, double d, double size) {
   const double part = 0.25, times = 4, least = 1e-12, few = 8, off = fabs(d);
   int driven = m->constraints && !(m->flags & LAG_AUTONOMOUS);
 
-  return c->balanced != 0.0 && !driven && c->bins >= few && off > fmax(times * fabs(c->begin), least) && off > part * fmax(size, c->through) && off > times * size_of(c);
+  return c->balanced != 0.0 && !driven && c->bins >= few && off > fmax(times * fabs(c->begin), least * c->terms) && off > part * fmax(size, c->through) && off > times * size_of(c);
 }
 
 int lag_energy_retained(lag_sim *s) {
@@ -225,7 +238,7 @@ int lag_energy_retained(lag_sim *s) {
   lag_sim_charge(s, 0, &c);
   const char *space = c.unit[0] ? " " : "";
   double large = fmax(fabs(c.now), s->charges[0].through); /* where forces do more work than the energy that there was */
-  if (!(c.flags & (LAG_CONSERVED | LAG_BALANCED)) || !(c.drift >= half) || !(c.absolute > fmax(least, half * large))) return LAG_OK;
+  if (!(c.flags & (LAG_CONSERVED | LAG_BALANCED)) || !(c.drift >= half) || !(c.absolute > fmax(least * s->charges[0].terms, half * large))) return LAG_OK;
   return lag_fail(s, LAG_EDRIFT, "up to t = %.9g s the energy has an error of %.3g%s%s, of %.3g%s%s at the start: the numbers mean nothing; take %s", s->run->t, c.absolute, space, c.unit,
                   c.begin, space, c.unit, s->steps_equal ? "smaller steps" : "a smaller tolerance");
 }

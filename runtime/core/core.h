@@ -45,6 +45,7 @@ typedef struct Charge {
   double first;      /* Q at the start, plus the jumps of Q at events */
   double peak;       /* largest |difference| */
   double size;       /* sum of |terms of Q| at the start: the size of Q, until there are bins */
+  double terms;      /* size of Q where that is rounding (sizes.c) */
   double before;     /* difference at the last look */
   double through;    /* int |P| dt, step by step */
   double work, lost; /* int P dt, and the rounding error of that sum (Kahan) */
@@ -335,6 +336,14 @@ int lag_monitors_record(lag_sim *sim, double t, const double *y);
 /* impulses: the same for impulses of contacts within a step, at the present time, once dense output contains them. */
 int lag_monitors_impulses(lag_sim *sim);
 int lag_monitors_jump(lag_sim *sim, double t, const double *ya, const double *yb);
+
+/* sizes.c: `size` where it is more than rounding of terms of the size `terms`, else `terms`. */
+double lag_above_rounding(double size, double terms);
+/* The size of the terms of the energy, and of output k, at y, t; v[nq] := of each velocity, that at which the coordinates of
+ * its unit would have this energy; HUGE_VAL: there is none. NaN: not known. Scratch: ya. */
+double lag_energy_terms(lag_sim *sim, double t, const double *y);
+double lag_output_terms(lag_sim *sim, double t, const double *y, int k);
+void lag_velocity_terms(lag_sim *sim, double t, const double *y, double *v);
 
 /* Kinds of names in a scene. */
 enum { LAG_IS_NOTHING, LAG_IS_P, LAG_IS_Q, LAG_IS_V, LAG_IS_Z, LAG_IS_U };

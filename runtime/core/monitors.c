@@ -25,6 +25,13 @@ static void see_constraints(lag_sim *s, double t, const double *y) {
   }
 }
 
+/* Output k at the start; 0 where it is rounding of its terms. */
+static double first_value(lag_sim *s, int k) {
+  double terms = lag_output_terms(s, s->run->t, s->now, k);
+  if (outputs_at(s, s->run->t, s->now) || lag_above_rounding(fabs(s->out[k]), terms) > fabs(s->out[k])) return 0;
+  return s->out[k];
+}
+
 int lag_monitors_begin(lag_sim *s) {
   const lag_scene *c = s->scene;
   see_constraints(s, s->run->t, s->now);
@@ -32,8 +39,8 @@ int lag_monitors_begin(lag_sim *s) {
   if (watches_outputs(c) && outputs_at(s, s->run->t, s->now)) return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at the start");
   for (int i = 0; i < c->nmonitors; i++) {
     int k = c->monitors[i].output;
-    s->mon_first[i] = c->monitors[i].absolute || k < 0 ? 0 : s->out[k];
     s->mon_peak[i] = 0;
+    s->mon_first[i] = c->monitors[i].absolute || k < 0 ? 0 : first_value(s, k);
   }
   return lag_closed_form_record(s, s->run->t, s->now);
 }
@@ -44,7 +51,7 @@ static double larger(double x, double y) { return y > x || isnan(y) ? y : x; }
 /* Drift relative to the first value; of a quantity that begins at 0, in its declared unit. */
 static double relative(const lag_sim *s, int i, double peak) {
   double unit = s->scene->outputs[s->scene->monitors[i].output].factor, size = fabs(s->mon_first[i]);
-  return peak / (size > 1e-9 * unit ? size : unit);
+  return peak / (size > 0 ? size : unit);
 }
 
 double lag_sim_monitor_drift(lag_sim *s, int i) {
@@ -119,10 +126,12 @@ int lag_monitors_jump(lag_sim *s, double t, const double *ya, const double *yb) 
   lag_charges_jump(s, t, ya, yb);
   if (watches_outputs(c))
     for (int pass = 0; pass < 2; pass++) {
-      if (outputs_at(s, t, pass ? yb : ya)) return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
+      if (outputs_at(s, t, pass ? ya : yb)) return lag_fail(s, LAG_EMODEL, "the outputs cannot be computed at t = %s s", LAG_TEXT(t));
       for (int i = 0; i < c->nmonitors; i++) {
         int k = c->monitors[i].output;
-        s->mon_first[i] += k >= 0 && !c->monitors[i].absolute ? (pass ? s->out[k] : -s->out[k]) : 0;
+        double *first = &s->mon_first[i], out = k >= 0 && !c->monitors[i].absolute ? s->out[k] : 0;
+        *first += pass ? -out : out;
+        if (pass && lag_above_rounding(fabs(*first), fabs(out)) > fabs(*first)) *first = 0;
       }
     }
   return LAG_OK;

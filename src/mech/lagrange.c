@@ -195,6 +195,13 @@ static int is_definite(Eqns *e, const LinearSystem *s) {
   return e->definite_by_values;
 }
 
+/* Forces keep the digits that the text has near a removable singularity. */
+static void stabilise(const Eqns *e, LinearSystem *s) {
+  Expr *f = ARENA_ARRAY(e->m->arena, Expr, e->n + 1);
+  for (uint32_t i = 0; i < e->n; i++) f[i] = simplify_stable_quotients(e->g, s->f[i]);
+  s->f = f;
+}
+
 /* The augmented system is used only where its pivots are known to be positive. */
 void lagrange_momenta_and_forces(Eqns *e) {
   uint64_t dense_ops, lifted_ops;
@@ -208,12 +215,14 @@ void lagrange_momenta_and_forces(Eqns *e) {
     return;
   }
   LinearSystem raw = {.n = e->n, .H = raw_mass(e), .f = f}, dense = best_form(e, &raw, LOOK_THROUGH, &dense_ops);
+  stabilise(e, &dense);
   e->mass = dense.H;
   e->mass_known = 1;
   e->f = dense.f;
   e->system = dense;
   if (!is_definite(e, &dense) || constrained || !lifted.ndefs) return;
   lifted = best_form(e, &lifted, LOOK_THROUGH, &lifted_ops);
+  stabilise(e, &lifted);
   if (lifted_ops < dense_ops) e->system = lifted;
 }
 

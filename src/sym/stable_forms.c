@@ -120,24 +120,60 @@ static Expr difference_of_squares(const SumTerms *t) {
   return expr_scale(g, c, product);
 }
 
-static Expr stable_sum(ExprGraph *g, Expr e) {
+static Expr with_half_angles(ExprGraph *g, Expr e) {
   if (expr_op(g, e) != EX_SUM || expr_pairs(g, e, EX_SUM) > MAX_TERMS) return e;
   SumTerms t = terms_of(g, e);
   int changed = 0;
   for (uint32_t i = 0; i < t.n; i++) changed |= use_half_angles(&t, i);
-  if (changed) return sum_of(&t);
+  return changed ? sum_of(&t) : e;
+}
+
+static Expr stable_sum(ExprGraph *g, Expr e) {
+  Expr half = with_half_angles(g, e);
+  if (half != e || expr_op(g, e) != EX_SUM || expr_pairs(g, e, EX_SUM) != 2) return half;
+  SumTerms t = terms_of(g, e);
   Expr product = difference_of_squares(&t);
   return product ? product : e;
 }
 
-Expr simplify_stable(ExprGraph *g, Expr e) {
-  if (!e) return 0;
+static Expr rewrite_sums(ExprGraph *g, Expr e, Expr (*rule)(ExprGraph *, Expr)) {
   ExprList nodes = expr_topo(g, &e, 1);
   ExprMap map = expr_map(expr_arena(g));
   for (uint32_t i = 0; i < nodes.n; i++) {
-    Expr x = expr_with_mapped_args(g, &map, nodes.at[i]), y = stable_sum(g, x);
+    Expr x = expr_with_mapped_args(g, &map, nodes.at[i]), y = rule(g, x);
     if (y != nodes.at[i]) expr_map_set(&map, nodes.at[i], y);
   }
   Expr r = expr_map_get(&map, e);
   return r ? r : e;
+}
+
+Expr simplify_stable(ExprGraph *g, Expr e) { return e ? rewrite_sums(g, e, stable_sum) : 0; }
+
+/* Whether a variable of the motion among these nodes is in the map `in`; adds all to the map `to`. */
+static int has_variable(const ExprGraph *g, ExprList nodes, const ExprMap *in, ExprMap *to) {
+  int found = 0;
+  for (uint32_t i = 0; i < nodes.n; i++) {
+    if (expr_op(g, nodes.at[i]) != EX_SYM) continue;
+    SymKind kind = expr_sym_of(g, nodes.at[i])->kind;
+    if (kind != SYM_COORD && kind != SYM_STATE && kind != SYM_TIME) continue;
+    if (to) expr_map_set(to, nodes.at[i], 1);
+    found |= in && expr_map_get(in, nodes.at[i]) != 0;
+  }
+  return found;
+}
+
+Expr simplify_stable_quotients(ExprGraph *g, Expr e) {
+  ExprList nodes = expr_topo(g, &e, 1);
+  ExprMap divisors = expr_map(expr_arena(g));
+  for (uint32_t i = 0; i < nodes.n && nodes.n <= MAX_TERMS; i++)
+    for (uint32_t k = 0; expr_op(g, nodes.at[i]) == EX_PROD && k < expr_pairs(g, nodes.at[i], EX_PROD); k++) {
+      Num power;
+      Expr base = expr_pair(g, nodes.at[i], EX_PROD, k, &power);
+      if (num_sign(power) < 0) has_variable(g, expr_topo(g, &base, 1), NULL, &divisors);
+    }
+  for (uint32_t i = 0; i < nodes.n && nodes.n <= MAX_TERMS; i++) {
+    Expr x = nodes.at[i], u = expr_op(g, x) == EX_COS || expr_op(g, x) == EX_COSH ? expr_arg(g, x, 0) : 0;
+    if (u && has_variable(g, expr_topo(g, &u, 1), &divisors, NULL)) return rewrite_sums(g, e, with_half_angles);
+  }
+  return e;
 }

@@ -1,0 +1,120 @@
+#!/bin/sh
+# Sizes that rounding cannot undercut, and errors that two runs alike do not show: what rests, what cancels, kicks where a floor is touched, laws of growth that a run does not show.
+# Expected: closed forms; horizons by runs at other tolerances, which part there.
+. tests/tap.sh
+
+# value KEY: a number or word of the JSON in $TMP/json
+value() { sed -n "s/.*\"$1\": *\"\{0,1\}\([^,}\"]*\).*/\1/p" "$TMP/json" | head -n 1; }
+run() { "$LAGC" run "$@" -o /dev/null --json >"$TMP/json" 2>"$TMP/err" || { cat "$TMP/err"; return 1; }; }
+# below NAME MOST GOT: a number, and at most MOST
+below() { check "$1" awk -v m="$2" -v g="$3" 'BEGIN { print g; exit !(g ~ /^[0-9]/ && g + 0 <= m) }'; }
+
+# A pendulum that hangs at an angle of 180 degrees: sin(pi) is 1.2e-16 in doubles, and so is its motion.
+cat >"$TMP/rest.lag" <<'EOF2'
+model rest
+coord x [m], th [rad]
+param m = 1 [kg] > 0, k = 4 [N/m] > 0, l = 0.5 [m] > 0, g = 9.81 [m/s^2] > 0
+kinetic = m/2*x'^2 + m*l^2/2*th'^2
+potential = k/2*x^2 + m*g*l*cos(th)
+effect soft { param e = 10 [N/m^2]; potential = e*x^3/3 }
+scene s { start x = 0.1, th = 180 [deg]; span 20 [s]; exact x = 0.1 [m]*cos(2 [1/s]*t); output x every 1 }
+scene bent { start x = 0.1, th = 180 [deg]; span 20 [s]; use soft; output x every 1 }
+EOF2
+check "a pendulum that hangs at rest beside a spring" run "$TMP/rest.lag" s
+# the closed form's largest deviation, over the size of x, 0.1: it is of the same order as that of x'
+below "its error is the spring's" 3e-8 "$(value error)"
+check "--accuracy is not refused" run "$TMP/rest.lag" s --accuracy 1e-6
+check "an effect beside it is needed: without it the spring moves as cos(2t)" sh -c '"$0" effects "$1" bent | grep "^ *soft .*needed"' "$LAGC" "$TMP/rest.lag"
+
+# A square crate slides flat: x = v t - mu g t^2/2 up to v/(mu g) = 1.2232 s, then v^2/(2 mu g) = 3.6697247706422. It neither lifts nor turns.
+cat >"$TMP/crate.lag" <<'EOF2'
+model crate
+coord x [m], y [m], q [rad]
+param m = 3 [kg] > 0, s = 0.06 [m] > 0, g = 9.81 [m/s^2] > 0, mu = 0.5 >= 0
+let cx[1] = x + cos(q)*(-s) + sin(q)*s
+let cy[1] = y + sin(q)*(-s) - cos(q)*s
+let cx[2] = x + cos(q)*s + sin(q)*s
+let cy[2] = y + sin(q)*s - cos(q)*s
+kinetic = m/2*(x'^2 + y'^2) + m*(2*s)^2/12*q'^2
+potential = m*g*y
+for i in 1..2 { contact foot[i]: cy[i] >= 0, restitution = 0, friction = mu, slip = cx[i]' }
+scene slide { start y = 0.06, x' = 6 [m/s]; span 2 [s]; output x every 0.5 }
+EOF2
+check "a crate that slides flat" run "$TMP/crate.lag"
+near "comes to rest where it must" 1e-12 3.6697247706422 "$(value x)"
+below "with an error at rounding" 1e-13 "$(value error)"
+
+# A kick while the ball lies on the floor: y = v t - g t^2/2 from then on, exact for each method.
+cat >"$TMP/kick.lag" <<'EOF2'
+model late
+coord y
+param g = 9.81, e = 0.9, v = 1, T = 10
+lagrangian = y'^2/2 - g*y
+contact floor: y >= 0, restitution = e
+kick k every T { y' = v }
+scene s { start y = 0; span 10.05; output y every 1 }
+EOF2
+for how in "" "--method rk4"; do
+  # shellcheck disable=SC2086 # a list of words
+  check "a kick on a floor that is touched${how:+, $how}" run "$TMP/kick.lag" $how
+  below "is no error${how:+, $how}" 1e-13 "$(value error)"
+done
+
+# L = -a (1 - cos x)/x^2 = -a (1/2 - x^2/24 + ..): x'' = x/12 near 0, x(2) = x0 cosh(2/sqrt(12)), but for x0^2.
+cat >"$TMP/remov.lag" <<'EOF2'
+model remov
+coord x
+param a = 1
+lagrangian = x'^2/2 - a*(1 - cos(x))/x^2
+scene tiny { start x = 1e-5; span 2; tolerance 1e-12; output x every 1 }
+EOF2
+check "a removable singularity" run "$TMP/remov.lag"
+near "its half-angle form has six digits left at 1e-5" 2e-11 1.17134797e-05 "$(value x)"
+is "and says that the error is not known" null "$(value error)"
+check "naming the formula" says 0 "the formula of x'' cancels along this motion" "$LAGC" run "$TMP/remov.lag" x=1e-8
+check "away from it all is known" run "$TMP/remov.lag" x=1
+below "to rounding" 1e-10 "$(value error)"
+
+# Laws that a run does not show. A pendulum by rk4 loses energy, and its phase grows as t^2 in the end: 3e-7 at 30 s, 2.5e-5 at 160 s. A double pendulum in chaos: its error multiplies
+# by 118 from 4 to 8 s, as no power does.
+printf 'model p\ncoord th\nlagrangian = th%s^2/2 + 1.3*cos(th)\nscene s { start th = 2; span 30; output th every 1 }\n' "'" >"$TMP/p.lag"
+check "a pendulum by rk4" run "$TMP/p.lag" --method rk4 --step 0.05
+is "does not claim that its error is bounded" null "$(value error_growth)"
+cat >"$TMP/d.lag" <<'EOF2'
+model d
+coord a, b
+let x1 = sin(a)
+let y1 = -cos(a)
+let x2 = x1 + sin(b)
+let y2 = y1 - cos(b)
+kinetic = (x1'^2 + y1'^2)/2 + (x2'^2 + y2'^2)/2
+potential = 9.81*(y1 + y2)
+scene s { start a = 2, b = 2.5; span 8; tolerance 1e-10; output a every 1 }
+EOF2
+check "a double pendulum" run "$TMP/d.lag"
+check "claims no power of t" sh -c 'case $1 in null | exponential) ;; *) echo "$1"; exit 1 ;; esac' sh "$(value error_growth)"
+
+# Chaos that shows late, between two light planets (a start of REBOUND's tests): runs at tolerances 1e-11 to 1e-13 part by 0.3 between 290 and 370 s.
+late() {
+  cat >"$TMP/late.lag" <<'EOF2'
+model late_chaos
+const N = 3
+coord r[N]: vec3
+param m[N] = {1.0, 0.0001, 0.0001} > 0, G = 1.0
+lagrangian = sum(i in 1..N, m[i]/2*dot(r[i]', r[i]') + sum(j in 1..i-1, G*m[i]*m[j]/norm(r[i] - r[j])))
+scene s { start r = {(-6.197107027845805e-05, 0.0, 0.0), (0.29363168356222114, 0.0, 0.0), (0.32607901922235927, 0.0, 0.0)}, r' = {(0.0, -0.00035960958943490696, 0.0), (0.0, 1.844972046009362, 0.0), (0.0, 1.7511238483397074, 0.0)}
+  span 1000; tolerance 1e-12; output r every 100 }
+EOF2
+  check "two planets" run "$TMP/late.lag"
+  near "know their horizon" 70 330 "$(value horizon)"
+}
+slow late
+
+# Other units, 1e-9 to 1e9 times, and parts at rest beside: no verdict changes.
+[ -n "${SLOW:-}" ] && few= || few=--few
+if command -v python3 >/dev/null; then
+  check "no verdict changes with units or with what rests" python3 tests/accuracy/units.py ${few}
+  . tests/exec/lib_precision.sh
+  if has_precision long; then slow check "estimates of 60 random runs" python3 tests/accuracy/estimates.py --n 60 --seed 5; fi
+fi
+tap_end
