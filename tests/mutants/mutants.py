@@ -117,7 +117,7 @@ class Map:
         os.makedirs(self.folder, exist_ok=True)
         counted = os.path.join(TREE, "tests", "coverage", "counted.h")
         flags = "BUILD=cov SAN_BUILD=cov PRECISIONS= CLANG= CFLAGS='-O0 -include %s' SAN=--coverage SAN_FLAGS=--coverage" % counted
-        made = sh("make -s -j2 %s CCACHE= %s %s" % (flags, "all" if scripts else "", bins))
+        made = sh("make -s -j2 %s %s %s" % (flags, "all" if scripts else "", bins))
         make_home("cov")
         if not os.path.islink(os.path.join(TREE, "cov", "san")):
             os.symlink(".", os.path.join(TREE, "cov", "san"))
