@@ -60,13 +60,14 @@ int lag_events_inputs_jump(lag_sim *s) {
 /* Intervals below this part of a series, or of the run so far, count as 0. */
 static const double at_once = 1e-7;
 
-/* Whether an event that follows another by dt does so at once: also within a hundredth of the step, as late in a run 1e-7 of it is long. */
+/* Whether an event that follows another by dt does so at once: also within a hundredth of the step,
+ * as late in a run 1e-7 of it is long. */
 static int follows_at_once(const lag_sim *s, double dt) {
   return dt <= at_once * fabs(s->run->t - s->scene->t0) && dt <= 0.01 * fabs(s->run->step_t1 - s->run->step_t0);
 }
 
-/* Time in which event k will fire for ever, dt after it fired last: the rest of the geometric series of its intervals; HUGE_VAL: they do not become
- * shorter. Others may fire between. */
+/* Time in which event k will fire for ever, dt after it fired last: the rest of the geometric
+ * series of its intervals; HUGE_VAL: they do not become shorter. Others may fire between. */
 static double series_rest(lag_sim *s, int k, double dt) {
   double *flight = &s->flight[k], *n = &s->shorter[k], before = s->interval[k], rounding = 4 * DBL_EPSILON * fabs(s->run->t);
   s->interval[k] = dt;
@@ -81,8 +82,9 @@ static double series_rest(lag_sim *s, int k, double dt) {
   return ratio < 1 ? dt * ratio / (1 - ratio) : HUGE_VAL;
 }
 
-/* Whether the event accumulates: some intervals in a row became shorter, and the rest of the series is next to nothing, in units of its first
- * interval, or time does not resolve it. A contact, which goes on at rest, takes the tolerance; a block that rocks loses most of its speed at once. */
+/* Whether the event accumulates: some intervals in a row became shorter, and the rest of the series
+ * is next to nothing, in units of its first interval, or time does not resolve it. A contact, which
+ * goes on at rest, takes the tolerance; a block that rocks loses most of its speed at once. */
 static int is_zeno(const lag_sim *s, int k, double rest, int contact) {
   const double part = contact ? fmin(s->tol, at_once) : at_once;
   return s->shorter[k] >= (contact ? 3 : 10) && (rest <= part * s->flight[k] || s->interval[k] <= 64 * DBL_EPSILON * fabs(s->run->t));

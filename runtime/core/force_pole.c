@@ -41,8 +41,9 @@ static int find_rough(lag_sim *s, double t, int slight) {
 
 void lag_reset_rate_history(lag_sim *s) { for (int i = 0; i < 3 * s->pb.n; i++) s->rate_history[i] = NAN; }
 
-/* The derivative of component i at fraction x of the straight line from now to y at t; NaN: no value. Leaves the state in ya; uses yb. Dense
- * output would not do: its velocities are wild beside a pole. */
+/* The derivative of component i at fraction x of the straight line from now to y at t; NaN: no
+ * value. Leaves the state in ya; uses yb. Dense output would not do: its velocities are wild beside
+ * a pole. */
 static double derivative_at(lag_sim *s, double x, double t, int i) {
   for (int k = 0; k < s->pb.n; k++) s->ya[k] = s->now[k] + x * (s->y[k] - s->now[k]);
   return lag_rhs(&s->pb, s->run->t + x * (t - s->run->t), s->ya, s->yb) ? NAN : s->yb[i];

@@ -49,7 +49,8 @@ static lag_phase_point at_middle(Curve *c, double q) {
   return x;
 }
 
-/* H at the distance d from its extremum in p at q, less that extremum: by the integral of dH/dp where rounding of H would show. */
+/* H at the distance d from its extremum in p at q, less that extremum: by the integral of dH/dp
+ * where rounding of H would show. */
 static double height(Curve *c, double q, const lag_phase_point *extremum, double d) {
   double direct = point_at(c, q, c->middle + d).H - extremum->H, sum = 0;
   if (fabs(direct) > 0x1p40 * DBL_EPSILON * fabs(extremum->H)) return direct;
@@ -115,7 +116,8 @@ static const char *reason_at(Curve *c, double q) {
 
 /* --- turning points --- */
 
-/* The distance of the farther turning point of the parabola through the room at q, its slope, and *most, the largest mean curvature from q to places near and far. */
+/* The distance of the farther turning point of the parabola through the room at q, its slope, and
+ * *most, the largest mean curvature from q to places near and far. */
 static double scale_at(Curve *c, double q, double *most) {
   enum { DECADES = 9 };
   lag_phase_point x = at_middle(c, q);
@@ -183,8 +185,9 @@ static double turning_point(Curve *c, double q, double step, const char **why) {
 
 /* --- the integrals --- */
 
-/* A part of the curve, from a node, where the room is least or 0, to a place `step` from it. There q = at + step v^2 about a turning point, with
- * v = near sinh(w), and q = at + step near sinh(w) about a minimum: the square roots that are near the node lie far from the real axis of w. */
+/* A part of the curve, from a node, where the room is least or 0, to a place `step` from it. There
+ * q = at + step v^2 about a turning point, with v = near sinh(w), and q = at + step near sinh(w)
+ * about a minimum: the square roots that are near the node lie far from the real axis of w. */
 typedef struct {
   double at, step, near, room;
   int turns;
@@ -199,7 +202,8 @@ static double bend_at(Curve *c, double q, double step) {
   return bend;
 }
 
-/* The panel from a node. Adds to *doubt the error of the period by rounding of E - H, which decides how long the motion stays beside a saddle. */
+/* The panel from a node. Adds to *doubt the error of the period by rounding of E - H, which decides
+ * how long the motion stays beside a saddle. */
 static Panel panel_from(Curve *c, double at, double step, int turns, double *doubt) {
   double left = fmax(room(c, at), 0), rounding = c->rounding, bend = bend_at(c, at, step);
   lag_phase_point x = at_middle(c, at);
@@ -210,7 +214,8 @@ static Panel panel_from(Curve *c, double at, double step, int turns, double *dou
   return (Panel){at, step, isfinite(near) && near < 1 ? fmax(near, 1e-15) : 1, turns ? 0 : left, turns};
 }
 
-/* Adds the integrals of p and of dq/q' over a panel, by n points; side: of a curve that goes round, the branch; 0: it turns. */
+/* Adds the integrals of p and of dq/q' over a panel, by n points; side: of a curve that goes round,
+ * the branch; 0: it turns. */
 static void add_panel(Curve *c, const Panel *x, int side, int n, const double *node, const double *weight, double *J, double *time) {
   double whole = asinh(1 / x->near);
   c->q = x->at, c->room = x->room; /* from here rooms are integrated */
@@ -241,7 +246,8 @@ static double corner(Curve *c, double a, double b) {
   return (a + b) / 2;
 }
 
-/* Ends of the curve, and minima of the room and corners of H between them, ascending in node[]. Returns their number. */
+/* Ends of the curve, and minima of the room and corners of H between them, ascending in node[].
+ * Returns their number. */
 static int find_nodes(Curve *c, double low, double high, double *node) {
   enum { PLACES = 64, HALVES = 80 };
   double h = (high - low) / PLACES;

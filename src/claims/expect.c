@@ -140,7 +140,8 @@ static ExpectResult judge_cases(const ContactCase *cases, const CaseSymbols *sym
   return r;
 }
 
-/* Domain of an expectation: that of its text and of its brackets, and, if it uses accelerations, multipliers, rates or the energy, that of the equations of motion. */
+/* Domain of an expectation: that of its text and of its brackets, and, if it uses accelerations,
+ * multipliers, rates or the energy, that of the equations of motion. */
 static Expr domain_of(const Eqns *e, const Expect *x, Expr brackets) {
   const unsigned solved = 1u << SYM_ACC | 1u << SYM_MULTIPLIER | 1u << SYM_RATE | 1u << SYM_LOCAL;
   Expr domain = x->domain ? charges_substitute(e, x->domain) : 0, motion = e->m->domain;

@@ -36,9 +36,10 @@ void expects_check(const Eqns *e, Name effect, int allow_numeric, ExpectResults 
 /* Appends a line for each expectation and a summary; nothing when there are none. */
 void expects_print(const ExpectResults *r, const Sources *sources, StrBuf *out);
 
-/* canonical_claims.c: whether a canonical transformation is one: the Poisson brackets of its map, or the mixed Hessian of its generating function, and
- * the agreement of all that is given. Otherwise reported, with the bracket that is wrong. *how: the proof, in words. Holds between jumps of
- * its functions, which *how then says. */
+/* canonical_claims.c: whether a canonical transformation is one: the Poisson brackets of its map,
+ * or the mixed Hessian of its generating function, and the agreement of all that is given.
+ * Otherwise reported, with the bracket that is wrong. *how: the proof, in words. Holds between
+ * jumps of its functions, which *how then says. */
 int canonical_holds(Eqns *e, const Canonical *c, const CaseSymbols *symbols, const char **how);
 
 /* Judges all canonical transformations, and appends a line for each that holds. */

@@ -19,8 +19,9 @@ int command_effects(Compiler *c);
  * when the model is wrong and nothing is worth printing; the reasons, and false claims, are in c->diags. */
 int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out);
 
-/* Appends the symmetries of the scene's model; scene NULL: of the model without effects, and of each effect alone. format: text, latex, json, or
- * NULL; seconds: of the processor, for the search. Returns 0, with the reasons in c->diags: a wrong model, a false symmetry, no Lagrangian. */
+/* Appends the symmetries of the scene's model; scene NULL: of the model without effects, and of
+ * each effect alone. format: text, latex, json, or NULL; seconds: of the processor, for the search.
+ * Returns 0, with the reasons in c->diags: a wrong model, a false symmetry, no Lagrangian. */
 int noether_print(Compiler *c, const char *scene, double seconds, const char *format, StrBuf *out);
 
 /* Topics of `lagc help`, each once, except functions, units and options. */

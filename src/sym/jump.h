@@ -20,9 +20,10 @@ typedef struct {
   uint32_t n;
 } ExprJumps;
 
-/* Condition under which the derivatives of the roots by all but parameters and time exist, and are those of the branches: u != 0 for sign(u), abs(u)
- * and roots of u, floor(u) != u, |u| != 1 for asin and acos, a != b for comparisons, min and max. 0: everywhere. *jumps (or NULL): 1 is set where
- * jumps or corners are among them. */
+/* Condition under which the derivatives of the roots by all but parameters and time exist, and are
+ * those of the branches: u != 0 for sign(u), abs(u) and roots of u, floor(u) != u, |u| != 1 for
+ * asin and acos, a != b for comparisons, min and max. 0: everywhere. *jumps (or NULL): 1 is set
+ * where jumps or corners are among them. */
 Expr expr_smooth_domain(ExprGraph *g, const Expr *roots, uint32_t n, int *jumps);
 
 /* Jumps of x as a function of coordinates, velocities, states and time, one per causing node, in graph order. Searched along 64 straight

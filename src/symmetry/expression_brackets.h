@@ -45,7 +45,8 @@ Expr poisson_bracket(ExprGraph *g, Expr f, Expr h, const SymId *q, const SymId *
 /* Fills e->brackets, in the order of Model.brackets. 0, reported, where there is no closed form. */
 int expression_brackets_derive(Eqns *e, const ChargeNames *charges);
 
-/* Where what the brackets in x contain has derivatives; 0: everywhere. *jumps: 1 is set where they hold between jumps. */
+/* Where what the brackets in x contain has derivatives; 0: everywhere. *jumps: 1 is set where they
+ * hold between jumps. */
 Expr expression_brackets_domain(const Eqns *e, Expr x, int *jumps);
 
 /* x with the symbols of brackets replaced by their values, or, in_momenta, by their forms in q and p. */

@@ -282,8 +282,8 @@ static void use_attempt(SymmetrySearch *s, uint32_t attempt) {
   s->spaces = ARENA_ARRAY(s->scratch, SolutionSpace, noether_choices(s));
 }
 
-/* Chooses values of the parameters at which L has values, and others where some rate is complex and has no closed form: a trap that does not
- * confine. */
+/* Chooses values of the parameters at which L has values, and others where some rate is complex and
+ * has no closed form: a trap that does not confine. */
 static void draw_parameters(SymmetrySearch *s) {
   enum { ATTEMPTS = 12 };
   for (uint32_t attempt = 0; attempt < ATTEMPTS; attempt++) {

@@ -41,7 +41,8 @@ typedef struct {
  * has none. */
 const char *noether_note_on_impacts(const Model *m);
 
-/* Finds symmetries that hold for all values of the parameters, in the time allowed: `note` says what was not searched. Needs a Lagrangian. */
+/* Finds symmetries that hold for all values of the parameters, in the time allowed: `note` says
+ * what was not searched. Needs a Lagrangian. */
 FoundSymmetries noether_find(Eqns *e, SearchLimit *limit);
 
 /* A scaling q_i -> s^alpha_i q_i, t -> s^beta t that multiplies L dt by s^kappa with kappa not 0: it maps solutions to solutions and has no

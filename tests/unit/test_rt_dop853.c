@@ -2,6 +2,7 @@
  * costs. Sources of expected values: the theory (Butcher; HNW I II.2), closed forms. */
 #include "test_rt_systems.h"
 
+#include "core/core.h"
 #include "methods/tableau.h"
 
 static const lag_tableau *const tab = &lag_dop853_tableau;
@@ -220,13 +221,13 @@ static void dense_output_is_paid_for_when_asked_for(void **state)
   (void)state;
   assert_int_equal(lag_sim_advance(s, 1), LAG_OK);
   lag_sim_stats(s, &st);
-  assert_int_equal(st.rhs_calls, 1 + 8 * 12);
+  assert_int_equal(st.rhs_calls - (long long)s->run->pole_calls, 1 + 8 * 12);
   for (int k = 1; k < 10; k++) {
     assert_int_equal(lag_sim_advance(s, 1 + k * 0.01), LAG_OK);
   }
   lag_sim_stats(s, &st);
   assert_int_equal(st.steps, 9);
-  assert_int_equal(st.rhs_calls, 1 + 9 * 12 + 3);
+  assert_int_equal(st.rhs_calls - (long long)s->run->pole_calls, 1 + 9 * 12 + 3);
   lag_sim_free(s);
 }
 
