@@ -57,7 +57,6 @@ static void take_over(lag_sim *s) {
   if (m->derive) m->derive(s->p);
   lag_note_redundant(s);
   lag_switch_count(s);
-  lag_reset_rate_history(s);
 }
 
 int lag_sim_load(lag_sim *s, const double *x) {

@@ -21,9 +21,9 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0, pushes = pushed ? lag_contact_step_size(m) : 0;
   double *contacts, *contact_room = calloc(pushes + 1, sizeof *contact_room), **const parts[] = {&s->p, &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign,
                             &s->noise, &s->root, &s->sign_end, &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->flight, &s->skipped, &s->crossed, &s->slips, &s->slid, &s->slid_since, &s->mon_first, &s->mon_peak,
-                            &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change, &s->charge_block};
+                            &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change, &s->charge_block, &s->rate_history};
   const size_t sizes[] = {(size_t)m->np, (size_t)m->nderived, nu, n, n, nc, (size_t)m->nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev,
-                          nm, nm, nm, nm, nmon, nmon, (size_t)s->scene->nexact, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0, pushed, pushed ? (size_t)m->nq : 0, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double)};
+                          nm, nm, nm, nm, nmon, nmon, (size_t)s->scene->nexact, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0, pushed, pushed ? (size_t)m->nq : 0, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double), 3 * n};
   const size_t nparts = sizeof sizes / sizeof *sizes, fixed = RUN_DOUBLES + lag_cut(NULL, nparts, parts, sizes);
   lag_problem sized = s->pb;
 
@@ -62,6 +62,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->pb.variant = method->variant;
   s->charges = (Charge *)(void *)s->charge_block;
   s->method = method;
+  lag_reset_rate_history(s);
   lag_charges_method(s, method);
   return LAG_OK;
 }
@@ -73,9 +74,9 @@ static int alloc_scratch(lag_sim *s) {
   size_t held = lag_constraint_scratch_size(m), ranks = lag_rank_scratch_size(m), sized = m->ncontacts ? 2 * (size_t)m->constraints->n : 0;
   size_t nc = (size_t)lag_sim_ncharges(s) + 1, np = (size_t)m->ncontacts;
   double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->pb.ranks, &s->contact_scratch,
-                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->rate_history, &s->grip, &s->side_noise, &s->slid_off, &s->meets, &s->left,
+                            &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->grip, &s->side_noise, &s->slid_off, &s->meets, &s->left,
                             &s->meeting, &s->pb.slide, &s->pb.rub};
-  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch, 3 * n, nm, nm, nm, nm, nm,
+  const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm,
                           nm * (7 + 2 * nm), nm * (3 + nm), m->contact_laws ? np * (5 + 2 * np) : 0};
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
@@ -84,7 +85,6 @@ static int alloc_scratch(lag_sim *s) {
   s->meeting_of = calloc(2 * nm + 1, sizeof *s->meeting_of);
   if (!s->meeting_of || !s->scratch || !s->fixed || !s->start || !s->signal) return LAG_ENOMEM;
   for (size_t i = 0; i < n; i++) s->start[i] = NAN;
-  lag_reset_rate_history(s);
   s->pb.sliding = s->meeting_of + nm;
   s->pb.u = s->u;
   s->pb.signal = s->signal;

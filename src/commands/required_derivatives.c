@@ -100,7 +100,7 @@ unsigned derivatives_in_time(unsigned wants, const IrUnit *u, const Options *o) 
 unsigned derivatives_required(const Eqns *e, const Options *o) {
   if (o->command == CMD_COST) {
     const char *methods = passed_option(o, "--methods");
-    return methods ? required_by_method(e, methods) : required_by_all(e);
+    return methods ? required_by_method(e, methods) | WANT_TAYLOR : required_by_all(e); /* taylor: for the reference */
   }
   unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) | required_by_choice(e, o) | (o->command == CMD_FMU ? fmu_wants() : o->command == CMD_HEADER ? WANT_HELD | header_wants(o->with) | header_wants(o->target) : o->with || measures_exponent(e, o) ? WANT_LINEAR : 0u);
   return o->resume ? wants | required_by_method(e, method_of_state(e->m->arena, o->resume)) : wants;

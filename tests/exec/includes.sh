@@ -153,7 +153,7 @@ fi
 includes_of() {
   for m in models/*.lag; do
     one_of 4 && { [ "$1" != header ] || has_header "$m"; } || continue
-    "$LAGC" "$1" "$m" -o "$TMP/emitted" || echo "lagc $1 $m: exit status $?"
+    "$LAGC" "$1" "$m" -o "$TMP/emitted" 2>/dev/null || echo "lagc $1 $m: exit status $?"
     sed -n 's/^[ \t]*#[ \t]*include[ \t]*//p' "$TMP/emitted" | grep -v -x -e "$2" | sed "s|^|lagc $1 $m includes |"
   done 2>&1
 }

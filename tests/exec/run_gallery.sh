@@ -56,7 +56,7 @@ check "one word too many" says 2 'one word too many' "$lagc" models two words
 is "models by a word of their names and titles, in capitals or not" "$(grep -i '^@.*swings' list)" "$(grep '^@' some)"
 check "there are some, and others" sh -c '[ "$(grep -c "^@" some)" -ge 2 ] && [ "$(grep -c "^@" some)" -lt "$(grep -c "^@" list)" ]'
 check "by a word that none has" says 2 'no model has `xyzzy` in its name or title' "$lagc" models xyzzy
-check "help has none on a model, but says where it is" says 2 'no help on `bounce`; `lagc help` lists the topics, `lagc models bounce` models of it' "$lagc" help bounce
+check "help on a model says where it is" says 0 'Models: `lagc models woodpecker`' "$lagc" help woodpecker
 is "nothing is left of these" "" "$(ls other.lag one.lag ../up.lag 2>/dev/null)"
 printf 'model flat\ninclude "bodies.lag"\ncoord a [rad]\nparam m = 5 [kg] > 0, r = 0.5 [m] > 0\nlagrangian = ball(m, r)/2*a'"'"'^2\nexpect p: d(lagrangian, a'"'"') = 2/5*m*r^2*a'"'"'\n' >flat.lag
 check "a model anywhere includes the library" "$lagc" check flat.lag

@@ -6,6 +6,8 @@
 # src/README.md, CONTRIBUTING.md and grammar/LANGUAGE.md, lead to files.
 . tests/tap.sh
 
+# kept_block K PAGE: the block below the K-th `printed by`
+kept_block() { awk -v k="$1" '/^<!-- printed by: / { i++ } /^```/ { if (i == k) n++; next } i == k && n == 1' "$2"; }
 shows() { # shows PAGE
   page=$1
   fresh=$TMP/fresh.md
@@ -18,12 +20,12 @@ shows() { # shows PAGE
     case ${GSL:-}$command in
     build/lagc\ modes*) # without GSL the block stays as it is
       skip "$command" "GSL is not installed"
-      awk -v k="$n" '/^<!-- printed by: / { i++ } /^```/ { inside = i == k && !inside; next } inside' "$page" >"$TMP/blocks/$n"
+      kept_block "$n" "$page" >"$TMP/blocks/$n"
       continue ;;
     esac
     case ${SLOW:-}${BLESS:-}$command in
     build/lagc\ effects*--accuracy* | build/lagc\ modes*bicycle*) # 8 s and 6 s, in `make test-long`
-      awk -v k="$n" '/^<!-- printed by: / { i++ } /^```/ { inside = i == k && !inside; next } inside' "$page" >"$TMP/blocks/$n"
+      kept_block "$n" "$page" >"$TMP/blocks/$n"
       continue ;;
     esac
     command=$(printf '%s\n' "$command" | sed "s|build/lagc|$LAGC|g")
