@@ -180,7 +180,7 @@ says '^best: '
 says '^  lagc run .*--method ".*step=0.02)"'
 check "the fastest with an error of 1e-3" text models/spring.lag free --realtime 0.02 --target 1e-3 --seconds 1
 says '^fastest: '
-ranked() { awk '/^[* ] [a-z].* [0-9]e-[0-9]/ { sub(/^../, ""); if ($2 + 0 > 1e-3) next; if ($3 + 0 < last) bad = 1; last = $3 + 0; n++ } END { exit bad || n < 2 }' "$TMP/text"; }
+ranked() { awk '/^[* ] [a-z].*[0-9]e-[0-9]/ { sub(/^../, ""); if ($2 + 0 > 1e-3) next; if ($3 + 0 < last) bad = 1; last = $3 + 0; n++ } END { exit bad || n < 2 }' "$TMP/text"; }
 check "those that meet it come first, by time" ranked
 refused "a step of nothing" 'example --realtime 1e-3' models/spring.lag --realtime 0
 hopeless() { text models/spring.lag free k=1e6 --until 1 --realtime 0.5 --seconds 1; [ $? = 3 ] && grep -q 'take shorter steps' "$TMP/text"; }
