@@ -40,6 +40,7 @@ digits() { # MODEL METHOD
     "-DHEADER=\"$n.h\"" "-D${upper}_IMPLEMENTATION" -iquote "$TMP" -I"$INC" $here/embed_digits.c "$TMP/$n.c" "$BUILD/liblag.a" -lm -o "$TMP/digits" && "$TMP/digits"
 }
 for m in models/*.lag; do
+  light "$m" || continue
   has_header "$m" || continue
   "$LAGC" header "$m" | grep -q '_hold(' && continue
   "$LAGC" emit "$m" | grep -q 'nmodes\|ntables' && continue # runs end steps where a force jumps, and at the rows of a table; headers do not

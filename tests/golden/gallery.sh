@@ -50,7 +50,7 @@ small() { [ "$(wc -c <"$1")" -lt 150000 ] && tail -n 1 "$1" | grep -qx '</svg>';
 sed -n -e 's/^Drawn by `build\/lagc \(.*\) \(-o\) \(.*\)`:$/\3 \2 \1/p' -e 's/^Drawn by `build\/lagc \(.*\) \(--svg\) \(.*\)`:$/\3 \2 \1/p' models/README.md >"$TMP/list"
 check "there is a gallery" [ -s "$TMP/list" ]
 while read -r picture to words; do
-  one_of 20 || continue
+  one_of 20 && light "$picture" || continue
   check "$picture is drawn" sh -c "$LAGC $words $to $TMP/new.svg --quiet"
   check "$picture is up to date" same_picture "$picture" "$TMP/new.svg"
   check "$picture is small and whole" small "$picture"
@@ -61,7 +61,7 @@ case $LAGC in /*) lagc=$LAGC ;; *) lagc=$(pwd)/$LAGC ;; esac
 ln -s "$(pwd)/models" "$TMP/models"
 sed -n 's/^lagc //p' models/README.md | grep -v NAME >"$TMP/commands"
 while read -r words; do
-  one_of 30 || continue
+  one_of 30 && light "$words" || continue
   case $words in action* | check* | derive* | modes*) quiet= ;; *) quiet=--quiet ;; esac
   status=0
   case $words in *painleve_rod.lag*mu=1.34) status=3 ;; esac # it shows the message
