@@ -159,7 +159,7 @@ static const FixedStep *choose(const FixedStep *all, int n, double step, double 
   for (int i = 0; i < n; i++) {
     const FixedStep *x = &all[i];
     if (isnan(x->error) || x->error >= (target > 0 ? fmin(target, lost) : lost) || x->refused || x->worst > 0.5 * step) continue;
-    if (!best || (!target && x->error <= 2 * best->error && x->mean <= 0.5 * best->mean)) best = x;
+    if (!best || (!(target > 0) && x->error <= 2 * best->error && x->mean <= 0.5 * best->mean)) best = x;
   }
   return best;
 }
