@@ -47,6 +47,9 @@ one_of() {
 # light MODEL: all but the bicycle, for whose C a compiler takes as long as for ten others; in `make test-long` all.
 light() { [ -n "${SLOW:-}" ] || case $1 in *bicycle*) false ;; esac; }
 
+# self_contained MODEL: its C needs nothing of liblag, as an output action(x) does.
+self_contained() { ! grep -q '^ *observe .*= action(' "$1"; }
+
 # has_header MODEL: constraints that begin and end by a condition have no header, and no one function for all states.
 has_header() { ! grep -q '^ *constraint .* while [^l]' "$1"; }
 

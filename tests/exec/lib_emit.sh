@@ -9,7 +9,7 @@ export TMP
 # Two that programs of these suites use by name, and one model in `part`.
 models='models/double_pendulum.lag tests/exec/models/oscillator.lag'
 for m in models/*.lag tests/exec/models/*.lag; do
-  case " $models " in *" $m "*) ;; *) one_of "$part" && light "$m" && models="$models $m" ;; esac
+  case " $models " in *" $m "*) ;; *) one_of "$part" && light "$m" && self_contained "$m" && models="$models $m" ;; esac
 done
 strict='-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror'
 here=tests/exec

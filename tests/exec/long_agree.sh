@@ -8,7 +8,7 @@
 models=
 for m in models/*.lag tests/exec/models/*.lag; do
   case $m in */mutants_*) continue ;; esac # they share names with other models
-  one_of 16 && models="$models $m"
+  one_of 16 && self_contained "$m" && models="$models $m"
 done
 third=$(printf '%s\n' $models | grep -v /bicycle | awk 'NR % 3 == 1') # the bicycle alone would take as long as all others
 mkdir -p "$TMP/c"

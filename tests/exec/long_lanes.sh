@@ -14,7 +14,7 @@ clang=${CLANG:-$(command -v clang)}
 models=$(echo tests/exec/lanes/*.lag)
 for m in models/*.lag tests/exec/models/*.lag; do
   case $m in models/string.lag) continue ;; esac
-  one_of 16 && models="$models $m"
+  one_of 16 && self_contained "$m" && models="$models $m"
 done
 name_of() { sed -n 's/^model \([^ ]*\).*/\1/p' "$1" | tr '[:upper:]' '[:lower:]'; }
 mkdir -p "$TMP/gauss" "$TMP/taylor"

@@ -21,7 +21,7 @@ emit_scene() { # MODEL SCENE OPTIONS...
 }
 models='models/double_pendulum.lag models/slider_crank.lag models/free_body.lag'
 for m in models/*.lag tests/exec/models/*.lag; do
-  case " $models " in *" $m "*) ;; *) one_of 16 && models="$models $m" ;; esac
+  case " $models " in *" $m "*) ;; *) one_of 16 && self_contained "$m" && models="$models $m" ;; esac
 done
 for m in $models; do
   for scene in $(sed -n 's/^scene \([^ ]*\).*/\1/p' "$m"); do emit_scene "$m" "$scene"; done
