@@ -8,7 +8,7 @@ MODELS=${MODELS:-pendulum double_pendulum kepler rolling_cylinder bouncing_ball}
 
 # built NAME CC AR: the whole of `make`, in $BUILD/port-NAME. FLEX and BISON run on this machine.
 built() {
-  env -u CC -u CFLAGS -u PRECISIONS "$MAKE" -s -j2 CC="$2" AR="$3" CFLAGS=-O1 BUILD="$BUILD/port-$1" all
+  env -u CC -u CFLAGS -u PRECISIONS "$MAKE" -s -j2 CC="$2" AR="$3" CFLAGS=-O1 BUILD="$BUILD/port-$1" all "$BUILD/port-$1/liblag_long.a"
 }
 
 # texts NAME RUNNER...: the compiler's texts have the checksums of emitted.txt.
