@@ -1,9 +1,9 @@
 #!/bin/sh
-# 2,200 random models against their texts; RANDOM_SEED=N takes others, RANDOM_THOUSANDS=N more of them. Then a thousand against a compiler that loses the sign of an odd function
+# 1,260 random models against their texts, a thousand of them others each day; RANDOM_SEED=N takes those of a seed, RANDOM_THOUSANDS=N more of them. Then a thousand against a compiler that loses the sign of an odd function
 # within an angle, sin(x + asin(tanh(x))) -> sin(x - asin(tanh(x))): they must show it.
 . tests/tap.sh
 . tests/random/lib_random.sh
-seed=${RANDOM_SEED:-2}
+seed=${RANDOM_SEED:-${DAY:-2}}
 
 agree() { # FROM TO [SEED]
   random_check "${3:-$seed}" "$1" "$2"
@@ -13,7 +13,7 @@ agree() { # FROM TO [SEED]
 }
 check "seed 1, models 41 to 300" agree 41 300 1
 i=0
-while [ "$i" -lt "${RANDOM_THOUSANDS:-2}" ]; do
+while [ "$i" -lt "${RANDOM_THOUSANDS:-1}" ]; do
   check "seed $seed, models $((i * 1000 + 1)) to $(((i + 1) * 1000))" agree $((i * 1000 + 1)) $(((i + 1) * 1000))
   echo "# $(tail -n 1 "$TMP/random.txt")"
   i=$((i + 1))
@@ -27,9 +27,9 @@ sign_is_lost() {
     return 1
   fi
   "${CC%% *}" -std=c11 -O1 -w -D_XOPEN_SOURCE=700 -Isrc -I"$BUILD/gen" -o "$TMP/random_check" tests/random/check.c tests/random/model.c "$TMP/trigform.c" "$BUILD/liblagc.a" -lm
-  random_check "$seed" 1 1000 && return 1
+  random_check 2 1 1000 && return 1
   grep -q ' disagree; ' "$TMP/random.txt"
 }
-check "seed $seed, 1000 models show the sign that was lost" sign_is_lost
+check "seed 2, 1000 models show the sign that was lost" sign_is_lost
 echo "# $(tail -n 1 "$TMP/random.txt")"
 tap_end
