@@ -55,14 +55,15 @@ static FormulaNoise worst_rate(lag_sim *sim, const double *noise, double *size, 
   return worst;
 }
 
-FormulaNoise lag_formula_noise(lag_sim *sim, const Samples *motion) {
+int lag_formula_noise(lag_sim *sim, const Samples *motion, FormulaNoise *worst) {
   enum { STATES = 16, FEW = 2 };
   const lag_model *m = sim->scene->model;
-  FormulaNoise worst = {.of = -1};
   int n = sim->pb.n, most = m->ops < 10000 ? STATES : FEW, states = 0, rows = motion->rows;
   double *noise = calloc(7 * (size_t)n + 1, sizeof *noise), *size = noise + n;
+  *worst = (FormulaNoise){.of = -1};
+  if (!noise) return LAG_ENOMEM;
   if (m->nmodes || m->ncontacts || n != motion->n) rows = 0; /* other branches, at other states */
-  for (int k = 0; noise && k < most && k < rows; k++) {
+  for (int k = 0; k < most && k < rows; k++) {
     int row = most < rows ? (int)((2 * k + 1) * (long long)rows / (2 * most)) : k;
     states += !add_noise(sim, motion->t[row], motion->y + (size_t)row * (size_t)n, noise, size, size + n);
   }
@@ -70,8 +71,8 @@ FormulaNoise lag_formula_noise(lag_sim *sim, const Samples *motion) {
     double *v = size + n, span = fabs(motion->t[rows - 1] - sim->scene->t0);
     lag_velocity_terms(sim, motion->t[rows / 2], motion->y + (size_t)(rows / 2) * (size_t)n, v);
     for (int i = 0; i < sim->pb.nq; i++) v[i] = span > 0 ? v[i] / span : HUGE_VAL;
-    worst = worst_rate(sim, noise, size, v, states);
+    *worst = worst_rate(sim, noise, size, v, states);
   }
   free(noise);
-  return worst;
+  return LAG_OK;
 }
