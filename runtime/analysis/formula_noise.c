@@ -1,40 +1,26 @@
-/* Rounding of the formulas of the rates of change, which all runs of a precision share: their values in other rounding
- * modes. W. Kahan, How futile are mindless assessments of roundoff in floating-point computation? (2006), section 4. */
+/* Rounding of the formulas of the rates of change, which all runs of a precision share: core/sizes.c at states of
+ * the run. */
 #include "analysis/formula_noise.h"
 
-#include <fenv.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "core/core.h"
 
-/* dy[n] := rates in a rounding mode. */
-static int rates(lag_sim *sim, int mode, double t, const double *y, double *dy) {
-  int before = fegetround(), rc = fesetround(mode) || lag_rhs(&sim->pb, t, y, dy);
-  return fesetround(before) || rc;
-}
-
 /* noise[n] += rounding of the rates at t, y; size[n] := the largest of itself and of their sizes. scratch[5 n]. Not 0: no
  * values. */
 static int add_noise(lag_sim *sim, double t, const double *y, double *noise, double *size, double *scratch) {
-#if defined FE_UPWARD && defined FE_DOWNWARD && defined FE_TONEAREST
   const double moved = 1. / 1024, usual = 1. / 3; /* these roundings are twice as large as others, and of one sign */
-  int n = sim->pb.n;
-  double *up = scratch, *down = up + n, *beside = down + n, *state = beside + n, *f = state + n;
+  int n = sim->pb.n, nq = sim->pb.nq;
+  double *off = scratch, *up = off + n, *beside = up + n, *state = beside + n, *f = state + n;
   for (int i = 0; i < n; i++) state[i] = y[i] * (1 + moved);
-  if (rates(sim, FE_TONEAREST, t, y, f) || rates(sim, FE_TONEAREST, t, state, beside)) return 1;
-  if (rates(sim, FE_UPWARD, t, y, up) || rates(sim, FE_DOWNWARD, t, y, down)) return 1;
-  for (int i = 0; i < n; i++) {
-    double over = fabs(up[i] - f[i]), under = fabs(down[i] - f[i]);
-    /* One of the modes costs lag_math.h digits of a small angle, by its sign. */
-    double off = over > 0 && under > 0 ? fmin(over, under) : fmax(over, under);
-    noise[i] += usual * off;
-    size[i] = fmax(size[i], lag_above_rounding(fabs(f[i]) + off, fabs(beside[i] - f[i]) / moved));
+  if (lag_rhs(&sim->pb, t, state, beside) || lag_rhs(&sim->pb, t, y, f)) return 1;
+  if (lag_formula_rounding(sim, LAG_FORMULA_RATES, t, y, n - nq, off + nq, up, state)) return 1;
+  for (int i = nq; i < n; i++) {
+    noise[i] += usual * off[i];
+    size[i] = fmax(size[i], lag_above_rounding(fabs(f[i]) + off[i], fabs(beside[i] - f[i]) / moved));
   }
   return 0;
-#else
-  return 1;
-#endif
 }
 
 /* The rate whose rounding is the largest part of the sizes of its kind. beside[nq]: size of accelerations that are

@@ -190,16 +190,18 @@ static void add_to_trend(Charge *c, double t, double d, double size) {
   if (++c->bins >= LAG_BINS) merge_bins(c);
 }
 
-/* Sizes that charges have if the values at the start are rounding: of momenta, those with the velocities of the energy's size. */
+/* Sizes that charges have if the values so far are rounding: of momenta, those with the velocities of the energy's size. */
 static void take_terms(lag_sim *s, double t, const double *y) {
   int n = lag_sim_ncharges(s), nq = s->pb.nq;
   double *beside = s->yb, *v = beside + nq;
-  memcpy(beside, y, (size_t)s->pb.n * sizeof *beside);
+  double energy = n > 0 ? lag_energy_terms(s, t, y) : 0;
   if (n > 1) lag_velocity_terms(s, t, y, v);
+  memcpy(beside, y, (size_t)nq * sizeof *beside);
+  memcpy(v + nq, y + 2 * nq, (size_t)s->pb.nz * sizeof *v);
   for (int i = 0; i < nq; i++) v[i] = v[i] < HUGE_VAL ? v[i] : y[nq + i];
   if (n > 1) lag_charges_at(s, t, beside);
-  for (int k = 1; k < n; k++) s->charges[k].terms = s->charge_now[2 * k + 1];
-  if (n > 0) s->charges[0].terms = lag_energy_terms(s, t, y);
+  for (int k = 0; k < n; k++) s->charges[k].terms = fmax(s->charges[k].terms, k ? s->charge_now[2 * k + 1] : energy);
+  if (n > 0) s->charges[0].step = lag_step_so_far(s);
 }
 
 void lag_charges_begin(lag_sim *s, double t, const double *y) {
@@ -273,7 +275,9 @@ static void note_jolt(lag_sim *s, double t, const double *y, double change) {
 }
 
 int lag_charges_record(lag_sim *s, double t, const double *y) {
+  const double longer = 4;
   int lost = 0;
+  if (lag_sim_ncharges(s) && lag_step_so_far(s) > longer * s->charges[0].step) take_terms(s, t, y);
   if (lag_energy_undefined(s, t, y)) return LAG_ENAN;
   add_work(s, t);
   for (int k = 0, n = lag_sim_ncharges(s); k < n; k++) {
