@@ -232,15 +232,23 @@ static int is_lost(const lag_model *m, const Charge *c, double d, double size) {
   return c->balanced != 0.0 && !driven && c->bins >= few && off > fmax(times * fabs(c->begin), least * c->terms) && off > part * fmax(size, c->through) && off > times * size_of(c);
 }
 
-int lag_energy_retained(lag_sim *s) {
+/* *c := the energy's; whether half of it is lost. */
+static int is_half_lost(lag_sim *s, lag_charge_stats *c) {
   const double half = 0.5, least = 1e-12;
+  lag_sim_charge(s, 0, c);
+  double large = fmax(fabs(c->now), s->charges[0].through); /* where forces do more work than the energy that there was */
+  int known = (c->flags & (LAG_CONSERVED | LAG_BALANCED)) != 0;
+  return known && c->drift >= half && c->absolute > fmax(least * s->charges[0].terms, half * large);
+}
+
+int lag_energy_retained(lag_sim *s) {
   const lag_model *m = s->scene->model;
   lag_charge_stats c;
   if (lag_sim_ncharges(s) == 0 || s->run->begun == 0.0 || (m->constraints && !(m->flags & LAG_AUTONOMOUS))) return LAG_OK;
-  lag_sim_charge(s, 0, &c);
+  if (!is_half_lost(s, &c)) return LAG_OK;
+  take_terms(s, s->run->t, s->now);
+  if (!is_half_lost(s, &c)) return LAG_OK;
   const char *space = c.unit[0] ? " " : "";
-  double large = fmax(fabs(c.now), s->charges[0].through); /* where forces do more work than the energy that there was */
-  if (!(c.flags & (LAG_CONSERVED | LAG_BALANCED)) || !(c.drift >= half) || !(c.absolute > fmax(least * s->charges[0].terms, half * large))) return LAG_OK;
   return lag_fail(s, LAG_EDRIFT, "up to t = %.9g s the energy has an error of %.3g%s%s, of %.3g%s%s at the start: the numbers mean nothing; take %s", s->run->t, c.absolute, space, c.unit,
                   c.begin, space, c.unit, s->steps_equal ? "smaller steps" : "a smaller tolerance");
 }
@@ -284,7 +292,11 @@ int lag_charges_record(lag_sim *s, double t, const double *y) {
     Charge *c = &s->charges[k];
     double d = s->charge_now[2 * k] - c->work - c->first, size = s->charge_now[2 * k + 1];
     c->peak = fabs(d) > c->peak || isnan(d) ? fabs(d) : c->peak; /* a NaN must not be forgotten */
-    lost = lost || (k == 0 && is_lost(s->scene->model, c, d, size) && say_lost(s, t, c->before, d));
+    if (k == 0 && is_lost(s->scene->model, c, d, size)) {
+      take_terms(s, t, y);
+      lag_charges_at(s, t, y);
+      lost = is_lost(s->scene->model, c, d, size) && say_lost(s, t, c->before, d);
+    }
     add_to_trend(c, t, d, size);
     if (k == 0 && c->balanced != 0.0 && isfinite(d)) note_jolt(s, t, y, fabs(d - c->before));
     c->before = d;

@@ -128,13 +128,17 @@ static double energy_of_force(lag_sim *s, double t, const double *y, int i, doub
   return 0;
 }
 
-/* The size of the energy e of which rounding is what a body at rest has: of its formula, of forces in balance in a step h,
- * and of lengths in constraints. */
+/* The size of the energy e of which rounding is what a body at rest has: of its formula, of rates and of forces in
+ * balance in a step h, and of lengths in constraints. */
 static double resting_terms(lag_sim *s, double t, const double *y, double h, double e) {
   const lag_model *m = s->scene->model;
   double of[2], up[2], down[2];
   double terms = lag_formula_rounding(s, LAG_FORMULA_ENERGY, t, y, 1, of, up, down) ? 0 : of[0] / DBL_EPSILON;
-  double least = 1e3 * DBL_EPSILON * fmax(fabs(e), terms);
+  double least = 1e3 * DBL_EPSILON * fmax(fabs(e), terms), *a = s->ya;
+  if (h > 0 && lag_formula_rounding(s, LAG_FORMULA_RATES, t, y, m->nq, a, s->yb, s->yc) == 0) {
+    for (int i = 0; i < m->nq; i++) a[i] *= h / DBL_EPSILON;
+    terms += change_of_energy(s, t, y, m->nq, a, e);
+  }
   for (int i = 0; i < m->nq && h > 0 && !(m->flags & LAG_FIRST_ORDER); i++)
     terms += is_first(m, i) ? energy_of_force(s, t, y, i, h, e, least) : 0;
   return constraint_lengths(s, t, y) ? terms : terms + change_of_energy(s, t, y, 0, s->yb, e);
