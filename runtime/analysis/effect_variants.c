@@ -60,14 +60,14 @@ static double row_difference(const double *a, const double *b, const int *at, co
 
 /* Scales of a, of a component that rests in it those of b: a motion that an effect makes has a size, its absence none.
  * own: scratch. */
-static void take_scales(const Variant *a, const Variant *b, const int *at, double *scale, double *own) {
+static int take_scales(const Variant *a, const Variant *b, const int *at, double *scale, double *own) {
   const Samples *s = &a->run;
-  lag_cost_scales(s, a->sim, scale);
-  lag_cost_scales(&b->run, b->sim, own);
+  if (lag_cost_scales(s, a->sim, scale) || lag_cost_scales(&b->run, b->sim, own)) return LAG_ENOMEM;
   for (int i = 0; i < s->n; i++) {
     double size = lag_size_in(s, i);
     if (at[i] >= 0 && lag_above_rounding(size, scale[i]) > size) scale[i] = fmin(scale[i], own[at[i]]);
   }
+  return LAG_OK;
 }
 
 int lag_variant_difference(const Variant *scene, const Variant *other, double *difference) {
@@ -76,8 +76,8 @@ int lag_variant_difference(const Variant *scene, const Variant *other, double *d
   int common = a->rows < b->rows ? a->rows : b->rows, *at = places(&pool, scene, other);
   double *scale = lag_pool_doubles(&pool, (size_t)a->n), *own = lag_pool_doubles(&pool, (size_t)b->n);
   size_t na = (size_t)a->n, nb = (size_t)b->n, last_a = (size_t)a->rows - 1, last_b = (size_t)b->rows - 1;
+  pool.failed = pool.failed || take_scales(scene, other, at, scale, own);
   if (!pool.failed) {
-    take_scales(scene, other, at, scale, own);
     double most = row_difference(a->y + last_a * na, b->y + last_b * nb, at, scale, a->n);
     for (size_t i = 0; i + 1 < (size_t)common; i++) most = fmax(most, row_difference(a->y + i * na, b->y + i * nb, at, scale, a->n));
     double begun = scene->sim->scene->t0;

@@ -313,12 +313,13 @@ static int compare_rows(ErrorEstimate *e, lag_sim *other, const double *scale) {
   return LAG_OK;
 }
 
-double lag_error_least_scale(const ErrorEstimate *e, lag_sim *other) {
-  double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale), least = HUGE_VAL;
-  if (scale) lag_cost_scales(&e->motion, other, scale);
-  for (int i = 0; scale && i < e->motion.n; i++) least = fmin(least, scale[i]);
+int lag_error_least_scale(const ErrorEstimate *e, lag_sim *other, double *least) {
+  double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale);
+  int rc = scale ? lag_cost_scales(&e->motion, other, scale) : LAG_ENOMEM;
+  *least = HUGE_VAL;
+  for (int i = 0; rc == LAG_OK && i < e->motion.n; i++) *least = fmin(*least, scale[i]);
   free(scale);
-  return least < HUGE_VAL ? least : 0;
+  return rc;
 }
 
 int lag_formula_is_lossy(const ErrorEstimate *e) {
@@ -328,10 +329,9 @@ int lag_formula_is_lossy(const ErrorEstimate *e) {
 
 int lag_error_estimate_compare(ErrorEstimate *e, lag_sim *other, double until) {
   double *scale = calloc((size_t)e->motion.n + 1, sizeof *scale), power, level;
-  if (!scale) return LAG_ENOMEM;
-  lag_cost_scales(&e->motion, other, scale);
-  e->formula = lag_formula_noise(other, &e->motion);
-  int rc = compare_rows(e, other, scale);
+  int rc = scale ? lag_cost_scales(&e->motion, other, scale) : LAG_ENOMEM;
+  if (rc == LAG_OK) rc = lag_formula_noise(other, &e->motion, &e->formula);
+  if (rc == LAG_OK) rc = compare_rows(e, other, scale);
   free(scale);
   if (rc == LAG_ENOMEM) return rc;
   find_growth(e, &power, &level);

@@ -41,8 +41,8 @@ void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim);
 /* Notes the state at the end of the run, unless it ended at an event. */
 void lag_error_estimate_note_end(ErrorEstimate *e, lag_sim *sim);
 
-/* The smallest divisor of errors along the noted motion; 0: no memory. */
-double lag_error_least_scale(const ErrorEstimate *e, lag_sim *other);
+/* *least := the smallest divisor of errors along the noted motion. LAG_OK or LAG_ENOMEM. */
+int lag_error_least_scale(const ErrorEstimate *e, lag_sim *other, double *least);
 
 /* Runs `other`, a simulation of the same scene at its start with a more accurate setting, along the noted motion, until it fails or its hook (lag_sim_on_step)
  * ends it, and fills in the rest of *e; until: end of the run. LAG_OK, also where `other` fails (e->why), or LAG_ENOMEM. */

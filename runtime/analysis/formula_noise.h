@@ -9,5 +9,5 @@ typedef struct FormulaNoise {
   double part; /* mean rounding of the rate, relative to the largest rate of its kind */
 } FormulaNoise;
 
-/* sim: of the scene; its state stays. Models with switches or contacts are not looked at. */
-FormulaNoise lag_formula_noise(lag_sim *sim, const Samples *motion);
+/* LAG_OK or LAG_ENOMEM. sim: of the scene; its state stays. Models with switches or contacts are not looked at. */
+int lag_formula_noise(lag_sim *sim, const Samples *motion, FormulaNoise *worst);

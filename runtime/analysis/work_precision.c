@@ -183,26 +183,27 @@ double lag_size_in(const Samples *s, int i) {
   return size;
 }
 
-void lag_cost_scales(const Samples *reference, lag_sim *sim, double *scale) {
+int lag_cost_scales(const Samples *reference, lag_sim *sim, double *scale) {
   int n = reference->n, nq = sim->pb.nq;
-  double *terms = calloc(2 * (size_t)n + 1, sizeof *terms), none = 0;
-  if (terms) take_terms(reference, sim, terms, terms + n);
+  double *terms = calloc(2 * (size_t)n + 1, sizeof *terms);
+  if (!terms) return LAG_ENOMEM;
+  take_terms(reference, sim, terms, terms + n);
   for (int i = 0; i < n; i++) {
     int alike = reference->output > 0 ? -1 : lag_previous_alike(sim, i);
     scale[i] = fmax(alike < 0 ? 0 : scale[alike], lag_size_in(reference, i));
-    if (terms && alike >= 0) terms[i] = fmax(terms[i], terms[alike]);
+    if (alike >= 0) terms[i] = fmax(terms[i], terms[alike]);
   }
   for (int i = n - 1; i >= 0; i--) { /* the last of a kind has the largest */
     int alike = reference->output > 0 ? -1 : lag_previous_alike(sim, i);
     int velocity = reference->output == 0 && i < nq ? nq + i : i;
-    const double *of = terms ? &terms[i] : &none;
     if (alike >= 0) scale[alike] = scale[i];
-    if (alike >= 0 && terms) terms[alike] = terms[i];
+    if (alike >= 0) terms[alike] = terms[i];
     /* A coordinate rests if its velocity does, whose scale is its terms then. */
-    if (velocity == i || (terms && scale[velocity] == terms[velocity])) scale[i] = lag_above_rounding(scale[i], *of);
+    if (velocity == i || scale[velocity] == terms[velocity]) scale[i] = lag_above_rounding(scale[i], terms[i]);
     scale[i] = scale[i] > 0 ? scale[i] : 1;
   }
   free(terms);
+  return LAG_OK;
 }
 
 double lag_cost_row_error(int n, const double *a, const double *b, const double *scale) {

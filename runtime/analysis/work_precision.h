@@ -36,8 +36,8 @@ int lag_samples_note(Samples *s, lag_sim *sim);
 
 /* scale[n] := divisor of the error of component i: the largest reference value, at rows and between them, among components of
  * its kind (coordinate, velocity or state) and unit; where that is rounding, the size of the terms that it is the rounding
- * of (core/sizes.c); 1 where there are none. sim: of the scene; scratch: ya, yb, yc. */
-void lag_cost_scales(const Samples *reference, lag_sim *sim, double *scale);
+ * of (core/sizes.c); 1 where there are none. LAG_OK or LAG_ENOMEM. sim: of the scene; scratch: ya, yb, yc. */
+int lag_cost_scales(const Samples *reference, lag_sim *sim, double *scale);
 
 /* The largest size of component i in a reference, at rows and between them. */
 double lag_size_in(const Samples *reference, int i);

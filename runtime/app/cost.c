@@ -91,8 +91,7 @@ static int fill_rows(Pair *p, Cost *c, lag_sim *like) {
     p->used += lag_processor_seconds() - begin;
     rc = rc ? rc : take_row(p->coarse, s, s->t[i], other + at);
     s->rows = coarse.rows = i + (rc == LAG_OK);
-    if (rc) break;
-    lag_cost_scales(s, like, c->scale);
+    if (rc || (rc = lag_cost_scales(s, like, c->scale))) break;
     double uncertainty = fmax(lag_cost_error(&coarse, s, c->scale), DBL_EPSILON);
     if (i > 1 && uncertainty > judges) {
       s->rows = i;
@@ -100,9 +99,9 @@ static int fill_rows(Pair *p, Cost *c, lag_sim *like) {
     }
     s->uncertainty = uncertainty;
   }
-  if (s->rows) lag_cost_scales(s, like, c->scale);
+  int scaled = s->rows ? lag_cost_scales(s, like, c->scale) : LAG_OK;
   free(other);
-  return rc;
+  return scaled ? scaled : rc;
 }
 
 /* Method and tolerance of the reference: taylor, or dop853 where the model has no Taylor series. */
@@ -174,9 +173,10 @@ static int scale_residual(App *app, Cost *c) {
   }
   if (rc < 0 && w.sim && s->rows < 2) lag_app_error(&app->args, "--error residual: %s; end the run earlier: --until", lag_sim_message(w.sim));
   s->uncertainty = differences;
-  lag_cost_scales(s, app->sim, c->scale);
+  if (lag_cost_scales(s, app->sim, c->scale) || !w.sim || !w.now) rc = LAG_ENOMEM;
   lag_sim_free(w.sim);
   free(w.now);
+  if (rc == LAG_ENOMEM) return lag_app_error(&app->args, "out of memory");
   return rc < 0 && s->rows < 2 ? EXIT_RUN : 0;
 }
 
@@ -220,7 +220,7 @@ static int read_reference(App *app, Cost *c) {
   for (CostPrecision p; good && c->nprecisions < LAG_COST_PRECISIONS && fscanf(f, " precision %15s", p.name) == 1; c->precision[c->nprecisions++] = p)
     good = read_number(f, &p.epsilon) && read_number(f, &p.seconds) && read_number(f, &p.to);
   if (f != stdin) fclose(f);
-  if (good) lag_cost_scales(s, app->sim, c->scale);
+  if (good && lag_cost_scales(s, app->sim, c->scale)) return lag_app_error(a, "out of memory");
   return good ? 0 : lag_app_error(a, "%s holds no reference for this scene; `--reference` of a simulator of the same model writes one",
                               strcmp(a->against, "-") == 0 ? "standard input" : a->against);
 }

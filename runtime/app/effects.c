@@ -217,8 +217,7 @@ static int take_components(const Cost *c, const lag_model *m, lag_sim *sim, Cost
   if (rc) return rc;
   memcpy(own->reference.t, all->t, (size_t)all->rows * sizeof *all->t);
   own->reference.uncertainty = all->uncertainty;
-  lag_cost_scales(&own->reference, sim, own->scale);
-  return LAG_OK;
+  return lag_cost_scales(&own->reference, sim, own->scale);
 }
 
 static void print_setting(int variant, const Cost *c, double target) {

@@ -58,8 +58,10 @@ static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim
   } else if (!equal) {
     return lag_app_copy_method(run, other, 3);
   } else {
-    const lag_option atol = {.name = "atol", .value = small * lag_error_least_scale(e, other)};
-    rc = lag_sim_set_method(other, &lag_dop853, &atol, atol.value > 0);
+    lag_option atol = {.name = "atol"};
+    rc = lag_error_least_scale(e, other, &atol.value);
+    atol.value *= small;
+    rc = rc ? rc : lag_sim_set_method(other, &lag_dop853, &atol, atol.value < HUGE_VAL);
   }
   return rc ? rc : lag_sim_set_tolerance(other, equal ? small : run->tol);
 }

@@ -190,16 +190,18 @@ static void add_to_trend(Charge *c, double t, double d, double size) {
   if (++c->bins >= LAG_BINS) merge_bins(c);
 }
 
-/* Sizes that charges have if the values at the start are rounding: of momenta, those with the velocities of the energy's size. */
+/* Sizes that charges have if the values so far are rounding: of momenta, those with the velocities of the energy's size. */
 static void take_terms(lag_sim *s, double t, const double *y) {
   int n = lag_sim_ncharges(s), nq = s->pb.nq;
   double *beside = s->yb, *v = beside + nq;
-  memcpy(beside, y, (size_t)s->pb.n * sizeof *beside);
+  double energy = n > 0 ? lag_energy_terms(s, t, y) : 0;
   if (n > 1) lag_velocity_terms(s, t, y, v);
+  memcpy(beside, y, (size_t)nq * sizeof *beside);
+  memcpy(v + nq, y + 2 * nq, (size_t)s->pb.nz * sizeof *v);
   for (int i = 0; i < nq; i++) v[i] = v[i] < HUGE_VAL ? v[i] : y[nq + i];
   if (n > 1) lag_charges_at(s, t, beside);
-  for (int k = 1; k < n; k++) s->charges[k].terms = s->charge_now[2 * k + 1];
-  if (n > 0) s->charges[0].terms = lag_energy_terms(s, t, y);
+  for (int k = 0; k < n; k++) s->charges[k].terms = fmax(s->charges[k].terms, k ? s->charge_now[2 * k + 1] : energy);
+  if (n > 0) s->charges[0].step = lag_step_so_far(s);
 }
 
 void lag_charges_begin(lag_sim *s, double t, const double *y) {
@@ -230,15 +232,23 @@ static int is_lost(const lag_model *m, const Charge *c, double d, double size) {
   return c->balanced != 0.0 && !driven && c->bins >= few && off > fmax(times * fabs(c->begin), least * c->terms) && off > part * fmax(size, c->through) && off > times * size_of(c);
 }
 
-int lag_energy_retained(lag_sim *s) {
+/* *c := the energy's; whether half of it is lost. */
+static int is_half_lost(lag_sim *s, lag_charge_stats *c) {
   const double half = 0.5, least = 1e-12;
+  lag_sim_charge(s, 0, c);
+  double large = fmax(fabs(c->now), s->charges[0].through); /* where forces do more work than the energy that there was */
+  int known = (c->flags & (LAG_CONSERVED | LAG_BALANCED)) != 0;
+  return known && c->drift >= half && c->absolute > fmax(least * s->charges[0].terms, half * large);
+}
+
+int lag_energy_retained(lag_sim *s) {
   const lag_model *m = s->scene->model;
   lag_charge_stats c;
   if (lag_sim_ncharges(s) == 0 || s->run->begun == 0.0 || (m->constraints && !(m->flags & LAG_AUTONOMOUS))) return LAG_OK;
-  lag_sim_charge(s, 0, &c);
+  if (!is_half_lost(s, &c)) return LAG_OK;
+  take_terms(s, s->run->t, s->now);
+  if (!is_half_lost(s, &c)) return LAG_OK;
   const char *space = c.unit[0] ? " " : "";
-  double large = fmax(fabs(c.now), s->charges[0].through); /* where forces do more work than the energy that there was */
-  if (!(c.flags & (LAG_CONSERVED | LAG_BALANCED)) || !(c.drift >= half) || !(c.absolute > fmax(least * s->charges[0].terms, half * large))) return LAG_OK;
   return lag_fail(s, LAG_EDRIFT, "up to t = %.9g s the energy has an error of %.3g%s%s, of %.3g%s%s at the start: the numbers mean nothing; take %s", s->run->t, c.absolute, space, c.unit,
                   c.begin, space, c.unit, s->steps_equal ? "smaller steps" : "a smaller tolerance");
 }
@@ -273,14 +283,20 @@ static void note_jolt(lag_sim *s, double t, const double *y, double change) {
 }
 
 int lag_charges_record(lag_sim *s, double t, const double *y) {
+  const double longer = 4;
   int lost = 0;
+  if (lag_sim_ncharges(s) && lag_step_so_far(s) > longer * s->charges[0].step) take_terms(s, t, y);
   if (lag_energy_undefined(s, t, y)) return LAG_ENAN;
   add_work(s, t);
   for (int k = 0, n = lag_sim_ncharges(s); k < n; k++) {
     Charge *c = &s->charges[k];
     double d = s->charge_now[2 * k] - c->work - c->first, size = s->charge_now[2 * k + 1];
     c->peak = fabs(d) > c->peak || isnan(d) ? fabs(d) : c->peak; /* a NaN must not be forgotten */
-    lost = lost || (k == 0 && is_lost(s->scene->model, c, d, size) && say_lost(s, t, c->before, d));
+    if (k == 0 && is_lost(s->scene->model, c, d, size)) {
+      take_terms(s, t, y);
+      lag_charges_at(s, t, y);
+      lost = is_lost(s->scene->model, c, d, size) && say_lost(s, t, c->before, d);
+    }
     add_to_trend(c, t, d, size);
     if (k == 0 && c->balanced != 0.0 && isfinite(d)) note_jolt(s, t, y, fabs(d - c->before));
     c->before = d;

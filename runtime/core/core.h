@@ -45,7 +45,8 @@ typedef struct Charge {
   double first;      /* Q at the start, plus the jumps of Q at events */
   double peak;       /* largest |difference| */
   double size;       /* sum of |terms of Q| at the start: the size of Q, until there are bins */
-  double terms;      /* size of Q where that is rounding (sizes.c) */
+  double terms;      /* size of Q where that is rounding (sizes.c), */
+  double step;       /* with steps up to four times as long as this */
   double before;     /* difference at the last look */
   double through;    /* int |P| dt, step by step */
   double work, lost; /* int P dt, and the rounding error of that sum (Kahan) */
@@ -340,10 +341,16 @@ int lag_monitors_jump(lag_sim *sim, double t, const double *ya, const double *yb
 /* sizes.c: `size` where it is more than rounding of terms of the size `terms`, else `terms`. */
 double lag_above_rounding(double size, double terms);
 /* The size of the terms of the energy, and of output k, at y, t; v[nq] := of each velocity, that at which the coordinates of
- * its unit would have this energy; HUGE_VAL: there is none. NaN: not known. Scratch: ya. */
+ * its unit would have this energy; HUGE_VAL: there is none. NaN: not known. Scratch: ya, yb, yc. */
 double lag_energy_terms(lag_sim *sim, double t, const double *y);
 double lag_output_terms(lag_sim *sim, double t, const double *y, int k);
 void lag_velocity_terms(lag_sim *sim, double t, const double *y, double *v);
+/* The present step, before the first one the step that is set; 0: it is not known. */
+double lag_step_so_far(const lag_sim *sim);
+/* noise[n] := rounding of a formula at t, y, with the inputs as they are. up, down: as noise, which is the energy and its
+ * scale, rates of velocities and states, or residuals of nholonomic constraints. Not 0: there are no values. */
+typedef enum LagFormula { LAG_FORMULA_ENERGY, LAG_FORMULA_RATES, LAG_FORMULA_RESIDUALS } LagFormula;
+int lag_formula_rounding(lag_sim *sim, LagFormula of, double t, const double *y, int n, double *noise, double *up, double *down);
 
 /* Kinds of names in a scene. */
 enum { LAG_IS_NOTHING, LAG_IS_P, LAG_IS_Q, LAG_IS_V, LAG_IS_Z, LAG_IS_U };

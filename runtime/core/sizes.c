@@ -1,10 +1,14 @@
 /* Sizes of the quantities of a model: what rounding is relative to. Enters: a state; leaves: the size of the terms that
  * make a quantity, which counts where the quantity is their rounding. Holds: with other units, or another part at rest
- * beside, each size has the same ratio to its quantity. */
+ * beside, each size has the same ratio to its quantity. What formulas round is seen in other rounding modes: W. Kahan, How
+ * futile are mindless assessments of roundoff in floating-point computation? (2006), section 4. */
+#include <fenv.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/core.h"
+#include "numeric/magnitudes.h"
 
 static const double moved = 1. / 1024; /* relative change of a state that shows terms that cancel */
 
@@ -26,19 +30,49 @@ static void energy_at(lag_sim *s, double t, const double *y, double *e) {
   if (bad || m->energy(t, y, y + nq, y + 2 * nq, s->p, s->u, e, s->work)) e[0] = e[1] = NAN;
 }
 
-double lag_energy_terms(lag_sim *s, double t, const double *y) {
-  double e[2], beside[2], calls = s->pb.rhs_calls;
-  energy_at(s, t, y, e);
-  energy_at(s, t, moved_state(s, y), beside);
-  s->pb.rhs_calls = calls;
-  return lag_above_rounding(fmax(e[1], fabs(e[0])), fabs(beside[0] - e[0]) / moved);
+/* x := values of a formula at t, y, with the inputs as they are. Not 0: there are none. */
+static int formula_at(lag_sim *s, LagFormula of, double t, const double *y, double *x) {
+  const lag_model *m = s->scene->model;
+  const double *v = y + m->nq, *z = v + m->nq;
+  if (of == LAG_FORMULA_ENERGY) return !m->energy || m->energy(t, y, v, z, s->p, s->u, x, s->work);
+  if (of == LAG_FORMULA_RATES) return m->accel(t, y, v, z, s->p, s->u, x, x + m->nq, s->work);
+  return m->constraints->residuals(t, y, v, z, s->p, s->u, x, s->pb.held + m->constraints->n, s->work);
 }
 
-double lag_output_terms(lag_sim *s, double t, const double *y, int k) {
-  if (lag_observe(s, t, y, s->out)) return NAN;
-  double at = s->out[k];
-  if (lag_observe(s, t, moved_state(s, y), s->out)) return fabs(at);
-  return lag_above_rounding(fabs(at), fabs(s->out[k] - at) / moved);
+int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, int n, double *noise, double *up, double *down) {
+#if defined FE_UPWARD && defined FE_DOWNWARD && defined FE_TONEAREST
+  int before = fegetround(), rc = fesetround(FE_UPWARD) || formula_at(s, of, t, y, up);
+  rc = rc || fesetround(FE_DOWNWARD) || formula_at(s, of, t, y, down);
+  rc = fesetround(before) || rc || formula_at(s, of, t, y, noise);
+  for (int i = 0; i < n && !rc; i++) {
+    double over = fabs(up[i] - noise[i]), under = fabs(down[i] - noise[i]);
+    /* One of the modes costs lag_math.h digits of a small angle, by its sign. */
+    noise[i] = over > 0 && under > 0 ? fmin(over, under) : fmax(over, under);
+  }
+  return rc;
+#else
+  (void)s, (void)of, (void)t, (void)y, (void)n, (void)noise, (void)up, (void)down;
+  return 1;
+#endif
+}
+
+/* yb[nq] := how far residuals as large as the terms of the constraints move coordinates: a length, where the state has none. */
+static int constraint_lengths(lag_sim *s, double t, const double *y) {
+  const lag_constraints *of = s->scene->model->constraints;
+  if (!of || !of->nholonomic) return 1;
+  double *c = s->pb.held, *up = c + 2 * of->n, *down = up + of->n;
+  if (lag_formula_rounding(s, LAG_FORMULA_RESIDUALS, t, y, of->nholonomic, c, up, down)) return 1;
+  for (int k = 0; k < of->nholonomic; k++) c[k] /= DBL_EPSILON;
+  return lag_least_change(&s->pb, t, y, 1, c, s->yb, s->yb + s->pb.nq);
+}
+
+/* The change of the energy e where component `at` + i moves by d[i]. */
+static double change_of_energy(lag_sim *s, double t, const double *y, int at, const double *d, double e) {
+  double there[2];
+  memcpy(s->yc, y, (size_t)s->pb.n * sizeof(double));
+  for (int i = 0; i < s->pb.nq; i++) s->yc[at + i] += d[i] * lag_uneven(i);
+  energy_at(s, t, s->yc, there);
+  return fabs(there[0] - e) < HUGE_VAL ? fabs(there[0] - e) : 0;
 }
 
 /* Whether coordinate i is the first of its unit. */
@@ -69,6 +103,65 @@ static double velocity_of(lag_sim *s, double t, const double *y, int i, double e
     else h /= (far = sqrt(far)); /* beyond the domain of L, as the speed of light */
   }
   return HUGE_VAL;
+}
+
+/* The energy that a force along the coordinates with the unit of coordinate i gives in a step h, if nothing holds them, and
+ * that is more than `least`; 0: there is none. The force, as the energy is linear in a displacement by h v. */
+static double energy_of_force(lag_sim *s, double t, const double *y, int i, double h, double e, double least) {
+  enum { MOST = 20 };
+  const double linear = 0.4, shorter = 1e-8;
+  const lag_model *m = s->scene->model;
+  int nq = m->nq;
+  double energy = 1, *d = s->yb;
+  for (int turn = 0; turn < MOST; turn++) {
+    double v = velocity_of(s, t, y, i, energy);
+    if (!(v < HUGE_VAL)) return 0;
+    for (int j = 0; j < nq; j++) d[j] = strcmp(m->q[j].unit, m->q[i].unit) == 0 ? h * v : 0;
+    double whole = change_of_energy(s, t, y, 0, d, e);
+    for (int j = 0; j < nq; j++) d[j] /= 2;
+    double half = change_of_energy(s, t, y, 0, d, e), ratio = whole / energy;
+    int is_linear = half > linear * whole && half < (1 - linear) * whole;
+    if (is_linear && (whole <= least || (ratio > 1. / 16 && ratio < 16))) return whole <= least ? 0 : whole;
+    energy *= is_linear ? ratio * ratio : shorter;
+    if (!(energy > 0 && energy < HUGE_VAL)) return 0;
+  }
+  return 0;
+}
+
+/* The size of the energy e of which rounding is what a body at rest has: of its formula, of rates and of forces in
+ * balance in a step h, and of lengths in constraints. */
+static double resting_terms(lag_sim *s, double t, const double *y, double h, double e) {
+  const lag_model *m = s->scene->model;
+  double of[2], up[2], down[2];
+  double terms = lag_formula_rounding(s, LAG_FORMULA_ENERGY, t, y, 1, of, up, down) ? 0 : of[0] / DBL_EPSILON;
+  double least = 1e3 * DBL_EPSILON * fmax(fabs(e), terms), *a = s->ya;
+  if (h > 0 && lag_formula_rounding(s, LAG_FORMULA_RATES, t, y, m->nq, a, s->yb, s->yc) == 0) {
+    for (int i = 0; i < m->nq; i++) a[i] *= h / DBL_EPSILON;
+    terms += change_of_energy(s, t, y, m->nq, a, e);
+  }
+  for (int i = 0; i < m->nq && h > 0 && !(m->flags & LAG_FIRST_ORDER); i++)
+    terms += is_first(m, i) ? energy_of_force(s, t, y, i, h, e, least) : 0;
+  return constraint_lengths(s, t, y) ? terms : terms + change_of_energy(s, t, y, 0, s->yb, e);
+}
+
+double lag_step_so_far(const lag_sim *s) {
+  return s->run->have_step != 0.0 ? fabs(s->run->step_t1 - s->run->step_t0) : lag_equal_step(s);
+}
+
+double lag_energy_terms(lag_sim *s, double t, const double *y) {
+  double e[2], beside[2], calls = s->pb.rhs_calls;
+  energy_at(s, t, moved_state(s, y), beside);
+  energy_at(s, t, y, e);
+  double rest = resting_terms(s, t, y, lag_step_so_far(s), e[0]);
+  s->pb.rhs_calls = calls;
+  return lag_above_rounding(fmax(e[1], fabs(e[0])), fmax(fabs(beside[0] - e[0]) / moved, rest));
+}
+
+double lag_output_terms(lag_sim *s, double t, const double *y, int k) {
+  if (lag_observe(s, t, y, s->out)) return NAN;
+  double at = s->out[k];
+  if (lag_observe(s, t, moved_state(s, y), s->out)) return fabs(at);
+  return lag_above_rounding(fabs(at), fabs(s->out[k] - at) / moved);
 }
 
 void lag_velocity_terms(lag_sim *s, double t, const double *y, double *v) {

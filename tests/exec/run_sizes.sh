@@ -110,6 +110,35 @@ EOF2
 }
 slow late
 
+# At rest with forces in balance, in coordinates that are all 0: what moves is rounding, and no energy is lost.
+cat >"$TMP/balance.lag" <<'EOF2'
+model balance
+coord x [m], y [m]
+param m = 0.3 [kg] > 0, k = 0.7 [N/m], d = 0.1 [m], F = 0.07 [N]
+kinetic = m/2*(x'^2 + y'^2)
+potential = k/2*(x - d)^2 - k/2*d^2 + F*x + k/2*(y + d)^2 - k/2*d^2 - F*y
+scene s { span 10 [s]; output x every 1 [s] }
+EOF2
+cat >"$TMP/truss.lag" <<'EOF2'
+model truss
+coord x [m], y [m], u [m], w [m]
+param m = 1 [kg] > 0, g = 9.81 [m/s^2], l = 0.37 [m]
+kinetic = m/2*(x'^2 + y'^2 + u'^2 + w'^2)
+potential = m*g*(y + w)
+constraint a: (x + l)^2 + y^2 = l^2
+constraint b: x^2 + (y + 2*l)^2 = 4*l^2
+constraint c: (u - x + l)^2 + (w - y + l)^2 = 2*l^2
+constraint d: u = 0.2*w
+scene s { span 2 [s]; output x every 1 [s] }
+EOF2
+rests() { # WORDS...: for each method
+  for m in rk4 variational symplectic_euler; do "$LAGC" run "$@" --method $m --step 1e-3 >"$TMP/out" 2>&1 || { echo "$m"; cat "$TMP/out"; return 1; }; done
+}
+check "forces in balance" rests "$TMP/balance.lag"
+check "in milligrams" rests "$TMP/balance.lag" m=3e-4 k=7e-4 F=7e-5
+check "held by constraints" rests "$TMP/truss.lag"
+check "of a nanogram" rests "$TMP/truss.lag" m=1e-12
+
 # Other units, 1e-9 to 1e9 times, and parts at rest beside: no verdict changes.
 [ -n "${SLOW:-}" ] && few= || few=--few
 if command -v python3 >/dev/null; then
