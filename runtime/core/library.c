@@ -2,9 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "core/core.h"
+#include "numeric/clock.h"
 
 int lag_library_abi(void) { return LAG_ABI; }
 
@@ -64,9 +64,7 @@ int lag_sim_rhs(lag_sim *s, int count, const double *t, const double *y, double 
 
 int lag_time_is_up(void *until, const lag_sim *s) {
   enum { OFTEN = 4 }; /* steps between two looks at the clock */
-  struct timespec now;
-  if ((long long)s->run->steps % OFTEN || timespec_get(&now, TIME_UTC) != TIME_UTC) return 0;
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec > *(const volatile double *)until;
+  return (long long)s->run->steps % OFTEN == 0 && lag_clock_seconds() > *(const volatile double *)until;
 }
 
 int lag_sim_rows(lag_sim *s, int rows, const double *t, double *y, double *out, int *done) {

@@ -483,7 +483,9 @@ const char *lag_sim_message(const lag_sim *sim);
 
 /* Called after each step; != 0 ends the run with LAG_INTERRUPTED. */
 void lag_sim_on_step(lag_sim *sim, int (*hook)(void *context, const lag_sim *sim), void *context);
-/* A hook: whether the time *until [s since 1970], a double that another thread may set, has passed. */
+/* A clock that only goes forward [s]. */
+double lag_clock_seconds(void);
+/* A hook: whether the time *until of that clock, a double that another thread may set, has passed. */
 int lag_time_is_up(void *until, const lag_sim *sim);
 /* Called when event k fires at time t, with the state y[n] before and after its action: the same where it changes
  * nothing. The arrays are valid during the call. */

@@ -18,7 +18,6 @@ import re
 import shutil
 import subprocess
 import tempfile
-import time
 import warnings
 import weakref
 from concurrent.futures import ThreadPoolExecutor
@@ -126,7 +125,7 @@ def _open(path):
         "lag_sim_rhs": (i, p, i, p, p, p), "lag_sim_rows": (i, p, i, p, p, p, p), "lag_sim_batch": (i, p, i, p, p, i, p, p, p),
         "lag_sim_stats": (None, p, p), "lag_sim_ncharges": (i, p), "lag_sim_charge": (None, p, i, p), "lag_sim_balance": (i, p),
         "lag_sim_set_tangent": (i, p, i, p), "lag_sim_tangent": (i, p, p), "lag_sim_on_event": (None, p, _EventHook, p),
-        "lag_sim_on_step": (None, p, p, p), "lag_time_is_up": (i, p, p),
+        "lag_sim_on_step": (None, p, p, p), "lag_time_is_up": (i, p, p), "lag_clock_seconds": (d,),
     }
     for name, (returns, *takes) in signatures.items():
         f = getattr(lib, name)
@@ -391,7 +390,7 @@ class Model:
         y, out = np.empty((len(times) + 1, s.n)), np.empty((len(times) + 1, len(outputs)))
         done, rows, status = ctypes.c_int(), 0, 0
         while rows < len(times) and status == 0:
-            part, sim.until.value = times[rows:rows + _CHUNK], time.time() + _PATIENCE
+            part, sim.until.value = times[rows:rows + _CHUNK], lib.lag_clock_seconds() + _PATIENCE
             status = lib.lag_sim_rows(sim.sim, len(part), _address(part), y[rows:].ctypes.data, out[rows:].ctypes.data, ctypes.byref(done))
             rows, status = rows + done.value, 0 if status == _INTERRUPTED else status
         times = times[:rows]
