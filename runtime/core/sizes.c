@@ -39,7 +39,8 @@ static int formula_at(lag_sim *s, LagFormula of, double t, const double *y, doub
   return m->constraints->residuals(t, y, v, z, s->p, s->u, x, s->pb.held + m->constraints->n, s->work);
 }
 
-int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, int n, double *noise, double *up, double *down) {
+int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, int n, double *noise, double *up,
+                         double *down) {
 #if defined FE_UPWARD && defined FE_DOWNWARD && defined FE_TONEAREST
   int before = fegetround(), rc = fesetround(FE_UPWARD) || formula_at(s, of, t, y, up);
   rc = rc || fesetround(FE_DOWNWARD) || formula_at(s, of, t, y, down);
@@ -56,7 +57,7 @@ int lag_formula_rounding(lag_sim *s, LagFormula of, double t, const double *y, i
 #endif
 }
 
-/* yb[nq] := how far residuals as large as the terms of the constraints move coordinates: a length, where the state has none. */
+/* yb[nq] := how far residuals as large as the terms of the constraints move coordinates: lengths that the state lacks. */
 static int constraint_lengths(lag_sim *s, double t, const double *y) {
   const lag_constraints *of = s->scene->model->constraints;
   if (!of || !of->nholonomic) return 1;
