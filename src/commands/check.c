@@ -68,7 +68,7 @@ int check_print(Compiler *c, const char *scene, int allow_numeric, StrBuf *out) 
     if (!out->n) {
       show_facts(e, out);
       show_cyclic(e, "", out);
-      check_json_facts(c, e, out);
+      check_json_facts(c, e);
     }
     collect_units(e->m, &found);
     switches_find(e);

@@ -44,13 +44,13 @@ static StrBuf *begin(Compiler *c, JsonList list) {
   return out;
 }
 
-void check_json_facts(Compiler *c, const Eqns *e, const StrBuf *lines) {
+void check_json_facts(Compiler *c, const Eqns *e) {
   StrBuf *out = begin(c, JSON_FACTS);
   const Model *m = e->m;
-  const char *energy = strstr(sb_text(lines), "energy is ");
   sb_printf(out, "\"coordinates\": %u, \"states\": %u, \"parameters\": %u, \"constraints\": %u, \"contacts\": %u",
             eqns_coordinates(e), m->states.n - e->first.n, m->params.n, m->constraints.n, m->contacts.n);
-  put_member(out, "energy", energy ? arena_strndup(c->arena, energy + 10, strcspn(energy + 10, "\n")) : NULL);
+  put_member(out, "energy", e->ncharges ? charges_energy_word(e) : NULL);
+  put_member(out, "energy_because", e->ncharges ? charges_energy_text(e) : NULL);
 }
 
 void check_json_report(Compiler *c, const StrBuf *lines) {

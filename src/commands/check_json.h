@@ -6,7 +6,7 @@
 #include "commands/compiler.h"
 
 /* Members of the object, each appended to c->json. lines: what `lagc check` says of the model first. */
-void check_json_facts(Compiler *c, const Eqns *e, const StrBuf *lines);
+void check_json_facts(Compiler *c, const Eqns *e);
 void check_json_scene(Compiler *c, const char *kind, Name name, const Model *m, int ok);
 void check_json_symmetries(Compiler *c, const Eqns *e, Name effect);
 void check_json_expects(Compiler *c, const ExpectResults *all);

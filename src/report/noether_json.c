@@ -14,10 +14,6 @@ static void put_expr(StrBuf *out, const Model *m, Expr x) {
 static const char *const drift_words[] = {
   [PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided"};
 
-static const char *energy_word(const Eqns *e) {
-  return !e->ncharges ? "" : e->charges[0].proof.jumps ? "changes" : drift_words[e->charges[0].proof.drift];
-}
-
 /* The power; null where it is not known, or there is no charge. */
 static void put_power(StrBuf *out, const Model *m, const Noether *is) {
   if (!is->charge || is->power_unknown) sb_puts(out, "null");
@@ -147,7 +143,7 @@ void show_noether_json(const NoetherReport *r, StrBuf *out) {
   const FoundSymmetries *f = &r->found;
   sb_printf(out, "{\"model\": \"%s\", \"effects_on\": [", m->name);
   for (uint32_t i = 0; i < m->effects.n; i++) sb_printf(out, "%s\"%s\"", comma(i), m->effects.at[i]);
-  sb_printf(out, "], \"energy\": \"%s\", \"cyclic\": [", energy_word(r->e));
+  sb_printf(out, "], \"energy\": \"%s\", \"cyclic\": [", charges_energy_word(r->e));
   for (uint32_t i = 0; i < r->cyclic.n; i++) sb_printf(out, "%s\"%s\"", comma(i), m->coords.at[r->cyclic.at[i]].name);
   sb_printf(out, "],\n \"note\": \"%s\", \"ansatz\": \"%s\", \"searched\": %s, \"not_proved\": %u, \"galilean\": %s,\n \"symmetries\": [", f->note ? f->note : "", f->ansatz, f->searched ? "true" : "false", f->unproved,
             f->galilean ? "true" : "false");

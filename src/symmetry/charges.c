@@ -238,6 +238,11 @@ static const char *reason_of(const Eqns *e) {
   return constraints_do_no_work(e) ? "" : ": the constraints do no work";
 }
 
+const char *charges_energy_word(const Eqns *e) {
+  static const char *const words[] = {[PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided"};
+  return !e->ncharges ? "" : e->charges[0].proof.jumps ? "changes" : words[e->charges[0].proof.drift];
+}
+
 const char *charges_energy_text(const Eqns *e) {
   enum { LINE = 100 };
   const Noether *is = &e->charges[0].proof;

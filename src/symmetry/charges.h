@@ -24,6 +24,8 @@ const char *charge_verdict(const Noether *is);
 
 /* "energy is conserved", "energy changes: dE/dt = ..." or "not decided whether the energy is conserved: ...". */
 const char *charges_energy_text(const Eqns *e);
+/* The verdict alone: conserved, changes, not decided; "" where there is no energy. */
+const char *charges_energy_word(const Eqns *e);
 
 /* x with the symbols of declared charges and of brackets replaced by their expressions. */
 Expr charges_substitute(const Eqns *e, Expr x);

@@ -25,7 +25,9 @@ is "sweep" "model scene method chosen status runs failed until seconds threads l
 names() { grep -o '"[^"]*": [[{]\{0,1\}' "$1" | sed 's/^"//; s/": *//' | awk '!seen[$0]++' | tr '\n' ' ' | sed 's/ $//'; }
 "$LAGC" check --json tests/golden/err/expect_effects.lag >"$TMP/check.json" 2>"$TMP/err"
 is "check: status 1, nothing on standard error" "1 0" "$? $(wc -c <"$TMP/err")"
-is "check" "schema file ok facts{ coordinates states parameters constraints contacts energy scenes[ name kind effects[ symmetries[ expectations[ line column end_line end_column verdict digits \
+energy_of() { "$LAGC" check --json "models/$1.lag" | sed -n 's/.*"energy": "\([^"]*\)".*/\1/p'; }
+is "verdicts of the energy" "conserved changes not decided" "$(echo "$(energy_of pendulum)" "$(energy_of block)" "$(energy_of quarter_car)")"
+is "check" "schema file ok facts{ coordinates states parameters constraints contacts energy energy_because scenes[ name kind effects[ symmetries[ expectations[ line column end_line end_column verdict digits \
 missing difference units{ report[ messages[ severity message help note messages_not_shown" "$(names "$TMP/check.json")"
 is "its messages have places" '"line": 13, "column": 19, "end_line": 13, "end_column": 24, "message": "expect q'"'"' is false: `1 [F]` should be `(1/2) [F]`"' \
   "$(grep -o '"line": 13, "column": 19.*(1/2) \[F\]`"' "$TMP/check.json")"
