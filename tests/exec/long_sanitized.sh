@@ -9,7 +9,7 @@ if [ -n "${1:-}" ]; then
   exit
 fi
 models=
-for m in models/*.lag; do one_of 16 && models="$models $m"; done
+for m in models/*.lag; do one_of 32 && models="$models $m"; done
 n=${DAY:-0}
 for m in $models; do echo "$m $((n += 1))"; done | xargs -P 2 -n 2 sh tests/exec/long_sanitized.sh
 for m in $models; do empty "$(basename "$m" .lag)" "$(cat "$TMP/$(basename "$m").wrong" 2>&1)"; done
