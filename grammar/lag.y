@@ -403,7 +403,7 @@ args: %empty   { $$ = NONE_LIST; }
     | happening[e]               { $$ = ast_list($e); }
     | happening[e] "," exprs[l]  { $$ = ast_list_before(ast, $e, $l); }
     ;
-/* What a contact does, in hit(floor sticks). */
+/* The part of a contact that an event is of, in hit(floor sticks). */
 happening: IDENT[n] IDENT[does] { $$ = ast_happening(ast, @$, $n, $does); }
          | reach[a] IDENT[does] { (void)$a; $$ = ast_happening(ast, @$, $does, $does); }
          ;

@@ -313,7 +313,7 @@ static int help_methods(Compiler *c, const char *name) {
   return usage_error(arena_printf(c->arena, "cannot run %s: %s", path, strerror(errno)));
 }
 
-/* What the words of no page lead to: advice, the passages found, models. */
+/* Answer to words that no page has as its name: advice, the passages found, models. */
 static int search(Compiler *c, const char *topic) {
   StrBuf out = strbuf(c->arena), models = strbuf(c->arena);
   const char *advice = help_way(c->arena, topic) ? NULL : parse_advice(topic);

@@ -202,7 +202,7 @@ const char *header_constant(const Header *h, double x) {
   return arena_printf(h->a, "%s_C(%s%s)", h->upper, text, strpbrk(text, ".en") ? "" : ".0");
 }
 
-/* What p->NAME, or a size, must be: comparisons by > alone, which types that differentiate have. */
+/* Condition on p->NAME, or on a size: comparisons by > alone, which types that differentiate have. */
 static const char *demand(const Header *h, const char *x, int sign) {
   return arena_printf(h->a, sign == 1 ? "%s > zero" : sign == -1 ? "zero > %s" : sign == 2 ? "LAG_NOT(zero > %s)" : "LAG_NOT(%s > zero)", x);
 }
