@@ -115,7 +115,8 @@ LIBLAG_MORE := $(PRECISIONS:%=$(BUILD)/liblag_%.a)
 DYNAMIC ?= $(ELF_FOUND)
 LIBLAG_SO = $(if $(DYNAMIC),$(BUILD)/liblag.so.$(SOVERSION))
 
-all: $(BUILD)/lagc$(EXE) $(LIBLAG)
+# Libraries of other precisions are kept up to date once they are there.
+all: $(BUILD)/lagc$(EXE) $(LIBLAG) $(wildcard $(LIBLAG_MORE))
 # The runtime for long double and quad takes as long to build as all the rest.
 precisions: $(LIBLAG_MORE)
 install: $(LIBLAG_SO)

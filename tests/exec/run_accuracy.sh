@@ -186,6 +186,12 @@ check "a setting that a monitor of the scene stops is refined" run models/kepler
 sed "s/span 50; exact x = cos(t)/span 10/" "$TMP/oscillator.lag" >"$TMP/alike.lag"
 check "refused: what rounds alike is not exact" says 2 'the smallest error found is' "$LAGC" run "$TMP/alike.lag" --accuracy 1e-17
 check "where the scene names a method, another is chosen" run models/slider_crank.lag --until 1 --accuracy 1e-9
+# Errors of the logistic map u -> 4 u (1 - u) double at each kick, and two settings round alike: no digit is left after 52 kicks, up to some.
+printf 'model logistic\ncoord x\nstate u\nlagrangian = x%s^2/2\nflow u%s = 0\nkick map every 1 { u = 4*u*(1 - u) }\nscene s { start x = 0.5, x%s = 1, u = 0.3; span 80; output u every 0.25 }\n' "'" "'" "'" >"$TMP/logistic.lag"
+sed "s/^kick.*/event map: sin(pi*x) { u = 4*u*(1 - u) }/" "$TMP/logistic.lag" >"$TMP/logistic_event.lag"
+lost_after() { "$LAGC" run "$1" --json | sed -n 's/.*"horizon": \([^,]*\),.*/\1/p'; }
+near "a chaotic map by kicks" 6 52 "$(lost_after "$TMP/logistic.lag")"
+near "a chaotic map by events" 6 52 "$(lost_after "$TMP/logistic_event.lag")"
 # Refusals
 check "refused: --accuracy 0" says 2 'a relative error between 0 and 1' "$LAGC" run "$dp" --accuracy 0
 check "refused: --accuracy -1e-3" says 2 'a relative error between 0 and 1' "$LAGC" run "$dp" --accuracy -1e-3
