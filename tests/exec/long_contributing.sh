@@ -5,7 +5,7 @@
 
 copy=$TMP/copy
 mkdir -p "$copy"
-cp -R .ci Makefile grammar runtime src tests "$copy" && rm -rf "$copy/tests/hard"
+cp -R .ci Makefile README.md grammar models runtime src tests "$copy" && rm -rf "$copy/tests/hard"
 
 # edit FILE SED-SCRIPT: edits the file in the copy.
 edit() { sed "$2" "$copy/$1" >"$TMP/edited" && cp "$TMP/edited" "$copy/$1"; }
