@@ -120,7 +120,9 @@ killed() { # SIGNAL RANK
 ended() { # shellcheck disable=SC2086
   begin "$LAGC" sweep $words --mpi 3
   kill -TERM $!
-  ! wait $! && grep -q 'interrupted; .*two.csv.journal keeps the runs made so far' "$TMP/err"
+  wait $! && return 1
+  cat "$TMP/err"
+  grep -q 'interrupted; .*two.csv.journal keeps the runs made so far' "$TMP/err"
 }
 lost() { # SIGNAL: rank 1 loses its chunks; mpirun leaves the others
   # shellcheck disable=SC2086
