@@ -247,8 +247,13 @@ double lag_error_reach(ErrorEstimate *e, double factor) {
     double part = before < no_digit ? log(no_digit / before) / log(error / before) : 0;
     return fabs(e->motion.t[i - 1] - e->t0) + part * fabs(e->motion.t[i] - e->motion.t[i - 1]);
   }
-  if (!e->compared || e->growth == LAG_ERROR_UNKNOWN) return NAN;
+  if (!e->compared || (e->growth == LAG_ERROR_UNKNOWN && isnan(e->horizon))) return NAN;
   t = fabs((isnan(e->horizon) ? e->motion.t[e->compared - 1] : e->horizon) - e->t0);
+  if (e->growth == LAG_ERROR_UNKNOWN) { /* motions that parted: the mean rate up to there */
+    int first = 0;
+    while (first < e->compared - 1 && !(e->error[first] > 0)) first++;
+    return e->error[first] < no_digit ? t * (1 - log(factor) / log(no_digit / fmax(e->error[first], DBL_EPSILON))) : NAN;
+  }
   rest = log(no_digit / (factor * level));
   return e->growth == LAG_ERROR_EXPONENTIAL ? t + rest / e->rate : power > 0 ? t * exp(rest / power) : HUGE_VAL;
 }
