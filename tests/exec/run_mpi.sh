@@ -103,7 +103,7 @@ begin() { # COMMAND...: $! when it is at work
   rm -f "$TMP"/two.csv*
   "$@" -o "$TMP/two.csv" 2>"$TMP/err" &
   i=0
-  while [ "$(wc -c 2>/dev/null <"$TMP/two.csv.journal" || echo 0)" -lt 3000 ] && [ $i -lt 200 ]; do
+  while [ "$(wc -c 2>/dev/null <"$TMP/two.csv.journal" || echo 0)" -lt 3000 ] && [ $i -lt 1200 ]; do
     sleep 0.05
     i=$((i + 1))
   done
