@@ -11,9 +11,6 @@ static void put_expr(StrBuf *out, const Model *m, Expr x) {
   sb_putc(out, '"');
 }
 
-static const char *const drift_words[] = {
-  [PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided"};
-
 /* The power; null where it is not known, or there is no charge. */
 static void put_power(StrBuf *out, const Model *m, const Noether *is) {
   if (!is->charge || is->power_unknown) sb_puts(out, "null");
@@ -37,7 +34,7 @@ static void put_symmetry(StrBuf *out, const NoetherReport *r, uint32_t k) {
   put_expr(out, e->m, s->is.F);
   sb_puts(out, ", \"charge\": ");
   put_expr(out, e->m, s->is.charge);
-  sb_printf(out, ", \"is\": \"%s\", \"power\": ", drift_words[s->is.drift]);
+  sb_printf(out, ", \"is\": \"%s\", \"power\": ", charges_drift_word(s->is.drift));
   put_power(out, e->m, &s->is);
   Conditions positive = noether_conditions(r, k);
   for (uint32_t i = 0; i < positive.n; i++) {

@@ -238,9 +238,14 @@ static const char *reason_of(const Eqns *e) {
   return constraints_do_no_work(e) ? "" : ": the constraints do no work";
 }
 
-const char *charges_energy_word(const Eqns *e) {
+const char *charges_drift_word(Verdict drift) {
   static const char *const words[] = {[PROVED_ZERO] = "conserved", [PROVED_NONZERO] = "changes", [NOT_DECIDED] = "not decided"};
-  return !e->ncharges ? "" : e->charges[0].proof.jumps ? "changes" : words[e->charges[0].proof.drift];
+  return words[drift];
+}
+
+const char *charges_energy_word(const Eqns *e) {
+  if (!e->ncharges) return "";
+  return charges_drift_word(e->charges[0].proof.jumps ? PROVED_NONZERO : e->charges[0].proof.drift);
 }
 
 const char *charges_energy_text(const Eqns *e) {

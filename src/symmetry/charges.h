@@ -24,7 +24,9 @@ const char *charge_verdict(const Noether *is);
 
 /* "energy is conserved", "energy changes: dE/dt = ..." or "not decided whether the energy is conserved: ...". */
 const char *charges_energy_text(const Eqns *e);
-/* The verdict alone: conserved, changes, not decided; "" where there is no energy. */
+/* The word of a verdict on dQ/dt: conserved, changes, not decided. */
+const char *charges_drift_word(Verdict drift);
+/* The word for the energy; "" where there is none. */
 const char *charges_energy_word(const Eqns *e);
 
 /* x with the symbols of declared charges and of brackets replaced by their expressions. */
