@@ -48,7 +48,7 @@ static int enough(void *app, const lag_sim *other) {
 static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim *other) {
   const double lower = 3; /* for shorter steps: a higher one would make longer ones, and cancel more digits */
   const double least = 4.5 * DBL_EPSILON, apart = 3; /* tolerances whose errors differ enough */
-  const double small = 50 * DBL_EPSILON;             /* of the run beside equal steps */
+  const double small = 8 * DBL_EPSILON;              /* of the run beside equal steps */
   const lag_taylor *series = run->scene->model->constraints ? NULL : run->scene->model->taylor;
   int equal = lag_equal_step(run) > 0, rc;
   if (!equal && run->tol >= apart * least) return lag_app_copy_method(run, other, tighter);
