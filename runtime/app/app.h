@@ -198,7 +198,7 @@ int lag_sampling_close(App *app);
 void lag_sampling_warn(App *app, char *note, size_t size);
 void lag_sampling_free(App *app);
 
-/* app.c: time of row grid[2] of a grid that begins at grid[0], with rows grid[1] apart. */
+/* output_rows.c: time of row grid[2] of a grid that begins at grid[0], with rows grid[1] apart. */
 double lag_app_row_time(const App *app, const double *grid);
 /* error_curves.c: whether the rows of a picture lie at equal times, as differences need them; the present row's energy, less its jumps at events and the work
  * of forces so far; the energies that are drawn := decimal logarithms of their errors, relative where no run begins with the energy 0. sim: of the first run. */
@@ -207,7 +207,7 @@ void lag_energy_kept(App *app);
 void lag_energy_errors(App *app, lag_sim *sim);
 /* portrait.c: what --portrait or --potential draws beneath app->drawn. 0, or EXIT_USAGE after a message. */
 int lag_portrait_open(App *app);
-/* app.c: writes a row of the present state; writes app->row, also to the table if drawn. LAG_OK, or a failure. */
+/* output_rows.c: writes a row of the present state; writes app->row, also to the table if drawn. LAG_OK, or a failure. */
 int lag_app_put_row(App *app);
 int lag_app_write_row(App *app, int drawn);
 /* Signals that end a run (Ctrl-C, SIGTERM, SIGHUP) let it finish its step and write its files; nohup is respected. Called before files are

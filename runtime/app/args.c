@@ -3,28 +3,13 @@
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
 #include "io/posix.h"
-#include "io/visible.h"
 #include "core/core.h"
-
-int lag_app_error(const Args *a, const char *format, ...) {
-  char text[4096];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
-  fput_visible(stderr, a->self, "");
-  fputs(": ", stderr);
-  fput_visible(stderr, text, "\n\t");
-  putc('\n', stderr);
-  return EXIT_USAGE;
-}
 
 int lag_args_decimal(const char *text, double *x) {
   char *end;
@@ -198,6 +183,14 @@ static int check_analysis(const Args *a) {
   }
   return check_files(a, what);
 }
+
+size_t lag_app_method_length(const char *list) {
+  size_t n = strcspn(list, ",(");
+  if (list[n] == '(') n += strcspn(list + n, ")");
+  return n + strcspn(list + n, ",");
+}
+
+int lag_app_overlays(const Args *a) { return a->nscenes > 1 || a->nvs > 0 || a->starts || (a->method && a->method[lag_app_method_length(a->method)] == ','); }
 
 /* --cloud draws one scene by several methods, and writes nothing else. */
 static int check_cloud(const Args *a) {

@@ -31,14 +31,6 @@ typedef struct Overlay {
   int scaled;   /* of --distance: 1: the outputs have several units */
 } Overlay;
 
-size_t lag_app_method_length(const char *list) {
-  size_t n = strcspn(list, ",(");
-  if (list[n] == '(') n += strcspn(list + n, ")");
-  return n + strcspn(list + n, ",");
-}
-
-int lag_app_overlays(const Args *a) { return a->nscenes > 1 || a->nvs > 0 || a->starts || (a->method && a->method[lag_app_method_length(a->method)] == ','); }
-
 /* The given name=value of the name that the first --vs varies, or NULL: `angle=15 --vs angle=30` compares two values. */
 static const char *varied_value(const Args *a) {
   for (int i = 0; i < a->nsets && a->nvs; i++) {

@@ -4,6 +4,7 @@
 
 #include "analysis/effect_variants.h"
 #include "app/app.h"
+#include "core/core.h"
 
 enum { MOST_LINES = 24, BESIDE_PICTURE = 4 };
 
@@ -83,6 +84,22 @@ static int has_kicks(const App *app) {
   int n = 0;
   for (int k = 0; k < m->nev; k++) n += m->ev[k].direction == LAG_KICK;
   return n > 0;
+}
+
+const double *lag_app_nonfinite_state(const App *app, double *t) {
+  const double *now = lag_sim_q(app->sim);
+  *t = lag_sim_time(app->sim);
+  if (app->status == LAG_ENAN || app->status == LAG_EDOMAIN) return now;
+  for (int k = 0; k < lag_sim_ncharges(app->sim) && app->status >= 0; k++) {
+    lag_charge_stats c;
+    lag_sim_charge(app->sim, k, &c);
+    if (isfinite(c.drift)) continue;
+    if (!isfinite(c.now)) return now;
+    *t = app->scene->t0;
+    return app->sim->begin;
+  }
+  *t = app->empty_t;
+  return app->status >= 0 ? app->empty_state : NULL;
 }
 
 /* "energy: not finite at t = 0 s: x = 900, x' = 1". */

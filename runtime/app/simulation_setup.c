@@ -309,8 +309,7 @@ lag_sim *lag_app_fresh_sim(App *app) {
 
 int lag_app_choose_method(App *app) {
   int rc = set_tolerance(app);
-  rc = rc ? rc : choose_method(app);
-  return rc || !app->args.accuracy ? rc : lag_app_choose_by_accuracy(app);
+  return rc ? rc : choose_method(app);
 }
 
 int lag_app_set_up_start(App *app) {
