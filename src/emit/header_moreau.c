@@ -1,5 +1,5 @@
 /* Steps of an emitted header by Moreau's method. Enters: the unit's contacts, their laws and matrices. Leaves: what the state says of contacts, prototypes and functions of the steps. Holds:
- * each step has the digits of the runtime's, whose laws and sweeps are copied (numeric/contact_impulses.c, methods/band_matrix.c); the frame around them is that of methods/moreau.c and
+ * each step has the digits of the runtime's, whose laws and sweeps are copied (contacts/contact_impulses.c, methods/band_matrix.c); the frame around them is that of methods/moreau.c and
  * moreau_contacts.c, which give the reasons. */
 #include <string.h>
 

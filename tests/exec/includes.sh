@@ -26,7 +26,8 @@ grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
 runtime/core      core/ numeric/ lag.h lag_model.h
 runtime/constraints constraints/ core/core.h core/rhs.h numeric/ lag.h lag_model.h lag_kkt.h
-runtime/methods   methods/ core/rhs.h numeric/ lag.h lag_model.h lag_math.h
+runtime/contacts  contacts/ core/core.h core/rhs.h numeric/ lag.h lag_model.h
+runtime/methods   methods/ core/rhs.h contacts/contact_impulses.h numeric/ lag.h lag_model.h lag_math.h
 runtime/lanes     lanes/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
 runtime/analysis  analysis/ core/ numeric/ lag.h lag_model.h
 runtime/io        io/ numeric/ lag.h lag_model.h

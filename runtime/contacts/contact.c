@@ -17,9 +17,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "constraints/contact_set.h"
+#include "contacts/contact_set.h"
 #include "core/rhs.h"
-#include "numeric/complementarity.h"
+#include "contacts/complementarity.h"
 #include "numeric/workspace.h"
 
 const lag_contact *lag_contact_of(const lag_model *m, int event) {

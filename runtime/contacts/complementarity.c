@@ -1,6 +1,6 @@
 /* Linear complementarity by the criss-cross method (complementarity.h). Invariant: basic = q + T nonbasic; basic variable i is z_i if in[i], else
  * w_i; pivots are principal or in pairs, so that each pair (w_i, z_i) keeps its row. */
-#include "numeric/complementarity.h"
+#include "contacts/complementarity.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* Forces within Coulomb's cones, by a linear programme. Contract: cone_forces.h. */
-#include "numeric/cone_forces.h"
+#include "contacts/cone_forces.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* The impact of one contact with friction in a plane, along the growing normal impulse. Contract: planar_impact.h. */
-#include "numeric/planar_impact.h"
+#include "contacts/planar_impact.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Projected Gauss-Seidel for impulses of contacts. Enters: velocities without contacts, and the laws of the contacts that take part; leaves: velocities with them. Holds: each
  * contact obeys its own law after its turn; the last sweep changes none of them noticeably. */
-#include "numeric/contact_impulses.h"
+#include "contacts/contact_impulses.h"
 
 #include <math.h>
 

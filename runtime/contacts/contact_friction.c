@@ -4,11 +4,11 @@
 #include <float.h>
 #include <math.h>
 
-#include "constraints/contact_set.h"
+#include "contacts/contact_set.h"
 #include "core/rhs.h"
-#include "numeric/contact_modes.h"
+#include "contacts/contact_modes.h"
 #include "numeric/dense.h"
-#include "numeric/planar_impact.h"
+#include "contacts/planar_impact.h"
 
 /* ---- forces while contacts slip */
 

@@ -1,5 +1,5 @@
 /* The modes of contacts with friction, by trying all combinations. Contract: contact_modes.h. */
-#include "numeric/contact_modes.h"
+#include "contacts/contact_modes.h"
 
 #include <math.h>
 #include <string.h>
