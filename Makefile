@@ -244,6 +244,9 @@ $(BUILD)/gen/numeric/%: runtime/numeric/% runtime/precision.awk
 	@mkdir -p $(@D)
 	awk -v kind=long -v digits=21 -f runtime/precision.awk $< | sed 's/LAG_REAL/long double/g' >$@.part
 	@mv $@.part $@
+$(BUILD)/gen/numeric/functions.def: runtime/numeric/functions.def
+	@mkdir -p $(@D)
+	cp $< $@
 # With its section in place, without that file's first line.
 $(BUILD)/gen/emit/lag_math.txt: runtime/include/lag_math.h runtime/include/lag_sincos.h
 	@mkdir -p $(@D)
@@ -269,7 +272,7 @@ $(BUILD)/obj/src/fmu/fmu.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimula
 $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,language python readme tutorial)
 $(BUILD)/obj/src/commands/verify.o: $(BUILD)/gen/commands/verify_driver.h
 $(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
-$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(BUILD)/gen/numeric/edit_distance.h
+$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(BUILD)/gen/numeric/edit_distance.h $(BUILD)/gen/numeric/functions.def
 $(patsubst %,$(BUILD)/obj/src/%.o,toolchain/files commands/build commands/options commands/cost_reference) $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 $(BUILD)/obj/gen/toolchain/outfile.o $(BUILD)/obj/gen/base/windows.o: | $(BUILD)/gen/base/posix.h
 # Generated code is not ours to warn about.

@@ -323,6 +323,8 @@ const char *expression_digits(Builder *b, Expr e);
 
 /* Records a let, a function or an observable, without a value. */
 void add_definition(Builder *b, EntKind kind, Definition d);
+/* resolve_function.c: the functions of functions.def that are defined by a text, as far as some expression calls them. */
+void declare_composed(Builder *b);
 
 /* Evaluates a let or an observable, unless it has a value already. */
 void resolve_let(Builder *b, uint32_t index);

@@ -313,6 +313,8 @@ typedef struct {
 
 /* Name of built-in function i; NULL past the end. */
 const char *function_name(size_t i);
+/* Whether it is defined by a text in functions.def: names of a model go before it. */
+int function_is_composed(size_t i);
 
 /* Names of the file's scenes, in order; "default" alone when there is none. */
 typedef struct {

@@ -6,18 +6,18 @@
 # FOLDER: the folders whose headers it may include. `mech/eqns.h` etc.: these files only.
 allowed='
 src/base      base/ numeric/
-src/sym       sym/ base/
-src/syntax    syntax/ base/
+src/sym       sym/ base/ numeric/functions.def
+src/syntax    syntax/ base/ numeric/functions.def
 src/model     model/ syntax/ sym/ base/
 src/mech      mech/ model/ sym/ base/ numeric/
 src/symmetry  symmetry/ mech/ model/ sym/ base/ numeric/
 src/claims    claims/ symmetry/ mech/ model/ sym/ base/ numeric/
 src/report    report/ symmetry/ mech/ model/ sym/ base/
-src/ir        ir/ base/
+src/ir        ir/ base/ numeric/functions.def
 src/series    series/ ir/ base/
 src/lower     lower/ series/ ir/ symmetry/charges.h mech/ model/ sym/ base/
-src/jets      jets/ lower/lower.h ir/ mech/ model/ syntax/ base/
-src/emit      emit/ ir/ base/
+src/jets      jets/ lower/lower.h ir/ mech/ model/ syntax/ base/ numeric/functions.def
+src/emit      emit/ ir/ base/ numeric/functions.def
 src/fmu       fmu/ emit/ ir/ base/
 src/toolchain toolchain/ base/
 src/commands  commands/ toolchain/ fmu/ emit/ jets/ lower/ ir/ report/ claims/ symmetry/ mech/ model/ sym/ syntax/ base/
