@@ -180,8 +180,8 @@ $(BUILD)/obj/runtime/%.o: runtime/%.c
 
 # Of one text, by runtime/precision.awk, in $(BUILD)/gen/long and $(BUILD)/gen/quad; lagc finds the headers in $(BUILD)/lag-long
 # and $(BUILD)/lag-quad. src/toolchain/toolchain.c compiles models with the same LAG_REAL.
-REAL_long := -std=c11 '-DLAG_REAL=long double' '-DLAG_PRECISION="long"'
-REAL_quad := -std=gnu11 -include quadmath.h -DLAG_REAL=__float128 '-DLAG_PRECISION="quad"'
+REAL_long := -std=c11 '-DLAG_REAL=long double' '-DLAG_OF_REAL(f)=f\#\#l' '-DLAG_PRECISION="long"'
+REAL_quad := -std=gnu11 -include quadmath.h -DLAG_REAL=__float128 '-DLAG_OF_REAL(f)=f\#\#q' '-DLAG_PRECISION="quad"'
 DIGITS_long := $(if $(filter long,$(PRECISIONS)),$(LONG_DIGITS))
 DIGITS_quad := 36
 RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
@@ -196,7 +196,7 @@ $(BUILD)/gen/$(1)/%: runtime/% runtime/precision.awk
 $(BUILD)/lag-$(1)/%.h: $(BUILD)/gen/$(1)/include/%.h
 	@mkdir -p $$(@D)
 	cp $$< $$@
-$(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | $(BUILD)/gen/io/page.h
+$(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | $(BUILD)/gen/io/page.h $(BUILD)/gen/numeric/functions.def
 	@mkdir -p $$(@D)
 	$$(CCACHE) $$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(PIC) $$(CFLAGS) $$(SAFE) -c -o $$@ $$<
 $(BUILD)/liblag_$(1).a: $(RT_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%)

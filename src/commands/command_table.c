@@ -252,7 +252,7 @@ static const OptionRow options[] = {
   {"--exponents", NULL, "K", TAKES_NUMBER, "", C(LYAPUNOV), PASSED, "only the K largest exponents"},
   {"--every", NULL, "DT", TAKES_NUMBER, "", SIMULATE, PASSED, "time between rows [s]; default: as the scene says, or a 1000th of the span; in pictures, as the motion requires"},
   {"--skip", NULL, "T", TAKES_NUMBER, "", SIMULATE, PASSED, "rows, pictures, sections and measures begin at time T [s]: without the transient"},
-  {"--measure", NULL, "EXPR", TAKES_EXPR, "", SIMULATE, PASSED,
+  {"--measure", NULL, "EXPR", TAKES_EXPRS, "", SIMULATE, OWN(measure),
    "a number of the run in the report: max(x), max(x, 10..20) from 10 to 20 s, min, mean, rms, drift, period(x), hit(EVENT, 3), count(EVENT), end, x(10), lyapunov, and arithmetic; NAME=EXPR names it; can be repeated"},
   {"--vs", NULL, "NAME=VALUE", TAKES_TEXT, "", C(PLOT), PASSED, "draws another run with this value beside; can be repeated"},
   {"--starts", NULL, "NAME=A..B:N", TAKES_TEXT, "", C(PLOT), PASSED, "a run for each value of a range, in one picture, coloured by its place: for sections of many motions; also A..B:log:N and A,B,C"},
@@ -286,7 +286,7 @@ static const OptionRow options[] = {
   {"--resume", NULL, "FILE", TAKES_FILE, "", SIMULATE, PASSED,
    "continues from a saved state, with the same scene, method and values: the results are those of an uninterrupted run, bit by bit"},
 
-  {"--measure", NULL, "EXPR", TAKES_TEXT, "", C(SWEEP), PASSED,
+  {"--measure", NULL, "EXPR", TAKES_EXPRS, "", C(SWEEP), OWN(measure),
    "what is kept of a run, x, x(10), max(x), max(x, 10..20) from 10 to 20 s, period(th), hit(EVENT), count(EVENT), drift(energy), lyapunov, arithmetic of these; can be repeated. Default: the state at the end"},
   {"--motions", NULL, "FILE", TAKES_FILE, "csv npy h5", C(SWEEP), PASSED, "the whole motion of each run: its number, t and the outputs in a row each --every; CSV, NumPy where FILE ends in .npy, HDF5 where it ends in .h5"},
   {"--every", NULL, "DT", TAKES_NUMBER, "", C(SWEEP), PASSED, "time between the rows of --motions [s]; default: as the scene says, or a 1000th of the span"},

@@ -61,10 +61,10 @@ const char *parse_advice(const char *word) { return advice_for_word(word, W_ANY)
 
 /* ---- tokens ---- */
 
-/* Functions that people write without parentheses on paper. */
+/* Functions that people write without parentheses. */
 static int is_function(const char *name) {
 #define WORD(OP, name, ...) #name " "
-  return name && has_word(FUNCTIONS(WORD) "ln sqrt abs", name);
+  return name && has_word(FUNCTIONS(WORD) "ln sqrt abs max min mean rms hit count", name);
 }
 
 /* Whether an `=` follows the current token (after primes): then it begins another member of a list. */

@@ -55,7 +55,7 @@ not_listed() {
 empty "functions and units of the reference" "$(not_listed)"
 
 # Options that lagc passes on are options of simulators: two tables in two programs that share no header.
-taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --effects -e --modes -e --lyapunov -e --cost -e --reference -e --against -e --error -e --given -e --seconds -e --section -e --portrait -e --potential -e --cloud -e --distance -e --energy-error -e --sweep -e --consts | sort -u; } # lagc passes these itself: --modes, --cost, --lyapunov, --sweep for its commands, --seconds for what is left of the time, --section for an event that it makes, --portrait, --potential and --cloud with their axes, --consts for constants that vary
+taken() { grep -o '{"[a-z-]*", offsetof' runtime/app/args.c | sed 's/{"/--/; s/".*//' | grep -v -x -e --help -e --effects -e --modes -e --lyapunov -e --cost -e --reference -e --against -e --error -e --given -e --seconds -e --section -e --portrait -e --potential -e --cloud -e --distance -e --energy-error -e --sweep -e --consts -e --measure | sort -u; } # lagc passes these itself: --modes, --cost, --lyapunov, --sweep for its commands, --seconds for what is left of the time, --section for an event that it makes, --portrait, --potential and --cloud with their axes, --consts for constants that vary, --measure as it is compiled
 handed() { { words 'passed run'; words 'passed plot'; words 'passed animate'; words 'passed modes'; words 'passed cost'; words 'passed lyapunov'; words 'passed sweep'; } | grep -e -- | sort -u; }
 check "a simulator has options" [ "$(taken | wc -l)" -gt 10 ]
 is "options of a simulator" "$(taken)" "$(handed)"

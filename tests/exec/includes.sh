@@ -8,7 +8,7 @@ allowed='
 src/base      base/ numeric/
 src/sym       sym/ base/ numeric/functions.def
 src/syntax    syntax/ base/ numeric/functions.def
-src/model     model/ syntax/ sym/ base/
+src/model     model/ syntax/ sym/ base/ numeric/functions.def
 src/mech      mech/ model/ sym/ base/ numeric/
 src/symmetry  symmetry/ mech/ model/ sym/ base/ numeric/
 src/claims    claims/ symmetry/ mech/ model/ sym/ base/ numeric/
