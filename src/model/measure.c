@@ -72,7 +72,7 @@ static CallKind call_kind(const MeasureReader *r, AstId id) {
   if (has_word("max min mean rms drift period", x->name) && x->args && (!second || ast_expr(r->b->ast, second)->kind == AST_BIND)) return CALL_TRACK;
   if (strcmp(x->name, "hit") == 0) return CALL_HIT;
   if (strcmp(x->name, "count") == 0) return CALL_COUNT;
-  if (e && e->kind != ENT_NONE) return CALL_AT;
+  if ((e && e->kind != ENT_NONE) || has_word("energy lagrangian t", x->name)) return CALL_AT;
   return function_word(x->name) ? CALL_FUNCTION : CALL_ELSE;
 }
 

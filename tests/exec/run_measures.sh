@@ -87,7 +87,7 @@ scene s { start x = 2 [m], y' = 1 [m/s], T = 20; span 3; tolerance 1e-12; measur
 LAG
 "$LAGC" run functions.lag --measure 'a=sinh(end/1[s])' --measure 'b=sech(x(1)/1[m])' --measure 'c=apart(max(y), y(1))' --measure 'd=tanh(y(1)/1[m]) + cbrt(8) + floor(2.5)' \
   --measure 'e=max(x, 150)' --measure 'f=hypot(max(x), max(y))' --measure 'g=max(y*y)^(1/2)' --measure 'h=max(y)*k' --measure 'i=asin(max(y)/1[m])' --measure 'j=max(x)/min(x)' --measure 'k=T' \
-  --measure 'l=drift(T)' --measure 'm=sign(min(x))*abs(min(x))' --measure 'n=pow(max(y), 2)' --measure 'o=max(twice(x) + 1)' >out 2>err
+  --measure 'l=drift(T)' --measure 'm=sign(min(x))*abs(min(x))' --measure 'n=pow(max(y), 2)' --measure 'o=max(twice(x) + 1)' --measure 'p=energy(1)/lagrangian(0)' --measure 't(2)' >out 2>err
 sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
 check "a hyperbolic sine" near a 10.017874927409903 '' 1e-9      # sinh 3
 check "a function that a text defines" near b 0.6086703740847927 '' 1e-9 # 1/cosh(2 cos 1)
@@ -104,6 +104,8 @@ check "a difference of temperatures" near l 0 degC 1e-9
 check "a sign" near m -197.998499 cm 1e-5                        # 2 cos 3
 check "a power" near n 1 m^2 1e-9
 check "a function of a quantity, along the run" near o 5 m 1e-9
+check "the energy at a time" near p -1.6666666666666667 '' 1e-9     # E = (4 + 1)/2 J, L(0) = (1 - 4)/2 J
+check "the time at a time" near 't(2)' 2 s 0
 is "no warning" "" "$(cat err)"
 check "windows without an end, in a scene" near low -306.05896 cm 1e-4 # 2 (cos 3 - cos 1) m
 "$LAGC" run functions.lag --measure 'max(x) + max(k)' --measure 'y(1 [m])' --measure 'exp(max(y))' --measure 'i=end' >out 2>err
