@@ -113,7 +113,7 @@ typedef struct {
   uint32_t impact, release;      /* indices into Model.events; of a tangent: the slip ends; the force reaches its limit */
   int is_tangent;                /* of the contact before it */
   Expr friction, hold;           /* of a tangent: its coefficients while it slips, and while it sticks */
-  int law;                       /* of a tangent: the law of impact, as LAG_IMPACT_STRONGE of runtime/numeric/planar_impact.h and its neighbours */
+  int law;                       /* of a tangent: the law of impact, as LAG_IMPACT_STRONGE of runtime/contacts/planar_impact.h and its neighbours */
   SymId force;                   /* of a tangent: input set by the runtime, the force of friction along the slip while the contact slips */
 } Contact;
 
@@ -287,7 +287,7 @@ typedef struct {
   VEC(Input) inputs;
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */
-  Expr across;             /* kinetic term in q.q' of each rotation, 0 on its constraint, which makes M regular; 0: none */
+  Expr regularising;             /* kinetic term in q.q' of each rotation, 0 on its constraint, which makes M regular; 0: none */
   Span lagrangian_span;
   Span dissipation_span;
   Span kinetic_span;       /* empty when L was given as a whole */

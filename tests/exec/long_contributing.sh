@@ -44,7 +44,7 @@ static Val area_sine(SeriesBuilder *m, Slot at_zero, Val u) {
 
 END
 behind src/series/series_recurrences.c 'if (strcmp(name, "atan") == 0)' '  if (strcmp(name, "asinh") == 0) return area_sine(m, at_zero, u);'
-before src/jets/jet.c 'static void logarithm(' <<'END'
+before src/self_check/jet.c 'static void logarithm(' <<'END'
 static void area_sine(JetReal d[DERIVATIVES], JetReal x) {
   JetReal r = 1 / sqrtl(1 + x * x), r3 = r * r * r, r5 = r3 * r * r;
   JetReal cycle[DERIVATIVES] = {asinhl(x), r, -x * r3, (2 * x * x - 1) * r5, (9 * x - 6 * x * x * x) * r5 * r * r};
@@ -52,8 +52,8 @@ static void area_sine(JetReal d[DERIVATIVES], JetReal x) {
 }
 
 END
-behind src/jets/jet.c 'strcmp(name, "atan") == 0' '  else if (strcmp(name, "asinh") == 0) area_sine(d, x);'
-behind src/jets/tape_partial.c 'strcmp(name, "atan") == 0' \
+behind src/self_check/jet.c 'strcmp(name, "atan") == 0' '  else if (strcmp(name, "asinh") == 0) area_sine(d, x);'
+behind src/self_check/tape_partial.c 'strcmp(name, "atan") == 0' \
   '  if (strcmp(name, "asinh") == 0) return quotient(t, da, tape_power(t, tape_op(t, TAPE_ADD, one, square(t, a), 0), num_ratio(1, 2)));'
 edit runtime/include/lag_math.h 's/LAG_LANES_1(atan)/LAG_LANES_1(atan) LAG_LANES_1(asinh)/'
 edit grammar/LANGUAGE.md 's/^| `sinh(x)`, `cosh(x)`, `tanh(x)` | hyperbolic functions |/&\

@@ -1,7 +1,7 @@
 /* lag_solve_lcp: what it finds has the properties that define a solution, for matrices of any rank, and what has none is told from it. */
 #include "test_rt_models.h"
 
-#include "numeric/complementarity.h"
+#include "contacts/complementarity.h"
 
 enum { MOST = 8 };
 

@@ -2,8 +2,8 @@
  * motions are known. */
 #include "test_rt_models.h"
 
-#include "numeric/contact_modes.h"
-#include "numeric/planar_impact.h"
+#include "contacts/contact_modes.h"
+#include "contacts/planar_impact.h"
 
 static double chance(uint64_t *state) { /* a number in [0, 1): D. Knuth's generator (MMIX) */
   *state = *state * 6364136223846793005u + 1442695040888963407u;

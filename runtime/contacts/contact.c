@@ -1,0 +1,555 @@
+/* Contacts: gaps that stay at least 0. Enters: a state set by an event or a user; leaves: the state after all impacts, with the gaps closed that
+ * are pressed. Holds: a closed gap is a constraint of the model, switched on by its input in `hold` (1); no closed gap pulls; an open gap that
+ * touches is armed anew, so that its next closing is seen. Constraints with a condition (conditional_constraints.c) count as other constraints here.
+ *
+ * Impacts that follow each other ever faster come to an end in finite time (a ball that loses a fifth of its speed at each bounce). The gap is
+ * closed when the rest of that time is too short to matter, or the next flight stays within rounding; Brogliato, Nonsmooth Mechanics, 3rd ed.
+ * (2016), 1.4 and 8.1, DOI 10.1007/978-3-319-28664-8.
+ *
+ * An impact is Newton's law for all gaps at once, each with its coefficient of restitution, as a linear complementarity problem: rate after + e
+ * rate before >= 0 where a gap was closing, rate after >= 0 where it rests, an impulse >= 0, and of the two one is 0. Rates are unique, as the
+ * nearest ones in the metric of the mass matrix; impulses are unique where no contact depends on others. J.J. Moreau, in: Nonsmooth Mechanics
+ * and Applications (1988), 1, DOI 10.1007/978-3-7091-2624-0_1; B. Brogliato, Nonsmooth Mechanics, 3rd ed. (2016), ch. 5, DOI
+ * 10.1007/978-3-319-28664-8; Ch. Glocker, Set-Valued Force Laws (2001), DOI 10.1007/978-3-540-44479-4. Forces: the same problem with
+ * accelerations in place of rates, P. Loetstedt, SIAM J. Appl. Math. 42 (1982) 281, DOI 10.1137/0142022. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contacts/contact_set.h"
+#include "core/rhs.h"
+#include "contacts/complementarity.h"
+#include "numeric/workspace.h"
+
+const lag_contact *lag_contact_of(const lag_model *m, int event) {
+  for (int i = 0; i < m->ncontacts; i++)
+    if (m->contacts[i].impact == event || m->contacts[i].release == event) return &m->contacts[i];
+  return NULL;
+}
+
+int lag_event_is_located(const lag_sim *s, int k) { return !s->pb.contacts || !lag_contact_of(s->scene->model, k); }
+
+int lag_contact_is_closed(const lag_sim *s, const lag_contact *c) { return s->hold[c->input] > 0.5; }
+
+void lag_contact_set_closed(lag_sim *s, int i, int closed) {
+  const lag_contact *c = &s->scene->model->contacts[i];
+  s->hold[c->input] = closed ? 1 : NAN;
+  if (c->is_tangent) s->hold[c->force] = NAN;
+}
+
+/* The tangent of contact i; -1: it has no friction. */
+static int tangent_of(const lag_model *m, int i) { return i + 1 < m->ncontacts && m->contacts[i + 1].is_tangent ? i + 1 : -1; }
+
+void lag_contact_open(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  for (int i = 0; i < m->ncontacts; i++)
+    if (!m->contacts[i].conditional) lag_contact_set_closed(s, i, 0);
+}
+
+void lag_contacts_close_only(const ContactSet *w, int all, int which) {
+  const lag_model *m = w->sim->scene->model;
+  for (int i = 0; i < m->ncontacts; i++)
+    if (!m->contacts[i].conditional) lag_contact_set_closed(w->sim, i, all || i == which);
+}
+
+/* Closes the contacts of w with closed[n], and no others. */
+static void close_contacts(const ContactSet *w, const unsigned char *closed) {
+  lag_contacts_close_only(w, 0, -1);
+  for (int a = 0; a < w->n; a++) lag_contact_set_closed(w->sim, w->of[a], closed[a]);
+}
+
+int lag_contacts_no_values(ContactSet *w, int i) {
+  const lag_model *m = w->sim->scene->model;
+  return lag_fail(w->sim, LAG_EMODEL, "the contact %s has no finite values at t = %s s", m->constraints->of[m->contacts[i].constraint].name,
+                  LAG_TEXT(w->sim->run->t));
+}
+
+/* ---- gaps and rates */
+
+static int make_room(ContactSet *w) {
+  const lag_model *m = w->sim->scene->model;
+  const lag_constraints *of = m->constraints;
+  size_t p = (size_t)m->ncontacts, n = (size_t)of->n, nq = (size_t)m->nq;
+  double **const parts[] = {&w->gap, &w->rate, &w->gap_size, &w->rate_size, &w->g, &w->c, &w->r, &w->d, &w->force, &w->test, &w->events,
+                            &w->A, &w->mass, &w->law, &w->side};
+  const size_t sizes[] = {p, p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)(m->nev + m->nmodes), (size_t)of->njacobian, (size_t)of->nmass, 3 * p, p};
+  w->block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
+  w->of = calloc(p, sizeof *w->of);
+  w->at = calloc(p, sizeof *w->at);
+  w->active = calloc(4 * p, 1);
+  w->closed = w->active + p;
+  w->was_closed = w->closed + p;
+  w->follows = w->was_closed + p;
+  return w->block && w->of && w->at && w->active ? LAG_OK : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+}
+
+static void free_contacts(ContactSet *w) {
+  free(w->block);
+  free(w->of);
+  free(w->at);
+  free(w->active);
+  free(w->response);
+}
+
+int lag_contacts_rates(ContactSet *w, const double *y, double *rate) {
+  const lag_model *m = w->sim->scene->model;
+  lag_contacts_close_only(w, 1, -1);
+  int rc = lag_residuals(&w->sim->pb, w->sim->run->t, y, w->c, w->r);
+  for (int i = 0; i < m->ncontacts; i++) rate[i] = rc ? NAN : m->contacts[i].conditional ? 0 : w->r[m->contacts[i].constraint];
+  return rc;
+}
+
+/* size[constraints] := size of the terms of gaps, or of their rates, at y or at the start, whichever is larger: a ball that has come to lie at 0
+ * is measured by its fall. Leaves all contacts closed. */
+static int term_sizes(lag_sim *s, const double *y, int holonomic, double *size, double *scratch) {
+  const lag_constraints *of = s->scene->model->constraints;
+  int rc = lag_constraint_terms(&s->pb, s->run->t, y, holonomic, size);
+  rc = rc ? rc : lag_constraint_terms(&s->pb, s->run->t, s->begin, holonomic, scratch);
+  for (int k = 0; k < (holonomic ? of->nholonomic : of->n) && rc == 0; k++) size[k] = fmax(size[k], isfinite(scratch[k]) ? scratch[k] : 0);
+  return rc;
+}
+
+/* *w := all contacts at the state y, which stays the caller's; w->of has room for all, n is 0. */
+static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
+  const lag_model *m = s->scene->model;
+  lag_problem *pb = &s->pb;
+  double t = s->run->t;
+  *w = (ContactSet){.sim = s, .y = y};
+  int rc = make_room(w), nq = pb->nq;
+  if (rc) return rc;
+  for (int i = 0; i < m->ncontacts; i++) w->was_closed[i] = s->hold[m->contacts[i].input] > 0.5;
+  rc = lag_contacts_rates(w, y, w->rate);
+  for (int i = 0; i < m->ncontacts; i++) {
+    if (m->contacts[i].conditional) continue;
+    w->gap[i] = m->contacts[i].is_tangent ? 1 : w->c[m->contacts[i].constraint];
+    if (rc || !isfinite(w->gap[i]) || !isfinite(w->rate[i])) return lag_contacts_no_values(w, i);
+  }
+  rc = term_sizes(s, y, 1, w->g, w->c);
+  for (int i = 0; i < m->ncontacts; i++) w->gap_size[i] = m->contacts[i].is_tangent ? 1 : w->g[m->contacts[i].constraint];
+  rc = rc ? rc : term_sizes(s, y, 0, w->g, w->c);
+  for (int i = 0; i < m->ncontacts; i++) w->rate_size[i] = w->g[m->contacts[i].constraint];
+  rc = rc ? rc : lag_inputs(pb, t);
+  if (rc == 0 && m->contact_laws) rc = lag_contact_laws(s, y, w->law);
+  rc = rc ? rc : m->constraints->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->mass, pb->work);
+  return rc ? lag_contacts_no_values(w, 0) : LAG_OK;
+}
+
+/* Change of the rate of contact i by a change d of velocities; A: entries of the Jacobian. */
+static double rate_change(const lag_model *m, const double *A, int i, const double *d) {
+  const lag_constraints *of = m->constraints;
+  double s = 0;
+  for (int e = 0; e < of->njacobian; e++) s += of->jacobian[e].row == m->contacts[i].constraint ? A[e] * d[of->jacobian[e].col] : 0;
+  return s;
+}
+
+static double change_of_rate(const ContactSet *w, int i, const double *d) { return rate_change(w->sim->scene->model, w->A, i, d); }
+
+double lag_contact_restitution(lag_problem *pb, double t, const double *y, int i, double rate, double speed, const double *d, const double *A, double *before, double *after) {
+  const lag_model *m = pb->model;
+  int nq = m->nq, stop = 0;
+  size_t bytes = (size_t)pb->n * sizeof *y;
+  memcpy(before, y, bytes);
+  for (int j = 0; j < nq; j++) before[nq + j] -= (speed + rate) * d[j];
+  memcpy(after, before, bytes);
+  if (m->act(m->contacts[i].impact, t, before, before + nq, before + 2 * nq, pb->p, pb->u, after, after + nq, after + 2 * nq, &stop, pb->work)) return NAN;
+  for (int j = 0; j < nq; j++) before[nq + j] = after[nq + j] - before[nq + j];
+  return rate_change(m, A, i, before + nq) / speed - 1;
+}
+
+double lag_contacts_response(ContactSet *w, int i) {
+  lag_problem *pb = &w->sim->pb;
+  int nq = pb->nq, k = w->sim->scene->model->contacts[i].constraint;
+  double s = 0;
+  lag_contacts_close_only(w, 0, i);
+  memset(w->g, 0, (size_t)pb->model->constraints->n * sizeof *w->g);
+  w->g[k] = 1;
+  if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) return NAN;
+  for (int j = 0; j < nq; j++) s += w->d[j] * w->force[j];
+  return fabs(change_of_rate(w, i, w->d) - 1) > 0.5 ? 0 : 1 / s;
+}
+
+/* The coefficient of restitution of contact i; NaN where no impulse moves it. */
+static double restitution(ContactSet *w, int i) {
+  lag_sim *s = w->sim;
+  double to = lag_contacts_response(w, i), speed = w->rate_size[i] > 0 ? w->rate_size[i] : 1; /* test velocity: the gap closes with a typical speed */
+  return to > 0 ? lag_contact_restitution(&s->pb, s->run->t, w->y, i, w->rate[i], speed, w->d, w->A, s->yc, w->test) : NAN;
+}
+
+/* Computes W for the contacts of[n]. */
+static int find_responses(ContactSet *w) {
+  size_t n = (size_t)w->rows;
+  double *x = w->response = calloc(2 * n * n + 3 * n + 1, sizeof *x);
+  if (!x) return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  w->lcp = x + n * n;
+  w->rhs = w->lcp + n * n;
+  w->impulse = w->rhs + n;
+  w->scale = w->impulse + n;
+  for (int a = 0; a < w->rows; a++) {
+    double to = lag_contacts_response(w, w->of[a]);
+    if (!isfinite(to)) return lag_contacts_no_values(w, w->of[a]);
+    for (int b = 0; b < w->rows; b++) w->response[b * w->rows + a] = to * change_of_rate(w, w->of[b], w->d);
+    w->response[a * w->rows + a] = to;
+  }
+  return LAG_OK;
+}
+
+/* ---- complementarity */
+
+/* Reports that no impulse, or force, keeps contact a from closing. */
+static int fail_incompatible(ContactSet *w, int a) {
+  int against = -1;
+  double most = 0;
+  for (int b = 0; b < w->n && a >= 0; b++)
+    if (w->active[b] && w->response[a * w->n + b] < most) {
+      most = w->response[a * w->n + b];
+      against = b;
+    }
+  if (against >= 0) {
+    return lag_fail(w->sim, LAG_EMODEL, "at t = %.9g s the contacts %s and %s contradict each other: no force keeps both gaps from closing",
+                    w->sim->run->t, lag_contacts_name(w, a), lag_contacts_name(w, against));
+  }
+  return lag_fail(w->sim, LAG_EMODEL, "at t = %.9g s nothing can keep the contact %s from closing further", w->sim->run->t, lag_contacts_name(w, a < 0 ? 0 : a));
+}
+
+/* Solves the complementarity problem of the contacts that take part: in[n]; push[n] := impulses where in[n]. */
+static int complement(ContactSet *w, const double *q) {
+  int m = 0, n = w->n, row = -1;
+  for (int a = 0; a < n; a++)
+    if (w->active[a]) {
+      w->at[m] = a;
+      w->impulse[m++] = q[a];
+    }
+  for (int k = 0; k < m * m; k++) w->lcp[k] = w->response[w->at[k / m] * n + w->at[k % m]];
+  int found = lag_solve_lcp(m, w->lcp, w->impulse, w->scale, w->closed, &row);
+  for (int k = n - 1; k >= m; k--) w->closed[k] = w->follows[k] = 0;
+  for (int k = m - 1; k >= 0; k--) { /* back to their places, which are not lower */
+    double push = w->impulse[k];
+    unsigned char in = w->closed[k], follows = !in && w->lcp[k * m + k] <= lag_lcp_zero_pivot;
+    w->impulse[k] = w->closed[k] = w->follows[k] = 0;
+    w->impulse[w->at[k]] = push;
+    w->closed[w->at[k]] = in;
+    w->follows[w->at[k]] = follows;
+  }
+  return found ? LAG_OK : fail_incompatible(w, row < 0 ? -1 : w->at[row]);
+}
+
+/* Applies the impulses where gaps close: changes y and w->rate. e[n]: coefficients of restitution; struck[n]: gaps that were closing. */
+static int impact(ContactSet *w, const double *e, const unsigned char *struck) {
+  lag_sim *s = w->sim;
+  int nq = s->pb.nq;
+  double dir = s->run->dir;
+  for (int a = 0; a < w->n; a++) {
+    w->active[a] = 1;
+    w->rhs[a] = dir * w->rate[w->of[a]] * (struck[a] ? 1 + e[a] : 1);
+  }
+  int rc = complement(w, w->rhs);
+  if (rc) return rc;
+  close_contacts(w, w->closed);
+  memset(w->g, 0, (size_t)s->pb.model->constraints->n * sizeof *w->g);
+  for (int a = 0; a < w->n; a++) w->g[lag_contacts_at(w, a)->constraint] = w->closed[a] ? -dir * w->rhs[a] : 0;
+  rc = lag_least_change(&s->pb, s->run->t, w->y, 0, w->g, w->d, w->force);
+  for (int i = 0; i < nq; i++) w->y[nq + i] += w->d[i];
+  return rc || lag_not_finite(nq, w->d) >= 0 || lag_contacts_rates(w, w->y, w->rate) ? lag_contacts_no_values(w, w->of[0]) : LAG_OK;
+}
+
+/* ---- forces */
+
+/* pull[n] := acceleration of each open gap: -(force if this contact alone is closed) * (its response). */
+static int find_pulls(ContactSet *w) {
+  for (int a = 0; a < w->n; a++) {
+    lag_contacts_close_only(w, 0, w->of[a]);
+    int rc = lag_events_eval(w->sim, w->sim->run->t, w->y, w->events);
+    if (rc) return rc;
+    w->rhs[a] = -w->response[a * w->n + a] * w->events[lag_contacts_at(w, a)->release];
+  }
+  return LAG_OK;
+}
+
+/* Whether these closed contacts all press. */
+static int none_pulls(ContactSet *w, const unsigned char *closed) {
+  double least = 0, most = 0;
+  close_contacts(w, closed);
+  if (lag_events_eval(w->sim, w->sim->run->t, w->y, w->events)) return 0;
+  for (int a = 0; a < w->n; a++) {
+    double force = closed[a] ? w->events[lag_contacts_at(w, a)->release] : 0;
+    least = fmin(least, force);
+    most = fmax(most, force);
+  }
+  return most > 0 && least >= 0;
+}
+
+/* w->closed := contacts that stay closed under forces: those that press, and those that depend on them where they share the load and none pulls.
+ * acceleration[n] := of each gap then. y does not change; contacts are left open. */
+static int contacts_at_rest(ContactSet *w, double *acceleration) {
+  int n = w->n, rc = find_pulls(w), more = 0;
+  rc = rc ? rc : complement(w, w->rhs);
+  for (int a = 0; a < n && rc == 0; a++) {
+    acceleration[a] = w->rhs[a];
+    for (int b = 0; b < n; b++) acceleration[a] += w->closed[b] ? w->response[a * n + b] * w->impulse[b] : 0;
+    more |= w->follows[a];
+    w->follows[a] |= w->closed[a];
+  }
+  if (more && none_pulls(w, w->follows)) memcpy(w->closed, w->follows, (size_t)n);
+  lag_contacts_close_only(w, 0, -1);
+  return rc;
+}
+
+/* ---- contacts of a state */
+
+static const lag_constraint *constraint_of(const lag_sim *s, int i) {
+  const lag_model *m = s->scene->model;
+  return &m->constraints->of[m->contacts[i].constraint];
+}
+
+/* Relative tolerances: a speed after an impact that counts as 0; a flight too low to
+ * be followed, relative to the terms of the gap. */
+static const double no_speed = 1e-9, no_flight = 0x1p6 * DBL_EPSILON;
+
+/* ---- contacts that take part */
+
+/* of[n] := contacts that take part: closed before, of this event, or without a gap. Refuses a state set by `who` (if not NULL) with a negative
+ * gap. */
+static int find_touching(ContactSet *w, const char *who, int event) {
+  lag_sim *s = w->sim;
+  const lag_model *m = s->scene->model;
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    if (c->conditional) continue;
+    int inside = w->gap[i] < -lag_no_gap * w->gap_size[i];
+    if (inside && who) {
+      const lag_constraint *of = constraint_of(s, i);
+      return lag_fail(s, LAG_EINVAL, "%s is inside the contact %s: its gap is %.3g%s%s", who, of->name, w->gap[i], of->unit[0] ? " " : "", of->unit);
+    }
+    if (c->is_tangent) continue;
+    if (c->impact == event || c->release == event || w->was_closed[i] || w->gap[i] <= lag_no_gap * w->gap_size[i]) w->of[w->n++] = i;
+  }
+  w->rows = w->n;
+  for (int a = 0; a < w->n; a++) {
+    int tangent = tangent_of(m, w->of[a]);
+    w->at[a] = tangent < 0 ? -1 : w->rows;
+    if (tangent >= 0) w->of[w->rows++] = tangent;
+  }
+  return LAG_OK;
+}
+
+static int check_restitution(lag_sim *s, int i, double e) {
+  if (!isnan(e) && !(e >= -no_speed && e <= 1 + no_speed))
+    return lag_fail(s, LAG_EINVAL, "the contact %s has a restitution of %.3g, which must be between 0 and 1", constraint_of(s, i)->name, e);
+  if (s->run->dir < 0 && e < 1 - no_speed) {
+    return lag_fail(s, LAG_EINVAL, "at t = %.9g s the contact %s, of restitution %.3g, ends the run backwards in time: an impact that loses energy "
+                    "cannot be reversed", s->run->t, constraint_of(s, i)->name, e);
+  }
+  return LAG_OK;
+}
+
+static int check_friction(lag_sim *s, int i, const double *law) {
+  if (!(law[0] >= 0)) return lag_fail(s, LAG_EINVAL, "the contact %s has a friction of %.3g, which must be at least 0", constraint_of(s, i - 1)->name, law[0]);
+  if (!(law[-3] >= law[0]))
+    return lag_fail(s, LAG_EINVAL, "the contact %s has a static friction of %.3g, which must be at least its friction while it slips, %.3g", constraint_of(s, i - 1)->name, law[-3], law[0]);
+  if (law[1] >= 0 && law[1] <= 1) return LAG_OK;
+  return lag_fail(s, LAG_EINVAL, "the contact %s has a tangential restitution of %.3g, which must be between 0 and 1", constraint_of(s, i - 1)->name, law[1]);
+}
+
+/* ---- impacts */
+
+/* Marks event k as due now, unless it has fired already. */
+void lag_mark_due(lag_sim *s, int k) { s->root[k] = s->root[k] == HUGE_VAL ? HUGE_VAL : s->run->limit; }
+
+/* Impacts of the gaps that close, without restitution for those in ends[n]; before[n] := their rates before it. */
+static int apply_impacts(ContactSet *w, const unsigned char *ends, double *before, double *e, unsigned char *struck) {
+  lag_sim *s = w->sim;
+  const lag_model *m = s->scene->model;
+  int any = 0;
+  for (int a = 0; a < w->n; a++) {
+    int i = w->of[a];
+    before[a] = s->run->dir * w->rate[i];
+    struck[a] = before[a] < -lag_no_gap * w->rate_size[i];
+    any |= struck[a];
+    e[a] = 0;
+    if (struck[a] || w->rows > w->n) { /* one impact may lead to others */
+      e[a] = restitution(w, i);
+      int rc = check_restitution(s, i, e[a]);
+      if (rc) return rc;
+      e[a] = isnan(e[a]) || ends[a] ? 0 : e[a];
+      if (struck[a]) lag_mark_due(s, m->contacts[i].impact);
+    }
+  }
+  return !any ? LAG_OK : w->rows > w->n ? lag_contacts_strike(w, e) : impact(w, e, struck);
+}
+
+/* ---- resting contacts */
+
+/* w->closed, acceleration[n] of the contacts that take part. */
+static int find_closed(ContactSet *w, int event, double *acceleration) {
+  return w->rows > w->n ? lag_contacts_choose_modes(w, event, acceleration) : contacts_at_rest(w, acceleration);
+}
+
+/* Finds the contacts that rest, and among them those that are pressed and stay closed. ends[n]: those which rest after this impact, more of them on return. */
+static int rest(ContactSet *w, int event, unsigned char *ends, const double *before, double *acceleration) {
+  double dir = w->sim->run->dir;
+  for (int a = 0; a < w->n; a++) {
+    double after = dir * w->rate[w->of[a]];
+    w->active[a] = after <= lag_no_gap * w->rate_size[w->of[a]] || after <= no_speed * fabs(before[a]) || ends[a];
+  }
+  int rc = find_closed(w, event, acceleration), more = 0;
+  for (int a = 0; a < w->n && rc == 0; a++) { /* its flight would stay within rounding */
+    double after = w->rate[w->of[a]], back = -2 * acceleration[a] * no_flight * w->gap_size[w->of[a]];
+    if (!w->active[a] && after * after <= back) {
+      w->active[a] = ends[a] = 1;
+      more = 1;
+    }
+  }
+  return rc == 0 && more ? find_closed(w, event, acceleration) : rc;
+}
+
+/* Closes the contacts that are pressed, and projects away the speed and gap that remain. */
+static int close_gaps(ContactSet *w) {
+  lag_sim *s = w->sim;
+  for (int a = 0; a < w->n; a++)
+    if (w->was_closed[w->of[a]] && !w->closed[a]) lag_mark_due(s, s->scene->model->contacts[w->of[a]].release);
+  close_contacts(w, w->closed);
+  if (w->rows > w->n) lag_contacts_set_friction(w);
+  if (lag_project(&s->pb, s->run->t, w->y, NULL) == LAG_OK) return LAG_OK;
+  return lag_fail(s, LAG_EMODEL, "at t = %.9g s contacts cannot stay closed: %s", s->run->t, s->pb.detail ? s->pb.detail : "");
+}
+
+/* The impacts, and what rests after them. Friction at impacts that are left out would be missing, whose sum is that of one without restitution: where the flight
+ * after an impact would stay within rounding, the impact is replaced by that one. */
+static int strike_and_rest(ContactSet *w, int event, unsigned char *ends, double *before, double *e, double *acceleration, unsigned char *struck, double *y, double *rate) {
+  const size_t size = (size_t)w->sim->pb.n * sizeof *y, rates = (size_t)w->sim->scene->model->ncontacts * sizeof *rate;
+  memcpy(y, w->y, size);
+  memcpy(rate, w->rate, rates);
+  for (int again = 1; again;) {
+    int rc = apply_impacts(w, ends, before, e, struck);
+    memcpy(struck + w->n, ends, (size_t)w->n);
+    rc = rc ? rc : rest(w, event, ends, before, acceleration);
+    if (rc) return rc;
+    again = 0;
+    for (int a = 0; a < w->n && w->rows > w->n; a++) again |= struck[a] && ends[a] && !struck[w->n + a];
+    if (!again) break;
+    memcpy(w->y, y, size);
+    memcpy(w->rate, rate, rates);
+  }
+  return LAG_OK;
+}
+
+static int resolve_contacts(ContactSet *w, const char *who, int event, int last) {
+  int rc = find_touching(w, who, event);
+  lag_contact_open(w->sim);
+  if (rc || w->n == 0) return rc;
+  size_t n = (size_t)w->n, others = (size_t)w->sim->pb.n + (size_t)w->sim->scene->model->ncontacts;
+  double *room = calloc(3 * n + others, sizeof *room), *y = room + 3 * n;
+  unsigned char *ends = calloc(3 * n, 1);
+  rc = room && ends ? find_responses(w) : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  for (size_t a = 0; a < n && rc == 0; a++) ends[a] = last && lag_contacts_at(w, (int)a)->impact == event;
+  rc = rc ? rc : strike_and_rest(w, event, ends, room, room + n, room + 2 * n, ends + n, y, y + w->sim->pb.n);
+  rc = rc ? rc : close_gaps(w);
+  free(room);
+  free(ends);
+  return rc;
+}
+
+/* ---- contacts that are met by impulses (methods/moreau_contacts.c) */
+
+void lag_contact_mute(const lag_sim *s, double *g) {
+  const lag_model *m = s->scene->model;
+  for (int i = 0; i < m->ncontacts; i++) g[m->contacts[i].impact] = g[m->contacts[i].release] = 1;
+}
+
+void lag_contact_show(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    s->pb.u[c->input] = !c->is_tangent && s->pb.contact_impulse[i] > 0;
+    if (c->is_tangent) s->pb.u[c->force] = s->pb.contact_impulse[i] / s->pb.contacts->length;
+  }
+}
+
+/* Refuses a state set by `who` that is deeper inside a contact than this run was before. */
+static int check_depth(ContactSet *w, const char *who) {
+  for (int i = 0; i < w->sim->scene->model->ncontacts; i++) w->gap[i] += w->sim->pb.contacts->depth;
+  return who ? find_touching(w, who, -1) : LAG_OK;
+}
+
+int lag_contact_resolve(lag_sim *s, double *y, const char *who, int event, int ends) {
+  ContactSet w;
+  if (s->scene->model->ncontacts == 0) return LAG_OK;
+  int rc = evaluate_contacts(s, y, &w);
+  if (s->pb.contacts) {
+    rc = rc ? rc : check_depth(&w, who);
+    lag_contact_open(s);
+    free_contacts(&w);
+    return rc;
+  }
+  rc = rc ? rc : resolve_contacts(&w, who, event, ends);
+  free_contacts(&w);
+  return rc;
+}
+
+/* Checks that every coefficient of restitution is between 0 and 1. */
+static int check_all(lag_sim *s) {
+  ContactSet w;
+  int rc = evaluate_contacts(s, s->now, &w);
+  for (int i = 0; i < s->scene->model->ncontacts && rc == 0; i++) {
+    if (s->scene->model->contacts[i].is_tangent) {
+      rc = check_friction(s, i, w.law + 3 * i);
+      continue;
+    }
+    double e = s->scene->model->contacts[i].conditional ? NAN : restitution(&w, i);
+    rc = isfinite(e) ? check_restitution(s, i, s->run->dir < 0 ? fmax(e, 1) : e) : LAG_OK;
+  }
+  free_contacts(&w);
+  lag_contact_open(s);
+  return rc;
+}
+
+int lag_contact_begin(lag_sim *s) {
+  int rc = LAG_OK;
+  if (s->pb.contacts && s->run->dir < 0) return lag_fail(s, LAG_EINVAL, "%s does not follow contacts backwards in time", s->method->name);
+  if (s->scene->model->contact_laws && s->run->dir < 0)
+    return lag_fail(s, LAG_EINVAL, "contacts with friction are not followed backwards in time: many motions come to rest in the same place");
+  if (s->scene->model->ncontacts > 0) {
+    lag_contact_open(s);
+    rc = check_all(s);
+    rc = rc ? rc : lag_settle_constraints(s, s->now, "the start", -1, 0, 0, NULL);
+  }
+  memcpy(s->y, s->now, (size_t)s->pb.n * sizeof(double));
+  return rc;
+}
+
+/* size[constraints] of tangents := size of the terms of their slip velocities. */
+static int tangent_sizes(lag_sim *s, double *size) {
+  const lag_model *m = s->scene->model;
+  double *rates = size + m->constraints->n;
+  int rc = lag_constraint_terms(&s->pb, s->run->t, s->now, 0, rates);
+  for (int i = 0; i < m->ncontacts && rc == 0; i++)
+    if (m->contacts[i].is_tangent) size[m->contacts[i].constraint] = rates[m->contacts[i].constraint];
+  return rc;
+}
+
+int lag_contact_arm(lag_sim *s, const double *g) {
+  const lag_model *m = s->scene->model;
+  double most = 0, *size = s->contact_scratch;
+  if (m->ncontacts == 0 || s->pb.contacts) return LAG_OK;
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    s->contact_was[i] = s->hold[c->input];
+    most = lag_contact_is_closed(s, c) && !c->conditional ? fmax(most, fabs(g[c->release])) : most;
+  }
+  for (int i = 0; i < m->ncontacts; i++)
+    if (!m->contacts[i].conditional) s->hold[m->contacts[i].input] = 1;
+  int rc = term_sizes(s, s->now, 1, size, size + m->constraints->n);
+  if (rc == 0 && m->contact_laws) rc = tangent_sizes(s, size);
+  for (int i = 0; i < m->ncontacts; i++) {
+    const lag_contact *c = &m->contacts[i];
+    s->hold[c->input] = s->contact_was[i];
+    int k = lag_contact_is_closed(s, c) ? c->release : c->impact;
+    double noise = c->conditional ? 0 : k == c->release ? 1e-12 * most : no_flight * size[c->constraint];
+    if (g[k] <= noise) { /* no sign yet; below -noise the event fires */
+      s->sign[k] = 0;
+      s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* with a larger factor it would grow at each impact */
+    }
+  }
+  return rc;
+}

@@ -1,0 +1,268 @@
+/* The modes of contacts with friction, by trying all combinations. Contract: contact_modes.h. */
+#include "contacts/contact_modes.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "numeric/dense.h"
+
+/* Relative tolerances: of a force or an acceleration that may be 0; of two motions that are one. Forces that contacts share are those of least size,
+ * as by springs that give way by `soft` of an acceleration, if they obey Coulomb's law, else others that do. Rows are `dependent` on others. */
+static const double nothing = 1e-9, alike = 1e-6, soft = 1e-12, dependent = 1e-9;
+
+typedef struct Trial {
+  int n, rows;
+  lag_touch *of;
+  const double *W, *pull;
+  int held[2 * LAG_MOST_TOUCHES]; /* rows whose acceleration is 0 */
+  double first_size[2 * LAG_MOST_TOUCHES];
+  int edge[LAG_MOST_TOUCHES];
+  int may_wedge; /* forces that only their own size bounds */
+  int breaks;    /* contacts at rest that slip although static friction may hold them */
+  double *x, *A, *a, *first, *force, *size; /* [rows], [rows rows], accelerations, those of the first motion found, forces of it, sizes of the terms */
+} Trial;
+
+/* Mode number k of a contact, in the order in which they are tried; 0: there are no more. */
+static int choose(lag_touch *c, int k) {
+  static const lag_contact_mode modes[] = {LAG_CONTACT_STICKS, LAG_CONTACT_SLIPS, LAG_CONTACT_SLIPS, LAG_CONTACT_OPEN};
+  if (k >= 4) return 0;
+  c->mode = modes[k];
+  c->to = k == 2 ? -1 : 1;
+  return 1;
+}
+
+/* Whether a contact may have its present mode. */
+static int may_be(const lag_touch *c) {
+  if (c->mode == LAG_CONTACT_STICKS) return c->tangent >= 0 && c->mu > 0 && c->slip == 0 && !c->cannot_stick;
+  if (c->mode == LAG_CONTACT_SLIPS) return c->tangent < 0 ? c->to > 0 : c->slip == 0 || c->slip == c->to;
+  return 1;
+}
+
+/* Row k says that its acceleration is 0 (held), or x[k] + factor x[other] = 0. */
+static void set_row(Trial *t, int k, int held, int other, double factor) {
+  double *row = t->A + k * t->rows;
+  memcpy(row, t->W + k * t->rows, (size_t)t->rows * sizeof *row);
+  if (held) row[k] = row[k] > 0 ? row[k] * (1 + soft) : 1;
+  else memset(row, 0, (size_t)t->rows * sizeof *row);
+  if (!held) {
+    row[k] = 1;
+    if (other >= 0) row[other] = factor;
+  }
+  t->x[k] = held ? -t->pull[k] : 0;
+  t->held[k] = held;
+}
+
+static void set_rows(Trial *t) {
+  for (int i = 0; i < t->n; i++) {
+    const lag_touch *c = &t->of[i];
+    set_row(t, i, c->mode != LAG_CONTACT_OPEN, -1, 0);
+    if (c->tangent >= 0) set_row(t, c->tangent, c->mode == LAG_CONTACT_STICKS, c->mode == LAG_CONTACT_SLIPS ? i : -1, c->to * c->mu);
+  }
+}
+
+static void find_accelerations(Trial *t) {
+  for (int k = 0; k < t->rows; k++) {
+    t->a[k] = t->pull[k];
+    t->size[k] = fabs(t->pull[k]);
+    for (int j = 0; j < t->rows; j++) {
+      t->a[k] += t->W[k * t->rows + j] * t->x[j];
+      t->size[k] += fabs(t->W[k * t->rows + j] * t->x[j]);
+    }
+  }
+}
+
+static int solve(Trial *t) {
+  set_rows(t);
+  if (lag_solve_dense((size_t)t->rows, 1, t->A, t->x)) return 0;
+  find_accelerations(t);
+  return 1;
+}
+
+/* The acceleration that unit force of row k makes there. */
+static double response(const Trial *t, int k) { return t->W[k * t->rows + k]; }
+
+/* Scale of row k. */
+static double scale(const Trial *t, int k) { return response(t, k) > 0 ? 1 / sqrt(response(t, k)) : 1; }
+
+/* Whether forces D change no acceleration. */
+static int changes_nothing(const Trial *t, const double *D) {
+  for (int k = 0; k < t->rows; k++) {
+    double a = 0, size = 0;
+    for (int j = 0; j < t->rows; j++) {
+      a += t->W[k * t->rows + j] * D[j];
+      size += fabs(t->W[k * t->rows + j] * D[j]);
+    }
+    if (fabs(a) > alike * size) return 0;
+  }
+  return 1;
+}
+
+/* D[directions][rows] := changes of the forces that change no acceleration. Returns their number. */
+static int free_forces(Trial *t, double *D) {
+  int n = t->rows, count = 0;
+  double pivot[2 * LAG_MOST_TOUCHES], none[2 * LAG_MOST_TOUCHES] = {0}, x[2 * LAG_MOST_TOUCHES];
+  memcpy(x, t->x, (size_t)n * sizeof *x);
+  set_rows(t);
+  memcpy(t->x, x, (size_t)n * sizeof *x);
+  for (int k = 0; k < n; k++) {
+    double *row = t->A + k * n;
+    int held = t->held[k];
+    if (held) row[k] = response(t, k);
+    for (int j = 0; j < n; j++) row[j] *= (held ? scale(t, k) : 1 / scale(t, k)) * scale(t, j);
+  }
+  lag_gauss_jordan(n, t->A, none, pivot, dependent);
+  for (int j = 0; j < n; j++) {
+    int has_pivot = 0;
+    for (int r = 0; r < n; r++) has_pivot |= pivot[r] == j;
+    if (has_pivot) continue;
+    double *d = D + count * n;
+    for (int k = 0; k < n; k++) d[k] = k == j ? scale(t, j) : 0;
+    for (int r = 0; r < n; r++)
+      if (pivot[r] >= 0) d[(int)pivot[r]] = -t->A[r * n + j] / t->A[r * n + (int)pivot[r]] * scale(t, (int)pivot[r]);
+    count += changes_nothing(t, d);
+  }
+  return count;
+}
+
+static int is_shared(Trial *t) {
+  double D[4 * LAG_MOST_TOUCHES * LAG_MOST_TOUCHES];
+  return free_forces(t, D) > 0;
+}
+
+static double rounding(const Trial *t, int k) { return response(t, k) > 0 ? nothing * t->size[k] / response(t, k) : 0; }
+
+/* Whether forces and accelerations are allowed in the contact's mode. */
+static int fits(const Trial *t, int i) {
+  const lag_touch *c = &t->of[i];
+  if (c->mode == LAG_CONTACT_OPEN) return t->a[i] >= -nothing * t->size[i];
+  if (!(t->x[i] > rounding(t, i)) || !(response(t, i) > 0) || fabs(t->a[i]) > alike * t->size[i]) return 0;
+  if (c->mode == LAG_CONTACT_STICKS)
+    return fabs(t->a[c->tangent]) <= alike * t->size[c->tangent] && fabs(t->x[c->tangent]) <= lag_touch_holds(c) * t->x[i] * (1 + nothing) + rounding(t, c->tangent);
+  return c->tangent < 0 || c->slip || c->to * t->a[c->tangent] >= -nothing * t->size[c->tangent];
+}
+
+static int all_fit(const Trial *t) {
+  int i = 0;
+  while (i < t->n && fits(t, i)) i++;
+  return i == t->n;
+}
+
+/* Forces of a combination: unique; shared, and of least size; shared, and others chosen within Coulomb's cones. */
+enum { NONE, UNIQUE, LEAST, CHOSEN };
+
+/* Chooses forces within Coulomb's cones, and returns whether the bodies are wedged: their size is arbitrary. */
+static int choose_forces(Trial *t) {
+  double D[4 * LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], c[2 * LAG_MOST_TOUCHES];
+  int wedged, n = free_forces(t, D);
+  lag_cone_forces(t->n, t->of, t->rows, t->x, n, D, c, &wedged);
+  find_accelerations(t);
+  return wedged;
+}
+
+/* Whether static friction, larger than that of slipping, may hold a contact at rest. */
+static int is_held(const lag_touch *c) { return c->tangent >= 0 && c->slip == 0 && !c->cannot_stick && c->hold > c->mu; }
+
+static int count_breaks(const Trial *t) {
+  int n = 0;
+  for (int i = 0; i < t->n; i++) n += is_held(&t->of[i]) && t->of[i].mode == LAG_CONTACT_SLIPS;
+  return n;
+}
+
+static int find_motion(Trial *t) {
+  if (count_breaks(t) != t->breaks) return NONE;
+  for (int i = 0; i < t->n; i++)
+    if (!may_be(&t->of[i])) return NONE;
+  if (!solve(t)) return NONE;
+  if (all_fit(t)) return is_shared(t) ? LEAST : UNIQUE;
+  return is_shared(t) && (!choose_forces(t) || t->may_wedge) && all_fit(t) ? CHOSEN : NONE;
+}
+
+static int same_motion(const Trial *t) {
+  for (int k = 0; k < t->rows; k++)
+    if (!(fabs(t->a[k] - t->first[k]) <= alike * fmax(t->size[k], t->first_size[k]))) return 0;
+  return 1;
+}
+
+/* The next combination, k[n] being the numbers of the modes; 0: that was the last. */
+static int next(Trial *t, int *k) {
+  for (int i = 0; i < t->n; i++) {
+    if (choose(&t->of[i], ++k[i])) return 1;
+    choose(&t->of[i], k[i] = 0);
+  }
+  return 0;
+}
+
+/* Where a contact begins to slip: edge[n] := whether no forces hold the contacts at rest but with this one at the edge of its cone. */
+static void find_edges(Trial *t) {
+  int leaves = 0;
+  for (int i = 0; i < t->n; i++) {
+    lag_touch *c = &t->of[i];
+    leaves |= c->cannot_stick;
+    c->mode = c->tangent >= 0 && c->slip == 0 ? LAG_CONTACT_STICKS : LAG_CONTACT_SLIPS;
+    c->to = c->slip ? c->slip : 1;
+  }
+  if (!leaves || !solve(t)) return;
+  choose_forces(t);
+  for (int i = 0; i < t->n; i++) {
+    const lag_touch *c = &t->of[i];
+    double most = lag_touch_holds(c) * t->x[i], force = c->tangent >= 0 ? fabs(t->x[c->tangent]) : 0;
+    t->edge[i] = c->mode == LAG_CONTACT_STICKS && most - force <= alike * (fabs(most) + force);
+  }
+}
+
+/* Choices that are one motion: the lowest rank is taken. The fewest contacts slip, but all those that begin to; and forces are those of least size. */
+static int rank_of(const Trial *t, int kind) {
+  int rank = kind == CHOSEN;
+  for (int i = 0; i < t->n; i++) rank += t->of[i].tangent >= 0 && t->of[i].mode == LAG_CONTACT_SLIPS ? t->edge[i] ? -2 : 2 : 0;
+  return rank;
+}
+
+static void keep(const Trial *t, lag_touch *found, int kind) {
+  size_t bytes = (size_t)t->rows * sizeof(double);
+  memcpy(found, t->of, (size_t)t->n * sizeof *found);
+  memcpy(t->force, t->x, bytes);
+  for (int i = 0; i < t->n; i++) found[i].shared = kind != UNIQUE && found[i].mode == LAG_CONTACT_STICKS;
+}
+
+/* Tries all combinations; found := the motion, if there is one. */
+static int try_all(Trial *t, lag_touch *found) {
+  int k[LAG_MOST_TOUCHES] = {0}, motions = 0, rank = 0, kind;
+  for (int i = 0; i < t->n; i++) choose(&t->of[i], 0);
+  do {
+    if ((kind = find_motion(t)) == NONE) continue;
+    if (motions && !same_motion(t)) return 2;
+    if (motions && rank_of(t, kind) >= rank) continue;
+    if (!motions) {
+      memcpy(t->first, t->a, (size_t)t->rows * sizeof *t->a);
+      memcpy(t->first_size, t->size, (size_t)t->rows * sizeof *t->a);
+    }
+    motions = 1;
+    rank = rank_of(t, kind);
+    keep(t, found, kind);
+  } while (next(t, k));
+  return motions;
+}
+
+/* Tries all combinations with as few contacts that break loose as have a motion. */
+static int try_breaks(Trial *t, lag_touch *found) {
+  int most = 0, motions = 0;
+  for (int i = 0; i < t->n; i++) most += is_held(&t->of[i]);
+  for (t->breaks = 0; t->breaks <= most && !motions; t->breaks++) motions = try_all(t, found);
+  return motions;
+}
+
+int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const double *pull, double *x, double *room) {
+  Trial t = {n, rows, of, W, pull, {0}, {0}, {0}, 0, 0, x, room, room + rows * rows, room + rows * (rows + 1), room + rows * (rows + 2), room + rows * (rows + 3)};
+  lag_touch found[LAG_MOST_TOUCHES];
+  find_edges(&t);
+  int motions = try_breaks(&t, found);
+  if (!motions) {
+    t.may_wedge = 1;
+    motions = try_breaks(&t, found);
+  }
+  if (motions) {
+    memcpy(of, found, (size_t)n * sizeof *of);
+    memcpy(x, t.force, (size_t)rows * sizeof *x);
+  }
+  return motions;
+}
