@@ -180,11 +180,12 @@ $(BUILD)/obj/runtime/%.o: runtime/%.c
 
 # Of one text, by runtime/precision.awk, in $(BUILD)/gen/long and $(BUILD)/gen/quad; lagc finds the headers in $(BUILD)/lag-long
 # and $(BUILD)/lag-quad. src/toolchain/toolchain.c compiles models with the same LAG_REAL.
-REAL_long := -std=c11 '-DLAG_REAL=long double' '-DLAG_PRECISION="long"'
-REAL_quad := -std=gnu11 -include quadmath.h -DLAG_REAL=__float128 '-DLAG_PRECISION="quad"'
+REAL_long := -std=c11 '-DLAG_REAL=long double' '-DLAG_OF_REAL(f)=f\#\#l' '-DLAG_PRECISION="long"'
+REAL_quad := -std=gnu11 -include quadmath.h -DLAG_REAL=__float128 '-DLAG_OF_REAL(f)=f\#\#q' '-DLAG_PRECISION="quad"'
 DIGITS_long := $(if $(filter long,$(PRECISIONS)),$(LONG_DIGITS))
 DIGITS_quad := 36
-RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h runtime/*/*.def))
+RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
+TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def
 API_HEAD := lag.h lag_libraries.h lag_model.h
 
 %/app/profile_run.o: override CFLAGS += -D_GNU_SOURCE # names of the registers in a signal's context
@@ -196,7 +197,7 @@ $(BUILD)/gen/$(1)/%: runtime/% runtime/precision.awk
 $(BUILD)/lag-$(1)/%.h: $(BUILD)/gen/$(1)/include/%.h
 	@mkdir -p $$(@D)
 	cp $$< $$@
-$(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | $(BUILD)/gen/io/page.h
+$(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | $(BUILD)/gen/io/page.h $(TABLES)
 	@mkdir -p $$(@D)
 	$$(CCACHE) $$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(PIC) $$(CFLAGS) $$(SAFE) -c -o $$@ $$<
 $(BUILD)/liblag_$(1).a: $(RT_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%)
@@ -231,8 +232,8 @@ $(eval $(call as_text,commands/readme.h,README.md))
 $(eval $(call as_text,commands/python.h,$(BUILD)/gen/commands/python.txt))
 $(eval $(call as_text,commands/complete_%.h,src/commands/complete.%))
 $(eval $(call as_text,commands/man_frame.h,src/lagc.1))
-# Options are described once, for simulators and for the compiler.
-$(BUILD)/gen/commands/options.def: runtime/app/options.def
+# Options and functions are described once, for the compiler and for the runtime in all precisions.
+$(TABLES): $(BUILD)/gen/%: runtime/%
 	@mkdir -p $(@D)
 	cp $< $@
 # How files are written is one text in the compiler and in the runtime, of which neither includes a header of the other's.
@@ -275,7 +276,7 @@ $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,langu
 $(BUILD)/obj/src/commands/verify.o: $(BUILD)/gen/commands/verify_driver.h
 $(BUILD)/obj/src/commands/man_page.o: $(BUILD)/gen/commands/man_frame.h
 $(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
-$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/commands/options.def $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(BUILD)/gen/numeric/edit_distance.h
+$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(BUILD)/gen/numeric/edit_distance.h
 $(patsubst %,$(BUILD)/obj/src/%.o,toolchain/files commands/build commands/command_line commands/cost_reference) $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 $(BUILD)/obj/gen/toolchain/outfile.o $(BUILD)/obj/gen/base/windows.o: | $(BUILD)/gen/base/posix.h
 # Generated code is not ours to warn about.

@@ -79,7 +79,7 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %type <one> single coord momentum param const input_ state let observable item map map_item each required excluded
 %type <one> assign option use monitor
 %type <list> rubbing laws dims indices places_bound exprs args names variables
-%type <id> happening expr arith primary reach place moved bound value comparison every number literal declared gap law tuple condition
+%type <id> happening window expr arith primary reach place moved bound value comparison every number literal declared gap law tuple condition
 %type <text> doc
 %type <unit> unit
 %type <ident> type method_name
@@ -399,10 +399,14 @@ reach: primary[a] "[" indices[l] "]"        { $$ = ast_index(ast, @$, $a, $l); }
 tuple: "(" expr[e] "," exprs[l] ")" { $$ = ast_tuple(ast, @$, $e, $l); };
 args: %empty   { $$ = NONE_LIST; }
     | exprs[l] { $$ = $l; }
-    | exprs[l] "," arith[lo] ".." arith[hi] { $$ = ast_list_add(ast, $l, ast_window(ast, @$, $lo, $hi)); }
+    | exprs[l] "," window[w]     { $$ = ast_list_add(ast, $l, $w); }
     | happening[e]               { $$ = ast_list($e); }
     | happening[e] "," exprs[l]  { $$ = ast_list_before(ast, $e, $l); }
     ;
+window: arith[lo] ".." arith[hi] { $$ = ast_window(ast, @$, $lo, $hi); }
+      | arith[lo] ".."            { $$ = ast_window(ast, @$, $lo, 0); }
+      | ".." arith[hi]            { $$ = ast_window(ast, @$, 0, $hi); }
+      ;
 /* The part of a contact that an event is of, in hit(floor sticks). */
 happening: IDENT[n] IDENT[does] { $$ = ast_happening(ast, @$, $n, $does); }
          | reach[a] IDENT[does] { (void)$a; $$ = ast_happening(ast, @$, $does, $does); }

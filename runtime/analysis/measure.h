@@ -1,16 +1,14 @@
-/* Measures: numbers that one keeps of a run. A measure is an expression of
- *   x  x'  t  energy         a quantity: an output, coordinate, velocity, state, parameter, input or charge; its value at the end of the run
- *   x(10)                    its value at a time [s]
- *   max(x) min(x) mean(x) rms(x) drift(x)   over the run, also of an expression of quantities; drift: the largest |x(t) - x(start)|
- *   period(x)                the mean time between upward passages of 0
- *   hit(EVENT) hit(EVENT, 3) count(EVENT)   the time of its first, third firing; the number of firings
- *   end                      the time at which the run ends
- *   lyapunov                 the largest Lyapunov exponent over the run, less its first tenth, by a second run with a tangent
- *   + - * / ^ ( ) sin cos tan asin acos atan atan2 sqrt exp log abs pi deg
- *
- * Units: expressions are computed in SI, sines of radians. A measure whose parts have one declared unit is given in it, so max(th) is in degrees where
- * th is; others are in SI. A plain number that is added to a quantity, or subtracted, is in the unit of the quantity: max(th) - 90; 0.5[SI] is in SI. A
- * name in quotes may have any characters, as an output does: max("l*sin(th)").
+/* Measures: numbers that one keeps of a run. lagc reads and checks them (src/model/measure.c) and writes them in words, operations behind their operands:
+ * `max(y) - 1` of y in cm is `y max() 1 0.01 * - [0.01 0 cm]`. A word is
+ *   x  x'  t  energy  "l*sin(th)"   a quantity: an output, coordinate, velocity, state, parameter, input or charge
+ *   0.5  pi()               a number
+ *   + - * / ^ neg() abs() sin() ... greater()   operations on the numbers before them
+ *   max() min() mean() rms() drift() period()   of the expression before, along the run; max(10..20) in a window of time [s]
+ *   at()                    the quantity before last at the time before [s]; without it and the words above, at the end of the run
+ *   hit(EVENT) count(EVENT) the time of its firing number n, which stands before; the number of firings
+ *   end() lyapunov()        the time at which the run ends; the largest Lyapunov exponent, less its first tenth, by a second run with a tangent
+ *   [FACTOR OFFSET UNIT]    the last word: the unit of the value. Without it a quantity alone is in its unit, any other value in SI.
+ * All is computed in SI.
  *
  * All measures come from one run, by dense output within each step; the steps are those of a run without measures, bit by bit. Exceptions: methods of
  * GSL (LAG_METHOD_STEPS_TO) step to the times of x(10), as they do to rows, and their dense output is Hermite's, of order 4, whatever the order of
@@ -21,11 +19,11 @@
 
 typedef struct Measures Measures;
 
-/* Expressions text[n] for runs of a scene. NULL: the message in why[size] says what is wrong, at which character, and the nearest name. */
+/* Measures text[n], as compiled, for runs of a scene. NULL: the message in why[size] says what is wrong. */
 Measures *lag_measures_new(const lag_scene *scene, int n, const char *const *text, char *why, size_t size);
 void lag_measures_free(Measures *m);
 int lag_measures_count(const Measures *m);
-/* Unit of the values of measure k; "": it has none, or it is in SI. */
+/* Unit of the values of measure k; "": it has none. */
 const char *lag_measures_unit(const Measures *m, int k);
 
 /* Why runs like this one, to `until`, have no such measures: the method has no tangent for a Lyapunov exponent. 0, or -1 with the reason. */
@@ -57,12 +55,9 @@ typedef struct MeasureFunction {
 } MeasureFunction;
 
 typedef struct MeasureDialect {
-  int si;        /* 1: values, and numbers beside them, are in SI */
   int past_end;  /* 1: x(10) is also known after the end of the run, by a longer run */
   int nfunctions;
   const MeasureFunction *functions;                /* [nfunctions] */
-  const char *(*text)(void *context, const char *name); /* the expression that a name stands for, or NULL; NULL: no such names */
-  void *context;
 } MeasureDialect;
 
 Measures *lag_measures_new_dialect(const lag_scene *scene, int n, const char *const *text, const MeasureDialect *dialect, char *why, size_t size);

@@ -22,7 +22,6 @@ typedef enum TrackKind { TRACK_MAX, TRACK_MIN, TRACK_MEAN, TRACK_RMS, TRACK_DRIF
 
 /* Unit in which a value is shown: SI = shown*factor + offset. */
 typedef struct MeasureUnit {
-  enum { UNIT_NONE, UNIT_KNOWN, UNIT_MIXED, UNIT_SI } kind; /* a pure number; the unit `text`; several units, SI; a number of any unit, in SI */
   char text[48];
   double factor, offset;
 } MeasureUnit;
@@ -37,9 +36,6 @@ typedef struct MeasureNode {
   QuantityKind of;
   double (*one)(double);
   double (*two)(double, double);
-  MeasureUnit unit;
-  int literal;          /* 1: made of numbers alone */
-  int measured;         /* 1: contains a value of the run as a whole */
   int known;
   int taken;            /* MEASURE_AT: 1 once the run has come there */
   double value;         /* at the last evaluation */
@@ -68,7 +64,7 @@ struct Measures {
   MeasureDialect dialect;
   int n, nnodes, room, ntracks;
   int *root;            /* [n] */
-  char **text;          /* [n] */
+  MeasureUnit *unit;    /* [n] */
   char (*why)[200];     /* [n] */
   MeasureNode *node;
   Track *track;
@@ -86,8 +82,8 @@ struct Measures {
   void *on_event_context;
 };
 
-/* measure_text.c: reads expression k, m->text[k]; m->root[k] := its node. 0, or -1 after a message in why. */
-int lag_measure_parse(Measures *m, int k, char *why, size_t size);
+/* measure_text.c: reads measure k; m->root[k], m->unit[k] := its node and unit. 0, or -1 after a message in why. */
+int lag_measure_read(Measures *m, int k, const char *text, char *why, size_t size);
 
 /* measure_lyapunov.c: the largest exponent of a run that has come to `until`; NaN with the reason in m->no_exponent. */
 double lag_measure_lyapunov(Measures *m, const lag_sim *first, double until);

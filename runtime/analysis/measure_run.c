@@ -38,14 +38,10 @@ Measures *lag_measures_new_dialect(const lag_scene *scene, int n, const char *co
   if (!m) return NULL;
   *m = (Measures){.scene = scene, .n = n, .dialect = dialect ? *dialect : (MeasureDialect){0}};
   m->root = calloc(count, sizeof *m->root);
-  m->text = calloc(count, sizeof *m->text);
+  m->unit = calloc(count, sizeof *m->unit);
   m->why = calloc(count, sizeof *m->why);
-  int rc = m->root && m->text && m->why ? 0 : -1;
-  for (int k = 0; k < n && rc == 0; k++) {
-    m->text[k] = malloc(strlen(text[k]) + 1);
-    if (m->text[k]) strcpy(m->text[k], text[k]);
-    rc = m->text[k] ? lag_measure_parse(m, k, why, size) : -1;
-  }
+  int rc = m->root && m->unit && m->why ? 0 : -1;
+  for (int k = 0; k < n && rc == 0; k++) rc = lag_measure_read(m, k, text[k], why, size);
   if (rc == 0 && allocate(m) == LAG_OK) return why[0] = '\0', m;
   lag_measures_free(m);
   return NULL;
@@ -57,9 +53,8 @@ Measures *lag_measures_new(const lag_scene *scene, int n, const char *const *tex
 
 void lag_measures_free(Measures *m) {
   if (!m) return;
-  for (int k = 0; k < m->n && m->text; k++) free(m->text[k]);
   free(m->root);
-  free(m->text);
+  free(m->unit);
   free(m->why);
   free(m->node);
   free(m->track);
@@ -69,10 +64,7 @@ void lag_measures_free(Measures *m) {
 
 int lag_measures_count(const Measures *m) { return m->n; }
 
-const char *lag_measures_unit(const Measures *m, int k) {
-  const MeasureUnit *u = &m->node[m->root[k]].unit;
-  return u->kind == UNIT_KNOWN && !m->dialect.si ? u->text : "";
-}
+const char *lag_measures_unit(const Measures *m, int k) { return m->unit[k].text; }
 
 const char *lag_measures_why(const Measures *m, int k) { return m->why[k]; }
 
@@ -492,9 +484,9 @@ int lag_measures_end(Measures *m, double *value) {
   int rc = run_again(m, sim, end);
   take_row(m, end);
   for (int k = 0; k < m->n; k++) {
-    const MeasureUnit *u = &m->node[m->root[k]].unit;
+    const MeasureUnit *u = &m->unit[k];
     double x = evaluate(m, m->root[k]);
-    value[k] = m->dialect.si ? x : (x - u->offset) / u->factor;
+    value[k] = (x - u->offset) / u->factor;
     m->why[k][0] = '\0';
     if (isnan(x)) explain(m, k, end);
   }

@@ -105,7 +105,7 @@ typedef struct App {
   PhaseVolume volume; /* --volume */
   int volume_rc;    /* failure of its last step */
   Measures *measures; /* of the scene and of --measure; NULL: none */
-  const char **measure_texts; /* their expressions */
+  const char **measure_texts; /* their words; of several variants, with semicolons between them */
   char **measure_names;
   double *measured; /* their values */
   Table log;        /* event log: its columns, */
@@ -258,7 +258,6 @@ int lag_app_measures_begin(App *app);
 int lag_app_advance(App *app, double t);
 int lag_app_measures_end(App *app);
 void lag_app_measures_free(App *app);
-const char *lag_app_measure_unit(const App *app, int k);
 void lag_report_measures(const App *app, FILE *f);
 void lag_report_measures_json(const App *app, Json *j);
 

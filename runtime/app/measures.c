@@ -1,22 +1,16 @@
-/* Measures of a run (analysis/measure.h): those of the scene, and of --measure EXPR or NAME=EXPR. Enters: expressions; leaves: a line each in the
- * report, a member each in JSON. Holds: a wrong expression is refused before anything runs. */
+/* Measures of a run (analysis/measure.h): those of the scene, and of --measure, as lagc compiles them. Enters: words; leaves: a line each in the
+ * report, a member each in JSON. Holds: wrong words are refused before anything runs. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
 
-/* Where the expression begins in NAME=EXPR, or EXPR, whose name is its text; T^(2/3)=... has a name, x(t=2) has none. */
+/* The words of the measure in NAME=WORDS, or, as lagc writes them, in NAME, a semicolon and words for each variant of the model; without a name they are it. */
 static const char *split(const char *text, size_t *name_length) {
-  const char *equals = NULL;
-  int depth = 0;
-  for (const char *c = text; *c && !equals; c++) {
-    depth += (*c == '(') - (*c == ')');
-    if (*c == '=' && depth == 0) equals = c;
-  }
-  *name_length = equals ? (size_t)(equals - text) : strlen(text);
-  while (*name_length && text[*name_length - 1] == ' ') --*name_length;
-  return equals ? equals + 1 + strspn(equals + 1, " ") : text;
+  size_t n = strcspn(text, ";");
+  *name_length = text[n] ? n : strcspn(text, "=");
+  return text[*name_length] ? text + *name_length + 1 : text;
 }
 
 /* Adds a measure; one of the command line replaces the scene's of its name. Returns its number, -1 after a message. */
@@ -60,19 +54,6 @@ int lag_app_measures_open(App *app) {
   return lag_measures_refused(app->measures, app->sim, app->until, why, sizeof why) ? lag_app_error(&app->args, "--measure lyapunov: %s", why) : 0;
 }
 
-/* The unit of measure k: that of the runtime, or the compiler's, of a value in SI. */
-const char *lag_app_measure_unit(const App *app, int k) {
-  const char *unit = lag_measures_unit(app->measures, k), *name = app->measure_names[k];
-  const lag_scene *scene = app->scene;
-  int replaced = 0;
-  for (int i = 0; i < app->args.nmeasures; i++) {
-    size_t length;
-    split(app->args.measures[i], &length);
-    replaced |= strlen(name) == length && memcmp(app->args.measures[i], name, length) == 0;
-  }
-  return unit[0] || replaced || k >= scene->nmeasures ? unit : scene->measures[k].unit;
-}
-
 void lag_app_measures_free(App *app) {
   for (int k = 0; app->measure_names && app->measure_names[k]; k++) free(app->measure_names[k]);
   free(app->measure_names);
@@ -95,7 +76,7 @@ void lag_report_measures(const App *app, FILE *f) {
     width = n > width && n <= WIDEST ? n : width;
   }
   for (int k = 0; app->measures && k < lag_measures_count(app->measures); k++) {
-    const char *unit = lag_app_measure_unit(app, k), *why = lag_measures_why(app->measures, k);
+    const char *unit = lag_measures_unit(app->measures, k), *why = lag_measures_why(app->measures, k);
     if (k == 0) fputs("measures\n", f);
     if (why[0]) fprintf(f, "  %-*s none: %s\n", width, app->measure_names[k], why);
     else fprintf(f, "  %-*s %.15g%s%s\n", width, app->measure_names[k], app->measured[k], unit[0] ? " " : "", unit);

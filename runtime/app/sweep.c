@@ -141,7 +141,14 @@ static int default_measures(SweepApp *s) {
   return 0;
 }
 
-/* The measures of the scene in another variant, whose text may differ, x[N]; those of the command line as they stand. */
+/* The words of a measure in variant v; the only ones where all variants have the same. */
+static const char *words_of(const char *words, int v) {
+  const char *s = words, *end;
+  for (; v && (end = strchr(s, ';')); v--) s = end + 1;
+  return strchr(words, ';') ? s : words;
+}
+
+/* The measures in variant v, whose words may differ, x[N]. */
 static int vary_measures(SweepApp *s, int v) {
   App *app = s->app;
   const lag_scene *first = app->scene, *scene = lag_sim_scene(s->variants[v].like);
@@ -150,7 +157,7 @@ static int vary_measures(SweepApp *s, int v) {
   const char **text = s->variants[v].measure = calloc((size_t)n, sizeof *text);
   if (!text) return lag_app_error(&app->args, "out of memory");
   for (int k = 0; k < n; k++) {
-    text[k] = app->measure_texts[k];
+    text[k] = words_of(app->measure_texts[k], v);
     for (int i = 0; i < first->nmeasures && i < scene->nmeasures; i++)
       if (text[k] == first->measures[i].text) text[k] = scene->measures[i].text;
   }
@@ -208,7 +215,7 @@ static int name_columns(SweepApp *s) {
   }
   for (int k = 0; k < s->sweep.nmeasures; k++, c++) {
     snprintf(c->name, sizeof c->name, "%s", s->app->measure_names[k]);
-    snprintf(c->unit, sizeof c->unit, "%s", lag_app_measure_unit(s->app, k));
+    snprintf(c->unit, sizeof c->unit, "%s", lag_measures_unit(s->app->measures, k));
   }
   snprintf(c->name, sizeof c->name, "status");
   c->words = words;

@@ -20,7 +20,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 13
+#define LAG_ABI 14
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many doubles, one state or one
  * set of parameters a lane. The status < 0 of such a call has bit k of its negative set where lane k is singular; the other lanes are right. */
@@ -389,10 +389,9 @@ typedef struct lag_monitor {
   int absolute;  /* 1: the limit is on the value itself, in its declared unit */
 } lag_monitor;
 
-/* A number that one keeps of a run: an expression in the notation of runtime/analysis/measure.h. unit: of a value in SI, where its parts have
- * several units. */
+/* A number that one keeps of a run: compiled words in the notation of runtime/analysis/measure.h. */
 typedef struct lag_measure {
-  const char *name, *text, *unit;
+  const char *name, *text;
 } lag_measure;
 
 typedef struct lag_scene {

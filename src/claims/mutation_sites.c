@@ -28,9 +28,8 @@ Expr edit_node(const SiteList *l, int side, AstId node) { return *node_at(l, sid
 Expr edit_side(const SiteList *l, int k) { return *node_at(l, k, root_of(l->x, k)); }
 
 ExprOp edit_function(const AstExpr *x) {
-  static const ExprOp functions[] = {EX_SIN, EX_COS, EX_TAN, EX_SINH, EX_COSH, EX_TANH, EX_EXP, EX_LOG, EX_ASIN, EX_ACOS, EX_ATAN};
-  for (size_t k = 0; k < sizeof functions / sizeof *functions && x->kind == AST_CALL && x->args; k++)
-    if (strcmp(x->name, expr_op_text(functions[k])) == 0) return functions[k];
+  for (ExprOp op = EX_SIN; op <= EX_CBRT && x->kind == AST_CALL && x->args; op++)
+    if (strcmp(x->name, expr_op_text(op)) == 0) return op;
   return EX_NUM;
 }
 

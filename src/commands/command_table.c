@@ -179,7 +179,7 @@ static const OptionRow options[] = {
 #define BOTH(name, brief, value, takes, hint, commands, analyses, field, text) \
   {name, brief, value, takes, hint, commands, 1, 0, text},
 #define SIMULATOR(...)
-#include "commands/options.def"
+#include "app/options.def"
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
 

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "commands/options.def" /* OptionTakes; generated: a copy of runtime/app/options.def */
+#include "app/options.def" /* OptionTakes; a copy of runtime/app/options.def */
 #include "model/model.h"
 
 typedef enum {
@@ -58,6 +58,7 @@ typedef struct {
   OptionTexts scenes;      /* plot: all scenes named, each once */
   OptionTexts rest;        /* run, plot, animate: the simulator's arguments, the scene included; complete: the words */
   OptionTexts observe;     /* run --observe: expressions */
+  OptionTexts measure;     /* run, plot, animate, sweep --measure: EXPR, NAME=EXPR */
   const char *section;     /* run, plot --section */
   OptionTexts y;           /* plot --y: expressions */
   const char *x, *phase;   /* plot */

@@ -45,14 +45,6 @@ static const char *method_of_state(Arena *a, const char *path) {
   return name;
 }
 
-/* Whether `name` stands in an expression. */
-static int has_name(const char *text, const char *name) {
-  size_t n = strlen(name);
-  for (const char *at = text; (at = strstr(at, name)) != NULL; at += n)
-    if ((at == text || !(isalnum((unsigned char)at[-1]) || at[-1] == '_')) && !(isalnum((unsigned char)at[n]) || at[n] == '_')) return 1;
-  return 0;
-}
-
 /* Flags that all methods together need. */
 static unsigned required_by_all(const Eqns *e) {
   unsigned wants = 0;
@@ -72,10 +64,11 @@ static unsigned required_by_choice(const Eqns *e, const Options *o) {
 }
 
 /* Whether a measure of the scene or of --measure contains the Lyapunov exponent, for which the run has a tangent. */
-static int measures_exponent(const Eqns *e, const Options *o) {
+static int measures_exponent(const Eqns *e) {
   int found = 0;
-  for (uint32_t i = 0; i < e->m->scene.measures.n; i++) found |= has_name(e->m->scene.measures.at[i].text, "lyapunov");
-  for (uint32_t i = 0; i < o->rest.n; i++) found |= has_name(o->rest.at[i], "lyapunov");
+  const Measures *lists[] = {&e->m->scene.measures, &e->m->asked_measures};
+  for (int k = 0; k < 2; k++)
+    for (uint32_t i = 0; i < lists[k]->n; i++) found |= strstr(lists[k]->at[i].text, "lyapunov()") != NULL;
   return found;
 }
 
@@ -102,6 +95,6 @@ unsigned derivatives_required(const Eqns *e, const Options *o) {
     const char *methods = passed_option(o, "--methods");
     return methods ? required_by_method(e, methods) | WANT_TAYLOR : required_by_all(e); /* taylor: for the reference */
   }
-  unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) | required_by_choice(e, o) | (o->command == CMD_FMU ? fmu_wants() : o->command == CMD_HEADER ? WANT_HELD | header_wants(o->with) | header_wants(o->target) : o->with || measures_exponent(e, o) ? WANT_LINEAR : 0u);
+  unsigned wants = required_by_method(e, e->m->scene.method) | required_by_method(e, o->method) | required_by_choice(e, o) | (o->command == CMD_FMU ? fmu_wants() : o->command == CMD_HEADER ? WANT_HELD | header_wants(o->with) | header_wants(o->target) : o->with || measures_exponent(e) ? WANT_LINEAR : 0u);
   return o->resume ? wants | required_by_method(e, method_of_state(e->m->arena, o->resume)) : wants;
 }

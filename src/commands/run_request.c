@@ -117,24 +117,41 @@ static int prepare_section(RequestBuilder *k, const char **error) {
 
 /* --- measures --- */
 
-/* Lets and observables of the model in --measure EXPR become outputs, so that the simulator knows them. */
-static int prepare_measure(RequestBuilder *k, const char *text) {
-  for (const char *s = text; *s;) {
-    size_t n = strcspn(s, " +-*/^()[],='\"");
-    const AstStmt *st = n ? find_quantity(k->ast, arena_printf(k->arena, "%.*s", (int)n, s)) : NULL;
-    if (st && !st->dims && (st->kind == STMT_LET || st->kind == STMT_OBSERVE) && !add_output(k, "--measure", st->name)) return 0;
-    s += n ? n : 1;
+/* Where the expression begins in NAME=EXPR, or EXPR, whose name is its text; T^(2/3)=... has a name, x(t=2) has none. */
+static const char *split_name(const char *text, size_t *name_length) {
+  const char *equals = NULL;
+  int depth = 0;
+  for (const char *c = text; *c && !equals; c++) {
+    depth += (*c == '(') - (*c == ')');
+    if (*c == '=' && depth == 0) equals = c;
   }
-  return 1;
+  *name_length = equals ? (size_t)(equals - text) : strlen(text);
+  while (*name_length && text[*name_length - 1] == ' ') --*name_length;
+  return equals ? equals + 1 : text;
 }
 
-static int prepare_measures(RequestBuilder *k) {
-  static const char option[] = "--measure";
-  const OptionTexts *words = &k->o->rest;
-  for (uint32_t i = 0; i < words->n; i++) {
-    const char *word = words->at[i], *after = strncmp(word, option, sizeof option - 1) == 0 ? word + sizeof option - 1 : "?";
-    const char *text = *after == '=' ? after + 1 : !*after && i + 1 < words->n ? words->at[i + 1] : NULL;
-    if (text && !prepare_measure(k, text)) return 0;
+/* The expression, in which a quoted name of an output is its text in parentheses. */
+static const char *without_quotes(Arena *a, const char *text) {
+  char *s = arena_strdup(a, text);
+  int open = 0;
+  for (char *c = s; *c; c++)
+    if (*c == '"') *c = (open = !open) ? '(' : ')';
+  return s;
+}
+
+static int prepare_measures(RequestBuilder *k, const char **error) {
+  for (uint32_t i = 0; i < k->o->measure.n; i++) {
+    size_t n;
+    const char *given = k->o->measure.at[i], *text = without_quotes(k->arena, split_name(given, &n));
+    if (!*given) return fail_with(error, "--measure needs a value: --measure EXPR");
+    if (!n) return fail_with(error, arena_printf(k->arena, "--measure %s: a name is missing before `=`", given));
+    CommandOutput asked = {.name = intern_n(k->ast->names, given, n)};
+    for (uint32_t m = 0; m < k->p->measures.n; m++)
+      if (k->p->measures.at[m].name == asked.name)
+        return fail_with(error, arena_printf(k->arena, "--measure %s: another measure is called %s; write NAME=EXPR with another name", given, asked.name));
+    const Source *source = source_add(k->ast->sources, "--measure", text, strlen(text));
+    if (!source || !(asked.expr = parse_expression(k->ast, source))) return 0;
+    vec_push(k->arena, &k->p->measures, asked);
   }
   return 1;
 }
@@ -417,7 +434,7 @@ int run_request_prepare(RunRequest *p, Ast *ast, const Options *o, const char **
   add_argument(&k, arena_printf(k.arena, "lagc %s", command_find(o->command)->name), NULL); /* head of the simulator's messages */
   if (o->command == CMD_EFFECTS) add_argument(&k, "--effects", "report");
   for (uint32_t i = 0; i < o->observe.n; i++) ok &= add_output(&k, "--observe", o->observe.at[i]) != NULL;
-  ok = ok && prepare_section(&k, error) && prepare_measures(&k);
+  ok = ok && prepare_section(&k, error) && prepare_measures(&k, error);
   if (o->command == CMD_PLOT) ok = ok && prepare_plot(&k, error);
   if (o->command == CMD_ANIMATE) ok = ok && prepare_animate(&k, error);
   if (o->command == CMD_MODES) add_argument(&k, "--modes", NULL);

@@ -1,4 +1,4 @@
-/* Requests of run --observe, plot and animate, turned into outputs of the scene and arguments of its simulator.
+/* Requests of --observe, --measure, plot and animate, turned into outputs and measures of the scene and arguments of its simulator.
  *
  * In: the options and the parsed file. Expressions are parsed here; model_build resolves them like any output of a
  * scene, so mistakes in them are reported with their text and a caret. */
@@ -8,7 +8,7 @@
 #include "model/model.h"
 
 typedef struct {
-  VEC(CommandOutput) asked;
+  VEC(CommandOutput) asked, measures;
   Section section;  /* Poincare section that chooses the rows; or none */
   Name scene;       /* scene of the run; NULL: the first */
   SceneList scenes; /* scenes that the command line names: a picture may show several */

@@ -18,9 +18,28 @@
 #include "toolchain/files.h"
 
 /* The equations of a scene with the outputs, inputs and section of the command line. */
-static Eqns *derive_asked(Compiler *c, const char *scene) {
+static Eqns *derive_asked(Compiler *c, const char *scene, int measures) {
   return compiler_derive_wanted(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nextra_outputs = c->picture.asked.n,
-                                  .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
+                                  .measures = c->picture.measures.at, .nmeasures = measures ? c->picture.measures.n : 0, .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
+}
+
+typedef VEC(const Measures *) Measured; /* the measures of the command line, of each variant */
+
+/* Hands them to the simulator as they are compiled: the name, and the words, of each variant where they differ. */
+static void pass_measures(Compiler *c, const Measured *of) {
+  if (!of->n || !of->at[0]->n) return;
+  c->picture.argv.n--; /* the NULL at the end */
+  for (uint32_t i = 0; i < of->at[0]->n; i++) {
+    StrBuf b = strbuf(c->arena);
+    uint32_t texts = 1;
+    for (uint32_t v = 1; v < of->n; v++)
+      if (strcmp(measure_words(c->arena, &of->at[v]->at[i]), measure_words(c->arena, &of->at[0]->at[i])) != 0) texts = of->n;
+    sb_puts(&b, of->at[0]->at[i].name);
+    for (uint32_t v = 0; v < texts; v++) sb_printf(&b, ";%s", measure_words(c->arena, &of->at[v]->at[i]));
+    vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--measure"));
+    vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, sb_text(&b)));
+  }
+  vec_push(c->arena, &c->picture.argv, NULL);
 }
 
 /* Literals that are no 64-bit fraction were rounded to a double; those of up to SAFE characters lost nothing. */
@@ -83,10 +102,8 @@ static int tell_variant(Compiler *c) {
   return 0;
 }
 
-/* Adds a scene to a unit that accepts it, or to one of its own (apart: always). 0, after a message. */
-static int lower_scene(Compiler *c, const char *scene, int runs, int apart, Units *units, Lowereds *all) {
-  Eqns *e = derive_asked(c, scene);
-  if (!e) return 0;
+/* Adds a scene to a unit that accepts it, or to one of its own (apart: always). */
+static void lower_scene(Compiler *c, Eqns *e, int runs, int apart, Units *units, Lowereds *all) {
   switches_find(e);
   if (runs) switches_warn(e), discontinuity_warn(e);
   ProgramSet *fresh = compiler_unit_head(c, e), *home = NULL;
@@ -104,23 +121,30 @@ static int lower_scene(Compiler *c, const char *scene, int runs, int apart, Unit
   unit_require(home, e, in_time);
   unit_add_scene(home, e);
   vec_push(c->arena, all, ((Lowered){e, home, home->scenes.n - 1}));
-  return 1;
 }
 
 int simulator_lower(Compiler *c, Units *units) {
-  SceneList scenes = model_scenes(c->ast);
-  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->o.consts.n) scenes = c->picture.scenes.n ? c->picture.scenes : (SceneList){scenes.at, 1};
+  SceneList scenes = model_scenes(c->ast), named = c->picture.scenes.n ? c->picture.scenes : (SceneList){scenes.at, 1};
+  if (c->picture.asked.n || c->given.n || c->picture.section.expr || c->o.consts.n) scenes = named;
   Lowereds all = {0};
   const char *error, *first = c->picture.scene ? c->picture.scene : scenes.at[0];
   uint32_t variants = const_range_variants(c->arena, &c->o, &error);
+  Measured measured = {0};
   for (uint32_t v = 0; v < variants; v++) { /* of the constants that a sweep varies */
     if (!const_range_define(c->ast, &c->o, v)) return 0;
+    Eqns *run = command_simulates(c->o.command) ? derive_asked(c, first, 1) : NULL; /* its measures may need outputs, which a program of all scenes lacks */
+    if (run) vec_push(c->arena, &measured, &run->m->asked_measures);
+    else if (command_simulates(c->o.command)) return c->o.consts.n ? tell_variant(c) : 0;
+    if (run && run->m->measured_outputs) scenes = named;
     for (uint32_t i = 0; i < scenes.n; i++) {
-      int runs = command_simulates(c->o.command) && strcmp(first, scenes.at[i]) == 0;
-      if (!lower_scene(c, scenes.at[i], runs, variants > 1, units, &all)) return c->o.consts.n ? tell_variant(c) : 0;
+      int runs = run && strcmp(first, scenes.at[i]) == 0;
+      Eqns *e = runs ? run : derive_asked(c, scenes.at[i], scenes.at == named.at && scenes.n == named.n);
+      if (!e) return c->o.consts.n ? tell_variant(c) : 0;
+      lower_scene(c, e, runs, variants > 1, units, &all);
       if (options_more_digits(&c->o) && i + 1 == scenes.n && !simulator_is_later_rank(c)) precision_warn(c->ast, all.at[all.n - 1].e->m->g, c->o.precision);
     }
   }
+  pass_measures(c, &measured);
   return finish_units(c, units, &all);
 }
 

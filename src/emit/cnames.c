@@ -5,6 +5,9 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "numeric/functions.def"
+
+#define NAME(OP, name, ...) #name,
 
 /* Reserved words: keywords and names of C and C++, and names that emitted text uses. */
 static const char *const reserved[] = {
@@ -17,8 +20,7 @@ static const char *const reserved[] = {
   "nullptr", "noexcept", "constexpr", "consteval", "constinit", "decltype", "static_assert", "thread_local",
   "typeof", "const_cast", "static_cast", "dynamic_cast", "reinterpret_cast", "concept", "requires", "co_await",
   "co_return", "co_yield", "wchar_t", "char8_t", "char16_t", "char32_t", "size_t", "ptrdiff_t", "float_t",
-  "double_t", "offsetof", "main", "errno", "signgam", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh",
-  "cosh", "tanh", "exp", "log", "cbrt", "fabs", "sqrt", "pow", "hypot", "NULL", "INFINITY", "NAN", "EOF", "OVERFLOW",
+  "double_t", "offsetof", "main", "errno", "signgam", FUNCTIONS(NAME) "atan2", "fabs", "sqrt", "pow", "hypot", "NULL", "INFINITY", "NAN", "EOF", "OVERFLOW",
   "UNDERFLOW", "DOMAIN", "SING", "PLOSS", "TLOSS", "I", "HUGE", "HUGE_VAL", "HUGE_VALF", "HUGE_VALL", "MAXFLOAT",
   "M_E", "M_LOG2E", "M_LOG10E", "M_LN2", "M_LN10", "M_PI", "M_PI_2", "M_PI_4", "M_1_PI", "M_2_PI", "M_2_SQRTPI",
   "M_SQRT2", "M_SQRT1_2", "FP_NAN", "FP_INFINITE", "FP_ZERO", "FP_SUBNORMAL", "FP_NORMAL", "FP_ILOGB0", "FP_ILOGBNAN",

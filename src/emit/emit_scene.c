@@ -124,7 +124,7 @@ static void emit_measures(const ProgramSet *u, const IrScene *s, const char *id,
   sb_printf(out, "\nstatic const lag_measure measures_%s[] = {\n", id);
   for (uint32_t i = 0; i < s->measures.n; i++) {
     const IrMeasure *m = &s->measures.at[i];
-    sb_printf(out, "  {%s, %s, %s},\n", c_string(u->arena, m->name), c_string(u->arena, m->text), c_string(u->arena, m->unit));
+    sb_printf(out, "  {%s, %s},\n", c_string(u->arena, m->name), c_string(u->arena, m->text));
   }
   sb_puts(out, "};\n");
 }

@@ -5,6 +5,7 @@
 
 #include "base/sparse_solve.h"
 #include "ir/prog.h"
+#include "numeric/functions.def"
 
 typedef long double Real;
 
@@ -12,8 +13,9 @@ static const struct {
   const char *name;
   Real (*f)(Real);
 } functions[] = {
-  {"sin", sinl}, {"cos", cosl}, {"tan", tanl}, {"asin", asinl}, {"acos", acosl}, {"atan", atanl}, {"sinh", sinhl},
-  {"cosh", coshl}, {"tanh", tanhl}, {"exp", expl}, {"log", logl}, {"cbrt", cbrtl}, {"fabs", fabsl}, {"floor", floorl},
+#define ROW(OP, name, ...) {#name, name##l},
+  FUNCTIONS(ROW)
+  {"fabs", fabsl}, {"floor", floorl},
 };
 
 long double prog_call1(const char *name, long double x) {

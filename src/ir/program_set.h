@@ -51,7 +51,7 @@ typedef struct {
 } IrMonitor;
 
 typedef struct {
-  const char *name, *text, *unit;
+  const char *name, *text;
 } IrMeasure;
 
 /* An output `action(x)`, which a run computes on the curve H(q, p) = E; q, p: components of [q|v|z], q of x, and of the momenta in their places. */

@@ -238,9 +238,8 @@ static Slot lower_node(Lower *l, Expr e) {
     case EX_SUM: return lower_sum(l, e);
     case EX_PROD: return lower_prod(l, e);
     case EX_POW: return call2(l, "pow", e);
-    case EX_SIN: case EX_COS: return lower_circular(l, o, a);
-    case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH: case EX_TANH: case EX_EXP:
-    case EX_LOG: case EX_CBRT: return call1(l, expr_op_text(o), lower_slot(l, a));
+    EX_FUNCTION_CASES
+      return o == EX_SIN || o == EX_COS ? lower_circular(l, o, a) : call1(l, expr_op_text(o), lower_slot(l, a));
     case EX_ABS: return call1(l, "fabs", lower_slot(l, a));
     case EX_SIGN: return op(l, IR_SIGN, lower_slot(l, a), 0);
     case EX_FLOOR: return call1(l, "floor", lower_slot(l, a));

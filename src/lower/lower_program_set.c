@@ -356,7 +356,7 @@ void unit_add_scene(ProgramSet *u, const Eqns *e) {
     vec_push(m->arena, &s.monitors, mon);
   }
   for (uint32_t i = 0; i < sc->measures.n; i++) {
-    IrMeasure x = {sc->measures.at[i].name, sc->measures.at[i].text, sc->measures.at[i].unit.text};
+    IrMeasure x = {sc->measures.at[i].name, measure_words(m->arena, &sc->measures.at[i])};
     vec_push(m->arena, &s.measures, x);
   }
   vec_push(m->arena, &u->scenes, s);

@@ -488,6 +488,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   find_units(b);
   find_hamiltonian(b);
   if (!first_order) check_momenta(b);
+  declare_composed(b);
   each_active(b, declare_statement, NULL);
   each_active(b, declare_momentum, NULL); /* after all coordinates: the states are [q|p] */
   check_defines(b);

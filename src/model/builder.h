@@ -280,6 +280,8 @@ void set_monitor(Builder *b, const AstStmt *st);
 
 /* measure.c: reads `measure NAME = EXPR`; a second one of the name replaces the first. */
 void set_measure(Builder *b, const AstStmt *st);
+/* The same of the command line: plain numbers are in the unit beside them, and units that do not match draw warnings. */
+void ask_measure(Builder *b, const CommandOutput *asked);
 
 /* input_table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without the effect. */
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
@@ -323,6 +325,8 @@ const char *expression_digits(Builder *b, Expr e);
 
 /* Records a let, a function or an observable, without a value. */
 void add_definition(Builder *b, EntKind kind, Definition d);
+/* resolve_function.c: the functions of functions.def that are defined by a text, as far as some expression calls them. */
+void declare_composed(Builder *b);
 
 /* Evaluates a let or an observable, unless it has a value already. */
 void resolve_let(Builder *b, uint32_t index);

@@ -140,6 +140,7 @@ void fill_inferred_units(Builder *b) {
   for (uint32_t i = 0; i < m->observes.n; i++) fill_unit(b, &m->observes.at[i].unit);
   for (uint32_t i = 0; i < m->scene.outputs.n; i++) fill_unit(b, &m->scene.outputs.at[i].unit);
   for (uint32_t i = 0; i < m->scene.measures.n; i++) fill_unit(b, &m->scene.measures.at[i].unit);
+  for (uint32_t i = 0; i < m->asked_measures.n; i++) fill_unit(b, &m->asked_measures.at[i].unit);
   for (uint32_t i = 0; i < b->undeclared.n; i++) {
     Dim d = dim_resolved(b->dims, b->undeclared.at[i].dim);
     if (dim_is_open(b->dims, d)) continue;

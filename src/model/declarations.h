@@ -25,6 +25,7 @@ typedef struct {
   IndexVar index[2]; /* indices of a family member; name NULL: a number in the text */
   const IndexVar *around; /* observables only: indices of the enclosing `for` */
   uint32_t naround;
+  int composed; /* a function of functions.def that is defined by its text */
 } Definition;
 
 typedef VEC(Definition) Definitions;

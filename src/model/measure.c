@@ -1,58 +1,107 @@
-/* `measure` statements: numbers that one keeps of a run. Enters: `measure top = max(y) - h`; leaves: its text for the runtime, with names, and its unit.
- * Holds: names, events, shapes and units are checked here. What stands inside max( ), and each operand that is no arithmetic, is any expression
- * of the language; where the runtime has no name for it, it becomes an output. The rest is one loop over the nodes. */
+/* Measures: numbers that one keeps of a run. Enters: `measure top = max(y) - h`, or an expression of the command line; leaves: its words for the runtime
+ * (runtime/analysis/measure.h), operations behind their operands, and the unit of its value. Holds: names, events, shapes and units are checked here.
+ * Arithmetic of quantities stays as it is; any other expression of the language, and in a scene what stands inside max( ), becomes an output. A
+ * function of measures is its text. The rest is one loop over the nodes. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/words.h"
 #include "model/builder.h"
-
-/* Binding of the text of a part: what stands around it may need parentheses. */
-typedef enum { BINDS_SUM, BINDS_PRODUCT, BINDS_SIGN, BINDS_POWER, BINDS_PRIMARY } Binding;
+#include "numeric/functions.def"
 
 typedef struct {
-  const char *text; /* NULL: not read yet, or wrong */
-  Binding binding;
-  Value value;      /* of the result: dimension, and whether it is a plain number */
+  const char *text; /* words; NULL: not read yet, or wrong */
+  Value value;      /* of the result: dimension, whether it is a plain number, and the node of an operand */
+  Unit unit;        /* in which it is shown; text "": in SI */
   int measured;     /* 1: a value of the whole run */
-  int literal;      /* 1: made of pure numbers and pi */
+  int varies;       /* 1: it changes along the run */
+  int number;       /* 1: made of numbers and pi; value.e is its node */
+  int plain;        /* 1: of numbers without a unit alone */
 } Part;
+
+/* Arguments of a function whose text is read. */
+typedef struct {
+  AstId name; /* the first */
+  const Part *part;
+  int depth;
+} Frame;
 
 typedef struct {
   Builder *b;
   AstId first;
   Part *part;      /* by node */
   uint8_t *inside; /* 1: the node belongs to an operand that is read as a whole */
+  uint8_t *whole;  /* 1: the node contains a value of the whole run, or an argument of the frame */
+  const Frame *frame;
+  int command;     /* 1: an expression of the command line, whose plain numbers are in the unit beside them, and whose units draw warnings */
 } MeasureReader;
 
-typedef enum { CALL_TRACK, CALL_HIT, CALL_COUNT, CALL_FUNCTION, CALL_AT, CALL_ELSE } CallKind;
+typedef enum { CALL_TRACK, CALL_HIT, CALL_COUNT, CALL_FUNCTION, CALL_AT, CALL_TEXT, CALL_ELSE } CallKind;
 
-static int is_word(const char *words, const char *name) {
-  size_t n = strlen(name);
-  for (const char *at = words; (at = strstr(at, name)); at += n)
-    if ((at == words || at[-1] == ' ') && (!at[n] || at[n] == ' ')) return 1;
-  return 0;
+#define MEASURE_WORDS "max min mean rms drift period hit count"
+
+enum { UNCHECKED = 2 };
+
+/* Reports a mismatch of units: 0, or UNCHECKED where the numbers are taken all the same. */
+#define MISMATCH(r, ...) ((r)->command ? (diag_warning((r)->b->diags, __VA_ARGS__), UNCHECKED) : (diag_error((r)->b->diags, __VA_ARGS__), 0))
+
+/* The word of a function of numbers; NULL: it has none. */
+static const char *function_word(const char *name) {
+  static const char *const rows[][2] = {
+#define ROW(OP, name, ...) {#name, #name "()"},
+    FUNCTIONS(ROW)
+    {"sqrt", "sqrt()"}, {"abs", "abs()"}, {"floor", "floor()"}, {"sign", "sign()"}, {"atan2", "atan2()"}, {"hypot", "hypot()"}, {"min", "lesser()"}, {"max", "greater()"}, {"pow", "^"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    if (strcmp(rows[i][0], name) == 0) return rows[i][1];
+  return NULL;
 }
+
+static int takes_two(const char *name) { return has_word("atan2 hypot min max pow", name); }
 
 static const Entity *entity_named(Builder *b, Name name) {
   int ambiguous;
   return scope_find(&b->scope, name, NULL, &ambiguous);
 }
 
-static CallKind call_kind(MeasureReader *r, const AstExpr *x) {
+static CallKind call_kind(const MeasureReader *r, AstId id) {
+  const AstExpr *x = ast_expr(r->b->ast, id);
   const Entity *e = entity_named(r->b, x->name);
   AstId second = x->args ? ast_expr(r->b->ast, x->args)->next : 0;
-  if (is_word("max min mean rms drift period", x->name) && x->args &&
-      (!second || ast_expr(r->b->ast, second)->kind == AST_BIND))
-    return CALL_TRACK;
+  if (e && e->kind == ENT_FUNCTION) return r->whole[id - r->first] ? CALL_TEXT : CALL_ELSE;
+  if (has_word("max min mean rms drift period", x->name) && x->args && (!second || ast_expr(r->b->ast, second)->kind == AST_BIND)) return CALL_TRACK;
   if (strcmp(x->name, "hit") == 0) return CALL_HIT;
   if (strcmp(x->name, "count") == 0) return CALL_COUNT;
-  if (e && e->kind != ENT_FUNCTION && e->kind != ENT_NONE) return CALL_AT;
-  return is_word("sin cos tan asin acos atan atan2 sqrt exp log abs", x->name) ? CALL_FUNCTION : CALL_ELSE;
+  if ((e && e->kind != ENT_NONE) || has_word("energy lagrangian t", x->name)) return CALL_AT;
+  return function_word(x->name) ? CALL_FUNCTION : CALL_ELSE;
 }
 
 static int is_arithmetic(AstKind kind) { return kind == AST_NEG || (kind >= AST_ADD && kind <= AST_POW); }
+
+/* Argument of the frame, or NULL. */
+static const Part *argument(const MeasureReader *r, Name name) {
+  AstId id = r->frame ? r->frame->name : 0;
+  for (uint32_t i = 0; id; id = ast_expr(r->b->ast, id)->next, i++)
+    if (ast_expr(r->b->ast, id)->name == name) return &r->frame->part[i];
+  return NULL;
+}
+
+/* "end", "lyapunov" where the model has no such name; NULL: another node. */
+static const char *word_of_run(MeasureReader *r, const AstExpr *x) {
+  return x->kind == AST_NAME && has_word("end lyapunov", x->name) && !entity_named(r->b, x->name) ? x->name : NULL;
+}
+
+/* Marks nodes that contain values of the whole run: from arguments to parents. */
+static void mark_whole(MeasureReader *r, AstId root) {
+  for (AstId id = r->first; id <= root; id++) {
+    const AstExpr *x = ast_expr(r->b->ast, id);
+    uint8_t *whole = &r->whole[id - r->first];
+    const AstId parts[] = {x->a, x->b, x->c};
+    for (int k = 0; k < 3; k++) *whole |= parts[k] >= r->first && r->whole[parts[k] - r->first];
+    for (AstId arg = x->args; arg >= r->first && arg; arg = ast_expr(r->b->ast, arg)->next) *whole |= r->whole[arg - r->first];
+    *whole |= x->kind == AST_AT || word_of_run(r, x) || (x->kind == AST_NAME && argument(r, x->name)) || (x->kind == AST_CALL && call_kind(r, id) < CALL_TEXT && call_kind(r, id) != CALL_FUNCTION);
+  }
+}
 
 static void mark_list(MeasureReader *r, AstId id) {
   for (; id; id = ast_expr(r->b->ast, id)->next) r->inside[id - r->first] = 1;
@@ -62,18 +111,20 @@ static void mark_list(MeasureReader *r, AstId id) {
 static void mark_operands(MeasureReader *r, AstId root) {
   for (AstId id = root; id >= r->first; id--) {
     const AstExpr *x = ast_expr(r->b->ast, id);
-    CallKind call = x->kind == AST_CALL ? call_kind(r, x) : CALL_ELSE;
-    int whole = r->inside[id - r->first] || (!is_arithmetic(x->kind) && x->kind != AST_AT && (x->kind != AST_CALL || call == CALL_ELSE || call == CALL_TRACK));
+    CallKind call = x->kind == AST_CALL ? call_kind(r, id) : CALL_ELSE;
+    int track = call == CALL_TRACK && !r->command && !r->frame;
+    int whole = r->inside[id - r->first] || (!is_arithmetic(x->kind) && x->kind != AST_AT && (x->kind != AST_CALL || call == CALL_ELSE || track));
     const AstId parts[] = {whole || x->kind == AST_AT ? x->a : 0, whole ? x->b : 0, whole ? x->c : 0};
     for (int k = 0; k < 3; k++)
       if (parts[k]) r->inside[parts[k] - r->first] = 1;
     if (whole) mark_list(r, x->args);
-    else if (x->kind == AST_CALL && (call == CALL_HIT || call == CALL_COUNT) && x->args) r->inside[x->args - r->first] = 1;
+    else if (call == CALL_TRACK) mark_list(r, ast_expr(r->b->ast, x->args)->next);
+    else if ((call == CALL_HIT || call == CALL_COUNT) && x->args) r->inside[x->args - r->first] = 1;
   }
 }
 
-static Part part_of(const char *text, Binding binding, Dim dim, int measured) {
-  return (Part){.text = text, .binding = binding, .value = {.dim = dim}, .measured = measured};
+static Part part_of(const char *text, Unit unit, int measured) {
+  return (Part){.text = text, .value = {.dim = unit.dim}, .unit = unit, .measured = measured};
 }
 
 static const char *number_text(Builder *b, double x) {
@@ -82,11 +133,29 @@ static const char *number_text(Builder *b, double x) {
   return arena_strdup(b->arena, text);
 }
 
+/* A name as a word. */
+static const char *name_word(Builder *b, const char *name) { return arena_printf(b->arena, strpbrk(name, " ()+-*/^\"") ? "\"%s\"" : "%s", name); }
+
+/* Unit in which symbol s is shown; NULL: it has no name in the runtime. */
+static const Unit *unit_of_symbol(Builder *b, const Symbol *s, Unit *room) {
+  Model *m = b->m;
+  switch (s->kind) {
+    case SYM_TIME: return *room = unit_si(b->dim_of.at[m->time], "s"), room;
+    case SYM_COORD: return &m->coords.at[s->index].unit;
+    case SYM_VEL: return *room = unit_per_second(b, &m->coords.at[s->index].unit), room;
+    case SYM_STATE: return &m->states.at[s->index].unit;
+    case SYM_INPUT: return &m->inputs.at[s->index].unit;
+    case SYM_PARAM: return m->params.at[s->index].fixed ? NULL : &m->params.at[s->index].unit;
+    case SYM_ACC: case SYM_RATE: case SYM_CONST: case SYM_MULTIPLIER: case SYM_LOCAL: break;
+  }
+  return NULL;
+}
+
 /* An operand of the language by its name in the runtime; it becomes an output where it has none. */
 static Part operand(MeasureReader *r, AstId id) {
   Builder *b = r->b;
   Value v = resolve(b, id, IN_OUTPUT, NULL);
-  Part p = part_of(NULL, BINDS_PRIMARY, v.dim, 0);
+  Part p = part_of(NULL, unit_si(v.dim, ""), 0);
   Span span = ast_expr(b->ast, id)->span;
   p.value.bare = v.bare;
   p.value.e = v.e;
@@ -96,24 +165,27 @@ static Part operand(MeasureReader *r, AstId id) {
     if (v.n) diag_help(b->diags, "take a component: `%s.x`", ast_short(b, id));
     return p;
   }
+  p.varies = (expr_kinds(b->g, v.e) & ~(1u << SYM_PARAM | 1u << SYM_CONST)) != 0;
   const Symbol *s = expr_op(b->g, v.e) == EX_SYM ? expr_sym_of(b->g, v.e) : NULL;
-  int same = s && (b->dim_of.at[expr_sym_id(b->g, v.e)] == v.dim || expr_sym_id(b->g, v.e) == b->m->energy_sym); /* y/1 [m] is the symbol y, too, but a pure number */
-  int named = same && (s->kind == SYM_TIME || s->kind == SYM_COORD || s->kind == SYM_VEL || s->kind == SYM_STATE || s->kind == SYM_INPUT ||
-                    (s->kind == SYM_PARAM && !b->m->params.at[s->index].fixed) || expr_sym_id(b->g, v.e) == b->m->energy_sym);
-  if (named) p.text = s->name;
-  else if (s && s->kind == SYM_CONST) p.text = "pi", p.literal = 1;
-  else if (expr_is_num(b->g, v.e)) {
-    p.literal = v.bare || v.dim == DIM_NONE;
-    p.text = arena_printf(b->arena, p.literal ? "%s" : "%s[SI]", number_text(b, num_value(expr_number(b->g, v.e))));
-  }
-  if (p.text && *p.text == '-') p.text = arena_printf(b->arena, "(%s)", p.text);
+  int energy = s && expr_sym_id(b->g, v.e) == b->m->energy_sym;
+  Unit room;
+  const Unit *own = s && b->dim_of.at[expr_sym_id(b->g, v.e)] == v.dim ? unit_of_symbol(b, s, &room) : NULL; /* y/1 [m] is the symbol y, too, but a pure number */
+  if (own || energy) p.text = name_word(b, s->name);
+  if (own && own->text[0]) p.unit = *own;
+  p.unit.dim = v.dim;
+  p.number = expr_is_num(b->g, v.e) || (s && s->kind == SYM_CONST);
+  p.plain = expr_is_num(b->g, v.e) && v.bare;
+  if (p.number) p.text = expr_is_num(b->g, v.e) ? number_text(b, num_value(expr_number(b->g, v.e))) : "pi()";
   if (p.text) return p;
   int output = add_outputs(b, id);
-  if (output >= 0) p.text = arena_printf(b->arena, "\"%s\"", b->m->scene.outputs.at[output].name);
+  if (output < 0) return p;
+  const Output *o = &b->m->scene.outputs.at[output];
+  p.text = name_word(b, o->name);
+  p.unit = o->unit;
   return p;
 }
 
-static Dim seconds(Builder *b) { return b->unitless ? DIM_ANY : dim_base(b->dims, DIM_TIME); }
+static Unit seconds(Builder *b, const char *text) { return unit_si(b->unitless ? DIM_ANY : dim_base(b->dims, DIM_TIME), text); }
 
 /* ---- Calls */
 
@@ -122,11 +194,12 @@ static Part wrong_call(MeasureReader *r, const AstExpr *x, const char *form) {
   return (Part){0};
 }
 
-/* " 10" of a window of time, in s; NULL, reported, if it is none. */
+/* "10" of a window of time, in s; NULL, reported, if it is none. */
 static const char *window_end(Builder *b, AstId id) {
+  if (!id) return "";
   Value v = resolve(b, id, IN_CONST, NULL);
   if (!v.e) return NULL;
-  if (expr_is_num(b->g, v.e) && (v.bare || dim_equate(b->dims, v.dim, seconds(b), ast_expr(b->ast, id)->span)))
+  if (expr_is_num(b->g, v.e) && (v.bare || dim_equate(b->dims, v.dim, seconds(b, "").dim, ast_expr(b->ast, id)->span)))
     return number_text(b, num_value(expr_number(b->g, v.e)));
   diag_error(b->diags, ast_expr(b->ast, id)->span,
              "`%s` is no end of a window of time" HELP "write numbers: `max(x, 10..20)`, `max(x, 1 [min]..2 [min])`",
@@ -134,34 +207,37 @@ static const char *window_end(Builder *b, AstId id) {
   return NULL;
 }
 
-/* ", 10..20", "" */
+/* "10..20", "" */
 static const char *window_text(Builder *b, AstId id) {
   if (!id) return "";
   const AstExpr *x = ast_expr(b->ast, id);
   const char *from = window_end(b, x->a), *to = from ? window_end(b, x->b) : NULL;
-  if (to && !(strtod(from, NULL) < strtod(to, NULL))) {
+  if (to && *from && *to && !(strtod(from, NULL) < strtod(to, NULL))) {
     diag_error(b->diags, x->span, "this window of time is empty");
     return NULL;
   }
-  return to ? arena_printf(b->arena, ", %s..%s", from, to) : NULL;
+  return to ? arena_printf(b->arena, "%s..%s", from, to) : NULL;
 }
 
 /* max(x), max(x, 10..20), ... */
-static Part track(MeasureReader *r, const AstExpr *x) {
+static Part track(MeasureReader *r, AstId id) {
   Builder *b = r->b;
+  const AstExpr *x = ast_expr(b->ast, id);
   Name name = x->name;
-  Span span = x->span;
-  AstId window = ast_expr(b->ast, x->args)->next;
-  Part of = operand(r, x->args);
-  if (!of.text) return of;
+  Span span = x->span, in = ast_expr(b->ast, x->args)->span;
+  AstId args = x->args, window = ast_expr(b->ast, args)->next;
+  Part of = r->inside[args - r->first] ? operand(r, args) : r->part[args - r->first];
+  if (!of.text) return (Part){0};
   const char *within = window_text(b, window);
   if (!within) return (Part){0};
-  if (!(expr_kinds(b->g, of.value.e) & ~(1u << SYM_PARAM | 1u << SYM_CONST))) {
-    diag_error(b->diags, span, "`%s` does not change along the run", of.text);
+  if (of.measured || !of.varies) {
+    if (of.measured) diag_error(b->diags, in, "`%s` takes quantities, as x or x^2 + y^2; a value of the whole run stands outside", name);
+    else diag_error(b->diags, span, "`%s` does not change along the run", ast_short(b, args));
     return (Part){0};
   }
-  Dim dim = strcmp(name, "period") == 0 ? seconds(b) : of.value.dim;
-  return part_of(arena_printf(b->arena, "%s(%s%s)", name, of.text, within), BINDS_PRIMARY, dim, 1);
+  Unit unit = strcmp(name, "period") == 0 ? seconds(b, "s") : of.unit;
+  if (has_word("drift rms", name)) unit.offset = num_int(0); /* a difference */
+  return part_of(arena_printf(b->arena, "%s %s(%s)", of.text, name, within), unit, 1);
 }
 
 /* hit(EVENT, n), count(EVENT) */
@@ -178,20 +254,21 @@ static Part event_time(MeasureReader *r, const AstExpr *x, int hit) {
     Name near = suggest(event, names, events);
     diag_error(b->diags, ast_expr(b->ast, x->args)->span, "no event is called `%s`", event);
     if (near) diag_help(b->diags, "did you mean `%s`?", near);
-    else if (!events) diag_help(b->diags, "declare it: `event %s: x - 1 rising { }`", event);
+    else if (events) diag_help(b->diags, "the model has `%s`", names[0]);
+    else diag_help(b->diags, "declare it: `event %s: x - 1 rising { }`", event);
     return (Part){0};
   }
   AstId second = ast_expr(b->ast, x->args)->next;
   const Part *nth = second ? &r->part[second - r->first] : NULL;
   if (nth && !nth->text) return (Part){0};
   double number = nth && ast_expr(b->ast, second)->kind == AST_NUM ? strtod(nth->text, NULL) : 1;
-  if (number < 1 || number != floor(number)) {
-    diag_error(b->diags, ast_expr(b->ast, second)->span, "no event happens for the `%s`th time", nth->text);
+  if (number < 1 || number != floor(number) || (nth && (nth->measured || nth->varies))) {
+    diag_error(b->diags, ast_expr(b->ast, second)->span, "no event happens for the `%s`th time", ast_short(b, second));
     diag_help(b->diags, "`hit(%s)` is its first time, `hit(%s, 2)` its second", event, event);
     return (Part){0};
   }
-  const char *text = nth ? arena_printf(b->arena, "hit(%s, %s)", event, nth->text) : arena_printf(b->arena, "%s(%s)", x->name, event);
-  return part_of(text, BINDS_PRIMARY, hit ? seconds(b) : DIM_NONE, 1);
+  if (!hit) return part_of(arena_printf(b->arena, "count(%s)", event), unit_si(DIM_NONE, ""), 1);
+  return part_of(arena_printf(b->arena, "%s hit(%s)", nth ? nth->text : "1", event), seconds(b, "s"), 1);
 }
 
 /* x(10), th'(10): `what` at the time of part `time`. */
@@ -200,45 +277,96 @@ static Part at_time(MeasureReader *r, AstId what, AstId time) {
   const Part *t = &r->part[time - r->first];
   Part of = operand(r, what);
   if (!of.text || !t->text) return (Part){0};
-  if (!t->value.bare && !dim_equate(b->dims, t->value.dim, seconds(b), ast_expr(b->ast, time)->span)) {
-    diag_error(b->diags, ast_expr(b->ast, time)->span, "a time is in [s], and this is %s", in_dim(b, t->value.dim));
+  if (!t->value.bare && !dim_equate(b->dims, t->value.dim, seconds(b, "").dim, ast_expr(b->ast, time)->span) &&
+      !MISMATCH(r, ast_expr(b->ast, time)->span, "a time is in [s], and this is %s", in_dim(b, t->value.dim)))
     return (Part){0};
-  }
-  return part_of(arena_printf(b->arena, "%s(%s)", of.text, t->text), BINDS_PRIMARY, of.value.dim, 1);
+  return part_of(arena_printf(b->arena, "%s %s at()", of.text, t->text), of.unit, 1);
 }
+
+/* Unit of f(p), or f(p, q). */
+static Unit unit_of_call(Builder *b, Name f, const Part *p) {
+  if (strcmp(f, "abs") == 0) return num_is_zero(p->unit.offset) ? p->unit : unit_si(p->value.dim, "");
+  if (has_word("sqrt cbrt", f)) return unit_si(dim_pow(b->dims, p->value.dim, num_ratio(1, strcmp(f, "sqrt") == 0 ? 2 : 3)), "");
+  return unit_si(DIM_NONE, has_word("asin acos atan atan2", f) ? "rad" : "");
+}
+
+static Part power(MeasureReader *r, AstId left, AstId right);
+static int units_fit(MeasureReader *r, Span span, AstId left, AstId right);
+static Unit unit_of_sum(const MeasureReader *r, const Part *p, const Part *q);
+static const char *term(const MeasureReader *r, const Part *p, const Part *beside);
 
 static Part function(MeasureReader *r, const AstExpr *x) {
   Builder *b = r->b;
-  Part p = part_of(x->name, BINDS_PRIMARY, DIM_NONE, 0);
-  const char *between = "(";
-  p.literal = 1;
-  int two = strcmp(x->name, "atan2") == 0, root = strcmp(x->name, "sqrt") == 0, same = strcmp(x->name, "abs") == 0;
-  if (ast_list_length(b->ast, x->args) != (two ? 2 : 1)) return wrong_call(r, x, two ? "atan2(y, x)" : arena_printf(b->arena, "%s(x)", x->name));
-  for (AstId id = x->args; id; id = ast_expr(b->ast, id)->next, between = ", ") {
-    const Part *a = &r->part[id - r->first];
-    if (!a->text) return (Part){0};
-    p.text = arena_printf(b->arena, "%s%s%s", p.text, between, a->text);
-    p.measured |= a->measured;
-    p.literal &= a->literal;
-    if (root) p.value.dim = dim_pow(b->dims, a->value.dim, num_ratio(1, 2));
-    else if (same || two) p.value.dim = same ? a->value.dim : DIM_NONE;
-    else if (!dim_equate(b->dims, a->value.dim, DIM_NONE, x->span)) {
-      diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` takes a pure number or an angle, and this is %s", x->name, in_dim(b, a->value.dim));
-      return (Part){0};
-    }
+  int two = takes_two(x->name);
+  if (ast_list_length(b->ast, x->args) != (two ? 2 : 1)) return wrong_call(r, x, two ? arena_printf(b->arena, "%s(y, x)", x->name) : arena_printf(b->arena, "%s(x)", x->name));
+  AstId second = ast_expr(b->ast, x->args)->next;
+  const Part *p = &r->part[x->args - r->first], *q = two ? &r->part[second - r->first] : p;
+  if (!p->text || !q->text) return (Part){0};
+  if (strcmp(x->name, "pow") == 0) return power(r, x->args, second);
+  int any = two || has_word("abs sqrt cbrt sign", x->name);
+  if (two && !b->unitless && !units_fit(r, x->span, x->args, second)) return (Part){0};
+  if (!any && !dim_equate(b->dims, p->value.dim, DIM_NONE, x->span) &&
+      !MISMATCH(r, ast_expr(b->ast, x->args)->span, "`%s` takes a pure number or an angle, and this is %s", x->name, in_dim(b, p->value.dim)))
+    return (Part){0};
+  const char *word = function_word(x->name), *first = two ? term(r, p, q) : p->text;
+  Unit unit = two && !has_word("atan2", x->name) ? unit_of_sum(r, p, q) : unit_of_call(b, x->name, p);
+  Part f = part_of(arena_printf(b->arena, two ? "%s %s %s" : "%s %s", first, two ? term(r, q, p) : word, word), unit, p->measured || q->measured);
+  f.varies = p->varies || q->varies;
+  f.plain = p->plain && q->plain;
+  f.value.bare = p->value.bare && q->value.bare;
+  return f;
+}
+
+static Part read_measure(Builder *b, AstId root, const Frame *frame, int command);
+
+/* A function of measures: its text, with the arguments' words. */
+static Part text_call(MeasureReader *r, AstId id) {
+  enum { DEEPEST = 50 };
+  Builder *b = r->b;
+  const AstExpr *x = ast_expr(b->ast, id);
+  const AstStmt *f = b->functions.at[entity_named(b, x->name)->index].stmt;
+  uint32_t n = ast_list_length(b->ast, x->args), want = ast_list_length(b->ast, f->args), i = 0;
+  int depth = r->frame ? r->frame->depth + 1 : 1, ok = 1;
+  if (n != want) return wrong_call(r, x, arena_printf(b->arena, "%s(%s)", x->name, want == 1 ? "x" : "x, y, ..."));
+  if (depth > DEEPEST) {
+    diag_error(b->diags, x->span, "`%s` needs itself, or functions stand too deep in one another", x->name);
+    return (Part){0};
   }
-  p.text = arena_printf(b->arena, "%s)", p.text);
-  return p;
+  Part *part = ARENA_ARRAY(b->arena, Part, n + 1);
+  for (AstId arg = x->args; arg; arg = ast_expr(b->ast, arg)->next) ok &= (part[i++] = r->part[arg - r->first]).text != NULL;
+  return ok ? read_measure(b, f->rhs, &(Frame){f->args, part, depth}, r->command) : (Part){0};
+}
+
+/* A function that there is not: of a run, or of the language. */
+static Part unknown_call(MeasureReader *r, const AstExpr *x) {
+  Builder *b = r->b;
+  static const char *const words[] = {"max", "min", "mean", "rms", "drift", "period", "hit", "count"};
+  enum { WORDS = sizeof words / sizeof *words };
+  Name known[WORDS];
+  memcpy(known, words, sizeof words);
+  Name near = suggest(x->name, known, WORDS);
+  if (has_word(MEASURE_WORDS, x->name)) return wrong_call(r, x, arena_printf(b->arena, "%s(x)` or `%s(x, 10..20)", x->name, x->name));
+  diag_error(b->diags, x->op_span, "no function, output or coordinate is called `%s`", x->name);
+  if (near) diag_help(b->diags, "did you mean `%s`?", near);
+  else diag_help(b->diags, "of a run there are max, min, mean, rms, drift, period, hit, count and, without parentheses, end and lyapunov");
+  return (Part){0};
+}
+
+static int is_function(Name name) {
+  size_t i = 0;
+  while (function_name(i) && strcmp(function_name(i), name) != 0) i++;
+  return function_name(i) || has_word("exact error", name);
 }
 
 static Part call(MeasureReader *r, AstId id) {
   Builder *b = r->b;
   const AstExpr *x = ast_expr(b->ast, id);
-  switch (call_kind(r, x)) {
-    case CALL_TRACK: return track(r, x);
+  switch (call_kind(r, id)) {
+    case CALL_TRACK: return track(r, id);
     case CALL_HIT: case CALL_COUNT: return event_time(r, x, strcmp(x->name, "hit") == 0);
     case CALL_FUNCTION: return function(r, x);
-    case CALL_ELSE: return operand(r, id);
+    case CALL_TEXT: return text_call(r, id);
+    case CALL_ELSE: return entity_named(b, x->name) || is_function(x->name) ? operand(r, id) : unknown_call(r, x);
     case CALL_AT: break;
   }
   if (ast_list_length(b->ast, x->args) != 1) return wrong_call(r, x, arena_printf(b->arena, "%s(10 [s])", x->name));
@@ -250,76 +378,139 @@ static Part call(MeasureReader *r, AstId id) {
 
 /* ---- Arithmetic */
 
-static const char *bound(Builder *b, const Part *p, Binding needs) { return arena_printf(b->arena, p->binding < needs ? "(%s)" : "%s", p->text); }
-
-/* A term: the runtime reads plain numbers beside a quantity in its declared unit, the language in radians or as pure numbers. */
-static const char *term(Builder *b, const Part *p, const Part *beside, Binding needs) {
-  if (!p->literal || beside->literal) return bound(b, p, needs);
-  return arena_printf(b->arena, "%s*1[SI]", bound(b, p, BINDS_PRODUCT));
+/* A term: the command line reads plain numbers beside a quantity in its unit. */
+static const char *term(const MeasureReader *r, const Part *p, const Part *beside) {
+  if (!r->command || !p->plain || beside->plain || !beside->unit.text[0] || (num_is_one(beside->unit.factor) && !beside->unit.pi_power)) return p->text;
+  return arena_printf(r->b->arena, "%s %s *", p->text, unit_factor_text(r->b->arena, &beside->unit));
 }
 
-static int units_fit(MeasureReader *r, const AstExpr *x, const Part *p, const Part *q) {
+static int units_fit(MeasureReader *r, Span span, AstId left, AstId right) {
   Builder *b = r->b;
+  const Part *p = &r->part[left - r->first], *q = &r->part[right - r->first];
   const Part *number = p->value.bare ? p : q->value.bare ? q : NULL, *other = number == p ? q : p;
-  if (number && dim_is_open(b->dims, dim_resolved(b->dims, other->value.dim))) return 1;
-  if ((p->value.e && expr_is_zero(b->g, p->value.e)) || (q->value.e && expr_is_zero(b->g, q->value.e)) || dim_equate(b->dims, p->value.dim, q->value.dim, x->span)) return 1;
-  diag_error(b->diags, x->span, "units do not match: `%s` is %s, `%s` %s", ast_short(b, x->a), in_dim(b, p->value.dim), ast_short(b, x->b), in_dim(b, q->value.dim));
+  if (number && (r->command || dim_is_open(b->dims, dim_resolved(b->dims, other->value.dim)))) return 1;
+  if ((p->value.e && expr_is_zero(b->g, p->value.e)) || (q->value.e && expr_is_zero(b->g, q->value.e)) || dim_equate(b->dims, p->value.dim, q->value.dim, span)) return 1;
+  int fits = MISMATCH(r, span, "units do not match: `%s` is %s, `%s` %s", ast_short(b, left), in_dim(b, p->value.dim), ast_short(b, right), in_dim(b, q->value.dim));
   if (number) diag_help(b->diags, "give the number its unit: `%s [%s]`", number->text, dim_text(b->dims, other->value.dim));
-  return 0;
+  return fits;
 }
 
-static Part arithmetic(MeasureReader *r, const AstExpr *x) {
-  static const struct { const char *text; Binding own, left, right; } ops[] = {
-    [AST_ADD] = {" + ", BINDS_SUM, BINDS_SUM, BINDS_PRODUCT}, [AST_SUB] = {" - ", BINDS_SUM, BINDS_SUM, BINDS_PRODUCT},
-    [AST_MUL] = {"*", BINDS_PRODUCT, BINDS_PRODUCT, BINDS_SIGN}, [AST_DIV] = {"/", BINDS_PRODUCT, BINDS_PRODUCT, BINDS_SIGN},
-    [AST_POW] = {"^", BINDS_POWER, BINDS_PRIMARY, BINDS_SIGN}};
+static int same_unit(const Unit *u, const Unit *v) {
+  return strcmp(u->text, v->text) == 0 && num_equal(u->factor, v->factor) && u->pi_power == v->pi_power && num_is_zero(u->offset) && num_is_zero(v->offset);
+}
+
+/* Unit of a sum: the common one, or that beside a number. */
+static Unit unit_of_sum(const MeasureReader *r, const Part *p, const Part *q) {
+  int first = p->plain && r->command, second = q->plain && r->command; /* in a scene pure numbers beside an angle are in radians, and leave it its unit */
+  const Unit *u = first || (p->number && !q->number) ? &q->unit : &p->unit;
+  int fits = first || second || p->number || q->number || same_unit(&p->unit, &q->unit);
+  return fits && num_is_zero(u->offset) ? *u : unit_si(p->value.bare ? q->value.dim : p->value.dim, "");
+}
+
+static int is_pure(Builder *b, const Part *p) { return p->value.bare || (!p->unit.text[0] && dim_resolved(b->dims, p->value.dim) == DIM_NONE); }
+
+/* Unit of a product or quotient with a pure number: the other one's. */
+static Unit unit_of_product(Builder *b, const AstExpr *x, const Part *p, const Part *q) {
+  Dim dim = x->kind == AST_MUL ? dim_mul(b->dims, p->value.dim, q->value.dim) : dim_div(b->dims, p->value.dim, q->value.dim);
+  const Unit *u = is_pure(b, q) ? &p->unit : x->kind == AST_MUL && is_pure(b, p) ? &q->unit : NULL;
+  Unit unit = u && num_is_zero(u->offset) ? *u : unit_si(dim, "");
+  unit.dim = dim;
+  return unit;
+}
+
+static Part power(MeasureReader *r, AstId left, AstId right) {
   Builder *b = r->b;
-  const Part *p = &r->part[x->a - r->first], *q = x->kind == AST_NEG ? p : &r->part[x->b - r->first];
-  if (!p->text || !q->text) return (Part){0};
-  Part of = part_of(NULL, BINDS_SIGN, p->value.dim, p->measured || q->measured);
-  of.value.bare = p->value.bare && q->value.bare;
-  of.literal = p->literal && q->literal;
-  if (x->kind == AST_NEG) {
-    of.text = arena_printf(b->arena, "-%s", bound(b, p, BINDS_POWER));
-    return of;
-  }
-  if ((x->kind == AST_ADD || x->kind == AST_SUB) && !b->unitless && !units_fit(r, x, p, q)) return (Part){0};
-  if (x->kind == AST_MUL) of.value.dim = dim_mul(b->dims, p->value.dim, q->value.dim);
-  if (x->kind == AST_DIV) of.value.dim = dim_div(b->dims, p->value.dim, q->value.dim);
-  if (x->kind == AST_POW) of.value.dim = q->value.e && expr_is_num(b->g, q->value.e) ? dim_pow(b->dims, p->value.dim, expr_number(b->g, q->value.e)) : DIM_NONE;
-  of.binding = ops[x->kind].own;
-  if (x->kind == AST_ADD || x->kind == AST_SUB)
-    of.text = arena_printf(b->arena, "%s%s%s", term(b, p, q, BINDS_SUM), ops[x->kind].text, term(b, q, p, BINDS_PRODUCT));
-  else of.text = arena_printf(b->arena, "%s%s%s", bound(b, p, ops[x->kind].left), ops[x->kind].text, bound(b, q, ops[x->kind].right));
+  const Part *p = &r->part[left - r->first], *q = &r->part[right - r->first];
+  int known = q->value.e && expr_is_num(b->g, q->value.e);
+  Part of = part_of(arena_printf(b->arena, "%s %s ^", p->text, q->text), unit_si(known ? dim_pow(b->dims, p->value.dim, expr_number(b->g, q->value.e)) : DIM_NONE, ""), 0);
   return of;
 }
 
-void set_measure(Builder *b, const AstStmt *st) {
-  AstId root = st->rhs;
-  MeasureReader r = {.b = b, .first = ast_expr(b->ast, root)->first};
-  uint32_t n = root - r.first + 1, errors = b->diags->errors;
+/* Node of an operation on numbers. */
+static Expr combined(ExprGraph *g, AstKind kind, Expr p, Expr q) {
+  switch ((int)kind) {
+    case AST_NEG: return expr_neg(g, p);
+    case AST_ADD: return expr_add(g, p, q);
+    case AST_SUB: return expr_sub(g, p, q);
+    case AST_MUL: return expr_mul(g, p, q);
+    case AST_DIV: return expr_is_zero(g, q) ? 0 : expr_div(g, p, q);
+    default: return 0;
+  }
+}
+
+static Part arithmetic(MeasureReader *r, const AstExpr *x) {
+  Builder *b = r->b;
+  AstId second = x->kind == AST_NEG ? x->a : x->b;
+  const Part *p = &r->part[x->a - r->first], *q = &r->part[second - r->first];
+  int sum = x->kind == AST_ADD || x->kind == AST_SUB, fits = 1;
+  if (!p->text || !q->text || (sum && !b->unitless && !(fits = units_fit(r, x->span, x->a, second)))) return (Part){0};
+  Part of = part_of(NULL, unit_of_call(b, "abs", p), 0);
+  if (x->kind == AST_POW) of = power(r, x->a, second);
+  else if (x->kind == AST_NEG) of.text = arena_printf(b->arena, "%s neg()", p->text);
+  else of = part_of(arena_printf(b->arena, "%s %s %c", sum ? term(r, p, q) : p->text, sum ? term(r, q, p) : q->text, "+-*/"[x->kind - AST_ADD]), sum ? unit_of_sum(r, p, q) : unit_of_product(b, x, p, q), 0);
+  of.measured = p->measured || q->measured;
+  of.varies = p->varies || q->varies;
+  of.value.bare = p->value.bare && q->value.bare;
+  of.number = p->number && q->number;
+  of.plain = p->plain && q->plain;
+  if (of.number) of.value.e = combined(b->g, x->kind, p->value.e, q->value.e);
+  if (fits == UNCHECKED) of.unit = unit_si(DIM_NONE, "");
+  return of;
+}
+
+/* ---- The whole */
+
+static Part read_node(MeasureReader *r, AstId id) {
+  Builder *b = r->b;
+  const AstExpr x = *ast_expr(b->ast, id);
+  const char *word = word_of_run(r, &x);
+  const Part *given = x.kind == AST_NAME ? argument(r, x.name) : NULL;
+  if (given) return *given;
+  if (word && *word == 'e') return part_of("end()", seconds(b, "s"), 1);
+  if (word) return part_of("lyapunov()", unit_si(dim_div(b->dims, DIM_NONE, seconds(b, "").dim), "1/s"), 1);
+  if (x.kind == AST_CALL) return call(r, id);
+  if (x.kind == AST_AT) return at_time(r, x.a, x.b);
+  return is_arithmetic(x.kind) ? arithmetic(r, &x) : operand(r, id);
+}
+
+static Part read_measure(Builder *b, AstId root, const Frame *frame, int command) {
+  MeasureReader r = {.b = b, .first = ast_expr(b->ast, root)->first, .frame = frame, .command = command};
+  uint32_t n = root - r.first + 1;
   r.part = ARENA_ARRAY(b->arena, Part, n);
   r.inside = ARENA_ARRAY(b->arena, uint8_t, n);
+  r.whole = ARENA_ARRAY(b->arena, uint8_t, n);
+  mark_whole(&r, root);
   mark_operands(&r, root);
-  for (AstId id = r.first; id <= root; id++) {
-    if (r.inside[id - r.first]) continue;
-    const AstExpr x = *ast_expr(b->ast, id);
-    int free_name = x.kind == AST_NAME && !entity_named(b, x.name), end = free_name && strcmp(x.name, "end") == 0, exponent = free_name && strcmp(x.name, "lyapunov") == 0;
-    Part *p = &r.part[id - r.first];
-    if (end) *p = part_of("end", BINDS_PRIMARY, seconds(b), 1);
-    else if (exponent) *p = part_of("lyapunov", BINDS_PRIMARY, dim_div(b->dims, DIM_NONE, seconds(b)), 1);
-    else if (x.kind == AST_CALL) *p = call(&r, id);
-    else if (x.kind == AST_AT) *p = at_time(&r, x.a, x.b);
-    else if (is_arithmetic(x.kind)) *p = arithmetic(&r, &x);
-    else *p = operand(&r, id);
-  }
-  const Part *whole = &r.part[root - r.first];
-  if (!whole->text || b->diags->errors > errors) return;
-  Measure m = {.name = st->name, .text = whole->text, .unit = unit_si(whole->value.dim, "")};
-  for (uint32_t i = 0; i < b->m->scene.measures.n; i++)
-    if (b->m->scene.measures.at[i].name == m.name) {
-      b->m->scene.measures.at[i] = m;
+  for (AstId id = r.first; id <= root; id++)
+    if (!r.inside[id - r.first]) r.part[id - r.first] = read_node(&r, id);
+  return r.part[root - r.first];
+}
+
+/* Appends the measure, or replaces that of its name. */
+static void put_measure(Builder *b, Name name, const Part *p, Measures *list) {
+  Measure m = {.name = name, .text = p->text, .unit = p->unit, .alone = p->value.e && !strchr(p->text, ' ')};
+  for (uint32_t i = 0; i < list->n; i++)
+    if (list->at[i].name == name) {
+      list->at[i] = m;
       return;
     }
-  vec_push(b->arena, &b->m->scene.measures, m);
+  vec_push(b->arena, list, m);
+}
+
+void set_measure(Builder *b, const AstStmt *st) {
+  uint32_t errors = b->diags->errors;
+  Part p = read_measure(b, st->rhs, NULL, 0);
+  if (p.text && b->diags->errors == errors) put_measure(b, st->name, &p, &b->m->scene.measures);
+}
+
+void ask_measure(Builder *b, const CommandOutput *asked) {
+  uint32_t outputs = b->m->scene.outputs.n;
+  Part p = read_measure(b, asked->expr, NULL, 1);
+  b->m->measured_outputs |= b->m->scene.outputs.n > outputs;
+  if (p.text) put_measure(b, asked->name, &p, &b->m->asked_measures);
+}
+
+const char *measure_words(Arena *a, const Measure *m) {
+  if (m->alone) return m->text;
+  return arena_printf(a, "%s [%s %s %s]", m->text, unit_factor_text(a, &m->unit), num_is_zero(m->unit.offset) ? "0" : decimal_literal(a, m->unit.offset, 0), m->unit.text);
 }

@@ -238,9 +238,12 @@ typedef struct {
 /* A number that one keeps of a run. */
 typedef struct {
   Name name;
-  const char *text; /* in the notation of runtime/analysis/measure.h */
-  Unit unit;        /* of the value in SI */
+  const char *text; /* words in the notation of runtime/analysis/measure.h, */
+  Unit unit;        /* and the unit of the value; */
+  int alone;        /* 1: a quantity alone, in its own unit */
 } Measure;
+
+typedef VEC(Measure) Measures;
 
 typedef struct {
   Name name;
@@ -258,7 +261,7 @@ typedef struct {
   VEC(Output) outputs;
   double every;
   VEC(Monitor) monitors;
-  VEC(Measure) measures;
+  Measures measures;
   VEC(Exact) exacts;
 } Scene;
 
@@ -306,6 +309,8 @@ typedef struct {
   Scene scene;
   VEC(FoundUnit) found;    /* inferred units of names declared without one */
   ExprMap written; /* nodes that may jump (comparisons, sign, tan, atan2) -> AstId where the text writes them */
+  Measures asked_measures; /* of the command line */
+  int measured_outputs;    /* 1: they added outputs to the scene's */
   SymId energy_sym; /* placeholder for the energy p q' - L in outputs and expects, which mech replaces */
   Unit energy_unit;
   const struct Declarations *declared; /* names and definitions of the text (declarations.h), for the self-check */
@@ -313,6 +318,8 @@ typedef struct {
 
 /* Name of built-in function i; NULL past the end. */
 const char *function_name(size_t i);
+/* Whether it is defined by a text in functions.def: names of a model go before it. */
+int function_is_composed(size_t i);
 
 /* Names of the file's scenes, in order; "default" alone when there is none. */
 typedef struct {
@@ -376,6 +383,8 @@ typedef struct {
   uint32_t ndefines;
   const CommandOutput *asked; /* outputs besides the scene's own */
   uint32_t nextra_outputs;
+  const CommandOutput *measures; /* measures besides the scene's own */
+  uint32_t nmeasures;
   const CommandInput *given; /* values that override the scene's */
   uint32_t ngiven;
   CommandValue *values; /* model_build evaluates them; an error is reported when a run cannot set a target, or a value does not fit it */
@@ -396,6 +405,9 @@ CoordList model_coordinates(const Model *m);
 
 /* Reason why a model of first order has no accelerations, for messages. */
 static inline const char *no_inertia(const Model *m) { return m->hamiltonian ? "the model gives its Hamiltonian" : "L is linear in the velocities"; }
+
+/* The measure with its unit, as the runtime reads it. */
+const char *measure_words(Arena *a, const Measure *m);
 
 /* Builds the model; NULL after errors, all of which are in ast->diags. Memory is ast->arena's. */
 Model *model_build(Ast *ast, const ModelChoice *choice);

@@ -171,8 +171,8 @@ static const struct {
   ExprOp op;
   int takes_vectors; /* vectors or rotations */
 } functions[] = {
-  {"sin", NULL, EX_SIN, 0}, {"cos", NULL, EX_COS, 0}, {"tan", NULL, EX_TAN, 0}, {"asin", NULL, EX_ASIN, 0}, {"acos", NULL, EX_ACOS, 0}, {"atan", NULL, EX_ATAN, 0},
-  {"sinh", NULL, EX_SINH, 0}, {"cosh", NULL, EX_COSH, 0}, {"tanh", NULL, EX_TANH, 0}, {"exp", NULL, EX_EXP, 0}, {"log", NULL, EX_LOG, 0}, {"cbrt", NULL, EX_CBRT, 0},
+#define ROW(OP, name, ...) {#name, NULL, EX_##OP, 0},
+  FUNCTIONS(ROW)
   {"abs", NULL, EX_ABS, 0}, {"sign", NULL, EX_SIGN, 0}, {"floor", NULL, EX_FLOOR, 0},
   {"atan2", NULL, EX_ATAN2, 0}, {"hypot", NULL, EX_HYPOT, 0}, {"min", NULL, EX_MIN, 0}, {"max", NULL, EX_MAX, 0},
   {"sqrt", call_sqrt, 0, 0}, {"pow", call_pow, 0, 0}, {"if", call_if, 0, 1}, {"d", call_d, 0, 1}, {"dot", call_dot, 0, 1}, {"cross", call_cross, 0, 1},
@@ -180,11 +180,19 @@ static const struct {
   {"action", action_value, 0, 1},
 };
 
-const char *function_name(size_t i) { return i < sizeof functions / sizeof *functions ? functions[i].name : NULL; }
+enum { BUILT_IN = sizeof functions / sizeof *functions };
+
+const char *function_name(size_t i) {
+#define NAME(name, arguments, text) #name,
+  static const char *const composed[] = {COMPOSED(NAME) NULL};
+  return i < BUILT_IN ? functions[i].name : composed[i - BUILT_IN];
+}
+
+int function_is_composed(size_t i) { return i >= BUILT_IN; }
 
 /* Index of a built-in function; -1: none. */
 static int find_function(const char *name) {
-  for (size_t i = 0; function_name(i); i++)
+  for (size_t i = 0; i < BUILT_IN; i++)
     if (strcmp(name, functions[i].name) == 0) return (int)i;
   return -1;
 }

@@ -1,6 +1,7 @@
-/* Calls of user functions. A body is evaluated once per choice of argument shapes, with local symbols and unknown dimensions
+/* Calls of user functions, and of functions that functions.def defines by a text. A body is evaluated once per choice of argument shapes, with local symbols and unknown dimensions
  * as arguments (an Instance); a call substitutes its arguments, and checks their dimensions against those inferred from the body. */
 #include "model/resolve_impl.h"
+#include "syntax/parse.h"
 
 const Value *function_argument(const Builder *b, const Instance *function, Name name) {
   if (!function) return NULL;
@@ -129,16 +130,32 @@ static Value call_instance(Eval *ev, const AstExpr *x, const Instance *in) {
   if (!in->value.e || !bind_dims(ev, x, in, dims) || !bind_symbols(ev, x, in, with)) return FAILED;
   Value r = in->value;
   r.dim = dim_replace(b->dims, r.dim, in->first_unknown, in->nargs, dims);
+  r.bare = b->functions.at[in->function].composed;
+  for (AstId arg = x->args; arg; arg = ast_expr(b->ast, arg)->next) r.bare &= value_of(ev, arg)->bare;
   for (uint32_t k = 0; k < component_count(&r); k++) r.at[k] = expr_replace(b->g, r.at[k], in->symbols.at, with, in->symbols.n);
   if (r.domain) r.domain = expr_replace(b->g, r.domain, in->symbols.at, with, in->symbols.n);
   return r;
+}
+
+void declare_composed(Builder *b) {
+  const AstStmt *first = parse_composed(b->ast);
+  for (AstId id = 1; id < b->ast->exprs.n; id++) {
+    const AstExpr *x = ast_expr(b->ast, id);
+    if (x->kind != AST_CALL) continue;
+    for (const AstStmt *s = first; s; s = s->next) {
+      int ambiguous;
+      if (s->name != x->name || scope_find(&b->scope, s->name, NULL, &ambiguous) || declared_in_use(b, s->name, NULL)) continue;
+      vec_push(b->arena, &b->scope.behind, ((Entity){.kind = ENT_FUNCTION, .index = b->functions.n, .name = s->name, .span = s->name_span}));
+      add_definition(b, ENT_FUNCTION, (Definition){.stmt = s, .name = s->name, .composed = 1});
+    }
+  }
 }
 
 Value call_function(Eval *ev, const AstExpr *x, const Entity *e) {
   Builder *b = ev->b;
   const Definition *f = &b->functions.at[e->index];
   uint32_t nargs = ast_list_length(b->ast, f->stmt->args), n = 0, *shapes = ARENA_ARRAY(b->arena, uint32_t, nargs + 1);
-  if (ev->where < IN_START) return refuse(b, x->span, "`%s` is a function of the model's own, and may not be used here", x->name);
+  if (ev->where < IN_START && !f->composed) return refuse(b, x->span, "`%s` is a function of the model's own, and may not be used here", x->name);
   if (!arity_is(ev, x, nargs)) return FAILED;
   for (AstId arg = x->args; arg; arg = ast_expr(b->ast, arg)->next) {
     if (!value_of(ev, arg)->e) return FAILED;

@@ -402,4 +402,5 @@ void scene_build(Builder *b, const ModelChoice *choice) {
     if (!rate || errors == before) add_outputs_as(b, o->expr, o->name); /* --phase x: what is wrong in x is wrong in x', and said once */
     before = errors;
   }
+  for (uint32_t i = 0; i < choice->nmeasures; i++) ask_measure(b, &choice->measures[i]);
 }

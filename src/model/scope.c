@@ -27,6 +27,8 @@ const Entity *scope_find(const Scope *s, Name name, Name effect, int *ambiguous)
   if (own) return own;
   const Entity *found = newest(s, name, NULL, 1, &n);
   *ambiguous = n > 1;
+  for (uint32_t i = 0; !found && i < s->behind.n; i++)
+    if (s->behind.at[i].name == name) return &s->behind.at[i];
   return found;
 }
 

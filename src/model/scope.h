@@ -29,6 +29,7 @@ typedef struct {
   Arena *arena;
   VEC(Entity) all;
   IdTable table; /* of `all` */
+  VEC(Entity) behind; /* functions of the language, for names that nothing else declares */
 } Scope;
 
 /* The entity that `effect` (NULL: the model itself) declares as `name`, or NULL. */

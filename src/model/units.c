@@ -276,3 +276,10 @@ double unit_factor(const Unit *u) {
   for (int i = 0; i > u->pi_power; i--) f /= PI;
   return f;
 }
+
+const char *unit_factor_text(Arena *a, const Unit *u) {
+  char text[32];
+  const char *digits = decimal_literal(a, u->factor, u->pi_power);
+  if (!digits) num_format_double(text, unit_factor(u));
+  return digits ? digits : arena_strdup(a, text);
+}

@@ -37,3 +37,4 @@ const char *unit_meaning(uint32_t i, Arena *a);
 
 /* factor * pi^pi_power */
 double unit_factor(const Unit *u);
+const char *unit_factor_text(Arena *a, const Unit *u); /* in 40 digits, where it has them */

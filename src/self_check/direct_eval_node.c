@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "self_check/direct_eval_impl.h"
+#include "numeric/functions.def"
 
 static const TextValue *operand(const Frame *f, AstId id) { return &f->value[id - f->first]; }
 static TextValue scalar(Ref r, int bare) { return (TextValue){.at = {r}, .bare = bare}; }
@@ -357,7 +358,8 @@ static TextValue call_binary(DirectEval *t, Name name, const TextValue *x, const
 }
 
 static TextValue call_unary(DirectEval *t, Name name, const TextValue *x) {
-  static const char *const functions[] = {"sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", NULL};
+  #define NAME(OP, name, ...) #name,
+  static const char *const functions[] = {FUNCTIONS(NAME) NULL};
   if (strcmp(name, "sqrt") == 0) return scalar(tape_power(t->tape, x->at[0], num_ratio(1, 2)), x->bare);
   if (strcmp(name, "cbrt") == 0) return scalar(tape_power(t->tape, x->at[0], num_ratio(1, 3)), x->bare);
   if (strcmp(name, "abs") == 0) return scalar(tape_function(t->tape, "fabs", x->at[0]), x->bare);

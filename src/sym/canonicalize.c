@@ -250,9 +250,8 @@ void expr_push_power(ExprGraph *g, Product *r, Expr base, Num e) {
       }
       push_factor(g, r, base, e);
       return;
-    case EX_SYM: case EX_DEF: case EX_POW: case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN:
-    case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH: case EX_TANH: case EX_EXP: case EX_LOG:
-    case EX_CBRT: case EX_SIGN: case EX_FLOOR: case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT:
+    case EX_SYM: case EX_DEF: case EX_POW: EX_FUNCTION_CASES
+    case EX_SIGN: case EX_FLOOR: case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT:
     case EX_LE: case EX_EQ: case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: case EX_COUNT: break;
   }
   push_factor(g, r, base, e);
@@ -372,20 +371,23 @@ static int has_negative_lead(const ExprGraph *g, Expr a) {
   return num_sign(c) < 0;
 }
 
-static int is_odd(ExprOp op) {
-  return op == EX_SIN || op == EX_TAN || op == EX_ASIN || op == EX_ATAN || op == EX_SINH || op == EX_TANH ||
-         op == EX_CBRT || op == EX_SIGN;
+Symmetry expr_symmetry(ExprOp op) {
+#define SYMMETRY(OP, name, latex, symmetry, ...) [EX_##OP] = symmetry,
+  static const uint8_t of[EX_COUNT] = {FUNCTIONS(SYMMETRY) [EX_SIGN] = ODD, [EX_ABS] = EVEN};
+  return of[op];
 }
 
-static int is_even(ExprOp op) { return op == EX_COS || op == EX_COSH || op == EX_ABS; }
+/* Exact value of a function at 0; 0 if there is none. */
+static Expr value_at_zero(const ExprGraph *g, ExprOp op) {
+#define AT_0(OP, name, latex, symmetry, at_0, ...) [EX_##OP] = at_0,
+  enum { NONE, ZERO, ONE };
+  static const uint8_t of[EX_COUNT] = {FUNCTIONS(AT_0) [EX_SIGN] = ZERO, [EX_ABS] = ZERO};
+  return of[op] == ZERO ? g->zero : of[op] == ONE ? g->one : 0;
+}
 
 /* Exact value of f(a), such as f(0), |a| of known sign, log(exp u); 0 if there is none. */
 static Expr fold_fn(ExprGraph *g, ExprOp op, Expr a) {
-  if (a == g->zero) {
-    if (is_odd(op)) return g->zero;
-    if (op == EX_COS || op == EX_COSH || op == EX_EXP) return g->one;
-    if (op == EX_ABS) return a;
-  }
+  if (a == g->zero && value_at_zero(g, op)) return value_at_zero(g, op);
   if (a == g->one && op == EX_LOG) return g->zero;
   if (op == EX_ABS || op == EX_SIGN) {
     ExprSign s = expr_sign(g, a);
@@ -408,10 +410,10 @@ static Expr fold_fn(ExprGraph *g, ExprOp op, Expr a) {
 Expr expr_fn(ExprGraph *g, ExprOp op, Expr a) {
   Expr folded = fold_fn(g, op, a);
   if (folded) return folded;
-  if ((is_odd(op) || is_even(op)) && has_negative_lead(g, a)) {
+  if (expr_symmetry(op) != NEITHER && has_negative_lead(g, a)) {
     Expr turned = expr_neg(g, a);
     Expr f = expr_fn(g, op, turned);
-    return is_odd(op) ? expr_neg(g, f) : f;
+    return expr_symmetry(op) == ODD ? expr_neg(g, f) : f;
   }
   return expr_make(g, op, &a, 1);
 }
@@ -439,9 +441,8 @@ static Expr fold_fn2(ExprGraph *g, ExprOp op, Expr a, Expr b) {
       if (a == g->zero) return expr_fn(g, EX_ABS, b);
       return b == g->zero ? expr_fn(g, EX_ABS, a) : 0;
     case EX_ATAN2: return a == g->zero && expr_sign(g, b) == SIGN_POSITIVE ? g->zero : 0;
-    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_POW: case EX_SIN:
-    case EX_COS: case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH:
-    case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT:
+    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_POW: EX_FUNCTION_CASES
+    case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT:
     case EX_SELECT: case EX_COUNT: break;
   }
   return 0;
@@ -489,9 +490,8 @@ Expr expr_rebuild(ExprGraph *g, Expr e, const Expr *args) {
     }
     case EX_POW: return expr_pow(g, args[0], args[1]);
     case EX_SELECT: return expr_select(g, args[0], args[1], args[2]);
-    case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH:
-    case EX_COSH: case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_FLOOR:
-    case EX_NOT: return expr_fn(g, expr_op(g, e), args[0]);
+    EX_FUNCTION_CASES
+    case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT: return expr_fn(g, expr_op(g, e), args[0]);
     case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
     case EX_AND: case EX_OR: return expr_fn2(g, expr_op(g, e), args[0], args[1]);
   }

@@ -17,35 +17,23 @@ static Expr partial_pair(ExprGraph *g, Expr e, uint32_t i) {
   return expr_scale(g, k, p);
 }
 
-static Expr one_over(ExprGraph *g, Expr a) { return expr_pow_num(g, a, num_int(-1)); }
 static Expr square(ExprGraph *g, Expr a) { return expr_pow_num(g, a, num_int(2)); }
 
-/* 1 / sqrt(1 - x^2) */
-static Expr arc_slope(ExprGraph *g, Expr x) {
-  Expr xx = square(g, x);
-  Expr rest = expr_sub(g, g->one, xx);
-  return expr_pow_num(g, rest, num_ratio(-1, 2));
-}
+/* The words of the column `derivative` of functions.def: each makes at most one node of an argument, so that nodes are numbered alike everywhere. */
+#define FN(op) expr_fn(g, EX_##op, x)
+#define NEG(a) expr_neg(g, a)
+#define SQUARE(a) square(g, a)
+#define ONE_PLUS(a) expr_add(g, g->one, a)
+#define ONE_LESS(a) expr_sub(g, g->one, a)
+#define POWER(a, n, d) expr_pow_num(g, a, num_ratio(n, d))
+#define THIRD(a) expr_scale(g, num_ratio(1, 3), a)
+#define DERIVATIVE(OP, name, latex, symmetry, at_0, sign, proof, slope, derivative) case EX_##OP: return derivative;
 
-static Expr partial_unary(ExprGraph *g, Expr e, Expr x) {
-  switch (expr_op(g, e)) {
+/* df/dx of f = f(x). */
+static Expr partial_unary(ExprGraph *g, Expr f, Expr x) {
+  switch (expr_op(g, f)) {
+    FUNCTIONS(DERIVATIVE)
     case EX_DEF: return g->one;
-    case EX_SIN: return expr_fn(g, EX_COS, x);
-    case EX_COS: { Expr s = expr_fn(g, EX_SIN, x); return expr_neg(g, s); }
-    case EX_TAN: { Expr t2 = square(g, e); return expr_add(g, g->one, t2); }
-    case EX_ASIN: return arc_slope(g, x);
-    case EX_ACOS: { Expr s = arc_slope(g, x); return expr_neg(g, s); }
-    case EX_ATAN: {
-      Expr xx = square(g, x);
-      Expr d = expr_add(g, g->one, xx);
-      return one_over(g, d);
-    }
-    case EX_SINH: return expr_fn(g, EX_COSH, x);
-    case EX_COSH: return expr_fn(g, EX_SINH, x);
-    case EX_TANH: { Expr t2 = square(g, e); return expr_sub(g, g->one, t2); }
-    case EX_EXP: return e;
-    case EX_LOG: return one_over(g, x);
-    case EX_CBRT: { Expr p = expr_pow_num(g, e, num_int(-2)); return expr_scale(g, num_ratio(1, 3), p); }
     case EX_ABS: return expr_fn(g, EX_SIGN, x);
     case EX_SIGN: case EX_FLOOR: case EX_NOT: return g->zero;
     case EX_NUM: case EX_SYM: case EX_SUM: case EX_PROD: case EX_POW: case EX_ATAN2: case EX_HYPOT:
@@ -79,9 +67,8 @@ static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
     case EX_POW: return partial_pow(g, e, a, b, i);
     case EX_ATAN2: return partial_atan2(g, a, b, i);
     case EX_HYPOT: return expr_div(g, i == 0 ? a : b, e);
-    case EX_NUM: case EX_MIN: case EX_MAX: case EX_SELECT: /* choices, see below */ case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_SIN: case EX_COS:
-    case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH: case EX_TANH:
-    case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_LT: case EX_LE:
+    case EX_NUM: case EX_MIN: case EX_MAX: case EX_SELECT: /* choices, see below */ case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: EX_FUNCTION_CASES
+    case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_LT: case EX_LE:
     case EX_EQ: case EX_NOT: case EX_AND: case EX_OR: case EX_COUNT: break;
   }
   return g->zero;

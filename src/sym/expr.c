@@ -229,17 +229,17 @@ static ExprSign prod_sign(const ExprGraph *g, const Expr *args, uint32_t n) {
 
 ExprSign expr_infer_sign(const ExprGraph *g, ExprOp op, const Expr *args, uint32_t n) {
   switch (op) {
+#define SIGN_OF_ARGUMENT expr_sign(g, args[0])
+#define SIGN_CASE(OP, name, latex, symmetry, at_0, sign, ...) case EX_##OP: return SIGN_##sign;
+    FUNCTIONS(SIGN_CASE)
     case EX_SUM: return sum_sign(g, args, n);
     case EX_PROD: return prod_sign(g, args, n);
-    case EX_DEF: case EX_CBRT: case EX_SINH: case EX_TANH: case EX_ATAN: case EX_SIGN:
-      return expr_sign(g, args[0]);
-    case EX_EXP: case EX_COSH: return SIGN_POSITIVE;
+    case EX_DEF: case EX_SIGN: return SIGN_OF_ARGUMENT;
     case EX_POW: return expr_sign(g, args[0]) == SIGN_POSITIVE ? SIGN_POSITIVE : SIGN_UNKNOWN;
-    case EX_ABS: case EX_HYPOT: case EX_ACOS: return SIGN_NONNEGATIVE;
+    case EX_ABS: case EX_HYPOT: return SIGN_NONNEGATIVE;
     case EX_SELECT:
       return expr_sign(g, args[1]) == expr_sign(g, args[2]) ? expr_sign(g, args[1]) : SIGN_UNKNOWN;
-    case EX_NUM: case EX_SYM: case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_LOG:
-    case EX_FLOOR: case EX_ATAN2: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ: case EX_NOT:
+    case EX_NUM: case EX_SYM: case EX_FLOOR: case EX_ATAN2: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ: case EX_NOT:
     case EX_AND: case EX_OR: case EX_COUNT: break;
   }
   return SIGN_UNKNOWN;

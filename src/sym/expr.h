@@ -21,6 +21,7 @@
 #include "base/intern.h"
 #include "base/num.h"
 #include "base/vec.h"
+#include "numeric/functions.def"
 
 typedef uint32_t Expr; /* 0: none */
 
@@ -30,6 +31,10 @@ typedef enum {
   EX_COUNT
 } ExprOp;
 #undef X
+
+/* Labels of a switch: all functions of functions.def. */
+#define EX_CASE(OP, ...) case EX_##OP:
+#define EX_FUNCTION_CASES FUNCTIONS(EX_CASE)
 
 typedef enum {
   SYM_TIME,

@@ -61,18 +61,8 @@ static long double step_value(const EvalTape *t, const TapeStep *o, const long d
     case EX_DEF: return x;
     case EX_SUM: case EX_PROD: return pairs_value(t, o);
     case EX_POW: return powl(x, y);
-    case EX_SIN: return sinl(x);
-    case EX_COS: return cosl(x);
-    case EX_TAN: return tanl(x);
-    case EX_ASIN: return asinl(x);
-    case EX_ACOS: return acosl(x);
-    case EX_ATAN: return atanl(x);
-    case EX_SINH: return sinhl(x);
-    case EX_COSH: return coshl(x);
-    case EX_TANH: return tanhl(x);
-    case EX_EXP: return expl(x);
-    case EX_LOG: return logl(x);
-    case EX_CBRT: return cbrtl(x);
+#define VALUE(OP, name, ...) case EX_##OP: return name##l(x);
+    FUNCTIONS(VALUE)
     case EX_ABS: return fabsl(x);
     case EX_SIGN: return (long double)((x > 0) - (x < 0));
     case EX_FLOOR: return floorl(x);

@@ -86,3 +86,7 @@ Expr expr_with_mapped_args(ExprGraph *g, const ExprMap *m, Expr e);
 
 /* Sets m to 1 for those nodes of l (a result of expr_topo) that contain a symbol for which want() is true. */
 void expr_mark_containing(ExprGraph *g, ExprList l, int (*want)(const Symbol *s, const void *data), const void *data, ExprMap *m);
+
+/* f(-x) = -f(x), f(x), or neither. */
+typedef enum { NEITHER, ODD, EVEN } Symmetry;
+Symmetry expr_symmetry(ExprOp op);

@@ -2,6 +2,7 @@
  * unit of a base angle became finer. */
 #include "sym/normal_form.h"
 
+#include "sym/expr_impl.h"
 #include "sym/normal_form_impl.h"
 
 Normal *normal_new(ExprGraph *g, Arena *a, NormalLimits limits) {
@@ -203,6 +204,12 @@ static Frac opaque_fn(Normal *n, Expr e) {
   return opaque(n, expr_op(n->g, e), arg, nargs, e);
 }
 
+/* f(u), opaque but for the sign of u where f is odd or even. */
+static Frac opaque_call(Normal *n, Expr e, Frac u) {
+  Symmetry symmetry = expr_symmetry(expr_op(n->g, e));
+  return symmetry == NEITHER ? opaque_fn(n, e) : signed_opaque(n, e, u, symmetry == ODD);
+}
+
 static Frac convert(Normal *n, Expr e) {
   ExprGraph *g = n->g;
   ExprOp op = expr_op(g, e);
@@ -216,16 +223,19 @@ static Frac convert(Normal *n, Expr e) {
     case EX_SUM: return sum_frac(n, e);
     case EX_PROD: return prod_frac(n, e);
     case EX_POW: return normal_power(n, u, value_of(n, expr_arg(g, e, 1)));
-    case EX_SIN: case EX_COS: case EX_TAN: return circular_fn(n, e, u);
-    case EX_SINH: case EX_COSH: case EX_TANH: return n->keep_range ? signed_opaque(n, e, u, op != EX_COSH) : hyperbolic(n, op, u);
-    case EX_EXP: return normal_exp(n, u);
-    case EX_CBRT: return normal_pow_num(n, u, num_ratio(1, 3));
+#define CIRCULAR circular_fn(n, e, u)
+#define HYPERBOLIC n->keep_range ? opaque_call(n, e, u) : hyperbolic(n, op, u)
+#define EXPONENTIAL normal_exp(n, u)
+#define LOGARITHM log_frac(n, e, u)
+#define CUBE_ROOT normal_pow_num(n, u, num_ratio(1, 3))
+#define OPAQUE opaque_call(n, e, u)
+#define PROOF(OP, name, latex, symmetry, at_0, sign, proof, ...) case EX_##OP: return proof;
+    FUNCTIONS(PROOF)
     case EX_ABS: return normal_hypot(n, u, frac_poly(poly_zero()), e);
     case EX_HYPOT: return normal_hypot(n, u, value_of(n, expr_arg(g, e, 1)), e);
-    case EX_ASIN: case EX_ATAN: case EX_SIGN: return signed_opaque(n, e, u, 1);
-    case EX_LOG: return log_frac(n, e, u);
+    case EX_SIGN: return OPAQUE;
     case EX_MIN: case EX_MAX: return n->proof ? min_max_frac(n, op, u, value_of(n, expr_arg(g, e, 1))) : opaque_fn(n, e);
-    case EX_ACOS: case EX_FLOOR: case EX_ATAN2: case EX_LT: case EX_LE: case EX_EQ:
+    case EX_FLOOR: case EX_ATAN2: case EX_LT: case EX_LE: case EX_EQ:
     case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: return opaque_fn(n, e);
     case EX_COUNT: break;
   }

@@ -252,20 +252,11 @@ static void expand(Printer *p, Expr e) {
       node(p, expr_arg(g, e, 1), latex(p) ? PREC_OR : PREC_ATOM);
       if (latex(p)) text(p, "}");
       return;
-    case EX_SIN: call(p, e, "sin", "\\sin"); return;
-    case EX_COS: call(p, e, "cos", "\\cos"); return;
-    case EX_TAN: call(p, e, "tan", "\\tan"); return;
-    case EX_ASIN: call(p, e, "asin", "\\arcsin"); return;
-    case EX_ACOS: call(p, e, "acos", "\\arccos"); return;
-    case EX_ATAN: call(p, e, "atan", "\\arctan"); return;
-    case EX_SINH: call(p, e, "sinh", "\\sinh"); return;
-    case EX_COSH: call(p, e, "cosh", "\\cosh"); return;
-    case EX_TANH: call(p, e, "tanh", "\\tanh"); return;
-    case EX_EXP: call(p, e, "exp", "\\exp"); return;
-    case EX_LOG: call(p, e, "log", "\\ln"); return;
+#define CALL(OP, name, latex, ...) case EX_##OP: call(p, e, #name, latex); return;
+    FUNCTIONS(CALL)
     case EX_MIN: call(p, e, "min", "\\min"); return;
     case EX_MAX: call(p, e, "max", "\\max"); return;
-    case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_ATAN2: case EX_HYPOT: case EX_SELECT: {
+    case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_ATAN2: case EX_HYPOT: case EX_SELECT: {
       const char *name = expr_op_text(op);
       const char *upright = arena_printf(g->arena, "\\operatorname{%s}", name);
       call(p, e, name, upright);

@@ -114,13 +114,9 @@ static Real prod_bound(const Bounds *b, Expr e, Real value) {
 /* |f'(x)|, or a bound of it, for functions of one argument. */
 static Real slope(ExprOp op, Real x, Real f) {
   switch (op) {
-    case EX_SIN: case EX_COS: case EX_ATAN: case EX_ABS: case EX_TANH: case EX_DEF: return 1;
-    case EX_TAN: return 1 + f * f;
-    case EX_ASIN: case EX_ACOS: return 1 / sqrtl(1 - x * x);
-    case EX_SINH: case EX_COSH: return coshl(x);
-    case EX_EXP: return fabsl(f);
-    case EX_LOG: return 1 / fabsl(x);
-    case EX_CBRT: return 1 / (3 * f * f);
+#define SLOPE(OP, name, latex, symmetry, at_0, sign, proof, slope, ...) case EX_##OP: return slope;
+    FUNCTIONS(SLOPE)
+    case EX_ABS: case EX_DEF: return 1;
     case EX_SIGN: case EX_FLOOR: case EX_NOT: case EX_NUM: case EX_SYM: case EX_SUM: case EX_PROD: case EX_POW:
     case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
     case EX_AND: case EX_OR: case EX_SELECT: case EX_COUNT: break;
@@ -147,9 +143,8 @@ static Real binary_bound(const Bounds *b, Expr e, Real f) {
     case EX_LT: case EX_LE: case EX_EQ: return compare_bound(b, e);
     case EX_AND: case EX_OR: return dx + dy;
     case EX_SELECT: return dx > 0 ? INFINITY : x != 0 ? dy : bound_of(b, expr_arg(b->g, e, 2));
-    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: case EX_SIN: case EX_COS:
-    case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN: case EX_SINH: case EX_COSH: case EX_TANH:
-    case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT: case EX_COUNT: break;
+    case EX_NUM: case EX_SYM: case EX_DEF: case EX_SUM: case EX_PROD: EX_FUNCTION_CASES
+    case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT: case EX_COUNT: break;
   }
   return INFINITY;
 }
@@ -175,9 +170,8 @@ static Real node_bound(const Bounds *b, Expr e, Real value, const Real *errors) 
     case EX_PROD: return prod_bound(b, e, value);
     case EX_POW: case EX_ATAN2: case EX_HYPOT: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE:
     case EX_EQ: case EX_AND: case EX_OR: case EX_SELECT: return binary_bound(b, e, value);
-    case EX_DEF: case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN:
-    case EX_SINH: case EX_COSH: case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ABS:
-    case EX_SIGN: case EX_FLOOR: case EX_NOT: return unary_bound(b, e, value);
+    EX_FUNCTION_CASES
+    case EX_DEF: case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_NOT: return unary_bound(b, e, value);
     case EX_COUNT: break;
   }
   return INFINITY;

@@ -271,9 +271,8 @@ static uint32_t count_ops(const ExprGraph *g, ExprList l) {
       case EX_NUM: case EX_SYM: case EX_DEF: case EX_COUNT: break;
       case EX_SUM: ops += sum_ops(g, e); break;
       case EX_PROD: ops += prod_ops(g, e); break;
-      case EX_POW: case EX_SIN: case EX_COS: case EX_TAN: case EX_ASIN: case EX_ACOS: case EX_ATAN:
-      case EX_SINH: case EX_COSH: case EX_TANH: case EX_EXP: case EX_LOG: case EX_CBRT: case EX_ATAN2:
-      case EX_HYPOT: ops += 20; break;
+      EX_FUNCTION_CASES
+      case EX_POW: case EX_ATAN2: case EX_HYPOT: ops += 20; break;
       case EX_ABS: case EX_SIGN: case EX_FLOOR: case EX_MIN: case EX_MAX: case EX_LT: case EX_LE: case EX_EQ:
       case EX_NOT: case EX_AND: case EX_OR: case EX_SELECT: ops += 1; break;
     }

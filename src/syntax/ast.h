@@ -153,6 +153,7 @@ typedef struct {
   Diags *diags;
   VEC(AstExpr) exprs;        /* exprs.at[0] is unused */
   AstStmt *first, *last;     /* the file's statements, includes already spliced in */
+  AstStmt *composed;         /* functions that functions.def defines by a text; NULL: not yet parsed */
   struct FileIndex *index;   /* statements by name (model/file_index.c); NULL: not yet made */
 } Ast;
 

@@ -165,10 +165,9 @@ AstList ast_list_add(Ast *ast, AstList list, AstId item) {
   return (AstList){list.first, item};
 }
 
-/* 10..20 of max(x, 10..20): a range without a name. */
+/* 10..20 of max(x, 10..20): a range without a name; 0: an end that is left out. */
 AstId ast_window(Ast *ast, Span span, AstId lo, AstId hi) {
-  Span own = span_join(ast_expr(ast, lo)->span, (Span){span.end, span.end});
-  return append(ast, (AstExpr){.kind = AST_BIND, .span = own, .op_span = own, .name = intern(ast->names, ""), .a = lo, .b = hi});
+  return append(ast, (AstExpr){.kind = AST_BIND, .span = span, .op_span = span, .name = intern(ast->names, ""), .a = lo, .b = hi});
 }
 
 AstList ast_list_before(Ast *ast, AstId item, AstList list) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/words.h"
+#include "numeric/functions.def"
 #include "syntax/parse.h"
 
 /* ---- words ---- */
@@ -60,8 +61,11 @@ const char *parse_advice(const char *word) { return advice_for_word(word, W_ANY)
 
 /* ---- tokens ---- */
 
-/* Functions that people write without parentheses on paper. */
-static int is_function(const char *name) { return name && has_word("sin cos tan exp log ln sqrt asin acos atan sinh cosh tanh abs", name); }
+/* Functions that people write without parentheses. */
+static int is_function(const char *name) {
+#define WORD(OP, name, ...) #name " "
+  return name && has_word(FUNCTIONS(WORD) "ln sqrt abs max min mean rms hit count", name);
+}
 
 /* Whether an `=` follows the current token (after primes): then it begins another member of a list. */
 static int sets_next(const Parse *cx) {

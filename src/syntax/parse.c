@@ -3,6 +3,7 @@
  * In: a source. Out: its statements in the Ast, messages in ast->diags.
  * Must hold: the parser's stack, the only memory outside the arena, is freed on every exit. */
 #include "base/visible.h"
+#include "numeric/functions.def"
 #include "syntax/parse.h"
 #include "syntax/parse_state.h"
 
@@ -173,6 +174,16 @@ int parse(Ast *ast, const Source *source) {
   ast->first = whole.first;
   ast->last = whole.last;
   return ast->diags->errors == errors;
+}
+
+const AstStmt *parse_composed(Ast *ast) {
+#define FUNCTION(name, arguments, text) "function " #name "(" arguments ") = " text "\n"
+  static const char text[] = COMPOSED(FUNCTION);
+  if (ast->composed) return ast->composed;
+  const Source *source = source_add(ast->sources, "functions of the language", text, sizeof text - 1);
+  Parse cx;
+  if (source) run(&cx, ast, source, TOK_BEGIN_FILE);
+  return source ? ast->composed = cx.stmts.first : NULL;
 }
 
 AstId parse_expression(Ast *ast, const Source *source) {

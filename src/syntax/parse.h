@@ -10,6 +10,9 @@ int parse(Ast *ast, const Source *source);
 /* Parses one expression, such as a value on the command line; 0 after an error. */
 AstId parse_expression(Ast *ast, const Source *source);
 
+/* `function f(x) = ...` of each function that functions.def defines by its text. */
+const AstStmt *parse_composed(Ast *ast);
+
 /* Advice for a word that begins statements in other languages or on paper ("damping"), but not here; or NULL. */
 const char *parse_advice(const char *word);
 

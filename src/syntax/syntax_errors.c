@@ -59,7 +59,7 @@ static void add_groups(Words *w, const TokKind *set, int n) {
 static int in_a_group(const TokKind *set, int n, TokKind k) {
   if (k == TOK_IDENT || k == TOK_NUMBER || (k >= TOK_MODEL && k <= TOK_STOP)) return 1;
   int operand = token_is_in(set, n, TOK_NUMBER) && token_is_in(set, n, TOK_IDENT);
-  if (operand && (token_flags(k) & T_START)) return 1;
+  if (operand && ((token_flags(k) & T_START) || k == TOK_RANGE)) return 1; /* `max(x, ..20)`: not worth listing */
   int after_operand = token_is_in(set, n, TOK_TIMES) || token_is_in(set, n, TOK_PRIME);
   if (after_operand && (k == TOK_PRIME || k == TOK_INDEX || k == TOK_DOT || k == TOK_UNIT || k == TOK_LPAREN)) return 1;
   return token_is_in(set, n, TOK_TIMES) && is_operator(set, n, k);

@@ -3,7 +3,7 @@
  *
  * A line of a .facts file is a comment (#), an abbreviation `let NAME = EXPRESSION`, or a fact in four columns
  *   SCENE [name=value | --tol X | --until T | --method NAME]... | LEFT = RIGHT | TOLERANCE [rel] | why it holds
- * The first column is what one types after `lagc run MODEL`. Both sides are measures (runtime/analysis/measure.h) in SI units, angles in
+ * The first column is what one types after `lagc run MODEL`. Both sides are measures (tests/measure_words.h) in SI units, angles in
  * radians: th(2) at a time, also after the end of the run; max(x), period(x), hit(NAME, 3), ...; pi deg au day; and the functions of the table
  * `functions` below. The fact holds when |LEFT - RIGHT| <= TOLERANCE (rel: times |RIGHT|). Successive facts with the same first column share one run.
  * GSL evaluates the special functions; without it (no -DFACTS_GSL) the facts that need them are skipped. */
@@ -15,6 +15,8 @@
 #include <string.h>
 
 #include "analysis/measure.h"
+
+#include "../measure_words.h"
 #ifdef FACTS_GSL
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_sf_elljac.h>
@@ -122,16 +124,22 @@ static int set_up(lag_sim *sim, char *words, double *until, char *why) {
   return 0;
 }
 
-static const char *text_of_let(void *context, const char *name) {
-  (void)context;
+static const char *text_of_let(const char *name) {
   for (int i = 0; i < nlets; i++)
     if (strcmp(lets[i].name, name) == 0) return lets[i].text;
   return NULL;
 }
 
 static Measures *compile(const lag_scene *scene, int n, const char *const *text, char *why) {
-  static const MeasureDialect words = {.si = 1, .past_end = 1, .nfunctions = sizeof functions/sizeof *functions, .functions = functions, .text = text_of_let};
-  return lag_measures_new_dialect(scene, n, text, &words, why, LINE);
+  static const MeasureDialect extended = {.past_end = 1, .nfunctions = sizeof functions/sizeof *functions, .functions = functions};
+  enum { WORDS = 3*LINE };
+  static char words[2*MAX_FACTS][WORDS];
+  static const char *all[2*MAX_FACTS];
+  for (int i = 0; i < n; i++) {
+    if (!measure_words(text[i], text_of_let, words[i], WORDS)) return fail(why, 0, "`%s` is no measure", text[i]), NULL;
+    all[i] = words[i];
+  }
+  return lag_measures_new_dialect(scene, n, all, &extended, why, LINE);
 }
 
 /* ---- Facts ------------------------------------------------------------------------------------ */

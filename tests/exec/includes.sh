@@ -6,21 +6,21 @@
 # FOLDER: the folders whose headers it may include. `mech/eqns.h` etc.: these files only.
 allowed='
 src/base      base/ numeric/
-src/sym       sym/ base/
-src/syntax    syntax/ base/
-src/model     model/ syntax/ sym/ base/
+src/sym       sym/ base/ numeric/functions.def
+src/syntax    syntax/ base/ numeric/functions.def
+src/model     model/ syntax/ sym/ base/ numeric/functions.def
 src/mech      mech/ model/ sym/ base/ numeric/
 src/symmetry  symmetry/ mech/ model/ sym/ base/ numeric/
 src/claims    claims/ symmetry/ mech/ model/ sym/ base/ numeric/
 src/report    report/ symmetry/ mech/ model/ sym/ base/
-src/ir        ir/ base/
+src/ir        ir/ base/ numeric/functions.def
 src/series    series/ ir/ base/
 src/lower     lower/ series/ ir/ symmetry/charges.h mech/ model/ sym/ base/
-src/self_check      self_check/ lower/lower.h ir/ mech/ model/ syntax/ base/
-src/emit      emit/ ir/ base/
+src/self_check      self_check/ lower/lower.h ir/ mech/ model/ syntax/ base/ numeric/functions.def
+src/emit      emit/ ir/ base/ numeric/functions.def
 src/fmu       fmu/ emit/ ir/ base/
 src/toolchain toolchain/ base/
-src/commands  commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ mech/ model/ sym/ syntax/ base/
+src/commands  app/options.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ mech/ model/ sym/ syntax/ base/
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The recipe for a function in .github/CONTRIBUTING.md, applied to asinh in a copy of the sources: it touches the files that the page lists, no
-# others; a model that uses asinh has its closed form, by two methods.
+# The recipes for functions in .github/CONTRIBUTING.md, applied to csch and asinh in a copy of the sources: they touch the files that the page lists,
+# no others; a model that uses asinh has its closed form, by two methods.
 . tests/tap.sh
 
 copy=$TMP/copy
@@ -18,22 +18,21 @@ before() {
   cp "$TMP/edited" "$copy/$1"
 }
 
-# asinh follows atan wherever the two are alike; the rules that differ stand in lines of their own.
-alike='s/case EX_ATAN:/case EX_ATAN: case EX_ASINH:/; s/op == EX_ATAN /op == EX_ATAN || op == EX_ASINH /'
-behind src/sym/ops.def 'X(ATAN, 1' 'X(ASINH, 1, "asinh")'
-behind src/sym/expr_eval.c 'case EX_ATAN: return' '    case EX_ASINH: return asinhl(x);'
-edit src/sym/diff.c "/case EX_ATAN: {/!$alike"
-before src/sym/diff.c '    case EX_SINH: return' <<'END'
-    case EX_ASINH: {
-      Expr xx = square(g, x), d = expr_add(g, g->one, xx);
-      return expr_pow_num(g, d, num_ratio(-1, 2));
-    }
-END
-behind src/sym/print.c 'case EX_ATAN: call' '    case EX_ASINH: call(p, e, "asinh", "\\operatorname{arsinh}"); return;'
-for f in canonicalize expr normal_form rounding_bounds traverse; do edit "src/sym/$f.c" "$alike"; done
-edit src/model/resolve_call.c 's/{"atan", NULL, EX_ATAN, 0},/{"atan", NULL, EX_ATAN, 0}, {"asinh", NULL, EX_ASINH, 0},/'
-edit src/lower/lower.c "$alike"
-edit src/ir/prog_eval.c 's/{"atan", atanl},/{"atan", atanl}, {"asinh", asinhl},/'
+touched() { diff -rq . "$copy" 2>/dev/null | sed -n 's|^Files \./\(.*\) and .* differ$|\1|p' | LC_ALL=C sort; }
+# listed HEADING: the files of the numbered list under it
+listed() { sed -n "/^## $1/,/^## /p" .github/CONTRIBUTING.md | sed -n 's|^[0-9]*\. \[.*\](\.\./\([^)]*\)): .*|\1|p' | LC_ALL=C sort; }
+
+# --- csch, by its text
+edit runtime/numeric/functions.def 's|^  F(sech, "x", "1/cosh(x)")|& \\\
+  F(csch, "x", "1/sinh(x)")|'
+edit grammar/LANGUAGE.md 's/^| `sech(x)` .*/&\
+| `csch(x)` | 1\/sinh(x) |/'
+edit tests/exec/self_check/functions.lag 's/sech(x - 2\*y)/& + csch(2 + x^2)/'
+is "a function by its text touches the three files that the page lists" "$(listed 'A function of others')" "$(touched)"
+
+# --- asinh, of the C library
+behind runtime/numeric/functions.def 'F(ATAN, atan' \
+  '  F(ASINH, asinh, "\\operatorname{arsinh}", ODD, ZERO, OF_ARGUMENT, OPAQUE, 1, POWER(ONE_PLUS(SQUARE(x)), -1, 2)) \'
 before src/series/series_recurrences.c '/* u u + v v. */' <<'END'
 /* asinh: d = sqrt(1 + u u). */
 static Val area_sine(SeriesBuilder *m, Slot at_zero, Val u) {
@@ -56,23 +55,15 @@ END
 behind src/self_check/jet.c 'strcmp(name, "atan") == 0' '  else if (strcmp(name, "asinh") == 0) area_sine(d, x);'
 behind src/self_check/tape_partial.c 'strcmp(name, "atan") == 0' \
   '  if (strcmp(name, "asinh") == 0) return quotient(t, da, tape_power(t, tape_op(t, TAPE_ADD, one, square(t, a), 0), num_ratio(1, 2)));'
-edit src/self_check/direct_eval_node.c 's/"atan", "sinh"/"atan", "asinh", "sinh"/'
-edit src/emit/cnames.c 's/ "asinh",//; s/"atan2", "sinh"/"atan2", "asinh", "sinh"/'
 edit runtime/include/lag_math.h 's/LAG_LANES_1(atan)/LAG_LANES_1(atan) LAG_LANES_1(asinh)/'
 edit grammar/LANGUAGE.md 's/^| `sinh(x)`, `cosh(x)`, `tanh(x)` | hyperbolic functions |/&\
 | `asinh(x)` | the number whose sinh is x |/'
-edit grammar/lag.tmLanguage.json 's/|atan2|sinh|/|atan2|asinh|sinh|/'
-edit tests/fuzz/lag.dict 's/^"tanh("$/&\
-"asinh("/'
 edit tests/exec/self_check/functions.lag 's/atan(x\*y)/& + asinh(x - 2*y)/'
 edit tests/exec/lanes/branches.lag 's/ + atan(r)/& + asinh(x*y)/'
 edit tests/unit/test_jets.c 's/{"atan", catanl, 0, 0.6L, 1.1L},/& {"asinh", casinhl, 0, 0.6L, 0.9L},/'
 edit tests/unit/test_ir.c 's/"tan(x) + asin(x\/2)/"tan(x) + asinh(x) + asin(x\/2)/'
 
-section() { sed -n "/^## $1/,/^## /p" .github/CONTRIBUTING.md; }
-section 'A function' | sed -n 's|^[0-9]*\. .*](\.\./\([^)]*\)).*|\1|p' | LC_ALL=C sort >"$TMP/listed"
-diff -rq . "$copy" 2>/dev/null | sed -n 's|^Files \./\(.*\) and .* differ$|\1|p' | LC_ALL=C sort >"$TMP/touched"
-check "the recipe touches the files that the page lists" diff "$TMP/listed" "$TMP/touched"
+is "one of the C library touches the files that the page lists" "$(listed 'A function of the C')" "$(touched)"
 
 check "it builds" "${MAKE:-make}" -s -C "$copy" BUILD="$copy/build" PRECISIONS= WERROR=-Werror all
 lagc=$copy/build/lagc

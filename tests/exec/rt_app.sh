@@ -66,18 +66,22 @@ check "an event without action changes nothing" sh -c "grep apex ev.csv | awk -F
 check "json counts, with times" sh -c './sim drop --json | grep -qE "\"events\": \{\"ground\": \{\"count\": 8, \"first\": 0.4515236409857"'
 check "json: never" sh -c './sim drop --until 0.1 --json | grep -qF "\"ground\": {\"count\": 0, \"first\": null, \"last\": null}"'
 # --- measures: the same closed forms; y is 0.81 m at the top of the first flight
-check "measures" status 0 drop --measure 'hit(ground, 2)' --measure 'count(ground)' --measure 'top=y((hit(ground) + hit(ground,2))/2)' --measure 'hit(ground, 9)'
+check "measures" status 0 drop --measure 'hit(ground, 2);2 hit(ground) [1 0 s]' --measure 'count(ground)' --measure 'top=y 1 hit(ground) 2 hit(ground) + 2 / at() [1 0 m]' --measure '9th;9 hit(ground)'
 check "the time of an event" grep -Eq '^  hit\(ground, 2\)  *1\.2642661947[0-9]* s$' out
 check "a number of events" grep -Eq '^  count\(ground\)  *8$' out
 check "a value at a time that is a measure, by its name" grep -Eq '^  top  *0\.8(1|1000000000[0-9]*|0999999999[0-9]*) m$' out
-check "a measure without a value" grep -Eq '^  hit\(ground, 9\)  *none: ground happens 8 times$' out
-check "measures in json" sh -c './sim drop --measure "n=count(ground)" --measure "hit(ground, 9)" --json | grep -qF "\"measures\": {\"n\": 8, \"hit(ground, 9)\": null}"'
-check "rows and pictures with measures are those without" sh -c './sim drop -o plain.csv --svg plain.svg --events plain_ev.csv --quiet && ./sim drop -o m.csv --svg m.svg --events m_ev.csv --measure "max(y)" --measure "count(ground)" | grep -Eq "count\(ground\) *8" &&
+check "a measure without a value" grep -Eq '^  9th  *none: ground happens 8 times$' out
+check "measures in json" sh -c './sim drop --measure "n=count(ground)" --measure "9th=9 hit(ground)" --json | grep -qF "\"measures\": {\"n\": 8, \"9th\": null}"'
+check "rows and pictures with measures are those without" sh -c './sim drop -o plain.csv --svg plain.svg --events plain_ev.csv --quiet && ./sim drop -o m.csv --svg m.svg --events m_ev.csv --measure "y max()" --measure "count(ground)" | grep -Eq "count\(ground\) *8" &&
   cmp plain.csv m.csv && cmp plain.svg m.svg && cmp plain_ev.csv m_ev.csv'
-check "a wrong measure, before anything is written" says 2 "--measure hit(grund): character 5: no event is called grund; did you mean ground?" drop --measure 'hit(grund)' -o no.csv
+check "a wrong measure, before anything is written" says 2 "--measure 1 hit(grund): no event is called grund; did you mean ground?" drop --measure '1 hit(grund)' -o no.csv
 check "leaves nothing" sh -c '! [ -e no.csv ]'
-check "two measures of one name" says 2 "another measure is called a" drop --measure a=end --measure 'a=max(y)'
-check "a measure without a name" says 2 "a name is missing before" drop --measure '=end'
+check "two measures of one name" says 2 "another measure is called a" drop --measure 'a=end()' --measure 'a=y max()'
+check "a measure without a name" says 2 "a name is missing before" drop --measure '=end()'
+check "a measure that is not compiled" says 2 "lagc compiles them: \`measure top = max(x)\` in the scene" drop --measure 'max(y)'
+for m in 'y max' 'yy' '+' 'y +' 'y y' 'max()' 'at()' 'y at()' 'y max(1)' 'y 1..2' '"y' '[1 0 s]' '' ';' 'hit(ground)' '1x' 'y )' 'y sin(' "$(awk 'BEGIN { while (i++ < 600) printf "1 " }')" "$(awk 'BEGIN { while (i++ < 300) printf "y" }')"; do
+  check "words that are no measure: $(printf %.20s "$m")" status 2 drop "--measure=$m"
+done
 check "measures of an analysis" says 2 "--measure has no meaning for --cost" drop --cost --measure end
 check "a log needs events" says 2 "has no events" swing --events none.csv
 check "a log on standard output" sh -c './sim drop --events - 2>err | cmp - ev.csv && grep -q "reached t = 5" err'

@@ -74,6 +74,47 @@ check "and change there" near after "$(awk 'BEGIN { printf "%.15g", 80*sqrt(9.81
 check "quiet has none" sh -c "'$LAGC' run hop.lag drop --quiet >out 2>&1 && ! [ -s out ]"
 check "rows and measures together" sh -c "'$LAGC' run hop.lag low --until 1.5 -o rows.csv --svg p.svg | grep -q '^  high *0.830116113858'"
 
+# --- functions of the language and of the model, units
+cat >functions.lag <<'LAG'
+model functions "x = 2 cos t and y = sin t, of the language's functions"
+coord x [cm], y [m], T [degC]
+param k = 1 [kg/s^2] > 0
+function twice(a) = 2*a
+function apart(a, b) = twice(a) - b
+kinetic = 1 [kg]/2*(x'^2 + y'^2) + 1 [kg*m^2/K^2]/2*T'^2
+potential = k/2*(x^2 + y^2)
+scene s { start x = 2 [m], y' = 1 [m/s], T = 20; span 3; tolerance 1e-12; measure low = min(x, 1..) - min(x, ..1) }
+LAG
+"$LAGC" run functions.lag --measure 'a=sinh(end/1[s])' --measure 'b=sech(x(1)/1[m])' --measure 'c=apart(max(y), y(1))' --measure 'd=tanh(y(1)/1[m]) + cbrt(8) + floor(2.5)' \
+  --measure 'e=max(x, 150)' --measure 'f=hypot(max(x), max(y))' --measure 'g=max(y*y)^(1/2)' --measure 'h=max(y)*k' --measure 'i=asin(max(y)/1[m])' --measure 'j=max(x)/min(x)' --measure 'k=T' \
+  --measure 'l=drift(T)' --measure 'm=sign(min(x))*abs(min(x))' --measure 'n=pow(max(y), 2)' --measure 'o=max(twice(x) + 1)' --measure 'p=energy(1)/lagrangian(0)' --measure 't(2)' >out 2>err
+sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
+check "a hyperbolic sine" near a 10.017874927409903 '' 1e-9      # sinh 3
+check "a function that a text defines" near b 0.6086703740847927 '' 1e-9 # 1/cosh(2 cos 1)
+check "functions of the model, in one another" near c 1.1585290151921035 m 1e-9 # 2 - sin 1
+check "functions of the C library" near d 4.686587406998579 '' 1e-9     # tanh(sin 1) + 2 + 2
+check "a plain number beside a quantity in a function" near e 150 cm 1e-9
+check "quantities of two units" near f 2.2360679774997896 m 1e-9 # sqrt(4 + 1)
+check "a unit to a power" near g 1 m 1e-9
+check "a unit that is no declared one" near h 1 N 1e-9
+check "an angle" near i 1.5707963267948966 rad 1e-4             # asin is steep there: the error's root
+check "a ratio" near j -1.0101 '' 2e-2                           # min x = 2 cos 3 = -1.98
+check "a temperature" near k 20 degC 1e-9
+check "a difference of temperatures" near l 0 degC 1e-9
+check "a sign" near m -197.998499 cm 1e-5                        # 2 cos 3
+check "a power" near n 1 m^2 1e-9
+check "a function of a quantity, along the run" near o 5 m 1e-9
+check "the energy at a time" near p -1.6666666666666667 '' 1e-9     # E = (4 + 1)/2 J, L(0) = (1 - 4)/2 J
+check "the time at a time" near 't(2)' 2 s 0
+is "no warning" "" "$(cat err)"
+check "windows without an end, in a scene" near low -306.05896 cm 1e-4 # 2 (cos 3 - cos 1) m
+"$LAGC" run functions.lag --measure 'max(x) + max(k)' --measure 'y(1 [m])' --measure 'exp(max(y))' --measure 'i=end' >out 2>err
+check "a constant has no largest value" grep -q 'does not change along the run' err
+"$LAGC" run functions.lag --measure 'u=max(x) + k' --measure 'v=y(1 [m])' --measure 'w=exp(max(y))' >out 2>err
+sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
+is "units that do not match draw warnings" 3 "$(grep -c '^--measure.*warning:' err)"
+check "and the numbers are taken in SI" near u 3 '' 1e-9
+
 # --- the largest Lyapunov exponent: that of `lagc lyapunov`; x'' = w^2 x: w, up to the turning of the vector until t = 2 s, exp(-2 w 2)/(18 s) = 2e-5
 printf 'model ridge\ncoord x [m]\nparam w = 2 [rad/s]\nlagrangian = (x'"'"'^2 + w^2*x^2)/2*1 [kg]\nevent far: x - 1 [m] rising { stop }\nscene run { start x = 1e-30; span 20; tolerance 1e-11; measure rate = lyapunov; measure doubling = log(2)/lyapunov }\n' >ridge.lag
 "$LAGC" run ridge.lag >out 2>err
@@ -88,23 +129,36 @@ is "the run is the one without it" "$(state)" "$(state --measure lyapunov)"
 "$LAGC" run ridge.lag x=1e-4 >out 2>err
 check "none of a run that an event stops" grep -q '^  rate *none: an event stops the run at t = 4.951' out # log(2/x)/w
 
-# --- refused, exit status 2, nothing written
-refused() {
-  want=$1
-  shift
+# --- refused, nothing written: with exit status 1 and a caret by the compiler, with 2 by the simulator
+stopped_with() {
+  status=$1 want=$2
+  shift 2
   "$LAGC" run hop.lag "$@" -o no.csv >out 2>err
-  [ $? = 2 ] && grep -qF -e "$want" err && ! [ -e no.csv ]
+  [ $? = "$status" ] && grep -qF -e "$want" err && ! [ -e no.csv ]
 }
-check "an unknown name" refused 'no output, coordinate, parameter or charge is called mth; did you mean th?' --measure 'max(mth)'
-check "an unknown event" refused 'character 5: no event is called flor; did you mean floor?' --measure 'hit(flor)'
-check "a time before the first" refused 'hit(floor, n): n is 1 for the first time' --measure 'hit(floor, 0)'
-check "half a time" refused 'hit(floor, n): n is 1 for the first time' --measure 'hit(floor, 1.5)'
-check "no expression" refused 'expected a name at the end' --measure 'a='
+refused() { stopped_with 2 "$@"; }
+wrong() { stopped_with 1 "$@" && grep -q '^ *| *^' err; }
+check "an unknown name" wrong '--measure:1:5: error: unknown name `thh`' --measure 'max(thh)'
+check "has the nearest" grep -q 'did you mean `th`?' err
+check "an unknown event" wrong '--measure:1:5: error: no event is called `flor`' --measure 'hit(flor)'
+check "has the nearest, too" grep -q 'did you mean `floor`?' err
+check "a time before the first" wrong 'no event happens for the `0`th time' --measure 'hit(floor, 0)'
+check "half a time" wrong 'no event happens for the `1.5`th time' --measure 'hit(floor, 1.5)'
+check "a time that is a measure" wrong 'no event happens for the `max(x)`th time' --measure 'hit(floor, max(x))'
+check "no expression" wrong 'expected an expression' --measure 'a='
+check "a name that is missing" refused 'a name is missing before' --measure '=end'
+check "two of one name" refused 'another measure is called a' --measure a=end --measure 'a=max(y)'
+check "a function of a run that there is not" wrong 'no function, output or coordinate is called `perod`' --measure 'perod(x)'
+check "has the nearest as well" grep -q 'did you mean `period`?' err
+check "nothing near" wrong 'of a run there are max, min, mean' --measure 'final(x)'
+check "a constant" wrong 'does not change along the run' --measure 'max(m*g)'
+check "a function of two" wrong 'a measure `atan2` is written `atan2(y, x)`' --measure 'atan2(max(y))'
+check "a vector" wrong 'a measure is made of numbers' --measure 'max((x, y))'
 check "an exponent of a method without tangent" says 2 'measure lyapunov: method gsl-rk8pd has no derivative of its steps' "$LAGC" run "$OLDPWD/models/lorenz.lag" --measure lyapunov --method gsl-rk8pd
 saved() { "$LAGC" run "$OLDPWD/models/lorenz.lag" --until 1 --save-state state --quiet && says 2 "a saved state holds no tangent" "$LAGC" run "$OLDPWD/models/lorenz.lag" --resume state --until 2 --measure lyapunov; }
 check "an exponent of a resumed run" saved
 check "an exponent backwards" refused 'a mean over a long time, forwards' --measure lyapunov --until=-3
-check "an extreme of an extreme" refused 'a value of the whole run stands outside' --measure 'max(max(y))'
+check "an extreme of an extreme" wrong 'a value of the whole run stands outside' --measure 'max(max(y))'
 
 # ---- windows of time: of cos(t), whose extremes and integrals are known ----
 cat >cosine.lag <<'LAG'
@@ -127,8 +181,9 @@ check "a window from the begin" near early 1 m 1e-11
 check "a window to the end" near late -1 m 1e-11       # at 5 pi = 15.7
 check "a period" near T 6.283185307179586 s 1e-9
 check "a window behind the end" grep -q 'never .*none: the run ends at t = 20 s, before the window of time begins' out
-check "a window that is empty" refused 'this window of time is empty' --measure 'max(y, 3..2)'
-check "no window" refused 'a window of time is written max(x, 10..20), in s' --measure 'max(y, 3)'
+check "a window that is empty" wrong 'this window of time is empty' --measure 'max(y, 3..2)'
+check "no window" wrong 'a measure `mean` is written `mean(x)` or `mean(x, 10..20)`' --measure 'mean(y, 3)'
+check "no number" wrong 'write numbers: `max(x, 10..20)`' --measure 'max(y, 1..2 [m])'
 "$LAGC" run cosine.lag --skip 3 --until 5.25 --measure 'late=max(x)' -o rows.csv >out 2>err
 sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
 check "--skip: measures begin there" near late 0.51208547 m 1e-7 # cos 5.25
@@ -154,5 +209,5 @@ sed 's/span 1;/span 1; measure lifts = hit(table opens);/' lift.lag >lifts.lag
 "$LAGC" run lifts.lag --until 0.9 >out 2>err
 sed -n '/^measures/,/^steps/p' out | sed '1d;$d' >vals
 check "a contact opens, as a measure of the scene" near lifts 0.5 s 1e-9
-check "an event that does not" refused 'no event is called half opens' --measure 'hit(half opens)'
+check "an event that does not" wrong 'no event is called `half opens`' --measure 'hit(half opens)'
 tap_end

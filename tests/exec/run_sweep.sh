@@ -259,11 +259,11 @@ span=60 most=3
 # program FILE [OPTIONS]: the sweep, by a simulator, or where HDF5 is written by lagc, which becomes one that can
 program() {
   case $1 in
-    *.h5) set -- "$LAGC" sweep "$osc" swing -o "$@" ;;
-    *) set -- "$TMP/sim" swing --sweep -o "$@" ;;
+    *.h5) set -- "$LAGC" sweep "$osc" swing -o "$@" --measure 'period(x)' ;;
+    *) set -- "$TMP/sim" swing --sweep -o "$@" --measure 'period(x);x period() [1 0 s]' ;; # as lagc compiles it
   esac
   # shellcheck disable=SC2086
-  exec "$@" $grid --measure 'period(x)' --measure x --until $span --threads 1 --quiet
+  exec "$@" $grid --measure x --until $span --threads 1 --quiet
 }
 kills() { # FILE OPTIONS...
   i=0 resume= file=$1
@@ -444,11 +444,13 @@ check "are drawn as categories" sweep models/magnetic_pendulum.lag x=-1.5..1.5:7
 is "with a legend of three" "1 2 3" "$(grep -A 1 'width="14" height="14"' "$TMP/basins.svg" | sed -n 's/.*>\([0-9]*\)<\/text>/\1/p' | tr '\n' ' ' | sed 's/ $//')"
 
 # Refused: nothing is written.
-no() {
-  words=$1
-  shift
+no() { refused 2 "$@"; }
+wrong() { refused 1 "$@"; } # by the compiler
+refused() {
+  code=$1 words=$2
+  shift 2
   rm -f "$TMP/no.csv"
-  says 2 "$words" "$LAGC" sweep "$@" -o "$TMP/no.csv" && [ ! -e "$TMP/no.csv" ] && [ ! -e "$TMP/no.csv.journal" ]
+  says "$code" "$words" "$LAGC" sweep "$@" -o "$TMP/no.csv" && [ ! -e "$TMP/no.csv" ] && [ ! -e "$TMP/no.csv.journal" ]
 }
 rows_refused() { { echo w; awk 'BEGIN { while (i++ < 800) printf "1" }'; echo; } >"$TMP/long.in.csv" && no '1" is not a number; rows have one for each name' "$osc" --rows "$TMP/long.in.csv"; }
 no_points() { [ "${GSL:-yes}" != yes ] || no "1000000000000 points of 1 numbers take 8e+03 GB; lhs and random take none" "$osc" 'w~uniform(1,2)' --samples 1e12 --sampling sobol; }
@@ -487,12 +489,12 @@ check "a list of three words" says 1 "a value is one word, name=value" "$LAGC" s
 check "a measure beside its option" says 1 "an option's stands behind it" "$LAGC" sweep "$osc" w=1,2 --measure 'max(x)' 'min(x)' -o "$TMP/no.csv"
 check "an option in place of a value" says 2 "--samples needs a value: --samples N" "$LAGC" sweep "$osc" 'w~normal(1,2)' --samples -o "$TMP/no.csv"
 check "and of a file" says 2 "-o needs a value: -o FILE" "$LAGC" sweep "$osc" w=1,2 -o --measure x
-check "a function without its argument" no "max is a function, and takes its argument in parentheses, max(x)" "$osc" w=1,2 --measure max
-check "or with a space" no "max is a function" "$osc" w=1,2 --measure 'max x'
-check "an event without parentheses" no "hit takes an event in parentheses, hit(far)" "$osc" w=1,2 --measure 'hit far'
-check "a function that is not there" no "of a run there are max, min, mean, rms" "$osc" w=1,2 --measure 'final(x)'
-check "a coordinate as event" no "no event is called x; the model has far" "$osc" w=1,2 --measure 'count(x)'
-check "a value at a time, with its name" no 'x(t=2): character 4: expected `)` before `=2)`' "$osc" w=1,2 --measure 'x(t=2)'
+check "a function without its argument" wrong '`max` is a function, `max(...)`' "$osc" w=1,2 --measure max
+check "or with a space" wrong 'a function takes its argument in parentheses: `max(...)`' "$osc" w=1,2 --measure 'max x'
+check "an event without parentheses" wrong 'a function takes its argument in parentheses: `hit(...)`' "$osc" w=1,2 --measure 'hit far'
+check "a function that is not there" wrong "of a run there are max, min, mean, rms" "$osc" w=1,2 --measure 'final(x)'
+check "a coordinate as event" wrong 'the model has `far`' "$osc" w=1,2 --measure 'count(x)'
+check "a value at a time, with its name" wrong "--measure:1:4: error: expected an operator" "$osc" w=1,2 --measure 'x(t=2)'
 check "no thread" no "--threads 0: a whole number above 0" "$osc" w=1,2 --threads 0
 printf '1,2\n3,4\n' >"$TMP/bare.in.csv"
 printf 'w,zeal\n3,4\n' >"$TMP/zeal.in.csv"
@@ -502,7 +504,7 @@ check "a range of other programs" no "write a range, NAME=FIRST..LAST:NUMBER" "$
 check "a value as an option" no "a value of the model has no dashes: w=1" "$osc" --w 1
 check "a name that is not there" no "did you mean stiffer" "$osc" stifer=1,2
 check "a wrong value" no "the model declares m > 0" "$osc" m=-1,1
-check "a measure that is not there" no "did you mean" "$osc" w=1,2 --measure 'perod(x)'
+check "a measure that is not there" wrong "did you mean" "$osc" w=1,2 --measure 'perod(x)'
 check "two ranges of one name" no "varies twice" "$osc" w=1,2 w=3,4
 check "ranges of different length" no "the same number" "$osc" w=1,2 m=1,2,3 --zip
 check "samples of a constant" no "compiled for each of its values: write plain numbers" "$TMP/chain.lag" 'N~uniform(1,9)' --samples 3
@@ -514,7 +516,12 @@ check "a constant beside a range of another length" no "the same number" "$TMP/c
 no_size() { "$LAGC" sweep "$TMP/chain.lag" N=2,2.5 -o "$TMP/no.csv" >"$TMP/out" 2>&1; [ $? = 1 ] && grep -q '^lagc: with N=2.5:' "$TMP/out" && grep -q "not a whole number" "$TMP/out" && [ ! -e "$TMP/no.csv" ]; }
 check "a size that is no number of masses" no_size
 check "another program" says 2 "built for other values" "$TMP/sim" swing --sweep --consts w w=1,2,3,4,5 -o "$TMP/no.csv"
-check "a measure of one size alone" no "with N=2: --measure x[3]: character 1: no output" "$TMP/chain.lag" N=4,2 --measure 'x[3]'
+check "a measure of one size alone" wrong "lagc: with N=2:" "$TMP/chain.lag" N=4,2 --measure 'x[3]'
+# the last mass of each size, as the run of that size alone has it
+last() { "$LAGC" run "$TMP/chain.lag" -D N="$1" --until 0.1 --measure "last=x[$1]" --json | sed 's/.*"last": \([^}]*\)}.*/\1/'; }
+check "a measure of each size, x[N]" sweep "$TMP/chain.lag" N=4,2 --measure 'last=x[N]' --until 0.1 -o "$TMP/last.csv"
+near "of 4" 1e-12 "$(last 4)" "$(sed -n 2p "$TMP/last.csv" | cut -d, -f2)"
+near "and of 2" 1e-12 "$(last 2)" "$(sed -n 3p "$TMP/last.csv" | cut -d, -f2)"
 check "a start of one size alone" no "with N=2: x[3]: no such parameter" "$TMP/chain.lag" N=4,2 'x[3]=1,2'
 check "a start of a rotation" no "cannot vary: write a \`param\` into it" models/free_body.lag 'omega(R).x=1,2'
 check "an empty place in a list" no "w=1,,2: a list is numbers and commas" "$osc" w=1,,2

@@ -72,12 +72,12 @@ while IFS='|' read -r file pattern; do
   one_of 9 || continue
   check "$n: src/$file: $pattern" caught "src/$file" "$pattern"
 done <<'ROWS'
-sym/diff.c|s/return expr_neg(g, s); }$/return s; }/
-sym/diff.c|s/return expr_sub(g, g->one, t2)/return expr_add(g, g->one, t2)/
+sym/diff.c|s/#define NEG(a) expr_neg(g, a)/#define NEG(a) a/
+sym/diff.c|s/#define ONE_LESS(a) expr_sub/#define ONE_LESS(a) expr_add/
 sym/diff.c|s/i == 0 ? x : expr_neg(g, y)/i == 0 ? x : y/
 sym/canonicalize.c|s/one.number = num_add(one.number,/one.number = num_sub(one.number,/
-sym/canonicalize.c|s/return is_odd(op) ? expr_neg(g, f) : f/return f/
-sym/canonicalize.c|s/op == EX_SIN || op == EX_TAN/op == EX_SIN || op == EX_COS || op == EX_TAN/
+sym/canonicalize.c|s/return expr_symmetry(op) == ODD ? expr_neg(g, f) : f/return f/
+sym/canonicalize.c|s/\[EX_SIGN\] = ODD/[EX_COS] = ODD, &/
 sym/stable_forms.c|s/num_mul(num_int(2), c), product/c, product/
 sym/stable_forms.c|s/if (f == EX_SIN) c = num_neg(c);//
 sym/stable_forms.c|s/minus = expr_sub(g, ra, b)/minus = expr_sub(g, b, ra)/

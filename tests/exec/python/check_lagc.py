@@ -278,7 +278,7 @@ s = free.sweep("run", {"x'": [0, 0.5]}, x="1..3:3", measure={"X": "x"}, method="
 near("a sweep: all combinations", s["X"], [1, 2, 3, 1.5, 2.5, 3.5], 1e-12)
 near("the values of each", [s["x'"], s["x"]], [[0, 0, 0, 0.5, 0.5, 0.5], [1, 2, 3, 1, 2, 3]], 0)
 near("samples of a distribution", np.mean(free.sweep(x="~uniform(0, 1)", samples=64, sampling="lhs", measure="x", method="rk4", step=0.5)["x(end)"]), 0.5, 0.01)
-raises("a measure that is not there", lagc.Error, "did you mean", lambda: free.sweep(x=[1, 2], measure="xx"))
+raises("a measure that is not there", lagc.CompileError, "did you mean", lambda: free.sweep(x=[1, 2], measure="xx"))
 ok("LaTeX of the equations", spring._repr_latex_().startswith("$$\\begin{aligned}") and "\\ddot{x}" in spring._repr_latex_())
 ok("a picture", single._repr_svg_().count("<polyline") == 5 and single._repr_svg_().endswith("</svg>"))
 ok("texts", "scenes" in repr(spring) and "energy drift" in repr(single) and "m*x''" in spring.equations)
