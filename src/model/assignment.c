@@ -123,15 +123,6 @@ static int give_member(const Assign *s, const int64_t *at, AstId id, Value v) {
   return v.e != 0;
 }
 
-IndexRange entity_range(const Entity *e) {
-  IndexRange r = {.n = e->ndims};
-  for (int k = 0; k < e->ndims; k++) {
-    r.lo[k] = e->lo[k];
-    r.hi[k] = e->hi[k];
-  }
-  return r;
-}
-
 /* Ranges of the target's indices (none: the whole family); 0, reported, when they do not fit the entity. */
 static int read_ranges(Builder *b, const Target *p, const Entity *e, AstId lhs, IndexRange *r) {
   Span span = ast_expr(b->ast, lhs)->span;

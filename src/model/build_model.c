@@ -266,27 +266,6 @@ static void fill_input(Builder *b, const AstStmt *st, Name effect) {
   if (e && e->kind == ENT_INPUT) give_input(b, e->index, st->name, st->rhs, effect);
 }
 
-/* An observable without a declared unit takes its expression's; a vector becomes one output per component. */
-void finish_observe(Builder *b, uint32_t index, Value v) {
-  const AstStmt *st = b->observes.at[index].stmt;
-  Span span = ast_expr(b->ast, st->rhs)->span;
-  Output o = b->m->observes.at[index];
-  if (!v.e) return;
-  if (!st->unit.n) o.unit.dim = v.dim;
-  else if (!dims_agree(b, &v, &(Value){.e = expr_int(b->g, 1), .dim = o.unit.dim}, span)) {
-    diag_error(b->diags, span, "`%s` is declared in [%s], and this is %s", o.name, o.unit.text, in_dim(b, v.dim));
-    explain_dims(b, v.dim, o.unit.dim);
-  }
-  b->state[ENT_OBSERVE].at[index].value.unit = o.unit.text;
-  Name stem = o.name;
-  for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
-    o.value = v.at[k];
-    if (v.n) o.name = intern_printf(b, "%s.%c", stem, component_letter(v.n, k));
-    if (k) vec_push(b->arena, &b->m->observes, o);
-    else b->m->observes.at[index] = o;
-  }
-}
-
 static void apply_statement(Builder *b, const AstStmt *st, Name effect, void *data) {
   Energies *en = data;
   switch (st->kind) {
@@ -438,14 +417,6 @@ static void find_units(Builder *b) {
   else b->energy = b->dim_of.at[m->energy_sym] = dim_unknown(b->dims, NULL);
 }
 
-CoordList model_coordinates(const Model *m) {
-  VEC(Name) names = {0};
-  for (uint32_t i = 0; i < m->coords.n; i++) vec_push(m->arena, &names, m->coords.at[i].name);
-  for (uint32_t i = 0; i < m->states.n; i++)
-    if (m->states.at[i].coordinate) vec_push(m->arena, &names, m->states.at[i].name);
-  return (CoordList){names.at, names.n};
-}
-
 /* Degree in velocities of a node, from the degrees of its arguments: 0, 1, or 2 for anything nonlinear. */
 static uint8_t degree_of(const ExprGraph *g, Expr x, const ExprMap *degrees) {
   uint32_t degree = 0;
@@ -542,8 +513,3 @@ Model *model_build(Ast *ast, const ModelChoice *choice) {
   return ast->diags->errors ? NULL : b->m;
 }
 
-long double *model_constants(const Model *m) {
-  long double *values = ARENA_ARRAY(m->arena, long double, expr_symbol_count(m->g) + 1);
-  values[m->pi] = 3.14159265358979323846264338327950288L;
-  return values;
-}

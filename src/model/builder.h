@@ -286,14 +286,19 @@ void ask_measure(Builder *b, const CommandOutput *asked);
 /* input_table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without the effect. */
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);
 
-/* declare.c: enters the names that a statement declares into scope and model; a StatementFn. */
+/* declare.c: enters the names that a statement declares into scope and model; a StatementFn. Likewise, of momenta alone. */
 void declare_statement(Builder *b, const AstStmt *st, Name effect, void *data);
-/* Likewise, of momenta alone. */
 void declare_momentum(Builder *b, const AstStmt *st, Name effect, void *data);
 
 /* Declares a name; 0, with a message, when it is taken. */
 int declare_entity(Builder *b, const AstStmt *st, Entity e);
 
+enum { FAMILY_MAX = 1000000 };
+
+/* declared_type.c: declares the name of a refused declaration, so that its uses are not reported as unknown; brackets after a space are a unit, else a
+ * size: 0, reported, where a unit was written without the space. */
+void declare_refused(Builder *b, const AstStmt *st, Name effect);
+int check_brackets(Builder *b, const AstStmt *st, Name effect);
 /* Fills in the entity for a plain name, a vector or a family, without declaring it; 0 after an error. `index` is that of
  * its first scalar; `parts` comes from read_type. */
 int read_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts, Entity *e);
@@ -331,9 +336,6 @@ void declare_composed(Builder *b);
 /* Evaluates a let or an observable, unless it has a value already. */
 void resolve_let(Builder *b, uint32_t index);
 void resolve_observe(Builder *b, uint32_t index);
-
-/* model.c: stores the value of an observable in the model, and checks its unit. */
-void finish_observe(Builder *b, uint32_t index, Value v);
 
 /* Entity of a name; unknown and ambiguous names are reported. `declare` is the kind of declaration to suggest ("state"), or NULL for any. */
 const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const char *declare);
@@ -373,7 +375,7 @@ Name intern_printf(Builder *b, const char *fmt, ...) __attribute__((format(print
 /* Unit of a declaration. Without one the dimension is a new unknown, shared by all members of a family and inferred from the equations. */
 Unit declared_unit(Builder *b, const AstStmt *st, Name effect);
 
-/* output.c: declared unit of an entity, or NULL. */
+/* entities.c: declared unit of an entity, or NULL. */
 const Unit *entity_unit(const Builder *b, const Entity *e);
 
 /* check_units.c */

@@ -81,8 +81,6 @@ Value action_of_momentum(Builder *b, const AstStmt *st, Name effect) {
   return resolve(b, st->args, IN_DYNAMICS, effect);
 }
 
-int is_momentum_name(Name name) { return name[0] == 'p' && (strlen(name) <= 2 || name[1] == '_'); }
-
 void check_momenta(Builder *b) {
   for (uint32_t i = 0; i < b->active.n && b->m->hamiltonian; i++) {
     const AstStmt *q = b->active.at[i].stmt;

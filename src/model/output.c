@@ -10,20 +10,6 @@ static const Entity *named(Builder *b, const Target *p) {
   return scope_find(&b->scope, x->name, NULL, &ambiguous);
 }
 
-const Unit *entity_unit(const Builder *b, const Entity *e) {
-  const Model *m = b->m;
-  switch (e->kind) {
-    case ENT_COORD: return &m->coords.at[e->index].unit;
-    case ENT_STATE: return &m->states.at[e->index].unit;
-    case ENT_INPUT: return &m->inputs.at[e->index].unit;
-    case ENT_PARAM: return &m->params.at[e->index].unit;
-    case ENT_OBSERVE: return &m->observes.at[e->index].unit;
-    case ENT_SYMMETRY: return &m->symmetries.at[e->index].unit;
-    case ENT_NONE: case ENT_CONST: case ENT_LET: case ENT_FUNCTION: case ENT_BUILTIN: break;
-  }
-  return NULL;
-}
-
 /* Unit of an output: the name's declared unit, otherwise none yet: fill_inferred_units derives it from the dimension. */
 static Unit output_unit(Builder *b, const Entity *e, uint32_t primes, Dim dim) {
   const Unit *own = e ? entity_unit(b, e) : NULL;

@@ -298,6 +298,27 @@ static void report_missing_message(Builder *b, AstId id) {
     diag_error(b->diags, ast_expr(b->ast, id)->span, "internal error: `%s` has no value, and no reason is known", ast_short(b, id));
 }
 
+/* An observable without a declared unit takes its expression's; a vector becomes one output per component. */
+static void finish_observe(Builder *b, uint32_t index, Value v) {
+  const AstStmt *st = b->observes.at[index].stmt;
+  Span span = ast_expr(b->ast, st->rhs)->span;
+  Output o = b->m->observes.at[index];
+  if (!v.e) return;
+  if (!st->unit.n) o.unit.dim = v.dim;
+  else if (!dims_agree(b, &v, &(Value){.e = expr_int(b->g, 1), .dim = o.unit.dim}, span)) {
+    diag_error(b->diags, span, "`%s` is declared in [%s], and this is %s", o.name, o.unit.text, in_dim(b, v.dim));
+    explain_dims(b, v.dim, o.unit.dim);
+  }
+  b->state[ENT_OBSERVE].at[index].value.unit = o.unit.text;
+  Name stem = o.name;
+  for (uint32_t k = 0; k < (v.n ? v.n : 1); k++) {
+    o.value = v.at[k];
+    if (v.n) o.name = intern_printf(b, "%s.%c", stem, component_letter(v.n, k));
+    if (k) vec_push(b->arena, &b->m->observes, o);
+    else b->m->observes.at[index] = o;
+  }
+}
+
 static void finish_definition(Eval *ev) {
   Builder *b = ev->b;
   uint32_t place = definition_index(b, ev->kind, ev->definition);

@@ -4,20 +4,6 @@
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
 
-const Entity *own_function(const Eval *ev, const AstExpr *x) {
-  int ambiguous;
-  const Entity *e = scope_find(&ev->b->scope, x->name, ev->effect, &ambiguous);
-  return e && e->kind == ENT_FUNCTION ? e : NULL;
-}
-
-int arity_is(Eval *ev, const AstExpr *x, uint32_t want) {
-  uint32_t n = ast_list_length(ev->b->ast, x->args);
-  if (n == want) return 1;
-  diag_error(ev->b->diags, x->span, "`%s` takes %u argument%s, here it has %u", x->name, want, want == 1 ? "" : "s", n);
-  if (n == 1 && (strcmp(x->name, "dot") == 0 || strcmp(x->name, "d") == 0)) diag_help(ev->b->diags, "a time derivative is written with a prime: `x'`");
-  return 0;
-}
-
 static Value call_unary(Eval *ev, const AstExpr *x, ExprOp op) {
   Builder *b = ev->b;
   if (!arity_is(ev, x, 1)) return FAILED;

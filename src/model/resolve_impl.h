@@ -118,10 +118,11 @@ typedef enum {
 } TurnMistake;
 Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why);
 
-/* constraint.c: appends the constraint c = 0 of dimension dim, with its multiplier. */
+/* entities.c: dimension of lambda, as lambda c is an energy, for velocity constraints a power; appends the constraint c = 0 of dimension dim, with its multiplier. */
+Dim multiplier_dim(Builder *b, Dim dim, int holonomic);
 void add_scalar_constraint(Builder *b, Name name, Expr c, Dim dim, Span span);
 
-/* constraint.c: value of lambda(NAME), the constraint's multiplier; a vector for a vector constraint. */
+/* resolve_multiplier.c: value of lambda(NAME), the constraint's multiplier; a vector for a vector constraint. */
 Value multiplier_value(Eval *ev, const AstExpr *x);
 
 /* Converts the value of an index expression to an integer; 0, reported, if it is none. */

@@ -15,11 +15,6 @@ const Entity *resolve_name(Builder *b, Name name, Span span, Name effect, const 
   return e;
 }
 
-const char *shape_text(const Builder *b, uint32_t n) {
-  if (n == ROTATION) return "a rotation";
-  return n ? arena_printf(b->arena, "a vector of %u components", n) : "a number";
-}
-
 void suspend_for(Eval *ev, EntKind kind, uint32_t index, Progress progress, Name name, Span span) {
   Builder *b = ev->b;
   if (progress == DOING) {

@@ -296,16 +296,6 @@ Value operator_value(Eval *ev, AstId id) {
 
 /* --- sums and products over an index --- */
 
-int whole_number(Builder *b, const Value *v, AstId id, int64_t *out) {
-  if (!v->e) return 0;
-  Num n = expr_is_num(b->g, v->e) ? expr_number(b->g, v->e) : num_ratio(1, 2);
-  if (v->n || !num_is_exact(n) || n.den != 1 || !dim_equate(b->dims, v->dim, DIM_NONE, ast_expr(b->ast, id)->span))
-    return diag_error(b->diags, ast_expr(b->ast, id)->span, "`%s` is not a whole number known at compile time" HELP
-                      "indices and ranges are made of numbers, constants (`const N = 3`) and indices", ast_short(b, id));
-  *out = n.num;
-  return 1;
-}
-
 int resolve_whole(Builder *b, AstId id, Name effect, int64_t *out) {
   Value v = resolve(b, id, IN_CONST, effect);
   return whole_number(b, &v, id, out);

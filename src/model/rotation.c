@@ -153,23 +153,6 @@ Value turn_value(Eval *ev, const AstExpr *x) {
 
 /* --- misuse of rotations --- */
 
-static const struct {
-  const char *refusal, *way;
-} mistakes[] = {
-  [TURN_SUM] = {"rotations are not added", "products of rotations are rotations, sums are none: `R*S` turns by S, then by R"},
-  [TURN_INVERSE] = {"it has no sign, and nothing is divided by it", "the inverse rotation is `transpose(R)`: `transpose(R)*v` is v in the body's frame"},
-  [TURN_SCALED] = {"it is not multiplied by a number", "vectors that it turns are scaled: `2*(R*v)`; a turn by another angle is `turn(axis, angle)`"},
-  [TURN_BEHIND] = {"it stands before the vector that it turns", "`R*v` takes v from the body's frame to space, `transpose(R)*v` from space to the body's frame"},
-  [TURN_PRIME] = {"its rate is an angular velocity", "`omega(R)` is its angular velocity, in its own frame; `R.w'` the rate of one of its four numbers"},
-  [TURN_EQUATION] = {"two that are equal may differ in the sign of all four numbers", "constrain directions: `constraint hinge: R*(0, 0, 1) = S*(0, 0, 1)`"},
-  [TURN_VALUE] = {"it cannot be the value of a parameter", "make it of parameters: `let R0 = turn((0, 0, 1), a)`"},
-  [TURN_NUMBER] = {"it is neither a number nor a vector", "its four numbers are `.w`, `.x`, `.y`, `.z`; `R*v` turns a vector of 3 components, `omega(R)` is its angular velocity"},
-};
-
-Value refuse_rotation(Builder *b, Span span, const char *text, TurnMistake why) {
-  return refuse(b, span, "`%s` is a rotation: %s" HELP "%s", text, mistakes[why].refusal, mistakes[why].way);
-}
-
 /* --- the coordinate --- */
 
 Value rotation_at(const Builder *b, uint32_t coord, int rates) {

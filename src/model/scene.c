@@ -7,14 +7,6 @@
 
 /* --- the file's scenes and effects --- */
 
-SceneList model_scenes(const Ast *ast) {
-  VEC(Name) names = {0};
-  for (const AstStmt *s = ast->first; s; s = s->next)
-    if (s->kind == STMT_SCENE && s->name) vec_push(ast->arena, &names, s->name);
-  if (!names.n) vec_push(ast->arena, &names, intern(ast->names, "default"));
-  return (SceneList){names.at, names.n};
-}
-
 int model_has_scene(Ast *ast, const char *scene) {
   SceneList scenes = model_scenes(ast);
   for (uint32_t i = 0; i < scenes.n; i++)

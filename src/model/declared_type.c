@@ -1,0 +1,104 @@
+/* Types of declared names: the unit, the components of a vector or a rotation, the sizes of a family. */
+#include <string.h>
+
+#include "model/builder.h"
+
+/* Declares the name of a refused declaration, so that its uses are not reported as unknown. */
+void declare_refused(Builder *b, const AstStmt *st, Name effect) {
+  if (!scope_own(&b->scope, st->name, effect))
+    scope_add(&b->scope, (Entity){.kind = ENT_NONE, .name = st->name, .effect = effect, .span = st->name_span});
+}
+
+/* 1 for `coord q[m]`: the index contains names of units, and no constant. */
+static int dims_are_units(Builder *b, const AstStmt *st) {
+  const AstExpr *x = ast_expr(b->ast, st->dims);
+  uint32_t names = 0;
+  for (AstId i = x->first; i <= st->dims; i++) {
+    const AstExpr *y = ast_expr(b->ast, i);
+    if (y->kind != AST_NAME) continue;
+    const AstStmt *st2 = declared_in_use(b, y->name, NULL);
+    if (st2 && st2->kind == STMT_CONST) return 0;
+    names++;
+    if (!unit_exists(y->name)) return 0;
+  }
+  return names > 0 && !x->next;
+}
+
+/* Brackets after a space are a unit, else a size: 0, reported, where a unit was written without the space. */
+int check_brackets(Builder *b, const AstStmt *st, Name effect) {
+  if (!st->dims) {
+    if (st->unit.n && !(st->kind == STMT_PARAM && st->unit.span.begin > ast_expr(b->ast, st->rhs)->span.begin))
+      warn_unit_is_constant(b, &st->unit);
+    return 1;
+  }
+  if (!dims_are_units(b, st)) return 1;
+  const char *index = ast_text(b, st->dims);
+  diag_error(b->diags, st->name_span, "`%s[%s]` declares a family, but `%s` is not a constant", st->name, index, index);
+  diag_help(b->diags, "a unit stands apart: `%s [%s]`", st->name, index);
+  declare_refused(b, st, effect);
+  return 0;
+}
+
+/* Reads the sizes of a family into e, as index ranges 1..N. */
+static int read_sizes(Builder *b, const AstStmt *st, Name effect, Entity *e) {
+  uint64_t all = e->parts ? e->parts : 1;
+  for (AstId i = st->dims; i; i = ast_expr(b->ast, i)->next) {
+    Span span = ast_expr(b->ast, i)->span;
+    int64_t n;
+    if (e->ndims == 2) {
+      report_many_indices(b, span);
+      return 0;
+    }
+    if (!resolve_whole(b, i, effect, &n)) return 0;
+    if (n < 1) return diag_error(b->diags, span, "a family has at least one member, and this is %lld", (long long)n);
+    if (n > FAMILY_MAX || (all *= (uint64_t)n) > FAMILY_MAX) return diag_error(b->diags, span, "a family has at most %d members", FAMILY_MAX);
+    e->lo[e->ndims] = 1;
+    e->hi[e->ndims++] = n;
+  }
+  return 1;
+}
+
+int read_family(Builder *b, const AstStmt *st, Name effect, EntKind kind, uint32_t index, uint8_t parts, Entity *e) {
+  *e = (Entity){.kind = kind, .index = index, .name = st->name, .effect = effect, .span = st->name_span, .parts = parts};
+  if (!check_brackets(b, st, effect)) return 0;
+  if (read_sizes(b, st, effect, e)) return 1;
+  declare_refused(b, st, effect);
+  return 0;
+}
+
+Name scalar_name(Builder *b, const Entity *e, Name stem, const int64_t *at, uint32_t k) {
+  Name name = member_name(b->ast, stem, at, e->ndims);
+  return e->parts ? intern_printf(b, "%s.%c", name, component_letter(e->parts, k)) : name;
+}
+
+Unit declared_unit(Builder *b, const AstStmt *st, Name effect) {
+  Unit u = unit_resolve(&st->unit, b->dims, b->diags, b->arena);
+  if (st->unit.n || b->unitless) return u;
+  u.dim = dim_unknown(b->dims, st->name);
+  vec_push(b->arena, &b->undeclared, ((Undeclared){effect ? intern_printf(b, "%s.%s", effect, st->name) : st->name, u.dim}));
+  return u;
+}
+
+static void report_rotation(Builder *b, const AstStmt *st) {
+  if (st->kind != STMT_COORD) {
+    diag_error(b->diags, st->name_span, "only a coordinate can be a rotation");
+    diag_help(b->diags, "a rotation made of others is a `let`: `let R0 = turn((0, 0, 1), a)*R`");
+  } else if (st->unit.n) {
+    diag_error(b->diags, st->unit.span, "a rotation has no unit: its four numbers are those of a unit quaternion");
+    diag_help(b->diags, "write `coord %s: rotation`", st->name);
+  } else {
+    diag_error(b->diags, st->name_span, "a rotation is not an angle, and cannot be `periodic`" HELP "write `coord %s: rotation`", st->name);
+  }
+}
+
+/* Number of components of a declared type (vec2, vec3, rotation); 0, reported, where the kind of statement cannot have it. */
+int read_type(Builder *b, const AstStmt *st, Name effect, uint8_t *parts) {
+  int two = st->type && strcmp(st->type, "vec2") == 0, three = st->type && strcmp(st->type, "vec3") == 0;
+  *parts = two ? 2 : three ? 3 : 0;
+  if (!st->type || two || three) return 1;
+  *parts = ROTATION;
+  if (st->kind == STMT_COORD && !st->unit.n && !st->periodic) return 1;
+  report_rotation(b, st);
+  declare_refused(b, st, effect);
+  return 0;
+}
