@@ -19,7 +19,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   const lag_model *m = s->scene->model;
   size_t np = (size_t)(m->np + m->nderived), nm = (size_t)m->nmodes, nu = (size_t)m->nu + nm, n = (size_t)s->pb.n, nev = (size_t)m->nev + nm;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0, pushes = pushed ? lag_contact_step_size(m) : 0;
+  size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0, pushes = pushed ? lag_moreau_contacts_size(m) : 0;
   double *contacts, *contact_room = calloc(pushes + 1, sizeof *contact_room), **const parts[] = {&s->p, &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign,
                             &s->noise, &s->root, &s->sign_end, &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->flight, &s->skipped, &s->crossed, &s->slips, &s->slid, &s->slid_since, &s->mon_first, &s->mon_peak,
                             &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change, &s->charge_block, &s->rate_history, &s->pb.size};
@@ -48,7 +48,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  lag_cut(x, nparts, parts, sizes);
+  lag_workspace_slice(x, nparts, parts, sizes);
   s->method_work = b + before;
   s->nwork = work;
   free(s->pb.contact_room);
