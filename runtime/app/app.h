@@ -198,8 +198,10 @@ int lag_sampling_close(App *app);
 void lag_sampling_warn(App *app, char *note, size_t size);
 void lag_sampling_free(App *app);
 
-/* output_rows.c: time of row grid[2] of a grid that begins at grid[0], with rows grid[1] apart. */
+/* output_rows.c: time of row grid[2] of a grid that begins at grid[0], with rows grid[1] apart; the index of time t, whole up to rounding
+ * of the times. */
 double lag_app_row_time(const App *app, const double *grid);
+double lag_app_row_at(const App *app, const double *grid, double t);
 /* error_curves.c: whether the rows of a picture lie at equal times, as differences need them; the present row's energy, less its jumps at events and the work
  * of forces so far; the energies that are drawn := decimal logarithms of their errors, relative where no run begins with the energy 0. sim: of the first run. */
 int lag_app_equal_times(const Args *a);

@@ -64,7 +64,7 @@ static int read_times(Cloud *c) {
   if (a->every && !lag_args_number(a, "--every", a->every, "--every 1", &c->every)) return EXIT_USAGE;
   if (a->every && !(c->every > 0)) return lag_app_error(a, "--every %s: the time between two clouds must be positive, for example --every 1", a->every);
   c->every = copysign(c->every, c->until - c->run.scene->t0);
-  double times = floor((c->until - c->run.scene->t0) / c->every * (1 + 1e-12)) + 1;
+  double times = floor(lag_app_row_at(&c->run, (double[]){c->run.scene->t0, fabs(c->every)}, c->until)) + 1;
   if (times > MOST_TIMES) return lag_app_error(a, "--every %g: that makes %.0f clouds; %d can be told apart at most", c->every, times, MOST_TIMES);
   c->times = (int)times;
   c->xy = calloc((size_t)c->times * 2 * (size_t)c->n, sizeof *c->xy);

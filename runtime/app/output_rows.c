@@ -1,10 +1,16 @@
 /* Rows of a run: their times, their values, the first that has none. */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
 #include "core/core.h"
+
+double lag_app_row_at(const App *app, const double *grid, double t) {
+  double dir = app->until < app->scene->t0 ? -1 : 1, at = dir * (t - grid[0]) / grid[1], whole = nearbyint(at);
+  return fabs(at - whole) * grid[1] <= 4 * DBL_EPSILON * (fabs(grid[0]) + fabs(t)) ? whole : at;
+}
 
 /* Time of the next row k: k/(1/every) where 1/every is whole, so that times are 0.3, not 0.1*3. */
 double lag_app_row_time(const App *app, const double *grid) {

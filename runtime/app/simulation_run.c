@@ -85,7 +85,7 @@ static int choose_grid(App *app) {
   }
   grid[0] = origin;
   grid[1] = every;
-  grid[2] = app->resumed ? floor(fabs(t - origin) / every + 1e-9) + 1 : 0;
+  grid[2] = app->resumed ? floor(lag_app_row_at(app, grid, t)) + 1 : 0;
   return 0;
 }
 
@@ -93,14 +93,11 @@ static int choose_grid(App *app) {
 
 /* Advances along the grid and writes a row at each time up to app->until. */
 static int run_rows(App *app) {
-  double *grid = lag_sim_output_grid(app->sim), dir = app->until < app->scene->t0 ? -1 : 1;
+  double *grid = lag_sim_output_grid(app->sim), last = lag_app_row_at(app, grid, app->until);
   int rc = 0;
-  while (rc == 0) {
-    double t = lag_app_row_time(app, grid), rest = (app->until - t) * dir;
-    if (rest < -1e-9 * grid[1]) return LAG_OK;
-    if (fabs(rest) <= 1e-9 * grid[1]) {
-      app->until = t; /* same time up to rounding */
-    }
+  while (rc == 0 && grid[2] <= last) {
+    double t = lag_app_row_time(app, grid);
+    if (grid[2] == last) app->until = t; /* same time up to rounding */
     rc = lag_app_interrupted() != EXIT_SIGNAL ? LAG_INTERRUPTED : lag_sampling_advance(app, t);
     rc = rc ? rc : lag_app_put_row(app);
     grid[2] += rc == 0;
@@ -110,12 +107,12 @@ static int run_rows(App *app) {
 
 /* --skip: advances without rows, points and measures, which begin at that time. */
 static int skip_transient(App *app) {
-  double *grid = lag_sim_output_grid(app->sim), dir = app->until < app->scene->t0 ? -1 : 1, t = app->skip;
+  double *grid = lag_sim_output_grid(app->sim), t = app->skip;
   if (isnan(t)) return LAG_OK;
   app->skipping = 1;
   int rc = lag_sim_advance(app->sim, t);
   app->skipping = 0;
-  grid[2] = ceil(dir * (t - grid[0]) / grid[1] - 1e-9);
+  grid[2] = ceil(lag_app_row_at(app, grid, t));
   return rc;
 }
 

@@ -16,7 +16,7 @@ static int choose_times(SweepApp *s) {
   double every = app->scene->every > 0 ? app->scene->every : fabs(app->until - app->scene->t0) / 1000, dir = app->until < app->scene->t0 ? -1 : 1;
   if (a->every && !lag_args_number(a, "--every", a->every, "--every 0.01", &every)) return EXIT_USAGE;
   if (!(every > 0)) return lag_app_error(a, "--every %s: the time between rows must be positive, for example --every 0.01", a->every);
-  double n = floor(fabs(app->until - app->scene->t0) / every + 1e-9) + 1;
+  double n = floor(lag_app_row_at(app, (double[]){app->scene->t0, every}, app->until)) + 1;
   if (n * s->sweep.width > MOST_NUMBERS) return lag_app_error(a, "--motions: a row every %g s for %g s is %.3g rows a run; write a larger --every", every, fabs(app->until - app->scene->t0), n);
   s->times = malloc((size_t)n * sizeof *s->times);
   if (!s->times) return lag_app_error(a, "out of memory");

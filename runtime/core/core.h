@@ -84,6 +84,7 @@ struct lag_sim {
   lag_signal *signal;    /* [nu] set by the caller; not saved */
   double *start;         /* [n] start values set by the caller; NaN: the scene's */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
+  double *sizes;         /* [nsizes + nmoving] scratch */
   double *sides;         /* [3 nswitch] switching functions, scratch of stall_detector.c */
   double *rate_history;         /* [3 n] force_pole.c: rate of change of the state over the last two steps, and its fading peak; NaN: not known */
   double *contact_scratch, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
@@ -146,8 +147,7 @@ static inline double lag_declared(const lag_var *v, double si) {
              : x;
 }
 
-/* setup.c: whether the option is a step size; why x [s] cannot be the step size of this scene, NULL: it can. */
-int lag_is_step_option(const char *option);
+/* setup.c: why x [s] cannot be the step size of this scene, NULL: it can. */
 const char *lag_step_error(const lag_sim *s, double x);
 /* The common size of the steps [s]; 0 where the method adapts it. */
 double lag_equal_step(const lag_sim *s);
@@ -201,6 +201,10 @@ void lag_note_redundant(lag_sim *sim);
 
 /* setup.c: sets the state at the start of a run. */
 int lag_setup_start(lag_sim *sim);
+/* Fail, with a message: a parameter, or a size that parameters determine, has another sign than declared; a friction is
+ * negative at y, t. */
+int lag_check_parameters(lag_sim *sim);
+int lag_check_moving_sizes(lag_sim *sim, double t, const double *y);
 
 /* events.c and event_location.c. arm: signs of g at the start of a chain of steps. locate: the first event in (run->from, step_t1]; sets limit and
  * pending. spread: variation of g[nev] about limit within the last digits of the time, which the dense output cannot resolve; jumps[2 nev]: 1 for events that
@@ -345,6 +349,9 @@ double lag_above_rounding(double size, double terms);
 double lag_energy_terms(lag_sim *sim, double t, const double *y);
 double lag_output_terms(lag_sim *sim, double t, const double *y, int k);
 void lag_velocity_terms(lag_sim *sim, double t, const double *y, double *v);
+/* pb.size := sizes of the components of a run that begins at `now`: of each unit the largest value and what forces add to it
+ * in the time scale of the motion. Three right-hand sides, not counted. */
+void lag_start_sizes(lag_sim *s);
 /* The present step, before the first one the step that is set; 0: it is not known. */
 double lag_step_so_far(const lag_sim *sim);
 /* noise[n] := rounding of a formula at t, y, with the inputs as they are. up, down: as noise, which is the energy and its

@@ -203,6 +203,8 @@ static int rearm(lag_sim *s, const double *before, const double *spread, const d
       s->noise[k] = fmax(2 * fabs(g), 2 * residue);
     } else if (!fired && !isnan(s->root[k]) && fabs(g - before[k]) <= same) {
       s->sign[k] = -s->sign_end[k]; /* this event is still to come */
+    } else if (!fired && g == 0 && before[k] == 0) {
+      s->sign[k] = s->sign_end[k]; /* still at zero: the next step finds the crossing at its start */
     } else if (fired || s->sign_end[k] != 0.0 || fabs(g) > s->noise[k]) { /* else: sign not known yet since it fired */
       s->sign[k] = sign_of(g);
       s->noise[k] = 0;

@@ -9,6 +9,7 @@
 
 #include "core/core.h"
 #include "core/rhs.h"
+#include "numeric/option_range.h"
 #include "numeric/workspace.h"
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
@@ -21,9 +22,9 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0, pushes = pushed ? lag_moreau_contacts_size(m) : 0;
   double *contacts, *contact_room = calloc(pushes + 1, sizeof *contact_room), **const parts[] = {&s->p, &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign,
                             &s->noise, &s->root, &s->sign_end, &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->flight, &s->skipped, &s->crossed, &s->slips, &s->slid, &s->slid_since, &s->mon_first, &s->mon_peak,
-                            &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change, &s->charge_block, &s->rate_history};
+                            &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change, &s->charge_block, &s->rate_history, &s->pb.size};
   const size_t sizes[] = {(size_t)m->np, (size_t)m->nderived, nu, n, n, nc, (size_t)m->nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev,
-                          nm, nm, nm, nm, nmon, nmon, (size_t)s->scene->nexact, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0, pushed, pushed ? (size_t)m->nq : 0, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double), 3 * n};
+                          nm, nm, nm, nm, nmon, nmon, (size_t)s->scene->nexact, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0, pushed, pushed ? (size_t)m->nq : 0, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double), 3 * n, n + 2};
   const size_t nparts = sizeof sizes / sizeof *sizes, fixed = RUN_DOUBLES + lag_workspace_slice(NULL, nparts, parts, sizes);
   lag_problem sized = s->pb;
 
@@ -57,6 +58,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->pb.hold = s->hold;
   s->pb.kept = s->kept;
   s->pb.begin = s->begin;
+  for (size_t i = 0; i < n + 2; i++) s->pb.size[i] = 1;
   s->pb.kick = HUGE_VAL;
   s->pb.opt = opt;
   s->pb.variant = method->variant;
@@ -75,9 +77,9 @@ static int alloc_scratch(lag_sim *s) {
   size_t nc = (size_t)lag_sim_ncharges(s) + 1, np = (size_t)m->ncontacts;
   double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->pb.ranks, &s->contact_scratch,
                             &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->grip, &s->side_noise, &s->slid_off, &s->meets, &s->left,
-                            &s->meeting, &s->pb.slide, &s->pb.rub};
+                            &s->meeting, &s->pb.slide, &s->pb.rub, &s->sizes};
   const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm,
-                          nm * (7 + 2 * nm), nm * (3 + nm), m->contact_laws ? np * (5 + 2 * np) : 0};
+                          nm * (7 + 2 * nm), nm * (3 + nm), m->contact_laws ? np * (5 + 2 * np) : 0, (size_t)(m->nsizes + m->nmoving)};
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
@@ -154,8 +156,6 @@ void lag_sim_free(lag_sim *s) {
 
 static int begun(lag_sim *s) { return s->run->begun != 0.0 ? lag_fail(s, LAG_EINVAL, "the run has begun: set this before the first step") : 0; }
 
-int lag_is_step_option(const char *option) { return strcmp(option, "step") == 0 || strcmp(option, "max_step") == 0; }
-
 const char *lag_step_error(const lag_sim *s, double x) {
   const lag_scene *c = s->scene;
   if (!(x > 0 && isfinite(x))) return "a step must be a positive number";
@@ -185,16 +185,13 @@ static int option_value(lag_sim *s, const lag_method *m, const lag_method_option
         *value = i;
         return LAG_OK;
       }
-    char words[128] = "";
-    for (int i = 0; o->choices && o->choices[i] && strlen(words) + strlen(o->choices[i]) + 3 < sizeof words; i++)
-      strcat(strcat(words, i ? ", " : ""), o->choices[i]);
-    return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"; it is %s", m->name, o->name, given->text,
-                    o->choices ? words : "a number");
   }
-  const char *wrong = lag_is_step_option(o->name) && *value != 0.0 ? lag_step_error(s, *value) : isfinite(*value) ? NULL : "it must be finite";
-  if (wrong) return lag_fail(s, LAG_EINVAL, "method %s: %s = %g: %s", m->name, o->name, *value, wrong);
-  if (!(*value >= o->min && *value <= o->max))
-    return lag_fail(s, LAG_EINVAL, "method %s: option %s = %g is outside [%g, %g]", m->name, o->name, *value, o->min, o->max);
+  lag_option_range range = {o->min, o->max, o->every, o->most, o->choices};
+  char are[128];
+  const char *step = lag_is_step_option(o->name) && *value > 0 ? lag_step_error(s, *value) : NULL;
+  int bad = lag_option_refuses(&range, given->text ? NAN : *value, s->scene->model->constraints != NULL, are);
+  if (bad && given->text) return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"; %s", m->name, o->name, given->text, are);
+  if (bad || step) return lag_fail(s, LAG_EINVAL, "method %s: %s = %g: %s", m->name, o->name, *value, bad ? are : step);
   return LAG_OK;
 }
 
@@ -206,9 +203,7 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
     int rc = option_value(s, m, &m->options[i], &opt[k], &values[i]);
     if (rc) return rc;
   }
-  const char *wrong = m->check ? m->check(values) : NULL;
-
-  wrong = !wrong && m->refuses ? m->refuses(s->scene->model, values) : wrong;
+  const char *wrong = m->refuses ? m->refuses(s->scene->model, values) : NULL;
   return wrong ? lag_fail(s, LAG_EINVAL, "method %s: %s", m->name, wrong) : LAG_OK;
 }
 
@@ -440,36 +435,46 @@ int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *cont
   return LAG_OK;
 }
 
-/* Refuses parameters that make a friction, an inertia or a coefficient negative, or too large. */
-static int check_sizes(lag_sim *s) {
-  const lag_model *m = s->scene->model;
-  double *size = m->nsizes ? malloc((size_t)m->nsizes * sizeof *size) : NULL;
-  if (!m->nsizes) return LAG_OK;
-  const double *y = s->begin;
-  int rc = size ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work) : lag_fail(s, LAG_ENOMEM, "out of memory");
-  for (int i = 0; i < m->nsizes && rc == 0; i++) {
-    const lag_size *of = &m->sizes[i];
-    if ((of->part && size[i] > 1) || !(of->open ? size[i] > 0 : size[i] >= 0))
-      rc = lag_fail(s, LAG_EINVAL, "%s of %.6g, which must be %s: it is %s", of->what, size[i],
-                    of->part ? "between 0 and 1" : of->open ? "more than 0" : "at least 0", of->text);
+/* Refuses sizes of friction, inertia or coefficients that are negative, or too large; at time t, NaN: at all times. */
+static int judge_sizes(lag_sim *s, int n, const lag_size *of, const double *size, double t) {
+  char when[64] = "";
+  if (!isnan(t)) snprintf(when, sizeof when, "at t = %s s ", LAG_TEXT(t));
+  for (int i = 0; i < n; i++) {
+    if (!(of[i].part && size[i] > 1) && (of[i].open ? size[i] > 0 : size[i] >= 0)) continue;
+    return lag_fail(s, s->run->begun == 0.0 ? LAG_EINVAL : LAG_EDOMAIN, "%s%s of %.6g, which must be %s: it is %s", when, of[i].what, size[i],
+                    of[i].part ? "between 0 and 1" : of[i].open ? "more than 0" : "at least 0", of[i].text);
   }
-  free(size);
-  return rc;
+  return LAG_OK;
 }
 
-int lag_setup_start(lag_sim *s) {
-  const lag_scene *c = s->scene;
-  const lag_model *m = c->model;
-  int n = s->pb.n;
-  int rc = check_digits(s, s->method);
-
-  if (rc) return rc;
+int lag_check_parameters(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  const double *y = s->begin;
   for (int i = 0; i < m->np; i++)
     if (!sign_ok(m->p[i].sign, s->p[i])) {
       return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, lag_declared(&m->p[i], s->p[i]),
                       m->p[i].name, sign_text(m->p[i].sign));
     }
-  if ((rc = check_sizes(s)) != 0) return rc;
+  int rc = m->nsizes ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, s->sizes, s->pb.work) : 0;
+  return rc ? rc : judge_sizes(s, m->nsizes, m->sizes, s->sizes, NAN);
+}
+
+int lag_check_moving_sizes(lag_sim *s, double t, const double *y) {
+  const lag_model *m = s->scene->model;
+  if (!m->nmoving) return LAG_OK;
+  double *size = s->sizes;
+  int rc = lag_inputs_at(&s->pb, t, y);
+  rc = rc ? rc : m->moving_sizes(t, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work);
+  return rc ? LAG_OK : judge_sizes(s, m->nmoving, m->sizes + m->nsizes, size, t);
+}
+
+int lag_setup_start(lag_sim *s) {
+  const lag_scene *c = s->scene;
+  int n = s->pb.n;
+  int rc = check_digits(s, s->method);
+
+  if (rc) return rc;
+  if ((rc = lag_check_parameters(s)) != 0) return rc;
   set_start_state(s);
   if (lag_not_finite(n, s->now) >= 0) return lag_fail(s, LAG_ENAN, "the start is not finite");
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */

@@ -104,6 +104,7 @@ typedef struct lag_problem {
   double *contact_impulse;     /* [ncontacts] impulse of each in the last step, */
   double *contact_change;      /* [nq] and the change of velocities by all of them */
   double *contact_room;        /* scratch */
+  double *size;        /* [n + 2] size of each component in this run, and last of the time: powers of 1024; tolerances are parts of it */
 } lag_problem;
 
 /* The model's facts (LAG_AUTONOMOUS, ...) less those that an input function of the caller takes away. */
@@ -236,8 +237,10 @@ typedef struct lag_method_option {
   const char *name;
   const char *doc;
   double value;    /* default */
-  double min, max; /* allowed values */
+  double min, max; /* allowed values, */
   const char *const *choices;
+  double every; /* in steps of this from min; 0: all. */
+  double most;  /* The largest with constraints; 0: max */
 } lag_method_option;
 
 /* An integrator. Its state is one block of work_size doubles (only doubles, unless NO_SAVE: then the state
@@ -252,9 +255,6 @@ typedef struct lag_method {
   unsigned flags;
   int noptions;
   const lag_method_option *options;
-
-  /* NULL when these option values fit together; else why not, and what to write. May itself be NULL. */
-  const char *(*check)(const double *opt);
 
   /* Order of the steps with these option values; NULL: order. */
   int (*order_of)(const double *opt);

@@ -17,7 +17,8 @@ enum {
 typedef struct {
   const char *name;               /* NULL: past the last */
   double min, max;
-  const char *const *choices;     /* NULL-terminated; NULL: a number from min to max */
+  const char *const *choices;     /* NULL-terminated; NULL: a number from min to max, */
+  double every, most;             /* of lag_option_range */
 } MethodOption;
 
 typedef struct {
@@ -37,6 +38,9 @@ int method_may_be_gsl(const char *name);
 
 /* The known name nearest to an unknown one, else that of a method whose description has the word; or NULL. */
 const char *method_suggest(Arena *a, const char *wrong);
+
+/* Whether an option may not be x, of a model with constraints or without, as a run judges it; allowed := what it may be. */
+int method_option_refuses(const MethodOption *o, double x, int constrained, char allowed[128]);
 
 /* The option of that name, or NULL. */
 const MethodOption *method_option(const MethodInfo *m, const char *name);

@@ -75,6 +75,13 @@ done
 printf '%s\n' 'model m' 'coord x [m]' "kinetic = x'^2/2 * 1 [kg]" 'event down: 1/2 [s] - t falling {}' 'event up: t - 1/2 [s] rising {}' 'scene s { span 1 [s] }' >"$TMP/end.lag"
 is "at the end of a step" "0.5 0.5" "$("$LAGC" run "$TMP/end.lag" --method rk4 --step 0.125 --json | sed 's/.*"down": {"count": 1, "first": \([^,]*\).*"up": {"count": 1, "first": \([^,]*\).*/\1 \2/')"
 
+# A run ends where it was asked to, however near to a row: kicks and events between the two happen (times are 1e-10 s apart at 1e6).
+printf '%s\n' 'model m' 'coord x' 'param T = 1' "lagrangian = x'^2/2" "kick k every T { x' = x' + 1 }" "event e: t - T rising { x' = x' + 2 }" 'scene s { start x = 0 }' >"$TMP/late.lag"
+for times in '1000000 1000000.0001' '1000000 1000000.000001' '3 3.0000000001'; do
+  T=${times% *} end=${times#* }
+  is "behind the last row: T = $T, to $end" "$end 3" "$("$LAGC" run "$TMP/late.lag" "T=$T" --until "$end" --every "$T" -o "$TMP/late.csv" --quiet && sed -n '$s/\([^,]*\),[^,]*,\([^,]*\),.*/\1 \2/p' "$TMP/late.csv")"
+done
+
 piles_up() { # METHOD
   "$LAGC" run models/bouncing_ball.lag drop --until 4.2 --method "$1" >"$TMP/out" 2>&1
   [ $? = 3 ] && grep -q 'event floor repeats in ever shorter intervals: .* at t = 4.0637' "$TMP/out"
