@@ -21,7 +21,7 @@ static const char usage[] =
     "  --skip T             rows, pictures and measures begin at time T [s]: without the transient\n"
     "  --events FILE        a CSV row for each event: time, event, the state before and after it\n"
     "  --section EVENT      rows, and points of pictures, each time this event happens, instead of in time\n"
-    "  --measure EXPR       a number of the run: max(x), period(x), hit(EVENT, 3), x(10), ...; or NAME=EXPR; repeatable\n"
+    "  --measure WORDS      a number of the run, as lagc compiles it: 'x max()', '3 hit(EVENT)', 'x 10 at()'; or NAME=WORDS; repeatable\n"
     "  --tangent            more columns, dx/dy(0): the exact derivative of the state by its start\n"
     "  --volume             the volume of phase space along the run, by the determinant of that derivative\n"
     "  --svg FILE           a picture of all output against time; --plot-x NAME --plot-y NAME: one against another\n"

@@ -1,4 +1,4 @@
-/* Parses the expressions of --observe, --section, plot and animate, finds the points of an animation, and writes the simulator's argv. */
+/* Parses the expressions of --observe, --measure, --section, plot and animate, finds the points of an animation, and writes the simulator's argv. */
 #include "commands/run_request.h"
 
 #include <string.h>

@@ -39,7 +39,8 @@ typedef struct {
 
 typedef enum { CALL_TRACK, CALL_HIT, CALL_COUNT, CALL_FUNCTION, CALL_AT, CALL_TEXT, CALL_ELSE } CallKind;
 
-#define MEASURE_WORDS "max min mean rms drift period hit count"
+#define TRACK_WORDS "max min mean rms drift period"
+#define MEASURE_WORDS TRACK_WORDS " hit count"
 
 enum { UNCHECKED = 2 };
 
@@ -69,7 +70,7 @@ static CallKind call_kind(const MeasureReader *r, AstId id) {
   const Entity *e = entity_named(r->b, x->name);
   AstId second = x->args ? ast_expr(r->b->ast, x->args)->next : 0;
   if (e && e->kind == ENT_FUNCTION) return r->whole[id - r->first] ? CALL_TEXT : CALL_ELSE;
-  if (has_word("max min mean rms drift period", x->name) && x->args && (!second || ast_expr(r->b->ast, second)->kind == AST_BIND)) return CALL_TRACK;
+  if (has_word(TRACK_WORDS, x->name) && x->args && (!second || ast_expr(r->b->ast, second)->kind == AST_BIND)) return CALL_TRACK;
   if (strcmp(x->name, "hit") == 0) return CALL_HIT;
   if (strcmp(x->name, "count") == 0) return CALL_COUNT;
   if ((e && e->kind != ENT_NONE) || has_word("energy lagrangian t", x->name)) return CALL_AT;
@@ -226,7 +227,8 @@ static Part track(MeasureReader *r, AstId id) {
   Name name = x->name;
   Span span = x->span, in = ast_expr(b->ast, x->args)->span;
   AstId args = x->args, window = ast_expr(b->ast, args)->next;
-  Part of = r->inside[args - r->first] ? operand(r, args) : r->part[args - r->first];
+  int measured = !r->frame && r->whole[args - r->first];
+  Part of = measured ? (Part){.text = "", .measured = 1} : r->inside[args - r->first] ? operand(r, args) : r->part[args - r->first];
   if (!of.text) return (Part){0};
   const char *within = window_text(b, window);
   if (!within) return (Part){0};
@@ -333,8 +335,12 @@ static Part text_call(MeasureReader *r, AstId id) {
     return (Part){0};
   }
   Part *part = ARENA_ARRAY(b->arena, Part, n + 1);
+  Span span = x->span;
+  uint32_t errors = b->diags->errors;
   for (AstId arg = x->args; arg; arg = ast_expr(b->ast, arg)->next) ok &= (part[i++] = r->part[arg - r->first]).text != NULL;
-  return ok ? read_measure(b, f->rhs, &(Frame){f->args, part, depth}, r->command) : (Part){0};
+  Part p = ok ? read_measure(b, f->rhs, &(Frame){f->args, part, depth}, r->command) : (Part){0};
+  if (b->diags->errors > errors && !b->diags->list.at[b->diags->latest].note) diag_also(b->diags, span, "in this call");
+  return p;
 }
 
 /* A function that there is not: of a run, or of the language. */
@@ -474,6 +480,7 @@ static Part read_node(MeasureReader *r, AstId id) {
 }
 
 static Part read_measure(Builder *b, AstId root, const Frame *frame, int command) {
+  enum { WORDS = 2000, LONGEST = 5*WORDS }; /* a function of functions can double it fifty times */
   MeasureReader r = {.b = b, .first = ast_expr(b->ast, root)->first, .frame = frame, .command = command};
   uint32_t n = root - r.first + 1;
   r.part = ARENA_ARRAY(b->arena, Part, n);
@@ -481,8 +488,13 @@ static Part read_measure(Builder *b, AstId root, const Frame *frame, int command
   r.whole = ARENA_ARRAY(b->arena, uint8_t, n);
   mark_whole(&r, root);
   mark_operands(&r, root);
-  for (AstId id = r.first; id <= root; id++)
-    if (!r.inside[id - r.first]) r.part[id - r.first] = read_node(&r, id);
+  for (AstId id = r.first; id <= root; id++) {
+    Part *p = &r.part[id - r.first];
+    if (!r.inside[id - r.first]) *p = read_node(&r, id);
+    if (!p->text || strlen(p->text) < LONGEST) continue;
+    diag_error(b->diags, ast_expr(b->ast, id)->span, "this measure has more than %d words: give its parts names, `let`", WORDS);
+    return (Part){0};
+  }
   return r.part[root - r.first];
 }
 
