@@ -153,6 +153,8 @@ static const Unit *unit_of_symbol(Builder *b, const Symbol *s, Unit *room) {
     case SYM_PARAM: return m->params.at[s->index].fixed ? NULL : &m->params.at[s->index].unit;
     case SYM_ACC: case SYM_RATE: case SYM_CONST: case SYM_MULTIPLIER: case SYM_LOCAL: break;
   }
+  for (uint32_t i = 0; i < m->symmetries.n; i++)
+    if (expr_symbol(b->g, m->symmetries.at[i].charge) == s) return &m->symmetries.at[i].unit;
   return NULL;
 }
 
