@@ -253,7 +253,8 @@ static Unit unit_of_sum(const MeasureReader *r, const Part *p, const Part *q) {
 }
 
 static int is_pure(const Builder *b, const Part *p) {
-  return p->value.bare || (!p->unit.text[0] && dim_resolved(b->dims, p->value.dim) == DIM_NONE);
+  Dim dim = dim_resolved(b->dims, p->value.dim);
+  return p->value.bare || (!p->unit.text[0] && (dim == DIM_NONE || dim_is_open(b->dims, dim)));
 }
 
 /* Unit of a product or quotient with a pure number: the other one's. */
