@@ -79,7 +79,8 @@ static void lag_error(const Span *span, Parse *cx, Ast *ast, const char *message
 %type <one> single coord momentum param const input_ state let observable item map map_item each required excluded
 %type <one> assign option use monitor
 %type <list> rubbing laws dims indices places_bound exprs args names variables
-%type <id> happening window expr arith primary reach place moved bound value comparison every number literal declared gap law tuple condition
+%type <id> window
+%type <id> happening expr arith primary reach place moved bound value comparison every number literal declared gap law tuple condition
 %type <text> doc
 %type <unit> unit
 %type <ident> type method_name

@@ -1,13 +1,14 @@
-/* Measures: numbers that one keeps of a run. lagc reads and checks them (src/model/measure.c) and writes them in words, operations behind their operands:
- * `max(y) - 1` of y in cm is `y max() 1 0.01 * - [0.01 0 cm]`. A word is
+/* Measures: numbers that one keeps of a run. lagc reads and checks them (src/model/measure.c) and writes them in words,
+ * operations behind their operands: `max(y) - 1` of y in cm is `y max() 1 0.01 * - [0.01 0 cm]`. A word is
  *   x  x'  t  energy  "l*sin(th)"   a quantity: an output, coordinate, velocity, state, parameter, input or charge
  *   0.5  pi()               a number
  *   + - * / ^ neg() abs() sin() ... greater()   operations on the numbers before them
- *   max() min() mean() rms() drift() period()   of the expression before, along the run; max(10..20) in a window of time [s]
- *   at()                    the quantity before last at the time before [s]; without it and the words above, at the end of the run
+ *   max() min() mean() rms() drift() period()   of the expression before, along the run; max(10..20) from 10 to 20 s
+ *   at()                    the quantity at the time [s] before; without these words, at the end of the run
  *   hit(EVENT) count(EVENT) the time of its firing number n, which stands before; the number of firings
- *   end() lyapunov()        the time at which the run ends; the largest Lyapunov exponent, less its first tenth, by a second run with a tangent
- *   [FACTOR OFFSET UNIT]    the last word: the unit of the value. Without it a quantity alone is in its unit, any other value in SI.
+ *   end() lyapunov()        the time at which the run ends; the largest Lyapunov exponent without the run's first tenth,
+ *                           by a second run with a tangent
+ *   [FACTOR OFFSET UNIT]    the last word: the unit of the value; without it a quantity alone is in its own, others in SI.
  * All is computed in SI.
  *
  * All measures come from one run, by dense output within each step; the steps are those of a run without measures, bit by bit. Exceptions: methods of
@@ -19,8 +20,23 @@
 
 typedef struct Measures Measures;
 
-/* Measures text[n], as compiled, for runs of a scene. NULL: the message in why[size] says what is wrong. */
-Measures *lag_measures_new(const lag_scene *scene, int n, const char *const *text, char *why, size_t size);
+/* A function of one number, or of two. */
+typedef struct MeasureFunction {
+  const char *name;
+  double (*one)(double);
+  double (*two)(double, double);
+} MeasureFunction;
+
+/* For programs with words of their own, as the checker of models/NAME.facts. */
+typedef struct MeasureDialect {
+  int past_end;  /* 1: x(10) is also known after the end of the run, by a longer run */
+  int nfunctions;
+  const MeasureFunction *functions;                /* [nfunctions] */
+} MeasureDialect;
+
+/* Measures text[n], as compiled, for runs of a scene; dialect: NULL or more words. NULL: the message in why[size] says what is wrong. */
+Measures *lag_measures_new(const lag_scene *scene, int n, const char *const *text, const MeasureDialect *dialect, char *why,
+                           size_t size);
 void lag_measures_free(Measures *m);
 int lag_measures_count(const Measures *m);
 /* Unit of the values of measure k; "": it has none. */
@@ -44,20 +60,3 @@ int lag_measures_end(Measures *m, double *value);
 
 /* Whether a measure is taken along the run, as max(x) is, and not at some times only: each step has to be looked at. */
 int lag_measures_follow(const Measures *m);
-
-/* ---- For programs with words of their own, as the checker of models/NAME.facts */
-
-/* A function of one number, or of two. */
-typedef struct MeasureFunction {
-  const char *name;
-  double (*one)(double);
-  double (*two)(double, double);
-} MeasureFunction;
-
-typedef struct MeasureDialect {
-  int past_end;  /* 1: x(10) is also known after the end of the run, by a longer run */
-  int nfunctions;
-  const MeasureFunction *functions;                /* [nfunctions] */
-} MeasureDialect;
-
-Measures *lag_measures_new_dialect(const lag_scene *scene, int n, const char *const *text, const MeasureDialect *dialect, char *why, size_t size);

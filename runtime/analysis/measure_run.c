@@ -31,7 +31,8 @@ static int allocate(Measures *m) {
   return LAG_OK;
 }
 
-Measures *lag_measures_new_dialect(const lag_scene *scene, int n, const char *const *text, const MeasureDialect *dialect, char *why, size_t size) {
+Measures *lag_measures_new(const lag_scene *scene, int n, const char *const *text, const MeasureDialect *dialect, char *why,
+                           size_t size) {
   Measures *m = calloc(1, sizeof *m);
   size_t count = n > 0 ? (size_t)n : 1;
   snprintf(why, size, "out of memory");
@@ -45,10 +46,6 @@ Measures *lag_measures_new_dialect(const lag_scene *scene, int n, const char *co
   if (rc == 0 && allocate(m) == LAG_OK) return why[0] = '\0', m;
   lag_measures_free(m);
   return NULL;
-}
-
-Measures *lag_measures_new(const lag_scene *scene, int n, const char *const *text, char *why, size_t size) {
-  return lag_measures_new_dialect(scene, n, text, NULL, why, size);
 }
 
 void lag_measures_free(Measures *m) {

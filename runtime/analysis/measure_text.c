@@ -1,5 +1,5 @@
-/* Measures from words, as lagc compiles them (measure.h has the notation). Enters: the words of a measure, the names of a scene; leaves: nodes, one a
- * word, and the unit of the value. Holds: a wrong word leaves a message; DEEPEST operands wait at most. */
+/* Measures from words, as lagc compiles them (measure.h has the notation). Enters: words, the names of a scene.
+ * Leaves: a node for each word, the unit of the value. Holds: a wrong word leaves a message; at most DEEPEST operands wait. */
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -41,8 +41,9 @@ static double sign(double a) { return (a > 0) - (a < 0); }
 static const MeasureFunction functions[] = {
 #define ROW(OP, name, ...) {#name, LAG_OF_REAL(name), NULL},
   FUNCTIONS(ROW)
-  {"sqrt", sqrt, NULL}, {"abs", fabs, NULL}, {"floor", floor, NULL}, {"neg", negative, NULL}, {"sign", sign, NULL}, {"atan2", NULL, atan2}, {"hypot", NULL, hypot}, {"lesser", NULL, least},
-  {"greater", NULL, most}, {"+", NULL, add}, {"-", NULL, subtract}, {"*", NULL, multiply}, {"/", NULL, divide}, {"^", NULL, pow},
+  {"sqrt", sqrt, NULL}, {"abs", fabs, NULL}, {"floor", floor, NULL}, {"neg", negative, NULL}, {"sign", sign, NULL},
+  {"atan2", NULL, atan2}, {"hypot", NULL, hypot}, {"lesser", NULL, least}, {"greater", NULL, most},
+  {"+", NULL, add}, {"-", NULL, subtract}, {"*", NULL, multiply}, {"/", NULL, divide}, {"^", NULL, pow},
 };
 
 /* Writes the message; returns -1. */
@@ -60,8 +61,8 @@ static int fail(Reader *r, const char *format, ...) {
 }
 
 static int not_compiled(Reader *r, const char *word) {
-  return fail(r, "`%s` is no word of a compiled measure; lagc compiles them: `measure top = max(x)` in the scene, or lagc run MODEL --measure 'max(x)'; a program of its own takes operations "
-              "behind their operands, 'x max()'", word);
+  return fail(r, "`%s` is no word of a compiled measure; lagc compiles them: `measure top = max(x)` in the scene, or "
+              "lagc run MODEL --measure 'max(x)'; a program takes operations behind their operands, 'x max()'", word);
 }
 
 /* ---- Nodes */
@@ -90,10 +91,14 @@ static int put(Reader *r, MeasureNode node, int n) {
   return 0;
 }
 
-static int put_number(Reader *r, double x) { return put(r, (MeasureNode){.kind = MEASURE_NUMBER, .known = MEASURE_STATIC, .result = x}, 0); }
+static int put_number(Reader *r, double x) {
+  return put(r, (MeasureNode){.kind = MEASURE_NUMBER, .known = MEASURE_STATIC, .result = x}, 0);
+}
 
 /* A value of the run as a whole, which is known after it. */
-static MeasureNode whole(MeasureKind kind, int index) { return (MeasureNode){.kind = kind, .index = index, .known = 0, .result = NAN}; }
+static MeasureNode whole(MeasureKind kind, int index) {
+  return (MeasureNode){.kind = kind, .index = index, .known = 0, .result = NAN};
+}
 
 /* ---- Names */
 
@@ -141,16 +146,11 @@ static int find_quantity(const lag_scene *scene, const char *name, QuantityKind 
 }
 
 static int no_name(Reader *r, const char *name) {
-  const lag_scene *scene = r->m->scene;
-  const lag_model *m = scene->model;
-  char known[LONGEST_WORD];
-  lag_nearest near = {.name = name};
-  for (int i = 0; i < scene->nout; i++) lag_try_nearest(&near, scene->outputs[i].name);
-  for (int k = 0; m->charges && k < m->charges->n; k++) lag_try_nearest(&near, m->charges->of[k].name);
-  if (m->energy) lag_try_nearest(&near, "energy");
-  if (!near.best && lag_nearest_name(m, name, known, sizeof known)) near.best = known;
-  if (near.best) return fail(r, "no output, coordinate, parameter or charge is called %s; did you mean %s?", name, near.best);
-  return strpbrk(name, " (") ? not_compiled(r, name) : fail(r, "no output, coordinate, parameter or charge is called %s", name);
+  char near[LONGEST_WORD];
+  int known = lag_nearest_name(r->m->scene->model, name, near, sizeof near);
+  if (strpbrk(name, " (")) return not_compiled(r, name);
+  return fail(r, "no output, coordinate, parameter or charge is called %s%s%s%s", name, known ? "; did you mean " : "",
+              known ? near : "", known ? "?" : "");
 }
 
 /* A quantity; alone it is in its own unit. */
@@ -161,7 +161,8 @@ static int put_quantity(Reader *r, const char *name) {
   if (!find_quantity(r->m->scene, name, &of, &index, &unit)) return no_name(r, name);
   r->unit = unit;
   r->m->uses[of] = 1;
-  return put(r, (MeasureNode){.kind = MEASURE_QUANTITY, .of = of, .index = index, .known = of == QUANTITY_PARAMETER ? MEASURE_STATIC : 0, .result = NAN}, 0);
+  int known = of == QUANTITY_PARAMETER ? MEASURE_STATIC : 0;
+  return put(r, (MeasureNode){.kind = MEASURE_QUANTITY, .of = of, .index = index, .known = known, .result = NAN}, 0);
 }
 
 /* ---- Operations */
@@ -179,7 +180,8 @@ static int put_track(Reader *r, TrackKind which, const char *window) {
   if (!track) return fail(r, "out of memory");
   m->track = track;
   if (put(r, whole(MEASURE_TRACK, m->ntracks), 1)) return -1;
-  track[m->ntracks++] = (Track){.kind = which, .node = m->nnodes - 1, .arg = m->node[m->nnodes - 1].a, .from = from, .to = to};
+  int node = m->nnodes - 1;
+  track[m->ntracks++] = (Track){.kind = which, .node = node, .arg = m->node[node].a, .from = from, .to = to};
   if (which == TRACK_MEAN || which == TRACK_RMS) m->integrates = 1;
   else m->samples = 1;
   return 0;
@@ -190,7 +192,8 @@ static int put_event(Reader *r, int hit, const char *event) {
   int k = 0;
   lag_nearest near = {.name = event};
   while (k < m->nev && strcmp(m->ev[k].name, event) != 0) lag_try_nearest(&near, m->ev[k++].name);
-  if (k == m->nev) return fail(r, near.best ? "no event is called %s; did you mean %s?" : "no event is called %s", event, near.best);
+  if (k == m->nev && near.best) return fail(r, "no event is called %s; did you mean %s?", event, near.best);
+  if (k == m->nev) return fail(r, "no event is called %s", event);
   return put(r, whole(hit ? MEASURE_HIT : MEASURE_FIRINGS, k), hit);
 }
 
@@ -221,10 +224,13 @@ static int put_operation(Reader *r, const char *word, const char *name, const ch
   if (track < TRACK_KINDS) return put_track(r, (TrackKind)track, argument);
   if (hit || strcmp(name, "count") == 0) return put_event(r, hit, argument);
   if (at) return put_at(r);
-  if (f) return put(r, (MeasureNode){.kind = f->two ? MEASURE_TWO : MEASURE_ONE, .one = f->one, .two = f->two, .known = MEASURE_STATIC, .result = NAN}, f->two ? 2 : 1);
+  MeasureKind kind = f && f->two ? MEASURE_TWO : MEASURE_ONE;
+  MeasureNode call = {.kind = kind, .one = f ? f->one : NULL, .two = f ? f->two : NULL, .known = MEASURE_STATIC, .result = NAN};
+  if (f) return put(r, call, f->two ? 2 : 1);
   if (strcmp(name, "pi") == 0) return put_number(r, 3.14159265358979323846264338327950288);
   r->m->exponent |= exponent;
-  return exponent ? put(r, whole(MEASURE_LYAPUNOV, 0), 0) : strcmp(name, "end") == 0 ? put(r, whole(MEASURE_END, 0), 0) : not_compiled(r, word);
+  if (exponent || strcmp(name, "end") == 0) return put(r, whole(exponent ? MEASURE_LYAPUNOV : MEASURE_END, 0), 0);
+  return not_compiled(r, word);
 }
 
 /* [FACTOR OFFSET UNIT], [] for SI: the unit of the value. */
@@ -261,7 +267,8 @@ static int read_word(Reader *r, char *word) {
 static size_t word_length(const char *s) {
   size_t n = 0;
   if (*s == '"') return s[1 + (n = strcspn(s + 1, "\""))] ? n + 2 : n + 1;
-  for (int open = 0; s[n] && s[n] != ';' && (open || s[n] != ' '); n++) open += (s[n] == '(' || s[n] == '[') - ((s[n] == ')' || s[n] == ']') && open);
+  for (int open = 0; s[n] && s[n] != ';' && (open || s[n] != ' '); n++)
+    open += (s[n] == '(' || s[n] == '[') - ((s[n] == ')' || s[n] == ']') && open);
   return n;
 }
 

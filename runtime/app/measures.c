@@ -1,12 +1,12 @@
-/* Measures of a run (analysis/measure.h): those of the scene, and of --measure, as lagc compiles them. Enters: words; leaves: a line each in the
- * report, a member each in JSON. Holds: wrong words are refused before anything runs. */
+/* Measures of a run (analysis/measure.h): those of the scene, and of --measure, as lagc compiles them. Enters: words.
+ * Leaves: a line each in the report, a member each in JSON. Holds: wrong words are refused before anything runs. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
 
-/* The words of the measure in NAME=WORDS, or, as lagc writes them, in NAME, a semicolon and words for each variant of the model; without a name they are it. */
+/* The words of NAME=WORDS, or, as lagc writes them, NAME;WORDS;WORDS for the variants of the model; alone they are the name. */
 static const char *split(const char *text, size_t *name_length) {
   size_t n = strcspn(text, ";");
   *name_length = text[n] ? n : strcspn(text, "=");
@@ -49,7 +49,7 @@ int lag_app_measures_open(App *app) {
   app->measured = calloc(most, sizeof *app->measured);
   app->measure_names = calloc(most + 1, sizeof *app->measure_names);
   int n = texts && app->measured && app->measure_names ? collect(app, texts) : (lag_app_error(&app->args, "out of memory"), -1);
-  if (n >= 0 && !(app->measures = lag_measures_new(app->scene, n, texts, why, sizeof why))) lag_app_error(&app->args, "--measure %s", why);
+  if (n >= 0 && !(app->measures = lag_measures_new(app->scene, n, texts, NULL, why, sizeof why))) lag_app_error(&app->args, "--measure %s", why);
   if (!app->measures) return EXIT_USAGE;
   return lag_measures_refused(app->measures, app->sim, app->until, why, sizeof why) ? lag_app_error(&app->args, "--measure lyapunov: %s", why) : 0;
 }

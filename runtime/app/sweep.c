@@ -161,7 +161,7 @@ static int vary_measures(SweepApp *s, int v) {
     for (int i = 0; i < first->nmeasures && i < scene->nmeasures; i++)
       if (text[k] == first->measures[i].text) text[k] = scene->measures[i].text;
   }
-  Measures *m = lag_measures_new(scene, n, text, why, sizeof why);
+  Measures *m = lag_measures_new(scene, n, text, NULL, why, sizeof why);
   lag_measures_free(m);
   return m ? 0 : lag_app_error(&app->args, "%s--measure %s", variant_words(s, v, with, sizeof with), why);
 }

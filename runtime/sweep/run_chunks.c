@@ -114,7 +114,7 @@ static void work(void *worker) {
 
 Measures *lag_sweep_measures(const Sweep *s, int variant) {
   char why[1];
-  return lag_measures_new(lag_sim_scene(s->variant[variant].like), s->nmeasures, s->variant[variant].measure, why, sizeof why);
+  return lag_measures_new(lag_sim_scene(s->variant[variant].like), s->nmeasures, s->variant[variant].measure, NULL, why, sizeof why);
 }
 
 static void close_measures(const Sweep *s, Measures **m) {

@@ -1,4 +1,5 @@
-/* Parses the expressions of --observe, --section, plot and animate, finds the points of an animation, and writes the simulator's argv. */
+/* Parses the expressions of --observe, --measure, --section, plot and animate, finds the points of an animation, and
+ * writes the simulator's argv. */
 #include "commands/run_request.h"
 
 #include <string.h>
@@ -117,7 +118,7 @@ static int prepare_section(RequestBuilder *k, const char **error) {
 
 /* --- measures --- */
 
-/* Where the expression begins in NAME=EXPR, or EXPR, whose name is its text; T^(2/3)=... has a name, x(t=2) has none. */
+/* The expression of NAME=EXPR, or of EXPR, whose name is its text; T^(2/3)=... has a name, x(t=2) has none. */
 static const char *split_name(const char *text, size_t *name_length) {
   const char *equals = NULL;
   int depth = 0;
@@ -148,7 +149,8 @@ static int prepare_measures(RequestBuilder *k, const char **error) {
     CommandOutput asked = {.name = intern_n(k->ast->names, given, n)};
     for (uint32_t m = 0; m < k->p->measures.n; m++)
       if (k->p->measures.at[m].name == asked.name)
-        return fail_with(error, arena_printf(k->arena, "--measure %s: another measure is called %s; write NAME=EXPR with another name", given, asked.name));
+        return fail_with(error, arena_printf(k->arena, "--measure %s: another measure is called %s; write NAME=EXPR with "
+                                             "another name", given, asked.name));
     const Source *source = source_add(k->ast->sources, "--measure", text, strlen(text));
     if (!source || !(asked.expr = parse_expression(k->ast, source))) return 0;
     vec_push(k->arena, &k->p->measures, asked);

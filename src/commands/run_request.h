@@ -1,4 +1,5 @@
-/* Requests of --observe, --measure, plot and animate, turned into outputs and measures of the scene and arguments of its simulator.
+/* Requests of --observe, --measure, plot and animate, turned into outputs and measures of the scene and into arguments
+ * of its simulator.
  *
  * In: the options and the parsed file. Expressions are parsed here; model_build resolves them like any output of a
  * scene, so mistakes in them are reported with their text and a caret. */

@@ -20,7 +20,8 @@
 /* The equations of a scene with the outputs, inputs and section of the command line. */
 static Eqns *derive_asked(Compiler *c, const char *scene, int measures) {
   return compiler_derive_wanted(c, &(ModelChoice){.scene = scene, .asked = c->picture.asked.at, .nextra_outputs = c->picture.asked.n,
-                                  .measures = c->picture.measures.at, .nmeasures = measures ? c->picture.measures.n : 0, .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
+                                  .measures = c->picture.measures.at, .nmeasures = measures ? c->picture.measures.n : 0,
+                                  .given = c->given.at, .ngiven = c->given.n, .section = c->picture.section});
 }
 
 typedef VEC(const Measures *) Measured; /* the measures of the command line, of each variant */
@@ -32,8 +33,9 @@ static void pass_measures(Compiler *c, const Measured *of) {
   for (uint32_t i = 0; i < of->at[0]->n; i++) {
     StrBuf b = strbuf(c->arena);
     uint32_t texts = 1;
+    const char *first = measure_words(c->arena, &of->at[0]->at[i]);
     for (uint32_t v = 1; v < of->n; v++)
-      if (strcmp(measure_words(c->arena, &of->at[v]->at[i]), measure_words(c->arena, &of->at[0]->at[i])) != 0) texts = of->n;
+      if (strcmp(measure_words(c->arena, &of->at[v]->at[i]), first) != 0) texts = of->n;
     sb_puts(&b, of->at[0]->at[i].name);
     for (uint32_t v = 0; v < texts; v++) sb_printf(&b, ";%s", measure_words(c->arena, &of->at[v]->at[i]));
     vec_push(c->arena, &c->picture.argv, arena_strdup(c->arena, "--measure"));
@@ -130,12 +132,13 @@ int simulator_lower(Compiler *c, Units *units) {
   const char *error, *first = c->picture.scene ? c->picture.scene : scenes.at[0];
   uint32_t variants = const_range_variants(c->arena, &c->o, &error);
   Measured measured = {0};
+  int simulates = command_simulates(c->o.command);
   for (uint32_t v = 0; v < variants; v++) { /* of the constants that a sweep varies */
     if (!const_range_define(c->ast, &c->o, v)) return 0;
-    Eqns *run = command_simulates(c->o.command) ? derive_asked(c, first, 1) : NULL; /* its measures may need outputs, which a program of all scenes lacks */
+    Eqns *run = simulates ? derive_asked(c, first, 1) : NULL;
+    if (simulates && !run) return c->o.consts.n ? tell_variant(c) : 0;
     if (run) vec_push(c->arena, &measured, &run->m->asked_measures);
-    else if (command_simulates(c->o.command)) return c->o.consts.n ? tell_variant(c) : 0;
-    if (run && run->m->measured_outputs) scenes = named;
+    if (run && run->m->measured_outputs) scenes = named; /* which a program of all scenes lacks */
     for (uint32_t i = 0; i < scenes.n; i++) {
       int runs = run && strcmp(first, scenes.at[i]) == 0;
       Eqns *e = runs ? run : derive_asked(c, scenes.at[i], scenes.at == named.at && scenes.n == named.n);

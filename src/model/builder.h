@@ -127,6 +127,7 @@ struct Builder {
   const AstStmt **chain; /* the scene after its `like` ancestors, oldest first; NULL-terminated */
   int is_variant;  /* ModelChoice.only is given */
   int is_giving;   /* ModelChoice.given is being applied */
+  int is_measuring; /* a measure is being read */
   int unitless;    /* no name of the model has a unit: dimensions are not checked */
   const BoundName *bound; /* [nbound] the group parameter of the symmetry being read; the new variables of a canonical transformation */
   uint32_t nbound;
@@ -280,7 +281,7 @@ void set_monitor(Builder *b, const AstStmt *st);
 
 /* measure.c: reads `measure NAME = EXPR`; a second one of the name replaces the first. */
 void set_measure(Builder *b, const AstStmt *st);
-/* The same of the command line: plain numbers are in the unit beside them, and units that do not match draw warnings. */
+/* The same of the command line: plain numbers are in the unit beside them, units that do not match draw warnings. */
 void ask_measure(Builder *b, const CommandOutput *asked);
 
 /* input_table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without the effect. */
@@ -330,7 +331,7 @@ const char *expression_digits(Builder *b, Expr e);
 
 /* Records a let, a function or an observable, without a value. */
 void add_definition(Builder *b, EntKind kind, Definition d);
-/* resolve_function.c: the functions of functions.def that are defined by a text, as far as some expression calls them. */
+/* resolve_function.c: the functions that functions.def defines by a text, as far as some expression calls them. */
 void declare_composed(Builder *b);
 
 /* Evaluates a let or an observable, unless it has a value already. */

@@ -159,10 +159,8 @@ static void declare_let(Builder *b, const AstStmt *st, Name effect) {
 
 /* Reports functions called like built-in ones, and arguments of equal names. */
 static void check_function(Builder *b, const AstStmt *st) {
-  for (size_t i = 0; function_name(i); i++)
-    if (!function_is_composed(i) && strcmp(function_name(i), st->name) == 0) {
-      diag_error(b->diags, st->name_span, "`%s` is a function of the language" HELP "choose another name", st->name);
-    }
+  if (function_index(st->name) >= 0)
+    diag_error(b->diags, st->name_span, "`%s` is a function of the language" HELP "choose another name", st->name);
   for (AstId i = st->args; i; i = ast_expr(b->ast, i)->next)
     for (AstId k = st->args; k != i; k = ast_expr(b->ast, k)->next)
       if (ast_expr(b->ast, k)->name == ast_expr(b->ast, i)->name)

@@ -1,7 +1,7 @@
-/* Measures: numbers that one keeps of a run. Enters: `measure top = max(y) - h`, or an expression of the command line; leaves: its words for the runtime
- * (runtime/analysis/measure.h), operations behind their operands, and the unit of its value. Holds: names, events, shapes and units are checked here.
- * Arithmetic of quantities stays as it is; any other expression of the language, and in a scene what stands inside max( ), becomes an output. A
- * function of measures is its text. The rest is one loop over the nodes. */
+/* Measures: numbers that one keeps of a run. Enters: `measure top = max(y) - h`, or an expression of the command line.
+ * Leaves: its words for the runtime (runtime/analysis/measure.h), operations behind their operands, and its unit.
+ * Holds: names, events, shapes and units are checked here. Arithmetic of quantities stays as it is; any other
+ * expression, and in a scene what stands inside max( ), becomes an output. A function of measures is its text. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,30 +34,20 @@ typedef struct {
   uint8_t *inside; /* 1: the node belongs to an operand that is read as a whole */
   uint8_t *whole;  /* 1: the node contains a value of the whole run, or an argument of the frame */
   const Frame *frame;
-  int command;     /* 1: an expression of the command line, whose plain numbers are in the unit beside them, and whose units draw warnings */
+  int command;     /* 1: of the command line: plain numbers are in the unit beside them, mismatches draw warnings */
 } MeasureReader;
 
 typedef enum { CALL_TRACK, CALL_HIT, CALL_COUNT, CALL_FUNCTION, CALL_AT, CALL_TEXT, CALL_ELSE } CallKind;
 
-#define MEASURE_WORDS "max min mean rms drift period hit count"
+#define TRACK_WORDS "max min mean rms drift period"
 
 enum { UNCHECKED = 2 };
 
-/* Reports a mismatch of units: 0, or UNCHECKED where the numbers are taken all the same. */
-#define MISMATCH(r, ...) ((r)->command ? (diag_warning((r)->b->diags, __VA_ARGS__), UNCHECKED) : (diag_error((r)->b->diags, __VA_ARGS__), 0))
-
-/* The word of a function of numbers; NULL: it has none. */
-static const char *function_word(const char *name) {
-  static const char *const rows[][2] = {
-#define ROW(OP, name, ...) {#name, #name "()"},
-    FUNCTIONS(ROW)
-    {"sqrt", "sqrt()"}, {"abs", "abs()"}, {"floor", "floor()"}, {"sign", "sign()"}, {"atan2", "atan2()"}, {"hypot", "hypot()"}, {"min", "lesser()"}, {"max", "greater()"}, {"pow", "^"}};
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-    if (strcmp(rows[i][0], name) == 0) return rows[i][1];
-  return NULL;
+/* Whether measures have the function. */
+static int is_function(const char *name) {
+#define WORD(OP, name, ...) #name " "
+  return has_word(FUNCTIONS(WORD) "sqrt abs floor sign atan2 hypot min max pow", name);
 }
-
-static int takes_two(const char *name) { return has_word("atan2 hypot min max pow", name); }
 
 static const Entity *entity_named(Builder *b, Name name) {
   int ambiguous;
@@ -69,12 +59,17 @@ static CallKind call_kind(const MeasureReader *r, AstId id) {
   const Entity *e = entity_named(r->b, x->name);
   AstId second = x->args ? ast_expr(r->b->ast, x->args)->next : 0;
   if (e && e->kind == ENT_FUNCTION) return r->whole[id - r->first] ? CALL_TEXT : CALL_ELSE;
-  if (has_word("max min mean rms drift period", x->name) && x->args && (!second || ast_expr(r->b->ast, second)->kind == AST_BIND)) return CALL_TRACK;
+  int alone = x->args && (!second || ast_expr(r->b->ast, second)->kind == AST_BIND); /* max(x, y) is the larger */
+  if (alone && has_word(TRACK_WORDS, x->name)) return CALL_TRACK;
   if (strcmp(x->name, "hit") == 0) return CALL_HIT;
   if (strcmp(x->name, "count") == 0) return CALL_COUNT;
   if ((e && e->kind != ENT_NONE) || has_word("energy lagrangian t", x->name)) return CALL_AT;
-  return function_word(x->name) ? CALL_FUNCTION : CALL_ELSE;
+  return is_function(x->name) ? CALL_FUNCTION : CALL_ELSE;
 }
+
+/* Reports a mismatch of units: 0, or UNCHECKED where the numbers are taken all the same. */
+#define MISMATCH(r, ...) \
+  ((r)->command ? (diag_warning((r)->b->diags, __VA_ARGS__), UNCHECKED) : (diag_error((r)->b->diags, __VA_ARGS__), 0))
 
 static int is_arithmetic(AstKind kind) { return kind == AST_NEG || (kind >= AST_ADD && kind <= AST_POW); }
 
@@ -91,15 +86,23 @@ static const char *word_of_run(MeasureReader *r, const AstExpr *x) {
   return x->kind == AST_NAME && has_word("end lyapunov", x->name) && !entity_named(r->b, x->name) ? x->name : NULL;
 }
 
-/* Marks nodes that contain values of the whole run: from arguments to parents. */
+/* Whether the node by itself is a value of the whole run, or an argument of the frame. */
+static uint8_t is_of_run(MeasureReader *r, AstId id) {
+  const AstExpr *x = ast_expr(r->b->ast, id);
+  CallKind call = x->kind == AST_CALL ? call_kind(r, id) : CALL_ELSE;
+  if (x->kind == AST_NAME) return word_of_run(r, x) || argument(r, x->name);
+  return x->kind == AST_AT || call == CALL_TRACK || call == CALL_HIT || call == CALL_COUNT || call == CALL_AT;
+}
+
+/* Marks nodes that contain such values: from arguments to parents. */
 static void mark_whole(MeasureReader *r, AstId root) {
   for (AstId id = r->first; id <= root; id++) {
     const AstExpr *x = ast_expr(r->b->ast, id);
-    uint8_t *whole = &r->whole[id - r->first];
     const AstId parts[] = {x->a, x->b, x->c};
-    for (int k = 0; k < 3; k++) *whole |= parts[k] >= r->first && r->whole[parts[k] - r->first];
-    for (AstId arg = x->args; arg >= r->first && arg; arg = ast_expr(r->b->ast, arg)->next) *whole |= r->whole[arg - r->first];
-    *whole |= x->kind == AST_AT || word_of_run(r, x) || (x->kind == AST_NAME && argument(r, x->name)) || (x->kind == AST_CALL && call_kind(r, id) < CALL_TEXT && call_kind(r, id) != CALL_FUNCTION);
+    uint8_t *whole = &r->whole[id - r->first];
+    for (int k = 0; k < 3; k++) *whole |= parts[k] && r->whole[parts[k] - r->first];
+    for (AstId arg = x->args; arg; arg = ast_expr(r->b->ast, arg)->next) *whole |= r->whole[arg - r->first];
+    *whole |= is_of_run(r, id);
   }
 }
 
@@ -112,8 +115,8 @@ static void mark_operands(MeasureReader *r, AstId root) {
   for (AstId id = root; id >= r->first; id--) {
     const AstExpr *x = ast_expr(r->b->ast, id);
     CallKind call = x->kind == AST_CALL ? call_kind(r, id) : CALL_ELSE;
-    int track = call == CALL_TRACK && !r->command && !r->frame;
-    int whole = r->inside[id - r->first] || (!is_arithmetic(x->kind) && x->kind != AST_AT && (x->kind != AST_CALL || call == CALL_ELSE || track));
+    int output = call == CALL_ELSE || (call == CALL_TRACK && !r->command && !r->frame);
+    int whole = r->inside[id - r->first] || (!is_arithmetic(x->kind) && x->kind != AST_AT && output);
     const AstId parts[] = {whole || x->kind == AST_AT ? x->a : 0, whole ? x->b : 0, whole ? x->c : 0};
     for (int k = 0; k < 3; k++)
       if (parts[k]) r->inside[parts[k] - r->first] = 1;
@@ -134,7 +137,9 @@ static const char *number_text(Builder *b, double x) {
 }
 
 /* A name as a word. */
-static const char *name_word(Builder *b, const char *name) { return arena_printf(b->arena, strpbrk(name, " ()+-*/^\"") ? "\"%s\"" : "%s", name); }
+static const char *name_word(Builder *b, const char *name) {
+  return arena_printf(b->arena, strpbrk(name, " ()+-*/^") ? "\"%s\"" : "%s", name);
+}
 
 /* Unit in which symbol s is shown; NULL: it has no name in the runtime. */
 static const Unit *unit_of_symbol(Builder *b, const Symbol *s, Unit *room) {
@@ -148,6 +153,8 @@ static const Unit *unit_of_symbol(Builder *b, const Symbol *s, Unit *room) {
     case SYM_PARAM: return m->params.at[s->index].fixed ? NULL : &m->params.at[s->index].unit;
     case SYM_ACC: case SYM_RATE: case SYM_CONST: case SYM_MULTIPLIER: case SYM_LOCAL: break;
   }
+  for (uint32_t i = 0; i < m->symmetries.n; i++)
+    if (expr_symbol(b->g, m->symmetries.at[i].charge) == s) return &m->symmetries.at[i].unit;
   return NULL;
 }
 
@@ -161,7 +168,8 @@ static Part operand(MeasureReader *r, AstId id) {
   p.value.e = v.e;
   if (!v.e) return p;
   if (v.n || v.condition) {
-    diag_error(b->diags, span, "a measure is made of numbers, and `%s` is %s", ast_short(b, id), v.n ? "a vector" : "a condition");
+    const char *what = v.n ? "a vector" : "a condition";
+    diag_error(b->diags, span, "a measure is made of numbers, and `%s` is %s", ast_short(b, id), what);
     if (v.n) diag_help(b->diags, "take a component: `%s.x`", ast_short(b, id));
     return p;
   }
@@ -169,7 +177,8 @@ static Part operand(MeasureReader *r, AstId id) {
   const Symbol *s = expr_op(b->g, v.e) == EX_SYM ? expr_sym_of(b->g, v.e) : NULL;
   int energy = s && expr_sym_id(b->g, v.e) == b->m->energy_sym;
   Unit room;
-  const Unit *own = s && b->dim_of.at[expr_sym_id(b->g, v.e)] == v.dim ? unit_of_symbol(b, s, &room) : NULL; /* y/1 [m] is the symbol y, too, but a pure number */
+  int same = s && b->dim_of.at[expr_sym_id(b->g, v.e)] == v.dim; /* y/1 [m] is the symbol y, too, but a pure number */
+  const Unit *own = same ? unit_of_symbol(b, s, &room) : NULL;
   if (own || energy) p.text = name_word(b, s->name);
   if (own && own->text[0]) p.unit = *own;
   p.unit.dim = v.dim;
@@ -185,25 +194,143 @@ static Part operand(MeasureReader *r, AstId id) {
   return p;
 }
 
-static Unit seconds(Builder *b, const char *text) { return unit_si(b->unitless ? DIM_ANY : dim_base(b->dims, DIM_TIME), text); }
-
-/* ---- Calls */
+static Unit seconds(Builder *b, const char *text) {
+  return unit_si(b->unitless ? DIM_ANY : dim_base(b->dims, DIM_TIME), text);
+}
 
 static Part wrong_call(MeasureReader *r, const AstExpr *x, const char *form) {
   diag_error(r->b->diags, x->span, "a measure `%s` is written `%s`", x->name, form);
   return (Part){0};
 }
 
+/* ---- Arithmetic */
+
+/* An operation on p and q: what it has of them. */
+static Part joined(const char *text, Unit unit, const Part *p, const Part *q) {
+  Part of = part_of(text, unit, p->measured || q->measured);
+  of.varies = p->varies || q->varies;
+  of.value.bare = p->value.bare && q->value.bare;
+  of.number = p->number && q->number;
+  of.plain = p->plain && q->plain;
+  return of;
+}
+
+static int is_si(const Unit *u) { return !u->text[0] || (num_is_one(u->factor) && !u->pi_power); }
+
+/* A term: the command line reads plain numbers beside a quantity in its unit. */
+static const char *term(const MeasureReader *r, const Part *p, const Part *beside) {
+  if (!r->command || !p->plain || beside->plain || is_si(&beside->unit)) return p->text;
+  return arena_printf(r->b->arena, "%s %s *", p->text, unit_factor_text(r->b->arena, &beside->unit));
+}
+
+static int is_zero_part(const Builder *b, const Part *p) { return p->value.e && expr_is_zero(b->g, p->value.e); }
+
+/* 1; 0 or UNCHECKED, reported, where operands have other units. */
+static int units_fit(MeasureReader *r, Span span, AstId left, AstId right) {
+  Builder *b = r->b;
+  const Part *p = &r->part[left - r->first], *q = &r->part[right - r->first];
+  const Part *number = p->value.bare ? p : q->value.bare ? q : NULL, *other = number == p ? q : p;
+  if (b->unitless || is_zero_part(b, p) || is_zero_part(b, q)) return 1;
+  if (number && (r->command || dim_is_open(b->dims, dim_resolved(b->dims, other->value.dim)))) return 1;
+  if (dim_equate(b->dims, p->value.dim, q->value.dim, span)) return 1;
+  const char *unit = dim_text(b->dims, other->value.dim);
+  int fits = MISMATCH(r, span, "units do not match: `%s` is %s, `%s` %s", ast_short(b, left), in_dim(b, p->value.dim),
+                      ast_short(b, right), in_dim(b, q->value.dim));
+  if (number) diag_help(b->diags, "give the number its unit: `%s [%s]`", number->text, unit);
+  return fits;
+}
+
+static int same_unit(const Unit *u, const Unit *v) {
+  return strcmp(u->text, v->text) == 0 && num_equal(u->factor, v->factor) && u->pi_power == v->pi_power;
+}
+
+/* Unit of a sum: the common one, or that beside a number; in a scene pure numbers beside an angle are in radians. */
+static Unit unit_of_sum(const MeasureReader *r, const Part *p, const Part *q) {
+  int first = (p->plain && r->command) || (p->number && !q->number), second = (q->plain && r->command) || q->number;
+  const Unit *u = first ? &q->unit : &p->unit;
+  int fits = first || second || (same_unit(&p->unit, &q->unit) && num_is_zero(q->unit.offset));
+  return fits && num_is_zero(u->offset) ? *u : unit_si(p->value.bare ? q->value.dim : p->value.dim, "");
+}
+
+static int is_pure(const Builder *b, const Part *p) {
+  Dim dim = dim_resolved(b->dims, p->value.dim);
+  return p->value.bare || (!p->unit.text[0] && (dim == DIM_NONE || dim_is_open(b->dims, dim)));
+}
+
+/* Unit of a product or quotient with a pure number: the other one's. */
+static Unit unit_of_product(const Builder *b, int times, const Part *p, const Part *q) {
+  Dim dim = (times ? dim_mul : dim_div)(b->dims, p->value.dim, q->value.dim);
+  const Unit *u = is_pure(b, q) ? &p->unit : times && is_pure(b, p) ? &q->unit : NULL;
+  Unit unit = u && num_is_zero(u->offset) ? *u : unit_si(dim, "");
+  unit.dim = dim;
+  return unit;
+}
+
+/* Unit of p to the power that node `exponent` is, where that is a number. */
+static Unit unit_of_power(const MeasureReader *r, const Part *p, AstId exponent) {
+  Value v = r->part[exponent - r->first].number && !r->frame ? resolve(r->b, exponent, IN_CONST, NULL) : (Value){0};
+  int known = v.e && expr_is_num(r->b->g, v.e);
+  return unit_si(known ? dim_pow(r->b->dims, p->value.dim, expr_number(r->b->g, v.e)) : DIM_NONE, "");
+}
+
+static Unit unit_of_size(const Part *p) { return num_is_zero(p->unit.offset) ? p->unit : unit_si(p->value.dim, ""); }
+
+static Part arithmetic(MeasureReader *r, AstKind kind, Span span, AstId left, AstId right) {
+  Builder *b = r->b;
+  const Part *p = &r->part[left - r->first], *q = kind == AST_NEG ? p : &r->part[right - r->first];
+  int sum = kind == AST_ADD || kind == AST_SUB, fits = 1;
+  if (!p->text || !q->text || (sum && !(fits = units_fit(r, span, left, right)))) return (Part){0};
+  if (kind == AST_NEG) return joined(arena_printf(b->arena, "%s neg()", p->text), unit_of_size(p), p, p);
+  Unit unit = sum               ? unit_of_sum(r, p, q)
+              : kind == AST_POW ? unit_of_power(r, p, right)
+                                : unit_of_product(b, kind == AST_MUL, p, q);
+  const char *first = sum ? term(r, p, q) : p->text, *second = sum ? term(r, q, p) : q->text;
+  const char *text = arena_printf(b->arena, "%s %s %c", first, second, "+-*/^"[kind - AST_ADD]);
+  return joined(text, fits == UNCHECKED ? unit_si(DIM_NONE, "") : unit, p, q);
+}
+
+/* ---- Functions of numbers */
+
+static Part function_of_two(MeasureReader *r, const AstExpr *x, AstId left, AstId right) {
+  const Part *p = &r->part[left - r->first], *q = &r->part[right - r->first];
+  const char *word = strcmp(x->name, "min") == 0 ? "lesser" : strcmp(x->name, "max") == 0 ? "greater" : x->name;
+  if (strcmp(x->name, "pow") == 0) return arithmetic(r, AST_POW, x->span, left, right);
+  if (!p->text || !q->text || !units_fit(r, x->span, left, right)) return (Part){0};
+  Unit unit = strcmp(x->name, "atan2") == 0 ? unit_si(DIM_NONE, "rad") : unit_of_sum(r, p, q);
+  return joined(arena_printf(r->b->arena, "%s %s %s()", term(r, p, q), term(r, q, p), word), unit, p, q);
+}
+
+static Part function(MeasureReader *r, const AstExpr *x) {
+  Builder *b = r->b;
+  int two = has_word("atan2 hypot min max pow", x->name);
+  if (ast_list_length(b->ast, x->args) != (two ? 2 : 1))
+    return wrong_call(r, x, arena_printf(b->arena, two ? "%s(y, x)" : "%s(x)", x->name));
+  if (two) return function_of_two(r, x, x->args, ast_expr(b->ast, x->args)->next);
+  const Part *p = &r->part[x->args - r->first];
+  Num root = num_ratio(1, strcmp(x->name, "sqrt") == 0 ? 2 : 3);
+  Unit unit = has_word("sqrt cbrt", x->name) ? unit_si(dim_pow(b->dims, p->value.dim, root), "")
+              : strcmp(x->name, "abs") == 0  ? unit_of_size(p)
+                                             : unit_si(DIM_NONE, has_word("asin acos atan", x->name) ? "rad" : "");
+  if (!p->text) return (Part){0};
+  if (!has_word("abs sqrt cbrt sign", x->name) && !dim_equate(b->dims, p->value.dim, DIM_NONE, x->span) &&
+      !MISMATCH(r, ast_expr(b->ast, x->args)->span, "`%s` takes a pure number or an angle, and this is %s", x->name,
+                in_dim(b, p->value.dim)))
+    return (Part){0};
+  return joined(arena_printf(b->arena, "%s %s()", p->text, x->name), unit, p, p);
+}
+
+/* ---- Calls */
+
 /* "10" of a window of time, in s; NULL, reported, if it is none. */
 static const char *window_end(Builder *b, AstId id) {
   if (!id) return "";
   Value v = resolve(b, id, IN_CONST, NULL);
   if (!v.e) return NULL;
-  if (expr_is_num(b->g, v.e) && (v.bare || dim_equate(b->dims, v.dim, seconds(b, "").dim, ast_expr(b->ast, id)->span)))
+  Span span = ast_expr(b->ast, id)->span;
+  if (expr_is_num(b->g, v.e) && (v.bare || dim_equate(b->dims, v.dim, seconds(b, "").dim, span)))
     return number_text(b, num_value(expr_number(b->g, v.e)));
-  diag_error(b->diags, ast_expr(b->ast, id)->span,
-             "`%s` is no end of a window of time" HELP "write numbers: `max(x, 10..20)`, `max(x, 1 [min]..2 [min])`",
-             ast_short(b, id));
+  diag_error(b->diags, span, "`%s` is no end of a window of time" HELP
+             "write numbers: `max(x, 10..20)`, `max(x, 1 [min]..2 [min])`", ast_short(b, id));
   return NULL;
 }
 
@@ -224,17 +351,17 @@ static Part track(MeasureReader *r, AstId id) {
   Builder *b = r->b;
   const AstExpr *x = ast_expr(b->ast, id);
   Name name = x->name;
-  Span span = x->span, in = ast_expr(b->ast, x->args)->span;
+  Span span = x->span;
   AstId args = x->args, window = ast_expr(b->ast, args)->next;
-  Part of = r->inside[args - r->first] ? operand(r, args) : r->part[args - r->first];
-  if (!of.text) return (Part){0};
-  const char *within = window_text(b, window);
+  Part of = {.text = "", .measured = !r->frame && r->whole[args - r->first]};
+  if (!of.measured) of = r->inside[args - r->first] ? operand(r, args) : r->part[args - r->first];
+  const char *within = of.text ? window_text(b, window) : NULL;
   if (!within) return (Part){0};
-  if (of.measured || !of.varies) {
-    if (of.measured) diag_error(b->diags, in, "`%s` takes quantities, as x or x^2 + y^2; a value of the whole run stands outside", name);
-    else diag_error(b->diags, span, "`%s` does not change along the run", ast_short(b, args));
-    return (Part){0};
-  }
+  if (of.measured)
+    diag_error(b->diags, ast_expr(b->ast, args)->span,
+               "`%s` takes quantities, as x or x^2 + y^2; a value of the whole run stands outside", name);
+  else if (!of.varies) diag_error(b->diags, span, "`%s` does not change along the run", ast_short(b, args));
+  if (of.measured || !of.varies) return (Part){0};
   Unit unit = strcmp(name, "period") == 0 ? seconds(b, "s") : of.unit;
   if (has_word("drift rms", name)) unit.offset = num_int(0); /* a difference */
   return part_of(arena_printf(b->arena, "%s %s(%s)", of.text, name, within), unit, 1);
@@ -263,7 +390,8 @@ static Part event_time(MeasureReader *r, const AstExpr *x, int hit) {
   if (nth && !nth->text) return (Part){0};
   double number = nth && ast_expr(b->ast, second)->kind == AST_NUM ? strtod(nth->text, NULL) : 1;
   if (number < 1 || number != floor(number) || (nth && (nth->measured || nth->varies))) {
-    diag_error(b->diags, ast_expr(b->ast, second)->span, "no event happens for the `%s`th time", ast_short(b, second));
+    Span span = ast_expr(b->ast, second)->span;
+    diag_error(b->diags, span, "no event happens for the `%s`th time", ast_short(b, second));
     diag_help(b->diags, "`hit(%s)` is its first time, `hit(%s, 2)` its second", event, event);
     return (Part){0};
   }
@@ -283,40 +411,6 @@ static Part at_time(MeasureReader *r, AstId what, AstId time) {
   return part_of(arena_printf(b->arena, "%s %s at()", of.text, t->text), of.unit, 1);
 }
 
-/* Unit of f(p), or f(p, q). */
-static Unit unit_of_call(Builder *b, Name f, const Part *p) {
-  if (strcmp(f, "abs") == 0) return num_is_zero(p->unit.offset) ? p->unit : unit_si(p->value.dim, "");
-  if (has_word("sqrt cbrt", f)) return unit_si(dim_pow(b->dims, p->value.dim, num_ratio(1, strcmp(f, "sqrt") == 0 ? 2 : 3)), "");
-  return unit_si(DIM_NONE, has_word("asin acos atan atan2", f) ? "rad" : "");
-}
-
-static Part power(MeasureReader *r, AstId left, AstId right);
-static int units_fit(MeasureReader *r, Span span, AstId left, AstId right);
-static Unit unit_of_sum(const MeasureReader *r, const Part *p, const Part *q);
-static const char *term(const MeasureReader *r, const Part *p, const Part *beside);
-
-static Part function(MeasureReader *r, const AstExpr *x) {
-  Builder *b = r->b;
-  int two = takes_two(x->name);
-  if (ast_list_length(b->ast, x->args) != (two ? 2 : 1)) return wrong_call(r, x, two ? arena_printf(b->arena, "%s(y, x)", x->name) : arena_printf(b->arena, "%s(x)", x->name));
-  AstId second = ast_expr(b->ast, x->args)->next;
-  const Part *p = &r->part[x->args - r->first], *q = two ? &r->part[second - r->first] : p;
-  if (!p->text || !q->text) return (Part){0};
-  if (strcmp(x->name, "pow") == 0) return power(r, x->args, second);
-  int any = two || has_word("abs sqrt cbrt sign", x->name);
-  if (two && !b->unitless && !units_fit(r, x->span, x->args, second)) return (Part){0};
-  if (!any && !dim_equate(b->dims, p->value.dim, DIM_NONE, x->span) &&
-      !MISMATCH(r, ast_expr(b->ast, x->args)->span, "`%s` takes a pure number or an angle, and this is %s", x->name, in_dim(b, p->value.dim)))
-    return (Part){0};
-  const char *word = function_word(x->name), *first = two ? term(r, p, q) : p->text;
-  Unit unit = two && !has_word("atan2", x->name) ? unit_of_sum(r, p, q) : unit_of_call(b, x->name, p);
-  Part f = part_of(arena_printf(b->arena, two ? "%s %s %s" : "%s %s", first, two ? term(r, q, p) : word, word), unit, p->measured || q->measured);
-  f.varies = p->varies || q->varies;
-  f.plain = p->plain && q->plain;
-  f.value.bare = p->value.bare && q->value.bare;
-  return f;
-}
-
 static Part read_measure(Builder *b, AstId root, const Frame *frame, int command);
 
 /* A function of measures: its text, with the arguments' words. */
@@ -333,29 +427,14 @@ static Part text_call(MeasureReader *r, AstId id) {
     return (Part){0};
   }
   Part *part = ARENA_ARRAY(b->arena, Part, n + 1);
-  for (AstId arg = x->args; arg; arg = ast_expr(b->ast, arg)->next) ok &= (part[i++] = r->part[arg - r->first]).text != NULL;
-  return ok ? read_measure(b, f->rhs, &(Frame){f->args, part, depth}, r->command) : (Part){0};
-}
-
-/* A function that there is not: of a run, or of the language. */
-static Part unknown_call(MeasureReader *r, const AstExpr *x) {
-  Builder *b = r->b;
-  static const char *const words[] = {"max", "min", "mean", "rms", "drift", "period", "hit", "count"};
-  enum { WORDS = sizeof words / sizeof *words };
-  Name known[WORDS];
-  memcpy(known, words, sizeof words);
-  Name near = suggest(x->name, known, WORDS);
-  if (has_word(MEASURE_WORDS, x->name)) return wrong_call(r, x, arena_printf(b->arena, "%s(x)` or `%s(x, 10..20)", x->name, x->name));
-  diag_error(b->diags, x->op_span, "no function, output or coordinate is called `%s`", x->name);
-  if (near) diag_help(b->diags, "did you mean `%s`?", near);
-  else diag_help(b->diags, "of a run there are max, min, mean, rms, drift, period, hit, count and, without parentheses, end and lyapunov");
-  return (Part){0};
-}
-
-static int is_function(Name name) {
-  size_t i = 0;
-  while (function_name(i) && strcmp(function_name(i), name) != 0) i++;
-  return function_name(i) || has_word("exact error", name);
+  Span span = x->span;
+  uint32_t errors = b->diags->errors;
+  for (AstId arg = x->args; arg; arg = ast_expr(b->ast, arg)->next) part[i++] = r->part[arg - r->first];
+  while (i) ok &= part[--i].text != NULL;
+  Part p = ok ? read_measure(b, f->rhs, &(Frame){f->args, part, depth}, r->command) : (Part){0};
+  int fresh = b->diags->errors > errors && !b->diags->list.at[b->diags->latest].note;
+  if (fresh) diag_also(b->diags, span, "in this call");
+  return p;
 }
 
 static Part call(MeasureReader *r, AstId id) {
@@ -366,96 +445,17 @@ static Part call(MeasureReader *r, AstId id) {
     case CALL_HIT: case CALL_COUNT: return event_time(r, x, strcmp(x->name, "hit") == 0);
     case CALL_FUNCTION: return function(r, x);
     case CALL_TEXT: return text_call(r, id);
-    case CALL_ELSE: return entity_named(b, x->name) || is_function(x->name) ? operand(r, id) : unknown_call(r, x);
+    case CALL_ELSE:
+      if (!has_word(TRACK_WORDS, x->name) || entity_named(b, x->name)) return operand(r, id);
+      return wrong_call(r, x, arena_printf(b->arena, "%s(x)` or `%s(x, 10..20)", x->name, x->name));
     case CALL_AT: break;
   }
   if (ast_list_length(b->ast, x->args) != 1) return wrong_call(r, x, arena_printf(b->arena, "%s(10 [s])", x->name));
-  AstExpr name = {.kind = AST_NAME, .name = x->name, .span = x->op_span, .op_span = x->op_span, .first = b->ast->exprs.n};
+  Span at = x->op_span;
+  AstExpr name = {.kind = AST_NAME, .name = x->name, .span = at, .op_span = at, .first = b->ast->exprs.n};
   AstId time = x->args;
   vec_push(b->arena, &b->ast->exprs, name);
   return at_time(r, b->ast->exprs.n - 1, time);
-}
-
-/* ---- Arithmetic */
-
-/* A term: the command line reads plain numbers beside a quantity in its unit. */
-static const char *term(const MeasureReader *r, const Part *p, const Part *beside) {
-  if (!r->command || !p->plain || beside->plain || !beside->unit.text[0] || (num_is_one(beside->unit.factor) && !beside->unit.pi_power)) return p->text;
-  return arena_printf(r->b->arena, "%s %s *", p->text, unit_factor_text(r->b->arena, &beside->unit));
-}
-
-static int units_fit(MeasureReader *r, Span span, AstId left, AstId right) {
-  Builder *b = r->b;
-  const Part *p = &r->part[left - r->first], *q = &r->part[right - r->first];
-  const Part *number = p->value.bare ? p : q->value.bare ? q : NULL, *other = number == p ? q : p;
-  if (number && (r->command || dim_is_open(b->dims, dim_resolved(b->dims, other->value.dim)))) return 1;
-  if ((p->value.e && expr_is_zero(b->g, p->value.e)) || (q->value.e && expr_is_zero(b->g, q->value.e)) || dim_equate(b->dims, p->value.dim, q->value.dim, span)) return 1;
-  int fits = MISMATCH(r, span, "units do not match: `%s` is %s, `%s` %s", ast_short(b, left), in_dim(b, p->value.dim), ast_short(b, right), in_dim(b, q->value.dim));
-  if (number) diag_help(b->diags, "give the number its unit: `%s [%s]`", number->text, dim_text(b->dims, other->value.dim));
-  return fits;
-}
-
-static int same_unit(const Unit *u, const Unit *v) {
-  return strcmp(u->text, v->text) == 0 && num_equal(u->factor, v->factor) && u->pi_power == v->pi_power && num_is_zero(u->offset) && num_is_zero(v->offset);
-}
-
-/* Unit of a sum: the common one, or that beside a number. */
-static Unit unit_of_sum(const MeasureReader *r, const Part *p, const Part *q) {
-  int first = p->plain && r->command, second = q->plain && r->command; /* in a scene pure numbers beside an angle are in radians, and leave it its unit */
-  const Unit *u = first || (p->number && !q->number) ? &q->unit : &p->unit;
-  int fits = first || second || p->number || q->number || same_unit(&p->unit, &q->unit);
-  return fits && num_is_zero(u->offset) ? *u : unit_si(p->value.bare ? q->value.dim : p->value.dim, "");
-}
-
-static int is_pure(Builder *b, const Part *p) { return p->value.bare || (!p->unit.text[0] && dim_resolved(b->dims, p->value.dim) == DIM_NONE); }
-
-/* Unit of a product or quotient with a pure number: the other one's. */
-static Unit unit_of_product(Builder *b, const AstExpr *x, const Part *p, const Part *q) {
-  Dim dim = x->kind == AST_MUL ? dim_mul(b->dims, p->value.dim, q->value.dim) : dim_div(b->dims, p->value.dim, q->value.dim);
-  const Unit *u = is_pure(b, q) ? &p->unit : x->kind == AST_MUL && is_pure(b, p) ? &q->unit : NULL;
-  Unit unit = u && num_is_zero(u->offset) ? *u : unit_si(dim, "");
-  unit.dim = dim;
-  return unit;
-}
-
-static Part power(MeasureReader *r, AstId left, AstId right) {
-  Builder *b = r->b;
-  const Part *p = &r->part[left - r->first], *q = &r->part[right - r->first];
-  int known = q->value.e && expr_is_num(b->g, q->value.e);
-  Part of = part_of(arena_printf(b->arena, "%s %s ^", p->text, q->text), unit_si(known ? dim_pow(b->dims, p->value.dim, expr_number(b->g, q->value.e)) : DIM_NONE, ""), 0);
-  return of;
-}
-
-/* Node of an operation on numbers. */
-static Expr combined(ExprGraph *g, AstKind kind, Expr p, Expr q) {
-  switch ((int)kind) {
-    case AST_NEG: return expr_neg(g, p);
-    case AST_ADD: return expr_add(g, p, q);
-    case AST_SUB: return expr_sub(g, p, q);
-    case AST_MUL: return expr_mul(g, p, q);
-    case AST_DIV: return expr_is_zero(g, q) ? 0 : expr_div(g, p, q);
-    default: return 0;
-  }
-}
-
-static Part arithmetic(MeasureReader *r, const AstExpr *x) {
-  Builder *b = r->b;
-  AstId second = x->kind == AST_NEG ? x->a : x->b;
-  const Part *p = &r->part[x->a - r->first], *q = &r->part[second - r->first];
-  int sum = x->kind == AST_ADD || x->kind == AST_SUB, fits = 1;
-  if (!p->text || !q->text || (sum && !b->unitless && !(fits = units_fit(r, x->span, x->a, second)))) return (Part){0};
-  Part of = part_of(NULL, unit_of_call(b, "abs", p), 0);
-  if (x->kind == AST_POW) of = power(r, x->a, second);
-  else if (x->kind == AST_NEG) of.text = arena_printf(b->arena, "%s neg()", p->text);
-  else of = part_of(arena_printf(b->arena, "%s %s %c", sum ? term(r, p, q) : p->text, sum ? term(r, q, p) : q->text, "+-*/"[x->kind - AST_ADD]), sum ? unit_of_sum(r, p, q) : unit_of_product(b, x, p, q), 0);
-  of.measured = p->measured || q->measured;
-  of.varies = p->varies || q->varies;
-  of.value.bare = p->value.bare && q->value.bare;
-  of.number = p->number && q->number;
-  of.plain = p->plain && q->plain;
-  if (of.number) of.value.e = combined(b->g, x->kind, p->value.e, q->value.e);
-  if (fits == UNCHECKED) of.unit = unit_si(DIM_NONE, "");
-  return of;
 }
 
 /* ---- The whole */
@@ -470,19 +470,29 @@ static Part read_node(MeasureReader *r, AstId id) {
   if (word) return part_of("lyapunov()", unit_si(dim_div(b->dims, DIM_NONE, seconds(b, "").dim), "1/s"), 1);
   if (x.kind == AST_CALL) return call(r, id);
   if (x.kind == AST_AT) return at_time(r, x.a, x.b);
-  return is_arithmetic(x.kind) ? arithmetic(r, &x) : operand(r, id);
+  return is_arithmetic(x.kind) ? arithmetic(r, x.kind, x.span, x.a, x.b) : operand(r, id);
 }
 
 static Part read_measure(Builder *b, AstId root, const Frame *frame, int command) {
+  enum { WORDS = 2000, LONGEST = 5*WORDS }; /* a function of functions can double it fifty times */
   MeasureReader r = {.b = b, .first = ast_expr(b->ast, root)->first, .frame = frame, .command = command};
   uint32_t n = root - r.first + 1;
   r.part = ARENA_ARRAY(b->arena, Part, n);
   r.inside = ARENA_ARRAY(b->arena, uint8_t, n);
   r.whole = ARENA_ARRAY(b->arena, uint8_t, n);
+  b->is_measuring++;
   mark_whole(&r, root);
   mark_operands(&r, root);
-  for (AstId id = r.first; id <= root; id++)
-    if (!r.inside[id - r.first]) r.part[id - r.first] = read_node(&r, id);
+  for (AstId id = r.first; id <= root; id++) {
+    Part *p = &r.part[id - r.first];
+    if (!r.inside[id - r.first]) *p = read_node(&r, id);
+    if (!p->text || strlen(p->text) < LONGEST) continue;
+    Span span = ast_expr(b->ast, id)->span;
+    diag_error(b->diags, span, "this measure has more than %d words: give its parts names, `let`", WORDS);
+    *p = r.part[root - r.first] = (Part){0};
+    break;
+  }
+  b->is_measuring--;
   return r.part[root - r.first];
 }
 
@@ -512,5 +522,7 @@ void ask_measure(Builder *b, const CommandOutput *asked) {
 
 const char *measure_words(Arena *a, const Measure *m) {
   if (m->alone) return m->text;
-  return arena_printf(a, "%s [%s %s %s]", m->text, unit_factor_text(a, &m->unit), num_is_zero(m->unit.offset) ? "0" : decimal_literal(a, m->unit.offset, 0), m->unit.text);
+  const Unit *u = &m->unit;
+  const char *offset = num_is_zero(u->offset) ? "0" : decimal_literal(a, u->offset, 0);
+  return arena_printf(a, "%s [%s %s %s]", m->text, unit_factor_text(a, u), offset, u->text);
 }

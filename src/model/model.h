@@ -318,8 +318,8 @@ typedef struct {
 
 /* Name of built-in function i; NULL past the end. */
 const char *function_name(size_t i);
-/* Whether it is defined by a text in functions.def: names of a model go before it. */
-int function_is_composed(size_t i);
+/* Index of a built-in function; -1: none, or one that functions.def defines by a text, before which names of a model go. */
+int function_index(const char *name);
 
 /* Names of the file's scenes, in order; "default" alone when there is none. */
 typedef struct {

@@ -174,17 +174,15 @@ const char *function_name(size_t i) {
   return i < BUILT_IN ? functions[i].name : composed[i - BUILT_IN];
 }
 
-int function_is_composed(size_t i) { return i >= BUILT_IN; }
 
-/* Index of a built-in function; -1: none. */
-static int find_function(const char *name) {
+int function_index(const char *name) {
   for (size_t i = 0; i < BUILT_IN; i++)
     if (strcmp(name, functions[i].name) == 0) return (int)i;
   return -1;
 }
 
 int call_takes_vectors(const Eval *ev, const AstExpr *x) {
-  int i = find_function(x->name);
+  int i = function_index(x->name);
   return (i >= 0 && functions[i].takes_vectors) || strcmp(x->name, "exact") == 0 || strcmp(x->name, "error") == 0 || own_function(ev, x);
 }
 
@@ -204,10 +202,13 @@ static int is_of_time(const Eval *ev, const AstExpr *x) {
 
 static Value unknown_function(Eval *ev, const AstExpr *x) {
   Builder *b = ev->b;
+  static const char *const of_runs[] = {"max", "min", "mean", "rms", "drift", "period", "hit", "count"};
+  enum { OF_RUNS = sizeof of_runs / sizeof *of_runs };
   uint32_t n = 0;
   while (function_name(n)) n++;
-  Name *known = ARENA_ARRAY(b->arena, Name, n + b->scope.all.n);
+  Name *known = ARENA_ARRAY(b->arena, Name, n + b->scope.all.n + OF_RUNS);
   for (uint32_t i = 0; i < n; i++) known[i] = function_name(i);
+  for (uint32_t i = 0; i < OF_RUNS && b->is_measuring; i++) known[n++] = of_runs[i];
   for (uint32_t i = 0; i < b->scope.all.n; i++)
     if (b->scope.all.at[i].kind == ENT_FUNCTION) known[n++] = b->scope.all.at[i].name;
   int ambiguous;
@@ -229,6 +230,9 @@ static Value unknown_function(Eval *ev, const AstExpr *x) {
         x->name);
   else if (e) diag_help(b->diags, "`%s` is %s; for a product write `%s*(...)`", x->name, ent_kind_text(e->kind), x->name);
   else if (near) diag_help(b->diags, "did you mean `%s`?", near);
+  else if (b->is_measuring)
+    diag_help(b->diags, "of a run there are max, min, mean, rms, drift, period, hit, count and, without parentheses, "
+              "end and lyapunov");
   else diag_help(b->diags, "`lagc help functions` lists them; declare your own: `function %s(x) = ...`", x->name);
   return FAILED;
 }
@@ -242,7 +246,7 @@ Value call_value(Eval *ev, const AstExpr *x) {
     return ev->waiting ? FAILED : start_value(ev, v, x->span, value_of(ev, x->args));
   }
   if (call_is_exact(ev, x->name)) return exact_value(ev, x);
-  int i = find_function(x->name);
+  int i = function_index(x->name);
   if (i < 0) return unknown_function(ev, x);
   if (functions[i].value) return functions[i].value(ev, x);
   return (functions[i].op >= EX_ATAN2 ? call_binary : call_unary)(ev, x, functions[i].op);

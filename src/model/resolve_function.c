@@ -144,8 +144,10 @@ void declare_composed(Builder *b) {
     if (x->kind != AST_CALL) continue;
     for (const AstStmt *s = first; s; s = s->next) {
       int ambiguous;
-      if (s->name != x->name || scope_find(&b->scope, s->name, NULL, &ambiguous) || declared_in_use(b, s->name, NULL)) continue;
-      vec_push(b->arena, &b->scope.behind, ((Entity){.kind = ENT_FUNCTION, .index = b->functions.n, .name = s->name, .span = s->name_span}));
+      if (s->name != x->name || scope_find(&b->scope, s->name, NULL, &ambiguous)) continue;
+      if (declared_in_use(b, s->name, NULL)) continue;
+      Entity f = {.kind = ENT_FUNCTION, .index = b->functions.n, .name = s->name, .span = s->name_span};
+      vec_push(b->arena, &b->scope.behind, f);
       add_definition(b, ENT_FUNCTION, (Definition){.stmt = s, .name = s->name, .composed = 1});
     }
   }

@@ -19,7 +19,7 @@ static Expr partial_pair(ExprGraph *g, Expr e, uint32_t i) {
 
 static Expr square(ExprGraph *g, Expr a) { return expr_pow_num(g, a, num_int(2)); }
 
-/* The words of the column `derivative` of functions.def: each makes at most one node of an argument, so that nodes are numbered alike everywhere. */
+/* The words of the column `derivative` of functions.def: one argument is a call at most, so that C orders the nodes. */
 #define FN(op) expr_fn(g, EX_##op, x)
 #define NEG(a) expr_neg(g, a)
 #define SQUARE(a) square(g, a)

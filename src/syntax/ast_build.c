@@ -167,7 +167,8 @@ AstList ast_list_add(Ast *ast, AstList list, AstId item) {
 
 /* 10..20 of max(x, 10..20): a range without a name; 0: an end that is left out. */
 AstId ast_window(Ast *ast, Span span, AstId lo, AstId hi) {
-  return append(ast, (AstExpr){.kind = AST_BIND, .span = span, .op_span = span, .name = intern(ast->names, ""), .a = lo, .b = hi});
+  Name none = intern(ast->names, "");
+  return append(ast, (AstExpr){.kind = AST_BIND, .span = span, .op_span = span, .name = none, .a = lo, .b = hi});
 }
 
 AstList ast_list_before(Ast *ast, AstId item, AstList list) {

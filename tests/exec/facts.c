@@ -139,7 +139,7 @@ static Measures *compile(const lag_scene *scene, int n, const char *const *text,
     if (!measure_words(text[i], text_of_let, words[i], WORDS)) return fail(why, 0, "`%s` is no measure", text[i]), NULL;
     all[i] = words[i];
   }
-  return lag_measures_new_dialect(scene, n, all, &extended, why, LINE);
+  return lag_measures_new(scene, n, all, &extended, why, LINE);
 }
 
 /* ---- Facts ------------------------------------------------------------------------------------ */

@@ -148,7 +148,7 @@ check "a time that is a measure" wrong 'no event happens for the `max(x)`th time
 check "no expression" wrong 'expected an expression' --measure 'a='
 check "a name that is missing" refused 'a name is missing before' --measure '=end'
 check "two of one name" refused 'another measure is called a' --measure a=end --measure 'a=max(y)'
-check "a function of a run that there is not" wrong 'no function, output or coordinate is called `perod`' --measure 'perod(x)'
+check "a function of a run that there is not" wrong 'unknown function `perod`' --measure 'perod(x)'
 check "has the nearest as well" grep -q 'did you mean `period`?' err
 check "nothing near" wrong 'of a run there are max, min, mean' --measure 'final(x)'
 check "a constant" wrong 'does not change along the run' --measure 'max(m*g)'

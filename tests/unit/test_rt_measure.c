@@ -17,7 +17,7 @@ static Measures *measures_of(const lag_scene *scene, int n, const char *const *t
     assert_true(measure_words(text[k], NULL, words[k], sizeof words[k]));
     all[k] = words[k];
   }
-  Measures *m = lag_measures_new(scene, n, all, why, sizeof why);
+  Measures *m = lag_measures_new(scene, n, all, NULL, why, sizeof why);
   if (!m) {
     fail_msg("%s", why);
   }
@@ -328,7 +328,7 @@ static void values_are_in_their_units(void **state)
   (void)state;
   for (size_t i = 0; i < sizeof of/sizeof *of; i++) {
     double value;
-    Measures *m = lag_measures_new(&turn, 1, &of[i].text, why, sizeof why);
+    Measures *m = lag_measures_new(&turn, 1, &of[i].text, NULL, why, sizeof why);
     lag_sim *s = sim_with(&turn, &lag_dop853, 1e-12, 0, NULL);
     if (!m) {
       fail_msg("%s", why);
@@ -349,7 +349,7 @@ static void wrong_words_get_a_message(void **state)
     const char *text, *why;
   } of[] = {
       {"z max()", "no output, coordinate, parameter or charge is called z"},
-      {"enregy", "did you mean energy?"},
+      {"yy", "did you mean y?"},
       {"1 hit(grund)", "no event is called grund; did you mean ground?"},
       {"max(y)", "lagc compiles them"},
       {"max()", "`max()` is no word"}, {"y max(1)", "is no word"}, {"y sin() +", "`+` is no word"}, {"1 at()", "is no word"}, {"hit(ground)", "is no word"}, {"y y", "is no word"}, {"", "is no word"},
@@ -360,12 +360,12 @@ static void wrong_words_get_a_message(void **state)
   for (size_t i = 0; i < sizeof of/sizeof *of; i++) {
     char why[600];
     const char *two[] = {"y 1 at()", of[i].text};
-    assert_null(lag_measures_new(&ball, 2, two, why, sizeof why));
+    assert_null(lag_measures_new(&ball, 2, two, NULL, why, sizeof why));
     if (!strstr(why, of[i].why) || strncmp(why, of[i].text, strlen(of[i].text)) != 0) {
       fail_msg("\"%s\" does not say \"%s\"", why, of[i].why);
     }
     char cut[8]; /* a small buffer is not overrun */
-    assert_null(lag_measures_new(&ball, 2, two, cut, sizeof cut));
+    assert_null(lag_measures_new(&ball, 2, two, NULL, cut, sizeof cut));
   }
 }
 
