@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "base/dense.h"
 #include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "mech/states.h"
@@ -57,6 +58,7 @@ typedef struct {
   ExprGraph *g;
   VEC(Expr) row;      /* each is 0 along motions, and linear in the unknowns */
   VEC(SymId) unknown; /* accelerations, multipliers, then velocities of a model with constraints */
+  uint32_t square;    /* number of the first rows, for as many accelerations and multipliers */
   int tries;          /* steps still allowed */
 } RowSearch;
 
@@ -92,9 +94,11 @@ static void add_constraint_rows(RowSearch *w) {
   for (uint32_t k = 0; k < c->n; k++) {
     if (contact_of_constraint(e->m, c->of[k])) continue;
     vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, row[k]));
-    vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, with_definitions(e, c->r[k])));
     vec_push(e->m->arena, &w->unknown, c->of[k]->multiplier);
   }
+  w->square = w->row.n;
+  for (uint32_t k = 0; k < c->n; k++)
+    if (!contact_of_constraint(e->m, c->of[k])) vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, with_definitions(e, c->r[k])));
   for (uint32_t i = 0; i < e->n && c->n; i++) vec_push(e->m->arena, &w->unknown, e->m->coords.at[i].v);
 }
 
@@ -136,6 +140,128 @@ static int is_combination(RowSearch *w, Expr x, uint32_t depth) {
   return 0;
 }
 
+/* --- the combination of all rows that numbers suggest --- */
+
+enum { LOOKS = 4 };
+/* Values at LOOKS states: coefficients of the rows; parts of x, then constants, which may be factors of coefficients. */
+typedef struct {
+  VEC(Expr) factor; /* the number 1 first */
+  uint32_t parts;   /* number of those that are parts of x */
+  long double *value[LOOKS], *c[LOOKS];
+} Looks;
+
+/* Factors: 1, the parts of x, parameters and constant masses. */
+static void find_factors(const RowSearch *w, Expr x, Looks *to) {
+  Arena *a = w->e->m->arena;
+  ExprList parts = expr_topo(w->g, &x, 1), of_rows = expr_topo(w->g, w->row.at, w->square);
+  vec_push(a, &to->factor, expr_int(w->g, 1));
+  for (uint32_t i = 0; i < parts.n; i++) vec_push(a, &to->factor, parts.at[i]);
+  to->parts = to->factor.n;
+  for (uint32_t i = 0; i < of_rows.n; i++)
+    if (expr_op(w->g, of_rows.at[i]) == EX_SYM && expr_sym_of(w->g, of_rows.at[i])->kind == SYM_PARAM) vec_push(a, &to->factor, of_rows.at[i]);
+  for (uint32_t i = 0; i < w->e->mass.n; i++) {
+    Expr m = w->e->mass.at[i].e;
+    if (expr_is_constant(w->g, m) && m != to->factor.at[to->factor.n - 1]) vec_push(a, &to->factor, m);
+  }
+}
+
+/* Rows, and the unknowns that a combination of them takes out. */
+typedef struct {
+  const Expr *row;
+  const SymId *unknown;
+  uint32_t rows, unknowns;
+} RowBlock;
+
+/* c := coefficients with W^T c = dx/d(unknowns) in least squares, from v = [W, dx/d(unknowns)]; 0: dependent rows, or no values. */
+static int fit_rows(Arena *a, const RowBlock *b, const long double *v, long double *c) {
+  uint32_t n = b->rows, m = b->unknowns;
+  long double *G = ARENA_ARRAY(a, long double, (size_t)n * n + 1);
+  for (uint32_t i = 0; i < (n + 1) * m; i++)
+    if (!isfinite(v[i])) return 0;
+  for (uint32_t i = 0; i < n; i++)
+    for (uint32_t j = 0; j <= n; j++) {
+      long double sum = 0;
+      for (uint32_t k = 0; k < m; k++) sum += v[i * m + k] * v[j * m + k];
+      *(j < n ? &G[i * n + j] : &c[i]) = sum;
+    }
+  return dense_solve_rows(a, n, G, 1, c);
+}
+
+/* Coefficients and factors at LOOKS states that obey the constraints; 0: the rows are dependent at one, or too few are found. */
+static int look(const RowSearch *w, const RowBlock *b, Expr x, Looks *to) {
+  Arena *a = w->e->m->arena;
+  uint32_t n = b->rows, m = b->unknowns, slopes = (n + 1) * m;
+  Expr *root = ARENA_ARRAY(a, Expr, (size_t)slopes + to->factor.n);
+  for (uint32_t i = 0; i <= n; i++) expr_gradient(w->g, i < n ? b->row[i] : x, b->unknown, m, root + i * m);
+  memcpy(root + slopes, to->factor.at, to->factor.n * sizeof *root);
+  EvalTape *tape = eval_tape(w->g, root, slopes + to->factor.n);
+  long double *symbols = ARENA_ARRAY(a, long double, expr_symbol_count(w->g) + 1);
+  StateSolver *solver = w->e->constraints.n ? states_new(w->e) : NULL;
+  uint32_t seen = 0;
+  for (uint32_t seed = 1; seed <= 4 * LOOKS && seen < LOOKS; seed++) {
+    long double *v = ARENA_ARRAY(a, long double, slopes + to->factor.n);
+    sample_state(w->g, seed, symbols);
+    if (solver && !states_complete(solver, symbols)) continue;
+    to->c[seen] = ARENA_ARRAY(a, long double, n + 1);
+    to->value[seen] = v + slopes;
+    eval_run(tape, symbols, v);
+    if (!fit_rows(a, b, v, to->c[seen++])) return 0;
+  }
+  return seen == LOOKS;
+}
+
+/* factor[part]^e1 factor[constant]^e2 */
+typedef struct {
+  uint32_t part, constant;
+  int e1, e2;
+} Monomial;
+
+/* The ratio p/q, q small, of coefficient i to the monomial at all states; the number 0: none. */
+static Num ratio_of(const Looks *l, uint32_t i, Monomial m) {
+  const long double tiny = 1e-9L;
+  long double first = 0;
+  for (uint32_t s = 0; s < LOOKS; s++) {
+    long double a = l->value[s][m.part], b = l->value[s][m.constant], r = l->c[s][i] / (m.e1 < 0 ? 1 / a : a) / (m.e2 < 0 ? 1 / b : b);
+    if (s == 0) first = r;
+    if (!isfinite(r) || fabsl(r - first) > tiny * fabsl(first)) return num_int(0);
+  }
+  for (int q = 1; q <= 24; q++)
+    if (fabsl(first) < 1e6L && fabsl(first * q - roundl(first * q)) < tiny * q * fabsl(first)) return num_ratio((int64_t)roundl(first * q), q);
+  return num_int(0);
+}
+
+/* Coefficient i as a number times a part of x, a constant, or their inverses; 0: it is none. */
+static Expr coefficient(const RowSearch *w, const Looks *l, uint32_t i) {
+  int zero = 1;
+  for (uint32_t s = 0; s < LOOKS; s++) zero &= fabsl(l->c[s][i]) < 1e-12L;
+  if (zero) return expr_int(w->g, 0);
+  for (uint32_t k = 0; k < 2 * l->parts; k++)
+    for (uint32_t p = 2 * l->parts - 1; p < 2 * l->factor.n; p++) {
+      Monomial m = {k / 2, p < 2 * l->parts ? 0 : p / 2, k % 2 ? -1 : 1, p % 2 ? -1 : 1};
+      Num r = ratio_of(l, i, m);
+      if (num_is_zero(r)) continue;
+      Expr a = expr_pow_num(w->g, l->factor.at[m.part], num_int(m.e1)), b = expr_pow_num(w->g, l->factor.at[m.constant], num_int(m.e2));
+      return expr_scale(w->g, r, expr_mul(w->g, a, b));
+    }
+  return 0;
+}
+
+/* x less the combination of rows that takes the unknowns out of it; x itself: none is found. */
+static Expr without_rows(const RowSearch *w, const RowBlock *b, Expr x) {
+  enum { FACTORS_MOST = 2000 };
+  Looks l = {0};
+  Expr left = x;
+  if (!b->rows) return x;
+  find_factors(w, x, &l);
+  if (l.factor.n > FACTORS_MOST || !look(w, b, x, &l)) return x;
+  for (uint32_t i = 0; i < b->rows; i++) {
+    Expr c = coefficient(w, &l, i);
+    if (!c || may_be_singular(w->g, c)) return x;
+    left = expr_sub(w->g, left, expr_mul(w->g, c, b->row[i]));
+  }
+  return left;
+}
+
 static int prove_by_rows(const Eqns *e, Expr x) {
   enum { TRIES = 60, ROWS_MOST = 200, LONGEST = 20000 };
   uint32_t distinct;
@@ -143,7 +269,12 @@ static int prove_by_rows(const Eqns *e, Expr x) {
   if (!e->mass_known || e->n + e->constraints.n > ROWS_MOST || expr_tree_size(e->g, x, &distinct) > LONGEST) return 0;
   add_motion_rows(&w);
   add_constraint_rows(&w);
-  return is_combination(&w, simplify(e->g, expr_expand_defs(e->g, x)), 0);
+  x = simplify(e->g, expr_expand_defs(e->g, x));
+  RowBlock motion = {w.row.at, w.unknown.at, w.square, w.square};
+  RowBlock rates = {w.row.at + w.square, w.unknown.at + w.square, w.row.n - w.square, w.unknown.n - w.square};
+  Expr left = without_rows(&w, &motion, x), last = left == x ? x : without_rows(&w, &rates, simplify(e->g, left));
+  if (left != x && prove_zero(e->g, last, NULL) == PROVED_ZERO) return 1;
+  return is_combination(&w, x, 0);
 }
 
 Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs) {

@@ -109,6 +109,7 @@ static Expr delta(const ProofWork *w, Expr term) {
 
 static Expr at_rest(const ProofWork *w, Expr x) {
   Expr *zero = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  if (!(expr_kinds(w->g, x) & (1u << SYM_VEL | 1u << SYM_RATE))) return x;
   for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
   return expr_replace(w->g, x, w->v, zero, w->n);
 }
@@ -171,10 +172,8 @@ static Verdict zero_on_constraints(ProofWork *w, Expr x) {
 /* An F(q, t) whose total derivative removes what it can from dL = a.q' + b + terms of higher order in q'. */
 static Expr find_gauge(const ProofWork *w, Expr dL) {
   Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1), b = at_rest(w, dL);
-  for (uint32_t i = 0; i < w->n; i++) {
-    Expr slope = expr_diff(w->g, dL, w->v[i]);
-    a[i] = at_rest(w, slope);
-  }
+  expr_gradient(w->g, dL, w->v, w->n, a);
+  for (uint32_t i = 0; i < w->n; i++) a[i] = at_rest(w, a[i]);
   Expr F = expr_potential(w->g, a, w->q, w->n, 0), drift = expr_diff(w->g, F, w->m->time);
   Expr left = expr_sub(w->g, b, drift);
   left = simplify(w->g, left);

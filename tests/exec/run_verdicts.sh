@@ -191,6 +191,8 @@ is "modes of H: a minimum, with a force, a maximum, neither" "stable minimum|sta
 "$LAGC" check $models/rows_of_motion.lag >"$TMP/rows" 2>/dev/null
 is "rows of the equations of motion, and combinations, are proved; a false one is not" "9 1" \
   "$(grep -c ': proved$' "$TMP/rows") $(grep -c ' (wrong): refuted$' "$TMP/rows")"
+for m in row_sums row_sums_dense; do "$LAGC" check $models/$m.lag 2>/dev/null; done >"$TMP/rows"
+is "sums of all rows of long chains are proved; false ones are not" "5 3" "$(grep -c ': proved$' "$TMP/rows") $(grep -c ': refuted$' "$TMP/rows")"
 
 # ---- the gallery, and random models: a few of them quickly, all in `make test-long`, with runs and modes of the gallery and of a tenth
 scenes() { sed -n 's/^scene \([A-Za-z_0-9]*\).*/\1/p' "$1"; }
