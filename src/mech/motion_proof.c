@@ -1,5 +1,5 @@
-/* Linear algebra on normal forms where the system is small; otherwise one row of the equations after another reduces the
- * difference. Numbers at states on the constraints refute, and never prove. */
+/* Linear algebra on normal forms where the system is small; otherwise a combination of rows, whose coefficients numbers at states
+ * suggest. Numbers refute, and never prove. */
 #include "mech/motion_proof.h"
 
 #include <math.h>
@@ -59,7 +59,6 @@ typedef struct {
   VEC(Expr) row;      /* each is 0 along motions, and linear in the unknowns */
   VEC(SymId) unknown; /* accelerations, multipliers, then velocities of a model with constraints */
   uint32_t square;    /* number of the first rows, for as many accelerations and multipliers */
-  int tries;          /* steps still allowed */
 } RowSearch;
 
 static void add_product(RowSearch *w, Expr *row, Expr factor, SymId unknown) {
@@ -115,31 +114,6 @@ static int may_be_singular(ExprGraph *g, Expr x) {
   return 0;
 }
 
-/* x less the multiple of a row that takes the unknown out of it; 0: the row lacks it, or something remains. */
-static Expr reduced(RowSearch *w, Expr x, Expr slope, Expr row, SymId unknown) {
-  Expr lead = expr_diff(w->g, row, unknown);
-  if (expr_is_zero(w->g, lead) || expr_contains_sym(w->g, lead, unknown) || w->tries-- <= 0) return 0;
-  Expr times = simplify(w->g, expr_div(w->g, slope, lead)), taken = expr_mul(w->g, times, row);
-  Expr left = simplify(w->g, expr_sub(w->g, x, taken));
-  return expr_contains_sym(w->g, left, unknown) || may_be_singular(w->g, times) ? 0 : left;
-}
-
-/* Whether x is a combination of at most MOST rows; the unknowns go in order. */
-static int is_combination(RowSearch *w, Expr x, uint32_t depth) {
-  enum { MOST = 4 };
-  uint32_t u = 0;
-  while (u < w->unknown.n && !expr_contains_sym(w->g, x, w->unknown.at[u])) u++;
-  if (u == w->unknown.n) return prove_zero(w->g, x, NULL) == PROVED_ZERO;
-  SymId unknown = w->unknown.at[u];
-  Expr slope = expr_diff(w->g, x, unknown);
-  if (depth == MOST || expr_contains_sym(w->g, slope, unknown)) return 0;
-  for (uint32_t k = 0; k < w->row.n; k++) {
-    Expr left = expr_contains_sym(w->g, w->row.at[k], unknown) ? reduced(w, x, slope, w->row.at[k], unknown) : 0;
-    if (left && is_combination(w, left, depth + 1)) return 1;
-  }
-  return 0;
-}
-
 /* --- the combination of all rows that numbers suggest --- */
 
 enum { LOOKS = 4 };
@@ -150,10 +124,20 @@ typedef struct {
   long double *value[LOOKS], *c[LOOKS];
 } Looks;
 
-/* Factors: 1, the parts of x, parameters and constant masses. */
-static void find_factors(const RowSearch *w, Expr x, Looks *to) {
+/* Rows, and the unknowns that a combination of them takes out. */
+typedef struct {
+  const Expr *row;
+  const SymId *unknown;
+  uint32_t rows, unknowns;
+} RowBlock;
+
+/* Factors: 1, the parts of x and of its slopes by the unknowns, parameters and constant masses. */
+static void find_factors(const RowSearch *w, const RowBlock *b, Expr x, Looks *to) {
   Arena *a = w->e->m->arena;
-  ExprList parts = expr_topo(w->g, &x, 1), of_rows = expr_topo(w->g, w->row.at, w->square);
+  Expr *root = ARENA_ARRAY(a, Expr, b->unknowns + 1);
+  expr_gradient(w->g, x, b->unknown, b->unknowns, root);
+  root[b->unknowns] = x;
+  ExprList parts = expr_topo(w->g, root, b->unknowns + 1), of_rows = expr_topo(w->g, w->row.at, w->square);
   vec_push(a, &to->factor, expr_int(w->g, 1));
   for (uint32_t i = 0; i < parts.n; i++) vec_push(a, &to->factor, parts.at[i]);
   to->parts = to->factor.n;
@@ -164,13 +148,6 @@ static void find_factors(const RowSearch *w, Expr x, Looks *to) {
     if (expr_is_constant(w->g, m) && m != to->factor.at[to->factor.n - 1]) vec_push(a, &to->factor, m);
   }
 }
-
-/* Rows, and the unknowns that a combination of them takes out. */
-typedef struct {
-  const Expr *row;
-  const SymId *unknown;
-  uint32_t rows, unknowns;
-} RowBlock;
 
 /* c := coefficients with W^T c = dx/d(unknowns) in least squares, from v = [W, dx/d(unknowns)]; 0: dependent rows, or no values. */
 static int fit_rows(Arena *a, const RowBlock *b, const long double *v, long double *c) {
@@ -252,7 +229,7 @@ static Expr without_rows(const RowSearch *w, const RowBlock *b, Expr x) {
   Looks l = {0};
   Expr left = x;
   if (!b->rows) return x;
-  find_factors(w, x, &l);
+  find_factors(w, b, x, &l);
   if (l.factor.n > FACTORS_MOST || !look(w, b, x, &l)) return x;
   for (uint32_t i = 0; i < b->rows; i++) {
     Expr c = coefficient(w, &l, i);
@@ -263,18 +240,19 @@ static Expr without_rows(const RowSearch *w, const RowBlock *b, Expr x) {
 }
 
 static int prove_by_rows(const Eqns *e, Expr x) {
-  enum { TRIES = 60, ROWS_MOST = 200, LONGEST = 20000 };
+  enum { ROWS_MOST = 200, LONGEST = 20000 };
   uint32_t distinct;
-  RowSearch w = {.e = e, .g = e->g, .tries = TRIES};
+  RowSearch w = {.e = e, .g = e->g, };
   if (!e->mass_known || e->n + e->constraints.n > ROWS_MOST || expr_tree_size(e->g, x, &distinct) > LONGEST) return 0;
   add_motion_rows(&w);
   add_constraint_rows(&w);
   x = simplify(e->g, expr_expand_defs(e->g, x));
   RowBlock motion = {w.row.at, w.unknown.at, w.square, w.square};
   RowBlock rates = {w.row.at + w.square, w.unknown.at + w.square, w.row.n - w.square, w.unknown.n - w.square};
-  Expr left = without_rows(&w, &motion, x), last = left == x ? x : without_rows(&w, &rates, simplify(e->g, left));
-  if (left != x && prove_zero(e->g, last, NULL) == PROVED_ZERO) return 1;
-  return is_combination(&w, x, 0);
+  Expr left = without_rows(&w, &motion, x);
+  if (left != x) left = simplify(e->g, left);
+  left = without_rows(&w, &rates, left);
+  return left != x && prove_zero(e->g, left, NULL) == PROVED_ZERO;
 }
 
 Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs) {
