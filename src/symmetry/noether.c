@@ -447,6 +447,14 @@ static int linear_power(const ProofWork *w, Expr power, LinearPower *to) {
   return 1;
 }
 
+/* Whether x jumps: then forces that are the gradient of x beside the jumps leave no energy conserved. */
+static int jumps_somewhere(const ProofWork *w, Expr x) {
+  ExprList l = expr_topo(w->g, &x, 1);
+  int may = switch_in(w->g, x, 0) != 0;
+  for (uint32_t i = 0; i < l.n && !may; i++) may = expr_op(w->g, l.at[i]) == EX_FLOOR || expr_op(w->g, l.at[i]) == EX_ATAN2;
+  return may && discontinuities_of(w->e, x).n > 0;
+}
+
 /* Whether the form a dq + b dt has a potential: 2, each part depends on its own coordinate alone; 1, it has no curl, so that there is one near
  * each position; 0, it has a curl. */
 static int has_potential(const ProofWork *w, const LinearPower *by) {
@@ -459,6 +467,7 @@ static int has_potential(const ProofWork *w, const LinearPower *by) {
     for (uint32_t k = 0; k < l.n; k++) {
       uint32_t j = expr_map_get(&place, l.at[k]);
       if (!j || j - 1 == i) continue;
+      if (jumps_somewhere(w, by->a[i])) return 0;
       is = 1;
       Expr one = expr_diff(g, by->a[i], by->q[j - 1]), other = expr_diff(g, by->a[j - 1], by->q[i]);
       if (!zero_on_sides(g, expr_sub(g, one, other))) return 0;
@@ -484,7 +493,7 @@ static Expr potential_of(const ProofWork *w, Expr power, int *exists) {
   }
   if (!found && is_constrained(w)) found = !expr_is_zero(g, V) && motion_verdict(w->e, expr_add(g, power, total(w, V))) == PROVED_ZERO;
   *exists = single && !found ? has_potential(w, &by) : 0;
-  return single && found ? V : 0;
+  return single && found && !jumps_somewhere(w, V) ? V : 0;
 }
 
 static int is_shift_of_time(const ProofWork *w) {

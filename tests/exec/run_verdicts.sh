@@ -165,6 +165,10 @@ changes $free + t*x
 changes $free; force x = cos(t)
 changes $free; force x = -x'
 changes $free; force x = y
+changes $free; force x = -sign(y)
+changes $free; force x = if(y > 0, x, 2*x)
+changes $free; force x = -floor(y)
+changes momentum p of x, q of y; hamiltonian = (p^2 + q^2)/2 + y^2; force x = -sign(p)
 conserved momentum p of x, q of y; hamiltonian = (p^2 + q^2)/2 + y^2; force x = -x^3 - tanh(x - y); force y = tanh(x - y)
 changes momentum p of x, q of y; hamiltonian = (p^2 + q^2)/2 + y^2; force x = -x'
 changes momentum p of x, q of y; hamiltonian = (p^2 + q^2)/2 + y^2; force x = y
