@@ -206,7 +206,8 @@ static int energy_differences(Equilibrium *r, double h, double *H) {
   for (int i = 0; i < n; i++)
     for (int j = 0; j <= i; j++) {
       double second = i == j ? energy_at(r, i, h, i, 0) - 2 * here + energy_at(r, i, -h, i, 0)
-                             : (energy_at(r, i, h, j, h) - energy_at(r, i, h, j, -h) - energy_at(r, i, -h, j, h) + energy_at(r, i, -h, j, -h)) / 4;
+                             : (energy_at(r, i, h, j, h) - energy_at(r, i, h, j, -h) - energy_at(r, i, -h, j, h) +
+                                energy_at(r, i, -h, j, -h)) / 4;
       H[i * n + j] = second / (h * h);
     }
   for (int i = 0; i < n; i++) {

@@ -142,7 +142,8 @@ static void find_factors(const RowSearch *w, const RowBlock *b, Expr x, Looks *t
   for (uint32_t i = 0; i < parts.n; i++) vec_push(a, &to->factor, parts.at[i]);
   to->parts = to->factor.n;
   for (uint32_t i = 0; i < of_rows.n; i++)
-    if (expr_op(w->g, of_rows.at[i]) == EX_SYM && expr_sym_of(w->g, of_rows.at[i])->kind == SYM_PARAM) vec_push(a, &to->factor, of_rows.at[i]);
+    if (expr_op(w->g, of_rows.at[i]) == EX_SYM && expr_sym_of(w->g, of_rows.at[i])->kind == SYM_PARAM)
+      vec_push(a, &to->factor, of_rows.at[i]);
   for (uint32_t i = 0; i < w->e->mass.n; i++) {
     Expr m = w->e->mass.at[i].e;
     if (expr_is_constant(w->g, m) && m != to->factor.at[to->factor.n - 1]) vec_push(a, &to->factor, m);
@@ -198,12 +199,13 @@ static Num ratio_of(const Looks *l, uint32_t i, Monomial m) {
   const long double tiny = 1e-9L;
   long double first = 0;
   for (uint32_t s = 0; s < LOOKS; s++) {
-    long double a = l->value[s][m.part], b = l->value[s][m.constant], r = l->c[s][i] / (m.e1 < 0 ? 1 / a : a) / (m.e2 < 0 ? 1 / b : b);
+    long double a = l->value[s][m.part], b = l->value[s][m.constant];
+    long double r = l->c[s][i] / (m.e1 < 0 ? 1 / a : a) / (m.e2 < 0 ? 1 / b : b);
     if (s == 0) first = r;
     if (!isfinite(r) || fabsl(r - first) > tiny * fabsl(first)) return num_int(0);
   }
-  for (int q = 1; q <= 24; q++)
-    if (fabsl(first) < 1e6L && fabsl(first * q - roundl(first * q)) < tiny * q * fabsl(first)) return num_ratio((int64_t)roundl(first * q), q);
+  for (int q = 1; q <= 24 && fabsl(first) < 1e6L; q++)
+    if (fabsl(first * q - roundl(first * q)) < tiny * q * fabsl(first)) return num_ratio((int64_t)roundl(first * q), q);
   return num_int(0);
 }
 
@@ -217,7 +219,8 @@ static Expr coefficient(const RowSearch *w, const Looks *l, uint32_t i) {
       Monomial m = {k / 2, p < 2 * l->parts ? 0 : p / 2, k % 2 ? -1 : 1, p % 2 ? -1 : 1};
       Num r = ratio_of(l, i, m);
       if (num_is_zero(r)) continue;
-      Expr a = expr_pow_num(w->g, l->factor.at[m.part], num_int(m.e1)), b = expr_pow_num(w->g, l->factor.at[m.constant], num_int(m.e2));
+      Expr a = expr_pow_num(w->g, l->factor.at[m.part], num_int(m.e1));
+      Expr b = expr_pow_num(w->g, l->factor.at[m.constant], num_int(m.e2));
       return expr_scale(w->g, r, expr_mul(w->g, a, b));
     }
   return 0;

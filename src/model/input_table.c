@@ -163,7 +163,8 @@ static void check_twins(Table *t, uint32_t k) {
   Piece name = trimmed(t, (Piece){t->fields.at[k].begin, unit.begin < unit.end ? unit.begin - 1 : t->fields.at[k].end});
   uint32_t again = find_column(t, k + 1, text_of(t, name), t->fields.n);
   if (again == t->fields.n) return;
-  mistake(t, t->fields.at[again], arena_printf(t->b->arena, "two columns are called `%s`%s", text_of(t, name), is_called(t, t->fields.at[again], text_of(t, name), &unit) < 2 ? ", but for upper and lower case" : ""));
+  const char *called = text_of(t, name), *but = is_called(t, t->fields.at[again], called, &unit) < 2 ? ", but for upper and lower case" : "";
+  mistake(t, t->fields.at[again], arena_printf(t->b->arena, "two columns are called `%s`%s", called, but));
   diag_help(t->b->diags, "give one of them another name");
 }
 

@@ -1,4 +1,5 @@
-/* Warnings about parameters, lets, inputs and functions of the model's main file that no expression uses, and names that hide the model's energy or L.
+/* Warnings about parameters, lets, inputs and functions of the model's main file that no expression uses, and about names
+ * that hide the model's energy or L.
  *
  * In: a parsed Ast without errors, with the expressions of the command line. Names are not resolved: any occurrence in an
  * expression, active or not, counts as a use; the left side of a scene's assignment does not. */
@@ -59,10 +60,12 @@ static int gives_energy(const AstStmt *list) {
 /* Names that take the place of the model's own `energy` and `lagrangian` in outputs and measures. */
 static void warn_hidden(Ast *ast, const AstStmt *list) {
   for (const AstStmt *s = list; s; s = s->next) {
-    int named = s->kind == STMT_PARAM || s->kind == STMT_CONST || s->kind == STMT_INPUT || s->kind == STMT_LET || s->kind == STMT_OBSERVE || s->kind == STMT_FUNCTION;
+    int named = s->kind == STMT_PARAM || s->kind == STMT_CONST || s->kind == STMT_INPUT || s->kind == STMT_LET ||
+                s->kind == STMT_OBSERVE || s->kind == STMT_FUNCTION;
     if (s->kind == STMT_EFFECT) warn_hidden(ast, s->body);
     if (!named || !s->name || (strcmp(s->name, "energy") != 0 && strcmp(s->name, "lagrangian") != 0)) continue;
-    diag_warning(ast->diags, s->name_span, "`%s` hides the model's own %s in outputs, measures and expectations" HELP "call it `my_%s`, or leave it out: `output %s` needs no declaration", s->name, s->name, s->name, s->name);
+    diag_warning(ast->diags, s->name_span, "`%s` hides the model's own %s in outputs, measures and expectations", s->name, s->name);
+    diag_help(ast->diags, "call it `my_%s`, or leave it out: `output %s` needs no declaration", s->name, s->name);
   }
 }
 

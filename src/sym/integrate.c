@@ -288,7 +288,8 @@ static Expr integral_of_quadratic(const Task *t, Expr u, Num power) {
   ExprGraph *g = t->g;
   Expr slope = expr_diff(g, u, t->x), twice = expr_diff(g, slope, t->x), zero = expr_int(g, 0);
   if (num_value(power) != -1 || expr_op(g, u) != EX_SUM || contains_any(g, twice, t->q, t->n) || expr_is_zero(g, twice)) return 0;
-  Expr c = constant_factor(t, expr_neg(g, expr_mul(g, slope_in(t, u), expr_pow_num(g, expr_symbol(g, t->s)->node, num_int(2)))), expr_int(g, 1));
+  Expr ss = expr_pow_num(g, expr_symbol(g, t->s)->node, num_int(2));
+  Expr c = constant_factor(t, expr_neg(g, expr_mul(g, slope_in(t, u), ss)), expr_int(g, 1));
   Expr b = expr_replace(g, slope, &t->x, &zero, 1), d = expr_replace(g, u, &t->x, &zero, 1);
   Expr size = expr_sub(g, expr_scale(g, num_int(2), expr_mul(g, twice, d)), expr_pow_num(g, b, num_int(2)));
   if (!c || expr_sign(g, size) != SIGN_POSITIVE) return 0;
@@ -440,7 +441,9 @@ Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n, int
   for (uint32_t i = 0; i < n; i++) left[i] = a[i], expr_map_set(&place, expr_symbol(g, q[i])->node, i + 1);
   for (uint32_t i = 0; i < n; i++) {
     with.x = q[i];
-    part[i] = expr_is_zero(g, left[i]) ? left[i] : by_substitution ? antiderivative(g, left[i], with, SWITCHES_MOST, &rest) : expr_integrate(g, left[i], q[i], 0);
+    part[i] = expr_is_zero(g, left[i]) ? left[i]
+              : by_substitution        ? antiderivative(g, left[i], with, SWITCHES_MOST, &rest)
+                                       : expr_integrate(g, left[i], q[i], 0);
     if (!expr_is_zero(g, part[i])) take_part(g, part[i], &place, q, left);
   }
   return expr_add_n(g, part, n);

@@ -380,7 +380,8 @@ static int loses_digits(EvalTape *t, const Between *at, long double *symbols) {
   return after > rounding && after > 1000 * before;
 }
 
-/* Whether `after` has the digits of a product `before` beside zeros between random states: 2*cos(1 + u/2)*sin(u/2) has more than sin(1 + u) - sin(1). */
+/* Whether `after` has the digits of a product `before` beside zeros between random states: 2*cos(1 + u/2)*sin(u/2) has more
+ * than sin(1 + u) - sin(1). */
 static int keeps_digits(ExprGraph *g, Expr before, Expr after) {
   enum { LINES = 12, PARTS = 4, HALVINGS = 30, NODES_MOST = 120 };
   const long double beside = 1e-6L;

@@ -257,7 +257,8 @@ const char *charges_energy_text(const Eqns *e) {
   const char *inputs = is->by_formulas ? " while inputs follow their formulas" : "";
   if (is->drift == PROVED_ZERO) return arena_printf(e->m->arena, "energy is conserved%s%s%s", events, inputs, reason_of(e));
   const char *verdict = is->drift == PROVED_NONZERO ? "energy changes"
-                        : is->open_integral ? "not decided whether the energy is conserved; with a potential of the forces, an integral that is not found, it is"
+                        : is->open_integral ? "not decided whether the energy is conserved; with a potential of the forces, "
+                                              "an integral that is not found, it is"
                                             : "not decided whether the energy is conserved";
   if (is->power_unknown) return arena_printf(e->m->arena, "%s: " NO_RATE, verdict);
   const char *power = text_of(e, is->power);

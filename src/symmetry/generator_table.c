@@ -277,7 +277,8 @@ GeneratorTable table_listed(Arena *a, const Ansatz *s, const TimeList *times, co
   EvalTape *tape = eval_tape(g, roots, 2 * nT);
   for (size_t i = 0; i < rows + more; i++) {
     long double *row = m + i * width;
-    if (!search_goes_on(s->limit, 0) || !rows_at_time(source, i < rows ? ROWS_DIFFERENCE : ROWS_CONSTRAINTS, b0, b1, &symbols[t])) return (GeneratorTable){0};
+    RowKind kind = i < rows ? ROWS_DIFFERENCE : ROWS_CONSTRAINTS;
+    if (!search_goes_on(s->limit, 0) || !rows_at_time(source, kind, b0, b1, &symbols[t])) return (GeneratorTable){0};
     eval_run(tape, symbols, value);
     for (uint32_t k = 0; k < nT; k++) {
       for (uint32_t j = 0; k < times->n && j < s->shown; j++) row[k * s->shown + j] = b0[j] * value[k] + b1[j] * value[nT + k];

@@ -421,7 +421,9 @@ static int is_single_valued(const ProofWork *w, Expr V) {
   return 1;
 }
 
-static int is_state(const Symbol *s, const void *states) { return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate; }
+static int is_state(const Symbol *s, const void *states) {
+  return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate;
+}
 
 /* A power a q' + b that forces and explicit time give, by coordinates and t; a[n] is b. */
 typedef struct {
@@ -491,7 +493,8 @@ static Expr potential_of(const ProofWork *w, Expr power, int *exists) {
     by.a[i] = expr_sub(g, by.a[i], slope[i]);
     found = found && zero_on_sides(g, by.a[i]);
   }
-  if (!found && is_constrained(w)) found = !expr_is_zero(g, V) && motion_verdict(w->e, expr_add(g, power, total(w, V))) == PROVED_ZERO;
+  if (!found && is_constrained(w) && !expr_is_zero(g, V))
+    found = motion_verdict(w->e, expr_add(g, power, total(w, V))) == PROVED_ZERO;
   *exists = single && !found ? has_potential(w, &by) : 0;
   return single && found && !jumps_somewhere(w, V) ? V : 0;
 }

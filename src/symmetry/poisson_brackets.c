@@ -282,7 +282,9 @@ static void compute_brackets(Arena *scratch, void *data) {
   for (uint32_t k = 0; k < choices; k++) {
     fits[k] = ARENA_ARRAY(scratch, long double, (size_t)w->pairs * (w->r + 1) + 1);
     int fits_well = search_goes_on(w->limit, 0) && fit(w, k, fits[k]);
-    if (!fits_well) w->out->why_not = w->limit->stopped ? search_stop_text(w->limit) : "the charges depend on one another, or M has no inverse at random states";
+    if (!fits_well)
+      w->out->why_not = w->limit->stopped ? search_stop_text(w->limit)
+                                          : "the charges depend on one another, or M has no inverse at random states";
     if (!fits_well) return;
   }
   size_t place = 0;
