@@ -457,6 +457,21 @@ static int jumps_somewhere(const ProofWork *w, Expr x) {
   return may && discontinuities_of(w->e, x).n > 0;
 }
 
+/* Whether a force on a periodic coordinate does work over a turn, by values at a random state. */
+static int works_over_a_turn(const ProofWork *w, uint32_t i, Expr force) {
+  enum { POINTS = 256 };
+  const long double turn = 6.28318530717958647692528676655900577L, rounding = 1e-9L;
+  long double bound, sum = 0, size = 0, *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  sample_state(w->g, 1, symbols);
+  for (int k = 0; k < POINTS; k++) {
+    symbols[w->q[i]] = turn * k / POINTS;
+    long double value = value_with_bound(w->g, force, symbols, NULL, &bound);
+    sum += value;
+    size += fabsl(value);
+  }
+  return !(fabsl(sum) <= rounding * size);
+}
+
 /* Whether the form a dq + b dt has a potential: 2, each part depends on its own coordinate alone; 1, it has no curl, so that there is one near
  * each position; 0, it has a curl. */
 static int has_potential(const ProofWork *w, const LinearPower *by) {
@@ -466,6 +481,9 @@ static int has_potential(const ProofWork *w, const LinearPower *by) {
   for (uint32_t i = 0; i <= w->n; i++) expr_map_set(&place, node(w, by->q[i]), i + 1);
   for (uint32_t i = 0; i <= w->n; i++) {
     ExprList l = expr_topo(g, &by->a[i], 1);
+    int turns = i < w->n && is_periodic(w, i) && !expr_is_zero(g, by->a[i]);
+    if (turns && works_over_a_turn(w, i, by->a[i])) return 0;
+    if (turns) is = 1;
     for (uint32_t k = 0; k < l.n; k++) {
       uint32_t j = expr_map_get(&place, l.at[k]);
       if (!j || j - 1 == i) continue;

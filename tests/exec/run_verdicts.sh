@@ -165,6 +165,8 @@ changes $free + t*x
 changes $free; force x = cos(t)
 changes $free; force x = -x'
 changes $free; force x = y
+changes $free - cos(th) + th'^2/2; coord th periodic; force th = 1/(2 + sin(th))
+undecided $free - cos(th) + th'^2/2; coord th periodic; force th = sin(sin(th))
 changes $free; force x = -sign(y)
 changes $free; force x = if(y > 0, x, 2*x)
 changes $free; force x = -floor(y)
