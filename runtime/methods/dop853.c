@@ -1,4 +1,4 @@
-/* dop853: Dormand-Prince 8(5,3) with adaptive steps and dense output of order 7. Steps: embedded.c.
+/* dop853: Dormand-Prince 8(5,3) with adaptive steps and dense output of order 7. Steps: adaptive_rk.c.
  *
  * Source: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI
  * 10.1007/978-3-540-78862-1: II.5 (the 12 stages of order 8), II.10 (error from estimates of order 5 and 3) and II.6
@@ -110,7 +110,7 @@ static void extend(Embedded *w, lag_problem *pb) {
 /* HNW II.6, code dop853, function contd8. Where the extra stages failed: Hermite interpolation, of order 4. */
 static void dense(void *work, lag_problem *pb, double t, double *y) {
   Embedded *w = work;
-  int n = pb->n, row = lag_embedded_row(pb);
+  int n = pb->n, row = lag_adaptive_rk_row(pb);
   double h = w->dt, s = (t - w->t0) / h, r = 1 - s;
   const double *k1 = w->x + EMBEDDED_K1 * row, *k13 = k1 + LAST * row, *y0 = w->x + EMBEDDED_Y0 * row;
   const double *y1 = w->x + EMBEDDED_Y1 * row, *d = w->x + HIGH * row;
