@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "mech/states.h"
