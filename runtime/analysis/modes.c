@@ -184,6 +184,59 @@ static int find_matrices(Matrices *m, Pool *pool, Equilibrium *rest, const lag_a
   return rc || !m->symmetric || !m->definite || m->nq == 0 ? rc : signature(m, pool, algebra);
 }
 
+/* ---- The energy of a model of first order */
+
+/* The energy at x moved by a along i and b along j; NAN: none. */
+static double energy_at(Equilibrium *r, int i, double a, int j, double b) {
+  lag_problem *pb = &r->sim->pb;
+  double e[2] = {0};
+  memcpy(r->trial, r->x, (size_t)r->n * sizeof *r->x);
+  r->trial[i] += a;
+  r->trial[j] += b;
+  lag_equilibrium_state(r, r->trial);
+  const double *y = r->y;
+  return pb->model->energy(r->sim->run->t, y, y + pb->nq, y + 2 * pb->nq, pb->p, pb->u, e, r->work) ? NAN : e[0];
+}
+
+/* H[n * n] := second differences of the energy with step h, divided by the roots of their diagonal. 1 or -1: the sign of the diagonal; 0: of no
+ * sign beyond rounding. */
+static int energy_differences(Equilibrium *r, double h, double *H) {
+  int n = r->n, sign = 0;
+  double here = energy_at(r, 0, 0, 0, 0), noise = 1e5 * DBL_EPSILON * fabs(here) / (h * h);
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j <= i; j++) {
+      double second = i == j ? energy_at(r, i, h, i, 0) - 2 * here + energy_at(r, i, -h, i, 0)
+                             : (energy_at(r, i, h, j, h) - energy_at(r, i, h, j, -h) - energy_at(r, i, -h, j, h) +
+                                energy_at(r, i, -h, j, -h)) / 4;
+      H[i * n + j] = second / (h * h);
+    }
+  for (int i = 0; i < n; i++) {
+    double own = H[i * n + i];
+    if (!(fabs(own) > noise) || (sign && (own > 0) != (sign > 0))) return 0;
+    sign = own > 0 ? 1 : -1;
+  }
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < i; j++) H[i * n + j] *= sign / sqrt(H[i * n + i] * H[j * n + j]);
+  for (int i = 0; i < n; i++) H[i * n + i] = 1;
+  return sign;
+}
+
+/* 1: the energy has a strict minimum at rest; -1: a strict maximum; 0: neither is seen, with differences of two steps that agree. */
+static int energy_extremum(Pool *pool, Equilibrium *r, const lag_algebra *algebra) {
+  const double step = 1e-3, agree = 1e-4, definite = 1e-3;
+  size_t n = (size_t)r->n, nn = n * n;
+  double *H = lag_pool_doubles(pool, nn), *half = lag_pool_doubles(pool, nn), *one = lag_pool_doubles(pool, nn);
+  double *values = lag_pool_doubles(pool, n), *vectors = lag_pool_doubles(pool, nn);
+  if (pool->failed) return 0;
+  int sign = energy_differences(r, step, H);
+  if (!sign || energy_differences(r, step / 2, half) != sign) return 0;
+  for (size_t i = 0; i < nn; i++)
+    if (!(fabs(H[i] - half[i]) < agree)) return 0;
+  for (size_t i = 0; i < n; i++) one[i * n + i] = 1;
+  lag_equilibrium_state(r, r->x);
+  return algebra->symmetric(r->n, H, one, values, vectors) == LAG_OK && values[0] > definite ? sign : 0;
+}
+
 /* ---- Modes */
 
 typedef struct ModeSearch {
@@ -429,6 +482,11 @@ int lag_modes_find(Modes *out, Equilibrium *rest, const lag_algebra *algebra) {
   out->mode = calloc((size_t)w.ny + 1, sizeof *out->mode);
   int rc = out->mode ? find_matrices(&w.m, &out->pool, rest, algebra) : LAG_ENOMEM;
   if (rc) return rc;
+  if (pb->nq == 0 && pb->model->flags & LAG_CONSERVES_ENERGY) {
+    out->extremum = energy_extremum(&out->pool, rest, algebra);
+    w.conserves = out->extremum != 0;
+    w.m.lowering = out->extremum ? 0 : -1;
+  }
   out->lowering = w.m.lowering;
   rc = pb->nz == 0 && w.m.undamped && out->lowering >= 0 ? modes_of_values(&w) : modes_of_matrix(&w);
   lag_modes_sort(out);

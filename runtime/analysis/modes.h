@@ -16,7 +16,7 @@ typedef struct Mode {
 typedef enum Verdict {
   LAG_UNSTABLE,    /* a mode grows */
   LAG_DECAYS,      /* all modes decay: asymptotically stable */
-  LAG_MINIMUM,     /* a strict minimum of a conserved energy: stable (Lagrange, Dirichlet) */
+  LAG_MINIMUM,     /* a strict minimum of a conserved energy, of first order also a maximum: stable (Lagrange, Dirichlet) */
   LAG_DISSIPATIVE_MINIMUM,      /* a strict minimum of an energy that nothing raises: stable (Thomson & Tait; Chetaev) */
   LAG_NEUTRAL,     /* free motions; otherwise a minimum, or all modes decay */
   LAG_GYROSCOPIC,  /* not decided: all modes oscillate, but the energy has no minimum */
@@ -38,6 +38,7 @@ typedef struct Modes {
   int together;  /* 1: free zero modes are free in any combination */
   int steady;    /* 1: about a steady motion, in the frame that moves with it */
   int lowering;  /* number of directions in which the energy falls; -1: not known */
+  int extremum;  /* of the energy of a model of first order: 1 a strict minimum, -1 a strict maximum; 0: not known */
 } Modes;
 
 /* The modes about the state at rest. LAG_OK, LAG_ENOMEM, LAG_ESINGULAR, LAG_EMETHOD: eigenvalues did not

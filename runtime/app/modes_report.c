@@ -98,6 +98,8 @@ static void put_reason(const Modes *s, unsigned facts, char *text, size_t n) {
   if (s->verdict == LAG_CENTRE && facts & LAG_CONSERVES_ENERGY) {
     snprintf(text, n, "some modes neither grow nor decay, and the energy, which is conserved, is not known to have a minimum "
                       "here");
+  } else if (s->verdict == LAG_MINIMUM && s->extremum < 0) {
+    snprintf(text, n, "the energy, which is conserved, has a maximum here, and all rates follow from it (Dirichlet)");
   } else if (verdicts[s->verdict].reason) {
     snprintf(text, n, "%s", verdicts[s->verdict].reason);
   } else if (s->verdict == LAG_UNSTABLE) {

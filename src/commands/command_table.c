@@ -39,7 +39,7 @@ static const CommandRow commands[] = {
    "polynomials of the coordinates, times functions that stand in L. Each is proved; products of charges already known are not listed.\n\n"
    "--involution reports a largest set of independent charges in involution: those listed, squares of angular momenta, and conserved functions that the model declares in `expect {f, g} = h`, "
    "`observe` and `symmetry`. All their brackets are proved to be 0; with n of them the motion is integrable in Liouville's sense.\n\n"
-   "--seconds S is the processor time for the search. What could not be searched in it is said.\n\n"
+   "--seconds S is the processor time for the search; its matrices take half a gigabyte at most. What could not be searched in it is said.\n\n"
    "Without a scene the model has no effects, and a list shows how each effect alone changes the balance that replaces dQ/dt = 0."},
   {CMD_ACTION, "action", "actions", "MODEL [SCENE] [name=value ...] [--json]", "action variables and their frequencies, in numbers",
    "Computes the action variable of each coordinate at the scene's start, J = 1/(2 pi) times the closed integral of p dq between the turning points at the start's energy, "

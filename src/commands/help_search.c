@@ -253,14 +253,16 @@ int help_search(StrBuf *out, const char *words) {
   Arena *a = out->arena;
   Question asked[MOST];
   uint32_t n = 0;
+  int said = 0; /* the way of the word before names this one, too */
   Passages all = {0};
   StrBuf told = strbuf(a);
   for (const char *s = words; *s && n < MOST;) {
     size_t len = strcspn(s, " "), next = strcspn(s + len + (s[len] == ' '), " ");
     const char *word = arena_strndup(a, s, len), *both = arena_printf(a, "%s%.*s", word, (int)next, s + len + (s[len] == ' '));
-    const char *way = help_way(a, both) ? help_way(a, both) : help_way(a, word); /* time step: timestep */
+    const char *joint = next ? help_way(a, both) : NULL, *way = joint ? joint : said ? NULL : help_way(a, word); /* time step: timestep */
     s += len + (s[len] == ' ');
-    if (!len || has_word(idle, word)) continue;
+    said = joint != NULL;
+    if (!len || (has_word(idle, word) && !joint)) continue;
     asked[n++] = question(a, word);
     if (way && !strstr(sb_text(&told), way)) sb_printf(&told, "%s%s", told.n ? "\n\n" : "", way);
   }

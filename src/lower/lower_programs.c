@@ -223,7 +223,9 @@ Prog *lower_energy(const Eqns *e) {
   if (!e->energy) return l.p;
   Expr roots[2] = {e->energy_stable, e->energy_scale};
   lower_with_accelerations(&l, roots, 2); /* in first-order models velocities are rates */
-  const char *what = e->potential ? "energy p q' - L and the potential of the forces" : "energy p q' - L";
+  const char *what = !e->potential        ? "energy p q' - L"
+                     : eqns_has_forces(e) ? "energy p q' - L and the potential of the forces"
+                                          : "energy p q' - L of L less a total time derivative";
   prog_store(l.p, 0, 0, lower_slot(&l, roots[0]), what);
   prog_store(l.p, 0, 1, lower_slot(&l, roots[1]), "its scale |p q'| + |L|");
   return lower_finish_seldom(&l);

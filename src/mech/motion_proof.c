@@ -1,9 +1,10 @@
-/* Linear algebra on normal forms where the system is small; otherwise one row of the equations after another reduces the
- * difference. Numbers at states on the constraints refute, and never prove. */
+/* Linear algebra on normal forms where the system is small; otherwise a combination of rows, whose coefficients numbers at states
+ * suggest. Numbers refute, and never prove. */
 #include "mech/motion_proof.h"
 
 #include <math.h>
 
+#include "base/dense_matrix.h"
 #include "base/tolerance.h"
 #include "mech/constrain.h"
 #include "mech/states.h"
@@ -57,7 +58,7 @@ typedef struct {
   ExprGraph *g;
   VEC(Expr) row;      /* each is 0 along motions, and linear in the unknowns */
   VEC(SymId) unknown; /* accelerations, multipliers, then velocities of a model with constraints */
-  int tries;          /* steps still allowed */
+  uint32_t square;    /* number of the first rows, for as many accelerations and multipliers */
 } RowSearch;
 
 static void add_product(RowSearch *w, Expr *row, Expr factor, SymId unknown) {
@@ -92,9 +93,11 @@ static void add_constraint_rows(RowSearch *w) {
   for (uint32_t k = 0; k < c->n; k++) {
     if (contact_of_constraint(e->m, c->of[k])) continue;
     vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, row[k]));
-    vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, with_definitions(e, c->r[k])));
     vec_push(e->m->arena, &w->unknown, c->of[k]->multiplier);
   }
+  w->square = w->row.n;
+  for (uint32_t k = 0; k < c->n; k++)
+    if (!contact_of_constraint(e->m, c->of[k])) vec_push(e->m->arena, &w->row, expr_expand_defs(w->g, with_definitions(e, c->r[k])));
   for (uint32_t i = 0; i < e->n && c->n; i++) vec_push(e->m->arena, &w->unknown, e->m->coords.at[i].v);
 }
 
@@ -111,39 +114,148 @@ static int may_be_singular(ExprGraph *g, Expr x) {
   return 0;
 }
 
-/* x less the multiple of a row that takes the unknown out of it; 0: the row lacks it, or something remains. */
-static Expr reduced(RowSearch *w, Expr x, Expr slope, Expr row, SymId unknown) {
-  Expr lead = expr_diff(w->g, row, unknown);
-  if (expr_is_zero(w->g, lead) || expr_contains_sym(w->g, lead, unknown) || w->tries-- <= 0) return 0;
-  Expr times = simplify(w->g, expr_div(w->g, slope, lead)), taken = expr_mul(w->g, times, row);
-  Expr left = simplify(w->g, expr_sub(w->g, x, taken));
-  return expr_contains_sym(w->g, left, unknown) || may_be_singular(w->g, times) ? 0 : left;
+/* --- the combination of all rows that numbers suggest --- */
+
+enum { LOOKS = 4 };
+/* Values at LOOKS states: coefficients of the rows; parts of x, then constants, which may be factors of coefficients. */
+typedef struct {
+  VEC(Expr) factor; /* the number 1 first */
+  uint32_t parts;   /* number of those that are parts of x */
+  long double *value[LOOKS], *c[LOOKS];
+} Looks;
+
+/* Rows, and the unknowns that a combination of them takes out. */
+typedef struct {
+  const Expr *row;
+  const SymId *unknown;
+  uint32_t rows, unknowns;
+} RowBlock;
+
+/* Factors: 1, the parts of x and of its slopes by the unknowns, parameters and constant masses. */
+static void find_factors(const RowSearch *w, const RowBlock *b, Expr x, Looks *to) {
+  Arena *a = w->e->m->arena;
+  Expr *root = ARENA_ARRAY(a, Expr, b->unknowns + 1);
+  expr_gradient(w->g, x, b->unknown, b->unknowns, root);
+  root[b->unknowns] = x;
+  ExprList parts = expr_topo(w->g, root, b->unknowns + 1), of_rows = expr_topo(w->g, w->row.at, w->square);
+  vec_push(a, &to->factor, expr_int(w->g, 1));
+  for (uint32_t i = 0; i < parts.n; i++) vec_push(a, &to->factor, parts.at[i]);
+  to->parts = to->factor.n;
+  for (uint32_t i = 0; i < of_rows.n; i++)
+    if (expr_op(w->g, of_rows.at[i]) == EX_SYM && expr_sym_of(w->g, of_rows.at[i])->kind == SYM_PARAM)
+      vec_push(a, &to->factor, of_rows.at[i]);
+  for (uint32_t i = 0; i < w->e->mass.n; i++) {
+    Expr m = w->e->mass.at[i].e;
+    if (expr_is_constant(w->g, m) && m != to->factor.at[to->factor.n - 1]) vec_push(a, &to->factor, m);
+  }
 }
 
-/* Whether x is a combination of at most MOST rows; the unknowns go in order. */
-static int is_combination(RowSearch *w, Expr x, uint32_t depth) {
-  enum { MOST = 4 };
-  uint32_t u = 0;
-  while (u < w->unknown.n && !expr_contains_sym(w->g, x, w->unknown.at[u])) u++;
-  if (u == w->unknown.n) return prove_zero(w->g, x, NULL) == PROVED_ZERO;
-  SymId unknown = w->unknown.at[u];
-  Expr slope = expr_diff(w->g, x, unknown);
-  if (depth == MOST || expr_contains_sym(w->g, slope, unknown)) return 0;
-  for (uint32_t k = 0; k < w->row.n; k++) {
-    Expr left = expr_contains_sym(w->g, w->row.at[k], unknown) ? reduced(w, x, slope, w->row.at[k], unknown) : 0;
-    if (left && is_combination(w, left, depth + 1)) return 1;
+/* c := coefficients with W^T c = dx/d(unknowns) in least squares, from v = [W, dx/d(unknowns)]; 0: dependent rows, or no values. */
+static int fit_rows(Arena *a, const RowBlock *b, const long double *v, long double *c) {
+  uint32_t n = b->rows, m = b->unknowns;
+  long double *G = ARENA_ARRAY(a, long double, (size_t)n * n + 1);
+  for (uint32_t i = 0; i < (n + 1) * m; i++)
+    if (!isfinite(v[i])) return 0;
+  for (uint32_t i = 0; i < n; i++)
+    for (uint32_t j = 0; j <= n; j++) {
+      long double sum = 0;
+      for (uint32_t k = 0; k < m; k++) sum += v[i * m + k] * v[j * m + k];
+      *(j < n ? &G[i * n + j] : &c[i]) = sum;
+    }
+  return dense_solve_rows(a, n, G, 1, c);
+}
+
+/* Coefficients and factors at LOOKS states that obey the constraints; 0: the rows are dependent at one, or too few are found. */
+static int look(const RowSearch *w, const RowBlock *b, Expr x, Looks *to) {
+  Arena *a = w->e->m->arena;
+  uint32_t n = b->rows, m = b->unknowns, slopes = (n + 1) * m;
+  Expr *root = ARENA_ARRAY(a, Expr, (size_t)slopes + to->factor.n);
+  for (uint32_t i = 0; i <= n; i++) expr_gradient(w->g, i < n ? b->row[i] : x, b->unknown, m, root + i * m);
+  memcpy(root + slopes, to->factor.at, to->factor.n * sizeof *root);
+  EvalTape *tape = eval_tape(w->g, root, slopes + to->factor.n);
+  long double *symbols = ARENA_ARRAY(a, long double, expr_symbol_count(w->g) + 1);
+  StateSolver *solver = w->e->constraints.n ? states_new(w->e) : NULL;
+  uint32_t seen = 0;
+  for (uint32_t seed = 1; seed <= 4 * LOOKS && seen < LOOKS; seed++) {
+    long double *v = ARENA_ARRAY(a, long double, slopes + to->factor.n);
+    sample_state(w->g, seed, symbols);
+    if (solver && !states_complete(solver, symbols)) continue;
+    to->c[seen] = ARENA_ARRAY(a, long double, n + 1);
+    to->value[seen] = v + slopes;
+    eval_run(tape, symbols, v);
+    if (!fit_rows(a, b, v, to->c[seen++])) return 0;
   }
+  return seen == LOOKS;
+}
+
+/* factor[part]^e1 factor[constant]^e2 */
+typedef struct {
+  uint32_t part, constant;
+  int e1, e2;
+} Monomial;
+
+/* The ratio p/q, q small, of coefficient i to the monomial at all states; the number 0: none. */
+static Num ratio_of(const Looks *l, uint32_t i, Monomial m) {
+  const long double tiny = 1e-9L;
+  long double first = 0;
+  for (uint32_t s = 0; s < LOOKS; s++) {
+    long double a = l->value[s][m.part], b = l->value[s][m.constant];
+    long double r = l->c[s][i] / (m.e1 < 0 ? 1 / a : a) / (m.e2 < 0 ? 1 / b : b);
+    if (s == 0) first = r;
+    if (!isfinite(r) || fabsl(r - first) > tiny * fabsl(first)) return num_int(0);
+  }
+  for (int q = 1; q <= 24 && fabsl(first) < 1e6L; q++)
+    if (fabsl(first * q - roundl(first * q)) < tiny * q * fabsl(first)) return num_ratio((int64_t)roundl(first * q), q);
+  return num_int(0);
+}
+
+/* Coefficient i as a number times a part of x, a constant, or their inverses; 0: it is none. */
+static Expr coefficient(const RowSearch *w, const Looks *l, uint32_t i) {
+  int zero = 1;
+  for (uint32_t s = 0; s < LOOKS; s++) zero &= fabsl(l->c[s][i]) < 1e-12L;
+  if (zero) return expr_int(w->g, 0);
+  for (uint32_t k = 0; k < 2 * l->parts; k++)
+    for (uint32_t p = 2 * l->parts - 1; p < 2 * l->factor.n; p++) {
+      Monomial m = {k / 2, p < 2 * l->parts ? 0 : p / 2, k % 2 ? -1 : 1, p % 2 ? -1 : 1};
+      Num r = ratio_of(l, i, m);
+      if (num_is_zero(r)) continue;
+      Expr a = expr_pow_num(w->g, l->factor.at[m.part], num_int(m.e1));
+      Expr b = expr_pow_num(w->g, l->factor.at[m.constant], num_int(m.e2));
+      return expr_scale(w->g, r, expr_mul(w->g, a, b));
+    }
   return 0;
 }
 
+/* x less the combination of rows that takes the unknowns out of it; x itself: none is found. */
+static Expr without_rows(const RowSearch *w, const RowBlock *b, Expr x) {
+  enum { FACTORS_MOST = 2000 };
+  Looks l = {0};
+  Expr left = x;
+  if (!b->rows) return x;
+  find_factors(w, b, x, &l);
+  if (l.factor.n > FACTORS_MOST || !look(w, b, x, &l)) return x;
+  for (uint32_t i = 0; i < b->rows; i++) {
+    Expr c = coefficient(w, &l, i);
+    if (!c || may_be_singular(w->g, c)) return x;
+    left = expr_sub(w->g, left, expr_mul(w->g, c, b->row[i]));
+  }
+  return left;
+}
+
 static int prove_by_rows(const Eqns *e, Expr x) {
-  enum { TRIES = 60, ROWS_MOST = 200, LONGEST = 20000 };
+  enum { ROWS_MOST = 200, LONGEST = 20000 };
   uint32_t distinct;
-  RowSearch w = {.e = e, .g = e->g, .tries = TRIES};
+  RowSearch w = {.e = e, .g = e->g, };
   if (!e->mass_known || e->n + e->constraints.n > ROWS_MOST || expr_tree_size(e->g, x, &distinct) > LONGEST) return 0;
   add_motion_rows(&w);
   add_constraint_rows(&w);
-  return is_combination(&w, simplify(e->g, expr_expand_defs(e->g, x)), 0);
+  x = simplify(e->g, expr_expand_defs(e->g, x));
+  RowBlock motion = {w.row.at, w.unknown.at, w.square, w.square};
+  RowBlock rates = {w.row.at + w.square, w.unknown.at + w.square, w.row.n - w.square, w.unknown.n - w.square};
+  Expr left = without_rows(&w, &motion, x);
+  if (left != x) left = simplify(e->g, left);
+  left = without_rows(&w, &rates, left);
+  return left != x && prove_zero(e->g, left, NULL) == PROVED_ZERO;
 }
 
 Verdict prove_by_motion(const Eqns *e, Expr lhs, Expr rhs) {

@@ -5,6 +5,7 @@
  * first; the value is the column named like the input, or, of two columns, the other one. A head may state units, as lagc's own output does: `t [s],u
  * [N]`; they must be the input's. Without a head there are two columns. Each row has as many numbers as the head has names: decimal commas do not pass
  * as other columns. Two rows with the same time are a jump. A file that is no table is not quoted. */
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,21 +96,31 @@ static void no_table(Table *t, const char *why) {
 
 /* --- the head --- */
 
-/* 1 if a field of the head is `name`, without unit; *unit is the text in brackets after it. */
+static int same_letters(const char *a, const char *b, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    if (tolower((unsigned char)a[i]) != tolower((unsigned char)b[i])) return 0;
+  return 1;
+}
+
+/* 2 if a field of the head is `name`, without unit, 1 if a word in other letters, upper or lower (t and T are two names); *unit is the text in
+ * brackets after it. */
 static int is_called(const Table *t, Piece field, const char *name, Piece *unit) {
   const char *s = t->file.text, *open = memchr(s + field.begin, '[', field.end - field.begin);
   Piece stem = {field.begin, open ? (uint32_t)(open - s) : field.end};
   *unit = (Piece){field.end, field.end};
   if (open && s[field.end - 1] == ']') *unit = (Piece){stem.end + 1, field.end - 1};
   stem = trimmed(t, stem);
-  return strlen(name) == stem.end - stem.begin && memcmp(s + stem.begin, name, stem.end - stem.begin) == 0;
+  size_t n = strlen(name);
+  if (n != stem.end - stem.begin || !same_letters(s + stem.begin, name, n)) return 0;
+  return memcmp(s + stem.begin, name, n) == 0 ? 2 : n > 1;
 }
 
-/* First column called `name`, from column `from` on; `none` if there is none. */
+/* First column called `name`, from column `from` on, in the same letters if there is one; `none` if there is none. */
 static uint32_t find_column(const Table *t, uint32_t from, const char *name, uint32_t none) {
   Piece unit;
-  for (uint32_t i = from; i < t->fields.n; i++)
-    if (is_called(t, t->fields.at[i], name, &unit)) return i;
+  for (int like = 2; like > 0; like--)
+    for (uint32_t i = from; i < t->fields.n; i++)
+      if (is_called(t, t->fields.at[i], name, &unit) >= like) return i;
   return none;
 }
 
@@ -145,14 +156,15 @@ static void check_unit(Table *t, Piece field, const Unit *want, const char *whos
   }
 }
 
-/* Reports another column with the name of column k, units aside. */
+/* Reports another column with the name of column k, units and upper or lower case aside. */
 static void check_twins(Table *t, uint32_t k) {
   Piece unit;
   is_called(t, t->fields.at[k], "", &unit);
   Piece name = trimmed(t, (Piece){t->fields.at[k].begin, unit.begin < unit.end ? unit.begin - 1 : t->fields.at[k].end});
   uint32_t again = find_column(t, k + 1, text_of(t, name), t->fields.n);
   if (again == t->fields.n) return;
-  mistake(t, t->fields.at[again], arena_printf(t->b->arena, "two columns are called `%s`", text_of(t, name)));
+  const char *called = text_of(t, name), *but = is_called(t, t->fields.at[again], called, &unit) < 2 ? ", but for upper and lower case" : "";
+  mistake(t, t->fields.at[again], arena_printf(t->b->arena, "two columns are called `%s`%s", called, but));
   diag_help(t->b->diags, "give one of them another name");
 }
 

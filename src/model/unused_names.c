@@ -1,4 +1,5 @@
-/* Warnings about parameters, lets, inputs and functions of the model's main file that no expression uses.
+/* Warnings about parameters, lets, inputs and functions of the model's main file that no expression uses, and about names
+ * that hide the model's energy or L.
  *
  * In: a parsed Ast without errors, with the expressions of the command line. Names are not resolved: any occurrence in an
  * expression, active or not, counts as a use; the left side of a scene's assignment does not. */
@@ -50,7 +51,26 @@ static void warn_list(Ast *ast, const Scope *used, const AstStmt *list) {
   }
 }
 
+static int gives_energy(const AstStmt *list) {
+  for (const AstStmt *s = list; s; s = s->next)
+    if (s->kind == STMT_LAGRANGIAN || s->kind == STMT_KINETIC || s->kind == STMT_HAMILTONIAN) return 1;
+  return 0;
+}
+
+/* Names that take the place of the model's own `energy` and `lagrangian` in outputs and measures. */
+static void warn_hidden(Ast *ast, const AstStmt *list) {
+  for (const AstStmt *s = list; s; s = s->next) {
+    int named = s->kind == STMT_PARAM || s->kind == STMT_CONST || s->kind == STMT_INPUT || s->kind == STMT_LET ||
+                s->kind == STMT_OBSERVE || s->kind == STMT_FUNCTION;
+    if (s->kind == STMT_EFFECT) warn_hidden(ast, s->body);
+    if (!named || !s->name || (strcmp(s->name, "energy") != 0 && strcmp(s->name, "lagrangian") != 0)) continue;
+    diag_warning(ast->diags, s->name_span, "`%s` hides the model's own %s in outputs, measures and expectations", s->name, s->name);
+    diag_help(ast->diags, "call it `my_%s`, or leave it out: `output %s` needs no declaration", s->name, s->name);
+  }
+}
+
 void model_warn_unused(Ast *ast) {
   Scope used = used_names(ast);
   warn_list(ast, &used, ast->first);
+  if (gives_energy(ast->first)) warn_hidden(ast, ast->first);
 }

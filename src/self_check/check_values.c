@@ -34,12 +34,14 @@ static CheckVerdict check_constraints(Check *c) {
   return v;
 }
 
-/* The potential that completes the energy, from its expression: its gradient is proved to be the forces, which are compared
- * on their own. */
+/* The potential that completes the energy, from its expression: its rate is proved to be minus the power of forces and of
+ * explicit time, which are compared on their own. */
 static Bounded potential(const Check *c) {
   const Model *m = c->m;
   long double bound, *symbols = model_constants(m);
+  symbols[m->time] = (long double)c->t;
   for (uint32_t i = 0; i < c->n; i++) symbols[m->coords.at[i].q] = (long double)c->q[i];
+  for (uint32_t i = 0; i < m->states.n; i++) symbols[m->states.at[i].z] = (long double)c->z[i];
   for (uint32_t i = 0; i < m->params.n; i++) symbols[m->params.at[i].sym] = (long double)c->given[i];
   long double value = eqns_potential_at(c->e, symbols, &bound);
   return (Bounded){(Real)value, (Real)bound};

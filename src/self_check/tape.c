@@ -143,7 +143,10 @@ static void run_one(const TapeIns *i, const Jet *x, const Jet *y, const Jet *z, 
     }
     case TAPE_POW: jet_pow(out, x, y); return;
     case TAPE_FUNCTION: if (!jet_function(out, i->text, x)) *out = jet_exact(NAN); return;
-    case TAPE_ATAN2: jet_atan2(out, x, y); return;
+    case TAPE_ATAN2: /* on the cut the sign of a zero decides, which a rewrite need not keep */
+      near = value(y) < 0 && (value(x) == 0 || is_near(x, &zero));
+      jet_atan2(out, x, y);
+      break;
     case TAPE_HYPOT: jet_hypot(out, x, y); return;
     case TAPE_SELECT: near = isinf(x->c[0][0].e); *out = value(x) != 0 ? *y : *z; break;
     case TAPE_NOT: near = isinf(x->c[0][0].e); *out = jet_of_bool(value(x) == 0); break;

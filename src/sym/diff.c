@@ -74,6 +74,9 @@ static Expr partial_binary(ExprGraph *g, Expr e, uint32_t i) {
   return g->zero;
 }
 
+/* Whether e is log|u|: a function of u, whose slope is 1/u. */
+static int is_log_of_size(ExprGraph *g, Expr e) { return expr_op(g, e) == EX_LOG && expr_op(g, expr_arg(g, e, 0)) == EX_ABS; }
+
 /* Number of arguments of e that are nodes to differentiate; coefficients and exponents do not count. */
 static uint32_t inputs(ExprGraph *g, Expr e) {
   ExprOp op = expr_op(g, e);
@@ -82,13 +85,14 @@ static uint32_t inputs(ExprGraph *g, Expr e) {
 
 static Expr input(ExprGraph *g, Expr e, uint32_t i) {
   ExprOp op = expr_op(g, e);
+  if (is_log_of_size(g, e)) return expr_arg(g, expr_arg(g, e, 0), 0);
   return expr_arg(g, e, op == EX_SUM || op == EX_PROD ? 2 * i : i);
 }
 
 static Expr partial(ExprGraph *g, Expr e, uint32_t i) {
   ExprOp op = expr_op(g, e);
   if (op == EX_SUM || op == EX_PROD) return partial_pair(g, e, i);
-  return expr_nargs(g, e) == 1 ? partial_unary(g, e, expr_arg(g, e, 0)) : partial_binary(g, e, i);
+  return expr_nargs(g, e) == 1 ? partial_unary(g, e, input(g, e, 0)) : partial_binary(g, e, i);
 }
 
 /* --- choices: if, min, max. Their derivative is that of the side that holds; a factor of 0 would not do, as the other side's may have no value there. --- */

@@ -3,6 +3,8 @@
 
 #include "sym/diff.h"
 #include "sym/normal_form.h"
+#include "sym/prove.h"
+#include "sym/sides.h"
 #include "sym/simplify.h"
 
 enum { MAX_TERMS = 4000, MAX_WORK = 400000, MAX_HARMONICS = 256, MAX_POWER = 64 };
@@ -29,6 +31,9 @@ typedef struct {
   SymId x;
   unsigned without;
   Expr result;
+  SymId s;         /* scratch symbol of substitutions */
+  const SymId *q;  /* [n] coordinates that factors of a substitution do not contain */
+  uint32_t n;
 } Task;
 
 static int has_x(const Task *t, Expr e) { return expr_contains_sym(t->g, e, t->x); }
@@ -213,70 +218,208 @@ static Expr integral_of_power(ExprGraph *g, Expr u, Num power) {
   return expr_scale(g, num_div(num_int(1), next), expr_pow_num(g, u, next));
 }
 
-/* factor of c = factor du/dx, where e has the term c u^power: free of q, or 0. s: a symbol that stands for u. */
-static Expr factor_of_power(const Task *t, Expr u, Num power, SymId s, const SymId *q, uint32_t n) {
-  ExprGraph *g = t->g;
-  Expr slope = expr_diff(g, u, t->x), node = expr_symbol(g, s)->node, in_s;
-  if (expr_op(g, u) != EX_SUM || expr_is_zero(g, slope)) return 0;
-  expr_replace_nodes(g, &t->e, 1, &u, &node, 1, &in_s);
-  Expr flat = expr_pow_num(g, node, num_sub(num_int(1), power)), c = expr_mul(g, expr_diff(g, in_s, s), flat);
-  Expr factor = simplify(g, expr_div(g, expr_scale(g, num_div(num_int(1), power), c), slope));
-  return expr_contains_sym(g, factor, s) || contains_any(g, factor, q, n) ? 0 : factor;
+/* c of e = .. + c f(u), where `of` is u or f(u) and `slope` = dx/d(of) replaces it by s: c/slope if free of q, else 0. */
+static Expr constant_factor(const Task *t, Expr c, Expr slope) {
+  Expr factor = expr_is_zero(t->g, slope) ? slope : simplify(t->g, expr_div(t->g, c, slope));
+  int constant = !expr_contains_sym(t->g, factor, t->s) && !contains_any(t->g, factor, t->q, t->n);
+  return constant && !expr_is_zero(t->g, factor) ? factor : 0;
 }
+
+/* d/ds of e with s in the place of a node. */
+static Expr slope_in(const Task *t, Expr node) {
+  Expr s = expr_symbol(t->g, t->s)->node, in_s;
+  expr_replace_nodes(t->g, &t->e, 1, &node, &s, 1, &in_s);
+  return expr_diff(t->g, in_s, t->s);
+}
+
+/* Integral of a term c u^power of t->e in which c is du/dx times a constant, as of x/(x^2 + y^2)^(3/2), or 0. */
+static Expr integral_of_factor(const Task *t, Expr u, Num power) {
+  ExprGraph *g = t->g;
+  ExprOp op = expr_op(g, u);
+  if (op == EX_SYM || op == EX_NUM) return 0;
+  Expr flat = expr_pow_num(g, expr_symbol(g, t->s)->node, num_sub(num_int(1), power));
+  Expr c = expr_mul(g, slope_in(t, u), flat), once = expr_scale(g, num_div(num_int(1), power), c);
+  Expr factor = constant_factor(t, once, expr_diff(g, u, t->x));
+  if (factor) return expr_mul(g, factor, integral_of_power(g, u, power));
+  int squared = num_is_int(power) && num_value(power) == -2 && (op == EX_COS || op == EX_COSH);
+  factor = squared ? constant_factor(t, once, expr_diff(g, expr_arg(g, u, 0), t->x)) : 0;
+  return factor ? expr_mul(g, factor, expr_fn(g, op == EX_COS ? EX_TAN : EX_TANH, expr_arg(g, u, 0))) : 0;
+}
+
+/* u f(u) - integral of u f'(u), for f whose second term is `rest`. */
+static Expr by_parts(ExprGraph *g, ExprOp f, Expr u, Expr rest) { return expr_sub(g, expr_mul(g, u, expr_fn(g, f, u)), rest); }
 
 /* Integral of f(u) by u; 0: it is not in this list. */
 static Expr integral_of_function(ExprGraph *g, ExprOp f, Expr u) {
-  static const ExprOp integral[][2] = {{EX_EXP, EX_EXP}, {EX_COS, EX_SIN}, {EX_SINH, EX_COSH}, {EX_COSH, EX_SINH}};
-  for (size_t i = 0; i < sizeof integral / sizeof *integral; i++)
-    if (f == integral[i][0]) return expr_fn(g, integral[i][1], u);
-  return f == EX_SIN ? expr_neg(g, expr_fn(g, EX_COS, u)) : 0;
+  Expr one = expr_int(g, 1), uu = expr_pow_num(g, u, num_int(2)), root = expr_sqrt(g, expr_sub(g, one, uu));
+  Num half = num_ratio(1, 2);
+  switch (f) {
+    case EX_EXP: return expr_fn(g, EX_EXP, u);
+    case EX_SIN: return expr_neg(g, expr_fn(g, EX_COS, u));
+    case EX_COS: return expr_fn(g, EX_SIN, u);
+    case EX_SINH: return expr_fn(g, EX_COSH, u);
+    case EX_COSH: return expr_fn(g, EX_SINH, u);
+    case EX_TAN: return expr_neg(g, expr_fn(g, EX_LOG, expr_fn(g, EX_ABS, expr_fn(g, EX_COS, u))));
+    case EX_TANH: return expr_fn(g, EX_LOG, expr_fn(g, EX_COSH, u));
+    case EX_LOG: return by_parts(g, f, u, u);
+    case EX_ATAN: return by_parts(g, f, u, expr_scale(g, half, expr_fn(g, EX_LOG, expr_add(g, one, uu))));
+    case EX_ASIN: return by_parts(g, f, u, expr_neg(g, root));
+    case EX_ACOS: return by_parts(g, f, u, root);
+    case EX_CBRT: return expr_scale(g, num_ratio(3, 4), by_parts(g, f, u, expr_int(g, 0)));
+    case EX_FLOOR: {
+      Expr floor = expr_fn(g, f, u), next = expr_add(g, floor, one), twice = expr_scale(g, num_int(2), u);
+      return expr_scale(g, half, expr_mul(g, floor, expr_sub(g, twice, next)));
+    }
+    default: return 0;
+  }
 }
 
-/* Integral by t->x of one term c f(u) of t->e in which c is du/dx times a constant, or 0. */
-static Expr integral_of_call(const Task *t, Expr call, SymId s, const SymId *q, uint32_t n) {
+/* Integral of a term c f(u) of t->e in which c is du/dx times a constant, or 0. */
+static Expr integral_of_call(const Task *t, Expr call) {
+  ExprOp op = expr_op(t->g, call);
+  if (op == EX_SYM || op == EX_NUM || expr_nargs(t->g, call) != 1) return 0;
+  Expr u = expr_arg(t->g, call, 0), whole = integral_of_function(t->g, op, u);
+  Expr factor = whole ? constant_factor(t, slope_in(t, call), expr_diff(t->g, u, t->x)) : 0;
+  return factor ? expr_mul(t->g, factor, whole) : 0;
+}
+
+/* Integral of c/u, c free of q and u = a x^2 + b x + d without zeros, or 0. */
+static Expr integral_of_quadratic(const Task *t, Expr u, Num power) {
   ExprGraph *g = t->g;
-  Expr whole = integral_of_function(g, expr_op(g, call), expr_arg(g, call, 0)), node = expr_symbol(g, s)->node, in_s;
-  Expr slope = whole ? expr_diff(g, expr_arg(g, call, 0), t->x) : 0;
-  if (!whole || expr_is_zero(g, slope)) return 0;
-  expr_replace_nodes(g, &t->e, 1, &call, &node, 1, &in_s);
-  Expr factor = simplify(g, expr_div(g, expr_diff(g, in_s, s), slope));
-  int constant = !expr_is_zero(g, factor) && !expr_contains_sym(g, factor, s) && !contains_any(g, factor, q, n);
-  return constant ? expr_mul(g, factor, whole) : 0;
+  Expr slope = expr_diff(g, u, t->x), twice = expr_diff(g, slope, t->x), zero = expr_int(g, 0);
+  if (num_value(power) != -1 || expr_op(g, u) != EX_SUM || contains_any(g, twice, t->q, t->n) || expr_is_zero(g, twice)) return 0;
+  Expr ss = expr_pow_num(g, expr_symbol(g, t->s)->node, num_int(2));
+  Expr c = constant_factor(t, expr_neg(g, expr_mul(g, slope_in(t, u), ss)), expr_int(g, 1));
+  Expr b = expr_replace(g, slope, &t->x, &zero, 1), d = expr_replace(g, u, &t->x, &zero, 1);
+  Expr size = expr_sub(g, expr_scale(g, num_int(2), expr_mul(g, twice, d)), expr_pow_num(g, b, num_int(2)));
+  if (!c || expr_sign(g, size) != SIGN_POSITIVE) return 0;
+  Expr root = expr_sqrt(g, size), angle = expr_fn(g, EX_ATAN, expr_div(g, slope, root));
+  return expr_mul(g, expr_scale(g, num_int(2), c), expr_div(g, angle, root));
 }
 
-/* Integral by t->x of one term c u^power of t->e in which c is du/dx times a constant, as of x/(x^2 + y^2)^(3/2), or 0. */
-static Expr integral_by_substitution(const Task *t, SymId s, const SymId *q, uint32_t n) {
+/* Whether u^power is a power of a sum that is better not multiplied out: near u = 0 its terms cancel. */
+static int is_whole_power(const Task *t, Expr u, Num power) { return expr_op(t->g, u) == EX_SUM && num_is_int(power) && num_value(power) > 1; }
+
+/* Integral of one term of t->e by substitution of a function in it, or of a whole power of a sum, or 0. */
+static Expr integral_by_substitution(const Task *t, int whole_powers) {
   ExprList nodes = expr_topo(t->g, &t->e, 1);
   for (uint32_t i = 0; i < nodes.n; i++) {
-    ExprOp op = expr_op(t->g, nodes.at[i]);
-    int call = op != EX_SYM && op != EX_NUM && op != EX_PROD && op != EX_SUM && expr_nargs(t->g, nodes.at[i]) == 1;
-    Expr whole = call ? integral_of_call(t, nodes.at[i], s, q, n) : 0;
-    if (whole) return whole;
-    for (uint32_t k = 0; op == EX_PROD && k < expr_pairs(t->g, nodes.at[i], op); k++) {
+    Expr whole = whole_powers ? 0 : integral_of_call(t, nodes.at[i]);
+    for (uint32_t k = 0; !whole && expr_op(t->g, nodes.at[i]) != EX_SUM && k < expr_pairs(t->g, nodes.at[i], EX_PROD); k++) {
       Num power;
-      Expr u = expr_pair(t->g, nodes.at[i], op, k, &power), factor = factor_of_power(t, u, power, s, q, n);
-      if (factor && !expr_is_zero(t->g, factor)) return expr_mul(t->g, factor, integral_of_power(t->g, u, power));
+      Expr u = expr_pair(t->g, nodes.at[i], EX_PROD, k, &power);
+      if (whole_powers && !is_whole_power(t, u, power)) continue;
+      whole = integral_of_factor(t, u, power);
+      if (!whole) whole = integral_of_quadratic(t, u, power);
     }
+    if (whole) return whole;
   }
   return 0;
 }
 
-/* Antiderivative of e by x by the forms above, then by substitution. */
-static Expr antiderivative(ExprGraph *g, Expr e, SymId x, const SymId *q, uint32_t n) {
-  enum { MOST = 64, LONGEST = 2000 };
-  uint32_t distinct;
-  Expr sum = expr_integrate(g, e, x, 0);
-  if (expr_tree_size(g, e, &distinct) > LONGEST) return sum;
-  Expr rest = expr_sub(g, e, expr_diff(g, sum, x));
-  SymId s = expr_is_zero(g, simplify(g, rest)) ? 0 : expr_declare(g, SYM_LOCAL, 0, "?", SIGN_UNKNOWN);
-  for (uint32_t k = 0; k < MOST && s; k++) {
-    Task t = {.g = g, .e = expr_expand_defs(g, rest), .x = x};
-    Expr part = integral_by_substitution(&t, s, q, n);
-    if (!part) break;
+static Expr antiderivative(ExprGraph *g, Expr e, Task with, int depth, Expr *rest);
+
+/* An antiderivative of all of e, or 0. */
+static Expr whole_antiderivative(ExprGraph *g, Expr e, Task with, int depth) {
+  Expr rest, sum = antiderivative(g, e, with, depth, &rest);
+  return expr_is_zero(g, rest) ? sum : 0;
+}
+
+/* Degree u de/du/e of e, a number >= 0 where e is homogeneous in u; else 0. */
+static Expr degree_in(const Task *t, Expr e, Expr u, Expr slope) {
+  ExprGraph *g = t->g;
+  Expr times = expr_mul(g, u, expr_diff(g, e, t->x)), degree = simplify(g, expr_div(g, times, expr_mul(g, slope, e)));
+  return expr_is_num(g, degree) && num_sign(expr_number(g, degree)) >= 0 ? degree : 0;
+}
+
+/* Integral of a term with a switch at a zero of u, linear in x: u term/(degree + 1) where that holds, else if(0 < u, F, G) from
+ * antiderivatives of the branches that are 0 at the switch. 0: none. */
+static Expr integral_by_sides(const Task *t, int depth) {
+  ExprGraph *g = t->g;
+  Expr u = depth > 0 ? switch_in(g, t->e, t->x) : 0, slope = u ? expr_diff(g, u, t->x) : 0, F[2];
+  if (!u || expr_contains_sym(g, slope, t->x) || expr_is_zero(g, slope) || switch_in(g, u, t->x)) return 0;
+  Expr root = expr_sub(g, expr_symbol(g, t->x)->node, expr_div(g, u, slope));
+  Expr above = simplify(g, on_side(g, t->e, u, 1)), below = simplify(g, on_side(g, t->e, u, -1));
+  if (expr_is_zero(g, above) && expr_is_zero(g, below)) return above;
+  Expr degree = degree_in(t, expr_is_zero(g, above) ? below : above, u, slope);
+  if (degree && (expr_is_zero(g, below) || degree == degree_in(t, below, u, slope))) {
+    Num once = num_div(num_int(1), num_add(num_int(1), expr_number(g, degree)));
+    return expr_scale(g, once, expr_div(g, expr_mul(g, u, t->e), slope));
+  }
+  for (int k = 0; k < 2; k++) {
+    F[k] = whole_antiderivative(g, k ? below : above, *t, depth - 1);
+    if (!F[k]) return 0;
+    Expr there = expr_replace(g, F[k], &t->x, &root, 1), inner = switch_in(g, there, 0);
+    int sign = !inner ? 0 : sign_is_nonnegative(expr_sign(g, inner)) ? 1 : sign_is_nonpositive(expr_sign(g, inner)) ? -1 : 0;
+    F[k] = expr_sub(g, F[k], sign ? on_side(g, there, inner, sign) : there);
+  }
+  return expr_select(g, expr_fn2(g, EX_LT, expr_int(g, 0), u), F[0], F[1]);
+}
+
+/* Integral of a term with a denominator that is linear in x, as polynomial and powers of the denominator, or 0. */
+static Expr integral_by_division(const Task *t) {
+  ExprGraph *g = t->g;
+  ExprList nodes = expr_topo(g, &t->e, 1);
+  for (uint32_t i = 0; i < nodes.n; i++) {
+    Expr slope = expr_op(g, nodes.at[i]) == EX_SUM ? expr_diff(g, nodes.at[i], t->x) : 0, s = expr_symbol(g, t->s)->node;
+    if (!slope || expr_is_zero(g, slope) || contains_any(g, slope, t->q, t->n)) continue;
+    Expr there = expr_add(g, expr_symbol(g, t->x)->node, expr_div(g, expr_sub(g, s, nodes.at[i]), slope));
+    Expr in_s = expr_replace(g, t->e, &t->x, &there, 1), whole = expr_integrate(g, in_s, t->s, 0);
+    if (prove_zero(g, expr_sub(g, in_s, expr_diff(g, whole, t->s)), NULL) == PROVED_ZERO)
+      return expr_div(g, expr_replace(g, whole, &t->s, &nodes.at[i], 1), slope);
+  }
+  return 0;
+}
+
+/* Integral of the terms of e that have switches or denominators, taken from e. */
+static Expr integral_of_terms(ExprGraph *g, Task with, int depth, Expr *e) {
+  Expr sum = expr_int(g, 0), all = *e;
+  for (uint32_t i = 0; i < expr_pairs(g, all, EX_SUM); i++) {
+    Num c;
+    Expr term = expr_pair(g, all, EX_SUM, i, &c);
+    with.e = expr_scale(g, c, term);
+    Expr part = switch_in(g, with.e, with.x) ? integral_by_sides(&with, depth) : integral_by_division(&with);
+    if (!part) continue;
     sum = expr_add(g, sum, part);
-    rest = expr_sub(g, t.e, expr_diff(g, part, x));
+    *e = expr_sub(g, *e, with.e);
   }
   return sum;
+}
+
+/* e without definitions, and with roots in the place of hypot. */
+static Expr in_powers(ExprGraph *g, Expr e) {
+  VEC(Expr) node = {0}, root = {0};
+  e = expr_expand_defs(g, e);
+  ExprList l = expr_topo(g, &e, 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    if (expr_op(g, l.at[i]) != EX_HYPOT) continue;
+    Expr xx = expr_pow_num(g, expr_arg(g, l.at[i], 0), num_int(2)), yy = expr_pow_num(g, expr_arg(g, l.at[i], 1), num_int(2));
+    vec_push(expr_arena(g), &node, l.at[i]);
+    vec_push(expr_arena(g), &root, expr_sqrt(g, expr_add(g, xx, yy)));
+  }
+  if (node.n) expr_replace_nodes(g, &e, 1, node.at, root.at, node.n, &e);
+  return e;
+}
+
+/* Antiderivative of e by the forms above, by substitution, and on the sides of switches; *rest: the terms without one. */
+static Expr antiderivative(ExprGraph *g, Expr e, Task with, int depth, Expr *rest) {
+  enum { MOST = 64, LONGEST = 2000 };
+  uint32_t distinct;
+  Expr sum = expr_int(g, 0);
+  *rest = in_powers(g, e);
+  for (uint32_t k = 0; k < MOST && !expr_is_zero(g, *rest); k++) {
+    with.e = *rest;
+    int last = expr_tree_size(g, e, &distinct) > LONGEST;
+    Expr part = last ? 0 : integral_by_substitution(&with, 1);
+    if (!part) part = expr_integrate(g, *rest, with.x, 0);
+    if (expr_is_zero(g, part) && !last) part = integral_by_substitution(&with, 0);
+    if (!part || expr_is_zero(g, part)) break;
+    sum = expr_add(g, sum, part);
+    *rest = simplify(g, expr_sub(g, *rest, expr_diff(g, part, with.x)));
+    if (!last && prove_zero(g, *rest, NULL) == PROVED_ZERO) *rest = expr_int(g, 0);
+  }
+  Expr sides = expr_is_zero(g, *rest) ? *rest : integral_of_terms(g, with, depth, rest);
+  return expr_add(g, sum, sides);
 }
 
 /* Takes the derivatives of a part of F from those that are left. */
@@ -284,16 +427,23 @@ static void take_part(ExprGraph *g, Expr part, const ExprMap *place, const SymId
   ExprList nodes = expr_topo(g, &part, 1);
   for (uint32_t k = 0; k < nodes.n; k++) {
     uint32_t i = expr_op(g, nodes.at[k]) == EX_SYM ? expr_map_get(place, nodes.at[k]) : 0;
-    if (i) left[i - 1] = expr_sub(g, left[i - 1], expr_diff(g, part, q[i - 1]));
+    if (!i) continue;
+    left[i - 1] = expr_sub(g, left[i - 1], expr_diff(g, part, q[i - 1]));
+    if (switch_in(g, left[i - 1], 0) && zero_on_sides(g, left[i - 1])) left[i - 1] = expr_int(g, 0);
   }
 }
 
 Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n, int by_substitution) {
-  Expr *left = ARENA_ARRAY(expr_arena(g), Expr, 2 * (size_t)n + 1), *part = left + n;
+  enum { SWITCHES_MOST = 4 };
+  Expr *left = ARENA_ARRAY(expr_arena(g), Expr, 2 * (size_t)n + 1), *part = left + n, rest;
   ExprMap place = expr_map(expr_arena(g));
+  Task with = {.g = g, .q = q, .n = n, .s = by_substitution ? expr_declare(g, SYM_LOCAL, 0, "?", SIGN_UNKNOWN) : 0};
   for (uint32_t i = 0; i < n; i++) left[i] = a[i], expr_map_set(&place, expr_symbol(g, q[i])->node, i + 1);
   for (uint32_t i = 0; i < n; i++) {
-    part[i] = expr_is_zero(g, left[i]) ? left[i] : by_substitution ? antiderivative(g, left[i], q[i], q, n) : expr_integrate(g, left[i], q[i], 0);
+    with.x = q[i];
+    part[i] = expr_is_zero(g, left[i]) ? left[i]
+              : by_substitution        ? antiderivative(g, left[i], with, SWITCHES_MOST, &rest)
+                                       : expr_integrate(g, left[i], q[i], 0);
     if (!expr_is_zero(g, part[i])) take_part(g, part[i], &place, q, left);
   }
   return expr_add_n(g, part, n);

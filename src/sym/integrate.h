@@ -11,5 +11,6 @@
 Expr expr_integrate(ExprGraph *g, Expr e, SymId x, unsigned without);
 
 /* Potential F with dF/dq_i = a_i for all i, integrated coordinate by coordinate with expr_integrate. F may cover some of the terms only:
- * the caller judges the remainder a_i - dF/dq_i. by_substitution: terms c u^k du/dq_i and c exp(u) du/dq_i, too; takes longer. */
+ * the caller judges the remainder a_i - dF/dq_i. by_substitution: functions f(u) du/dq_i of a table, powers of sums, denominators, and the sides
+ * of switches, too; takes longer. */
 Expr expr_potential(ExprGraph *g, const Expr *a, const SymId *q, uint32_t n, int by_substitution);

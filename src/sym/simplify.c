@@ -5,6 +5,7 @@
  * parameters; then functions of the state with the same parameter factor are collected. */
 #include "sym/simplify.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -344,18 +345,76 @@ static int has_definitions(ExprGraph *g, Expr e) {
   return 0;
 }
 
-/* The new form s if it keeps the range of e, else e. */
-static Expr if_range_kept(ExprGraph *g, Expr e, Expr s) { return s == e || keeps_range(g, e, s) ? s : e; }
+/* --- digits --- */
+
+/* Doubles between two random states. */
+typedef struct {
+  const ExprGraph *g;
+  uint32_t seed;
+  long double part;
+} Between;
+
+static long double symbol_between(SymId s, const void *data) {
+  const Between *at = data;
+  SymKind kind = expr_symbol(at->g, s)->kind;
+  long double from = sample_symbol(at->g, s, at->seed), to = sample_symbol(at->g, s, at->seed + 7);
+  int moves = kind == SYM_COORD || kind == SYM_STATE || kind == SYM_TIME || kind == SYM_VEL;
+  return (double)(moves ? from + at->part * (to - from) : from);
+}
+
+/* Value of the second root of the tape at a part of the way. */
+static long double value_between(EvalTape *t, Between at, long double part) {
+  long double out[2];
+  at.part = part;
+  eval_run_double(t, symbol_between, &at, out);
+  return out[1];
+}
+
+/* Whether the second root is much less precise in doubles than the first at this place. */
+static int loses_digits(EvalTape *t, const Between *at, long double *symbols) {
+  long double exact[2], is[2];
+  for (SymId s = 1; s <= expr_symbol_count(at->g); s++) symbols[s] = symbol_between(s, at);
+  eval_run(t, symbols, exact);
+  eval_run_double(t, symbol_between, at, is);
+  long double before = fabsl(is[0] - exact[0]), after = fabsl(is[1] - exact[1]), rounding = 64 * DBL_EPSILON * fabsl(exact[0]);
+  return after > rounding && after > 1000 * before;
+}
+
+/* Whether `after` has the digits of a product `before` beside zeros between random states: 2*cos(1 + u/2)*sin(u/2) has more
+ * than sin(1 + u) - sin(1). */
+static int keeps_digits(ExprGraph *g, Expr before, Expr after) {
+  enum { LINES = 12, PARTS = 4, HALVINGS = 30, NODES_MOST = 120 };
+  const long double beside = 1e-6L;
+  Expr both[2] = {before, after};
+  if (expr_pairs(g, before, EX_SUM) > 1 || expr_topo(g, both, 2).n > NODES_MOST) return 1;
+  EvalTape *t = eval_tape(g, both, 2);
+  long double *symbols = ARENA_ARRAY(expr_arena(g), long double, expr_symbol_count(g) + 1);
+  for (Between at = {.g = g, .seed = 1}; at.seed <= LINES; at.seed++)
+    for (int k = 0; k < PARTS; k++) {
+      long double lo = (long double)k / PARTS, hi = (long double)(k + 1) / PARTS, first = value_between(t, at, lo);
+      if (!(first * value_between(t, at, hi) < 0)) continue;
+      for (int i = 0; i < HALVINGS; i++) {
+        long double half = (lo + hi) / 2;
+        *(first * value_between(t, at, half) > 0 ? &lo : &hi) = half;
+      }
+      at.part = lo - beside;
+      if (loses_digits(t, &at, symbols)) return 0;
+    }
+  return 1;
+}
+
+/* The new form s if it keeps the range and the digits of e, else e. */
+static Expr if_good(ExprGraph *g, Expr e, Expr s) { return s == e || (keeps_range(g, e, s) && keeps_digits(g, e, s)) ? s : e; }
 
 Expr simplify(ExprGraph *g, Expr e) {
   Expr s = rewritten(g, e, 0);
   uint32_t before = expr_ops(g, &e, 1), after = expr_ops(g, &s, 1);
   if (after > before || (after == before && !has_definitions(g, e))) return e;
-  return if_range_kept(g, e, s);
+  return if_good(g, e, s);
 }
 
 Expr simplify_shallow(ExprGraph *g, Expr e) {
   Expr s = rewritten(g, e, 1);
   uint32_t before = expr_ops_shallow(g, e), after = expr_ops_shallow(g, s);
-  return after < before ? if_range_kept(g, e, s) : e;
+  return after < before ? if_good(g, e, s) : e;
 }

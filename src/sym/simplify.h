@@ -6,7 +6,7 @@
 
 /* Textbook form: angles combined, terms collected by the functions of the state, parameters factored: (m1 + m2)*g*l1*sin(th1) + m2*l1*l2*sin(th1 -
  * th2)*th2'^2. Definitions are expanded. Returns e itself if the polynomial form has more than 2000 terms, if the short form would overflow where e
- * does not, or unless it takes fewer operations (expr_ops); with equal counts the short form wins only where e has definitions. */
+ * does not or loses the digits of a product beside its zeros, or unless it takes fewer operations (expr_ops); with equal counts the short form wins only where e has definitions. */
 Expr simplify(ExprGraph *g, Expr e);
 
 /* simplify that keeps definitions opaque; returns e unless the operation count falls. */

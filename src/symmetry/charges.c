@@ -233,7 +233,8 @@ static int motion_jumps(const Model *m) {
 
 /* Reason of a conserved energy beside which forces, or constraints that move, act. */
 static const char *reason_of(const Eqns *e) {
-  if (e->potential) return arena_printf(e->m->arena, ", with the potential %s of the forces", text_of(e, e->potential));
+  const char *of = eqns_has_forces(e) ? "the potential %s of the forces" : "%s, as L has a total time derivative";
+  if (e->potential) return arena_printf(e->m->arena, arena_printf(e->m->arena, ", with %s", of), text_of(e, e->potential));
   if (eqns_has_forces(e)) return ": the forces do no work";
   return constraints_do_no_work(e) ? "" : ": the constraints do no work";
 }
@@ -255,7 +256,10 @@ const char *charges_energy_text(const Eqns *e) {
   const char *events = motion_jumps(e->m) ? " between events" : "", *name = e->m->hamiltonian ? "H" : "E";
   const char *inputs = is->by_formulas ? " while inputs follow their formulas" : "";
   if (is->drift == PROVED_ZERO) return arena_printf(e->m->arena, "energy is conserved%s%s%s", events, inputs, reason_of(e));
-  const char *verdict = is->drift == PROVED_NONZERO ? "energy changes" : "not decided whether the energy is conserved";
+  const char *verdict = is->drift == PROVED_NONZERO ? "energy changes"
+                        : is->open_integral ? "not decided whether the energy is conserved; with a potential of the forces, "
+                                              "an integral that is not found, it is"
+                                            : "not decided whether the energy is conserved";
   if (is->power_unknown) return arena_printf(e->m->arena, "%s: " NO_RATE, verdict);
   const char *power = text_of(e, is->power);
   return strlen(power) <= LINE ? arena_printf(e->m->arena, "%s: d%s/dt = %s", verdict, name, power)

@@ -308,6 +308,7 @@ static void search_ansatz(SymmetrySearch *s, int whole) {
 }
 
 static const char *stopped_note(const SymmetrySearch *s) {
+  if (s->limit->no_room) return arena_printf(s->e->m->arena, "%s, and nothing was searched beyond", search_stop_text(s->limit));
   return arena_printf(s->e->m->arena, "%.3g s did not suffice for more, and nothing was searched beyond: --seconds %.3g gives more time", s->limit->seconds, 10 * s->limit->seconds);
 }
 

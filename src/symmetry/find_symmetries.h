@@ -52,4 +52,4 @@ typedef struct {
   Num beta, kappa;
 } Scaling;
 
-int noether_scaling(const Eqns *e, Scaling *found);
+int noether_scaling(const Eqns *e, Scaling *found, SearchLimit *limit);

@@ -264,6 +264,9 @@ GeneratorTable table_listed(Arena *a, const Ansatz *s, const TimeList *times, co
   SymId t = s->e->m->time;
   uint32_t first = s->shown + 1, gauge = s->columns - first, nT = times->ngauge, width = times->n * s->shown + nT * gauge, rows = width + SPARE_ROWS;
   uint32_t more = s->held.n ? times->n * s->shown + SPARE_ROWS : 0;
+  *sure = 0;
+  double elements = (double)(rows + more) * width;
+  if (!search_fits(s->limit, elements) || !search_goes_on(s->limit, 2 * width * elements)) return (GeneratorTable){0};
   Expr *roots = ARENA_ARRAY(a, Expr, 2 * (size_t)nT);
   long double *value = ARENA_ARRAY(a, long double, 2 * (size_t)nT), *symbols = ARENA_ARRAY(a, long double, expr_symbol_count(g) + 1);
   long double *b0 = ARENA_ARRAY(a, long double, s->columns), *b1 = ARENA_ARRAY(a, long double, s->columns);
@@ -272,10 +275,10 @@ GeneratorTable table_listed(Arena *a, const Ansatz *s, const TimeList *times, co
   memcpy(symbols, parameters, s->symbols * sizeof *symbols);
   RowSource *source = rows_new(s, a, parameters);
   EvalTape *tape = eval_tape(g, roots, 2 * nT);
-  *sure = 0;
   for (size_t i = 0; i < rows + more; i++) {
     long double *row = m + i * width;
-    if (!search_goes_on(s->limit, i ? 0 : 2.0 * width * width * (rows + more)) || !rows_at_time(source, i < rows ? ROWS_DIFFERENCE : ROWS_CONSTRAINTS, b0, b1, &symbols[t])) return (GeneratorTable){0};
+    RowKind kind = i < rows ? ROWS_DIFFERENCE : ROWS_CONSTRAINTS;
+    if (!search_goes_on(s->limit, 0) || !rows_at_time(source, kind, b0, b1, &symbols[t])) return (GeneratorTable){0};
     eval_run(tape, symbols, value);
     for (uint32_t k = 0; k < nT; k++) {
       for (uint32_t j = 0; k < times->n && j < s->shown; j++) row[k * s->shown + j] = b0[j] * value[k] + b1[j] * value[nT + k];

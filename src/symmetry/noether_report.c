@@ -59,7 +59,7 @@ NoetherReport *noether_report(Eqns *e, SearchLimit *limit) {
   r->cyclic = noether_cyclic(e);
   r->found = noether_find(e, limit);
   r->algebra = brackets_find(e, &r->found, limit);
-  r->scales = noether_scaling(e, &r->scaling);
+  r->scales = noether_scaling(e, &r->scaling, limit);
   return r;
 }
 

@@ -11,6 +11,7 @@
 #include "sym/prove.h"
 #include "sym/diff.h"
 #include "sym/integrate.h"
+#include "sym/sides.h"
 #include "sym/simplify.h"
 
 /* Past this number of coordinates charges are not simplified, like the energy (mech/derive_equations.c). */
@@ -108,6 +109,7 @@ static Expr delta(const ProofWork *w, Expr term) {
 
 static Expr at_rest(const ProofWork *w, Expr x) {
   Expr *zero = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  if (!(expr_kinds(w->g, x) & (1u << SYM_VEL | 1u << SYM_RATE))) return x;
   for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
   return expr_replace(w->g, x, w->v, zero, w->n);
 }
@@ -170,10 +172,8 @@ static Verdict zero_on_constraints(ProofWork *w, Expr x) {
 /* An F(q, t) whose total derivative removes what it can from dL = a.q' + b + terms of higher order in q'. */
 static Expr find_gauge(const ProofWork *w, Expr dL) {
   Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1), b = at_rest(w, dL);
-  for (uint32_t i = 0; i < w->n; i++) {
-    Expr slope = expr_diff(w->g, dL, w->v[i]);
-    a[i] = at_rest(w, slope);
-  }
+  expr_gradient(w->g, dL, w->v, w->n, a);
+  for (uint32_t i = 0; i < w->n; i++) a[i] = at_rest(w, a[i]);
   Expr F = expr_potential(w->g, a, w->q, w->n, 0), drift = expr_diff(w->g, F, w->m->time);
   Expr left = expr_sub(w->g, b, drift);
   left = simplify(w->g, left);
@@ -406,36 +406,115 @@ static int moves_jumps(const ProofWork *w) {
   return 0;
 }
 
+static int is_periodic(const ProofWork *w, uint32_t i) {
+  return w->e->n ? w->m->coords.at[i].periodic : w->m->states.at[w->e->first.at[i]].periodic;
+}
+
 /* Whether V has one value at each position: coordinates declared periodic enter by periodic functions. */
 static int is_single_valued(const ProofWork *w, Expr V) {
-  const Model *m = w->m;
-  Expr turn = expr_mul(w->g, expr_int(w->g, 2), expr_symbol(w->g, m->pi)->node);
+  Expr turn = expr_mul(w->g, expr_int(w->g, 2), expr_symbol(w->g, w->m->pi)->node);
   for (uint32_t i = 0; i < w->n; i++) {
+    if (!is_periodic(w, i) || !expr_contains_sym(w->g, V, w->q[i])) continue;
     Expr there = expr_add(w->g, node(w, w->q[i]), turn), moved = expr_replace(w->g, V, &w->q[i], &there, 1);
-    if (m->coords.at[i].periodic && prove_zero(w->g, expr_sub(w->g, moved, V), NULL) != PROVED_ZERO) return 0;
+    if (prove_zero(w->g, expr_sub(w->g, moved, V), NULL) != PROVED_ZERO) return 0;
   }
   return 1;
 }
 
-/* Whether x doubles with the velocities at a random state: makes no nodes. */
-static int is_linear_in_velocities(const ProofWork *w, Expr x) {
-  const long double rounding = 1e-12L;
-  long double bound, *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
-  sample_state(w->g, 1, symbols);
-  long double one = value_with_bound(w->g, x, symbols, NULL, &bound);
-  for (uint32_t i = 0; i < w->n; i++) symbols[w->v[i]] *= 2;
-  return !(fabsl(value_with_bound(w->g, x, symbols, NULL, &bound) - 2 * one) > rounding * fabsl(one) + 2 * bound);
+static int is_state(const Symbol *s, const void *states) {
+  return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate;
 }
 
-/* V with power = -dV/dt along motions, for a power of forces alone; 0: none is found and proved. */
-static Expr potential_of(const ProofWork *w, Expr power) {
-  const unsigned other = 1u << SYM_TIME | 1u << SYM_INPUT | 1u << SYM_STATE | 1u << SYM_MULTIPLIER;
+/* A power a q' + b that forces and explicit time give, by coordinates and t; a[n] is b. */
+typedef struct {
+  Expr *a;
+  SymId *q;
+} LinearPower;
+
+/* Whether the power has that form: velocities enter it linearly, and nothing but q and t otherwise. */
+static int linear_power(const ProofWork *w, Expr power, LinearPower *to) {
+  const unsigned other = 1u << SYM_INPUT | 1u << SYM_MULTIPLIER, moving = 1u << SYM_VEL | 1u << SYM_RATE;
+  Arena *arena = w->m->arena;
   ExprGraph *g = w->g;
-  Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
-  if (!w->e->n || w->n > SHORTEN_MAX || expr_kinds(g, power) & other || !is_linear_in_velocities(w, power)) return 0;
-  for (uint32_t i = 0; i < w->n; i++) a[i] = at_rest(w, expr_neg(g, expr_diff(g, power, w->v[i])));
-  Expr V = shorten(w, expr_potential(g, a, w->q, w->n, 1)), left = expr_add(g, power, total(w, V));
-  return !expr_is_zero(g, V) && is_single_valued(w, V) && motion_verdict(w->e, left) == PROVED_ZERO ? V : 0;
+  if (expr_kinds(g, power) & other || expr_contains(g, power, is_state, w->m->states.at)) return 0;
+  *to = (LinearPower){ARENA_ARRAY(arena, Expr, w->n + 1), ARENA_ARRAY(arena, SymId, w->n + 1)};
+  expr_gradient(g, power, w->v, w->n, to->a);
+  to->a[w->n] = at_rest(w, power);
+  memcpy(to->q, w->q, w->n * sizeof *w->q);
+  to->q[w->n] = w->m->time;
+  for (uint32_t i = 0; i < w->n; i++) {
+    if (expr_kinds(g, to->a[i]) & moving) to->a[i] = shorten(w, to->a[i]);
+    if (expr_kinds(g, to->a[i]) & moving) return 0;
+  }
+  return 1;
+}
+
+/* Whether x jumps: then forces that are the gradient of x beside the jumps leave no energy conserved. */
+static int jumps_somewhere(const ProofWork *w, Expr x) {
+  ExprList l = expr_topo(w->g, &x, 1);
+  int may = switch_in(w->g, x, 0) != 0;
+  for (uint32_t i = 0; i < l.n && !may; i++) may = expr_op(w->g, l.at[i]) == EX_FLOOR || expr_op(w->g, l.at[i]) == EX_ATAN2;
+  return may && discontinuities_of(w->e, x).n > 0;
+}
+
+/* Whether a force on a periodic coordinate does work over a turn, by values at a random state. */
+static int works_over_a_turn(const ProofWork *w, uint32_t i, Expr force) {
+  enum { POINTS = 256 };
+  const long double turn = 6.28318530717958647692528676655900577L, rounding = 1e-9L;
+  long double bound, sum = 0, size = 0, *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  sample_state(w->g, 1, symbols);
+  for (int k = 0; k < POINTS; k++) {
+    symbols[w->q[i]] = turn * k / POINTS;
+    long double value = value_with_bound(w->g, force, symbols, NULL, &bound);
+    sum += value;
+    size += fabsl(value);
+  }
+  return !(fabsl(sum) <= rounding * size);
+}
+
+/* Whether the form a dq + b dt has a potential: 2, each part depends on its own coordinate alone; 1, it has no curl, so that there is one near
+ * each position; 0, it has a curl. */
+static int has_potential(const ProofWork *w, const LinearPower *by) {
+  ExprGraph *g = w->g;
+  ExprMap place = expr_map(w->m->arena);
+  int is = 2;
+  for (uint32_t i = 0; i <= w->n; i++) expr_map_set(&place, node(w, by->q[i]), i + 1);
+  for (uint32_t i = 0; i <= w->n; i++) {
+    ExprList l = expr_topo(g, &by->a[i], 1);
+    int turns = i < w->n && is_periodic(w, i) && !expr_is_zero(g, by->a[i]);
+    if (turns && works_over_a_turn(w, i, by->a[i])) return 0;
+    if (turns) is = 1;
+    for (uint32_t k = 0; k < l.n; k++) {
+      uint32_t j = expr_map_get(&place, l.at[k]);
+      if (!j || j - 1 == i) continue;
+      if (jumps_somewhere(w, by->a[i])) return 0;
+      is = 1;
+      Expr one = expr_diff(g, by->a[i], by->q[j - 1]), other = expr_diff(g, by->a[j - 1], by->q[i]);
+      if (!zero_on_sides(g, expr_sub(g, one, other))) return 0;
+    }
+  }
+  return is;
+}
+
+/* V(q, t) with power = -dV/dt along motions, of forces and explicit time; 0: none. *exists: whether there is one, whose integral is not
+ * found, as has_potential. */
+static Expr potential_of(const ProofWork *w, Expr power, int *exists) {
+  ExprGraph *g = w->g;
+  Expr *slope = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
+  LinearPower by;
+  *exists = 0;
+  if (!linear_power(w, expr_neg(g, power), &by)) return 0;
+  Expr V = shorten(w, expr_potential(g, by.a, by.q, w->n + 1, 1));
+  int found = !expr_is_zero(g, V), single = is_single_valued(w, V);
+  expr_gradient(g, V, by.q, w->n + 1, slope);
+  for (uint32_t i = 0; i <= w->n; i++) {
+    by.a[i] = expr_sub(g, by.a[i], slope[i]);
+    found = found && zero_on_sides(g, by.a[i]);
+  }
+  if (!found && is_constrained(w) && !expr_is_zero(g, V))
+    found = motion_verdict(w->e, expr_add(g, power, total(w, V))) == PROVED_ZERO;
+  *exists = single && !found ? has_potential(w, &by) : 0;
+  return single && found && !jumps_somewhere(w, V) ? V : 0;
 }
 
 static int is_shift_of_time(const ProofWork *w) {
@@ -444,12 +523,15 @@ static int is_shift_of_time(const ProofWork *w) {
   return expr_is_num(w->g, w->tau) && num_is_one(num_neg(expr_number(w->g, w->tau)));
 }
 
-/* Judges dQ/dt along motions. Where forces alone change the energy, their potential completes it. */
-static void judge_drift(const ProofWork *w, Noether *to, int forces_alone) {
+/* Judges dQ/dt along motions. Where a potential of forces and explicit time completes the energy, it does. */
+static void judge_drift(const ProofWork *w, Noether *to, Expr power) {
   if (to->power_unknown) return;
   to->drift = motion_verdict(w->e, to->power);
-  if (to->drift != PROVED_ZERO && forces_alone && is_shift_of_time(w)) to->potential = potential_of(w, to->power);
+  int exists = 0;
+  if (to->drift != PROVED_ZERO && is_shift_of_time(w)) to->potential = potential_of(w, power, &exists);
   if (to->potential) to->drift = PROVED_ZERO;
+  if (exists) to->drift = NOT_DECIDED;
+  to->open_integral = exists == 2;
   if (to->drift == PROVED_ZERO) to->power = to->by_constraints = expr_int(w->g, 0);
 }
 
@@ -458,10 +540,9 @@ static void put_power(ProofWork *w, Noether *to, Expr remainder) {
   ExprGraph *g = w->g;
   to->by_constraints = power_of_constraints(w, to);
   Expr forces = power_of_forces(w), change = power_of_change(w, to);
-  Expr parts[3] = {forces, change, remainder}, rest = expr_add_n(g, parts, 3);
-  rest = states_substitute(w->e, shorten(w, rest));
-  to->power = expr_add(g, rest, to->by_constraints);
-  judge_drift(w, to, expr_is_zero(g, change) && expr_is_zero(g, remainder));
+  Expr parts[3] = {forces, change, remainder}, rest = shorten(w, expr_add_n(g, parts, 3));
+  to->power = expr_add(g, states_substitute(w->e, rest), to->by_constraints);
+  judge_drift(w, to, expr_add(g, rest, to->by_constraints));
   to->by_value = w->by_value;
   to->product = w->product;
   if (w->product && (to->is == INVARIANT || to->is == INVARIANT_UP_TO_F)) to->is = INVARIANCE_NOT_DECIDED;
@@ -498,6 +579,7 @@ int noether_forces_are_potential(const Eqns *e) {
   const unsigned varies = 1u << SYM_TIME | 1u << SYM_STATE | 1u << SYM_COORD | 1u << SYM_VEL;
   const Model *m = e->m;
   unsigned kinds = 0;
+  int exists;
   for (uint32_t i = 0; i < m->forces.n; i++) kinds |= expr_kinds(e->g, m->forces.at[i].f);
   if (!(kinds & varies)) return 1;
   ProofWork w = begin(e, &(Generator){.tau = expr_int(e->g, -1)});
@@ -507,5 +589,5 @@ int noether_forces_are_potential(const Eqns *e) {
     power = expr_add(w.g, power, part);
   }
   power = shorten(&w, power);
-  return motion_verdict(e, power) == PROVED_ZERO || potential_of(&w, power) != 0;
+  return motion_verdict(e, power) == PROVED_ZERO || potential_of(&w, power, &exists) || exists;
 }

@@ -37,7 +37,8 @@ typedef struct {
   Expr scale;        /* sum |p_i xi_i| + |tau| (|p q'| + |L|) + |F|, the measure for a drift of the charge */
   Expr power;        /* dQ/dt, in q, q', z, t, inputs and multipliers; the number 0: Q is conserved */
   Verdict drift;     /* the one judgement of conservation. PROVED_ZERO: power is 0 along motions; PROVED_NONZERO: not at a state */
-  Expr potential;    /* of all forces, where it completes the energy: Q contains it; 0: none */
+  Expr potential;    /* of all forces and of explicit time, where it completes the energy: Q contains it; 0: none */
+  int open_integral; /* the energy is conserved with such a potential, whose integral is not found: drift is not decided */
   Expr by_constraints; /* power of the constraint forces, lambda^T (A xi + b tau); the number 0: none */
   uint32_t broken; /* first holonomic constraint, counted from 1 and no contact, that the generator does not preserve; 0: none */
   Expr breaks;     /* change of that constraint, A xi + c_t tau */

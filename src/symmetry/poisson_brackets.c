@@ -114,8 +114,10 @@ static void scale_charges(const BracketFit *w, Sample *x) {
 static int draw_sample(const BracketFit *w, uint32_t choice, Sample *x) {
   uint32_t count = expr_symbol_count(w->g) + 1, done = 0;
   long double *symbols = ARENA_ARRAY(w->scratch, long double, count), *out = ARENA_ARRAY(w->scratch, long double, w->roots + 1);
+  double n = w->n, work = w->e->mass.n > 4 * w->n ? n * n * n : 0; /* elimination skips zeros */
   for (uint32_t seed = 1; done < x->states && seed < 20 + 4 * x->states; seed++) {
     int finite = 1;
+    if (!search_goes_on(w->limit, work)) return 0;
     sample_state(w->g, 50 + seed, symbols);
     for (uint32_t k = 0; k < w->choices.n; k++) symbols[w->choices.param[k]] = w->choices.at[choice][w->choices.param[k]];
     eval_run(w->tape, symbols, out);
@@ -280,14 +282,16 @@ static void compute_brackets(Arena *scratch, void *data) {
   for (uint32_t k = 0; k < choices; k++) {
     fits[k] = ARENA_ARRAY(scratch, long double, (size_t)w->pairs * (w->r + 1) + 1);
     int fits_well = search_goes_on(w->limit, 0) && fit(w, k, fits[k]);
-    if (!fits_well) w->out->why_not = w->limit->stopped ? "the time was spent; --seconds gives more" : "the charges depend on one another, or M has no inverse at random states";
+    if (!fits_well)
+      w->out->why_not = w->limit->stopped ? search_stop_text(w->limit)
+                                          : "the charges depend on one another, or M has no inverse at random states";
     if (!fits_well) return;
   }
   size_t place = 0;
   for (uint32_t a = 0; a < w->r; a++)
     for (uint32_t b = a + 1; b < w->r; b++, place += w->r + 1) {
       if (!search_goes_on(w->limit, 0)) {
-        w->out->why_not = "the time was spent; --seconds gives more";
+        w->out->why_not = search_stop_text(w->limit);
         return;
       }
       Bracket k = bracket_of(w, a, b, fits, place);

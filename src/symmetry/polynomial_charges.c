@@ -23,6 +23,7 @@ typedef struct {
   Choices choices;
   VEC(PolynomialCharge) known;
   PolynomialCharges *out;
+  SearchLimit *limit;
 } ChargeSearch;
 
 typedef VEC(uint32_t) Columns;
@@ -34,8 +35,9 @@ static DenseRows kernel_of(ChargeSearch *s, uint32_t choice, const Columns *in, 
   uint32_t rows = in->n * 3 / 2 + SPARE_ROWS, all = s->a->columns;
   long double *value = ARENA_ARRAY(s->scratch, long double, all + 1), *rate = ARENA_ARRAY(s->scratch, long double, all + 1);
   long double *m = ARENA_ARRAY(s->scratch, long double, (size_t)rows * in->n + 1);
+  double work = 2.0 * in->n * in->n * rows;
   for (uint32_t i = 0, seed = 1; i < rows; seed++) {
-    if (seed > 20 * rows) {
+    if (seed > 20 * rows || !search_goes_on(s->limit, work)) {
       s->out->doubtful = 1;
       return (DenseRows){.width = in->n};
     }
@@ -334,13 +336,15 @@ static void search_degree(ChargeSearch *s, uint32_t degree) {
   uint32_t *pivot = ARENA_ARRAY(s->scratch, uint32_t, all.n + 1);
   DenseRows space = charges_at(s, CHOICE_FIRST, &all, pivot);
   Columns in = columns_reached(s, &space, &all);
-  if (!in.n) return;
+  if (s->limit->stopped) s->out->why_not = search_stop_text(s->limit);
+  if (!in.n || s->limit->stopped) return;
   t.in = &in;
   t.rows[CHOICE_FIRST] = charges_at(s, CHOICE_FIRST, &in, pivot); /* again, with the digits that fewer columns leave */
   Columns fresh = new_rows(s, &t.rows[CHOICE_FIRST], &in);
   if (fresh.n && !fill_tables(s, &t, pivot)) s->out->unproved += fresh.n;
   else
-    for (uint32_t k = 0; k < fresh.n; k++) list_charge(s, &t, fresh.at[k]);
+    for (uint32_t k = 0; k < fresh.n && search_goes_on(s->limit, 0); k++) list_charge(s, &t, fresh.at[k]);
+  if (s->limit->stopped) s->out->why_not = search_stop_text(s->limit);
 }
 
 static const char *reason_against(const Eqns *e) {
@@ -378,10 +382,12 @@ static void search_all(Arena *scratch, void *data) {
   for (uint32_t degree = 1; degree <= s->out->degree && !s->out->why_not; degree++) search_degree(s, degree);
 }
 
-PolynomialCharges *polynomial_charges_find(Eqns *e, const FoundSymmetries *known, uint32_t degree) {
+PolynomialCharges *polynomial_charges_find(Eqns *e, const FoundSymmetries *known, uint32_t degree, SearchLimit *limit) {
   PolynomialCharges *out = ARENA_NEW(e->m->arena, PolynomialCharges);
-  SearchTask task = {{.e = e, .g = e->g, .out = out}, known};
+  SearchTask task = {{.e = e, .g = e->g, .out = out, .limit = limit}, known};
   *out = (PolynomialCharges){.degree = degree, .why_not = reason_against(e)};
+  search_stage(limit, 1, "charges of higher degree");
+  limit->stopped = limit->no_room = 0;
   if (!out->why_not) arena_with_scratch(expr_arena(e->g), search_all, &task);
   return out;
 }

@@ -26,4 +26,4 @@ typedef struct {
 
 /* Searches degree 1, 2, .. up to `degree`; products of known charges and of those found before are not listed. Charges of degree 1 are new where
  * their generator is not affine in the coordinates. */
-PolynomialCharges *polynomial_charges_find(Eqns *e, const FoundSymmetries *known, uint32_t degree);
+PolynomialCharges *polynomial_charges_find(Eqns *e, const FoundSymmetries *known, uint32_t degree, SearchLimit *limit);

@@ -15,6 +15,7 @@ typedef struct {
   Arena *scratch;
   uint32_t n;
   Scaling *out;
+  SearchLimit *limit;
   int found;
 } ScalingSearch;
 
@@ -28,6 +29,7 @@ static const long double *exponents(ScalingSearch *w, const long double *paramet
   ExprGraph *g = w->g;
   Expr L = w->e->lagrangian, *roots = ARENA_ARRAY(w->scratch, Expr, 2 + 2 * (size_t)w->n);
   uint32_t n = w->n, width = n + 2, rows = width + SPARE_ROWS, count = expr_symbol_count(g) + 1;
+  if (!search_fits(w->limit, (double)rows * width) || !search_goes_on(w->limit, 2.0 * width * width * rows)) return NULL;
   long double *m = ARENA_ARRAY(w->scratch, long double, (size_t)rows * width), *symbols = ARENA_ARRAY(w->scratch, long double, count);
   long double *out = ARENA_ARRAY(w->scratch, long double, 2 + 2 * (size_t)n);
   roots[0] = L;
@@ -36,6 +38,7 @@ static const long double *exponents(ScalingSearch *w, const long double *paramet
   EvalTape *tape = eval_tape(g, roots, 2 + 2 * n);
   for (size_t r = 0; r < rows; r++) {
     long double *row = m + r * width;
+    if (!search_goes_on(w->limit, 0)) return NULL;
     sample_state(g, 100 * turn + (uint32_t)r + 3, symbols);
     for (SymId s = 1; s < count; s++)
       if (expr_symbol(g, s)->kind == SYM_PARAM) symbols[s] = parameters[s];
@@ -70,7 +73,7 @@ static int is_proved(ScalingSearch *w) {
     Num c;
     Expr term = expr_pair(g, L, EX_SUM, k, &c), less = expr_scale(g, num_sub(w->out->kappa, w->out->beta), term);
     expr_tangent(g, &term, 1, seed, symbols, "_delta", NULL, &moved);
-    if (prove_zero(g, expr_sub(g, moved, less), NULL) != PROVED_ZERO) return 0;
+    if (!search_goes_on(w->limit, 0) || prove_zero(g, expr_sub(g, moved, less), NULL) != PROVED_ZERO) return 0;
   }
   return 1;
 }
@@ -98,8 +101,8 @@ static void scaling_work(Arena *scratch, void *data) {
   w->found = is_proved(w);
 }
 
-int noether_scaling(const Eqns *e, Scaling *found) {
-  ScalingSearch w = {.e = e, .g = e->g, .n = e->n, .out = found};
+int noether_scaling(const Eqns *e, Scaling *found, SearchLimit *limit) {
+  ScalingSearch w = {.e = e, .g = e->g, .n = e->n, .out = found, .limit = limit};
   if (!e->n || e->constraints.n || e->m->states.n || expr_kinds(e->g, e->lagrangian) & 1u << SYM_INPUT) return 0;
   for (uint32_t i = 0; i < e->n; i++)
     if (!expr_is_zero(e->g, e->Q[i])) return 0;

@@ -5,6 +5,8 @@
 
 static const double PER_SECOND = 4e8; /* operations on long doubles in a matrix, measured */
 
+static const double ELEMENTS_MOST = 3e7; /* of a matrix: half a gigabyte */
+
 static double processor_seconds(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
 SearchLimit search_limit(double seconds) { return (SearchLimit){.seconds = seconds, .part = 1, .begin = processor_seconds(), .doing = ""}; }
@@ -20,4 +22,14 @@ int search_goes_on(SearchLimit *l, double operations) {
   if (spent + operations / PER_SECOND < l->part * l->seconds) return 1;
   l->stopped = 1;
   return 0;
+}
+
+int search_fits(SearchLimit *l, double elements) {
+  if (elements <= ELEMENTS_MOST) return 1;
+  l->stopped = l->no_room = 1;
+  return 0;
+}
+
+const char *search_stop_text(const SearchLimit *l) {
+  return l->no_room ? "more than half a gigabyte would be needed for one matrix" : "the time was spent; --seconds gives more";
 }

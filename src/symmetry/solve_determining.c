@@ -72,6 +72,7 @@ static uint32_t columns_used(const long double *m, uint32_t rows, uint32_t colum
 static DenseRows kernel_of_rows(RowSource *r, Arena *a, RowKind kind, const DenseRows *space, SearchLimit *limit) {
   uint32_t n = space->n, rows = 0, wanted = SPARE_ROWS;
   size_t most = 3 * n + SPARE_ROWS, w = space->width;
+  if (!search_fits(limit, (double)most * 2 * (double)(w + n))) return (DenseRows){.width = 2 * n};
   long double *b0 = ARENA_ARRAY(a, long double, most * w), *b1 = ARENA_ARRAY(a, long double, most * w);
   long double *m = ARENA_ARRAY(a, long double, most * 2 * n + 1);
   Sparse sparse = sparse_rows(a, space);
@@ -107,6 +108,7 @@ static int reaches(const DenseRows *space, uint32_t column) {
 
 /* The space to start from: all coefficients, or those that occur in another space. */
 static DenseRows initial_space(const Ansatz *s, Arena *a, const DenseRows *within) {
+  if (!search_fits(s->limit, 3.0 * s->columns * s->columns)) return (DenseRows){.width = s->columns};
   DenseRows all = {.width = s->columns, .at = ARENA_ARRAY(a, long double, (size_t)s->columns * s->columns)};
   for (uint32_t j = s->has_tau ? 0 : 1; j < s->columns; j++)
     if (!within || reaches(within, j)) all.at[(size_t)all.n++ * s->columns + j] = 1;

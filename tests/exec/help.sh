@@ -166,6 +166,28 @@ run faster|lagc cost
 licence|0BSD
 stop a run|`stop` ends
 microcontroller|lagc header
+checkpoint|--save-state
+restart a run|--resume
+piecewise|if(x > 0, a, b)
+heaviside|if(t > 1, 1, 0)
+modulo|floor(x/n)
+ode45|dop853
+lqr|--with linear
+slope|m*g*s*sin(a)
+inclined plane|m*g*s*sin(a)
+boundary value problem|shooting
+dirac delta|kick
+limit cycle|--skip
+coriolis force|let X
+transfer function|--with linear
+magnetic field|charged_particle
+degrees of freedom|lagc check
+natural frequency|lagc modes
+normal force|lambda(NAME)
+dense output|--every
+fixed point|lagc modes
+blow up|lagc check
+equations of motion|lagc derive
 END
 is "options for experts stand in one place" "0 1" "$("$LAGC" help run | grep -c -e '--math\|--dump\|--fix\|--no-gsl\|--define\|--precision') $(chapter expert | grep -c -e '--math own')"
 check "the tutorial" finds "A first quarter of an hour" tutorial

@@ -12,4 +12,5 @@ agree() {
 }
 check "models 1 to 40 of seed 1 agree with their texts" agree 1 1 40
 echo "# $(tail -n 1 "$TMP/random.txt")"
+check "-0 below a let that is 0 everywhere: the angle of a negative number" agree 20785 175 175
 tap_end

@@ -205,6 +205,11 @@ END
 bounded() { (ulimit -t 4 && "$LAGC" noether "$TMP/wave.lag" --seconds 0.3 >"$TMP/out") && grep -q '^0.3 s did not suffice for more, and nothing was searched beyond: --seconds 3 ' "$TMP/out" &&
   grep -q '^found: 3 symmetries, each proved' "$TMP/out" || { cat "$TMP/out"; false; }; } # energy, momentum, boost
 check "a ring of 16: 40 s without a limit" bounded
+printf '%s\n' 'model plane' 'const N = 480' 'coord x[N], y[N]' 'param m = 1 > 0, k = 3 > 0, l = 1 > 0' \
+  "lagrangian = sum(i in 1..N, m*(x[i]'^2 + y[i]'^2)/2) - sum(i in 1..N-1, k*(hypot(x[i+1] - x[i], y[i+1] - y[i]) - l)^2/2)" >"$TMP/plane.lag"
+check "scalings and brackets of 960 coordinates keep to the time: 4 s without" sh -c 'ulimit -t 2; "$0" noether "$1" --seconds 0.4 | grep -q "^found: "' "$LAGC" "$TMP/plane.lag"
+printf '%s\n' 'model driven' 'const N = 20' 'coord u[N]' 'param k = 3' "lagrangian = sum(i in 1..N, u[i]'^2/2 - u[i]^6 + cos(t)*u[i]^2) - sum(i in 1..N-1, k*(u[i+1] - u[i])^6)" >"$TMP/driven.lag"
+check "a matrix that the time does not suffice for takes no memory: 620 MB before" sh -c 'ulimit -v 200000; "$0" noether "$1" --seconds 0.5 | grep -q "did not suffice"' "$LAGC" "$TMP/driven.lag"
 check "a time that is none" sh -c '"$0" noether "$1" --seconds 0 2>&1 | grep -q "the time for the search, for example --seconds 60"; ' "$LAGC" "$TMP/wave.lag"
 cat >"$TMP/rods.lag" <<'END'
 model rods

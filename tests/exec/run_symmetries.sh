@@ -108,7 +108,9 @@ for drag in "force x = -a*x'" "force x = -a*x" "dissipation = a*x'^2/2"; do
   printf '%s\n' "model eddy" "coord x, y" "param a = 1" "lagrangian = (x*y' - y*x')/2 - (x^2 + y^2)^2/4" \
     "symmetry spin(s): x -> x*cos(s) - y*sin(s), y -> x*sin(s) + y*cos(s)" "effect drag { $drag }" "scene s { start x = 1; span 10; use drag; monitor spin 1e-8, energy 1e-8 }" >"$TMP/eddy.lag"
   check "$drag: monitors are content" run "$TMP/eddy.lag" --tol 1e-11 --json
-  is "these are balances" "balanced balanced" "$(of energy is) $(of spin is)"
+  wanted=balanced
+  case $drag in *a\*x) wanted=conserved ;; esac # with the potential a x^2/2
+  is "these are balances" "$wanted balanced" "$(of energy is) $(of spin is)"
   # half the square of the distance at the end, by the state, less that at the start, 1/2
   check "the work is what the motion shows" run "$TMP/eddy.lag" --tol 1e-11
   moved=$(awk '$1 == "x" { x = $2 } $1 == "y" { y = $2 } END { print (x*x + y*y - 1)/2 }' "$TMP/out")

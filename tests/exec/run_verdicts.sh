@@ -117,6 +117,69 @@ is_said constant_force conserved "a constant force"
 is_said kepler_by_force conserved "Newton's force"
 is_said well_by_force conserved "exp(u) du/dx"
 is_said shaken changes "a constraint that does work"
+# verdicts: the words of models with these lines in the place of LINES, as "word lines" pairs, "; " between lines; `word:` where check differs
+verdicts() {
+  while read -r wanted lines; do
+    printf 'model m\ncoord x, y\nparam k = 2 > 0, w = 0.5 > 0\n%s\nscene s { start x = 0.4, y = -0.3; span 1 }\n' "$(echo "$lines" | sed 's/; /\n/g')" >"$TMP/m.lag"
+    "$LAGC" check "$TMP/m.lag" s >"$TMP/said" 2>/dev/null
+    [ "$(word "$TMP/said")" = "$wanted" ] || echo "$lines: $(head -n 1 "$TMP/said")"
+  done
+}
+free="lagrangian = (x'^2 + y'^2)/2 - y^2"
+# Each conserved: a force of its own coordinate has a potential, whose form is a table's (Gradshteyn, Ryzhik, chapter 2), or two have one together
+sed "s|^|conserved $free; |" >"$TMP/table" <<'END'
+force x = -k*tanh(x/w)
+force x = -atan(k*x)
+force x = -x*abs(x)
+force x = -k*sign(x)*sqrt(abs(x))
+force x = sin(x)/(2 + cos(x))
+force x = 1/(2 + x)
+force x = -x/(2 + x)
+force x = -1/(1 + x + x^2)
+force x = 1/cosh(x)^2
+force x = -log(3 + x)
+force x = -k*max(0, x - w)^1.5
+force x = if(x > w, -k*(x - w), if(x < -w, -k*(x + w), 0))
+force x = -min(x, w)
+force x = -x/(1 + abs(x))
+force x = -k*x*(1 - w/hypot(x, 1))
+force x = -asin(x/3) - cbrt(x) - tan(x/4)
+force x = -k*abs(x - y)*(x - y); force y = k*abs(x - y)*(x - y)
+force x = -tanh(x - y) - x^3; force y = tanh(x - y)
+force x = -x*hypot(x, y); force y = -y*hypot(x, y)
+END
+# no closed form, and yet a potential; a force with a hole in its domain has one near each place
+sed "s|^|undecided $free; |" >>"$TMP/table" <<'END'
+force x = -cos(sin(x))
+force x = -exp(-x^2); force y = -tanh(y)/(1 + y^2)
+force x = -y/(x^2 + y^2); force y = x/(x^2 + y^2)
+END
+# a total time derivative of f(x, t) in L: t x^2/2, sin(w t) x y, t^2 e^x; what is none; H with forces
+cat >>"$TMP/table" <<END
+conserved $free + t*x*x' + x^2/2
+conserved $free + w*cos(w*t)*x*y + sin(w*t)*(x'*y + x*y')
+conserved $free + t^2*x'*exp(x) + 2*t*exp(x) + sin(3*t); force x = -x^3
+conserved $free + t*x*x'
+changes $free + t*x*y'
+changes $free + t*x
+changes $free; force x = cos(t)
+changes $free; force x = -x'
+changes $free; force x = y
+changes $free - cos(th) + th'^2/2; coord th periodic; force th = 1/(2 + sin(th))
+undecided $free - cos(th) + th'^2/2; coord th periodic; force th = sin(sin(th))
+changes $free; force x = -sign(y)
+changes $free; force x = if(y > 0, x, 2*x)
+changes $free; force x = -floor(y)
+changes momentum p of x, q of y; hamiltonian = (p^2 + q^2)/2 + y^2; force x = -sign(p)
+conserved momentum p of x, q of y; hamiltonian = (p^2 + q^2)/2 + y^2; force x = -x^3 - tanh(x - y); force y = tanh(x - y)
+changes momentum p of x, q of y; hamiltonian = (p^2 + q^2)/2 + y^2; force x = -x'
+changes momentum p of x, q of y; hamiltonian = (p^2 + q^2)/2 + y^2; force x = y
+END
+empty "potentials of forces, and total time derivatives" "$(verdicts <"$TMP/table")"
+printf '%s\n' "model chain" "const N = 100" "coord x[N]" "lagrangian = sum(i in 1..N, x[i]'^2/2)" "force x[1] = tanh(x[2] - x[1])" \
+  "for i in 2..N-1 { force x[i] = tanh(x[i+1] - x[i]) - tanh(x[i] - x[i-1]) }" "force x[N] = -tanh(x[N] - x[N-1])" "scene s { start x[1] = 1; span 1 }" >"$TMP/chain.lag"
+"$LAGC" check "$TMP/chain.lag" >"$TMP/said" 2>/dev/null
+is "a long chain of forces" conserved "$(word "$TMP/said")"
 is_said curl changes "a force with a curl"
 is_said torque changes "a torque on an angle has no potential with one value"
 is_said two_branches undecided "zero on one branch of a constraint alone"
@@ -125,9 +188,17 @@ empty "run and modes, a constant force" "$(full $models/constant_force.lag hang 
 check "it is stable" grep -q '^stable: the energy, which is conserved, has a minimum here' "$TMP/words/modes"
 empty "run and modes, a rotating wire" "$(full $models/bead_on_parabola.lag slow 1)"
 check "it is stable" grep -q '^stable: the energy, which is conserved, has a minimum here' "$TMP/words/modes"
+h() { # h H LINE: the verdict of modes on a model with this Hamiltonian
+  printf '%s\n' "model h" "coord x, y" "momentum p of x, q of y" "hamiltonian = $1" "$2" "scene s { start x = 0.1; span 1 }" >"$TMP/h.lag"
+  "$LAGC" modes "$TMP/h.lag" 2>/dev/null | sed -n 's/^\([a-z]*stable\|undecided\)[: ].*\(minimum\|maximum\) .*/\1 \2/p; t; s/^\([a-z]*stable\|undecided\).*/\1/p'
+}
+is "modes of H: a minimum, with a force, a maximum, neither" "stable minimum|stable minimum|stable maximum|undecided" \
+  "$(h "(p^2 + q^2 + x^2)/2 + y^2 + x*y/2" "")|$(h "(p^2 + q^2)/2 + y^2" "force x = -x*hypot(1, x)")|$(h "-(p^2 + q^2 + x^2)/2 - y^2 - x^4" "")|$(h "(p^2 + x^2)/2 - (q^2 + 2*y^2)/2" "")"
 "$LAGC" check $models/rows_of_motion.lag >"$TMP/rows" 2>/dev/null
 is "rows of the equations of motion, and combinations, are proved; a false one is not" "9 1" \
   "$(grep -c ': proved$' "$TMP/rows") $(grep -c ' (wrong): refuted$' "$TMP/rows")"
+for m in row_sums row_sums_dense; do "$LAGC" check $models/$m.lag 2>/dev/null; done >"$TMP/rows"
+is "sums of all rows of long chains are proved; false ones are not" "5 3" "$(grep -c ': proved$' "$TMP/rows") $(grep -c ': refuted$' "$TMP/rows")"
 
 # ---- the gallery, and random models: a few of them quickly, all in `make test-long`, with runs and modes of the gallery and of a tenth
 scenes() { sed -n 's/^scene \([A-Za-z_0-9]*\).*/\1/p' "$1"; }

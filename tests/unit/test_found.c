@@ -484,8 +484,9 @@ static void near_rates(void **state) {
 
 static void scales(const char *lag, int64_t first, int64_t t, int64_t action) {
   Model_ m = model(lag);
+  SearchLimit limit = search_limit(60);
   Scaling s;
-  assert_true(noether_scaling(m.e, &s));
+  assert_true(noether_scaling(m.e, &s, &limit));
   assert_true(num_equal(s.alpha[0], num_int(first)) && num_equal(s.beta, num_int(t)) && num_equal(s.kappa, num_int(action)));
   arena_free(m.arena);
 }
@@ -493,20 +494,21 @@ static void scales(const char *lag, int64_t first, int64_t t, int64_t action) {
 /* Kepler's third law, Galileo's law of fall, an oscillator's independence of amplitude (Landau & Lifshitz, Mechanics, 10). */
 static void scalings(void **state) {
   (void)state;
+  SearchLimit limit = search_limit(60);
   Scaling s;
   scales("model k\ncoord x, y\nparam m = 2 > 0, k = 3 > 0\nlagrangian = m/2*(x'^2 + y'^2) + k/hypot(x, y)\n", 2, 3, 1);
   scales("model u\ncoord x, y\nparam m = 2 > 0, g = 9.81\nlagrangian = m/2*(x'^2 + y'^2) - m*g*y\n", 2, 1, 3);
   scales("model o\ncoord x\nparam m = 2 > 0, k = 3 > 0\nlagrangian = m/2*x'^2 - k/2*x^2\n", 1, 0, 2);
   /* a pendulum has none; that of the inverse square has a charge */
   Model_ m = model("model p\ncoord th\nlagrangian = th'^2/2 + cos(th)\n");
-  assert_false(noether_scaling(m.e, &s));
+  assert_false(noether_scaling(m.e, &s, &limit));
   arena_free(m.arena);
   /* what an input does in time is not for L to say */
   m = model("model u\ncoord x\ninput u = sin(t)\nlagrangian = x'^2/2 - u*x\n");
-  assert_false(noether_scaling(m.e, &s));
+  assert_false(noether_scaling(m.e, &s, &limit));
   arena_free(m.arena);
   m = model("model i\ncoord x\nparam k = 2\nlagrangian = x'^2/2 - k/x^2\n");
-  assert_false(noether_scaling(m.e, &s));
+  assert_false(noether_scaling(m.e, &s, &limit));
   arena_free(m.arena);
 }
 
