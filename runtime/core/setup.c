@@ -21,9 +21,9 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0, pushes = pushed ? lag_contact_step_size(m) : 0;
   double *contacts, *contact_room = calloc(pushes + 1, sizeof *contact_room), **const parts[] = {&s->p, &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign,
                             &s->noise, &s->root, &s->sign_end, &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->flight, &s->skipped, &s->crossed, &s->slips, &s->slid, &s->slid_since, &s->mon_first, &s->mon_peak,
-                            &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change, &s->charge_block, &s->rate_history};
+                            &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change, &s->charge_block, &s->rate_history, &s->pb.size};
   const size_t sizes[] = {(size_t)m->np, (size_t)m->nderived, nu, n, n, nc, (size_t)m->nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev,
-                          nm, nm, nm, nm, nmon, nmon, (size_t)s->scene->nexact, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0, pushed, pushed ? (size_t)m->nq : 0, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double), 3 * n};
+                          nm, nm, nm, nm, nmon, nmon, (size_t)s->scene->nexact, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0, pushed, pushed ? (size_t)m->nq : 0, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double), 3 * n, n + 2};
   const size_t nparts = sizeof sizes / sizeof *sizes, fixed = RUN_DOUBLES + lag_cut(NULL, nparts, parts, sizes);
   lag_problem sized = s->pb;
 
@@ -57,6 +57,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->pb.hold = s->hold;
   s->pb.kept = s->kept;
   s->pb.begin = s->begin;
+  for (size_t i = 0; i < n + 2; i++) s->pb.size[i] = 1;
   s->pb.kick = HUGE_VAL;
   s->pb.opt = opt;
   s->pb.variant = method->variant;

@@ -23,6 +23,7 @@ static int begin(lag_sim *s, double t) {
   if (!s->options) { /* the scene's method was refused and not replaced: refuse it again, for the message */
     return lag_sim_set_method(s, s->method, s->scene->options, s->scene->noptions);
   }
+  lag_start_sizes(s);
   if ((rc = s->method->init(s->method_work, &s->pb, s->options)) != 0) return lag_explain(s, rc);
   s->run->begun = 1;
   rc = lag_monitors_begin(s);

@@ -175,3 +175,80 @@ void lag_velocity_terms(lag_sim *s, double t, const double *y, double *v) {
     for (int k = i; k < m->nq; k++) v[k] = k == i || strcmp(m->q[k].unit, m->q[i].unit) == 0 ? of : v[k];
   }
 }
+
+/* ---- Sizes of a motion, from its start */
+
+/* Over all coordinates with one unit: the largest |q|, rate and acceleration at the start, and change of the acceleration
+ * where coordinates are displaced. */
+typedef struct Kind {
+  double q, v, a, bend;
+} Kind;
+
+/* The largest |x[k]| over the n variables with the unit of variable i. */
+static double largest_of_unit(int n, const lag_var *var, const double *x, int i) {
+  double most = 0;
+  for (int k = 0; k < n; k++)
+    if (k == i || strcmp(var[k].unit, var[i].unit) == 0) most = fmax(most, fabs(x[k]));
+  return most;
+}
+
+/* f: rates at the start; bend: their change. */
+static Kind kind_of(const lag_sim *s, const double *f, const double *bend, int i) {
+  const lag_var *var = s->scene->model->q;
+  const int nq = s->pb.nq;
+  double q = lag_component_scale(fmax(largest_of_unit(nq, var, s->now, i), DBL_MIN), var[i].periodic, var[i].unit);
+  return (Kind){q > DBL_MIN ? q : 0, largest_of_unit(nq, var, f, i), largest_of_unit(nq, var, f + nq, i), largest_of_unit(nq, var, bend + nq, i)};
+}
+
+static double reach(Kind k, double time) { return k.q > 0 ? k.q : fmax(k.v * time, k.a * time * time); }
+
+/* The time in which the motion changes by its own size; at most `time`. */
+static double time_scale(Kind k, double time) {
+  double q = reach(k, time);
+  if (k.q > 0 && k.a > 0) time = fmin(time, sqrt(k.q / k.a));
+  if (k.q > 0 && k.v > 0) time = fmin(time, k.q / k.v);
+  if (!(k.q > 0) && k.a > 0 && time < HUGE_VAL && k.v > 1e-9 * k.a * time) time = fmin(time, k.v / k.a); /* a smaller v is rounding */
+  return q > 0 && k.bend > 0 ? fmin(time, sqrt(q / k.bend)) : time;
+}
+
+/* The power of 1024 next to size, as a change from m to nm or km: a motion of about 1 m has the tolerance in m. */
+static double nearest_unit(double size) { return size > 0 && size < HUGE_VAL ? scalbn(1, 10 * (int)rint(log2(size) / 10)) : 1; }
+
+/* dy[n] := rates at the start where coordinates are displaced by size[nq], less f; f NULL: rates. Zeros where there are none. */
+static void rates_beside(lag_sim *s, const double *size, const double *f, double *dy) {
+  const int n = s->pb.n;
+  memcpy(s->ya, s->now, (size_t)n * sizeof *dy);
+  for (int i = 0; i < s->pb.nq; i++) s->ya[i] += f ? size[i] * lag_uneven(i) : 0;
+  int none = lag_rhs(&s->pb, s->run->t, s->ya, dy) || lag_not_finite(n, dy) >= 0;
+  for (int i = 0; i < n; i++) dy[i] = none ? 0 : dy[i] - (f ? f[i] : 0);
+}
+
+void lag_start_sizes(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  const int nq = m->nq, n = s->pb.n;
+  double *f = s->yb, *bend = s->yc, *size = s->pb.size, time = HUGE_VAL, calls = s->pb.rhs_calls;
+  rates_beside(s, NULL, NULL, f);
+  memset(bend, 0, (size_t)n * sizeof *bend);
+  for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
+  time = time < HUGE_VAL ? time : s->pb.span > 0 ? s->pb.span : 10;
+  for (int turn = 0; turn < 2; turn++) {
+    if (turn) rates_beside(s, size, f, bend);
+    for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
+    for (int i = 0; i < nq; i++) {
+      if (!is_first(m, i)) continue;
+      Kind k = kind_of(s, f, bend, i);
+      double q = reach(k, time), v = lag_above_rounding(fmax(k.v, k.a * time), k.bend * time);
+      for (int j = i; j < nq; j++) {
+        if (j > i && strcmp(m->q[j].unit, m->q[i].unit) != 0) continue;
+        size[j] = turn ? nearest_unit(q) : q;
+        size[nq + j] = nearest_unit(v);
+      }
+    }
+  }
+  size[n + 1] = nearest_unit(time);
+  for (int i = 2 * nq; i < n; i++) {
+    double z = largest_of_unit(m->nz, m->z, s->now + 2 * nq, i - 2 * nq);
+    size[i] = nearest_unit(z > 0 ? z : largest_of_unit(m->nz, m->z, f + 2 * nq, i - 2 * nq) * time);
+  }
+  s->pb.rhs_calls = calls;
+}

@@ -90,7 +90,7 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   w->h_option = opt[0] > 0 ? opt[0] : 1e-6 * (pb->span > 0 ? pb->span : 10);
   w->h = w->h_option;
   w->system = (gsl_odeiv2_system){gsl_rhs, gsl_jacobian, (size_t)pb->n, w};
-  w->driver = has_room((size_t)pb->n) ? gsl_odeiv2_driver_alloc_y_new(&w->system, type, pb->dir * w->h, pb->tol, pb->tol) : NULL;
+  w->driver = has_room((size_t)pb->n) ? gsl_odeiv2_driver_alloc_scaled_new(&w->system, type, pb->dir * w->h, pb->tol, pb->tol, 1, 0, pb->size) : NULL;
   gsl_set_error_handler(handler);
   pb->detail = "GSL: out of memory";
   return w->driver ? LAG_OK : LAG_ENOMEM;

@@ -104,6 +104,7 @@ typedef struct lag_problem {
   double *contact_impulse;     /* [ncontacts] impulse of each in the last step, */
   double *contact_change;      /* [nq] and the change of velocities by all of them */
   double *contact_room;        /* scratch */
+  double *size;        /* [n + 2] size of each component in this run, and last of the time: powers of 1024; tolerances are parts of it */
 } lag_problem;
 
 /* The model's facts (LAG_AUTONOMOUS, ...) less those that an input function of the caller takes away. */

@@ -8,19 +8,19 @@
 typedef struct EmbeddedLanes {
   LaneProblem pb;
   const EmbeddedPair *pair;
-  double atol, per, h_max, h_fixed, longest; /* h_fixed > 0: all steps have this size */
+  double per, h_max, h_fixed, longest; /* h_fixed > 0: all steps have this size */
   LaneMask fresh, again; /* the last stage is the first of this step; the last step was rejected */
   Lanes h, err_power, tc, dt;
-  Lanes *comp, *comp1, *y0, *y1, *ys, *k; /* k[stages * n] */
+  Lanes *comp, *comp1, *y0, *y1, *ys, *floor, *k; /* k[stages * n] */
 } EmbeddedLanes;
 
 static void *embedded_open(const lag_sim *like, const void *model) {
   const EmbeddedPair *pair = like->pb.variant;
   size_t n = (size_t)like->pb.n, head = (sizeof(EmbeddedLanes) + sizeof(Lanes) - 1) / sizeof(Lanes);
   LaneRoom room;
-  if (!lane_room(&room, head + lane_problem_size(like, model) + (5 + (size_t)pair->tab->stages) * n)) return NULL;
+  if (!lane_room(&room, head + lane_problem_size(like, model) + (6 + (size_t)pair->tab->stages) * n)) return NULL;
   EmbeddedLanes *b = (EmbeddedLanes *)(void *)lane_take(&room, head);
-  Lanes **const parts[] = {&b->comp, &b->comp1, &b->y0, &b->y1, &b->ys};
+  Lanes **const parts[] = {&b->comp, &b->comp1, &b->y0, &b->y1, &b->ys, &b->floor};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lane_take(&room, n);
   b->k = lane_take(&room, n * (size_t)pair->tab->stages);
   lane_problem_init(&b->pb, &room, like, model);
@@ -35,7 +35,7 @@ static int embedded_load(void *batch, int lane, lag_sim *s, int pause) {
   int rc = lag_embedded_prepare(b->pair, w, &s->pb, s->run->t, s->y);
   if (rc) return rc;
   lane_problem_load(&b->pb, lane, s, pause, w->limits.t_begin);
-  b->atol = w->limits.atol;
+  for (int i = 0; i < s->pb.n; i++) b->floor[i][lane] = lag_tolerance_floor(&w->limits, &s->pb, i);
   b->h_max = w->limits.h_max;
   b->h_fixed = w->limits.fixed != 0.0 ? w->limits.h_option : 0;
   b->per = w->per;
@@ -111,7 +111,7 @@ LAG_INLINE Lanes embedded_lane_errors(int n, EmbeddedLanes *b, Lanes dt) {
   embedded_lane_sum(n, tab->e, tab->stages - pair->late, b->k, e);
   if (pair->late) embedded_lane_sum(n, tab->e3, tab->stages - 1, b->k, e3);
   for (int i = 0; i < n; i++) {
-    Lanes a = lane_abs(b->y0[i]), c = lane_abs(b->y1[i]), scale = lane_all(b->atol) + lane_all(b->pb.tol) * lane_max(a, c), per = lane_all(1) / scale;
+    Lanes a = lane_abs(b->y0[i]), c = lane_abs(b->y1[i]), scale = lane_all(b->pb.tol) * b->floor[i] + lane_all(b->pb.tol) * lane_max(a, c), per = lane_all(1) / scale;
     e[i] = per * e[i];
     e3[i] = pair->late ? per * e3[i] : lane_all(0);
   }

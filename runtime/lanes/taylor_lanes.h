@@ -9,10 +9,10 @@ typedef struct TaylorLanes {
   LaneProblem pb;
   const lag_taylor *ty;
   int order, columns, width, now;      /* now: the series of the next step; the other one is of the last step */
-  double reach, floor, h_max, per_order[TAYLOR_WINDOW];
+  double reach, h_max, per_order[TAYLOR_WINDOW];
   LaneMask again;                      /* the last step was rejected; h is the next to try */
   Lanes h, last, noise, unit, unit_last, dt;
-  Lanes *x[2], *comp, *y1, *comp1, *sum, *slope, *scale, *follows;
+  Lanes *x[2], *comp, *y1, *comp1, *sum, *slope, *scale, *floor, *follows;
 } TaylorLanes;
 
 static void *taylor_open(const lag_sim *like, const void *model) {
@@ -21,10 +21,10 @@ static void *taylor_open(const lag_sim *like, const void *model) {
   TaylorLanes *b = NULL;
   LaneRoom room;
   size_t head = (sizeof *b + sizeof(Lanes) - 1) / sizeof(Lanes), nu = (size_t)like->pb.model->nu;
-  if (!lane_room(&room, head + lane_problem_size(like, model) + 2 * series + 4 * n + 2 * width + nu)) return NULL;
+  if (!lane_room(&room, head + lane_problem_size(like, model) + 2 * series + 5 * n + 2 * width + nu)) return NULL;
   b = (TaylorLanes *)(void *)lane_take(&room, head);
   for (int i = 0; i < 2; i++) b->x[i] = lane_take(&room, series);
-  Lanes **const parts[] = {&b->comp, &b->y1, &b->comp1, &b->scale};
+  Lanes **const parts[] = {&b->comp, &b->y1, &b->comp1, &b->scale, &b->floor};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lane_take(&room, n);
   b->sum = lane_take(&room, width);
   b->slope = lane_take(&room, width);
@@ -44,7 +44,7 @@ static int taylor_load(void *batch, int lane, lag_sim *s, int pause) {
   lane_problem_load(&b->pb, lane, s, pause, w->limits.t_begin);
   b->order = (int)w->order;
   b->reach = w->reach;
-  b->floor = w->floor;
+  for (int i = 0; i < s->pb.n; i++) b->floor[i][lane] = lag_tolerance_floor(&w->limits, &s->pb, i);
   b->h_max = w->limits.h_max;
   memcpy(b->per_order, w->per_order, sizeof b->per_order);
   b->again[lane] = 0;
@@ -85,7 +85,7 @@ LAG_INLINE Lanes taylor_sizes(int n, TaylorLanes *b) {
   int columns = b->columns;
   const Lanes *x = b->x[b->now], none = lane_all(0);
   Lanes root = none;
-  for (int i = 0; i < n; i++) b->scale[i] = lane_all(1) / (lane_abs(b->pb.y[i]) + lane_abs(x[columns + i]) + lane_all(b->floor));
+  for (int i = 0; i < n; i++) b->scale[i] = lane_all(1) / (lane_abs(b->pb.y[i]) + lane_abs(x[columns + i]) + b->floor[i]);
   for (int k = b->order; k > b->order - TAYLOR_WINDOW && k > 0; k--) {
     Lanes most = none;
     for (int i = 0; i < n; i++) most = lane_max(lane_abs(x[k * columns + i]) * b->scale[i], most);

@@ -4,8 +4,8 @@
  * Source: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI 10.1007/978-3-540-78862-1: II.4 (error
  * norm, PI controller, first step), II.10 (the estimate of order 5 with a correction of order 3).
  *
- * A step is accepted when err <= 1, with |x|^2 = 1/n sum (x_i / s_i)^2, s_i = atol + tol max(|y_i|, |y1_i|), atol = tol
- * unless the option says otherwise: err = |e| for one estimate, |e|^2 / sqrt(|e|^2 + 0.01 |e3|^2) for two. */
+ * A step is accepted when err <= 1, with |x|^2 = 1/n sum (x_i / s_i)^2, s_i = tol (floor_i + max(|y_i|, |y1_i|)), with the floor
+ * of step_control.h: err = |e| for one estimate, |e|^2 / sqrt(|e|^2 + 0.01 |e3|^2) for two. */
 #include "methods/embedded.h"
 
 #include <float.h>
@@ -64,7 +64,7 @@ int lag_embedded_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *pb,
   w->h = w->limits.fixed != 0.0 ? w->limits.h_option : w->h;
   lag_step_limits_begin(&w->limits, t);
   if (w->h == 0.0) {
-    lag_tolerance tol = {w->limits.atol, pb->tol};
+    lag_tolerance tol = {pb->tol, &w->limits};
     w->h = lag_first_step(pb, &tol, pair->tab->order, w->limits.h_max, t, y, k1, lag_embedded_array(w, pb, EMBEDDED_Y1), k1 + row);
   }
   return LAG_OK;
@@ -111,7 +111,7 @@ static double square_along(Embedded *w, lag_problem *pb, double tb, int count, c
   }
   if (lag_project_tangent(pb, tb, y1, e)) return NAN;
   for (int i = 0; i < n; i++) {
-    double part = e[i] / (w->limits.atol + pb->tol * fmax(fabs(y0[i]), fabs(y1[i])));
+    double part = e[i] / (pb->tol * (lag_tolerance_floor(&w->limits, pb, i) + fmax(fabs(y0[i]), fabs(y1[i]))));
     sum += part * part;
   }
   return sum * w->per;

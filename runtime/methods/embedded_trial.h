@@ -98,10 +98,10 @@ LAG_ALWAYS_INLINE void embedded_result(const lag_tableau *tab, Embedded *w, Embe
   }
 }
 
-/* Scale of the error of a component: atol + tol max(|y0|, |y1|). */
-LAG_ALWAYS_INLINE double embedded_scale(const Embedded *w, const lag_problem *pb, double y0, double y1) {
+/* Scale of the error of component i: tol (floor + max(|y0|, |y1|)). */
+LAG_ALWAYS_INLINE double embedded_scale(const Embedded *w, const lag_problem *pb, int i, double y0, double y1) {
   double a = fabs(y0), b = fabs(y1);
-  return w->limits.atol + pb->tol * (a > b ? a : b);
+  return pb->tol * lag_tolerance_floor(&w->limits, pb, i) + pb->tol * (a > b ? a : b);
 }
 
 /* Sum of the squares of the components. */
@@ -120,7 +120,7 @@ LAG_ALWAYS_INLINE double embedded_error(const lag_tableau *tab, int late, Embedd
   double fine = 0, coarse = 0;
   for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
     double scale[EMBEDDED_WIDTH];
-    for (int j = 0; j < EMBEDDED_WIDTH; j++) scale[j] = embedded_scale(w, pb, y0[i + j], y1[i + j]);
+    for (int j = 0; j < EMBEDDED_WIDTH; j++) scale[j] = embedded_scale(w, pb, i + j, y0[i + j], y1[i + j]);
     embedded_part per = 1 / embedded_at(scale);
     fine += embedded_square(per * embedded_sum(tab->e, tab->stages - late, k + i, row));
     coarse += late ? embedded_square(per * embedded_sum(tab->e3, tab->stages - 1, k + i, row)) : 0;

@@ -53,7 +53,7 @@ static const double error_weight[STAGES] = {-10.04880939982741556246032950764707
 typedef struct Radau {
   double h;            /* the next step to try, > 0; 0: not chosen yet */
   lag_step_limits limits;
-  double rtol, atol;   /* tolerances of the error estimate, which has order 3 */
+  double rtol;         /* tolerance of the error estimate, which has order 3 */
   double ready;        /* 1: f0 = f(t, y) is known */
   double jacobian_age; /* 0: no Jacobian, 1: at this y, 2: at an earlier y */
   double factored;     /* signed h of the LU factors; 0: none */
@@ -113,7 +113,6 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   Radau *w = work;
   lag_step_limits_init(&w->limits, pb, opt);
   w->rtol = 0.1 * cbrt(pb->tol * pb->tol);
-  w->atol = w->rtol * (w->limits.atol / pb->tol);
   reset(work, pb);
   return LAG_OK;
 }
@@ -354,11 +353,11 @@ static int finish(const RadauArrays *a, lag_problem *pb, double tb, const double
 
 /* Before a step: f0, scale of errors, and w->h, the step to try. */
 static int prepare(Radau *w, const RadauArrays *a, lag_problem *pb, double t, const double *y) {
-  lag_tolerance tol = {w->atol, w->rtol};
+  lag_tolerance tol = {w->rtol, &w->limits};
   int rc = w->ready != 0.0 ? 0 : lag_step_rhs(pb, t, y, a->f0);
   if (rc) return rc;
   w->ready = 1;
-  for (int i = 0; i < pb->n; i++) a->scale[i] = w->atol + w->rtol * fabs(y[i]);
+  for (int i = 0; i < pb->n; i++) a->scale[i] = w->rtol * lag_tolerance_floor(&w->limits, pb, i) + w->rtol * fabs(y[i]);
   lag_step_limits_begin(&w->limits, t);
   if (w->h == 0.0) w->h = lag_first_step(pb, &tol, 5, w->limits.h_max, t, y, a->f0, a->ys, a->fs);
   return LAG_OK;

@@ -5,10 +5,6 @@
 
 #include "lag.h"
 
-typedef struct lag_tolerance {
-  double absolute, relative;
-} lag_tolerance;
-
 /* Options of adaptive steps, and the largest step that they allow; part of a method's saved state. */
 typedef struct lag_step_limits {
   double h_option, h_max, atol;
@@ -20,7 +16,17 @@ typedef struct lag_step_limits {
 enum { LAG_OPT_STEP, LAG_OPT_MAX, LAG_OPT_ATOL, LAG_OPT_ADAPT, LAG_NADAPTIVE_OPTIONS };
 extern const char *const lag_on_off[];
 #define LAG_MAX_STEP_OPTION {"max_step", "largest step [s]; 0: a tenth of the scene's span, or the time since the start", 0, 0, HUGE_VAL, NULL}
-#define LAG_ATOL_OPTION {"atol", "absolute tolerance [SI]; 0: the same number as the relative one", 0, 0, HUGE_VAL, NULL}
+#define LAG_ATOL_OPTION {"atol", "absolute tolerance [SI]; 0: the relative one, of the size of the motion", 0, 0, HUGE_VAL, NULL}
+
+/* The error of component i of y may be `relative` times |y_i| + lag_tolerance_floor. */
+typedef struct lag_tolerance {
+  double relative;
+  const lag_step_limits *limits;
+} lag_tolerance;
+
+static inline double lag_tolerance_floor(const lag_step_limits *l, const lag_problem *pb, int i) {
+  return l->atol > 0 ? l->atol / pb->tol : pb->size[i];
+}
 
 void lag_step_limits_init(lag_step_limits *l, const lag_problem *pb, const double *opt);
 
@@ -49,7 +55,7 @@ static inline double lag_longest_step(const lag_step_limits *l, double t, double
 static inline double lag_rough_power(double x, double p) { return pow(x, p); }
 #endif
 
-/* Weighted root mean square of x[n], with weights 1/(absolute + relative |y_i|). */
+/* Weighted root mean square of x[n], with weights 1/(relative (floor_i + |y_i|)). */
 double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y);
 
 /* The first step to try from y, where f0 = f(t, y), for a method of this order; at most h_max (0: no limit). y1[n] and

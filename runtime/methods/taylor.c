@@ -4,7 +4,7 @@
  * Source of the recurrences: the compiler's series/series.h. Source of the step size: A. Jorba, M. Zou, Experimental Mathematics
  * 14 (2005) 99, DOI 10.1080/10586458.2005.10128904, section 3: with x_k the coefficient of order k the root test of the
  * radius of convergence gives h = c min(|x_(p-1)|^(-1/(p-1)), |x_p|^(-1/p)). Here |x| = max |x_i| / (|y_i| + |T y_i'| +
- * atol/rtol), T about the last step, so that a component may pass through zero. Motions with symmetries have series with
+ * floor_i), T about the last step, so that a component may pass through zero. Motions with symmetries have series with
  * gaps: a pendulum released at a right angle has only the coefficients 2, 6, 10, ... of its angle. So here
  *  1. the root test uses the last WINDOW coefficients, r = max_k |x_k|^(1/k), and h is such that a series with |x_k| = r^k
  *     omits a fraction of the tolerance: (r h)^(p+1) = rtol/4, and less near rounding;
@@ -98,7 +98,6 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   w->reach = exp2(-target_bits(pb) / (w->order + 1));
   for (int i = 0; i < TAYLOR_WINDOW; i++) w->per_order[i] = 1 / fmax(w->order - i, 1);
   lag_step_limits_init(&w->limits, pb, opt);
-  w->floor = w->limits.atol / pb->tol;
   for (int i = 0; i < pb->model->nu; i++) lag_taylor_follows(w, pb)[i] = isnan(pb->hold[i]) && pb->model->inputs;
   reset(work, pb);
   return LAG_OK;
@@ -123,7 +122,7 @@ static int first(Taylor *w, lag_problem *pb, double which, double t, const doubl
 static double guess_unit(Taylor *w, const lag_problem *pb, const double *y) {
   double fastest = 0;
   const double *rates = lag_taylor_series(w, pb, w->now) + pb->n;
-  for (int i = 0; i < pb->n; i++) fastest = fmax(fastest, fabs(i < pb->nq ? y[pb->nq + i] : rates[i - pb->nq]) / (fabs(y[i]) + w->floor));
+  for (int i = 0; i < pb->n; i++) fastest = fmax(fastest, fabs(i < pb->nq ? y[pb->nq + i] : rates[i - pb->nq]) / (fabs(y[i]) + lag_tolerance_floor(&w->limits, pb, i)));
   return fastest > 0 && isfinite(fastest) ? ldexp(1, -ilogb(fastest)) : 1;
 }
 
@@ -158,7 +157,7 @@ static double root_test_step(Taylor *w, lag_problem *pb, const double *y) {
   int n = pb->n, order = (int)w->order, columns = pb->model->taylor->columns;
   const double *x = lag_taylor_series(w, pb, w->now);
   double *scale = lag_taylor_array(w, pb, TAYLOR_SCALE), root = 0;
-  for (int i = 0; i < n; i++) scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + w->floor);
+  for (int i = 0; i < n; i++) scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + lag_tolerance_floor(&w->limits, pb, i));
   for (int k = order; k > order - TAYLOR_WINDOW && k > 0; k--) {
     const double *row = x + k * columns;
     double most = 0;

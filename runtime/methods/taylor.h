@@ -11,7 +11,6 @@ enum { TAYLOR_WINDOW = 5, TAYLOR_AIM = 2 };
 typedef struct Taylor {
   double order, reach; /* reach: r h of item 1 above */
   double per_order[TAYLOR_WINDOW]; /* 1/k of the orders in the root test, from the highest down */
-  double floor;     /* absolute/relative tolerance, the least size of a component in error norms */
   lag_step_limits limits;
   double ready;     /* 1: series[now] is expanded at t, y */
   double now;       /* 0 or 1: series of the next step; the other one is of the last step */
