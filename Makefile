@@ -98,7 +98,7 @@ endif
 
 # ---- what is made of what ---------------------------------------------------------------------------
 # Of runtime/numeric, the files that the compiler calls, too.
-SHARED   := action_integral consistent_state magnitudes quadrature
+SHARED   := action_integral consistent_state magnitudes option_range quadrature
 NOT_HERE := $(if $(WINDOWS),%/process.c %/clock.c %/threads.c,%windows.c)
 LAGC_SRC := $(filter-out src/main.c $(NOT_HERE),$(wildcard src/*.c src/*/*.c))
 GEN_SRC  := $(patsubst %,$(BUILD)/gen/%,lag.tab.c lag.lex.c toolchain/outfile.c $(if $(WINDOWS),base/windows.c) $(SHARED:%=numeric/%.c))

@@ -9,6 +9,7 @@
 #include "app/app.h"
 #include "io/visible.h"
 #include "core/core.h"
+#include "numeric/option_range.h"
 #include "numeric/edit_distance.h"
 
 static int no_scene(const App *app, const char *name) {

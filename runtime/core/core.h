@@ -146,8 +146,7 @@ static inline double lag_declared(const lag_var *v, double si) {
              : x;
 }
 
-/* setup.c: whether the option is a step size; why x [s] cannot be the step size of this scene, NULL: it can. */
-int lag_is_step_option(const char *option);
+/* setup.c: why x [s] cannot be the step size of this scene, NULL: it can. */
 const char *lag_step_error(const lag_sim *s, double x);
 /* The common size of the steps [s]; 0 where the method adapts it. */
 double lag_equal_step(const lag_sim *s);
@@ -346,7 +345,7 @@ double lag_energy_terms(lag_sim *sim, double t, const double *y);
 double lag_output_terms(lag_sim *sim, double t, const double *y, int k);
 void lag_velocity_terms(lag_sim *sim, double t, const double *y, double *v);
 /* pb.size := sizes of the components of a run that begins at `now`: of each unit the largest value and what forces add to it
- * in the time scale of the motion. Two right-hand sides, not counted. */
+ * in the time scale of the motion. Three right-hand sides, not counted. */
 void lag_start_sizes(lag_sim *s);
 /* The present step, before the first one the step that is set; 0: it is not known. */
 double lag_step_so_far(const lag_sim *sim);

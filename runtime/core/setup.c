@@ -9,6 +9,7 @@
 
 #include "core/core.h"
 #include "core/rhs.h"
+#include "numeric/option_range.h"
 #include "numeric/workspace.h"
 
 enum { RUN_DOUBLES = sizeof(Run) / sizeof(double), LINE = LAG_WORK_ALIGN, LINE_DOUBLES = LINE / sizeof(double) };
@@ -155,8 +156,6 @@ void lag_sim_free(lag_sim *s) {
 
 static int begun(lag_sim *s) { return s->run->begun != 0.0 ? lag_fail(s, LAG_EINVAL, "the run has begun: set this before the first step") : 0; }
 
-int lag_is_step_option(const char *option) { return strcmp(option, "step") == 0 || strcmp(option, "max_step") == 0; }
-
 const char *lag_step_error(const lag_sim *s, double x) {
   const lag_scene *c = s->scene;
   if (!(x > 0 && isfinite(x))) return "a step must be a positive number";
@@ -186,16 +185,13 @@ static int option_value(lag_sim *s, const lag_method *m, const lag_method_option
         *value = i;
         return LAG_OK;
       }
-    char words[128] = "";
-    for (int i = 0; o->choices && o->choices[i] && strlen(words) + strlen(o->choices[i]) + 3 < sizeof words; i++)
-      strcat(strcat(words, i ? ", " : ""), o->choices[i]);
-    return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"; it is %s", m->name, o->name, given->text,
-                    o->choices ? words : "a number");
   }
-  const char *wrong = lag_is_step_option(o->name) && *value != 0.0 ? lag_step_error(s, *value) : isfinite(*value) ? NULL : "it must be finite";
-  if (wrong) return lag_fail(s, LAG_EINVAL, "method %s: %s = %g: %s", m->name, o->name, *value, wrong);
-  if (!(*value >= o->min && *value <= o->max))
-    return lag_fail(s, LAG_EINVAL, "method %s: option %s = %g is outside [%g, %g]", m->name, o->name, *value, o->min, o->max);
+  lag_option_range range = {o->min, o->max, o->every, o->most, o->choices};
+  char are[128];
+  const char *step = lag_is_step_option(o->name) && *value > 0 ? lag_step_error(s, *value) : NULL;
+  int bad = lag_option_refuses(&range, given->text ? NAN : *value, s->scene->model->constraints != NULL, are);
+  if (bad && given->text) return lag_fail(s, LAG_EINVAL, "method %s: option %s cannot be \"%s\"; %s", m->name, o->name, given->text, are);
+  if (bad || step) return lag_fail(s, LAG_EINVAL, "method %s: %s = %g: %s", m->name, o->name, *value, bad ? are : step);
   return LAG_OK;
 }
 
@@ -207,9 +203,7 @@ static int read_options(lag_sim *s, const lag_method *m, const lag_option *opt, 
     int rc = option_value(s, m, &m->options[i], &opt[k], &values[i]);
     if (rc) return rc;
   }
-  const char *wrong = m->check ? m->check(values) : NULL;
-
-  wrong = !wrong && m->refuses ? m->refuses(s->scene->model, values) : wrong;
+  const char *wrong = m->refuses ? m->refuses(s->scene->model, values) : NULL;
   return wrong ? lag_fail(s, LAG_EINVAL, "method %s: %s", m->name, wrong) : LAG_OK;
 }
 

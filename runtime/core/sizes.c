@@ -214,41 +214,57 @@ static double time_scale(Kind k, double time) {
 /* The power of 1024 next to size, as a change from m to nm or km: a motion of about 1 m has the tolerance in m. */
 static double nearest_unit(double size) { return size > 0 && size < HUGE_VAL ? scalbn(1, 10 * (int)rint(log2(size) / 10)) : 1; }
 
-/* dy[n] := rates at the start where coordinates are displaced by size[nq], less f; f NULL: rates. Zeros where there are none. */
-static void rates_beside(lag_sim *s, const double *size, const double *f, double *dy) {
+/* dy[n] := rates at the start, where y[at + i] is displaced by by[i], less f; NULL: nothing is displaced, or subtracted. Zeros
+ * where there are none. */
+static void rates_beside(lag_sim *s, int at, const double *by, const double *f, double *dy) {
   const int n = s->pb.n;
   memcpy(s->ya, s->now, (size_t)n * sizeof *dy);
-  for (int i = 0; i < s->pb.nq; i++) s->ya[i] += f ? size[i] * lag_uneven(i) : 0;
+  for (int i = 0; i < s->pb.nq && by; i++) s->ya[at + i] += by[i] * lag_uneven(i);
   int none = lag_rhs(&s->pb, s->run->t, s->ya, dy) || lag_not_finite(n, dy) >= 0;
   for (int i = 0; i < n; i++) dy[i] = none ? 0 : dy[i] - (f ? f[i] : 0);
+}
+
+/* The sizes of coordinates and velocities, f: rates at the start. Returns the time scale, which begins as `time`. Turn 0: from
+ * the start alone; 1: with the forces of displaced coordinates; 2: of displaced velocities. */
+static double coordinate_sizes(lag_sim *s, const double *f, double time) {
+  const lag_model *m = s->scene->model;
+  const int nq = m->nq;
+  double *bend = s->yc, *size = s->pb.size, *of_v = size + nq;
+  for (int turn = 0; turn < 3; turn++) {
+    double before = time;
+    if (turn) rates_beside(s, turn == 2 ? nq : 0, turn == 2 ? of_v : size, f, bend);
+    for (int i = 0; i < nq; i++) {
+      if (!is_first(m, i)) continue;
+      Kind k = kind_of(s, f, bend, i);
+      time = turn < 2 ? time_scale(k, time) : k.bend > 0 ? fmin(time, of_v[i] / k.bend) : time;
+    }
+    for (int i = 0; i < nq; i++) {
+      if (!is_first(m, i)) continue;
+      Kind k = kind_of(s, f, bend, i);
+      double v = turn < 2 ? lag_above_rounding(fmax(k.v, k.a * time), k.bend * time) : fmax(k.v, of_v[i] * time / before);
+      for (int j = nq - 1; j >= i; j--) {
+        if (j > i && strcmp(m->q[j].unit, m->q[i].unit) != 0) continue;
+        size[j] = reach(k, time);
+        of_v[j] = v;
+      }
+    }
+  }
+  return time;
 }
 
 void lag_start_sizes(lag_sim *s) {
   const lag_model *m = s->scene->model;
   const int nq = m->nq, n = s->pb.n;
   double *f = s->yb, *bend = s->yc, *size = s->pb.size, time = HUGE_VAL, calls = s->pb.rhs_calls;
-  rates_beside(s, NULL, NULL, f);
+  rates_beside(s, 0, NULL, NULL, f);
   memset(bend, 0, (size_t)n * sizeof *bend);
   for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
-  time = time < HUGE_VAL ? time : s->pb.span > 0 ? s->pb.span : 10;
-  for (int turn = 0; turn < 2; turn++) {
-    if (turn) rates_beside(s, size, f, bend);
-    for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
-    for (int i = 0; i < nq; i++) {
-      if (!is_first(m, i)) continue;
-      Kind k = kind_of(s, f, bend, i);
-      double q = reach(k, time), v = lag_above_rounding(fmax(k.v, k.a * time), k.bend * time);
-      for (int j = i; j < nq; j++) {
-        if (j > i && strcmp(m->q[j].unit, m->q[i].unit) != 0) continue;
-        size[j] = turn ? nearest_unit(q) : q;
-        size[nq + j] = nearest_unit(v);
-      }
-    }
-  }
-  size[n + 1] = nearest_unit(time);
+  time = coordinate_sizes(s, f, time < HUGE_VAL ? time : s->pb.span > 0 ? s->pb.span : 10);
   for (int i = 2 * nq; i < n; i++) {
     double z = largest_of_unit(m->nz, m->z, s->now + 2 * nq, i - 2 * nq);
-    size[i] = nearest_unit(z > 0 ? z : largest_of_unit(m->nz, m->z, f + 2 * nq, i - 2 * nq) * time);
+    size[i] = z > 0 ? z : largest_of_unit(m->nz, m->z, f + 2 * nq, i - 2 * nq) * time;
   }
+  for (int i = 0; i < n; i++) size[i] = nearest_unit(size[i]);
+  size[n + 1] = nearest_unit(time);
   s->pb.rhs_calls = calls;
 }

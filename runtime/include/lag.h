@@ -237,8 +237,10 @@ typedef struct lag_method_option {
   const char *name;
   const char *doc;
   double value;    /* default */
-  double min, max; /* allowed values */
+  double min, max; /* allowed values, */
   const char *const *choices;
+  double every; /* in steps of this from min; 0: all. */
+  double most;  /* The largest with constraints; 0: max */
 } lag_method_option;
 
 /* An integrator. Its state is one block of work_size doubles (only doubles, unless NO_SAVE: then the state
@@ -253,9 +255,6 @@ typedef struct lag_method {
   unsigned flags;
   int noptions;
   const lag_method_option *options;
-
-  /* NULL when these option values fit together; else why not, and what to write. May itself be NULL. */
-  const char *(*check)(const double *opt);
 
   /* Order of the steps with these option values; NULL: order. */
   int (*order_of)(const double *opt);

@@ -33,7 +33,7 @@ static const lag_method_option options[NOPTIONS] = {
     LAG_MAX_STEP_OPTION,
     LAG_ATOL_OPTION,
     {"adapt", "off: every step has the size `step`, whatever the error", 0, 0, 1, lag_on_off},
-    {"order", "order of the series; 0: chosen from the tolerance and what an order costs", 0, 0, LAG_TAYLOR_ORDER, NULL},
+    {"order", "order of the series; 0: chosen from the tolerance and what an order costs", 0, 0, LAG_TAYLOR_ORDER, NULL, .every = 1},
 };
 
 double lag_taylor_order(const double *method_work) { return ((const Taylor *)(const void *)method_work)->order; }
@@ -262,8 +262,6 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
   return lag_tangent_along(dense, work, pb, w->t0, t - w->t0, k, Y, scratch);
 }
 
-static const char *check(const double *opt) { return opt[OPT_ORDER] != floor(opt[OPT_ORDER]) ? "order: write a whole number" : NULL; }
-
 const lag_method lag_taylor_method = {
     .name = "taylor",
     .order = 20,
@@ -274,7 +272,6 @@ const lag_method lag_taylor_method = {
     .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_TAYLOR,
     .noptions = NOPTIONS,
     .options = options,
-    .check = check,
     .work_size = work_size,
     .init = init,
     .step = step,

@@ -13,29 +13,15 @@ enum { OPT_STAGES = 1 };
 
 static const lag_method_option variational_options[] = {
     LAG_STEP_OPTION,
-    {"order", "2, 4, 6 or 8", 2, 2, 8, NULL},
+    {"order", "2, 4, 6 or 8; 2 with constraints, as higher orders need them within a step, too", 2, 2, 8, NULL, .every = 2, .most = 2},
 };
 
 static const lag_method_option gauss_options[] = {
     LAG_STEP_OPTION,
-    {"stages", "1, 2, 3 or 4: order 2, 4, 6, 8", 2, 1, 4, NULL},
+    {"stages", "1, 2, 3 or 4: order 2, 4, 6, 8", 2, 1, 4, NULL, .every = 1},
 };
 
-static const char *variational_check(const double *opt) {
-  return opt[OPT_ORDER] / 2 != (int)(opt[OPT_ORDER] / 2) ? "order: write 2, 4, 6 or 8" : NULL;
-}
-
 static int variational_order(const double *opt) { return (int)opt[OPT_ORDER]; }
-
-static const char *variational_refuses(const lag_model *model, const double *opt) {
-  return model->constraints && opt[OPT_ORDER] > 2
-             ? "with constraints only order 2 is possible: higher orders would need the constraints at points within the step, too; "
-               "verlet4, verlet6 and "
-               "verlet8 compose steps of order 2"
-             : NULL;
-}
-
-static const char *gauss_check(const double *opt) { return opt[OPT_STAGES] != (int)opt[OPT_STAGES] ? "stages: write 1, 2, 3 or 4" : NULL; }
 
 static int gauss_order(const double *opt) { return 2 * (int)opt[OPT_STAGES]; }
 
@@ -89,9 +75,7 @@ const lag_method lag_variational = {
     .flags = PROPERTIES | LAG_METHOD_CONSTRAINTS,
     .noptions = 2,
     .options = variational_options,
-    .check = variational_check,
     .order_of = variational_order,
-    .refuses = variational_refuses,
     .variant = &lag_variational,
     FUNCTIONS,
 };
@@ -107,7 +91,6 @@ const lag_method lag_gauss = {
     .flags = PROPERTIES | LAG_METHOD_FLOWS,
     .noptions = 2,
     .options = gauss_options,
-    .check = gauss_check,
     .order_of = gauss_order,
     .variant = &lag_gauss,
     FUNCTIONS,

@@ -17,7 +17,8 @@ enum {
 typedef struct {
   const char *name;               /* NULL: past the last */
   double min, max;
-  const char *const *choices;     /* NULL-terminated; NULL: a number from min to max */
+  const char *const *choices;     /* NULL-terminated; NULL: a number from min to max, */
+  double every, most;             /* of lag_option_range */
 } MethodOption;
 
 typedef struct {

@@ -1,10 +1,12 @@
 /* `method NAME(option = value, ...)` of a scene: checked against the table of base/method_table.h and against the model (states,
  * constraints), and stored in the scene with names and values as the runtime expects them. */
+#include <math.h>
 #include <string.h>
 
 #include "base/method_table.h"
 #include "base/words.h"
 #include "model/builder.h"
+#include "numeric/option_range.h"
 
 /* "`a`, `b`": the words up to NULL. */
 static const char *listed(const Builder *b, const char *const *words) {
@@ -36,17 +38,18 @@ static void unknown_option(Builder *b, const MethodInfo *m, const AstExpr *name)
 }
 
 static void check_value(Builder *b, const MethodOption *o, const Option *given, Span span) {
+  lag_option_range range = {o->min, o->max, o->every, o->most, o->choices};
+  char are[128];
+  for (const char *const *c = o->choices; c && given->text && *c; c++)
+    if (strcmp(*c, given->text) == 0) return;
   if (given->text && !o->choices) {
     diag_error(b->diags, span, "the option `%s` is a number" HELP "write `%s = 0.01`", o->name, o->name);
-  } else if (given->text) {
-    for (const char *const *c = o->choices; *c; c++)
-      if (strcmp(*c, given->text) == 0) return;
-    diag_error(b->diags, span, "the option `%s` cannot be `%s`" HELP "it is one of %s", o->name, given->text, listed(b, o->choices));
-  } else if (!(given->value >= o->min && given->value <= o->max)) {
-    diag_error(b->diags, span, "the option `%s` cannot be %.6g", o->name, given->value);
-    if (o->choices) diag_help(b->diags, "it is one of %s", listed(b, o->choices));
-    else if (o->max < 1e300) diag_help(b->diags, "it is a number from %g to %g", o->min, o->max);
-    else diag_help(b->diags, "it is at least %g", o->min);
+  } else if (lag_is_step_option(o->name) && given->value == 0) {
+    diag_error(b->diags, span, "the option `%s` cannot be 0" HELP "a step is a positive number of seconds; without one the method takes its own", o->name);
+  } else if (lag_option_refuses(&range, given->text ? NAN : given->value, b->m->constraints.n > 0, are)) {
+    const char *value = given->text ? given->text : arena_printf(b->arena, "%.6g", given->value);
+    diag_error(b->diags, span, "the option `%s` cannot be %s%s%s", o->name, given->text ? "`" : "", value, given->text ? "`" : "");
+    diag_help(b->diags, "%s", are);
   }
 }
 

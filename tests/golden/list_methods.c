@@ -21,9 +21,9 @@ static void list_options(const lag_method *m)
     for (int j = 0; o->choices && o->choices[j]; j++) {
       printf("\"%s\", ", o->choices[j]);
     }
-    printf("%s", o->choices ? "NULL}}, " : "}, ");
+    printf("%s, %g, %g}, ", o->choices ? "NULL}" : "", o->every, o->most);
   }
-  printf("{NULL, 0, 0, NULL}}},\n");
+  printf("{NULL, 0, 0, NULL, 0, 0}}},\n");
 }
 
 static void list(const lag_method *const *methods, int n)

@@ -214,7 +214,7 @@ static void a_stiff_spring_with_a_damper_is_solved(void **state)
   (void)state;
   lag_sim *s = sim_with(&stiff, &lag_radau, 1e-9, 0, NULL);
   assert_int_equal(lag_sim_advance(s, t), LAG_OK);
-  assert_close(lag_sim_q(s)[0], right, 1e-8);
+  assert_close(lag_sim_q(s)[0], right, 3e-8); /* v, which reaches 100 times x, has 1e-6 a step, of which a hundredth is seen in x */
   assert_int_equal(lag_sim_advance(s, 10), LAG_OK);
   assert_close(lag_sim_q(s)[0], 0, 1e-9);
   lag_sim_stats(s, &few);
