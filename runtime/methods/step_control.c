@@ -23,7 +23,7 @@ double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const dou
 
 double lag_first_step(lag_problem *pb, const lag_tolerance *tol, int order, double h_max, double t, const double *y,
                       const double *f0, double *y1, double *f1) {
-  const double unit = pb->size[pb->n + 1]; /* of h0, h1, 1/d1 and 1/d2 */
+  const double unit = tol->limits->atol > 0 ? 1 : pb->size[pb->n + 1]; /* of h0, h1, 1/d1 and 1/d2 */
   double d0 = lag_error_norm(pb, tol, y, y), d1 = unit * lag_error_norm(pb, tol, f0, y);
   double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
 

@@ -37,7 +37,8 @@ int main(void) {
   (void)JOIN(M, _start)(&p, &s);
   double y[NY + 1], end = SCENE.t1 > SCENE.t0 ? SCENE.t1 : SCENE.t0 + 1, far = SCENE.t0 + 1e6 * (end - SCENE.t0), reach;
   lag_option opt[] = {{"step", (end - SCENE.t0) / 10000}, {"order", ORDER}};
-  const int options = ADAPTIVE ? 0 : ORDER ? 2 : 1;
+  if (ADAPTIVE) opt[0] = (lag_option){"atol", TOL}; /* headers know no sizes of the motion */
+  const int options = ORDER ? 2 : 1;
   lag_sim *sim = lag_sim_new(&SCENE);
   const lag_method *method = &JOIN(lag_, METHOD);
   if (!sim || lag_sim_set_method(sim, method, opt, options) != LAG_OK) return 2;
