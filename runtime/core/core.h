@@ -84,6 +84,7 @@ struct lag_sim {
   lag_signal *signal;    /* [nu] set by the caller; not saved */
   double *start;         /* [n] start values set by the caller; NaN: the scene's */
   double *scratch;       /* one block: u, work, y, g, g, outputs */
+  double *sizes;         /* [nsizes + nmoving] scratch */
   double *sides;         /* [3 nswitch] switching functions, scratch of stall_detector.c */
   double *rate_history;         /* [3 n] force_pole.c: rate of change of the state over the last two steps, and its fading peak; NaN: not known */
   double *contact_scratch, *contact_was; /* [2 constraints], [contacts]: scratch of contact.c */
@@ -200,6 +201,8 @@ void lag_note_redundant(lag_sim *sim);
 
 /* setup.c: sets the state at the start of a run. */
 int lag_setup_start(lag_sim *sim);
+/* Fails, with a message, where a friction is negative at y, t. */
+int lag_check_moving_sizes(lag_sim *sim, double t, const double *y);
 
 /* events.c and event_location.c. arm: signs of g at the start of a chain of steps. locate: the first event in (run->from, step_t1]; sets limit and
  * pending. spread: variation of g[nev] about limit within the last digits of the time, which the dense output cannot resolve; jumps[2 nev]: 1 for events that

@@ -77,9 +77,9 @@ static int alloc_scratch(lag_sim *s) {
   size_t nc = (size_t)lag_sim_ncharges(s) + 1, np = (size_t)m->ncontacts;
   double **const parts[] = {&s->u, &s->work, &s->ya, &s->yb, &s->yc, &s->g0, &s->g1, &s->out, &s->e, &s->spare, &s->pb.held, &s->pb.ranks, &s->contact_scratch,
                             &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->grip, &s->side_noise, &s->slid_off, &s->meets, &s->left,
-                            &s->meeting, &s->pb.slide, &s->pb.rub};
+                            &s->meeting, &s->pb.slide, &s->pb.rub, &s->sizes};
   const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 10 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm,
-                          nm * (7 + 2 * nm), nm * (3 + nm), m->contact_laws ? np * (5 + 2 * np) : 0};
+                          nm * (7 + 2 * nm), nm * (3 + nm), m->contact_laws ? np * (5 + 2 * np) : 0, (size_t)(m->nsizes + m->nmoving)};
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
@@ -435,21 +435,33 @@ int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *cont
   return LAG_OK;
 }
 
-/* Refuses parameters that make a friction, an inertia or a coefficient negative, or too large. */
+/* Refuses sizes of friction, inertia or coefficients that are negative, or too large; at time t, NaN: at all times. */
+static int judge_sizes(lag_sim *s, int n, const lag_size *of, const double *size, double t) {
+  char when[64] = "";
+  if (!isnan(t)) snprintf(when, sizeof when, "at t = %s s ", LAG_TEXT(t));
+  for (int i = 0; i < n; i++) {
+    if (!(of[i].part && size[i] > 1) && (of[i].open ? size[i] > 0 : size[i] >= 0)) continue;
+    return lag_fail(s, s->run->begun == 0.0 ? LAG_EINVAL : LAG_EDOMAIN, "%s%s of %.6g, which must be %s: it is %s", when, of[i].what, size[i],
+                    of[i].part ? "between 0 and 1" : of[i].open ? "more than 0" : "at least 0", of[i].text);
+  }
+  return LAG_OK;
+}
+
 static int check_sizes(lag_sim *s) {
   const lag_model *m = s->scene->model;
-  double *size = m->nsizes ? malloc((size_t)m->nsizes * sizeof *size) : NULL;
-  if (!m->nsizes) return LAG_OK;
   const double *y = s->begin;
-  int rc = size ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work) : lag_fail(s, LAG_ENOMEM, "out of memory");
-  for (int i = 0; i < m->nsizes && rc == 0; i++) {
-    const lag_size *of = &m->sizes[i];
-    if ((of->part && size[i] > 1) || !(of->open ? size[i] > 0 : size[i] >= 0))
-      rc = lag_fail(s, LAG_EINVAL, "%s of %.6g, which must be %s: it is %s", of->what, size[i],
-                    of->part ? "between 0 and 1" : of->open ? "more than 0" : "at least 0", of->text);
-  }
-  free(size);
-  return rc;
+  double *size = s->sizes;
+  int rc = m->nsizes ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work) : 0;
+  return rc ? rc : judge_sizes(s, m->nsizes, m->sizes, size, NAN);
+}
+
+int lag_check_moving_sizes(lag_sim *s, double t, const double *y) {
+  const lag_model *m = s->scene->model;
+  if (!m->nmoving) return LAG_OK;
+  double *size = s->sizes;
+  int rc = lag_inputs_at(&s->pb, t, y);
+  rc = rc ? rc : m->moving_sizes(t, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work);
+  return rc ? LAG_OK : judge_sizes(s, m->nmoving, m->sizes + m->nsizes, size, t);
 }
 
 int lag_setup_start(lag_sim *s) {

@@ -25,6 +25,7 @@ static int begin(lag_sim *s, double t) {
   }
   lag_start_sizes(s);
   if ((rc = s->method->init(s->method_work, &s->pb, s->options)) != 0) return lag_explain(s, rc);
+  if ((rc = lag_check_moving_sizes(s, s->run->t, s->now)) != 0) return rc;
   s->run->begun = 1;
   rc = lag_monitors_begin(s);
   rc = rc ? rc : lag_tangent_begin(s);
@@ -72,6 +73,7 @@ static int take(lag_sim *s, double t_stop) {
   rc = rc ? rc : lag_crosses_force_pole(s, t);
   rc = rc ? rc : lag_switch_step(s, t);
   if (rc) return lag_explain(s, rc);
+  if ((rc = lag_check_moving_sizes(s, t, s->y)) != 0) return rc;
   r->steps++;
   r->have_step = 1;
   r->step_t0 = r->from = r->t;

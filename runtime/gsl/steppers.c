@@ -35,7 +35,7 @@ static double *array(const void *work, int k) {
 }
 
 static const lag_method_option options[] = {
-    {"step", "first step to try [s]; 0: a millionth of the scene's span", 0, 0, HUGE_VAL, NULL},
+    {"step", "first step to try [s]; 0: a millionth of the scene's span", 0, 0, HUGE_VAL, .choices = NULL},
 };
 
 static size_t work_size(const lag_problem *pb) { return HEAD + NARRAYS * (size_t)pb->n; }

@@ -20,7 +20,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 13
+#define LAG_ABI 14
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many doubles, one state or one
  * set of parameters a lane. The status < 0 of such a call has bit k of its negative set where lane k is singular; the other lanes are right. */
@@ -259,7 +259,7 @@ typedef struct lag_taylor {
   void (*at)(int n, LAG_REAL s, const LAG_REAL *x, LAG_REAL *y, LAG_REAL *dy);
 } lag_taylor;
 
-/* A size that parameters determine: at least 0, more than 0 where open, at most 1 where it is a part. */
+/* A size: at least 0, more than 0 where open, at most 1 where it is a part. */
 typedef struct lag_size {
   const char *what, *text; /* "this friction has a size", "mu*m*g" */
   int open, part;
@@ -309,9 +309,13 @@ typedef struct lag_model {
 
   /* out[nsizes]: the sizes, of parameters alone, that a run checks when it begins. NULL where nsizes is 0. */
   int nsizes;
-  const lag_size *sizes; /* [nsizes] */
+  const lag_size *sizes; /* [nsizes + nmoving] */
   int (*size_values)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
                      const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
+  /* out[nmoving]: the sizes of states, inputs and time, that a run checks at each step. NULL where nmoving is 0. */
+  int nmoving;
+  int (*moving_sizes)(LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z, const LAG_REAL *p,
+                      const LAG_REAL *u, LAG_REAL *out, LAG_REAL *w);
 
   int ntables;
   const lag_table *tables; /* [ntables] */

@@ -18,10 +18,10 @@
 #include "methods/tangent.h"
 
 const lag_method_option lag_embedded_options[LAG_NADAPTIVE_OPTIONS] = {
-    {"step", "first step to try [s]; 0: chosen from the tolerance", 0, 0, HUGE_VAL, NULL},
+    {"step", "first step to try [s]; 0: chosen from the tolerance", 0, 0, HUGE_VAL, .choices = NULL},
     LAG_MAX_STEP_OPTION,
     LAG_ATOL_OPTION,
-    {"adapt", "off: every step has the size `step` (0: a 10000th of the scene's span), whatever the error", 0, 0, 1, lag_on_off},
+    {"adapt", "off: every step has the size `step` (0: a 10000th of the scene's span), whatever the error", 0, 0, 1, .choices = lag_on_off},
 };
 
 size_t lag_embedded_work_size(const lag_problem *pb) {

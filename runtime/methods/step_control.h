@@ -15,8 +15,8 @@ typedef struct lag_step_limits {
 /* The first options of an adaptive method, in this order. */
 enum { LAG_OPT_STEP, LAG_OPT_MAX, LAG_OPT_ATOL, LAG_OPT_ADAPT, LAG_NADAPTIVE_OPTIONS };
 extern const char *const lag_on_off[];
-#define LAG_MAX_STEP_OPTION {"max_step", "largest step [s]; 0: a tenth of the scene's span, or the time since the start", 0, 0, HUGE_VAL, NULL}
-#define LAG_ATOL_OPTION {"atol", "absolute tolerance [SI]; 0: the relative one, of the size of the motion", 0, 0, HUGE_VAL, NULL}
+#define LAG_MAX_STEP_OPTION {"max_step", "largest step [s]; 0: a tenth of the scene's span, or the time since the start", 0, 0, HUGE_VAL, .choices = NULL}
+#define LAG_ATOL_OPTION {"atol", "absolute tolerance [SI]; 0: the relative one, of the size of the motion", 0, 0, HUGE_VAL, .choices = NULL}
 
 /* The error of component i of y may be `relative` times |y_i| + lag_tolerance_floor. */
 typedef struct lag_tolerance {

@@ -41,7 +41,7 @@ static inline void lag_fixed_step_end(lag_fixed_step *s, const lag_next_step *ne
 }
 
 /* The option `step` of fixed-step methods. */
-#define LAG_STEP_OPTION {"step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL}
+#define LAG_STEP_OPTION {"step", "size of the step [s]; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, .choices = NULL}
 
 /* Records the time of a failure in pb; returns status. */
 static inline int lag_step_failed(lag_problem *pb, int status, double t) {

@@ -29,10 +29,10 @@ enum { LEAST_ORDER = 6 };
 enum { OPT_ORDER = LAG_NADAPTIVE_OPTIONS, NOPTIONS };
 
 static const lag_method_option options[NOPTIONS] = {
-    {"step", "size of the step [s] where adapt is off; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, NULL},
+    {"step", "size of the step [s] where adapt is off; 0: a 10000th of the scene's span", 0, 0, HUGE_VAL, .choices = NULL},
     LAG_MAX_STEP_OPTION,
     LAG_ATOL_OPTION,
-    {"adapt", "off: every step has the size `step`, whatever the error", 0, 0, 1, lag_on_off},
+    {"adapt", "off: every step has the size `step`, whatever the error", 0, 0, 1, .choices = lag_on_off},
     {"order", "order of the series; 0: chosen from the tolerance and what an order costs", 0, 0, LAG_TAYLOR_ORDER, NULL, .every = 1},
 };
 

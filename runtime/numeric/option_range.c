@@ -18,7 +18,7 @@ int lag_option_refuses(const lag_option_range *r, double x, int constrained, cha
     n = snprintf(text, 128, "%s a %snumber from %g to %g", with, r->every == 1 ? "whole " : "", r->min, most);
     if (r->every > 1) snprintf(text + n, (size_t)(128 - n), " in steps of %g", r->every);
   } else {
-    snprintf(text, 128, "%s a finite number of at least %g", with, r->min);
+    snprintf(text, 128, "%s a number of at least %g, and must be finite", with, r->min);
   }
   return 1;
 }

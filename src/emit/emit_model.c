@@ -174,8 +174,9 @@ static void emit_switches(const ModelFile *f) {
 }
 
 static void emit_sizes(const ModelFile *f) {
-  if (!f->u->size_values) return;
-  state_function(f, f->u->size_values, "size_values", "Sizes of friction, inertias and coefficients, of parameters alone.", NULL, one_out);
+  if (!f->u->sizes.n) return;
+  if (f->u->size_values) state_function(f, f->u->size_values, "size_values", "Sizes of friction, inertias and coefficients, of parameters alone.", NULL, one_out);
+  if (f->u->moving_sizes) state_function(f, f->u->moving_sizes, "moving_sizes", "Sizes of friction that change along a run.", NULL, one_out);
   sb_puts(f->out, "\nstatic const lag_size size_table[] = {\n");
   for (uint32_t i = 0; i < f->u->sizes.n; i++) {
     const IrSize *s = &f->u->sizes.at[i];
@@ -400,7 +401,8 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->contact_laws) sb_puts(out, "  .contact_laws = contact_laws,\n");
-  if (u->size_values) sb_printf(out, "  .nsizes = %u, .sizes = size_table, .size_values = size_values,\n", u->sizes.n);
+  if (u->sizes.n) sb_printf(out, "  .nsizes = %u, .sizes = size_table, .size_values = %s,\n", u->sizes.n - u->nmoving, u->size_values ? "size_values" : "NULL");
+  if (u->nmoving) sb_printf(out, "  .nmoving = %u, .moving_sizes = moving_sizes,\n", u->nmoving);
   if (u->charges.n) sb_puts(out, "  .charges = &charges,\n");
   if (u->switches.n) sb_printf(out, "  .nswitch = %u, .switches = switch_table, .switch_values = switch_values,\n", u->switches.n);
   if (u->nmodes) sb_printf(out, "  .nmodes = %u, .switch_rates = switch_rates,\n", u->nmodes);

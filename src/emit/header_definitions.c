@@ -221,11 +221,11 @@ static void sizes(const Header *h) {
   }
   csupport_expand("\nstatic int lag_sizes(const lag_params *p) {\n#ifdef LAG_COMPLEX /* has no order */\n  (void)p;\n  return LAG_OK;\n#else\n"
                   "  const LAG_REAL zero = LAG_C(0.0);\n  LAG_MASK good = LAG_IS_FINITE(zero);\n", h->upper, h->lower, h->out);
-  if (u->size_values) csupport_expand(arena_printf(h->a, "  LAG_REAL size[%u];\n  lag_size_values(p, size);\n", u->sizes.n), h->upper, h->lower, h->out);
+  if (u->size_values) csupport_expand(arena_printf(h->a, "  LAG_REAL size[%u];\n  lag_size_values(p, size);\n", u->sizes.n - u->nmoving), h->upper, h->lower, h->out);
   else sb_puts(h->out, "  (void)p;\n");
   for (uint32_t i = 0; i < u->p.n; i++)
     if (u->p.at[i].sign) write_demand(h, demand(h, arena_printf(h->a, "p->%s", h->fields[i]), u->p.at[i].sign));
-  for (uint32_t i = 0; i < u->sizes.n; i++) {
+  for (uint32_t i = 0; i < u->sizes.n - u->nmoving; i++) {
     const char *size = arena_printf(h->a, "size[%u]", i);
     write_demand(h, demand(h, size, u->sizes.at[i].open ? 1 : 2));
     if (u->sizes.at[i].part) write_demand(h, arena_printf(h->a, "LAG_NOT(%s > LAG_C(1.0))", size));

@@ -6,7 +6,7 @@
 ProgList unit_programs(const IrUnit *u) {
   ProgList all = {0};
   const IrConstraints *k = &u->constraints;
-  const Prog *const of_unit[] = {u->accel, u->energy, u->event_values, u->inputs, u->derived, u->charge_values, u->charge_powers, u->switch_values, u->switch_rates, u->switch_grips, u->contact_laws, u->contact_coefficients, u->size_values, u->held_accel, u->impact, k->residuals,
+  const Prog *const of_unit[] = {u->accel, u->energy, u->event_values, u->inputs, u->derived, u->charge_values, u->charge_powers, u->switch_values, u->switch_rates, u->switch_grips, u->contact_laws, u->contact_coefficients, u->size_values, u->moving_sizes, u->held_accel, u->impact, k->residuals,
                                  k->matrices, k->position, k->velocity, u->variation, u->second, u->linear, u->mass, u->bias, u->inverse, u->multipliers, u->by_inputs, u->outputs,
                                  u->by_params, u->jumps, u->taylor ? u->taylor->first : NULL,
                                  u->taylor ? u->taylor->next : NULL};

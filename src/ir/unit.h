@@ -136,7 +136,7 @@ typedef struct {
   int is_tangent, conditional, law, holds;
 } IrContact;
 
-/* A size that parameters determine, at least 0; open: more than 0; part: at most 1. */
+/* A size, at least 0; open: more than 0; part: at most 1. */
 typedef struct {
   const char *what, *text; /* "this friction has a size", "mu*m*g" */
   int open, part;
@@ -184,7 +184,8 @@ typedef struct {
   VEC(IrEvent) events;
   const Prog *accel, *energy, *event_values, *inputs;
   VEC(IrSize) sizes;
-  const Prog *size_values;      /* NULL: no size needs a check */
+  const Prog *size_values, *moving_sizes; /* of the first sizes, of parameters alone, and of the others; NULL: none */
+  uint32_t nmoving;
   const Prog *derived;          /* computes parameters p.n ... p.n + nderived - 1 from the others; NULL, 0: none, or before unit_hoist */
   uint32_t nderived;
   VEC(IrCharge) charges;        /* the energy first; empty where the energy is the only one, conserved, without unit */

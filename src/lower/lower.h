@@ -21,7 +21,7 @@ Prog *lower_variation(const Eqns *e, const Variation *x); /* out 0, 1, 2: dL/dq[
 Prog *lower_second_derivatives(const Eqns *e, const Variation *x);    /* out 0: h[number of entries] */
 Prog *lower_events(const Eqns *e);  /* out 0: g[nev] */
 Prog *lower_switches(const Eqns *e); /* out 0: value of each switching function */
-Prog *lower_sizes(const Eqns *e); /* out 0: e->sizes; NULL: none */
+Prog *lower_sizes(const Eqns *e, int moving); /* out 0: those of e->sizes that move, or not; NULL: none */
 Prog *lower_contact_laws(const Eqns *e); /* out 0: as contact_laws of lag_model.h; NULL: no contact has friction */
 Prog *lower_contact_coefficients(const Eqns *e); /* the same without multipliers, two numbers each */
 Prog *lower_switch_grips(const Eqns *e); /* out 0: the largest mode of a sliding motion, for each that has a mode; NULL: all are 1 */

@@ -302,13 +302,19 @@ Prog *lower_contact_laws(const Eqns *e) { return lower_contacts(e, 3); }
 
 Prog *lower_contact_coefficients(const Eqns *e) { return lower_contacts(e, 2); }
 
-Prog *lower_sizes(const Eqns *e) {
+Prog *lower_sizes(const Eqns *e, int moving) {
   Lower l = lower_new(e);
   Expr *values = ARENA_ARRAY(e->m->arena, Expr, e->sizes.n + 1);
-  if (!e->sizes.n) return NULL;
-  for (uint32_t i = 0; i < e->sizes.n; i++) values[i] = e->sizes.at[i].value;
-  lower_roots(&l, values, e->sizes.n);
-  for (uint32_t i = 0; i < e->sizes.n; i++) prog_store(l.p, 0, i, lower_slot(&l, values[i]), e->sizes.at[i].what);
+  Name *what = ARENA_ARRAY(e->m->arena, Name, e->sizes.n + 1);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < e->sizes.n; i++) {
+    if (e->sizes.at[i].moves != moving) continue;
+    what[n] = e->sizes.at[i].what;
+    values[n++] = e->sizes.at[i].value;
+  }
+  if (!n) return NULL;
+  lower_roots(&l, values, n);
+  for (uint32_t i = 0; i < n; i++) prog_store(l.p, 0, i, lower_slot(&l, values[i]), what[i]);
   return lower_finish_seldom(&l);
 }
 

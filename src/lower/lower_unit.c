@@ -145,16 +145,18 @@ static void add_taylor(IrUnit *u, const Eqns *e) {
   u->taylor = series_new(&system, &why);
 }
 
-static void add_sizes(IrUnit *u, const Eqns *e) {
+static void add_sizes(IrUnit *u, const Eqns *e, int moving) {
   for (uint32_t i = 0; i < e->sizes.n; i++) {
     const ModelSize *s = &e->sizes.at[i];
+    if (s->moves != moving) continue;
+    u->nmoving += moving != 0;
     StrBuf what = strbuf(u->arena), text = strbuf(u->arena);
     for (const char *c = s->what; *c; c++)
       if (*c != '`') sb_putc(&what, *c);
     expr_print(e->g, s->value, PRINT_TEXT, &text);
     vec_push(u->arena, &u->sizes, ((IrSize){sb_text(&what), sb_text(&text), s->open, s->part}));
   }
-  u->size_values = lower_sizes(e);
+  *(moving ? &u->moving_sizes : &u->size_values) = lower_sizes(e, moving);
 }
 
 IrUnit *unit_head(const Eqns *e, const char *source, int libm) {
@@ -174,7 +176,8 @@ IrUnit *unit_head(const Eqns *e, const char *source, int libm) {
   for (uint32_t i = 0; i < m->inputs.n; i++)
     vec_push(m->arena, &u->u, ir_var(m, m->inputs.at[i].name, &m->inputs.at[i].unit, 0, SIGN_ANY));
   u->inputs = lower_inputs(e);
-  add_sizes(u, e);
+  add_sizes(u, e, 0);
+  add_sizes(u, e, 1);
   return u;
 }
 
@@ -194,9 +197,11 @@ IrUnit *unit_new(const Eqns *e, const char *source, int libm) {
   return u;
 }
 
+static int is_same(const Prog *a, const Prog *b) { return a && b ? prog_same(a, b) : a == b; }
+
 int unit_accepts_scenes(const IrUnit *a, const IrUnit *b) {
   return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs) && a->sizes.n == b->sizes.n &&
-         (!a->sizes.n || prog_same(a->size_values, b->size_values));
+         a->nmoving == b->nmoving && is_same(a->size_values, b->size_values) && is_same(a->moving_sizes, b->moving_sizes);
 }
 
 /* Quaternion coordinates of rotations with an implied start, except those to which the scene gives a value. */

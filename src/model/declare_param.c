@@ -48,9 +48,12 @@ static Expr parameter_factor(ExprGraph *g, Expr size) {
 }
 
 void add_size(Builder *b, Expr value, const char *what, Span span, int part) {
+  const unsigned beyond = 1u << SYM_ACC | 1u << SYM_RATE | 1u << SYM_MULTIPLIER; /* not known between steps */
   Expr of = parameter_factor(b->g, value);
+  int moves = !of && !part && !(expr_kinds(b->g, value) & beyond);
+  of = moves ? value : of;
   if (!of || (!part && sign_is_nonnegative(expr_sign(b->g, of)))) return;
-  vec_push(b->arena, &b->m->sizes, ((ModelSize){of, what, span, 0, part}));
+  vec_push(b->arena, &b->m->sizes, ((ModelSize){of, what, span, 0, part, moves}));
 }
 
 void check_sizes(Builder *b) {
@@ -60,6 +63,7 @@ void check_sizes(Builder *b) {
     if (m->params.at[i].value) expr_eval(b->g, &m->params.at[i].value, 1, x, &x[m->params.at[i].sym]);
   for (uint32_t i = 0; i < m->sizes.n; i++) {
     const ModelSize *one = &m->sizes.at[i];
+    if (one->moves) continue;
     expr_eval(b->g, &one->value, 1, x, &f);
     const char *size = arena_printf(b->arena, "%.6Lg", f);
     if (!(f < 0) && !(one->part && f > 1)) continue;

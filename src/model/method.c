@@ -44,8 +44,8 @@ static void check_value(Builder *b, const MethodOption *o, const Option *given, 
     if (strcmp(*c, given->text) == 0) return;
   if (given->text && !o->choices) {
     diag_error(b->diags, span, "the option `%s` is a number" HELP "write `%s = 0.01`", o->name, o->name);
-  } else if (lag_is_step_option(o->name) && given->value == 0) {
-    diag_error(b->diags, span, "the option `%s` cannot be 0" HELP "a step is a positive number of seconds; without one the method takes its own", o->name);
+  } else if (lag_is_step_option(o->name) && !(given->value > 0)) {
+    diag_error(b->diags, span, "the option `%s` cannot be %.6g" HELP "a step is a positive number of seconds; without one the method takes its own", o->name, given->value);
   } else if (lag_option_refuses(&range, given->text ? NAN : given->value, b->m->constraints.n > 0, are)) {
     const char *value = given->text ? given->text : arena_printf(b->arena, "%.6g", given->value);
     diag_error(b->diags, span, "the option `%s` cannot be %s%s%s", o->name, given->text ? "`" : "", value, given->text ? "`" : "");

@@ -192,12 +192,12 @@ typedef struct {
   VEC(Move) moves;         /* coordinates without an entry are left unchanged */
 } Symmetry;
 
-/* A size that parameters determine: at least 0, more than 0 where open, at most 1 where it is a part. */
+/* A size, of parameters alone unless it moves: at least 0, more than 0 where open, at most 1 where it is a part. */
 typedef struct {
   Expr value;
   const char *what; /* "this friction has a size" */
   Span span;
-  int open, part;
+  int open, part, moves;
 } ModelSize;
 
 typedef struct {
