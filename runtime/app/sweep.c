@@ -250,18 +250,28 @@ static int check_unit(const SweepApp *s, const Factor *f) {
   return !f->unit[0] || strcmp(f->unit, unit) == 0 ? 0 : lag_app_error(&s->app->args, "%s: %s is in [%s] there, and in [%s] in the model: convert its numbers", s->app->args.rows, f->name, f->unit, unit);
 }
 
-/* The values of the first run, so that wrong names and the method that is chosen show before anything runs. */
+/* Sets what factor k is in the first run whose value the model takes: runs with others have rows that say so. Status of lag_sim_set. */
+static int set_factor(const SweepApp *s, lag_sim *sim, int k, double *value) {
+  enum { MANY = 1000 };
+  int bad = LAG_EINVAL;
+  for (long long run = 0; run < s->plan.runs && run < MANY && bad == LAG_EINVAL; run++) {
+    lag_plan_values(&s->plan, run, value);
+    bad = lag_sim_set(sim, s->plan.factor[k].name, value[k]);
+  }
+  return bad;
+}
+
+/* The values of a first run, so that wrong names and the method that is chosen show before anything runs. */
 static int set_first_values(SweepApp *s) {
   double *value = malloc((size_t)s->plan.n * sizeof *value);
   const char *rows = s->app->args.rows;
   char with[200];
   int rc = value ? 0 : lag_app_error(&s->app->args, "out of memory");
-  if (value) lag_plan_values(&s->plan, 0, value);
   for (int k = 0; k < s->plan.n && rc == 0; k++) {
     if (s->plan.factor[k].compiled) continue;
     for (int v = 0; v < s->sweep.nvariants && rc == 0; v++) {
       lag_sim *sim = s->variants[v].like;
-      int bad = lag_sim_set(sim, s->plan.factor[k].name, value[k]);
+      int bad = set_factor(s, sim, k, value);
       rc = bad ? lag_app_error(&s->app->args, "%s%s%s%s", rows ? rows : "", rows ? ": " : "", variant_words(s, v, with, sizeof with), bad == LAG_ENOMEM ? "out of memory" : lag_sim_message(sim)) : 0;
     }
     rc = rc || check_unit(s, &s->plan.factor[k]) || check_covered(s, k) ? EXIT_USAGE : 0;

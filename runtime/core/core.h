@@ -201,7 +201,9 @@ void lag_note_redundant(lag_sim *sim);
 
 /* setup.c: sets the state at the start of a run. */
 int lag_setup_start(lag_sim *sim);
-/* Fails, with a message, where a friction is negative at y, t. */
+/* Fail, with a message: a parameter, or a size that parameters determine, has another sign than declared; a friction is
+ * negative at y, t. */
+int lag_check_parameters(lag_sim *sim);
 int lag_check_moving_sizes(lag_sim *sim, double t, const double *y);
 
 /* events.c and event_location.c. arm: signs of g at the start of a chain of steps. locate: the first event in (run->from, step_t1]; sets limit and

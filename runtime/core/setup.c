@@ -447,12 +447,16 @@ static int judge_sizes(lag_sim *s, int n, const lag_size *of, const double *size
   return LAG_OK;
 }
 
-static int check_sizes(lag_sim *s) {
+int lag_check_parameters(lag_sim *s) {
   const lag_model *m = s->scene->model;
   const double *y = s->begin;
-  double *size = s->sizes;
-  int rc = m->nsizes ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, size, s->pb.work) : 0;
-  return rc ? rc : judge_sizes(s, m->nsizes, m->sizes, size, NAN);
+  for (int i = 0; i < m->np; i++)
+    if (!sign_ok(m->p[i].sign, s->p[i])) {
+      return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, lag_declared(&m->p[i], s->p[i]),
+                      m->p[i].name, sign_text(m->p[i].sign));
+    }
+  int rc = m->nsizes ? m->size_values(s->scene->t0, y, y + m->nq, y + 2 * m->nq, s->p, s->pb.u, s->sizes, s->pb.work) : 0;
+  return rc ? rc : judge_sizes(s, m->nsizes, m->sizes, s->sizes, NAN);
 }
 
 int lag_check_moving_sizes(lag_sim *s, double t, const double *y) {
@@ -466,17 +470,11 @@ int lag_check_moving_sizes(lag_sim *s, double t, const double *y) {
 
 int lag_setup_start(lag_sim *s) {
   const lag_scene *c = s->scene;
-  const lag_model *m = c->model;
   int n = s->pb.n;
   int rc = check_digits(s, s->method);
 
   if (rc) return rc;
-  for (int i = 0; i < m->np; i++)
-    if (!sign_ok(m->p[i].sign, s->p[i])) {
-      return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", m->p[i].name, lag_declared(&m->p[i], s->p[i]),
-                      m->p[i].name, sign_text(m->p[i].sign));
-    }
-  if ((rc = check_sizes(s)) != 0) return rc;
+  if ((rc = lag_check_parameters(s)) != 0) return rc;
   set_start_state(s);
   if (lag_not_finite(n, s->now) >= 0) return lag_fail(s, LAG_ENAN, "the start is not finite");
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */

@@ -501,7 +501,7 @@ check "rows of an unknown name" no "zeal.in.csv: zeal: no such parameter" "$osc"
 check "a range of other programs" no "write a range, NAME=FIRST..LAST:NUMBER" "$osc" w=1:2:5
 check "a value as an option" no "a value of the model has no dashes: w=1" "$osc" --w 1
 check "a name that is not there" no "did you mean stiffer" "$osc" stifer=1,2
-check "a wrong value" no "the model declares m > 0" "$osc" m=-1,1
+check "wrong values alone" no "the model declares m > 0" "$osc" m=-2,-1
 check "a measure that is not there" no "did you mean" "$osc" w=1,2 --measure 'perod(x)'
 check "two ranges of one name" no "varies twice" "$osc" w=1,2 w=3,4
 check "ranges of different length" no "the same number" "$osc" w=1,2 m=1,2,3 --zip
