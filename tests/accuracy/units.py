@@ -2,9 +2,9 @@
 
   python3 tests/accuracy/units.py [--few] [--verbose]
 
-Each of 10 models runs in units of mass, length and time that are 2^-30, 1 or 2^30 times (1e-9 to 1e9) the first ones, alone and beside parts at rest: a pendulum that hangs at an angle of
-180 degrees, a mass whose spring carries its weight, a crate on a floor. Powers of 2 scale each operation, so that a run of equal steps has the same digits, and verdicts are
-the same text; parts at rest may change the last digits of a sum. --few: two models, for `make test`. Exit status 1: a verdict differs.
+Each of 12 models runs in units of mass, length and time that are 2^-30, 1 or 2^30 times (1e-9 to 1e9) the first ones, alone and beside parts at rest: a pendulum that hangs at an angle of
+180 degrees, a mass whose spring carries its weight, a crate on a floor. Powers of 2 scale each operation, so that a run has the same digits, also where steps are
+chosen from the tolerance, and verdicts are the same text; parts at rest may change the last digits of a sum. --few: three models, for `make test`. Exit status 1: a verdict differs.
 """
 import argparse
 import json
@@ -31,6 +31,9 @@ MODELS = {
     "ball": ("coord y [m]\nparam m = 1 [kg] > 0, a = 9.81 [m/s^2] > 0\nkinetic = m/2*y'^2\npotential = m*a*y\ncontact floor: y >= 0, restitution = 1", {"m": (1, 1, 0, 0), "a": (9.81, 0, 1, -2), "y": (1, 0, 1, 0)}, "rk4(step={})", 5),
     "rod": ("coord x [m], y [m]\nparam m = 1 [kg] > 0, l = 1 [m] > 0, a = 9.81 [m/s^2] > 0\nkinetic = m/2*(x'^2 + y'^2)\npotential = m*a*y\nconstraint rod: x^2 + y^2 = l^2",
             {"m": (1, 1, 0, 0), "l": (1, 0, 1, 0), "a": (9.81, 0, 1, -2), "x": (1, 0, 1, 0), "y": (0, 0, 1, 0)}, "rk4(step={})", 5),
+    "duffing": ("coord x [m]\nparam m = 1 [kg] > 0, a = 1 [N/m] > 0, b = 1 [N/m^3] > 0\nkinetic = m/2*x'^2\npotential = -a/2*x^2 + b/4*x^4", {"m": (1, 1, 0, 0), "a": (1, 1, 0, -2), "b": (1, 1, -2, -2), "x": (1.5, 0, 1, 0)}, "dop853", 40),
+    "stiff": ("coord x [m]\nparam m = 1 [kg] > 0, a = 1 [N/m] > 0, b = 1 [N/m^3] > 0, c = 0.2 [N*s/m] >= 0\nkinetic = m/2*x'^2\npotential = -a/2*x^2 + b/4*x^4\ndissipation = c/2*x'^2",
+              {"m": (1, 1, 0, 0), "a": (1, 1, 0, -2), "b": (1, 1, -2, -2), "c": (0.2, 1, 0, -1), "x": (0, 0, 1, 0), "x'": (1.5, 0, 1, -1)}, "radau", 40),
     "magnet": ("coord x [m], y [m]\nparam m = 1 [kg] > 0, B = 1 [kg/s] > 0\nkinetic = m/2*(x'^2 + y'^2)\nlagrangian = B*(x*y' - y*x')/2", {"m": (1, 1, 0, 0), "B": (1, 1, 0, -1), "x": (0.5, 0, 1, 0), "y": (0, 0, 1, 0), "x'": (0.75, 0, 1, -1)}, "rk4(step={})", 40),
 }
 REST = {
@@ -109,7 +112,7 @@ def main():
     a = p.parse_args()
     bad = done = 0
     with tempfile.TemporaryDirectory() as folder:
-        for name in ("spring", "double") if a.few else MODELS:
+        for name in ("spring", "double", "duffing") if a.few else MODELS:
             alone = None
             for rest in ("", "hanging") if a.few else REST:
                 path, first = write(folder, name, rest), None

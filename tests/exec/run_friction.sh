@@ -312,6 +312,15 @@ scene s { start x' = 3 [m/s]; span 3; output x, x' every 0.5 }
 END
 check "a negative friction" says 2 "this friction has a size of -1.962, which must be at least 0: it is m*g*mu" "$LAGC" run "$TMP/sizes.lag" mu=-0.1
 check "no inertia" says 2 'the coordinate th has an inertia of 0, which must be more than 0: it is J' "$LAGC" run "$TMP/sizes.lag" J=0
+# Sizes that change along a run: mu N with N = 20 - 15 t, negative from 4/3 s on; a curve that is positive up to x' = 1/sqrt(2).
+printf '%s\n' 'model push' 'coord x' 'param mu = 0.3 >= 0, b = 2' 'input N = 20' "kinetic = x'^2" 'friction f on x: mu*N' 'scene s { start x'"'"' = 9; N = 20 - 15*t; span 3 }' 'scene still { start x'"'"' = 9; N = 20; span 1 }' >"$TMP/push.lag"
+check "a normal force that becomes negative" says 3 "this friction has a size of -" "$LAGC" run "$TMP/push.lag" s --json
+is "when: up to a step" 1 "$("$LAGC" run "$TMP/push.lag" s --json 2>/dev/null | sed -n 's/.*"t_end": \([0-9.]*\),.*/\1/p' | awk '{ print ($1 > 1 && $1 <= 4/3) }')"
+check "one that does not" "$LAGC" run "$TMP/push.lag" still --quiet
+sed 's/mu\*N$/mu*(1 - b*x'"'"'^2)/; /^input/d; s/ N = [^;]*;//; s/= 9/= 0.5/; s/, b = 2/, b = 2, F = 3/' "$TMP/push.lag" >"$TMP/curve.lag"
+echo 'force x = F' >>"$TMP/curve.lag"
+check "a curve that becomes negative" says 3 "which must be at least 0: it is mu" "$LAGC" run "$TMP/curve.lag" s --json
+check "or begins so" says 2 "this friction has a size of -" "$LAGC" run "$TMP/curve.lag" s "x'=2"
 check "a friction of 0" "$LAGC" run "$TMP/sizes.lag" mu=0 --quiet
 "$LAGC" sweep "$TMP/sizes.lag" mu=-0.1..0.3:3 -o "$TMP/sizes.csv" --quiet
 is "rows of a sweep" "value ok ok" "$(awk -F , 'NR > 1 { printf "%s%s", s, $NF; s = " " }' "$TMP/sizes.csv")"

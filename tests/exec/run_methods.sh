@@ -53,8 +53,8 @@ wrong() { # wrong WORDS ARGS...
 check "options of methods" says "variational(step=0.1, order=4)" models/pendulum.lag --method 'variational(order=4)' --step 0.1
 check "also in front of a scene" says "gauss(step=0.1, stages=3)" models/pendulum.lag --method 'gauss(stages=3)' --step 0.1 wide
 check "a method without them says so" wrong 'method rk45 has no option "order"' --method 'rk45(order=4)'
-check "an odd order is refused" wrong "order: write 2, 4, 6 or 8" --method 'variational(order=3)'
-check "half a stage is refused" wrong "stages: write 1, 2, 3 or 4" --method 'gauss(stages=1.5)'
+check "an odd order is refused" wrong "order = 3: it is a number from 2 to 8 in steps of 2" --method 'variational(order=3)'
+check "half a stage is refused" wrong "stages = 1.5: it is a whole number from 1 to 4" --method 'gauss(stages=1.5)'
 # Failures of steps that are far too long: the message names the failure, the step, and a remedy.
 fails() { # fails WORDS ARGS...
   words=$1
