@@ -24,6 +24,7 @@ typedef struct Equilibrium {
   double *spread; /* [n] uncertainty of the root x, by rounding */
   int pole;       /* 1: a coordinate loses its meaning here, as longitude does at a pole */
   int rough;      /* 1: derivatives of forces jump here, or have no limit */
+  int held;       /* 1: forces jump with velocities that are 0 here, as dry friction does */
   double delta;
   double *dr, *M, *work;   /* of lag_linearise */
 } Equilibrium;

@@ -46,7 +46,9 @@ static void halve(ErrorEstimate *e) {
  * wrong branch, or set of constraints, by now. */
 static int is_cut(const lag_sim *sim, int at_event) {
   const lag_model *m = sim->scene->model;
-  return (m->nmodes || m->ncontacts) && (at_event || sim->run->t != sim->run->step_t1);
+  int held = m->nmodes;
+  for (int i = 0; i < m->ncontacts; i++) held |= m->contacts[i].is_tangent || lag_contact_is_closed(sim, &m->contacts[i]);
+  return held && (at_event || sim->run->t != sim->run->step_t1);
 }
 
 /* *t, y[n] := place k within the last step; few: there are several in a step, else one. Returns whether it lies before the

@@ -395,6 +395,7 @@ static Verdict decide_stability(const ModeSearch *w) {
     zeros += zero;
     defective |= m->re == 0.0 && m->repeats > 1;
   }
+  if (w->rest->held) return LAG_HELD;
   if (grows) return LAG_UNSTABLE;
   if (w->rest->pole) return LAG_COORDINATE_POLE;
   if (w->rest->rough) return LAG_NONSMOOTH;

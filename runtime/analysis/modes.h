@@ -22,6 +22,7 @@ typedef enum Verdict {
   LAG_GYROSCOPIC,  /* not decided: all modes oscillate, but the energy has no minimum */
   LAG_DEGENERATE,        /* not decided: a zero mode that is no free motion, or several that are not free together */
   LAG_COORDINATE_POLE,        /* not decided: a coordinate loses its meaning here */
+  LAG_HELD,        /* not decided: dry friction holds what rests */
   LAG_NONSMOOTH,       /* not decided: derivatives of forces jump here, or have no limit */
   LAG_DEFECTIVE,   /* not decided: a multiple imaginary eigenvalue that lacks shapes */
   LAG_CENTRE       /* not decided: some modes neither grow nor decay, and no energy is known to be conserved */

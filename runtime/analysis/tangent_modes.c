@@ -282,6 +282,7 @@ static int is_rough(const TangentModes *w) {
 static Verdict decide(TangentModes *w) {
   const Spectrum *s = &w->spectrum;
   int stays = 0, defective = 0;
+  if (w->rest && w->rest->held) return LAG_HELD;
   if (is_rough(w)) return LAG_NONSMOOTH;
   for (int i = 0; i < w->out->n; i++) {
     const Mode *m = &w->out->mode[i];

@@ -83,6 +83,8 @@ static const struct {
     [LAG_DEGENERATE] = {"undecided", "a zero mode, or several together: the linearisation has no force along it, so it does not decide stability"},
     [LAG_COORDINATE_POLE] = {"undecided", "a coordinate has lost its meaning here, as a longitude does at a pole; these are the modes of the others, "
                                           "and coordinates without a pole here would show all"},
+    [LAG_HELD] = {"undecided", "dry friction holds what rests here against small forces, and stops small motions, so that none is linear: these are "
+                               "the modes without it; lagc run shows where the motion stops"},
     [LAG_NONSMOOTH] = {"undecided", "the forces' derivatives jump here, or have no limit, so that no motion is small enough to be linear"},
     [LAG_DEFECTIVE] = {"undecided", "a multiple frequency with too few shapes: small motion grows in proportion to time, until the nonlinear "
                                     "terms matter"},
