@@ -7,6 +7,7 @@
 #include "base/words.h"
 #include "base/vec.h"
 #include "numeric/edit_distance.h"
+#include "numeric/option_range.h"
 
 static const MethodInfo methods[] = {
 #include "base/method_rows.def"
@@ -36,6 +37,15 @@ const char *method_suggest(Arena *a, const char *wrong) {
   for (size_t i = 0; i < METHODS && !near; i++)
     if (lag_text_has_word(methods[i].does, wrong)) near = methods[i].name;
   return near;
+}
+
+int method_option_refuses(const MethodOption *o, double x, int constrained, char allowed[128]) {
+  if (lag_is_step_option(o->name) && !(x > 0)) {
+    strcpy(allowed, "a step is a positive number of seconds; without one the method takes its own");
+    return 1;
+  }
+  lag_option_range range = {o->min, o->max, o->every, o->most, o->choices};
+  return lag_option_refuses(&range, x, constrained, allowed);
 }
 
 const MethodOption *method_option(const MethodInfo *m, const char *name) {

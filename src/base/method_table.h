@@ -39,5 +39,8 @@ int method_may_be_gsl(const char *name);
 /* The known name nearest to an unknown one, else that of a method whose description has the word; or NULL. */
 const char *method_suggest(Arena *a, const char *wrong);
 
+/* Whether an option may not be x, of a model with constraints or without, as a run judges it; allowed := what it may be. */
+int method_option_refuses(const MethodOption *o, double x, int constrained, char allowed[128]);
+
 /* The option of that name, or NULL. */
 const MethodOption *method_option(const MethodInfo *m, const char *name);

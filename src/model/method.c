@@ -6,7 +6,6 @@
 #include "base/method_table.h"
 #include "base/words.h"
 #include "model/builder.h"
-#include "numeric/option_range.h"
 
 /* "`a`, `b`": the words up to NULL. */
 static const char *listed(const Builder *b, const char *const *words) {
@@ -38,18 +37,15 @@ static void unknown_option(Builder *b, const MethodInfo *m, const AstExpr *name)
 }
 
 static void check_value(Builder *b, const MethodOption *o, const Option *given, Span span) {
-  lag_option_range range = {o->min, o->max, o->every, o->most, o->choices};
-  char are[128];
+  char allowed[128];
   for (const char *const *c = o->choices; c && given->text && *c; c++)
     if (strcmp(*c, given->text) == 0) return;
   if (given->text && !o->choices) {
     diag_error(b->diags, span, "the option `%s` is a number" HELP "write `%s = 0.01`", o->name, o->name);
-  } else if (lag_is_step_option(o->name) && !(given->value > 0)) {
-    diag_error(b->diags, span, "the option `%s` cannot be %.6g" HELP "a step is a positive number of seconds; without one the method takes its own", o->name, given->value);
-  } else if (lag_option_refuses(&range, given->text ? NAN : given->value, b->m->constraints.n > 0, are)) {
+  } else if (method_option_refuses(o, given->text ? NAN : given->value, b->m->constraints.n > 0, allowed)) {
     const char *value = given->text ? given->text : arena_printf(b->arena, "%.6g", given->value);
     diag_error(b->diags, span, "the option `%s` cannot be %s%s%s", o->name, given->text ? "`" : "", value, given->text ? "`" : "");
-    diag_help(b->diags, "%s", are);
+    diag_help(b->diags, "%s", allowed);
   }
 }
 

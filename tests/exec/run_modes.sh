@@ -271,6 +271,11 @@ is "$title: one mode" 1 "$(count)"
 find_modes $dir/hill.lag valley # k < 0: w = (sqrt(W^2 + 4) -+ W)/2, and the energy has a minimum
 verdict stable
 close "slow" "(sqrt(13) - 3)/2" "$(of_mode 1 im)"
+# A block that dry friction holds neither drifts for ever nor swings without end.
+printf '%s\n' 'model block' 'coord x, th' "kinetic = x'^2/2 + th'^2/2" 'potential = -9.81*cos(th)' 'friction f on x: 5' 'scene s { start x = 0.5 }' >"$TMP/block.lag"
+find_modes "$TMP/block.lag"
+verdict undecided
+check "$title: why" grep -q "dry friction holds" "$TMP/json"
 find_modes $dir/hill.lag rubbed # friction destroys the stability by gyroscopic forces (Thomson & Tait, Natural Philosophy, par. 345)
 verdict unstable
 close "growth, to first order in c/m = 0.01" "0.01*0.381966/(2*0.381966 - 3)*-1" "$(of_mode 1 re)" 1e-5 # second order: 1e-4 of 1.7e-3
