@@ -248,7 +248,7 @@ void header_declarations(const Header *h) {
   sizes(h);
   indices(h, "Coordinates: q[...], and their time derivatives v[...].", h->q, u->q.at, u->q.n);
   indices(h, "States: z[...].", h->z, u->z.at, u->z.n);
-  indices(h, "Inputs: u[...].", h->in, u->u.at, u->u.n);
+  indices(h, "Inputs: u[...]. NULL stands for the formulas of the model in steps, nowhere else.", h->in, u->u.at, u->u.n);
   const char *outputs = h->scene->plain.n < h->scene->outputs.n ? "Outputs: out[...]. Those with closed forms or action variables, which need a run, are left out."
                                                                 : "Outputs: out[...].";
   indices(h, outputs, h->outputs, h->scene->outputs.at, h->scene->plain.n);
