@@ -25,7 +25,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
                             &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change, &s->charge_block, &s->rate_history, &s->pb.size};
   const size_t sizes[] = {(size_t)m->np, (size_t)m->nderived, nu, n, n, nc, (size_t)m->nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev,
                           nm, nm, nm, nm, nmon, nmon, (size_t)s->scene->nexact, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0, pushed, pushed ? (size_t)m->nq : 0, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double), 3 * n, n + 2};
-  const size_t nparts = sizeof sizes / sizeof *sizes, fixed = RUN_DOUBLES + lag_cut(NULL, nparts, parts, sizes);
+  const size_t nparts = sizeof sizes / sizeof *sizes, fixed = RUN_DOUBLES + lag_workspace_slice(NULL, nparts, parts, sizes);
   lag_problem sized = s->pb;
 
   sized.opt = opt;

@@ -6,7 +6,7 @@
  *
  * A step is accepted when err <= 1, with |x|^2 = 1/n sum (x_i / s_i)^2, s_i = tol (floor_i + max(|y_i|, |y1_i|)), with the floor
  * of step_control.h: err = |e| for one estimate, |e|^2 / sqrt(|e|^2 + 0.01 |e3|^2) for two. */
-#include "methods/embedded.h"
+#include "methods/adaptive_rk.h"
 
 #include <float.h>
 #include <math.h>
@@ -17,7 +17,7 @@
 #include "methods/steps.h"
 #include "methods/method_tangent.h"
 
-const lag_method_option lag_embedded_options[LAG_NADAPTIVE_OPTIONS] = {
+const lag_method_option lag_adaptive_rk_options[LAG_NADAPTIVE_OPTIONS] = {
     {"step", "first step to try [s]; 0: chosen from the tolerance", 0, 0, HUGE_VAL, .choices = NULL},
     LAG_MAX_STEP_OPTION,
     LAG_ATOL_OPTION,
@@ -65,7 +65,7 @@ int lag_adaptive_rk_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *
   lag_step_limits_begin(&w->limits, t);
   if (w->h == 0.0) {
     lag_tolerance tol = {pb->tol, &w->limits};
-    w->h = lag_first_step(pb, &tol, pair->tab->order, w->limits.h_max, t, y, k1, lag_embedded_array(w, pb, EMBEDDED_Y1), k1 + row);
+    w->h = lag_first_step(pb, &tol, pair->tab->order, w->limits.h_max, t, y, k1, lag_adaptive_rk_array(w, pb, EMBEDDED_Y1), k1 + row);
   }
   return LAG_OK;
 }

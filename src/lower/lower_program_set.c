@@ -145,7 +145,7 @@ static void add_taylor(ProgramSet *u, const Eqns *e) {
   u->taylor = series_new(&system, &why);
 }
 
-static void add_sizes(IrUnit *u, const Eqns *e, int moving) {
+static void add_sizes(ProgramSet *u, const Eqns *e, int moving) {
   for (uint32_t i = 0; i < e->sizes.n; i++) {
     const ModelSize *s = &e->sizes.at[i];
     if (s->moves != moving) continue;
@@ -199,7 +199,7 @@ ProgramSet *unit_new(const Eqns *e, const char *source, int libm) {
 
 static int is_same(const Prog *a, const Prog *b) { return a && b ? prog_same(a, b) : a == b; }
 
-int unit_accepts_scenes(const IrUnit *a, const IrUnit *b) {
+int unit_accepts_scenes(const ProgramSet *a, const ProgramSet *b) {
   return a->flags == b->flags && strcmp(a->effects, b->effects) == 0 && strcmp(a->fixed_values, b->fixed_values) == 0 && prog_same(a->inputs, b->inputs) && a->sizes.n == b->sizes.n &&
          a->nmoving == b->nmoving && is_same(a->size_values, b->size_values) && is_same(a->moving_sizes, b->moving_sizes);
 }
