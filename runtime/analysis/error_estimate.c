@@ -44,23 +44,28 @@ static void halve(ErrorEstimate *e) {
 
 /* Whether a switching surface or an event has cut the last step: a dense output that calls the model, or is projected to its constraints, has the
  * wrong branch, or set of constraints, by now. */
-static int is_cut(const lag_sim *sim, int at_event) {
-  const lag_model *m = sim->scene->model;
-  int held = m->nmodes;
-  for (int i = 0; i < m->ncontacts; i++) held |= m->contacts[i].is_tangent || lag_contact_is_closed(sim, &m->contacts[i]);
-  return held && (at_event || sim->run->t != sim->run->step_t1);
+static int is_cut(const lag_sim *sim, int held, int at_event) {
+  return (sim->scene->model->nmodes || held) && (at_event || sim->run->t != sim->run->step_t1);
 }
 
-/* *t, y[n] := place k within the last step; few: there are several in a step, else one. Returns whether it lies before the
+/* Whether a contact is closed, or may be one that slips. */
+static int some_held(const lag_sim *sim) {
+  const lag_model *m = sim->scene->model;
+  int held = 0;
+  for (int i = 0; i < m->ncontacts; i++) held |= m->contacts[i].is_tangent || lag_contact_is_closed(sim, &m->contacts[i]);
+  return held;
+}
+
+/* *t, y[n] := place k within the last step; few: there are several in a step, else one; held: a contact is closed at an end of it. Returns whether it lies before the
  * end, and so before events there; the end where the method steps to each row, or the step is cut. */
-static int take_place(lag_sim *sim, int k, int few, double *t, double *y) {
+static int take_place(lag_sim *sim, int k, int few, int held, double *t, double *y) {
   const double golden = 0.6180339887498949; /* any part of all steps has places everywhere in a step */
   const Run *r = sim->run;
   size_t bytes = (size_t)sim->pb.n * sizeof(double);
   double calls = sim->pb.rhs_calls; /* of the run: interpolation may take more */
   double part = few ? (k + fmod(golden * r->steps, 1)) / PLACES_A_STEP : fmod(golden * r->steps, 1);
   *t = r->step_t0 + part * (r->t - r->step_t0);
-  int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && !is_cut(sim, 0);
+  int between = !(sim->method->flags & LAG_METHOD_STEPS_TO) && !is_cut(sim, held, 0);
   between = between && lag_dense_state(sim, *t, sim->yc) == LAG_OK;
   sim->pb.rhs_calls = calls;
   if (!between) *t = r->t;
@@ -72,14 +77,15 @@ void lag_error_estimate_note(ErrorEstimate *e, lag_sim *sim) {
   Samples *s = &e->motion;
   const Run *r = sim->run;
   double before = e->events;
-  int at_event = r->events != before, between = 1;
+  int at_event = r->events != before, between = 1, now = some_held(sim), held = e->held || now;
+  e->held = now;
   e->events = r->events;
-  if (at_event && (sim->method->flags & LAG_METHOD_STEPS_TO || is_cut(sim, 1) || r->t == r->step_t0)) return;
+  if (at_event && (sim->method->flags & LAG_METHOD_STEPS_TO || is_cut(sim, held, 1) || r->t == r->step_t0)) return;
   for (int k = 0; k < PLACES_A_STEP && between; k++) {
     if (++e->seen % e->stride) continue;
     if (s->rows == e->room) halve(e);
     if (e->seen % e->stride) continue;
-    between = take_place(sim, k, e->stride < PLACES_A_STEP, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
+    between = take_place(sim, k, e->stride < PLACES_A_STEP, held, &s->t[s->rows], s->y + (size_t)s->rows * (size_t)s->n);
     e->met[s->rows++] = between ? before : e->events;
   }
 }

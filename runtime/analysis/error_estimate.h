@@ -28,6 +28,7 @@ typedef struct ErrorEstimate {
   ErrorGrowth growth;
   double rate;           /* of exponential growth [1/s] */
   double events;         /* events of the run so far: a step that ends at an event has no place */
+  int held;              /* 1: a contact was closed at the last place */
   char why[200];         /* without an estimate: the reason */
 } ErrorEstimate;
 

@@ -350,7 +350,7 @@ double lag_energy_terms(lag_sim *sim, double t, const double *y);
 double lag_output_terms(lag_sim *sim, double t, const double *y, int k);
 void lag_velocity_terms(lag_sim *sim, double t, const double *y, double *v);
 /* pb.size := sizes of the components of a run that begins at `now`: of each unit the largest value and what forces add to it
- * in the time scale of the motion. Three right-hand sides, not counted. */
+ * in the time scale of the motion. Three right-hand sides, eleven from rest at 0, not counted. */
 void lag_start_sizes(lag_sim *s);
 /* The present step, before the first one the step that is set; 0: it is not known. */
 double lag_step_so_far(const lag_sim *sim);

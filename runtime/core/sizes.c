@@ -252,6 +252,31 @@ static double coordinate_sizes(lag_sim *s, const double *f, double time) {
   return time;
 }
 
+/* The time scale of a motion that begins where no coordinate has a size, by the forces where it leads: `time` tends to it. */
+static double time_from_zero(lag_sim *s, const double *f, double time) {
+  enum { TURNS = 8 };
+  const lag_model *m = s->scene->model;
+  double *bend = s->yc, *size = s->pb.size;
+  for (int turn = 0; turn < TURNS; turn++) {
+    double next = HUGE_VAL;
+    for (int i = 0; i < s->pb.nq; i++) {
+      int first = 0;
+      while (strcmp(m->q[first].unit, m->q[i].unit) != 0) first++;
+      size[i] = first < i ? size[first] : reach(kind_of(s, f, bend, i), time);
+    }
+    rates_beside(s, 0, size, f, bend);
+    for (int i = 0; i < s->pb.nq; i++) {
+      if (!is_first(m, i)) continue;
+      Kind k = kind_of(s, f, bend, i);
+      if (size[i] > 0 && k.bend > 0) next = fmin(next, sqrt(size[i] / k.bend));
+    }
+    if (!(next < HUGE_VAL)) break;
+    time = sqrt(time) * sqrt(next);
+  }
+  memset(bend, 0, (size_t)s->pb.n * sizeof *bend);
+  return time;
+}
+
 void lag_start_sizes(lag_sim *s) {
   const lag_model *m = s->scene->model;
   const int nq = m->nq, n = s->pb.n;
@@ -259,7 +284,7 @@ void lag_start_sizes(lag_sim *s) {
   rates_beside(s, 0, NULL, NULL, f);
   memset(bend, 0, (size_t)n * sizeof *bend);
   for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
-  time = coordinate_sizes(s, f, time < HUGE_VAL ? time : s->pb.span > 0 ? s->pb.span : 10);
+  time = coordinate_sizes(s, f, time < HUGE_VAL ? time : time_from_zero(s, f, s->pb.span > 0 ? s->pb.span : 10));
   for (int i = 2 * nq; i < n; i++) {
     double z = largest_of_unit(m->nz, m->z, s->now + 2 * nq, i - 2 * nq);
     size[i] = z > 0 ? z : largest_of_unit(m->nz, m->z, f + 2 * nq, i - 2 * nq) * time;

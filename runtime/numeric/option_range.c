@@ -1,3 +1,4 @@
+/* Values that an option of a method may have. Enters: a range and a value; leaves: whether it is in it, and what is. */
 #include "numeric/option_range.h"
 
 #include <math.h>
