@@ -17,7 +17,10 @@ static const char *split(const char *text, size_t *name_length) {
 static int add(App *app, int *n, const char *name, size_t length, const char *text, const char **texts) {
   int k = 0, ofscene = app->scene->nmeasures;
   while (k < *n && (strlen(app->measure_names[k]) != length || memcmp(app->measure_names[k], name, length) != 0)) k++;
-  if (k < *n && (k >= ofscene || *n < ofscene)) return lag_app_error(&app->args, "--measure %s: another measure is called %s; write NAME=EXPR with another name", name, app->measure_names[k]), -1;
+  if (k < *n && (k >= ofscene || *n < ofscene)) {
+    lag_app_error(&app->args, "--measure %.*s: another measure is called so; write NAME=EXPR with another name", (int)length, name);
+    return -1;
+  }
   texts[k] = text;
   if (k < *n) return k;
   app->measure_names[k] = calloc(length + 1, 1);

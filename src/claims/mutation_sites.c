@@ -35,17 +35,8 @@ ExprOp edit_function(const AstExpr *x) {
 
 /* Value of an operator or a function whose operands have the values a and b. */
 static Expr combined(ExprGraph *g, const AstExpr *x, Expr a, Expr b) {
-  if (!a || !b) return 0;
-  switch (x->kind) {
-    case AST_ADD: return expr_add(g, a, b);
-    case AST_SUB: return expr_sub(g, a, b);
-    case AST_MUL: return expr_mul(g, a, b);
-    case AST_DIV: return expr_div(g, a, b);
-    case AST_POW: return expr_is_num(g, b) ? expr_pow_num(g, a, expr_number(g, b)) : expr_pow(g, a, b);
-    case AST_NEG: return expr_neg(g, a);
-    case AST_CALL: return strcmp(x->name, "sqrt") == 0 ? expr_sqrt(g, a) : expr_fn(g, edit_function(x), a);
-    default: return 0;
-  }
+  if (!a || !b || x->kind != AST_CALL) return operation_value(g, x, a, b);
+  return strcmp(x->name, "sqrt") == 0 ? expr_sqrt(g, a) : expr_fn(g, edit_function(x), a);
 }
 
 Expr edit_replaced(const SiteList *l, const Site *s, Expr with) {

@@ -147,10 +147,6 @@ static int prepare_measures(RequestBuilder *k, const char **error) {
     if (!*given) return fail_with(error, "--measure needs a value: --measure EXPR");
     if (!n) return fail_with(error, arena_printf(k->arena, "--measure %s: a name is missing before `=`", given));
     CommandOutput asked = {.name = intern_n(k->ast->names, given, n)};
-    for (uint32_t m = 0; m < k->p->measures.n; m++)
-      if (k->p->measures.at[m].name == asked.name)
-        return fail_with(error, arena_printf(k->arena, "--measure %s: another measure is called %s; write NAME=EXPR with "
-                                             "another name", given, asked.name));
     const Source *source = source_add(k->ast->sources, "--measure", text, strlen(text));
     if (!source || !(asked.expr = parse_expression(k->ast, source))) return 0;
     vec_push(k->arena, &k->p->measures, asked);

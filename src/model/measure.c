@@ -496,28 +496,25 @@ static Part read_measure(Builder *b, AstId root, const Frame *frame, int command
   return r.part[root - r.first];
 }
 
-/* Appends the measure, or replaces that of its name. */
-static void put_measure(Builder *b, Name name, const Part *p, Measures *list) {
-  Measure m = {.name = name, .text = p->text, .unit = p->unit, .alone = p->value.e && !strchr(p->text, ' ')};
-  for (uint32_t i = 0; i < list->n; i++)
-    if (list->at[i].name == name) {
-      list->at[i] = m;
-      return;
-    }
-  vec_push(b->arena, list, m);
+static Measure measure_of(Name name, const Part *p) {
+  return (Measure){.name = name, .text = p->text, .unit = p->unit, .alone = p->value.e && !strchr(p->text, ' ')};
 }
 
 void set_measure(Builder *b, const AstStmt *st) {
-  uint32_t errors = b->diags->errors;
+  Measures *list = &b->m->scene.measures;
+  uint32_t errors = b->diags->errors, i = 0;
   Part p = read_measure(b, st->rhs, NULL, 0);
-  if (p.text && b->diags->errors == errors) put_measure(b, st->name, &p, &b->m->scene.measures);
+  if (!p.text || b->diags->errors > errors) return;
+  while (i < list->n && list->at[i].name != st->name) i++;
+  if (i == list->n) vec_push(b->arena, list, (Measure){0});
+  list->at[i] = measure_of(st->name, &p);
 }
 
 void ask_measure(Builder *b, const CommandOutput *asked) {
   uint32_t outputs = b->m->scene.outputs.n;
   Part p = read_measure(b, asked->expr, NULL, 1);
   b->m->measured_outputs |= b->m->scene.outputs.n > outputs;
-  if (p.text) put_measure(b, asked->name, &p, &b->m->asked_measures);
+  if (p.text) vec_push(b->arena, &b->m->asked_measures, measure_of(asked->name, &p));
 }
 
 const char *measure_words(Arena *a, const Measure *m) {

@@ -406,6 +406,9 @@ CoordList model_coordinates(const Model *m);
 /* Reason why a model of first order has no accelerations, for messages. */
 static inline const char *no_inertia(const Model *m) { return m->hamiltonian ? "the model gives its Hamiltonian" : "L is linear in the velocities"; }
 
+/* printed_text.c: value of an operator other than a call, whose operands have the values a and b; 0: one of them has none. */
+Expr operation_value(ExprGraph *g, const AstExpr *x, Expr a, Expr b);
+
 /* The measure with its unit, as the runtime reads it. */
 const char *measure_words(Arena *a, const Measure *m);
 

@@ -79,11 +79,7 @@ static Expr call(const Reader *r, const AstExpr *x) {
   return 0;
 }
 
-static Expr operation(const Reader *r, const AstExpr *x) {
-  ExprGraph *g = r->g;
-  Expr a = value_at(r, x->a), b = value_at(r, x->b);
-  if (x->kind == AST_NUM) return expr_num(g, x->number);
-  if (x->kind == AST_CALL) return call(r, x);
+Expr operation_value(ExprGraph *g, const AstExpr *x, Expr a, Expr b) {
   if (!a || (!b && x->kind != AST_NEG && x->kind != AST_NOT)) return 0;
   switch (x->kind) {
     case AST_NEG: return expr_neg(g, a);
@@ -102,6 +98,11 @@ static Expr operation(const Reader *r, const AstExpr *x) {
     case AST_OR: return expr_fn2(g, EX_OR, a, b);
     default: return 0;
   }
+}
+
+static Expr operation(const Reader *r, const AstExpr *x) {
+  if (x->kind == AST_NUM) return expr_num(r->g, x->number);
+  return x->kind == AST_CALL ? call(r, x) : operation_value(r->g, x, value_at(r, x->a), value_at(r, x->b));
 }
 
 static Expr read(const Model *m, Arena *scratch, const char *text, Expr like, KnownPart known, const void *data) {

@@ -371,23 +371,18 @@ static int has_negative_lead(const ExprGraph *g, Expr a) {
   return num_sign(c) < 0;
 }
 
-Symmetry expr_symmetry(ExprOp op) {
-#define SYMMETRY(OP, name, latex, symmetry, ...) [EX_##OP] = symmetry,
-  static const uint8_t of[EX_COUNT] = {FUNCTIONS(SYMMETRY) [EX_SIGN] = ODD, [EX_ABS] = EVEN};
-  return of[op];
-}
+enum { NONE, ZERO, ONE };
 
-/* Exact value of a function at 0; 0 if there is none. */
-static Expr value_at_zero(const ExprGraph *g, ExprOp op) {
-#define AT_0(OP, name, latex, symmetry, at_0, ...) [EX_##OP] = at_0,
-  enum { NONE, ZERO, ONE };
-  static const uint8_t of[EX_COUNT] = {FUNCTIONS(AT_0) [EX_SIGN] = ZERO, [EX_ABS] = ZERO};
-  return of[op] == ZERO ? g->zero : of[op] == ONE ? g->one : 0;
-}
+#define KNOWN(OP, name, latex, symmetry, at_0, ...) [EX_##OP] = {symmetry, at_0},
+static const struct {
+  uint8_t symmetry, at_0; /* exact value at 0 */
+} known[EX_COUNT] = {FUNCTIONS(KNOWN) [EX_SIGN] = {ODD, ZERO}, [EX_ABS] = {EVEN, ZERO}};
+
+Symmetry expr_symmetry(ExprOp op) { return known[op].symmetry; }
 
 /* Exact value of f(a), such as f(0), |a| of known sign, log(exp u); 0 if there is none. */
 static Expr fold_fn(ExprGraph *g, ExprOp op, Expr a) {
-  if (a == g->zero && value_at_zero(g, op)) return value_at_zero(g, op);
+  if (a == g->zero && known[op].at_0 != NONE) return known[op].at_0 == ONE ? g->one : g->zero;
   if (a == g->one && op == EX_LOG) return g->zero;
   if (op == EX_ABS || op == EX_SIGN) {
     ExprSign s = expr_sign(g, a);

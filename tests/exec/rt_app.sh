@@ -76,7 +76,7 @@ check "rows and pictures with measures are those without" sh -c './sim drop -o p
   cmp plain.csv m.csv && cmp plain.svg m.svg && cmp plain_ev.csv m_ev.csv'
 check "a wrong measure, before anything is written" says 2 "--measure 1 hit(grund): no event is called grund; did you mean ground?" drop --measure '1 hit(grund)' -o no.csv
 check "leaves nothing" sh -c '! [ -e no.csv ]'
-check "two measures of one name" says 2 "another measure is called a" drop --measure 'a=end()' --measure 'a=y max()'
+check "two measures of one name" says 2 "another measure is called so" drop --measure 'a=end()' --measure 'a=y max()'
 check "a measure without a name" says 2 "a name is missing before" drop --measure '=end()'
 check "a measure that is not compiled" says 2 "lagc compiles them: \`measure top = max(x)\` in the scene" drop --measure 'max(y)'
 for m in 'y max' 'yy' '+' 'y +' 'y y' 'max()' 'at()' 'y at()' 'y max(1)' 'y 1..2' '"y' '[1 0 s]' '' ';' 'hit(ground)' '1x' 'y )' 'y sin(' "$(awk 'BEGIN { while (i++ < 600) printf "1 " }')" "$(awk 'BEGIN { while (i++ < 300) printf "y" }')"; do

@@ -147,7 +147,7 @@ check "half a time" wrong 'no event happens for the `1.5`th time' --measure 'hit
 check "a time that is a measure" wrong 'no event happens for the `max(x)`th time' --measure 'hit(floor, max(x))'
 check "no expression" wrong 'expected an expression' --measure 'a='
 check "a name that is missing" refused 'a name is missing before' --measure '=end'
-check "two of one name" refused 'another measure is called a' --measure a=end --measure 'a=max(y)'
+check "two of one name" refused 'another measure is called so' --measure a=end --measure 'a=max(y)'
 check "a function of a run that there is not" wrong 'unknown function `perod`' --measure 'perod(x)'
 check "has the nearest as well" grep -q 'did you mean `period`?' err
 check "nothing near" wrong 'of a run there are max, min, mean' --measure 'final(x)'

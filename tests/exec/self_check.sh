@@ -77,7 +77,7 @@ sym/diff.c|s/#define ONE_LESS(a) expr_sub/#define ONE_LESS(a) expr_add/
 sym/diff.c|s/i == 0 ? x : expr_neg(g, y)/i == 0 ? x : y/
 sym/canonicalize.c|s/one.number = num_add(one.number,/one.number = num_sub(one.number,/
 sym/canonicalize.c|s/return expr_symmetry(op) == ODD ? expr_neg(g, f) : f/return f/
-sym/canonicalize.c|s/\[EX_SIGN\] = ODD/[EX_COS] = ODD, &/
+sym/canonicalize.c|s/\[EX_SIGN\] = {ODD/[EX_COS] = {ODD, ONE}, &/
 sym/stable_forms.c|s/num_mul(num_int(2), c), product/c, product/
 sym/stable_forms.c|s/if (f == EX_SIN) c = num_neg(c);//
 sym/stable_forms.c|s/minus = expr_sub(g, ra, b)/minus = expr_sub(g, b, ra)/
