@@ -65,7 +65,7 @@ static Part part_of(const char *file, const char *name) {
       {"complementarity.", "", ALGEBRA}, {"collocation.", "", NEWTON}, {"radau.", "put_minus", NEWTON}, {"radau.", "solve", NEWTON},
       {"implicit_symplectic.", "", NEWTON}, {"discrete_lagrangian.", "", NEWTON}, {"projection.", "", CONSTRAINTS}, {"contact.", "", CONSTRAINTS},
       {"nearest_start.", "", CONSTRAINTS}, {"constraint_rank.", "", CONSTRAINTS}, {"rattle.", "", CONSTRAINTS}, {"moreau_contacts.", "", CONSTRAINTS}, {"contact_impulses.", "", CONSTRAINTS}, {"event_location.", "", EVENTS},
-      {"events.", "", EVENTS}, {"charge_monitor.", "", MONITORS}, {"monitors.", "", MONITORS}, {"closed_form.", "", MONITORS}, {"error_estimate.", "", MONITORS},
+      {"events.", "", EVENTS}, {"event_functions.", "", EVENTS}, {"charge_monitor.", "", MONITORS}, {"monitors.", "", MONITORS}, {"closed_form.", "", MONITORS}, {"error_estimate.", "", MONITORS},
       {"profile_run.", "", OTHER},
       {"", "lag_sincos", EQUATIONS}, {"", "lag_reduce", EQUATIONS}, {"", "lag_rhs", EQUATIONS}, {"", "lag_inputs", EQUATIONS},
       {"", "lag_variation", DERIVATIVES}, {"", "lag_second", DERIVATIVES}, {"", "lag_linear", DERIVATIVES}, {"", "lag_jacobian", DERIVATIVES},

@@ -260,13 +260,6 @@ int lag_project(lag_problem *pb, double t, double *y, double *lost) {
   return rc < LAG_ESINGULAR ? LAG_EMODEL : rc;
 }
 
-int lag_dense_state(lag_sim *s, double t, double *y) {
-  s->method->dense(s->method_work, &s->pb, t, y);
-  s->pb.detail = NULL;
-  int rc = lag_project(&s->pb, t, y, NULL);
-  return rc ? lag_explain(s, rc > 0 ? LAG_EMETHOD : rc) : LAG_OK;
-}
-
 /* Largest distance of coordinate i from 0, now or at the start; at least 1e-10 of its unit. */
 static double extent(const lag_problem *pb, const double *y0, const double *y, int i) {
   double begin = pb->begin ? lag_unit_magnitude(pb, pb->begin, i) : 0;

@@ -50,36 +50,6 @@ void lag_sim_on_event(lag_sim *s, lag_event_fn *hook, void *context) {
 
 int lag_sim_noutputs(const lag_sim *s) { return s ? s->scene->nout > 0 ? s->scene->nout : s->pb.n : 0; }
 
-/* Copies a variable's name and unit, of a velocity with ' and /s. A quantity without a unit has a rate without one: a model in which nothing has
- * units stays so. */
-static double put_info(const lag_var *v, int velocity, char *name, size_t nname, char *unit, size_t nunit) {
-  if (name) snprintf(name, nname, "%s%s", v->name, velocity ? "'" : "");
-  if (unit) snprintf(unit, nunit, "%s%s", v->unit, velocity && v->unit[0] ? "/s" : "");
-  return v->factor;
-}
-
-double lag_sim_state_info(const lag_sim *s, int i, char *name, size_t nname, char *unit, size_t nunit) {
-  if (!s || i < 0 || i >= s->pb.n) return NAN;
-  const lag_model *m = s->scene->model;
-  const lag_var *v = i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
-
-  return put_info(v, i >= m->nq && i < 2 * m->nq, name, nname, unit, nunit);
-}
-
-double lag_sim_declared(const lag_sim *s, int i, double value) {
-  if (!s || i < 0 || i >= s->pb.n) return NAN;
-  const lag_model *m = s->scene->model;
-  int rate = i >= m->nq && i < 2 * m->nq;
-  const lag_var *v = i < 2 * m->nq ? &m->q[i % m->nq] : &m->z[i - 2 * m->nq];
-
-  return rate ? value / v->factor : lag_declared(v, value);
-}
-
-double lag_sim_state_value(const lag_sim *s, int i) {
-  if (!s || i < 0 || i >= s->pb.n) return NAN;
-  return lag_sim_declared(s, i, s->now[i]);
-}
-
 double lag_sim_requested_start(const lag_sim *s, int i) {
   if (!s || i < 0 || i >= s->pb.n) return NAN;
   return lag_sim_declared(s, i, s->asked[i]);
@@ -102,12 +72,6 @@ int lag_sim_nearby_rank(const lag_sim *s) { return s ? (int)s->run->beside : 0; 
 int lag_sim_is_undetermined(const lag_sim *s, int i) {
   if (!s || i < 0 || i >= s->pb.nq) return 0;
   return s->loose[i] != 0.0;
-}
-
-double lag_sim_output_info(const lag_sim *s, int i, char *name, size_t nname, char *unit, size_t nunit) {
-  if (!s || i < 0 || i >= lag_sim_noutputs(s)) return NAN;
-  if (s->scene->nout == 0) return lag_sim_state_info(s, i, name, nname, unit, nunit);
-  return put_info(&s->scene->outputs[i], 0, name, nname, unit, nunit);
 }
 
 int lag_observe(lag_sim *s, double t, const double *y, double *out) {
@@ -145,4 +109,28 @@ int lag_sim_outputs_at(lag_sim *s, double t, double *y, double *out) {
   int rc = lag_sim_eval(s, t, y);
 
   return rc ? rc : outputs(s, t, y, out);
+}
+
+int lag_dense_state(lag_sim *s, double t, double *y) {
+  s->method->dense(s->method_work, &s->pb, t, y);
+  s->pb.detail = NULL;
+  int rc = lag_project(&s->pb, t, y, NULL);
+  return rc ? lag_explain(s, rc > 0 ? LAG_EMETHOD : rc) : LAG_OK;
+}
+
+int lag_sim_eval(lag_sim *s, double t, double *y) {
+  if (!s || !y || !isfinite(t)) return LAG_EINVAL;
+  const Run *r = s->run;
+  size_t bytes = (size_t)s->pb.n * sizeof(double);
+
+  if (t == r->t) {
+    memcpy(y, s->now, bytes);
+    return LAG_OK;
+  }
+  if (r->have_step == 0.0 || (t - r->step_t0) * r->dir < 0 || (t - r->limit) * r->dir > 0) return LAG_EINVAL;
+  if (t == r->step_t1) {
+    memcpy(y, s->y, bytes);
+    return LAG_OK;
+  }
+  return lag_dense_state(s, t, y);
 }

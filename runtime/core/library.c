@@ -38,12 +38,6 @@ const char *lag_item(const lag_scene *scene, int kind, int i, const char **unit,
   return vars[i].name;
 }
 
-const lag_method *lag_find_method(const char *name) {
-  for (int i = 0; name && i < lag_nmethods; i++)
-    if (strcmp(lag_methods[i]->name, name) == 0) return lag_methods[i];
-  return NULL;
-}
-
 int lag_sim_rhs(lag_sim *s, int count, const double *t, const double *y, double *dy) {
   if (!s || count < 0 || !t || !y || !dy) return LAG_EINVAL;
   const lag_model *m = s->scene->model;

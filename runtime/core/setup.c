@@ -156,26 +156,6 @@ void lag_sim_free(lag_sim *s) {
 
 static int begun(lag_sim *s) { return s->run->begun != 0.0 ? lag_fail(s, LAG_EINVAL, "the run has begun: set this before the first step") : 0; }
 
-const char *lag_step_error(const lag_sim *s, double x) {
-  const lag_scene *c = s->scene;
-  if (!(x > 0 && isfinite(x))) return "a step must be a positive number";
-  return x < 4.5 * DBL_EPSILON * (c->has_span ? fmax(fabs(c->t0), fabs(c->t1)) : fmax(fabs(c->t0), 1))
-             ? "time would not move in " LAG_PRECISION " precision" : NULL;
-}
-
-double lag_step_size(const lag_problem *pb, double option) { return option > 0 ? option : (pb->span > 0 ? pb->span : 10) / 10000; }
-
-double lag_equal_step(const lag_sim *s) {
-  const lag_method *m = s->method;
-  int adaptive = (m->flags & LAG_METHOD_ADAPTIVE) != 0;
-  double step = 0;
-  for (int i = 0; i < m->noptions; i++) {
-    step = strcmp(m->options[i].name, "step") == 0 ? s->options[i] : step;
-    adaptive = strcmp(m->options[i].name, "adapt") == 0 ? s->options[i] == 0.0 : adaptive;
-  }
-  return adaptive ? 0 : lag_step_size(&s->pb, step);
-}
-
 /* *value := the value of one option; LAG_EINVAL when it is not allowed. */
 static int option_value(lag_sim *s, const lag_method *m, const lag_method_option *o, const lag_option *given, double *value) {
   *value = given->value;

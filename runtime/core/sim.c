@@ -155,19 +155,3 @@ int lag_sim_ensure_step(lag_sim *s, double t, double *reach) {
   return rc;
 }
 
-int lag_sim_eval(lag_sim *s, double t, double *y) {
-  if (!s || !y || !isfinite(t)) return LAG_EINVAL;
-  const Run *r = s->run;
-  size_t bytes = (size_t)s->pb.n * sizeof(double);
-
-  if (t == r->t) {
-    memcpy(y, s->now, bytes);
-    return LAG_OK;
-  }
-  if (r->have_step == 0.0 || (t - r->step_t0) * r->dir < 0 || (t - r->limit) * r->dir > 0) return LAG_EINVAL;
-  if (t == r->step_t1) {
-    memcpy(y, s->y, bytes);
-    return LAG_OK;
-  }
-  return lag_dense_state(s, t, y);
-}
