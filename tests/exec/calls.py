@@ -15,18 +15,17 @@ DATA = {"methods/method_list"}
 def graph(root, sources):
     """{file: files whose functions it calls}, of objects whose source is there."""
     defined, used = {}, collections.defaultdict(set)
-    for folder, _, names in os.walk(root):
-        for name in names:
-            path = os.path.join(folder, name)
-            module = os.path.relpath(path, root)[:-2]
-            if not name.endswith(".o") or not os.path.exists(f"{sources}/{module}.c"):
-                continue
-            for line in subprocess.run(["nm", "-P", path], capture_output=True, text=True, check=True).stdout.splitlines():
-                symbol, kind = line.split()[:2]
-                if kind in "TDBRC":
-                    defined[symbol] = module
-                elif kind == "U":
-                    used[module].add(symbol)
+    objects = [f"{folder}/{name}" for folder, _, names in os.walk(root) for name in names if name.endswith(".o")]
+    modules = {path: os.path.relpath(path, root)[:-2] for path in objects}
+    objects = [path for path in objects if os.path.exists(f"{sources}/{modules[path]}.c")]
+    lines = subprocess.run(["nm", "-P", "-A", *objects], capture_output=True, text=True, check=True).stdout.splitlines()
+    for line in lines:
+        path, symbol, kind = line.split()[:3]
+        module = modules[path.rstrip(":")]
+        if kind in "TDBRC":
+            defined[symbol] = module
+        elif kind == "U":
+            used[module].add(symbol)
     calls = {module: {defined[s] for s in symbols if s in defined} - {module} - DATA for module, symbols in used.items()}
     return {**{module: set() for module in defined.values()}, **calls}
 
