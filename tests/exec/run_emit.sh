@@ -32,7 +32,7 @@ check "a header's names are its file's: two scenes of a model in one program" tw
 agrees() {
   first=
   for m in $models; do first="$first $TMP/more/$(name_of "$m").c"; done
-  "$CC" -std=gnu11 -O0 -ffp-contract=off -D_XOPEN_SOURCE=700 -Isrc -I"$INC" '-DLAG_REAL=long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L' \
+  "$CC" -std=gnu11 -O0 -ffp-contract=off -D_XOPEN_SOURCE=700 -Isrc -I"$BUILD/gen" -I"$INC" '-DLAG_REAL=long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L' \
     $here/emit_agree.c "$TMP/c/scenes.c" "$TMP"/more/*.c "$BUILD/liblagc.a" -lm -o "$TMP/agree" && "$TMP/agree" $models
 }
 check "emitted C computes what its program says, to the last bit" agrees

@@ -224,7 +224,7 @@ for f in "$TMP"/c/*.c; do ids="$ids $(sed -n 's/^const lag_scene \([a-z0-9_]*\) 
   echo '  0};'
 } >"$TMP/scenes.c"
 agrees() {
-  "$CC" -std=gnu11 "${LAGC_OPTIMISE:--O1}" -w -ffp-contract=off -D_XOPEN_SOURCE=700 -Isrc -I"$INC" -DMAX=1200 '-DLAG_REAL=long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L' \
+  "$CC" -std=gnu11 "${LAGC_OPTIMISE:--O1}" -w -ffp-contract=off -D_XOPEN_SOURCE=700 -Isrc -I"$BUILD/gen" -I"$INC" -DMAX=1200 '-DLAG_REAL=long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L' \
     tests/exec/emit_agree.c "$TMP"/c/*.c "$TMP/scenes.c" "$BUILD/liblagc.a" -lm -o "$TMP/agree" && "$TMP/agree" $models
 }
 check "loops compute what the program says, to the last bit" agrees
