@@ -220,6 +220,7 @@ $(eval $(call as_text,commands/verify_driver.h,src/commands/verify_driver.in))
 $(eval $(call as_text,toolchain/probe_text.h,src/toolchain/compiler_probe.in))
 $(eval $(call as_text,emit/lag_math.h,$(BUILD)/gen/emit/lag_math.txt))
 $(eval $(call as_text,emit/lag_kkt.h,runtime/include/lag_kkt.h))
+$(eval $(call as_text,emit/%_kernel.h,runtime/kernels/%.h))
 $(eval $(call as_text,emit/%_text.h,runtime/methods/%.c))
 $(eval $(call as_text,emit/%_text.h,runtime/numeric/%.c))
 $(eval $(call as_text,emit/%_types.h,runtime/numeric/%.h))
@@ -262,7 +263,7 @@ $(BUILD)/obj/src/emit/header_moreau.o: $(patsubst %,$(BUILD)/gen/emit/%_text.h,c
 $(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_BIN)"' '-DLAGC_INCLUDEDIR="$(INCLUDE_FROM_BIN)"'
 $(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/fmu/zip.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
-$(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen/emit/lag_kkt.h
+$(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen/emit/lag_kkt.h $(patsubst runtime/kernels/%.h,$(BUILD)/gen/emit/%_kernel.h,$(wildcard runtime/kernels/*.h))
 $(BUILD)/obj/src/emit/header_steps.o: $(patsubst %,$(BUILD)/gen/emit/%_text.h,composition dop853 rk4 rk45)
 $(BUILD)/obj/src/toolchain/toolchain.o: $(BUILD)/gen/toolchain/probe_text.h
 $(BUILD)/obj/src/fmu/fmu.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)

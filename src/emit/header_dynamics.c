@@ -366,98 +366,109 @@ static void constraints(const Header *h) {
 
 /* --- events --- */
 
-static const char *const until_event =
+/* A step by rk4 with dense output, as runtime/methods/rk4.c has it, and its event functions. */
+static const char *const step_path =
   " |\n"
-  " |/* The first event whose function changes sign, as its direction wants, from g0 to g1; -1: none. */\n"
-  " |static int lag_crossed(const LAG_REAL *g0, const LAG_REAL *g1) {\n"
-  " |  static const signed char direction[] = {DIRECTIONS};\n"
-  " |  const LAG_REAL zero = LAG_C(0.0);\n"
-  " |  for (int k = 0; k < LAG_NEV; k++) {\n"
-  " |    if (direction[k] >= 0 && g0[k] < zero && !(g1[k] < zero)) return k;\n"
-  " |    if (direction[k] <= 0 && g0[k] > zero && !(g1[k] > zero)) return k;\n"
-  " |  }\n"
-  " |  return -1;\n"
-  " |}\n"
-  " |\n";
-
-/* Where a state is fresh, from _start or _act, an event may have just fired: its sign is the one that it has left zero with, as in
- * runtime/core/event_location.c. */
-static const char *const until_event_after =
-  " |/* The state after a step h, and its event functions. */\n"
-  " |static int lag_events_after(const lag_params *p, const lag_state *s, LAG_REAL hGIVEN, lag_state *end, LAG_REAL *g) {\n"
+  " |/* A step from *from to *to; at: a state between. */\n"
+  " |typedef struct lag_path {\n"
+  " |  const lag_params *p;\n"
+  " |  const lag_state *from, *to;\n"
+  "u|  const LAG_REAL *u;\n"
   "u|  LAG_REAL now[LAG_NU];\n"
-  " |  int status = LAG_OK;\n"
-  " |  *end = *s;\n"
-  " |  if (!(h <= LAG_C(0.0) && h >= LAG_C(0.0))) status = lag_rk4_step(p, end, hWITH);\n"
-  " |  if (status != LAG_OK) return status;\n"
-  "u|  if (!u) lag_inputs(end->t, p, now);\n"
-  " |  status = lag_events(AFTER, g);\n"
+  " |  LAG_REAL h, y[2][LAG_NY], f[2][LAG_NY];\n"
+  " |  lag_state at;\n"
+  " |} lag_path;\n"
+  " |\n"
+  " |/* a->at := the state x after the begin of the step; shaken: with t and the state changed in their last digits. */\n"
+  " |static int lag_path_at(lag_path *a, int shaken, LAG_REAL x) {\n"
+  " |  const LAG_REAL zero = LAG_C(0.0), last = LAG_C(4.0)*lag_epsilon();\n"
+  " |  LAG_REAL y[LAG_NY];\n"
+  " |  a->at = x < a->h || x > a->h ? *a->from : *a->to;\n"
+  " |  if ((x < zero || x > zero) && (x < a->h || x > a->h)) {\n"
+  " |    const lag_step_ends ends = {a->h, a->y[0], a->f[0], a->y[1], a->f[1]};\n"
+  " |    lag_state_within(&ends, LAG_NQ, LAG_NZ, x/a->h, y);\n"
+  " |    lag_scatter(y, &a->at);\n"
+  " |    for (int i = 1; i <= LAG_NY; i++) a->at.lost[i] = zero;\n"
+  " |    a->at.t = lag_sum(a->from->t, x, &a->at.lost[0]);\n"
+  "c|    const int status = lag_onto(a->p, &a->atNOW_AT, 0);\n"
+  "c|    if (status != LAG_OK) return status;\n"
+  " |  }\n"
+  " |  if (!shaken) return LAG_OK;\n"
+  " |  lag_gather(&a->at, y);\n"
+  " |  for (int i = 0; i < LAG_NY; i++) y[i] += (i % 2 ? -last : last)*(LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(y[i] - a->y[0][i]));\n"
+  " |  lag_scatter(y, &a->at);\n"
+  " |  a->at.t *= LAG_C(1.0) + last;\n"
+  " |  return LAG_OK;\n"
+  " |}\n"
+  " |\n"
+  " |static int lag_path_events(void *context, int shaken, LAG_REAL x, LAG_REAL *g) {\n"
+  " |  lag_path *const a = (lag_path *)context;\n"
+  " |  const lag_params *const p = a->p;\n"
+  " |  const lag_state *const end = &a->at;\n"
+  " |  int status = lag_path_at(a, shaken, x);\n"
+  "u|  const LAG_REAL *const u = lag_held(p, end->t, a->u, 0, 0, a->now);\n"
+  " |  if (status == LAG_OK) status = lag_events(AFTER, g);\n"
   " |  for (int k = 0; k < LAG_NEV && status == LAG_OK; k++)\n"
-  " |    if (!(g[k] - g[k] == LAG_C(0.0))) status = LAG_ENAN;\n"
+  " |    if (!(g[k] - g[k] >= LAG_C(0.0))) status = LAG_ENAN;\n"
   " |  return status;\n"
   " |}\n"
+  " |\n"
+  " |static int lag_event_direction(void *context, int k) {\n"
+  " |  static const signed char direction[] = {DIRECTIONS};\n"
+  " |  (void)context;\n"
+  " |  return direction[k];\n"
+  " |}\n"
   " |\n";
 
+/* Where a state is fresh, from _start or _act, an event may have just fired: its function leaves 0 at once, and its sign is not known before. */
 static const char *const until_event_body =
   " | {\n"
-  " |  const LAG_REAL zero = LAG_C(0.0);\n"
-  " |  LAG_REAL g0[LAG_NEV], g1[LAG_NEV], noise[LAG_NEV], from = zero, to = h, part = h*LAG_C(5.42101086242752217e-20);\n"
-  " |  lag_state end, other;\n"
-  " |  int fresh = 1, at_zero = 0, status = lag_events_after(p, s, zeroWITH, &end, g0);\n"
-  " |  if (status == LAG_OK) status = lag_events_after(p, s, hWITH, &end, g1);\n"
-  " |  if (status != LAG_OK) return status;\n"
+  " |  const LAG_REAL zero = LAG_C(0.0), together = LAG_C(4.0)*lag_epsilon()*LAG_FN(fabs)(h);\n"
+  " |  LAG_REAL value[LAG_LOCATE_ROWS*LAG_NEV], sign[LAG_NEV], noise[LAG_NEV], root[LAG_NEV], first = LAG_C(2.0)*LAG_FN(fabs)(h);\n"
+  " |  lag_state end = *s;\n"
+  " |  lag_path path;\n"
+  " |  const lag_locator l = {LAG_NEV, lag_path_events, lag_event_direction, &path, lag_epsilon(), LAG_C(1.3877787807814457e-17), sign, noise, root, value};\n"
+  " |  int fresh = 1, found = 0, status = LAG_OK;\n"
+  " |  *event = -1;\n"
+  " |  path.p = p, path.from = s, path.to = &end, path.h = h;\n"
+  "u|  path.u = u;\n"
+  " |  if (h < zero || h > zero) status = lag_rk4_step(p, &end, hWITH);\n"
+  " |  lag_gather(s, path.y[0]);\n"
+  " |  lag_gather(&end, path.y[1]);\n"
+  " |  if (status == LAG_OK) status = lag_rates(p, s->t, path.y[0]INPUTS, path.f[0]);\n"
+  " |  if (status == LAG_OK) status = lag_rates(p, end.t, path.y[1]INPUTS, path.f[1]);\n"
   " |  for (int i = 0; i <= LAG_NY; i++)\n"
   " |    if (s->lost[i] < zero || s->lost[i] > zero) fresh = 0;\n"
-  " |  for (int k = 0; k < LAG_NEV; k++) {\n"
-  " |    noise[k] = LAG_C(2.0)*LAG_FN(fabs)(g0[k]);\n"
-  " |    if (!(noise[k] > zero)) at_zero = 1;\n"
+  " |  if (status == LAG_OK) status = lag_path_events(&path, 0, zero, value);\n"
+  " |  if (status == LAG_OK && fresh) status = lag_path_events(&path, 0, h*LAG_C(2.3283064365386963e-10), value + LAG_NEV);\n"
+  " |  for (int k = 0; k < LAG_NEV && status == LAG_OK; k++) {\n"
+  " |    noise[k] = LAG_C(2.0)*LAG_FN(fabs)(value[k]);\n"
+  " |    sign[k] = fresh && LAG_FN(fabs)(value[LAG_NEV + k]) > noise[k] ? zero : lag_locate_sign(value[fresh ? LAG_NEV + k : k]);\n"
+  " |    root[k] = first;\n"
   " |  }\n"
-  " |  *event = -1;\n"
-  " |  /* Parts 2^-56, 2^-48, ..., 2^-8 of the step: signs with which functions leave zero, and events that follow at once. */\n"
-  " |  for (int i = 0; i < 7 && *event < 0 && (fresh || at_zero); i++) {\n"
-  " |    LAG_REAL g[LAG_NEV];\n"
-  " |    part *= LAG_C(256.0);\n"
-  " |    status = lag_events_after(p, s, partWITH, &other, g);\n"
-  " |    if (status != LAG_OK) return status;\n"
-  " |    for (int k = 0; k < LAG_NEV; k++) {\n"
-  " |      if (noise[k] < zero || (noise[k] > zero && (!fresh || i > 3))) continue; /* the sign is known */\n"
-  " |      g0[k] = g[k];\n"
-  " |      if (LAG_FN(fabs)(g[k]) > noise[k]) noise[k] = -LAG_C(1.0);\n"
-  " |    }\n"
-  " |    *event = lag_crossed(g0, g);\n"
-  " |    if (*event >= 0) to = part, end = other;\n"
-  " |    else from = part;\n"
-  " |  }\n"
-  " |  if (*event < 0) *event = lag_crossed(g0, g1);\n"
-  " |  while (*event >= 0) { /* bisection: the event lies between steps of `from` and `to` */\n"
-  " |    const LAG_REAL mid = LAG_C(0.5)*(from + to);\n"
-  " |    if (!(mid > from && mid < to) && !(mid < from && mid > to)) break;\n"
-  " |    status = lag_events_after(p, s, midWITH, &other, g1);\n"
-  " |    if (status != LAG_OK) return status;\n"
-  " |    const int k = lag_crossed(g0, g1);\n"
-  " |    if (k >= 0) {\n"
-  " |      *event = k;\n"
-  " |      to = mid;\n"
-  " |      end = other;\n"
-  " |    } else {\n"
-  " |      from = mid;\n"
-  " |    }\n"
-  " |  }\n"
-  " |  if (*event >= 0 && fresh && !(end.t < s->t) && !(end.t > s->t)) return LAG_EZENO;\n"
+  " |  if (status == LAG_OK) status = lag_locate(&l, zero, h, &found);\n"
+  " |  for (int k = 0; k < LAG_NEV && found; k++)\n"
+  " |    if (LAG_FN(fabs)(root[k]) < first) first = LAG_FN(fabs)(root[k]);\n"
+  " |  for (int k = LAG_NEV - 1; k >= 0 && found; k--)\n"
+  " |    if (LAG_FN(fabs)(root[k]) <= first + together) *event = k;\n"
+  " |  if (status == LAG_OK && found) status = lag_path_at(&path, 0, root[*event]);\n"
+  " |  if (status != LAG_OK) return status;\n"
+  " |  if (found) end = path.at;\n"
+  " |  if (found && fresh && !(end.t < s->t) && !(end.t > s->t)) return LAG_EZENO;\n"
   " |  *s = end;\n"
   " |  return LAG_OK;\n"
   " |}\n";
 
 static void events(const Header *h) {
-  StrBuf d = strbuf(h->a), after = strbuf(h->a);
+  static const char *const kernels[] = {"hermite", "root", "locate"};
+  StrBuf d = strbuf(h->a);
   int inputs = h->u->u.n > 0;
   for (uint32_t i = 0; i < h->u->events.n; i++) sb_printf(&d, "%s%d", i ? ", " : "", h->u->events.at[i].direction);
-  sb_puts(&after, header_state_args(h, 0, "end->"));
-  if (inputs) after.n--, sb_puts(&after, "u ? u : now"); /* in place of the name u */
-  const HeaderWord w[] = {{"DIRECTIONS", sb_text(&d)}, {"AFTER", sb_text(&after)}, {"GIVEN", inputs ? ", const LAG_REAL *u" : ""}, {"WITH", inputs ? ", u" : ""}, {NULL, NULL}};
-  sb_printf(h->out, "\n#if !defined(%s_LANES) && !defined(%s_COMPLEX)", h->upper, h->upper);
-  header_template(h, until_event, w);
-  header_template(h, until_event_after, w);
+  const HeaderWord w[] = {{"DIRECTIONS", sb_text(&d)}, {"AFTER", header_state_args(h, 0, "end->")}, {"WITH", inputs ? ", u" : ""}, {"INPUTS", inputs ? ", u, 0, 0" : ""},
+                          {"NOW_AT", inputs ? ", lag_held(a->p, a->at.t, a->u, 0, 0, a->now)" : ""}, {NULL, NULL}};
+  sb_printf(h->out, "\n#if !defined(%s_LANES) && !defined(%s_COMPLEX)\n", h->upper, h->upper);
+  for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) embedded_section(kernels[i], h->upper, h->lower, h->out);
+  write_marked(h, step_path, w);
   sb_puts(h->out, header_api(h, FN_UNTIL_EVENT));
   header_template(h, until_event_body, w);
   sb_puts(h->out, "#endif\n");

@@ -506,7 +506,6 @@ static void define_adaptive(const Header *h) {
 static void define_taylor(const Header *h) {
   line(h, ordered);
   if (!some_adaptive(h)) math_power(h->upper, h->lower, h->out);
-  header_template(h, epsilon, NULL);
   header_taylor_define(h, longest(h));
   line(h, "#endif\n");
 }
@@ -514,7 +513,6 @@ static void define_taylor(const Header *h) {
 /* Methods that need one state, too: not over lanes. */
 static void define_single(const Header *h) {
   line(h, guard);
-  if (!header_has_method(h, "taylor") && !header_has(h, FN_HOLD)) header_template(h, epsilon, NULL);
   if (header_has_method(h, "variational")) header_variational_define(h);
   if (header_has_method(h, "moreau")) header_moreau_define(h);
   line(h, "#endif\n");
@@ -522,10 +520,12 @@ static void define_single(const Header *h) {
 
 void header_steps_define(const Header *h) {
   header_template(h, support, NULL);
-  if (header_has(h, FN_HOLD)) {
+  if (header_has(h, FN_HOLD) || header_has(h, FN_UNTIL_EVENT) || header_has_method(h, "taylor") || has_single(h)) {
+    if (!header_has(h, FN_HOLD)) line(h, ordered);
     header_template(h, epsilon, NULL);
-    header_hold_define(h);
+    if (!header_has(h, FN_HOLD)) line(h, "#endif\n");
   }
+  if (header_has(h, FN_HOLD)) header_hold_define(h);
   header_move(h);
   define_rk4(h);
   if (some_adaptive(h)) define_adaptive(h);
