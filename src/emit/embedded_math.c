@@ -4,16 +4,17 @@
 
 #include <string.h>
 
-#include "emit/hermite_kernel.h" /* static const char *const hermite_kernel[]: lines of runtime/kernels/hermite.h */
-#include "emit/lag_kkt.h"        /* and of runtime/include/lag_kkt.h, lag_math.h */
+#include "emit/dense_output_kernel.h" /* static const char *const dense_output_kernel[]: lines of runtime/kernels/dense_output.h */
+#include "emit/lag_kkt.h"             /* and of runtime/include/lag_kkt.h, lag_math.h, lag_sincos.h */
 #include "emit/lag_math.h"
+#include "emit/lag_sincos.h"
 #include "emit/locate_kernel.h"
 
 #define LINES(text) {text, sizeof text / sizeof *text}
 static const struct {
   const char *const *line;
   size_t n;
-} embedded[] = {LINES(lag_math), LINES(lag_kkt), LINES(hermite_kernel), LINES(locate_kernel)};
+} embedded[] = {LINES(lag_math), LINES(lag_sincos), LINES(lag_kkt), LINES(dense_output_kernel), LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";
 static int is_marker(const char *line, const char *name) {

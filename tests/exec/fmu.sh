@@ -78,6 +78,7 @@ for v in $versions; do
 done
 check "impacts that follow each other faster than steps" moves 2 cs $here/fmu/bounces.lag s "" 1e-8 1
 check "events twice and more within a step" moves 2 cs $here/fmu/toss.lag s "" 1e-8 1
+check "an event of both directions whose function jumps" moves 2 cs $here/fmu/jump.lag s "--method dop853" 1e-8 1
 check "constraints hold in co-simulation, to rounding" moves 2 cs $here/fmu/held.lag s "" 1e-14 1
 check "and in model exchange, to the tolerance" moves 2 me $here/fmu/held.lag s "" 2e-6 2
 # Four bars lie in one line at t = 0.71 and 1.23: steps of 0.001 s at 1e-9 shrink into these places, and went on with another energy.
