@@ -366,7 +366,7 @@ static void constraints(const Header *h) {
 
 /* --- events --- */
 
-/* A step with its dense output, and its event functions along it. */
+/* A step with its dense output, and its event functions along it. Lines marked s are for _step_until_event. */
 static const char *const step_path =
   " |\n"
   " |/* A step from *from to *to; at: a state between. */\n"
@@ -380,6 +380,7 @@ static const char *const step_path =
   " |  LAG_REAL y[2][LAG_NY], MEMBERS;\n"
   " |  lag_step_ends ends;\n"
   " |  lag_state at;\n"
+  "s|  int stepped; /* states are ends of steps of that length, not dense output */\n"
   " |} lag_path;\n"
   " |\n"
   " |static void lag_path_begin(lag_path *a, const lag_params *p, const lag_state *from, const lag_state *to, LAG_REAL h) {\n"
@@ -393,9 +394,12 @@ static const char *const step_path =
   " |/* a->at := the state x after the begin of the step; shaken: with t and the state changed in their last digits. */\n"
   " |static int lag_path_at(lag_path *a, int shaken, LAG_REAL x) {\n"
   " |  const LAG_REAL zero = LAG_C(0.0), h = a->ends.h, last = LAG_C(4.0)*lag_epsilon();\n"
+  " |  const int begins = !(x < zero) && !(x > zero);\n"
   " |  LAG_REAL y[LAG_NY];\n"
-  " |  a->at = x < zero || x > zero ? *a->to : *a->from;\n"
-  " |  if ((x < zero || x > zero) && (x < h || x > h)) {\n"
+  "s|  a->at = *a->from;\n"
+  "s|  if (a->stepped) return lag_rk4_step(a->p, &a->at, xOF_PATH);\n"
+  " |  a->at = begins ? *a->from : *a->to;\n"
+  " |  if (!begins && (x < h || x > h)) {\n"
   " |    WITHIN;\n"
   " |    lag_scatter(y, &a->at);\n"
   " |    for (int i = 1; i <= LAG_NY; i++) a->at.lost[i] = zero;\n"
@@ -406,87 +410,63 @@ static const char *const step_path =
   " |  }\n"
   " |  if (!shaken) return LAG_OK;\n"
   " |  lag_gather(&a->at, y);\n"
-  " |  for (int i = 0; i < LAG_NY; i++) y[i] += (i % 2 ? -last : last)*(LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(y[i] - a->y[0][i]));\n"
+  " |  for (int i = 0; i < LAG_NY; i++)\n"
+  " |    y[i] += (i % 2 ? -last : last)*(LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(y[i] - a->y[0][i]));\n"
   " |  lag_scatter(y, &a->at);\n"
   " |  a->at.t *= LAG_C(1.0) + last;\n"
   " |  return LAG_OK;\n"
   " |}\n"
   " |\n"
-  " |/* The event functions at a->at. */\n"
-  " |static int lag_events_at(lag_path *a, LAG_REAL *g) {\n"
+  " |static int lag_path_events(void *context, int shaken, LAG_REAL x, LAG_REAL *g) {\n"
+  " |  lag_path *const a = (lag_path *)context;\n"
   " |  const lag_params *const p = a->p;\n"
   " |  const lag_state *const end = &a->at;\n"
+  " |  int status = lag_path_at(a, shaken, x);\n"
   "u|  const LAG_REAL *const u = lag_held(p, end->t, a->u, a->input, a->context, a->now);\n"
-  " |  int status = lag_events(AFTER, g);\n"
+  " |  if (status == LAG_OK) status = lag_events(AFTER, g);\n"
   " |  for (int k = 0; k < LAG_NEV && status == LAG_OK; k++)\n"
   " |    if (!(g[k] - g[k] >= LAG_C(0.0))) status = LAG_ENAN;\n"
   " |  return status;\n"
-  " |}\n"
-  " |\n"
-  " |static int lag_path_events(void *context, int shaken, LAG_REAL x, LAG_REAL *g) {\n"
-  " |  lag_path *const a = (lag_path *)context;\n"
-  " |  const int status = lag_path_at(a, shaken, x);\n"
-  " |  return status == LAG_OK ? lag_events_at(a, g) : status;\n"
   " |}\n"
   " |\n"
   " |static int lag_event_direction(void *context, int k) {\n"
   " |  static const signed char direction[] = {DIRECTIONS};\n"
   " |  (void)context;\n"
   " |  return direction[k];\n"
-  " |}\n";
-
-/* The dense output is off by more than a step that ends at the event: steps take over where they see the same change of sign nearby. */
-static const char *const stepped =
-  " |\n"
-  " |/* Event k along steps of any length. */\n"
-  " |typedef struct lag_steps {\n"
-  " |  lag_path *a;\n"
-  " |  int k, status;\n"
-  " |} lag_steps;\n"
-  " |\n"
-  " |/* a->at := the state after a step x. */\n"
-  " |static int lag_step_of(lag_path *a, LAG_REAL x) {\n"
-  " |  a->at = *a->from;\n"
-  " |  return lag_rk4_step(a->p, &a->at, xOF_PATH);\n"
   " |}\n"
-  " |\n"
-  " |static LAG_REAL lag_stepped(void *context, LAG_REAL x) {\n"
-  " |  lag_steps *const c = (lag_steps *)context;\n"
-  " |  LAG_REAL g[LAG_NEV];\n"
-  " |  int status = lag_step_of(c->a, x);\n"
-  " |  if (status == LAG_OK) status = lag_events_at(c->a, g);\n"
-  " |  c->status = c->status != LAG_OK ? c->status : status;\n"
-  " |  return c->status == LAG_OK ? g[c->k] : LAG_C(0.0);\n"
-  " |}\n"
-  " |\n"
-  " |/* *root := the time of event k after the begin of the step, by steps, *by_steps := 1; as they were where these do not show it. after: sign behind it. */\n"
-  " |static int lag_step_to_root(lag_path *a, int k, LAG_REAL after, LAG_REAL *root, int *by_steps) {\n"
-  " |  const LAG_REAL zero = LAG_C(0.0), h = a->ends.h;\n"
-  " |  LAG_REAL d = h*LAG_C(9.5367431640625e-07);\n"
-  " |  lag_steps c = {a, k, LAG_OK};\n"
-  " |  for (int i = 0; i < 7 && c.status == LAG_OK; i++, d *= LAG_C(8.0)) {\n"
-  " |    const LAG_REAL low = d/(*root) < LAG_C(0.5) ? *root - d : LAG_C(0.5)*(*root), high = (*root + d)/h < LAG_C(1.0) ? *root + d : h;\n"
-  " |    const LAG_REAL g0 = lag_stepped(&c, low), g1 = lag_stepped(&c, high);\n"
-  " |    if (c.status != LAG_OK || !(g0*after < zero) || !(g1*after > zero)) continue;\n"
-  " |    *root = lag_root(lag_stepped, &c, low, g0, high, g1, lag_epsilon());\n"
-  " |    *by_steps = 1;\n"
-  " |    break;\n"
-  " |  }\n"
-  " |  return c.status;\n"
-  " |}\n"
-  " |\n";
+  "s|\n"
+  "s|/* Finds event k by steps, in place of dense output, which is off by more, where they show the same change of sign near its root:\n"
+  "s| * then a->stepped. */\n"
+  "s|static int lag_step_to_root(const lag_locator *l, lag_path *a, int k) {\n"
+  "s|  const LAG_REAL h = a->ends.h, x = l->root[k], half = LAG_C(0.5);\n"
+  "s|  const LAG_REAL *const g[] = {l->value, l->value + LAG_NEV};\n"
+  "s|  LAG_REAL d = h*LAG_C(9.5367431640625e-07);\n"
+  "s|  int found = 0, status = LAG_OK;\n"
+  "s|  a->stepped = 1;\n"
+  "s|  for (int i = 0; i < 7 && status == LAG_OK && !found; i++, d *= LAG_C(8.0)) {\n"
+  "s|    const LAG_REAL t[] = {d/x < half ? x - d : half*x, (x + d)/h < LAG_C(1.0) ? x + d : h};\n"
+  "s|    status = lag_path_events(a, 0, t[0], l->value);\n"
+  "s|    if (status == LAG_OK) status = lag_path_events(a, 0, t[1], l->value + LAG_NEV);\n"
+  "s|    if (status == LAG_OK && g[0][k]*l->sign[k] < LAG_C(0.0) && g[1][k]*l->sign[k] > LAG_C(0.0))\n"
+  "s|      status = lag_find_crossing(l, k, LAG_C(0.0), t, g, &found);\n"
+  "s|  }\n"
+  "s|  a->stepped = found;\n"
+  "s|  return status;\n"
+  "s|}\n";
 
 /* Where a state is fresh, from _start or _act, an event may have just fired: its function leaves 0 at once, and its sign is not known before. */
 static const char *const until_event_body =
   " | {\n"
   " |  const LAG_REAL zero = LAG_C(0.0), together = LAG_C(4.0)*lag_epsilon()*LAG_FN(fabs)(h);\n"
-  " |  LAG_REAL value[(int)LAG_LOCATE_ROWS*LAG_NEV], sign[LAG_NEV], noise[LAG_NEV], root[LAG_NEV], first = LAG_C(2.0)*LAG_FN(fabs)(h);\n"
+  " |  const LAG_REAL none = LAG_C(2.0)*LAG_FN(fabs)(h);\n"
+  " |  LAG_REAL value[(int)LAG_LOCATE_ROWS*LAG_NEV], sign[LAG_NEV], noise[LAG_NEV], root[LAG_NEV], first = none;\n"
   " |  lag_state end = *s;\n"
   " |  lag_path path;\n"
   " |  const lag_locator l = {LAG_NEV, lag_path_events, lag_event_direction, &path, lag_epsilon(), LAG_C(1.3877787807814457e-17), sign, noise, root, value};\n"
   " |  int by_steps[LAG_NEV], fresh = 1, found = 0, status = LAG_OK;\n"
   " |  *event = -1;\n"
   "u|  path.u = u, path.input = 0, path.context = 0;\n"
+  " |  path.stepped = 0;\n"
   " |  if (h < zero || h > zero) status = lag_rk4_step(p, &end, hWITH);\n"
   " |  lag_path_begin(&path, p, s, &end, h);\n"
   " |  if (status == LAG_OK) status = lag_rates(p, s->t, path.y[0]INPUTS, path.f[0]);\n"
@@ -498,17 +478,18 @@ static const char *const until_event_body =
   " |  for (int k = 0; k < LAG_NEV && status == LAG_OK; k++) {\n"
   " |    noise[k] = LAG_C(2.0)*LAG_FN(fabs)(value[k]);\n"
   " |    sign[k] = fresh && LAG_FN(fabs)(value[LAG_NEV + k]) > noise[k] ? zero : lag_locate_sign(value[fresh ? LAG_NEV + k : k]);\n"
-  " |    root[k] = first;\n"
-  " |    by_steps[k] = 0;\n"
+  " |    root[k] = none;\n"
   " |  }\n"
   " |  if (status == LAG_OK) status = lag_locate(&l, zero, h, &found);\n"
-  " |  for (int k = 0; k < LAG_NEV && found && status == LAG_OK; k++)\n"
-  " |    if (LAG_FN(fabs)(root[k]) < first) status = lag_step_to_root(&path, k, sign[k], &root[k], &by_steps[k]);\n"
-  " |  for (int k = 0; k < LAG_NEV && found; k++)\n"
+  " |  for (int k = 0; k < LAG_NEV && found && status == LAG_OK; k++) {\n"
+  " |    if (!(LAG_FN(fabs)(root[k]) < none)) continue;\n"
+  " |    status = lag_step_to_root(&l, &path, k);\n"
+  " |    by_steps[k] = path.stepped;\n"
   " |    if (LAG_FN(fabs)(root[k]) < first) first = LAG_FN(fabs)(root[k]);\n"
+  " |  }\n"
   " |  for (int k = LAG_NEV - 1; k >= 0 && found; k--)\n"
   " |    if (LAG_FN(fabs)(root[k]) <= first + together) *event = k;\n"
-  " |  if (status == LAG_OK && found) status = by_steps[*event] ? lag_step_of(&path, root[*event]) : lag_path_at(&path, 0, root[*event]);\n"
+  " |  if (status == LAG_OK && found) path.stepped = by_steps[*event], status = lag_path_at(&path, 0, root[*event]);\n"
   " |  if (status != LAG_OK) return status;\n"
   " |  if (found) end = path.at;\n"
   " |  if (found && fresh && !(end.t < s->t) && !(end.t > s->t)) return LAG_EZENO;\n"
@@ -531,21 +512,18 @@ static void define_path(const Header *h) {
   StrBuf d = strbuf(h->a);
   for (uint32_t i = 0; i < h->u->events.n; i++) sb_printf(&d, "%s%d", i ? ", " : "", h->u->events.at[i].direction);
   const HeaderWord w[] = {{"DIRECTIONS", sb_text(&d)}, {"AFTER", header_state_args(h, 0, "end->")}, {"MEMBERS", dense_outputs[of].members}, {"WITHIN", dense_outputs[of].within},
-                          {"FIRST", dense_outputs[of].first}, {"LAST", dense_outputs[of].last},
+                          {"OF_PATH", h->u->u.n ? ", a->u" : ""}, {"FIRST", dense_outputs[of].first}, {"LAST", dense_outputs[of].last},
                           {"NOW_AT", h->u->u.n ? ", lag_held(a->p, a->at.t, a->u, a->input, a->context, a->now)" : ""}, {NULL, NULL}};
   for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) embedded_section(kernels[i], h->upper, h->lower, h->out);
-  write_marked(h, step_path, w);
+  const LineChoice choices[] = {{'s', header_has(h, FN_UNTIL_EVENT)}, {0, 0}};
+  write_marked(h, header_chosen(h, step_path, choices), w);
 }
 
 static void events(const Header *h) {
-  const HeaderWord w[] = {{"WITH", h->u->u.n ? ", u" : ""}, {"INPUTS", h->u->u.n ? ", u, 0, 0" : ""}, {"OF_PATH", h->u->u.n ? ", a->u" : ""}, {NULL, NULL}};
+  const HeaderWord w[] = {{"WITH", h->u->u.n ? ", u" : ""}, {"INPUTS", h->u->u.n ? ", u, 0, 0" : ""}, {NULL, NULL}};
   sb_printf(h->out, "\n#if !defined(%s_LANES) && !defined(%s_COMPLEX)\n", h->upper, h->upper);
   define_path(h);
-  if (header_has(h, FN_UNTIL_EVENT)) {
-    header_template(h, stepped, w);
-    sb_puts(h->out, header_api(h, FN_UNTIL_EVENT));
-    header_template(h, until_event_body, w);
-  }
+  if (header_has(h, FN_UNTIL_EVENT)) sb_printf(h->out, "\n%s", header_api(h, FN_UNTIL_EVENT)), header_template(h, until_event_body, w);
   sb_puts(h->out, "#endif\n");
 }
 
