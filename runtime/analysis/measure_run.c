@@ -168,7 +168,8 @@ static void find_passages(Measures *m, Track *track, int n, const double *t, con
   for (int k = -1; k < n; k++) {
     double before = k < 0 ? track->last : x[k];
     if (!(before < 0 && x[k + 1] >= 0)) continue;
-    track->latest = k < 0 || x[k + 1] == 0.0 ? t[k + 1] : lag_root(value_at, &f, t[k], before, t[k + 1], x[k + 1], DBL_EPSILON);
+    track->latest = k < 0 || x[k + 1] == 0.0 ? t[k + 1] :
+                    lag_root(value_at, &f, t[k], before, t[k + 1], x[k + 1], DBL_EPSILON);
     track->passage = track->passages++ ? track->passage : track->latest;
   }
 }

@@ -1,5 +1,5 @@
-/* Event location: an instance of kernels/locate.h along the dense output of a step. Enters: a step, and the signs of g just after run->from; leaves:
- * the time of its first event. */
+/* Event location: an instance of kernels/locate.h along the dense output of a step. Enters: a step, and
+ * the signs of g just after run->from; leaves: the time of its first event. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -21,7 +21,8 @@ static int sample(void *sim, int shaken, double t, double *g) {
   lag_sim *s = sim;
   double last = shaken ? 4 * DBL_EPSILON : 0;
   int rc = state_at(s, t, s->yc);
-  for (int j = 0; j < s->pb.n && shaken; j++) s->yc[j] += (j % 2 ? -last : last) * (fabs(s->yc[j]) + fabs(s->y[j] - s->y0[j]));
+  for (int j = 0; j < s->pb.n && shaken; j++)
+    s->yc[j] += (j % 2 ? -last : last) * (fabs(s->yc[j]) + fabs(s->y[j] - s->y0[j]));
   return rc ? rc : lag_events_eval(s, t * (1 + last), s->yc, g);
 }
 
@@ -31,7 +32,8 @@ static int direction(void *sim, int k) {
 }
 
 static lag_locator locator(lag_sim *s) {
-  return (lag_locator){lag_watched(s), sample, direction, s, DBL_EPSILON, 0x1p-40, s->sign_end, s->noise, s->root, s->spare};
+  return (lag_locator){lag_watched(s), sample,   direction, s,      DBL_EPSILON,
+                       0x1p-40,        s->sign_end, s->noise,  s->root, s->spare};
 }
 
 /* Marks jumps, of the events due now, whose functions go on at some distance from zero, as sign(x) does: from one sample to the next (2^-50 of t) values

@@ -6,6 +6,7 @@
 
 #ifndef LAG_REAL
 #define LAG_REAL double
+#define LAG_REAL_IS_DOUBLE 1
 #endif
 #ifndef LAG_C
 #define LAG_C(x) x

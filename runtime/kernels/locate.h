@@ -18,6 +18,7 @@
 
 #ifndef LAG_REAL
 #define LAG_REAL double
+#define LAG_REAL_IS_DOUBLE 1
 #endif
 #ifndef LAG_FN
 #define LAG_FN(f) f

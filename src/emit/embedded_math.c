@@ -1,11 +1,11 @@
-/* Embedding of the runtime's texts: the sections that a unit needs, with its prefix. A section is what stands between its marker, a line that begins with
- * `---- NAME ----` in a comment, and the next marker. */
+/* Embedding of the runtime's texts: the sections that a unit needs, with its prefix. A section is what
+ * stands between its marker, a line that begins with `---- NAME ----` in a comment, and the next. */
 #include "emit/cfunction.h"
 
 #include <string.h>
 
-#include "emit/dense_output_kernel.h" /* static const char *const dense_output_kernel[]: lines of runtime/kernels/dense_output.h */
-#include "emit/lag_kkt.h"             /* and of runtime/include/lag_kkt.h, lag_math.h, lag_sincos.h */
+#include "emit/dense_output_kernel.h" /* static const char *const NAME_kernel[]: lines of runtime/kernels/NAME.h */
+#include "emit/lag_kkt.h"             /* static const char *const NAME[]: and of runtime/include/NAME.h */
 #include "emit/lag_math.h"
 #include "emit/lag_sincos.h"
 #include "emit/locate_kernel.h"

@@ -383,7 +383,8 @@ static const char *const step_path =
   "s|  int stepped; /* states are ends of steps of that length, not dense output */\n"
   " |} lag_path;\n"
   " |\n"
-  " |static void lag_path_begin(lag_path *a, const lag_params *p, const lag_state *from, const lag_state *to, LAG_REAL h) {\n"
+  " |static void lag_path_begin(lag_path *a, const lag_params *p, const lag_state *from, const lag_state *to,\n"
+  " |    LAG_REAL h) {\n"
   " |  a->p = p, a->from = from, a->to = to;\n"
   " |  lag_gather(from, a->y[0]);\n"
   " |  lag_gather(to, a->y[1]);\n"
@@ -391,7 +392,7 @@ static const char *const step_path =
   " |  a->ends.f0 = FIRST, a->ends.f1 = LAST;\n"
   " |}\n"
   " |\n"
-  " |/* a->at := the state x after the begin of the step; shaken: with t and the state changed in their last digits. */\n"
+  " |/* a->at := the state x after the begin of the step; shaken: with its last digits changed. */\n"
   " |static int lag_path_at(lag_path *a, int shaken, LAG_REAL x) {\n"
   " |  const LAG_REAL zero = LAG_C(0.0), h = a->ends.h, last = LAG_C(4.0)*lag_epsilon();\n"
   " |  const int begins = !(x < zero) && !(x > zero);\n"
@@ -435,8 +436,7 @@ static const char *const step_path =
   " |  return direction[k];\n"
   " |}\n"
   "s|\n"
-  "s|/* Finds event k by steps, in place of dense output, which is off by more, where they show the same change of sign near its root:\n"
-  "s| * then a->stepped. */\n"
+  "s|/* Finds event k by steps, in place of dense output, which is off by more; a->stepped: they show it, near its root. */\n"
   "s|static int lag_step_to_root(const lag_locator *l, lag_path *a, int k) {\n"
   "s|  const LAG_REAL h = a->ends.h, x = l->root[k], half = LAG_C(0.5);\n"
   "s|  const LAG_REAL *const g[] = {l->value, l->value + LAG_NEV};\n"
@@ -454,7 +454,8 @@ static const char *const step_path =
   "s|  return status;\n"
   "s|}\n";
 
-/* Where a state is fresh, from _start or _act, an event may have just fired: its function leaves 0 at once, and its sign is not known before. */
+/* Where a state is fresh, from _start or _act, an event may have just fired: its function leaves 0 at
+ * once, and its sign is not known before. */
 static const char *const until_event_body =
   " | {\n"
   " |  const LAG_REAL zero = LAG_C(0.0), together = LAG_C(4.0)*lag_epsilon()*LAG_FN(fabs)(h);\n"
@@ -462,7 +463,8 @@ static const char *const until_event_body =
   " |  LAG_REAL value[(int)LAG_LOCATE_ROWS*LAG_NEV], sign[LAG_NEV], noise[LAG_NEV], root[LAG_NEV], first = none;\n"
   " |  lag_state end = *s;\n"
   " |  lag_path path;\n"
-  " |  const lag_locator l = {LAG_NEV, lag_path_events, lag_event_direction, &path, lag_epsilon(), LAG_C(1.3877787807814457e-17), sign, noise, root, value};\n"
+  " |  const lag_locator l = {LAG_NEV, lag_path_events, lag_event_direction, &path, lag_epsilon(),\n"
+  " |                         LAG_C(1.3877787807814457e-17), sign, noise, root, value}; /* 2^-56 */\n"
   " |  int by_steps[LAG_NEV], fresh = 1, found = 0, status = LAG_OK;\n"
   " |  *event = -1;\n"
   "u|  path.u = u, path.input = 0, path.context = 0;\n"
@@ -474,10 +476,12 @@ static const char *const until_event_body =
   " |  for (int i = 0; i <= LAG_NY; i++)\n"
   " |    if (s->lost[i] < zero || s->lost[i] > zero) fresh = 0;\n"
   " |  if (status == LAG_OK) status = lag_path_events(&path, 0, zero, value);\n"
-  " |  if (status == LAG_OK && fresh) status = lag_path_events(&path, 0, h*LAG_C(2.3283064365386963e-10), value + LAG_NEV);\n"
+  " |  if (status == LAG_OK && fresh)\n"
+  " |    status = lag_path_events(&path, 0, h*LAG_C(2.3283064365386963e-10), value + LAG_NEV); /* 2^-32 */\n"
   " |  for (int k = 0; k < LAG_NEV && status == LAG_OK; k++) {\n"
   " |    noise[k] = LAG_C(2.0)*LAG_FN(fabs)(value[k]);\n"
-  " |    sign[k] = fresh && LAG_FN(fabs)(value[LAG_NEV + k]) > noise[k] ? zero : lag_locate_sign(value[fresh ? LAG_NEV + k : k]);\n"
+  " |    sign[k] = lag_locate_sign(value[fresh ? LAG_NEV + k : k]);\n"
+  " |    if (fresh && LAG_FN(fabs)(value[LAG_NEV + k]) > noise[k]) sign[k] = zero;\n"
   " |    root[k] = none;\n"
   " |  }\n"
   " |  if (status == LAG_OK) status = lag_locate(&l, zero, h, &found);\n"
@@ -502,8 +506,10 @@ static const struct {
   const char *kernel, *members, *first, *last, *within;
 } dense_outputs[] = {
   {"hermite", "f[2][LAG_NY]", "a->f[0]", "a->f[1]", "lag_hermite_within(&a->ends, LAG_NQ, LAG_NZ, x/h, y)"},
-  {"parabola", "f[LAG_NY], struck", "a->f", "a->f", "lag_parabola_within(&a->ends, a->struck > zero, LAG_NQ, LAG_NZ, x, y)"},
-  {"contd8", "k[16][LAG_NY], high[4*LAG_NY]", "a->k[0]", "a->k[12]", "lag_contd8(&a->ends, a->high, LAG_NY, LAG_NY, x/h, y)"},
+  {"parabola", "f[LAG_NY], struck", "a->f", "a->f",
+   "lag_parabola_within(&a->ends, a->struck > zero, LAG_NQ, LAG_NZ, x, y)"},
+  {"contd8", "k[16][LAG_NY], high[4*LAG_NY]", "a->k[0]", "a->k[12]",
+   "lag_contd8(&a->ends, a->high, LAG_NY, LAG_NY, x/h, y)"},
 };
 
 static void define_path(const Header *h) {
@@ -511,10 +517,13 @@ static void define_path(const Header *h) {
   const char *const kernels[] = {"ends", dense_outputs[of].kernel, "root", "locate"};
   StrBuf d = strbuf(h->a);
   for (uint32_t i = 0; i < h->u->events.n; i++) sb_printf(&d, "%s%d", i ? ", " : "", h->u->events.at[i].direction);
-  const HeaderWord w[] = {{"DIRECTIONS", sb_text(&d)}, {"AFTER", header_state_args(h, 0, "end->")}, {"MEMBERS", dense_outputs[of].members}, {"WITHIN", dense_outputs[of].within},
-                          {"OF_PATH", h->u->u.n ? ", a->u" : ""}, {"FIRST", dense_outputs[of].first}, {"LAST", dense_outputs[of].last},
-                          {"NOW_AT", h->u->u.n ? ", lag_held(a->p, a->at.t, a->u, a->input, a->context, a->now)" : ""}, {NULL, NULL}};
-  for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) embedded_section(kernels[i], h->upper, h->lower, h->out);
+  const char *now = h->u->u.n ? ", lag_held(a->p, a->at.t, a->u, a->input, a->context, a->now)" : "";
+  const HeaderWord w[] = {{"DIRECTIONS", sb_text(&d)}, {"AFTER", header_state_args(h, 0, "end->")}, {"NOW_AT", now},
+                          {"MEMBERS", dense_outputs[of].members}, {"WITHIN", dense_outputs[of].within},
+                          {"OF_PATH", h->u->u.n ? ", a->u" : ""}, {"FIRST", dense_outputs[of].first},
+                          {"LAST", dense_outputs[of].last}, {NULL, NULL}};
+  for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
+    embedded_section(kernels[i], h->upper, h->lower, h->out);
   const LineChoice choices[] = {{'s', header_has(h, FN_UNTIL_EVENT)}, {0, 0}};
   write_marked(h, header_chosen(h, step_path, choices), w);
 }
@@ -523,7 +532,7 @@ static void events(const Header *h) {
   const HeaderWord w[] = {{"WITH", h->u->u.n ? ", u" : ""}, {"INPUTS", h->u->u.n ? ", u, 0, 0" : ""}, {NULL, NULL}};
   sb_printf(h->out, "\n#if !defined(%s_LANES) && !defined(%s_COMPLEX)\n", h->upper, h->upper);
   define_path(h);
-  if (header_has(h, FN_UNTIL_EVENT)) sb_printf(h->out, "\n%s", header_api(h, FN_UNTIL_EVENT)), header_template(h, until_event_body, w);
+  if (header_has(h, FN_UNTIL_EVENT)) begin(h, FN_UNTIL_EVENT), header_template(h, until_event_body, w);
   sb_puts(h->out, "#endif\n");
 }
 

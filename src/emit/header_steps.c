@@ -459,7 +459,7 @@ static void define_method(const Header *h, const HeaderMethod *m) {
   define_both(h, m);
 }
 
-/* Steps of dop853 whose stages k[16] stay, and the rest of dense output: stages 12 to 15, and the four highest terms. */
+/* Steps of dop853 that keep their stages k[16]; the rest of dense output: stages 12 to 15, the highest terms. */
 static void define_dense_steps(const Header *h, const HeaderMethod *m) {
   int late;
   const char *at = member(h->a, m, "a"), *d = member(h->a, m, "d");
@@ -467,12 +467,14 @@ static void define_dense_steps(const Header *h, const HeaderMethod *m) {
   Texts c = list_member(h, m, "c"), row;
   header_template(h,
     " |\n"
-    " |static int lag_dop853_keep(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL untilHELD, LAG_REAL (*k)[LAG_NY]) {\n"
+    " |static int lag_dop853_keep(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL untilHELD,\n"
+    " |    LAG_REAL (*k)[LAG_NY]) {\n"
     " |  const lag_controller c = {lag_dop853_trial, CONTROLLER};\n"
     " |  return lag_adapt(&c, p, s, w, untilPASS, k);\n"
     " |}\n"
     " |\n"
-    " |static int lag_dop853_extend(const lag_params *p, const lag_state *s, LAG_REAL h, const lag_state *endHELD, LAG_REAL (*k)[LAG_NY], LAG_REAL *high) {\n"
+    " |static int lag_dop853_extend(const lag_params *p, const lag_state *s, LAG_REAL h, const lag_state *endHELD,\n"
+    " |    LAG_REAL (*k)[LAG_NY], LAG_REAL *high) {\n"
     " |  LAG_REAL y[LAG_NY], x[LAG_NY];\n"
     " |  int status = LAG_OK;\n"
     " |  lag_gather(end, x);\n"
@@ -485,7 +487,8 @@ static void define_dense_steps(const Header *h, const HeaderMethod *m) {
   d++;
   for (uint32_t j = 0; j < 4; j++) {
     row = list_of(h, &d);
-    line(h, arena_printf(h->a, "  for (int i = 0; i < LAG_NY; i++) high[%u*LAG_NY + i] = %s;\n", j, weighted(h, &row, row.n)));
+    const char *sum = weighted(h, &row, row.n);
+    line(h, arena_printf(h->a, "  for (int i = 0; i < LAG_NY; i++) high[%u*LAG_NY + i] = %s;\n", j, sum));
   }
   line(h, "  return status;\n}\n");
 }
@@ -552,12 +555,13 @@ static void define_single(const Header *h) {
 
 void header_steps_define(const Header *h) {
   header_template(h, support, NULL);
-  if (header_has(h, FN_HOLD) || header_has(h, FN_UNTIL_EVENT) || h->parts.parts & PART_PATH || header_has_method(h, "taylor") || has_single(h)) {
-    if (!header_has(h, FN_HOLD)) line(h, ordered);
+  int holds = header_has(h, FN_HOLD), events = (h->parts.parts & (PART_EVENTS | PART_PATH)) != 0;
+  if (holds || events || header_has_method(h, "taylor") || has_single(h)) {
+    if (!holds) line(h, ordered);
     header_template(h, epsilon, NULL);
-    if (!header_has(h, FN_HOLD)) line(h, "#endif\n");
+    if (!holds) line(h, "#endif\n");
   }
-  if (header_has(h, FN_HOLD)) header_hold_define(h);
+  if (holds) header_hold_define(h);
   header_move(h);
   define_rk4(h);
   if (some_adaptive(h)) define_adaptive(h);
