@@ -26,6 +26,9 @@
 #ifndef LAG_C
 #define LAG_C(x) x
 #endif
+#ifndef LAG_SELECT
+#define LAG_SELECT(c, a, b) ((c) ? (LAG_REAL)(a) : (LAG_REAL)(b))
+#endif
 
 /* ---- root ---- */
 
@@ -48,9 +51,10 @@ static inline LAG_REAL lag_root(LAG_REAL (*f)(void *context, LAG_REAL x), void *
   for (; eps > zero && reach < width; reach *= two) most++;
   for (; most >= 0 && lag_modulus(b - a) > eps; most--, reach /= two) {
     const LAG_REAL half = a + (b - a)/two, r = reach - lag_modulus(b - a)/two, x_f = (fb*a - fa*b)/(fb - fa);
-    const LAG_REAL sigma = half > x_f ? one : -one, delta = k1*(b - a)*(b - a);
-    const LAG_REAL x_t = delta <= lag_modulus(half - x_f) ? x_f + sigma*delta : half;
-    LAG_REAL x = r > zero && lag_modulus(x_t - half) <= r ? x_t : half - sigma*(r > zero ? r : zero);
+    const LAG_REAL sigma = LAG_SELECT(half > x_f, one, -one), delta = k1*(b - a)*(b - a);
+    const LAG_REAL x_t = LAG_SELECT(delta <= lag_modulus(half - x_f), x_f + sigma*delta, half);
+    const int near = r > zero && lag_modulus(x_t - half) <= r;
+    LAG_REAL x = LAG_SELECT(near, x_t, half - sigma*LAG_SELECT(r > zero, r, zero));
     if (!((x > a && x < b) || (x > b && x < a))) x = half;
     if (!((x > a && x < b) || (x > b && x < a))) break;
     const LAG_REAL fx = f(context, x);
@@ -87,7 +91,7 @@ typedef struct lag_locator {
 
 static inline LAG_REAL lag_locate_sign(LAG_REAL g) {
   const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0);
-  return g > zero ? one : g < zero ? -one : zero;
+  return LAG_SELECT(g > zero, one, LAG_SELECT(g < zero, -one, zero));
 }
 
 /* cos(pi m/8). */
@@ -97,7 +101,8 @@ static inline LAG_REAL lag_locate_cosine(int m) {
                                      LAG_C(0.382683432365089771728459984030398866), LAG_C(0.0)};
   m %= 2*LAG_DEGREE;
   m = m > LAG_DEGREE ? 2*LAG_DEGREE - m : m;
-  return 2*m > LAG_DEGREE ? -quarter[LAG_DEGREE - m] : quarter[m];
+  if (2*m > LAG_DEGREE) return -quarter[LAG_DEGREE - m];
+  return quarter[m];
 }
 
 /* --- one crossing --- */
@@ -155,7 +160,8 @@ static inline int lag_find_crossings(const lag_locator *l, const LAG_REAL *t, co
 /* Time of sample j of the nine in a part of the step: at the Chebyshev extrema, with both ends. */
 static inline LAG_REAL lag_locate_time(LAG_REAL ta, LAG_REAL tb, int j) {
   const LAG_REAL half = LAG_C(0.5);
-  return j == 0 ? ta : j == LAG_DEGREE ? tb : ta + (tb - ta)*(half - half*lag_locate_cosine(j));
+  if (j == 0 || j == LAG_DEGREE) return j ? tb : ta;
+  return ta + (tb - ta)*(half - half*lag_locate_cosine(j));
 }
 
 /* rounding[n] := that of the functions at t: their change with the last digits of the state. */
@@ -180,7 +186,7 @@ static inline void lag_locate_coefficients(const LAG_REAL *value, int stride, LA
   }
   even[LAG_DEGREE/2] = value[LAG_DEGREE/2*stride];
   for (int k = 0; k <= LAG_DEGREE; k++) {
-    LAG_REAL sum = k % 2 ? LAG_C(0.0) : even[LAG_DEGREE/2]*lag_locate_cosine(k*LAG_DEGREE/2);
+    LAG_REAL sum = LAG_SELECT(k % 2, LAG_C(0.0), even[LAG_DEGREE/2]*lag_locate_cosine(k*LAG_DEGREE/2));
     for (int j = 0; j < LAG_DEGREE/2; j++) sum += (k % 2 ? odd[j] : even[j])*lag_locate_cosine(j*k);
     c[k] = sum*(k % LAG_DEGREE ? LAG_C(0.25) : LAG_C(0.125));
   }
