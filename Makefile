@@ -184,7 +184,7 @@ REAL_long := -std=c11 '-DLAG_REAL=long double' '-DLAG_PRECISION="long"'
 REAL_quad := -std=gnu11 -include quadmath.h -DLAG_REAL=__float128 '-DLAG_PRECISION="quad"'
 DIGITS_long := $(if $(filter long,$(PRECISIONS)),$(LONG_DIGITS))
 DIGITS_quad := 36
-RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
+RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h runtime/*/*.def))
 API_HEAD := lag.h lag_libraries.h lag_model.h
 
 %/app/where.o: override CFLAGS += -D_GNU_SOURCE # names of the registers in a signal's context
@@ -230,6 +230,11 @@ $(eval $(call as_text,commands/tutorial.h,models/TUTORIAL.md))
 $(eval $(call as_text,commands/readme.h,README.md))
 $(eval $(call as_text,commands/python.h,$(BUILD)/gen/commands/python.txt))
 $(eval $(call as_text,commands/complete_%.h,src/commands/complete.%))
+$(eval $(call as_text,commands/man_frame.h,src/lagc.1))
+# Options are described once, for simulators and for the compiler.
+$(BUILD)/gen/commands/options.def: runtime/app/options.def
+	@mkdir -p $(@D)
+	cp $< $@
 # How files are written is one text in the compiler and in the runtime, of which neither includes a header of the other's.
 $(BUILD)/gen/toolchain/outfile.%: runtime/io/outfile.%
 	@mkdir -p $(@D)
@@ -263,9 +268,10 @@ $(BUILD)/obj/src/toolchain/toolchain.o: $(BUILD)/gen/toolchain/probe_text.h
 $(BUILD)/obj/src/fmu/fmu.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)
 $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,language python readme tutorial)
 $(BUILD)/obj/src/commands/verify.o: $(BUILD)/gen/commands/verify_driver.h
+$(BUILD)/obj/src/commands/man_page.o: $(BUILD)/gen/commands/man_frame.h
 $(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
-$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(BUILD)/gen/numeric/edit_distance.h
-$(patsubst %,$(BUILD)/obj/src/%.o,toolchain/files commands/build commands/options commands/cost_reference) $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
+$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(BUILD)/gen/commands/options.def $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(BUILD)/gen/numeric/edit_distance.h
+$(patsubst %,$(BUILD)/obj/src/%.o,toolchain/files commands/build commands/command_line commands/cost_reference) $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 $(BUILD)/obj/gen/toolchain/outfile.o $(BUILD)/obj/gen/base/windows.o: | $(BUILD)/gen/base/posix.h
 # Generated code is not ours to warn about.
 $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c | $(BUILD)/gen/lag.tab.h $(BUILD)/gen/lag.lex.h

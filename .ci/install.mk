@@ -43,7 +43,8 @@ endif
 	install -m 644 runtime/python/lagc.py '$(DESTDIR)$(PYTHONDIR)'
 	install -m 644 runtime/matlab/lagc_mex.c '$(DESTDIR)$(PREFIX)/share/lagc'
 	install -m 644 grammar/lag.tmLanguage.json '$(DESTDIR)$(PREFIX)/share/lagc'
-	install -m 644 src/lagc.1 '$(DESTDIR)$(PREFIX)/share/man/man1'
+	if $(BUILD)/lagc$(EXE) manpage >$(BUILD)/lagc.1; then install -m 644 $(BUILD)/lagc.1 '$(DESTDIR)$(PREFIX)/share/man/man1'; \
+	else echo 'no man page: $(BUILD)/lagc$(EXE), which writes it, does not run on this machine'; fi
 	install -m 644 src/commands/complete.bash '$(DESTDIR)$(PREFIX)/share/bash-completion/completions/lagc'
 	install -m 644 src/commands/complete.zsh '$(DESTDIR)$(PREFIX)/share/zsh/site-functions/_lagc'
 	install -m 644 src/commands/complete.fish '$(DESTDIR)$(PREFIX)/share/fish/vendor_completions.d/lagc.fish'

@@ -17,6 +17,11 @@
 
 enum { MEMORY_LIMIT_MIB = 2048 };
 
+static int print_version(void) {
+  puts("lagc " LAGC_VERSION);
+  return fflush(stdout) == 0 ? STATUS_OK : usage_error("cannot write standard output");
+}
+
 static int do_command(Compiler *c) {
   switch (c->o.command) {
     case CMD_CHECK: return command_check(c);
@@ -30,7 +35,15 @@ static int do_command(Compiler *c) {
     case CMD_BUILD: return command_build(c);
     case CMD_RUN: case CMD_PLOT: case CMD_ANIMATE: case CMD_MODES: case CMD_LYAPUNOV: case CMD_COST: case CMD_SWEEP: return command_run(c);
     case CMD_EFFECTS: return command_effects(c);
-    case CMD_METHODS: case CMD_MODELS: case CMD_NEW: case CMD_CACHE: case CMD_HELP: case CMD_VERSION: case CMD_COMPLETION: case CMD_COMPLETE: case CMD_NONE: case CMD_COUNT: break;
+    case CMD_HELP: return command_help(c);
+    case CMD_COMPLETION: case CMD_COMPLETE: return command_completion(c);
+    case CMD_MANPAGE: return command_manpage(c);
+    case CMD_METHODS: return command_methods(c);
+    case CMD_CACHE: return command_cache(c);
+    case CMD_MODELS: return command_models(c);
+    case CMD_NEW: return command_new(c);
+    case CMD_VERSION: return print_version();
+    case CMD_NONE: case CMD_COUNT: break;
   }
   return STATUS_USAGE;
 }
@@ -58,17 +71,7 @@ static int run_lagc(Compiler *c, int argc, char **argv) {
   const char *error;
   c->argv0 = argv[0];
   if (!options_read(c->arena, argc, argv, &c->o, &error)) return usage_error(error);
-  if (c->o.command == CMD_HELP) return command_help(c);
-  if (c->o.command == CMD_COMPLETION || c->o.command == CMD_COMPLETE) return command_completion(c);
-  if (c->o.command == CMD_METHODS) return command_methods(c);
-  if (c->o.command == CMD_CACHE) return command_cache(c);
-  if (c->o.command == CMD_MODELS) return command_models(c);
-  if (c->o.command == CMD_NEW) return command_new(c);
-  if (c->o.command == CMD_VERSION) {
-    puts("lagc " LAGC_VERSION);
-    return fflush(stdout) == 0 ? STATUS_OK : usage_error("cannot write standard output");
-  }
-  return compile(c);
+  return command_reads_model(c->o.command) ? compile(c) : do_command(c);
 }
 
 int main(int argc, char **argv) {

@@ -116,6 +116,25 @@ typedef struct App {
   int bad_errno;        /* and why */
 } App;
 
+#include "app/options.def"
+
+/* What a simulator does: a run, or an analysis in its place. */
+enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, WHERE = 64, REFERENCE = 128, ANY = 255,
+       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | WHERE };
+
+/* A row of options.def. */
+typedef struct Option {
+  const char *name, *brief, *value; /* "--output", "-o" or NULL, the value in help or NULL */
+  OptionTakes takes;
+  const char *hint;
+  unsigned analyses;    /* that take it */
+  size_t field, count;  /* in Args: an int, a text, or a list with its number at count */
+  const char *text;     /* NULL: not in help */
+} Option;
+
+/* Row i; NULL past the end. */
+const Option *lag_args_option(int i);
+
 /* args.c: parses and checks the command line. 0, or EXIT_USAGE after a message. */
 int lag_args_parse(Args *a, int argc, char **argv);
 /* *x := the decimal number that is the whole text, maybe infinite; else 0. Other forms that strtod takes (inf, nan, 0x1p3) are none. */

@@ -69,50 +69,33 @@ int lag_args_count(const Args *a, const char *option, const char *text, const ch
   return 0;
 }
 
-typedef struct Option {
-  const char *name;
-  size_t offset;
-  int is_flag; /* 1: it takes no value; 2: it can be repeated */
-  int takes; /* runs and analyses that use the option */
-} Option;
-
-enum { MODES = 1, COST = 2, LYAPUNOV = 4, EFFECTS = 8, REFERENCE = 16, RUN = 32, WHERE = 64, SWEEP = 128, ANY = 255 };
-
 static const Option options[] = {
-    {"method", offsetof(Args, method), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP},
-    {"tol", offsetof(Args, tol), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP}, {"accuracy", offsetof(Args, accuracy), 0, RUN},
-    {"step", offsetof(Args, step), 0, RUN | LYAPUNOV | EFFECTS | WHERE | SWEEP}, {"until", offsetof(Args, until), 0, ANY & ~MODES},
-    {"every", offsetof(Args, every), 0, RUN | SWEEP}, {"skip", offsetof(Args, skip), 0, RUN}, {"svg", offsetof(Args, svg), 0, RUN | LYAPUNOV | SWEEP},
-    {"plot-x", offsetof(Args, plot_x), 0, ANY}, {"plot-y", offsetof(Args, plot_ys), 2, ANY},
-    {"portrait", offsetof(Args, portrait), 1, RUN}, {"potential", offsetof(Args, potential), 1, RUN},
-    {"distance", offsetof(Args, distance), 1, RUN}, {"energy-error", offsetof(Args, energy_error), 1, RUN},
-    {"html", offsetof(Args, html), 0, RUN}, {"points", offsetof(Args, points), 0, ANY},
-    {"from", offsetof(Args, from), 0, ANY}, {"no-rods", offsetof(Args, no_rods), 1, ANY},
-    {"trace", offsetof(Args, trace), 1, ANY}, {"save-state", offsetof(Args, save), 0, RUN},
-    {"resume", offsetof(Args, resume), 0, RUN}, {"events", offsetof(Args, events), 0, RUN},
-    {"section", offsetof(Args, section), 0, RUN}, {"cloud", offsetof(Args, cloud), 0, RUN}, {"starts", offsetof(Args, starts), 0, RUN}, {"output", offsetof(Args, out), 0, RUN | LYAPUNOV | COST | SWEEP},
-    {"json", offsetof(Args, json), 1, ANY}, {"sketch", offsetof(Args, sketch), 1, RUN | COST},
-    {"quiet", offsetof(Args, quiet), 1, ANY}, {"no-monitors", offsetof(Args, no_monitors), 1, RUN},
-    {"measure", offsetof(Args, measures), 2, RUN | SWEEP}, {"vs", offsetof(Args, vs), 2, RUN}, {"tangent", offsetof(Args, tangent), 1, RUN}, {"volume", offsetof(Args, volume), 1, RUN}, {"modes", offsetof(Args, modes), 1, ANY}, {"steady", offsetof(Args, steady), 1, MODES},
-    {"lyapunov", offsetof(Args, lyapunov), 1, ANY}, {"transient", offsetof(Args, transient), 0, LYAPUNOV},
-    {"exponents", offsetof(Args, exponents), 0, LYAPUNOV}, {"effects", offsetof(Args, effects), 0, ANY},
-    {"help", offsetof(Args, help), 1, ANY}, {"cost", offsetof(Args, cost), 1, ANY},
-    {"reference", offsetof(Args, reference), 1, ANY}, {"target", offsetof(Args, target), 0, COST | EFFECTS},
-    {"seconds", offsetof(Args, seconds), 0, COST | REFERENCE | WHERE | EFFECTS}, {"realtime", offsetof(Args, realtime), 0, COST}, {"methods", offsetof(Args, methods), 0, COST | EFFECTS},
-    {"against", offsetof(Args, against), 0, COST}, {"given", offsetof(Args, given), 0, COST | WHERE}, {"where", offsetof(Args, where), 1, WHERE}, {"error", offsetof(Args, error), 0, COST | REFERENCE}, {"all", offsetof(Args, all), 1, COST}, {"runs", offsetof(Args, runs), 1, COST},
-    {"sweep", offsetof(Args, sweep), 1, ANY}, {"consts", offsetof(Args, consts), 0, SWEEP}, {"zip", offsetof(Args, zip), 1, SWEEP}, {"rows", offsetof(Args, rows), 0, SWEEP}, {"motions", offsetof(Args, motions), 0, SWEEP},
-    {"samples", offsetof(Args, samples), 0, SWEEP}, {"sampling", offsetof(Args, sampling), 0, SWEEP}, {"seed", offsetof(Args, seed), 0, SWEEP},
-    {"threads", offsetof(Args, threads), 0, SWEEP}, {"lanes", offsetof(Args, lanes), 0, SWEEP}, {"mpi", offsetof(Args, mpi), 0, SWEEP}, {"shard", offsetof(Args, shard), 0, SWEEP},
-    {"merge", offsetof(Args, merge), 0, SWEEP}, {"histogram", offsetof(Args, histogram), 0, SWEEP}, {"resume", offsetof(Args, go_on), 1, SWEEP}, {"yes", offsetof(Args, yes), 1, SWEEP},
+#define TO(f) offsetof(Args, f), 0
+#define LIST(f) offsetof(Args, f), offsetof(Args, n##f)
+#define LAGC(...)
+#define BOTH(name, brief, value, takes, hint, commands, analyses, field, text) \
+  {name, brief, value, takes, hint, analyses, field, text},
+#define SIMULATOR(name, value, takes, analyses, field, text) {name, NULL, value, takes, "", analyses, field, text},
+#include "app/options.def"
 };
 enum { NOPTIONS = sizeof options / sizeof *options };
 
-/* Two options of one name are for different analyses: --sweep comes before those that are its own. */
+const Option *lag_args_option(int i) { return i < NOPTIONS ? &options[i] : NULL; }
+
+/* Of the options of one name, which write to other fields in other analyses: --sweep comes before those that are its own. */
 static const Option *find_option(const Args *a, const char *name, size_t n) {
   const Option *found = NULL;
-  for (int i = 0; i < NOPTIONS; i++)
-    if (strlen(options[i].name) == n && memcmp(options[i].name, name, n) == 0 && (!found || (a->sweep && options[i].takes & SWEEP))) found = &options[i];
+  for (int i = 0; i < NOPTIONS; i++) {
+    const Option *o = &options[i];
+    if (strlen(o->name) != n || memcmp(o->name, name, n) != 0) continue;
+    if (!found || (a->sweep && o->analyses & SWEEP)) found = o;
+  }
   return found;
+}
+
+static int is_given(const Args *a, const Option *o) {
+  const void *field = (const char *)a + o->field;
+  return o->takes == TAKES_NOTHING ? *(const int *)field : *(const char *const *)field != NULL;
 }
 
 static int unknown_option(const Args *a, const char *text, size_t n) {
@@ -120,35 +103,36 @@ static int unknown_option(const Args *a, const char *text, size_t n) {
   lag_nearest near = {.name = name};
   snprintf(name, sizeof name, "%.*s", (int)(n < 60 ? n : 60), text);
   for (int i = 0; i < NOPTIONS; i++) lag_try_nearest(&near, options[i].name);
-  return near.best ? lag_app_error(a, "unknown option --%s; did you mean --%s?", name, near.best)
-                   : lag_app_error(a, "unknown option --%s; see --help", name);
+  return near.best ? lag_app_error(a, "unknown option %s; did you mean %s?", name, near.best)
+                   : lag_app_error(a, "unknown option %s; see --help", name);
+}
+
+/* Sets a text, or puts it to the end of a list with room for all arguments. */
+static int set_text(Args *a, const Option *o, int argc, const char *value) {
+  const char **text = (const char **)((char *)a + o->field), ***list = (const char ***)((char *)a + o->field);
+  int *n = (int *)((char *)a + o->count);
+  if (text == &a->starts && a->starts)
+    return lag_app_error(a, "--starts stands twice, %s and %s: one range of runs is drawn", a->starts, value);
+  if (o->count && !*list && !(*list = calloc((size_t)argc, sizeof **list))) return lag_app_error(a, "out of memory");
+  if (o->count) (*list)[(*n)++] = value;
+  else *text = value;
+  return 0;
 }
 
 /* Parses the long option at argv[*i]; its value follows "=" or is the next argument. */
 static int long_option(Args *a, int argc, char **argv, int *i) {
-  const char *name = argv[*i] + 2, *eq = strchr(name, '=');
+  const char *name = argv[*i], *eq = strchr(name, '=');
   size_t n = eq ? (size_t)(eq - name) : strlen(name);
   const Option *o = find_option(a, name, n);
   if (!o) return unknown_option(a, name, n);
-  void *field = (char *)a + o->offset;
-  if (o->is_flag == 1) {
-    if (eq) return lag_app_error(a, "--%s takes no value", o->name);
-    *(int *)field = 1;
+  if (o->takes == TAKES_NOTHING) {
+    if (eq) return lag_app_error(a, "%s takes no value", o->name);
+    *(int *)((char *)a + o->field) = 1;
     return 0;
   }
   const char *value = eq ? eq + 1 : *i + 1 < argc ? argv[++*i] : NULL;
-  if (!value || !*value) return lag_app_error(a, "--%s needs a value; see --help", o->name);
-  if (o->is_flag == 2) {
-    int vs = o->offset == offsetof(Args, vs), plot = o->offset == offsetof(Args, plot_ys);
-    const char ***list = vs ? &a->vs : plot ? &a->plot_ys : &a->measures;
-    if (!*list && !(*list = calloc((size_t)argc, sizeof **list))) return lag_app_error(a, "out of memory");
-    (*list)[vs ? a->nvs++ : plot ? a->nplot_ys++ : a->nmeasures++] = value;
-    a->plot_y = a->nplot_ys ? a->plot_ys[0] : NULL;
-  } else {
-    if (o->offset == offsetof(Args, starts) && a->starts) return lag_app_error(a, "--starts stands twice, %s and %s: one range of runs is drawn", a->starts, value);
-    *(const char **)field = value;
-  }
-  return 0;
+  if (!value || !*value) return lag_app_error(a, "%s needs a value; see --help", o->name);
+  return set_text(a, o, argc, value);
 }
 
 static int one_argument(Args *a, int argc, char **argv, int *i) {
@@ -171,19 +155,40 @@ static int one_argument(Args *a, int argc, char **argv, int *i) {
   return 0;
 }
 
-/* Refuses options that a run, or the analysis that is asked for, does not use. */
-static int check_analysis(const Args *a) {
-  const int what = a->sweep ? SWEEP : a->modes ? MODES : a->where ? WHERE : a->cost ? COST : a->reference ? REFERENCE : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
+/* Refuses an output whose suffix is of another file type than the analysis writes. */
+static int check_files(const Args *a, unsigned what) {
   for (int i = 0; i < NOPTIONS; i++) {
     const Option *o = &options[i];
-    const void *field = (const char *)a + o->offset;
-    int given = o->is_flag == 1 ? *(const int *)field : *(const char *const *)field != NULL;
-    if (!given || o->takes & what) continue;
+    const char *other, *name = o->brief ? o->brief : o->name, *path;
+    if (o->takes != TAKES_FILE || !*o->hint || !(o->analyses & what) || !is_given(a, o)) continue;
+    path = *(const char *const *)((const char *)a + o->field);
+    if ((other = lag_outfile_other_type(path, o->hint)) != NULL)
+      return lag_app_error(a, "%s %s: it writes %s; write %s %.*s%.*s", name, path, lag_outfile_contents(o->hint), name, (int)(other - path), path,
+                           (int)strcspn(o->hint, " "), o->hint);
+  }
+  return 0;
+}
+
+/* The analyses that take this option's field. */
+static unsigned analyses_with(const Option *o) {
+  unsigned all = 0;
+  for (int i = 0; i < NOPTIONS; i++) all |= options[i].field == o->field ? options[i].analyses : 0;
+  return all;
+}
+
+/* Refuses options that a run, or the analysis that is asked for, does not use. */
+static int check_analysis(const Args *a) {
+  const unsigned what = a->sweep ? SWEEP : a->modes ? MODES : a->where ? WHERE : a->cost ? COST : a->reference ? REFERENCE
+                        : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
+  for (int i = 0; i < NOPTIONS; i++) {
+    const Option *o = &options[i];
+    unsigned analyses = analyses_with(o);
+    if (!is_given(a, o) || analyses & what) continue;
     if (what == RUN || what == REFERENCE) {
-      return o->takes & RUN ? lag_app_error(a, "--%s has no meaning for --reference, which takes name=value and --until", o->name)
-                            : lag_app_error(a, "--%s is for %s", o->name, o->takes & COST ? "--cost" : o->takes & SWEEP ? "--sweep" : o->takes & MODES ? "--modes" : "--lyapunov");
+      return analyses & RUN ? lag_app_error(a, "%s has no meaning for --reference, which takes name=value and --until", o->name)
+                            : lag_app_error(a, "%s is for %s", o->name, analyses & COST ? "--cost" : analyses & SWEEP ? "--sweep" : analyses & MODES ? "--modes" : "--lyapunov");
     }
-    return lag_app_error(a, "--%s has no meaning for %s", o->name,
+    return lag_app_error(a, "%s has no meaning for %s", o->name,
                      what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some, and --where takes one"
                      : what == WHERE ? "--where, which takes name=value, --until, --seconds, a method and --json"
                      : what == SWEEP ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
@@ -191,24 +196,7 @@ static int check_analysis(const Args *a) {
                      : what == EFFECTS ? "--effects, which takes name=value, --until and a method"
                                      : "--lyapunov, which takes name=value, --until, --transient, --exponents, a method, -o, --svg and --json");
   }
-  return 0;
-}
-
-/* Refuses an output whose suffix is of another file type than is written. */
-static int check_kinds(const Args *a) {
-  const struct {
-    const char *option, *path, *suffixes, *writes;
-  } files[] = {{"-o", a->out, a->cost ? "svg png csv json" : a->sweep ? "csv npy h5" : "csv npy", a->cost ? "a picture, .svg or .png, or all runs, .csv or .json" : a->sweep ? "CSV, NumPy where the name ends in .npy, or HDF5 where it ends in .h5" : "CSV, or NumPy where the name ends in .npy"},
-               {"--events", a->events, "csv", "CSV"}, {"--motions", a->motions, "csv npy h5", "CSV, NumPy where the name ends in .npy, or HDF5 where it ends in .h5"}, {"--svg", a->svg, "svg png", "SVG, or PNG where the name ends in .png"}, {"--html", a->html, "html htm", "HTML"}};
-
-  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-    const char *path = files[i].path, *other = path ? lag_outfile_other_type(path, files[i].suffixes) : NULL;
-    if (other) {
-      return lag_app_error(a, "%s %s: it writes %s; write %s %.*s%.*s", files[i].option, path, files[i].writes, files[i].option, (int)(other - path), path,
-                       (int)strcspn(files[i].suffixes, " "), files[i].suffixes);
-    }
-  }
-  return 0;
+  return check_files(a, what);
 }
 
 /* --cloud draws one scene by several methods, and writes nothing else. */
@@ -270,7 +258,7 @@ static int check(const Args *a) {
   for (int i = 0; i < 2; i++)
     if (strcmp(LAG_PRECISION, "double") != 0 && rows[i] && (lag_outfile_has_suffix(rows[i], "npy") || lag_outfile_has_suffix(rows[i], "h5"))) /* there is no type of 34 digits */
       return lag_app_error(a, "%s: .npy and .h5 files hold doubles, this run computes in " LAG_PRECISION " precision; write to a .csv file", rows[i]);
-  return check_kinds(a) || check_analysis(a) ? EXIT_USAGE : 0;
+  return check_analysis(a);
 }
 
 int lag_args_parse(Args *a, int argc, char **argv) {
@@ -288,5 +276,6 @@ int lag_args_parse(Args *a, int argc, char **argv) {
     int rc = one_argument(a, argc, argv, &i);
     if (rc) return rc;
   }
+  a->plot_y = a->nplot_ys ? a->plot_ys[0] : NULL;
   return check(a);
 }

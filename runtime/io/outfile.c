@@ -32,6 +32,18 @@ const char *lag_outfile_other_type(const char *path, const char *suffixes) {
   return lag_outfile_has_suffix(path, known) && !lag_outfile_has_suffix(path, suffixes) ? suffix_of(path) : NULL;
 }
 
+const char *lag_outfile_contents(const char *suffixes) {
+  static const char *const contents[][2] = {
+      {"csv npy h5", "CSV, NumPy where the name ends in .npy, or HDF5 where it ends in .h5"},
+      {"csv npy", "CSV, or NumPy where the name ends in .npy"}, {"csv", "CSV"}, {"html htm", "HTML"},
+      {"svg png csv json", "a picture, .svg or .png, or all runs, .csv or .json"},
+      {"svg png", "SVG, or PNG where the name ends in .png"}, {"h hpp", "a C header"}, {"tex", "LaTeX"}, {"json", "JSON"},
+      {"fmu", "an FMU"}, {"c", "C"}};
+  for (size_t i = 0; i < sizeof contents / sizeof *contents; i++)
+    if (strcmp(contents[i][0], suffixes) == 0) return contents[i][1];
+  return "text";
+}
+
 /* Removes temporary files of `path` left from killed runs: regular files of the user that no process has locked. */
 static void remove_remains(const char *path) {
   const char *name = name_in(path);

@@ -4,11 +4,12 @@
 
 #include <stddef.h>
 
+#include "commands/options.def" /* OptionTakes; generated: a copy of runtime/app/options.def */
 #include "model/model.h"
 
 typedef enum {
   CMD_NONE, CMD_CHECK, CMD_VERIFY, CMD_DERIVE, CMD_NOETHER, CMD_ACTION, CMD_RUN, CMD_PLOT, CMD_ANIMATE, CMD_MODES, CMD_LYAPUNOV, CMD_COST, CMD_SWEEP, CMD_EFFECTS, CMD_METHODS, CMD_MODELS, CMD_NEW, CMD_CACHE, CMD_BUILD, CMD_HEADER, CMD_EMIT, CMD_FMU,
-  CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE, CMD_COUNT
+  CMD_HELP, CMD_COMPLETION, CMD_VERSION, CMD_COMPLETE, CMD_MANPAGE, CMD_COUNT
 } Command;
 
 typedef VEC(const char *) OptionTexts;
@@ -74,21 +75,6 @@ typedef struct {
   const char *does;      /* summary in a few words; NULL: not listed */
   const char *help;      /* paragraphs; lines that begin with white space are preformatted */
 } CommandRow;
-
-/* Kind of an option's value: decides how it is parsed and completed. */
-typedef enum {
-  TAKES_NOTHING,
-  TAKES_TEXT,
-  TAKES_NUMBER,
-  TAKES_FILE,    /* hint: allowed suffixes, separated by spaces; "" for any */
-  TAKES_CHOICE,  /* hint: the choices, separated by spaces */
-  TAKES_CHOICES, /* one or more choices, separated by commas */
-  TAKES_METHOD,
-  TAKES_PARAMS,  /* names of parameters, separated by commas, or the hint */
-  TAKES_EXPR,    /* an expression of the model */
-  TAKES_EXPRS,   /* an expression; repeated options make a list */
-  TAKES_DEFINE   /* CONST=VALUE */
-} OptionTakes;
 
 typedef struct {
   const char *name;  /* "--output" */

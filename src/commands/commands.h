@@ -35,6 +35,7 @@ uint32_t models_list(Compiler *c, const char *word, StrBuf *out);
 int command_help(Compiler *c);
 int command_methods(Compiler *c);
 int command_completion(Compiler *c);
+int command_manpage(Compiler *c);
 int command_cache(Compiler *c);
 int command_models(Compiler *c);
 int command_new(Compiler *c);

@@ -275,7 +275,7 @@ refused "a value that is not tried" 'gauss(stages=1) to 4' models/pendulum.lag -
 refused "a target of zero" 'example --target 1e-8' models/pendulum.lag --target 0
 refused "no time to spend" 'example --seconds 60' models/pendulum.lag --seconds 0
 refused "a time in words" 'is not a number' models/pendulum.lag --seconds long
-refused "a picture of another kind" 'cost writes SVG' models/pendulum.lag -o cost.jpg
+refused "a picture of another kind" 'cost writes a picture, .svg or .png' models/pendulum.lag -o cost.jpg
 refused "no time to run" 'nothing to compute' models/pendulum.lag --until 0
 refused "a tolerance" '--where takes one' models/pendulum.lag --tol 1e-9
 echo garbage >"$TMP/garbage"

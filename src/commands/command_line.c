@@ -84,10 +84,7 @@ static int check_kind(Arena *a, Command c, const OptionRow *row, const char *pat
   const char *other = lag_outfile_other_type(path, suffixes), *name = row->brief ? row->brief : row->name;
   if (!other) return 1;
   const char *writer = row->brief ? command_find(c)->name : row->name, *way = row->brief ? advice_for_suffix(c, other) : "";
-  const char *kind = !*suffixes ? (c == CMD_BUILD ? "a program" : "text")
-                   : has_word_n(suffixes, "h5", 2) ? "CSV, NumPy where the name ends in .npy, or HDF5 where it ends in .h5" : has_word_n(suffixes, "npy", 3) ? "CSV, or NumPy where the name ends in .npy"
-                   : has_word_n(suffixes, "svg", 3) ? "SVG" : has_word_n(suffixes, "html", 4) ? "HTML" : has_word_n(suffixes, "h", 1) ? "a C header"
-                   : has_word_n(suffixes, "tex", 3) ? "LaTeX" : has_word_n(suffixes, "json", 4) ? "JSON" : has_word_n(suffixes, "fmu", 3) ? "an FMU" : "C";
+  const char *kind = !*suffixes && c == CMD_BUILD ? "a program" : lag_outfile_contents(suffixes);
   int stem = (int)(other - path) - !*suffixes;
   return fail_with(error, arena_printf(a, "%s %s: %s writes %s%s; write %s %.*s%.*s", name, path, writer, kind, way, name, stem, path,
                                        (int)strcspn(suffixes, " "), suffixes));
