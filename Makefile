@@ -187,7 +187,7 @@ DIGITS_quad := 36
 RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h runtime/*/*.def))
 API_HEAD := lag.h lag_libraries.h lag_model.h
 
-%/app/where.o: override CFLAGS += -D_GNU_SOURCE # names of the registers in a signal's context
+%/app/profile_run.o: override CFLAGS += -D_GNU_SOURCE # names of the registers in a signal's context
 define precision_rules
 $(BUILD)/gen/$(1)/%: runtime/% runtime/precision.awk
 	@mkdir -p $$(@D)
@@ -265,7 +265,7 @@ $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
 $(BUILD)/obj/src/emit/embedded_math.o: $(patsubst %,$(BUILD)/gen/emit/lag_%.h,math sincos kkt) $(patsubst runtime/kernels/%.h,$(BUILD)/gen/emit/%_kernel.h,$(wildcard runtime/kernels/*.h))
 $(BUILD)/obj/src/emit/header_steps.o: $(patsubst %,$(BUILD)/gen/emit/%_text.h,composition dop853 rk4 rk45)
 $(BUILD)/obj/src/toolchain/toolchain.o: $(BUILD)/gen/toolchain/probe_text.h
-$(BUILD)/obj/src/fmu/fmu.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)
+$(BUILD)/obj/src/fmu/fmu_archive.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)
 $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,language python readme tutorial)
 $(BUILD)/obj/src/commands/verify.o: $(BUILD)/gen/commands/verify_driver.h
 $(BUILD)/obj/src/commands/man_page.o: $(BUILD)/gen/commands/man_frame.h

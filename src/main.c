@@ -1,6 +1,6 @@
 /* lagc: reads the command line, compiles, and exits.
  *
- *   text --parse--> Ast --model_build--> Model --equations_of--> Eqns --unit_new--> IrUnit --emit--> C
+ *   text --parse--> Ast --model_build--> Model --equations_of--> Eqns --unit_new--> ProgramSet --emit--> C
  *        compiler_read     compiler_derive                       compiler_lower_scene
  *
  * These stages stand in commands/compiler.c; what a command does with them, in commands/NAME.c.

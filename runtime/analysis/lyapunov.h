@@ -36,7 +36,7 @@ void lag_lyapunov_free(Lyapunov *l);
 int lag_lyapunov_step(Lyapunov *l, lag_sim *sim);
 
 /* Before an event changes the state, at time t, from `before`[n]: call it from the hook of lag_sim_on_event. Events enter by their saltation
- * matrices S (core/tangent.c): vectors are multiplied by S, volumes by its determinant. */
+ * matrices S (core/flow_tangent.c): vectors are multiplied by S, volumes by its determinant. */
 void lag_lyapunov_event(Lyapunov *l, lag_sim *sim, double t, const double *before);
 
 /* At the end of the run: closes the last block if it is at least half full. */

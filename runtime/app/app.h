@@ -175,7 +175,7 @@ int lag_app_unknown_method(const App *app, const char *name);
 /* Chooses a method with these options for app->sim, whose values are set; app->why := the reason. 0, or EXIT_USAGE after a message. */
 int lag_app_choose_automatically(App *app, const lag_option *opt, int n);
 
-/* help.c: --help; the table of all methods, or of the one of this name. */
+/* simulator_help.c: --help; the table of all methods, or of the one of this name. */
 void lag_app_help(const App *app, FILE *f);
 void lag_app_list_methods(const App *app, const char *name, FILE *f);
 
@@ -226,13 +226,13 @@ int lag_app_check_outputs(const App *app);
 int lag_app_run(App *app);
 void lag_app_free(App *app);
 
-/* overlay.c: whether the command line names several scenes or methods, or --vs, for one picture; draws it and returns the exit status. */
+/* multi_run_plot.c: whether the command line names several scenes or methods, or --vs, for one picture; draws it and returns the exit status. */
 int lag_app_overlays(const Args *a);
 /* Length of the first method in a list with commas; those between the parentheses of options separate none. */
 size_t lag_app_method_length(const char *list);
 int lag_app_overlay(App *app);
 
-/* cloud.c: --cloud. Returns the exit status. */
+/* area_plot.c: --cloud. Returns the exit status. */
 int lag_app_cloud(App *app);
 
 /* event_log.c: --section. 0, or EXIT_USAGE after a message. */
@@ -245,7 +245,7 @@ int lag_tangent_columns_row(App *app);
 void lag_report_tangent(App *app, FILE *f);
 void lag_report_tangent_json(App *app, Json *j);
 
-/* phase_volume.c: --volume. open: gives the run its tangent; 0, or EXIT_USAGE after a message. step: at the end of each step; a failure ends the run. */
+/* volume_report.c: --volume. open: gives the run its tangent; 0, or EXIT_USAGE after a message. step: at the end of each step; a failure ends the run. */
 int lag_app_volume_open(App *app);
 void lag_app_volume_step(App *app);
 void lag_report_volume(App *app, FILE *f);
@@ -279,13 +279,13 @@ const char *lag_growth_name(ErrorGrowth growth);
 void lag_report_error(const App *app, FILE *f);
 void lag_report_error_json(const App *app, Json *j);
 
-/* lyapunov.c: --lyapunov. Returns the exit status. */
+/* lyapunov_report.c: --lyapunov. Returns the exit status. */
 int lag_app_lyapunov(App *app);
 
-/* modes.c: --modes. Returns the exit status. */
+/* modes_report.c: --modes. Returns the exit status. */
 int lag_app_modes(App *app);
 
-/* effects.c: --effects. Returns the exit status. */
+/* effect_costs.c: --effects. Returns the exit status. */
 int lag_app_effects(App *app);
 
 /* sweep.c: --sweep. Returns the exit status. */
@@ -293,7 +293,7 @@ int lag_app_sweep(App *app);
 
 /* cost.c: --cost and --reference. Returns the exit status. */
 int lag_app_cost(App *app);
-/* where.c: --cost --where. Returns the exit status. */
+/* profile_run.c: --cost --where. Returns the exit status. */
 int lag_app_where(App *app);
 
 /* Prints that a file cannot be written, with errno; returns EXIT_USAGE. */

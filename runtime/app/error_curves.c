@@ -1,4 +1,4 @@
-/* Curves of differences, on a logarithmic axis: of the energy, less the work of forces, from its first value (--energy-error). (overlay.c: the distance of runs, --distance.) */
+/* Curves of differences, on a logarithmic axis: of the energy, less the work of forces, from its first value (--energy-error). (multi_run_plot.c: the distance of runs, --distance.) */
 #include <math.h>
 #include <string.h>
 

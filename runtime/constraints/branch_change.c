@@ -3,7 +3,7 @@
  *
  * Several motions meet where constraints become dependent, as of bars that come to lie in one line. A step that ends there, or near there on
  * another branch, has velocities at its ends whose mean is not the displacement over the time. Without this check a rhomb went on with another
- * energy. rk45 and dop853 choose the ends of their steps so that they pass (methods/embedded.c), except with adapt=off. */
+ * energy. rk45 and dop853 choose the ends of their steps so that they pass (methods/adaptive_rk.c), except with adapt=off. */
 #include <math.h>
 
 #include "core/core.h"

@@ -1,6 +1,6 @@
 /* Contacts: gaps that stay at least 0. Enters: a state set by an event or a user; leaves: the state after all impacts, with the gaps closed that
  * are pressed. Holds: a closed gap is a constraint of the model, switched on by its input in `hold` (1); no closed gap pulls; an open gap that
- * touches is armed anew, so that its next closing is seen. Constraints with a condition (conditional.c) count as other constraints here.
+ * touches is armed anew, so that its next closing is seen. Constraints with a condition (conditional_constraints.c) count as other constraints here.
  *
  * Impacts that follow each other ever faster come to an end in finite time (a ball that loses a fifth of its speed at each bounce). The gap is
  * closed when the rest of that time is too short to matter, or the next flight stays within rounding; Brogliato, Nonsmooth Mechanics, 3rd ed.
@@ -77,19 +77,19 @@ static int make_room(ContactSet *w) {
   w->block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
-  w->part = calloc(4 * p, 1);
-  w->in = w->part + p;
-  w->was = w->in + p;
-  w->follows = w->was + p;
-  return w->block && w->of && w->at && w->part ? LAG_OK : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
+  w->active = calloc(4 * p, 1);
+  w->closed = w->active + p;
+  w->was_closed = w->closed + p;
+  w->follows = w->was_closed + p;
+  return w->block && w->of && w->at && w->active ? LAG_OK : lag_fail(w->sim, LAG_ENOMEM, "out of memory");
 }
 
 static void free_contacts(ContactSet *w) {
   free(w->block);
   free(w->of);
   free(w->at);
-  free(w->part);
-  free(w->W);
+  free(w->active);
+  free(w->response);
 }
 
 int lag_contacts_rates(ContactSet *w, const double *y, double *rate) {
@@ -118,7 +118,7 @@ static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
   *w = (ContactSet){.sim = s, .y = y};
   int rc = make_room(w), nq = pb->nq;
   if (rc) return rc;
-  for (int i = 0; i < m->ncontacts; i++) w->was[i] = s->hold[m->contacts[i].input] > 0.5;
+  for (int i = 0; i < m->ncontacts; i++) w->was_closed[i] = s->hold[m->contacts[i].input] > 0.5;
   rc = lag_contacts_rates(w, y, w->rate);
   for (int i = 0; i < m->ncontacts; i++) {
     if (m->contacts[i].conditional) continue;
@@ -179,17 +179,17 @@ static double restitution(ContactSet *w, int i) {
 /* Computes W for the contacts of[n]. */
 static int find_responses(ContactSet *w) {
   size_t n = (size_t)w->rows;
-  double *x = w->W = calloc(2 * n * n + 3 * n + 1, sizeof *x);
+  double *x = w->response = calloc(2 * n * n + 3 * n + 1, sizeof *x);
   if (!x) return lag_fail(w->sim, LAG_ENOMEM, "out of memory");
-  w->M = x + n * n;
-  w->pull = w->M + n * n;
-  w->push = w->pull + n;
-  w->scale = w->push + n;
+  w->lcp = x + n * n;
+  w->rhs = w->lcp + n * n;
+  w->impulse = w->rhs + n;
+  w->scale = w->impulse + n;
   for (int a = 0; a < w->rows; a++) {
     double to = lag_contacts_response(w, w->of[a]);
     if (!isfinite(to)) return lag_contacts_no_values(w, w->of[a]);
-    for (int b = 0; b < w->rows; b++) w->W[b * w->rows + a] = to * change_of_rate(w, w->of[b], w->d);
-    w->W[a * w->rows + a] = to;
+    for (int b = 0; b < w->rows; b++) w->response[b * w->rows + a] = to * change_of_rate(w, w->of[b], w->d);
+    w->response[a * w->rows + a] = to;
   }
   return LAG_OK;
 }
@@ -201,8 +201,8 @@ static int fail_incompatible(ContactSet *w, int a) {
   int against = -1;
   double most = 0;
   for (int b = 0; b < w->n && a >= 0; b++)
-    if (w->part[b] && w->W[a * w->n + b] < most) {
-      most = w->W[a * w->n + b];
+    if (w->active[b] && w->response[a * w->n + b] < most) {
+      most = w->response[a * w->n + b];
       against = b;
     }
   if (against >= 0) {
@@ -216,19 +216,19 @@ static int fail_incompatible(ContactSet *w, int a) {
 static int complement(ContactSet *w, const double *q) {
   int m = 0, n = w->n, row = -1;
   for (int a = 0; a < n; a++)
-    if (w->part[a]) {
+    if (w->active[a]) {
       w->at[m] = a;
-      w->push[m++] = q[a];
+      w->impulse[m++] = q[a];
     }
-  for (int k = 0; k < m * m; k++) w->M[k] = w->W[w->at[k / m] * n + w->at[k % m]];
-  int found = lag_solve_lcp(m, w->M, w->push, w->scale, w->in, &row);
-  for (int k = n - 1; k >= m; k--) w->in[k] = w->follows[k] = 0;
+  for (int k = 0; k < m * m; k++) w->lcp[k] = w->response[w->at[k / m] * n + w->at[k % m]];
+  int found = lag_solve_lcp(m, w->lcp, w->impulse, w->scale, w->closed, &row);
+  for (int k = n - 1; k >= m; k--) w->closed[k] = w->follows[k] = 0;
   for (int k = m - 1; k >= 0; k--) { /* back to their places, which are not lower */
-    double push = w->push[k];
-    unsigned char in = w->in[k], follows = !in && w->M[k * m + k] <= lag_lcp_zero_pivot;
-    w->push[k] = w->in[k] = w->follows[k] = 0;
-    w->push[w->at[k]] = push;
-    w->in[w->at[k]] = in;
+    double push = w->impulse[k];
+    unsigned char in = w->closed[k], follows = !in && w->lcp[k * m + k] <= lag_lcp_zero_pivot;
+    w->impulse[k] = w->closed[k] = w->follows[k] = 0;
+    w->impulse[w->at[k]] = push;
+    w->closed[w->at[k]] = in;
     w->follows[w->at[k]] = follows;
   }
   return found ? LAG_OK : fail_incompatible(w, row < 0 ? -1 : w->at[row]);
@@ -240,14 +240,14 @@ static int impact(ContactSet *w, const double *e, const unsigned char *struck) {
   int nq = s->pb.nq;
   double dir = s->run->dir;
   for (int a = 0; a < w->n; a++) {
-    w->part[a] = 1;
-    w->pull[a] = dir * w->rate[w->of[a]] * (struck[a] ? 1 + e[a] : 1);
+    w->active[a] = 1;
+    w->rhs[a] = dir * w->rate[w->of[a]] * (struck[a] ? 1 + e[a] : 1);
   }
-  int rc = complement(w, w->pull);
+  int rc = complement(w, w->rhs);
   if (rc) return rc;
-  close_contacts(w, w->in);
+  close_contacts(w, w->closed);
   memset(w->g, 0, (size_t)s->pb.model->constraints->n * sizeof *w->g);
-  for (int a = 0; a < w->n; a++) w->g[lag_contacts_at(w, a)->constraint] = w->in[a] ? -dir * w->pull[a] : 0;
+  for (int a = 0; a < w->n; a++) w->g[lag_contacts_at(w, a)->constraint] = w->closed[a] ? -dir * w->rhs[a] : 0;
   rc = lag_least_change(&s->pb, s->run->t, w->y, 0, w->g, w->d, w->force);
   for (int i = 0; i < nq; i++) w->y[nq + i] += w->d[i];
   return rc || lag_not_finite(nq, w->d) >= 0 || lag_contacts_rates(w, w->y, w->rate) ? lag_contacts_no_values(w, w->of[0]) : LAG_OK;
@@ -261,7 +261,7 @@ static int find_pulls(ContactSet *w) {
     lag_contacts_close_only(w, 0, w->of[a]);
     int rc = lag_events_eval(w->sim, w->sim->run->t, w->y, w->events);
     if (rc) return rc;
-    w->pull[a] = -w->W[a * w->n + a] * w->events[lag_contacts_at(w, a)->release];
+    w->rhs[a] = -w->response[a * w->n + a] * w->events[lag_contacts_at(w, a)->release];
   }
   return LAG_OK;
 }
@@ -279,18 +279,18 @@ static int none_pulls(ContactSet *w, const unsigned char *closed) {
   return most > 0 && least >= 0;
 }
 
-/* w->in := contacts that stay closed under forces: those that press, and those that depend on them where they share the load and none pulls.
+/* w->closed := contacts that stay closed under forces: those that press, and those that depend on them where they share the load and none pulls.
  * acceleration[n] := of each gap then. y does not change; contacts are left open. */
 static int contacts_at_rest(ContactSet *w, double *acceleration) {
   int n = w->n, rc = find_pulls(w), more = 0;
-  rc = rc ? rc : complement(w, w->pull);
+  rc = rc ? rc : complement(w, w->rhs);
   for (int a = 0; a < n && rc == 0; a++) {
-    acceleration[a] = w->pull[a];
-    for (int b = 0; b < n; b++) acceleration[a] += w->in[b] ? w->W[a * n + b] * w->push[b] : 0;
+    acceleration[a] = w->rhs[a];
+    for (int b = 0; b < n; b++) acceleration[a] += w->closed[b] ? w->response[a * n + b] * w->impulse[b] : 0;
     more |= w->follows[a];
-    w->follows[a] |= w->in[a];
+    w->follows[a] |= w->closed[a];
   }
-  if (more && none_pulls(w, w->follows)) memcpy(w->in, w->follows, (size_t)n);
+  if (more && none_pulls(w, w->follows)) memcpy(w->closed, w->follows, (size_t)n);
   lag_contacts_close_only(w, 0, -1);
   return rc;
 }
@@ -322,7 +322,7 @@ static int find_touching(ContactSet *w, const char *who, int event) {
       return lag_fail(s, LAG_EINVAL, "%s is inside the contact %s: its gap is %.3g%s%s", who, of->name, w->gap[i], of->unit[0] ? " " : "", of->unit);
     }
     if (c->is_tangent) continue;
-    if (c->impact == event || c->release == event || w->was[i] || w->gap[i] <= lag_no_gap * w->gap_size[i]) w->of[w->n++] = i;
+    if (c->impact == event || c->release == event || w->was_closed[i] || w->gap[i] <= lag_no_gap * w->gap_size[i]) w->of[w->n++] = i;
   }
   w->rows = w->n;
   for (int a = 0; a < w->n; a++) {
@@ -380,7 +380,7 @@ static int apply_impacts(ContactSet *w, const unsigned char *ends, double *befor
 
 /* ---- resting contacts */
 
-/* w->in, acceleration[n] of the contacts that take part. */
+/* w->closed, acceleration[n] of the contacts that take part. */
 static int find_closed(ContactSet *w, int event, double *acceleration) {
   return w->rows > w->n ? lag_contacts_choose_modes(w, event, acceleration) : contacts_at_rest(w, acceleration);
 }
@@ -390,13 +390,13 @@ static int rest(ContactSet *w, int event, unsigned char *ends, const double *bef
   double dir = w->sim->run->dir;
   for (int a = 0; a < w->n; a++) {
     double after = dir * w->rate[w->of[a]];
-    w->part[a] = after <= lag_no_gap * w->rate_size[w->of[a]] || after <= no_speed * fabs(before[a]) || ends[a];
+    w->active[a] = after <= lag_no_gap * w->rate_size[w->of[a]] || after <= no_speed * fabs(before[a]) || ends[a];
   }
   int rc = find_closed(w, event, acceleration), more = 0;
   for (int a = 0; a < w->n && rc == 0; a++) { /* its flight would stay within rounding */
     double after = w->rate[w->of[a]], back = -2 * acceleration[a] * no_flight * w->gap_size[w->of[a]];
-    if (!w->part[a] && after * after <= back) {
-      w->part[a] = ends[a] = 1;
+    if (!w->active[a] && after * after <= back) {
+      w->active[a] = ends[a] = 1;
       more = 1;
     }
   }
@@ -407,8 +407,8 @@ static int rest(ContactSet *w, int event, unsigned char *ends, const double *bef
 static int close_gaps(ContactSet *w) {
   lag_sim *s = w->sim;
   for (int a = 0; a < w->n; a++)
-    if (w->was[w->of[a]] && !w->in[a]) lag_mark_due(s, s->scene->model->contacts[w->of[a]].release);
-  close_contacts(w, w->in);
+    if (w->was_closed[w->of[a]] && !w->closed[a]) lag_mark_due(s, s->scene->model->contacts[w->of[a]].release);
+  close_contacts(w, w->closed);
   if (w->rows > w->n) lag_contacts_set_friction(w);
   if (lag_project(&s->pb, s->run->t, w->y, NULL) == LAG_OK) return LAG_OK;
   return lag_fail(s, LAG_EMODEL, "at t = %.9g s contacts cannot stay closed: %s", s->run->t, s->pb.detail ? s->pb.detail : "");
@@ -450,7 +450,7 @@ static int resolve_contacts(ContactSet *w, const char *who, int event, int last)
   return rc;
 }
 
-/* ---- contacts that are met by impulses (methods/contact_step.c) */
+/* ---- contacts that are met by impulses (methods/moreau_contacts.c) */
 
 void lag_contact_mute(const lag_sim *s, double *g) {
   const lag_model *m = s->scene->model;

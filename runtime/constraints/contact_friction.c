@@ -130,7 +130,7 @@ static int share_forces(lag_problem *pb, double t, const double *y) {
   return find_friction(pb, t, y);
 }
 
-int lag_rub(lag_problem *pb, double t, const double *y) {
+int lag_contact_friction_forces(lag_problem *pb, double t, const double *y) {
   for (int i = 0; i < pb->model->ncontacts; i++)
     if (side_of(pb, i) == 0) return share_forces(pb, t, y);
   return find_friction(pb, t, y);
@@ -174,10 +174,10 @@ static int strike(ContactSet *w, int a, double e) {
   lag_sim *s = w->sim;
   int rows = w->rows, t = w->at[a], nq = s->pb.nq;
   double mu = t < 0 ? 0 : w->law[3 * w->of[t]], back = t < 0 ? 0 : w->law[3 * w->of[t] + 1], P[2];
-  double W[4] = {w->W[a * rows + a], 0, 0, 1}, v[2] = {w->rate[w->of[a]], t < 0 ? 0 : w->rate[w->of[t]]};
+  double W[4] = {w->response[a * rows + a], 0, 0, 1}, v[2] = {w->rate[w->of[a]], t < 0 ? 0 : w->rate[w->of[t]]};
   if (t >= 0) {
-    W[1] = W[2] = w->W[a * rows + t];
-    W[3] = w->W[t * rows + t];
+    W[1] = W[2] = w->response[a * rows + t];
+    W[3] = w->response[t * rows + t];
   }
   double gain = lag_planar_impact(W, v, t < 0 ? LAG_IMPACT_STRONGE : lag_contacts_at(w, t)->law, mu, e, back, P);
   if (!(gain == 0)) return fail_impact(w, a, t, gain);
@@ -185,7 +185,7 @@ static int strike(ContactSet *w, int a, double e) {
     double to = lag_contacts_response(w, w->of[k ? t : a]);
     for (int i = 0; i < nq; i++) w->y[nq + i] += P[k] * to * w->d[i];
   }
-  for (int k = w->n; k < rows; k++) w->was[w->of[k]] = 0; /* what stuck may slip */
+  for (int k = w->n; k < rows; k++) w->was_closed[w->of[k]] = 0; /* what stuck may slip */
   return lag_not_finite(nq, w->y + nq) >= 0 || lag_contacts_rates(w, w->y, w->rate) ? lag_contacts_no_values(w, w->of[a]) : LAG_OK;
 }
 
@@ -215,7 +215,7 @@ static int find_free_accelerations(ContactSet *w) {
     lag_contacts_close_only(w, 0, w->of[a]);
     int rc = lag_contact_laws(w->sim, w->y, w->law);
     if (rc) return rc;
-    w->pull[a] = -w->W[a * w->rows + a] * w->law[3 * w->of[a] + 2];
+    w->rhs[a] = -w->response[a * w->rows + a] * w->law[3 * w->of[a] + 2];
   }
   return LAG_OK;
 }
@@ -226,7 +226,7 @@ static int fail_paradox(ContactSet *w, const lag_touch *of, int n, int motions) 
   double least = HUGE_VAL;
   for (int k = 0; k < n; k++) { /* the contact that comes closest to jamming */
     int a = of[k].contact, t = w->at[a];
-    double limit = t < 0 ? HUGE_VAL : w->W[a * w->rows + a] / fabs(w->W[a * w->rows + t]);
+    double limit = t < 0 ? HUGE_VAL : w->response[a * w->rows + a] / fabs(w->response[a * w->rows + t]);
     if (limit >= least) continue;
     least = limit;
     worst = a;
@@ -241,7 +241,7 @@ static int list_touches(const ContactSet *w, int event, lag_touch *of, int *row,
   const lag_model *m = w->sim->scene->model;
   *n = 0;
   for (int a = 0; a < w->n; a++) {
-    if (!w->part[a]) continue;
+    if (!w->active[a]) continue;
     if (*n == LAG_MOST_TOUCHES) return -1;
     of[*n] = (lag_touch){.contact = a, .tangent = -1};
     row[(*n)++] = a;
@@ -254,7 +254,7 @@ static int list_touches(const ContactSet *w, int event, lag_touch *of, int *row,
     double slip = w->rate[w->of[t]];
     of[k].mu = w->law[3 * w->of[t]];
     of[k].hold = w->law[3 * w->of[row[k]]];
-    of[k].slip = fabs(slip) <= lag_no_gap * w->rate_size[w->of[t]] || c->impact == event || w->was[w->of[t]] ? 0 : slip > 0 ? 1 : -1;
+    of[k].slip = fabs(slip) <= lag_no_gap * w->rate_size[w->of[t]] || c->impact == event || w->was_closed[w->of[t]] ? 0 : slip > 0 ? 1 : -1;
     of[k].cannot_stick = c->release == event;
     of[k].tangent = rows;
     row[rows++] = t;
@@ -266,22 +266,22 @@ int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration) {
   lag_sim *s = w->sim;
   lag_touch of[LAG_MOST_TOUCHES];
   int row[2 * LAG_MOST_TOUCHES], n, rows = list_touches(w, event, of, row, &n);
-  for (int a = 0; a < w->n; a++) w->in[a] = 0;
+  for (int a = 0; a < w->n; a++) w->closed[a] = 0;
   if (rows < 0) return lag_fail(s, LAG_EMODEL, "at t = %.9g s more than %d contacts touch at once, some of them with friction, which only moreau follows: take --method \"moreau(step=1e-3)\"", s->run->t, LAG_MOST_TOUCHES);
   int rc = find_free_accelerations(w);
   double W[4 * LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], pull[2 * LAG_MOST_TOUCHES], x[2 * LAG_MOST_TOUCHES], room[2 * LAG_MOST_TOUCHES * (2 * LAG_MOST_TOUCHES + 5)];
   for (int i = 0; i < rows && rc == 0; i++) {
-    pull[i] = w->pull[row[i]];
-    for (int j = 0; j < rows; j++) W[i * rows + j] = w->W[row[i] * w->rows + row[j]];
+    pull[i] = w->rhs[row[i]];
+    for (int j = 0; j < rows; j++) W[i * rows + j] = w->response[row[i] * w->rows + row[j]];
   }
   int motions = rc ? 0 : n == 0 ? 1 : lag_contact_modes(n, of, rows, W, pull, x, room);
   if (rc || motions != 1) return rc ? rc : fail_paradox(w, of, n, motions);
   for (int a = 0; a < w->n; a++) {
-    acceleration[a] = w->pull[a];
-    for (int k = 0; k < rows; k++) acceleration[a] += w->W[a * w->rows + row[k]] * x[k];
+    acceleration[a] = w->rhs[a];
+    for (int k = 0; k < rows; k++) acceleration[a] += w->response[a * w->rows + row[k]] * x[k];
   }
   for (int k = 0; k < n; k++) {
-    w->in[row[k]] = of[k].mode != LAG_CONTACT_OPEN;
+    w->closed[row[k]] = of[k].mode != LAG_CONTACT_OPEN;
     w->side[row[k]] = of[k].mode == LAG_CONTACT_SLIPS ? of[k].to : of[k].shared ? 0 : (double)NAN;
   }
   lag_contacts_close_only(w, 0, -1);
@@ -291,9 +291,9 @@ int lag_contacts_choose_modes(ContactSet *w, int event, double *acceleration) {
 void lag_contacts_set_friction(ContactSet *w) {
   lag_sim *s = w->sim;
   for (int a = 0; a < w->n; a++) {
-    if (w->at[a] < 0 || !w->in[a]) continue;
+    if (w->at[a] < 0 || !w->closed[a]) continue;
     int i = w->of[w->at[a]], slips = fabs(w->side[a]) > 0;
-    if (w->was[i] && slips) lag_mark_due(s, s->scene->model->contacts[i].release);
+    if (w->was_closed[i] && slips) lag_mark_due(s, s->scene->model->contacts[i].release);
     lag_contact_set_closed(s, i, !slips);
     s->hold[s->scene->model->contacts[i].force] = w->side[a];
   }

@@ -5,21 +5,21 @@
 
 #include "core/core.h"
 
-/* All contacts of a model at a state: gaps, rates and the sizes of their terms; and of[n], the contacts that touch, with W: impulses L change
- * their rates by W L, where all constraints hold. Memory is freed by free_contacts. */
+/* All contacts of a model at a state: gaps, rates and the sizes of their terms; and of[n], the contacts that touch, with the response: impulses L change
+ * their rates by response L, where all constraints hold. Memory is freed by free_contacts. */
 typedef struct ContactSet {
   lag_sim *sim;
   double *y;                    /* [n of the state] */
   int n, *of;
   int rows;                     /* n, and behind them in of[] the tangents of those with friction */
   double *gap, *rate, *gap_size, *rate_size; /* [contacts] */
-  double *W;                    /* [n n] */
-  double *pull;                 /* [n] acceleration of each gap while all are open */
-  double *push;                 /* [n] impulses, or forces */
-  double *M, *scale;            /* [n n], [n] matrix and scales of the complementarity problem, whose row k is contact at[k] */
+  double *response;             /* [n n] */
+  double *rhs;                  /* [n] acceleration of each gap while all are open */
+  double *impulse;              /* [n] impulses, or forces */
+  double *lcp, *scale;          /* [n n], [n] matrix and scales of the complementarity problem, whose row k is contact at[k] */
   int *at;
-  unsigned char *part, *in;     /* [n] takes part; pushes */
-  unsigned char *was;           /* [contacts] closed before */
+  unsigned char *active, *closed; /* [n] takes part; pushes */
+  unsigned char *was_closed;    /* [contacts] closed before */
   unsigned char *follows;       /* [n] its gap is held by the contacts that push */
   double *g, *c, *r, *d, *force, *test, *events; /* scratch: [constraints], [constraints], [constraints], [nq], [nq], [n of the state], [nev] */
   double *law, *side;           /* [3 contacts] of the model's contact_laws; [n] side to which a contact slips, NaN: it sticks, 0: by a force that is not unique */

@@ -127,7 +127,7 @@ struct lag_sim {
   double *tangent, *tangent_jump, *tangent_scratch; /* [n * tangent_columns] at step_t0, or at t where there is no step; NULL: no tangent */
   int tangent_columns, tangent_at_event; /* tangent_at_event: the event at this time is already applied to it */
   int tangent_meets, tangent_moves, tangent_touches; /* switches met at this time; whether that time depends on the state; whether the last one is only touched */
-  double tangent_log;    /* sum of log |det S| over events (tangent.c), -HUGE_VAL once a slide has begun; its reader sets it back to 0 */
+  double tangent_log;    /* sum of log |det S| over events (flow_tangent.c), -HUGE_VAL once a slide has begun; its reader sets it back to 0 */
   int (*on_step)(void *, const lag_sim *);
   void *on_step_context;
   lag_event_fn *on_event;
@@ -273,7 +273,7 @@ void lag_tangent_events(const lag_sim *sim, double *g);
 void lag_contact_mute(const lag_sim *sim, double *g);
 void lag_contact_show(lag_sim *sim);
 void lag_mark_due(lag_sim *sim, int event); /* the event happens at this time, too, unless it has fired already */
-/* conditional.c: constraints that hold while a condition is true. place: which of them hold at y, and no more. settle: which of them hold at y, with
+/* conditional_constraints.c: constraints that hold while a condition is true. place: which of them hold at y, and no more. settle: which of them hold at y, with
  * the velocities that they and contacts then allow; moved: the event has set velocities (1) or positions, too (2); zero[events]: rounding of event
  * functions, or NULL; the others as for lag_contact_resolve. */
 int lag_conditional_place(lag_sim *sim, double t, const double *y);
@@ -290,7 +290,7 @@ int lag_kicks_begin(lag_sim *sim, const double *period);
 int lag_kicks_plan(lag_sim *sim);
 double lag_kicks_locate(lag_sim *sim, const double *period);
 int lag_kicks_at_once(lag_sim *sim);
-/* tangent.c. meet: carries the tangent to the present time, where switch event k ends its branch; corner: over the change of rates there, after modes are
+/* flow_tangent.c. meet: carries the tangent to the present time, where switch event k ends its branch; corner: over the change of rates there, after modes are
  * settled; begin: projects the tangent of a motion that begins by sliding. pass: carries the tangent over a step that is used up. jump: carries it over event k, which changes the state from `now` to yb; more:
  * another event has changed the state at this time. */
 int lag_tangent_pass(lag_sim *sim);
@@ -310,7 +310,7 @@ int lag_tangent_project(lag_problem *pb, double t, const double *y, int k, doubl
 int lag_closed_form_at(lag_sim *sim, double t);
 int lag_closed_form_record(lag_sim *sim, double t, const double *y);
 
-/* charges.c: charge_now[2 k], charge_now[2 k + 1] := value and scale of charge k at y, t; NaN where there is none. */
+/* charge_monitor.c: charge_now[2 k], charge_now[2 k + 1] := value and scale of charge k at y, t; NaN where there is none. */
 void lag_charges_at(lag_sim *sim, double t, const double *y);
 /* begin, see and jump as in monitors.c. method: chooses quadrature nodes for the method of the steps, which nodes computes before their first use. drift: of charge k so far,
  * relative to its size. flags: what is known of its rate, given the inputs that are set. _see returns LAG_EDRIFT, with a message, where the
@@ -327,7 +327,7 @@ void lag_charges_add_work(lag_sim *sim, double at_events, double rubbed);
 double lag_charge_drift(const lag_sim *sim, int k);
 unsigned lag_charge_flags(const lag_sim *sim, int k);
 
-/* charges.c: LAG_EDRIFT with a message where half of an energy that is known to be conserved or balanced is lost; else LAG_OK. */
+/* charge_monitor.c: LAG_EDRIFT with a message where half of an energy that is known to be conserved or balanced is lost; else LAG_OK. */
 int lag_energy_retained(lag_sim *sim);
 
 /* monitors.c: charges and monitors. begin: first values. see: records the state `y` at t of the run. jump: an event changed the state from ya to

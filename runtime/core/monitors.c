@@ -1,4 +1,4 @@
-/* Monitors of a run: charges (charges.c), outputs and residuals of constraints. Enters: states of the run; leaves: largest drifts, and a failure
+/* Monitors of a run: charges (charge_monitor.c), outputs and residuals of constraints. Enters: states of the run; leaves: largest drifts, and a failure
  * when one passes its limit. Holds: the change of a quantity at an event is not drift: the reference moves by the jump. */
 #include <math.h>
 #include <string.h>

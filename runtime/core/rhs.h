@@ -35,13 +35,13 @@ LAG_ALWAYS_INLINE void lag_copy(int n, const double *from, double *to) {
 int lag_rhs_prepare(lag_problem *pb, double t, const double **y);
 
 /* switching.c: modes in pb->u that keep the motion on the surfaces on which it slides, at y, t. > 0: there are none. */
-int lag_slide(lag_problem *pb, double t, const double *y);
+int lag_sliding_values(lag_problem *pb, double t, const double *y);
 
 /* contact_friction.c: friction of contacts that slip, in pb->u, at y, t. > 0: there is none. */
-int lag_rub(lag_problem *pb, double t, const double *y);
+int lag_contact_friction_forces(lag_problem *pb, double t, const double *y);
 
-/* contact_step.c: size of pb->contact_room in doubles. */
-size_t lag_contact_step_size(const lag_model *m);
+/* moreau_contacts.c: size of pb->contact_room in doubles. */
+size_t lag_moreau_contacts_size(const lag_model *m);
 
 /* contact.c: the coefficient of restitution of contact i, from Newton's law in the model for a state y whose velocities are changed by d[nq] times -(rate + speed), so that the gap closes with `speed`. rate: of its gap at
  * y, t; d changes that by 1; pb->u: this contact is closed, others are open; A: entries of the Jacobian; before[n], after[n] are scratch. NaN: there is none. */

@@ -18,13 +18,13 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   const lag_model *m = s->scene->model;
   size_t np = (size_t)(m->np + m->nderived), nm = (size_t)m->nmodes, nu = (size_t)m->nu + nm, n = (size_t)s->pb.n, nev = (size_t)m->nev + nm;
   size_t nmon = (size_t)s->scene->nmonitors, nc = (size_t)(m->constraints ? m->constraints->n : 0);
-  size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0, pushes = pushed ? lag_contact_step_size(m) : 0;
+  size_t pushed = method->flags & LAG_METHOD_IMPULSES ? (size_t)m->ncontacts : 0, pushes = pushed ? lag_moreau_contacts_size(m) : 0;
   double *contacts, *contact_room = calloc(pushes + 1, sizeof *contact_room), **const parts[] = {&s->p, &s->derived, &s->hold, &s->begin, &s->asked, &s->redundant, &s->loose, &s->kept, &s->y, &s->y0, &s->now, &s->sign,
                             &s->noise, &s->root, &s->sign_end, &s->count, &s->first, &s->last, &s->interval, &s->shorter, &s->flight, &s->skipped, &s->crossed, &s->slips, &s->slid, &s->slid_since, &s->mon_first, &s->mon_peak,
                             &s->exact_peak, &contacts, &s->pb.contact_impulse, &s->pb.contact_change, &s->charge_block, &s->rate_history};
   const size_t sizes[] = {(size_t)m->np, (size_t)m->nderived, nu, n, n, nc, (size_t)m->nq, nc, n, n, n, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev, nev,
                           nm, nm, nm, nm, nmon, nmon, (size_t)s->scene->nexact, pushed ? sizeof(lag_contact_stats) / sizeof(double) : 0, pushed, pushed ? (size_t)m->nq : 0, (size_t)lag_sim_ncharges(s) * sizeof(Charge) / sizeof(double), 3 * n};
-  const size_t nparts = sizeof sizes / sizeof *sizes, fixed = RUN_DOUBLES + lag_cut(NULL, nparts, parts, sizes);
+  const size_t nparts = sizeof sizes / sizeof *sizes, fixed = RUN_DOUBLES + lag_workspace_slice(NULL, nparts, parts, sizes);
   lag_problem sized = s->pb;
 
   sized.opt = opt;
@@ -47,7 +47,7 @@ static int set_blocks(lag_sim *s, const lag_method *method, const double *opt) {
   s->saved = b;
   s->nsaved = total;
   s->run = (Run *)(void *)b;
-  lag_cut(x, nparts, parts, sizes);
+  lag_workspace_slice(x, nparts, parts, sizes);
   s->method_work = b + before;
   s->nwork = work;
   free(s->pb.contact_room);

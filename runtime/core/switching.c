@@ -28,7 +28,7 @@ static int slides(const lag_sim *s, int k) { return *mode(s, k) == 0.0 && !s->sc
 /* r[nmodes] := rates of the switching functions at y, t with the modes in pb->u, and with the friction of contacts that slip under these. */
 static int rates_at(lag_problem *pb, double t, const double *y, double *r) {
   const lag_model *m = pb->model;
-  int rc = m->contact_laws ? lag_rub(pb, t, y) : 0;
+  int rc = m->contact_laws ? lag_contact_friction_forces(pb, t, y) : 0;
   pb->rhs_calls++;
   return rc ? rc : m->switch_rates(t, y, y + m->nq, y + 2 * m->nq, pb->p, pb->u, r, pb->work);
 }
@@ -50,7 +50,7 @@ static int rate_matrix(lag_problem *pb, double t, const double *y, const int *of
   return 0;
 }
 
-int lag_slide(lag_problem *pb, double t, const double *y) {
+int lag_sliding_values(lag_problem *pb, double t, const double *y) {
   enum { ROUNDS = 8 };
   const double enough = 64 * DBL_EPSILON, some = 1e-9; /* of the largest term */
   int n = pb->nslide, nm = pb->model->nmodes, rc = 0;
@@ -69,8 +69,8 @@ int lag_slide(lag_problem *pb, double t, const double *y) {
 
 int lag_inputs_at(lag_problem *pb, double t, const double *y) {
   int rc = lag_inputs_inline(pb, t);
-  if (rc || pb->nslide) return rc ? rc : lag_slide(pb, t, y);
-  return pb->model->contact_laws ? lag_rub(pb, t, y) : 0;
+  if (rc || pb->nslide) return rc ? rc : lag_sliding_values(pb, t, y);
+  return pb->model->contact_laws ? lag_contact_friction_forces(pb, t, y) : 0;
 }
 
 void lag_switch_count(lag_sim *s) {

@@ -82,7 +82,7 @@ typedef struct lag_problem {
   const double *kept;  /* [nholonomic] value at which c is held, NaN: free so far; NULL: all at 0 */
   int nslide;          /* switches on whose surface the motion slides, */
   int *sliding;        /* [nmodes] and their numbers; their modes are found at each state */
-  double *slide;       /* scratch of lag_slide */
+  double *slide;       /* scratch of lag_sliding_values */
   double *rub;         /* scratch of friction of contacts */
   int redundant;       /* 1: constraints are redundant; f is evaluated on the constraints only, see lag_rhs */
   const double *opt;   /* values of the method's options, [method->noptions] */
@@ -561,7 +561,7 @@ int lag_hdf5_write(const char *path, const lag_grid *grid);
 /* liblag_mpi.a, by MPI. */
 extern const lag_ranks lag_mpi;
 
-/* main() of a simulator: see --help, or app/help.c. extras may be NULL. Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 128 and the
+/* main() of a simulator: see --help, or app/simulator_help.c. extras may be NULL. Returns the exit status: 0 ok, 2 usage or I/O, 3 the run failed, 128 and the
  * number of the signal (130: Ctrl-C) when it was interrupted. */
 int lag_app_main(int argc, char **argv, const lag_program *program, const lag_extras *extras);
 

@@ -1,9 +1,9 @@
-/* Explicit Runge-Kutta methods over lanes: the steps of methods/embedded.c, whose comments say why, of several runs at once. A lane whose step is rejected
+/* Explicit Runge-Kutta methods over lanes: the steps of methods/adaptive_rk.c, whose comments say why, of several runs at once. A lane whose step is rejected
  * tries a shorter one in the next turn. */
 #pragma once
 
 #include "lanes/lane_vectors.h"
-#include "methods/embedded.h"
+#include "methods/adaptive_rk.h"
 
 typedef struct EmbeddedLanes {
   LaneProblem pb;
@@ -32,7 +32,7 @@ static void *embedded_open(const lag_sim *like, const void *model) {
 static int embedded_load(void *batch, int lane, lag_sim *s, int pause) {
   EmbeddedLanes *b = batch;
   Embedded *w = (Embedded *)(void *)s->method_work;
-  int rc = lag_embedded_prepare(b->pair, w, &s->pb, s->run->t, s->y);
+  int rc = lag_adaptive_rk_prepare(b->pair, w, &s->pb, s->run->t, s->y);
   if (rc) return rc;
   lane_problem_load(&b->pb, lane, s, pause, w->limits.t_begin);
   b->atol = w->limits.atol;
@@ -44,8 +44,8 @@ static int embedded_load(void *batch, int lane, lag_sim *s, int pause) {
   b->h[lane] = w->h;
   b->err_power[lane] = w->err_power;
   b->tc[lane] = w->tc;
-  lane_put(s->pb.n, b->comp, lane, lag_embedded_array(w, &s->pb, EMBEDDED_COMP));
-  lane_put(s->pb.n, b->k, lane, lag_embedded_array(w, &s->pb, EMBEDDED_K1));
+  lane_put(s->pb.n, b->comp, lane, lag_adaptive_rk_array(w, &s->pb, EMBEDDED_COMP));
+  lane_put(s->pb.n, b->k, lane, lag_adaptive_rk_array(w, &s->pb, EMBEDDED_K1));
   return LAG_OK;
 }
 
@@ -54,10 +54,10 @@ static void embedded_store(void *batch, int lane, lag_sim *s) {
   Embedded *w = (Embedded *)(void *)s->method_work;
   int n = s->pb.n;
   lane_problem_store(&b->pb, lane, s);
-  lane_get(n, b->comp, lane, lag_embedded_array(w, &s->pb, EMBEDDED_COMP));
-  lane_get(n, b->y0, lane, lag_embedded_array(w, &s->pb, EMBEDDED_Y0));
-  lane_get(n, b->pb.y, lane, lag_embedded_array(w, &s->pb, EMBEDDED_Y1));
-  for (int j = 0; j < b->pair->tab->stages; j++) lane_get(n, b->k + j * n, lane, lag_embedded_array(w, &s->pb, EMBEDDED_K1 + j));
+  lane_get(n, b->comp, lane, lag_adaptive_rk_array(w, &s->pb, EMBEDDED_COMP));
+  lane_get(n, b->y0, lane, lag_adaptive_rk_array(w, &s->pb, EMBEDDED_Y0));
+  lane_get(n, b->pb.y, lane, lag_adaptive_rk_array(w, &s->pb, EMBEDDED_Y1));
+  for (int j = 0; j < b->pair->tab->stages; j++) lane_get(n, b->k + j * n, lane, lag_adaptive_rk_array(w, &s->pb, EMBEDDED_K1 + j));
   w->h = b->h[lane];
   w->err_power = b->err_power[lane];
   w->tc = b->tc[lane];

@@ -24,7 +24,7 @@
 #include "methods/galerkin_rule.h"
 #include "methods/newton.h"
 #include "methods/steps.h"
-#include "methods/tangent.h"
+#include "methods/method_tangent.h"
 #include "numeric/workspace.h"
 
 enum { STAGES_WITH_CUBIC = 2 };
@@ -54,7 +54,7 @@ static size_t layout(CollocationArrays *a, const lag_problem *pb, int stages, do
   const size_t sizes[] = {n, n, n, n, n, n, m, m, m, m, m, n * n, lag_linear_work(pb->model), lag_predictor_size((int)m), m * m};
   a->J.n = (int)m;
   a->J.band = (int)m - 1;
-  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
 static CollocationArrays arrays(Collocation *w, const lag_problem *pb) {

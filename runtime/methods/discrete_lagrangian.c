@@ -9,7 +9,7 @@
 #include "methods/band_matrix.h"
 #include "methods/newton.h"
 #include "methods/steps.h"
-#include "methods/tangent.h"
+#include "methods/method_tangent.h"
 #include "numeric/workspace.h"
 
 /* Pointers into lag_discrete.work. */
@@ -41,7 +41,7 @@ static size_t layout(NewtonArrays *w, const lag_problem *pb, int free, double *x
   w->J.band = free * (half_band(pb->model) + 1) - 1;
   double **const parts[] = {&w->Q, &w->V, &w->Lq, &w->Lv, &w->F, &w->R, &w->S, &w->du, &w->J.pivot, &w->h, &w->J.a};
   const size_t sizes[] = {n, n, n, n, n, m, m, m, m, (size_t)pb->model->nsecond, (size_t)lag_band_matrix_size(w->m, w->J.band)};
-  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
 static NewtonArrays arrays(const lag_discrete *d) {

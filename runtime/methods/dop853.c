@@ -1,4 +1,4 @@
-/* dop853: Dormand-Prince 8(5,3) with adaptive steps and dense output of order 7. Steps: embedded.c.
+/* dop853: Dormand-Prince 8(5,3) with adaptive steps and dense output of order 7. Steps: adaptive_rk.c.
  *
  * Source: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI
  * 10.1007/978-3-540-78862-1: II.5 (the 12 stages of order 8), II.10 (error from estimates of order 5 and 3) and II.6

@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "core/rhs.h"
-#include "methods/embedded.h"
+#include "methods/adaptive_rk.h"
 
 /* Dimensions of a problem; row: length of an array in Embedded.x. */
 typedef struct EmbeddedShape {
@@ -14,7 +14,7 @@ typedef struct EmbeddedShape {
 } EmbeddedShape;
 
 LAG_ALWAYS_INLINE EmbeddedShape embedded_shape(const lag_problem *pb) {
-  EmbeddedShape as = {pb->nq, pb->n, lag_embedded_row(pb)};
+  EmbeddedShape as = {pb->nq, pb->n, lag_adaptive_rk_row(pb)};
   return as;
 }
 
@@ -135,7 +135,7 @@ LAG_ALWAYS_INLINE double embedded_error(const lag_tableau *tab, int late, Embedd
 LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double tb, double *k) {
   double *y1 = w->x + EMBEDDED_Y1 * as.row;
   int rc = pb->model->constraints ? lag_project_step(pb, tb, w->x + EMBEDDED_Y0 * as.row, y1, w->x + EMBEDDED_COMP1 * as.row) : 0;
-  if (pb->model->constraints && rc == 0 && w->limits.fixed == 0.0) rc = lag_embedded_reversal(w, pb, tb);
+  if (pb->model->constraints && rc == 0 && w->limits.fixed == 0.0) rc = lag_adaptive_rk_reversal(w, pb, tb);
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
 }
 
@@ -157,7 +157,7 @@ LAG_ALWAYS_INLINE double embedded_trial(const lag_tableau *tab, int late, Embedd
   if (!late && (*rc = embedded_end(pb, w, as, tb, k + last * row)) != 0) return NAN;
   if (!tab->order_embedded) return lag_not_finite(pb->n, k + last * row) < 0 ? 0 : NAN;
   double err = embedded_error(tab, late, w, pb, as, dt);
-  if (err > 1 && pb->model->constraints) err = lag_embedded_error_along(tab, late, w, pb, tb, dt, err);
+  if (err > 1 && pb->model->constraints) err = lag_adaptive_rk_error_along(tab, late, w, pb, tb, dt, err);
   if (late && (err <= 1 || (w->limits.fixed != 0.0 && !isnan(err)))) {
     *rc = embedded_end(pb, w, as, tb, k + last * row);
     if (*rc || lag_not_finite(pb->n, k + last * row) >= 0) return NAN;

@@ -1,5 +1,5 @@
 /* euler: Euler's method with a fixed step, y1 = y0 + dt f(t0, y0). Oscillations gain energy, which courses show beside
- * symplectic_euler. Steps: embedded.c, without an error estimate. Source: L. Euler, Institutiones calculi integralis I (1768), paragraph 650. Dense output is the tangent. */
+ * symplectic_euler. Steps: adaptive_rk.c, without an error estimate. Source: L. Euler, Institutiones calculi integralis I (1768), paragraph 650. Dense output is the tangent. */
 #include "lag.h"
 #include "methods/embedded_trial.h"
 #include "methods/steps.h"
@@ -14,7 +14,7 @@ static const lag_method_option options[] = {LAG_STEP_OPTION};
 
 static void dense(void *work, lag_problem *pb, double t, double *y) {
   const Embedded *w = work;
-  int row = lag_embedded_row(pb);
+  int row = lag_adaptive_rk_row(pb);
   const double *y0 = w->x + EMBEDDED_Y0 * row, *k = w->x + EMBEDDED_K1 * row;
   for (int i = 0; i < pb->n; i++) y[i] = y0[i] + (t - w->t0) * k[i];
 }

@@ -10,7 +10,7 @@
 #include "methods/predictor.h"
 #include "methods/step_interpolant.h"
 #include "methods/steps.h"
-#include "methods/tangent.h"
+#include "methods/method_tangent.h"
 #include "numeric/workspace.h"
 
 /* Doubles of the history of one substep. */
@@ -24,7 +24,7 @@ static size_t block_layout(ConstraintBlock *b, const lag_problem *pb, int subste
                             &b->A, &b->M, &b->change, &b->end_jacobian, &b->history};
   const size_t sizes[] = {n, n, nq, nq, nq, nq, nq, nc, nc, nc, nc, (size_t)of->njacobian, (size_t)of->nmass, nc * nq, nc * nc,
                           (size_t)substeps * lag_predictor_size(of->n)};
-  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
 /* Sets the pointers, unless x is NULL; returns the length of Implicit.x. */
@@ -36,7 +36,7 @@ static size_t state_layout(ImplicitArrays *a, const lag_problem *pb, int free, i
   const size_t sizes[] = {nq, nq, nq, nq, nq, nq, nq, nq, n, n, n, n, 2 * m, m,
                           (size_t)substeps * lag_predictor_size((int)m) + lag_predictor_size(pb->nq), lag_interpolant_size(pb->nq),
                           x && !constrained ? 0 : lag_discrete_size(pb, free)}; /* the search for its band takes time in each step */
-  size_t length = lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  size_t length = lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
   return length + (constrained ? block_layout(&a->block, pb, substeps, x ? x + length : NULL) : 0);
 }
 
@@ -228,7 +228,7 @@ static size_t layout(Changes *c, const lag_problem *pb, int k, double *x) {
   double **const parts[] = {&c->p, &c->ql, &c->pl, &c->v, &c->u, &c->force, &c->second, &c->dv, &c->du, &c->rest};
   const size_t sizes[] = {nq, nq, nq, nq, LAG_RULE_FREE * nq, LAG_RULE_POINTS * nq, (size_t)pb->model->nsecond, m, LAG_RULE_FREE * m,
                           lag_discrete_tangent_size(pb, LAG_RULE_FREE, k)};
-  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
 size_t lag_implicit_tangent_size(const lag_problem *pb, int k) {

@@ -16,9 +16,9 @@
 
 #include "methods/band_matrix.h"
 #include "methods/step_control.h"
-#include "methods/embedded.h"
+#include "methods/adaptive_rk.h"
 #include "methods/steps.h"
-#include "methods/tangent.h"
+#include "methods/method_tangent.h"
 #include "numeric/workspace.h"
 
 enum { MOST_CORRECTIONS = 7, MOST_WHEN_FIXED = 30, STAGES = 3 };
@@ -86,7 +86,7 @@ static size_t layout(RadauArrays *a, const lag_problem *pb, double *x) {
   a->complex.n = 2 * pb->n;
   a->real.band = pb->n - 1;
   a->complex.band = 2 * pb->n - 1;
-  return lag_cut(x, sizeof sizes / sizeof *sizes, parts, sizes);
+  return lag_workspace_slice(x, sizeof sizes / sizeof *sizes, parts, sizes);
 }
 
 static RadauArrays arrays(Radau *w, const lag_problem *pb) {
@@ -465,7 +465,7 @@ const lag_method lag_radau = {
     .doc = "Radau IIA with the exact Jacobian (of constrained models a differenced one), for stiff models. DOI 10.1007/978-3-642-05221-7, IV.8",
     .flags = LAG_METHOD_ADAPTIVE | LAG_METHOD_NEWTON | LAG_METHOD_JACOBIAN | LAG_METHOD_CONSTRAINTS,
     .noptions = LAG_NADAPTIVE_OPTIONS,
-    .options = lag_embedded_options,
+    .options = lag_adaptive_rk_options,
     .work_size = work_size,
     .init = init,
     .step = step,

@@ -1,4 +1,4 @@
-/* rk45: Dormand-Prince 5(4) with adaptive steps and dense output of order 4. Steps: embedded.c.
+/* rk45: Dormand-Prince 5(4) with adaptive steps and dense output of order 4. Steps: adaptive_rk.c.
  *
  * Sources: J.R. Dormand, P.J. Prince, J. Comput. Appl. Math. 6 (1980) 19, DOI 10.1016/0771-050X(80)90013-3 (coefficients). E. Hairer, S.P. Norsett,
  * G. Wanner, Solving Ordinary Differential Equations I (1993), II.6 with code dopri5 (Shampine's dense output of order 4). */
@@ -30,7 +30,7 @@ static const EmbeddedPair pair = {&lag_dopri5_tableau, 0, 0.04, 4, 0.9, 0.2, 10,
 /* HNW II.6, code dopri5, function contd5. At the ends it returns the states themselves. */
 static void dense(void *work, lag_problem *pb, double t, double *y) {
   Embedded *w = work;
-  int row = lag_embedded_row(pb), last = pair.tab->stages - 1;
+  int row = lag_adaptive_rk_row(pb), last = pair.tab->stages - 1;
   double s = (t - w->t0) / w->dt, r = 1 - s, *high = w->x + EMBEDDED_YS * row;
   const double *k = w->x + EMBEDDED_K1 * row, *y0 = w->x + EMBEDDED_Y0 * row, *y1 = w->x + EMBEDDED_Y1 * row;
   embedded_combine(pair.tab->d[0], last + 1, embedded_shape(pb), k, high);

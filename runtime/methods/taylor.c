@@ -21,7 +21,7 @@
 #include "lag.h"
 #include "methods/step_control.h"
 #include "methods/steps.h"
-#include "methods/tangent.h"
+#include "methods/method_tangent.h"
 #include "methods/taylor.h"
 
 enum { LEAST_ORDER = 6 };

@@ -16,7 +16,7 @@
 #include "methods/implicit_symplectic.h"
 #include "methods/step_interpolant.h"
 #include "methods/steps.h"
-#include "methods/tangent.h"
+#include "methods/method_tangent.h"
 #include "methods/verlet.h"
 
 static const lag_method_option options[] = {LAG_STEP_OPTION};

@@ -4,7 +4,7 @@
 #include <stddef.h>
 
 /* Cuts block into n parts of these sizes; returns the sum of the sizes. block NULL: only that. */
-static inline size_t lag_cut(double *block, size_t n, double **const parts[], const size_t sizes[]) {
+static inline size_t lag_workspace_slice(double *block, size_t n, double **const parts[], const size_t sizes[]) {
   size_t at = 0;
   for (size_t i = 0; i < n; i++) {
     if (block) *parts[i] = block + at;

@@ -1,4 +1,4 @@
-/* Rows of a CSV file (plan.h). Enters: names in the first line, "th [rad]" for th, numbers in each other one; leaves: a list of values for each name. Holds:
+/* Rows of a CSV file (sweep_grid.h). Enters: names in the first line, "th [rad]" for th, numbers in each other one; leaves: a list of values for each name. Holds:
  * every field is read, or the file is refused with its line. */
 #include <ctype.h>
 #include <stdarg.h>
@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "io/posix.h"
-#include "sweep/plan.h"
+#include "sweep/sweep_grid.h"
 
 enum { MOST_BYTES = 256000000 };
 

@@ -5,7 +5,7 @@
 #include "lag.h"
 #include "lanes/lane_choice.h"
 #include "sweep/journal.h"
-#include "sweep/plan.h"
+#include "sweep/sweep_grid.h"
 
 /* The simulation that a run begins from: one for all, or where constants vary one for each combination of their values. */
 typedef struct SweepVariant {

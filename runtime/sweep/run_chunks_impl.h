@@ -10,7 +10,7 @@
 /* The measures of a variant, whose texts have been checked. NULL: no memory. */
 Measures *lag_sweep_measures(const Sweep *s, int variant);
 
-/* ---- One run (one_run.c) */
+/* ---- One run (sweep_run.c) */
 
 typedef struct SweepRun {
   lag_sim *sim;

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/print.h"
 
 typedef long double Real;

@@ -8,7 +8,7 @@
 #include "base/words.h"
 #include "mech/frobenius.h"
 #include "mech/constrain.h"
-#include "symmetry/noether.h"
+#include "symmetry/noether_theorem.h"
 #include "mech/consistent_start.h"
 #include "numeric/consistent_state.h"
 #include "sym/print.h"

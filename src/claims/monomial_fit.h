@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mech/eqns.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 
 enum { FEATURES_MAX = 44, FEATURE_STATES = FEATURES_MAX + 6 };
 

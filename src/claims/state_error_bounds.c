@@ -5,7 +5,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "base/union_find.h"
 #include "sym/prove.h"
 

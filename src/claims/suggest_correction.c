@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "claims/case_proofs.h"
-#include "claims/edit_sites.h"
+#include "claims/mutation_sites.h"
 #include "claims/feature_pool.h"
 #include "mech/states.h"
 #include "sym/prove.h"
@@ -492,7 +492,7 @@ SuggestedEdit suggest_correction(const Eqns *e, const Expect *x) {
   const Model *m = e->m;
   SuggestedEdit nowhere = {.caret = ast_expr(m->ast, x->rhs_ast)->span};
   if (!x->nodes[0]) return nowhere;
-  EditSearch md = {.e = e, .m = m, .x = x, .g = e->g, .arena = m->arena, .sites = edit_sites_of(m, x)};
+  EditSearch md = {.e = e, .m = m, .x = x, .g = e->g, .arena = m->arena, .sites = mutation_sites_of(m, x)};
   Name name = intern(m->ast->names, "?");
   md.stand_in = expr_declare(e->g, SYM_LOCAL, 0, name, SIGN_UNKNOWN);
   if (is_too_large(&md) || !find_states(&md)) return nowhere;

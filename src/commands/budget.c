@@ -79,7 +79,7 @@ static char *const *arguments(Compiler *c, const char *what, const char *const *
 
 /* --- measurements --- */
 
-/* One line of the program's: see runtime/app/effects.c. 0: it is none of them. */
+/* One line of the program's: see runtime/app/effect_costs.c. 0: it is none of them. */
 static int read_line(Budget *b, const EffectSets *sets, char *line) {
   char *word[8] = {0};
   int n = 0;

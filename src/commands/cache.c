@@ -1,6 +1,6 @@
 /* `lagc cache`: what the cache holds, and --clear. */
 #include "commands/commands.h"
-#include "toolchain/cache.h"
+#include "toolchain/simulator_cache.h"
 
 int command_cache(Compiler *c) {
   StrBuf out = strbuf(c->arena);

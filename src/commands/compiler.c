@@ -8,8 +8,8 @@
 #include "base/method_table.h"
 #include "base/visible.h"
 #include "commands/run_request.h"
-#include "ir/unit.h"
-#include "jets/self_check.h"
+#include "ir/program_set.h"
+#include "self_check/self_check.h"
 #include "lower/lower.h"
 #include "mech/constrain.h"
 #include "mech/consistent_start.h"
@@ -107,27 +107,27 @@ Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice) {
   return e && e->singular_mass && (derivatives_required(e, &c->o) & WANT_VARIATION) ? equations_regularised(e) : e;
 }
 
-IrUnit *compiler_unit_head(Compiler *c, Eqns *e) { return unit_head(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0); }
+ProgramSet *compiler_unit_head(Compiler *c, Eqns *e) { return unit_head(e, c->o.file, c->o.math && strcmp(c->o.math, "libm") == 0); }
 
-IrUnit *compiler_new_unit(Compiler *c, Eqns *e) {
-  IrUnit *u = compiler_unit_head(c, e);
+ProgramSet *compiler_new_unit(Compiler *c, Eqns *e) {
+  ProgramSet *u = compiler_unit_head(c, e);
   unit_add_programs(u, e);
   return u;
 }
 
-static int agrees(const Eqns *e, const IrUnit *u, uint32_t scene, SelfCheck *told) {
-  const char *wrong = unit_verify(u);
+static int agrees(const Eqns *e, const ProgramSet *u, uint32_t scene, SelfCheck *told) {
+  const char *wrong = program_set_verify(u);
   if (wrong) diag_error(e->m->diags, (Span){0}, "internal error: %s", wrong);
   return !wrong && self_check(e, u, scene, told);
 }
 
-int compiler_agrees(const Eqns *e, const IrUnit *u, uint32_t scene) {
+int compiler_agrees(const Eqns *e, const ProgramSet *u, uint32_t scene) {
   SelfCheck told;
   return agrees(e, u, scene, &told);
 }
 
-IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists) {
-  IrUnit *u = compiler_new_unit(c, e);
+ProgramSet *compiler_lower_scene(Compiler *c, Eqns *e, int hoists) {
+  ProgramSet *u = compiler_new_unit(c, e);
   unit_require(u, e, derivatives_required(e, &c->o));
   unit_add_scene(u, e);
   if (hoists) unit_hoist(u);
@@ -140,7 +140,7 @@ IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists) {
 }
 
 /* Computes the consistent start that a run would find, and stores it in the header's scene. */
-static int bake_start(Compiler *c, const Eqns *e, IrUnit *u) {
+static int bake_start(Compiler *c, const Eqns *e, ProgramSet *u) {
   long double *found = ARENA_ARRAY(c->arena, long double, 2 * (size_t)e->n + 1);
   unsigned char *moved = ARENA_ARRAY(c->arena, unsigned char, 2 * (size_t)e->n + 1);
   if (!start_of_scene(e, found, moved)) return 0;
@@ -161,17 +161,17 @@ static void warn_of_actions(const Eqns *e) {
       }
 }
 
-IrUnit *compiler_lower_embedded(Compiler *c, Eqns *e) {
+ProgramSet *compiler_lower_embedded(Compiler *c, Eqns *e) {
   constraints_keep_none(e);
   warn_of_actions(e);
-  IrUnit *u = compiler_lower_scene(c, e, 0);
+  ProgramSet *u = compiler_lower_scene(c, e, 0);
   return u && bake_start(c, e, u) ? u : NULL;
 }
 
 Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice) {
   Eqns *e = compiler_derive(c, choice);
   if (!e) return NULL;
-  IrUnit *u = compiler_new_unit(c, e);
+  ProgramSet *u = compiler_new_unit(c, e);
   unit_add_scene(u, e);
   SelfCheck told;
   if (!agrees(e, u, 0, &told)) return NULL;

@@ -1,11 +1,11 @@
-/* One compilation, and the stages that commands share: text -> Ast -> Model -> Eqns -> IrUnit.
+/* One compilation, and the stages that commands share: text -> Ast -> Model -> Eqns -> ProgramSet.
  *
  * Functions that can fail say why: in c->diags, printed by main at the end, or on standard error by usage_error. */
 #pragma once
 
 #include "commands/command_table.h"
 #include "commands/run_request.h"
-#include "ir/unit.h"
+#include "ir/program_set.h"
 #include "mech/eqns.h"
 
 /* Exit status: 0 ok, 1 bad model, 2 usage or files, 3 the run failed (a simulator's status). */
@@ -26,7 +26,7 @@ typedef struct {
   StrBuf told;     /* comparisons with the text, for check --verbose */
   StrBuf json[JSON_LISTS]; /* lists of check --json (check_json.h) */
   const Eqns *run; /* equations of the scene that the command runs, */
-  IrUnit *run_by;  /* and their programs */
+  ProgramSet *run_by;  /* and their programs */
 } Compiler;
 
 /* Prints the messages so far; warnings about unused names too, if there is no error. */
@@ -46,10 +46,10 @@ int compiler_report(Compiler *c, const char *path, const StrBuf *text);
 /* Reads c->o.file into c->ast. Returns a STATUS. */
 int compiler_read(Compiler *c);
 
-/* required_derivatives.c: flags WANT_... (ir/unit.h) that the methods of e's scene, of --method and of the state of --resume need, and --with. */
+/* required_derivatives.c: flags WANT_... (ir/program_set.h) that the methods of e's scene, of --method and of the state of --resume need, and --with. */
 unsigned derivatives_required(const Eqns *e, const Options *o);
 /* `lagc cost`: those of them that a C compiler has ready in a part of --seconds. */
-unsigned derivatives_in_time(unsigned wants, const IrUnit *u, const Options *o);
+unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options *o);
 
 /* Equations of a choice of scene and effects; NULL with the reasons in c->diags. */
 Eqns *compiler_derive(Compiler *c, const ModelChoice *choice);
@@ -60,18 +60,18 @@ Eqns *compiler_derive_wanted(Compiler *c, const ModelChoice *choice);
 /* The same, for a report: their programs agree with the text. */
 Eqns *compiler_derive_compared(Compiler *c, const ModelChoice *choice);
 
-IrUnit *compiler_new_unit(Compiler *c, Eqns *e);
-IrUnit *compiler_unit_head(Compiler *c, Eqns *e); /* see unit_head */
+ProgramSet *compiler_new_unit(Compiler *c, Eqns *e);
+ProgramSet *compiler_unit_head(Compiler *c, Eqns *e); /* see unit_head */
 
 /* Whether all programs of u are well formed and, for one of its scenes, compute what the text says; otherwise reported: an internal error. */
-int compiler_agrees(const Eqns *e, const IrUnit *u, uint32_t scene);
+int compiler_agrees(const Eqns *e, const ProgramSet *u, uint32_t scene);
 
 /* Programs of one scene, compared with the text. hoists: derived parameters are taken out, as emitted models have them. NULL with the reason
  * in c->diags when a program is wrong: an internal error. */
-IrUnit *compiler_lower_scene(Compiler *c, Eqns *e, int hoists);
+ProgramSet *compiler_lower_scene(Compiler *c, Eqns *e, int hoists);
 
 /* The same for an embedded header, with the consistent start in its scene. */
-IrUnit *compiler_lower_embedded(Compiler *c, Eqns *e);
+ProgramSet *compiler_lower_embedded(Compiler *c, Eqns *e);
 
 /* Whether --method of emit and build is a method; reported if not. For a run the simulator judges. */
 int compiler_knows_method(Compiler *c);

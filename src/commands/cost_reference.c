@@ -7,7 +7,7 @@
 
 #include "base/hash.h"
 #include "commands/command_table.h"
-#include "toolchain/cache.h"
+#include "toolchain/simulator_cache.h"
 #include "toolchain/outfile.h"
 #include "toolchain/process.h"
 

@@ -110,7 +110,7 @@ int command_derive(Compiler *c) {
   Eqns *e = compiler_derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   if (c->o.hamiltonian || c->o.lagrangian) return print_form(c, e);
-  IrUnit *u = compiler_lower_scene(c, e, 0);
+  ProgramSet *u = compiler_lower_scene(c, e, 0);
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
   const char *format = c->o.format ? c->o.format : "text";

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "commands/simulator.h"
-#include "ir/unit.h"
+#include "ir/program_set.h"
 #include "lower/lower.h"
 #include "mech/switches.h"
 #include "toolchain/process.h"
@@ -153,11 +153,11 @@ static EffectMeasurement *read_measurements(EffectStudy *s, char *said, uint32_t
 /* --- programs --- */
 
 /* The scene with another set of effects, as a unit of its own. */
-static IrUnit *lower_variant(Compiler *c, EffectList effects, unsigned *wants) {
+static ProgramSet *lower_variant(Compiler *c, EffectList effects, unsigned *wants) {
   Eqns *e = compiler_derive_wanted(c, &(ModelChoice){.scene = c->o.scene, .only = &effects, .given = c->given.at, .ngiven = c->given.n});
   if (!e) return NULL;
   switches_find(e);
-  IrUnit *u = compiler_new_unit(c, e);
+  ProgramSet *u = compiler_new_unit(c, e);
   *wants |= derivatives_required(e, &c->o); /* all variants run by the method of the first */
   unit_require(u, e, *wants);
   unit_add_scene(u, e);
@@ -171,7 +171,7 @@ int effect_sets_build(Compiler *c, EffectStudy *s, const EffectSets *sets, int o
   unsigned wants = 0;
   const char *error = NULL;
   for (uint32_t i = 0; i < sets->n; i++) {
-    IrUnit *u = lower_variant(c, effect_names(s, sets->at[i]), &wants);
+    ProgramSet *u = lower_variant(c, effect_names(s, sets->at[i]), &wants);
     if (!u) return STATUS_MODEL;
     vec_push(c->arena, &units, u);
   }

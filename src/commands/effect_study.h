@@ -1,5 +1,5 @@
 /* Sets of effects compared with a scene's own set: which are planned, run and found sufficient. A variant is the scene with another set of effects; a
- * program of variants measures them (runtime/app/effects.c). An effect is left out together with those that require it, and added together
+ * program of variants measures them (runtime/app/effect_costs.c). An effect is left out together with those that require it, and added together
  * with what it requires. */
 #pragma once
 

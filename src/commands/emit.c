@@ -10,7 +10,7 @@ int command_emit(Compiler *c) {
   Eqns *e = compiler_derive_scene(c, c->o.scene);
   if (!e) return STATUS_MODEL;
   switches_find(e); /* for the runtime; headers, and what is verified, follow the text */
-  IrUnit *u = compiler_lower_scene(c, e, 1);
+  ProgramSet *u = compiler_lower_scene(c, e, 1);
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
   emit_model(u, model_id(c->arena, u->name), &out);

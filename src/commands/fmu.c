@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "fmu/fmu.h"
+#include "fmu/fmu_archive.h"
 #include "report/equation_listing.h"
 #include "toolchain/files.h"
 #include "toolchain/toolchain.h"
@@ -36,7 +36,7 @@ int command_fmu(Compiler *c) {
   FmuBinaries binaries = {0};
   if (!c->o.output) return usage_error("`lagc fmu` needs -o FILE.fmu");
   Eqns *e = compiler_derive_scene(c, c->o.scene);
-  IrUnit *u = e ? compiler_lower_embedded(c, e) : NULL;
+  ProgramSet *u = e ? compiler_lower_embedded(c, e) : NULL;
   if (!u) return STATUS_MODEL;
   StrBuf equations = strbuf(c->arena), archive = strbuf(c->arena);
   show_equations(e, "", PRINT_TEXT, &equations);

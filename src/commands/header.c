@@ -29,7 +29,7 @@ int command_header(Compiler *c) {
   if (conditional)
     return usage_error(arena_printf(c->arena, "a header has no constraints with `while` (%s), whose impulses and times take a run of events: "
                                     "`lagc build --shared` makes a library that has them", conditional));
-  IrUnit *u = compiler_lower_embedded(c, e);
+  ProgramSet *u = compiler_lower_embedded(c, e);
   if (!u) return STATUS_MODEL;
   HeaderParts parts = {.prefix = c->o.prefix};
   const char *error;

@@ -9,8 +9,8 @@
 #include "base/method_table.h"
 #include "base/source.h"
 #include "emit/emit_model.h"
-#include "fmu/fmu.h"
-#include "ir/unit.h"
+#include "fmu/fmu_archive.h"
+#include "ir/program_set.h"
 
 /* Flags of a method; one that splits T and V of separable models is implicit for others, and then needs derivatives of L. */
 static unsigned required_by_info(const Eqns *e, const MethodInfo *m) {
@@ -90,7 +90,7 @@ static const char *passed_option(const Options *o, const char *name) {
   return NULL;
 }
 
-unsigned derivatives_in_time(unsigned wants, const IrUnit *u, const Options *o) {
+unsigned derivatives_in_time(unsigned wants, const ProgramSet *u, const Options *o) {
   const double a_second = 400; /* instructions of accelerations with second derivatives of L: gcc 12 -O2, 400 to 880 (bicycle) */
   double seconds = o->seconds ? strtod(o->seconds, NULL) : 10;
   int takes_long = o->command == CMD_COST && !passed_option(o, "--methods") && u->accel && u->accel->ins.n > seconds/2*a_second;

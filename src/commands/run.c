@@ -12,7 +12,7 @@
 #include "commands/command_table.h"
 #include "commands/cost_reference.h"
 #include "commands/simulator.h"
-#include "jets/self_check.h"
+#include "self_check/self_check.h"
 #include "toolchain/process.h"
 
 enum { LARGE = 1000 }; /* coordinates, beyond which the compiler's memory is not kept during the run */

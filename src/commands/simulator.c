@@ -1,4 +1,4 @@
-/* Simulators of all scenes: Eqns -> IrUnits -> C texts -> program. */
+/* Simulators of all scenes: Eqns -> ProgramSets -> C texts -> program. */
 #include "commands/simulator.h"
 
 #include <float.h>
@@ -9,12 +9,12 @@
 #include "commands/const_ranges.h"
 #include "emit/cnames.h"
 #include "emit/emit_model.h"
-#include "ir/unit.h"
+#include "ir/program_set.h"
 #include "lower/lower.h"
 #include "mech/discontinuity.h"
 #include "mech/switches.h"
 #include "model/model.h"
-#include "toolchain/cache.h"
+#include "toolchain/simulator_cache.h"
 #include "toolchain/files.h"
 
 /* The equations of a scene with the outputs, inputs and section of the command line. */
@@ -54,7 +54,7 @@ static void precision_warn(const Ast *ast, const ExprGraph *g, const char *preci
 /* A scene of a unit with its equations. */
 typedef struct {
   const Eqns *e;
-  IrUnit *unit;
+  ProgramSet *unit;
   uint32_t scene;
 } Lowered;
 
@@ -89,7 +89,7 @@ static int lower_scene(Compiler *c, const char *scene, int runs, int apart, Unit
   if (!e) return 0;
   switches_find(e);
   if (runs) switches_warn(e), discontinuity_warn(e);
-  IrUnit *fresh = compiler_unit_head(c, e), *home = NULL;
+  ProgramSet *fresh = compiler_unit_head(c, e), *home = NULL;
   for (uint32_t k = 0; k < units->n && !home && !apart; k++)
     if (unit_accepts_scenes(units->at[k], fresh)) home = units->at[k];
   if (!home) {
@@ -133,7 +133,7 @@ int simulator_make(Compiler *c, const Toolchain *tools, const Texts *texts, cons
   return *path ? STATUS_OK : usage_error(error);
 }
 
-static void add_lanes(Compiler *c, const IrUnit *u, const char *name, const char *file, int lanes, Texts *texts) {
+static void add_lanes(Compiler *c, const ProgramSet *u, const char *name, const char *file, int lanes, Texts *texts) {
   StrBuf b = strbuf(c->arena);
   emit_lanes(u, name, file, lanes, &b);
   vec_push(c->arena, texts, ((SourceText){arena_printf(c->arena, "lanes_%d_%s", lanes, file), sb_text(&b)}));
@@ -148,7 +148,7 @@ Texts simulator_texts(Compiler *c, const Units *units, ProgramKind kind) {
     StrBuf b = strbuf(c->arena);
     const char *file = arena_printf(c->arena, "model_%u.c", i);
     emit_model(units->at[i], names[i], &b);
-    if (i + 1 == units->n) emit_program((const IrUnit *const *)units->at, names, units->n, kind, &b);
+    if (i + 1 == units->n) emit_program((const ProgramSet *const *)units->at, names, units->n, kind, &b);
     for (int lanes = 4; lanes <= 8 && kind & PROGRAM_WITH_LANES; lanes *= 2) add_lanes(c, units->at[i], names[i], file, lanes, &texts);
     vec_push(c->arena, &texts, ((SourceText){file, sb_text(&b)}));
   }

@@ -6,7 +6,7 @@
 #include "toolchain/toolchain.h"
 
 /* The scenes of a file as units: scenes with the same effects and inputs share one. */
-typedef VEC(IrUnit *) Units;
+typedef VEC(ProgramSet *) Units;
 typedef VEC(SourceText) Texts;
 
 /* Reads what the command line gives to a simulator: values of names, expressions to draw. Returns a STATUS. */

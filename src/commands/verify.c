@@ -19,7 +19,7 @@
 #include "commands/simulator.h"
 #include "commands/verify_driver.h" /* static const char *const verify_driver[]: generated from verify_driver.in */
 #include "emit/emit_model.h"
-#include "toolchain/cache.h"
+#include "toolchain/simulator_cache.h"
 #include "toolchain/files.h"
 
 typedef long double Real;
@@ -216,7 +216,7 @@ static const char *adapter_text(const Verification *v, const char *path) {
 }
 
 /* The model for another scalar: flags -D and -include of the toolchain as text, since the function is compiled by the same command. */
-static const char *model_text(const Verification *v, const IrUnit *u, const Toolchain *t) {
+static const char *model_text(const Verification *v, const ProgramSet *u, const Toolchain *t) {
   StrBuf b = strbuf(v->arena);
   for (const char *const *f = t->flags; *f; f++) {
     if (strcmp(*f, "-include") == 0) sb_printf(&b, "#include <%s>\n", *++f);
@@ -230,7 +230,7 @@ static const char *model_text(const Verification *v, const IrUnit *u, const Tool
 }
 
 /* Builds and runs the program with derived equations in this precision. Returns 0, with *error, if it is not built. */
-static int run_with(Verification *v, const IrUnit *u, const char *precision, const char *path, FILE *in, FILE *out, int *status, const char **error) {
+static int run_with(Verification *v, const ProgramSet *u, const char *precision, const char *path, FILE *in, FILE *out, int *status, const char **error) {
   static const char *const flags[] = {"-std=gnu11", "-Werror=incompatible-pointer-types", "-Werror=int-conversion", "-Werror=implicit-function-declaration", "-Wfatal-errors", NULL};
   Toolchain t;
   if (!toolchain_find(v->arena, v->c->argv0, 0, &t, error)) return 0;
@@ -499,7 +499,7 @@ static int report_break(Verification *v, int status, size_t evaluated) {
 
 /* ---- the command ---- */
 
-static int compare(Verification *v, const IrUnit *u, const char *path, FILE *in, FILE *out) {
+static int compare(Verification *v, const ProgramSet *u, const char *path, FILE *in, FILE *out) {
   const char *error = NULL, *precision = "quad";
   int status = 0;
   write_points(v, in);
@@ -521,7 +521,7 @@ static int compare(Verification *v, const IrUnit *u, const char *path, FILE *in,
 
 /* The verification by the equations e, whose arguments and results go through temporary files. */
 static int verify_equations(Verification *v, Compiler *c, Eqns *e, const char *path) {
-  IrUnit *u = compiler_lower_scene(c, e, 1);
+  ProgramSet *u = compiler_lower_scene(c, e, 1);
   FILE *in = u ? tmpfile() : NULL, *out = u ? tmpfile() : NULL;
   int status = !u ? STATUS_MODEL : in && out ? compare(v, u, path, in, out) : usage_error("cannot write a temporary file");
   if (in) fclose(in);

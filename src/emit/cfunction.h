@@ -43,19 +43,19 @@ void math_lanes(const char *prefix, const char *lower, StrBuf *out);
 
 /* Functions that the unit calls and that do not come from the C library: lower_sincos, lower_sin, lower_cos, and exp and log
  * over lanes. Must follow PREFIX_FN and PREFIX_C. */
-void math_functions(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out);
+void math_functions(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out);
 
 /* lower_rough_power(x, p), for step sizes. */
 void math_power(const char *prefix, const char *lower, StrBuf *out);
 
 /* `static LAG_MASK lower_kkt(n, m, coarse, w)`, if the model has constraints. */
-void math_kkt_solver(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out);
+void math_kkt_solver(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out);
 
 /* Whether some program of the unit calls a function of the C library. */
-int unit_calls(const IrUnit *u, const char *name);
+int unit_calls(const ProgramSet *u, const char *name);
 
 /* Prefix of sincos, sin and cos in emitted code of the unit (`lower`); NULL: the C library's sin and cos. */
-const char *math_prefix(const IrUnit *u, const char *lower);
+const char *math_prefix(const ProgramSet *u, const char *lower);
 
 /* Sentence for the head of the file: where its elementary functions come from. */
-const char *math_source_text(const IrUnit *u);
+const char *math_source_text(const ProgramSet *u);

@@ -123,7 +123,7 @@ const char *cnames_take(CNames *c, const char *name) {
   return full;
 }
 
-const char *cname_of_event(const IrUnit *u, uint32_t i) {
+const char *cname_of_event(const ProgramSet *u, uint32_t i) {
   CNames ids = cnames_new(u->arena);
   const char *id = "";
   for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, u->events.at[k].name);

@@ -5,7 +5,7 @@
 #include "base/intern.h"
 #include "base/strbuf.h"
 #include "base/vec.h"
-#include "ir/unit.h"
+#include "ir/program_set.h"
 
 /* An identifier taken in a C scope. */
 typedef struct {
@@ -34,7 +34,7 @@ const char *cname(Arena *a, const char *name);
 const char *cname_letters(Arena *a, const char *name);
 
 /* Identifier of event i of a unit: names that C spells alike get suffixes. */
-const char *cname_of_event(const IrUnit *u, uint32_t i);
+const char *cname_of_event(const ProgramSet *u, uint32_t i);
 
 /* Whether id is a function of the C library, whose name an object with external linkage must not have. */
 int cname_is_library(const char *id);

@@ -31,7 +31,7 @@ void embedded_section(const char *name, const char *prefix, const char *lower, S
   }
 }
 
-void math_kkt_solver(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out) {
+void math_kkt_solver(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out) {
   static const uint32_t large = 62; /* LAG_BAND_LEAST of lag_kkt.h: smaller systems have no band solver */
   static const char *const names[] = {"numbers", "band", "kkt"};
   int banded = u->q.n + u->constraints.of.n >= large;
@@ -47,21 +47,21 @@ static int calls(const Prog *p, const char *name) {
   return 0;
 }
 
-int unit_calls(const IrUnit *u, const char *name) {
-  ProgList all = unit_programs(u);
+int unit_calls(const ProgramSet *u, const char *name) {
+  ProgList all = program_set_programs(u);
   int some = 0;
   for (uint32_t i = 0; i < all.n; i++) some |= calls(all.at[i], name);
   return some;
 }
 
-static int calls_sincos(const IrUnit *u) { return unit_calls(u, "sin") || unit_calls(u, "cos"); }
+static int calls_sincos(const ProgramSet *u) { return unit_calls(u, "sin") || unit_calls(u, "cos"); }
 
 void math_lanes(const char *prefix, const char *lower, StrBuf *out) {
   sb_puts(out, "/* ---- arithmetic, over doubles and over lanes of them; the model comes after it ---- */\n\n");
   embedded_section("lanes", prefix, lower, out);
 }
 
-void math_functions(const IrUnit *u, const char *prefix, const char *lower, StrBuf *out) {
+void math_functions(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out) {
   int sincos = !u->libm && calls_sincos(u), e = !u->libm && unit_calls(u, "exp"), l = !u->libm && unit_calls(u, "log");
   if (u->libm) sb_printf(out, "#define %s_OWN 0\n", prefix);
   else embedded_section("own", prefix, lower, out);
@@ -76,9 +76,9 @@ void math_functions(const IrUnit *u, const char *prefix, const char *lower, StrB
 
 void math_power(const char *prefix, const char *lower, StrBuf *out) { embedded_section("power", prefix, lower, out); }
 
-const char *math_prefix(const IrUnit *u, const char *lower) { return u->libm ? NULL : lower; }
+const char *math_prefix(const ProgramSet *u, const char *lower) { return u->libm ? NULL : lower; }
 
-const char *math_source_text(const IrUnit *u) {
+const char *math_source_text(const ProgramSet *u) {
   if (u->libm) return "Functions: the C library's.";
   if (!calls_sincos(u)) return "Functions: the C library's; over lanes exp and log are below.";
   return "Functions: sin and cos are below, to less than 1 unit in the last place; the others are the C library's.";

@@ -69,7 +69,7 @@ static const char *const *globals_of(Header *h) {
   return all;
 }
 
-static Header header_new(const IrUnit *u, const char *name, HeaderParts parts, StrBuf *out) {
+static Header header_new(const ProgramSet *u, const char *name, HeaderParts parts, StrBuf *out) {
   Header h = {.u = u, .parts = parts, .scene = &u->scenes.at[0], .a = u->arena, .out = out, .file = name};
   const char *id = parts.prefix ? parts.prefix : cname_letters(h.a, name);
   if (id[0] == '_' || (id[0] >= '0' && id[0] <= '9')) id = arena_printf(h.a, "x%s", id);
@@ -185,7 +185,7 @@ static void write_usage(const Header *h) {
   const char *end = shortest_double(h->a, h->scene->t1), *step = shortest_double(h->a, (h->scene->t1 - h->scene->t0) / 1e4);
   if (header_has_method(h, "moreau")) write_moreau_loop(h, end, step);
   else if (h->u->contacts.n) write_contact_loop(h, end, step);
-  else if (unit_kick(h->u)) write_kick_loop(h, end);
+  else if (program_set_kick(h->u)) write_kick_loop(h, end);
   else if (h->parts.parts & PART_EVENTS) write_event_loop(h, end, step);
   else sb_printf(h->out, " *   while (s.t < %s)\n *     if (%s_rk4_step(&p, &s, %s%s) != %s_OK) break;\n", end, f, step, in, m);
   const char *first = h->u->q.n ? arena_printf(h->a, "s.q[%s]", h->q[0]) : h->u->z.n ? arena_printf(h->a, "s.z[%s]", h->z[0]) : "s.t";
@@ -206,7 +206,7 @@ static void write_usage(const Header *h) {
 }
 
 static void write_head(const Header *h, const char *equations) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   sb_printf(h->out, "/* %s.h: %s\n * SPDX-License-Identifier: 0BSD\n *\n", comment_text(h->a, h->file), comment_text(h->a, u->doc[0] ? u->doc : u->name));
   sb_printf(h->out, " * Made by lagc from the model %s, scene %s; effects in use: %s.\n", u->name, h->scene->name, u->effects[0] ? u->effects : "none");
   if (u->fixed[0]) sb_printf(h->out, " * Parameters that are numbers here: %s.\n", u->fixed_values);
@@ -221,15 +221,15 @@ static void write_head(const Header *h, const char *equations) {
     sb_printf(h->out, " * Contacts: %s_moreau_step follows them; other steps ignore them.\n", h->lower);
   else if (u->contacts.n)
     sb_printf(h->out, " * Contacts: a step ignores them. The loop below calls %s_events, %s_act and %s_hold; one without these falls through.\n", h->lower, h->lower, h->lower);
-  if (unit_kick(u)) sb_printf(h->out, " * Kicks: a step ignores them. The loop below ends steps at the times of kicks, and calls %s_act.\n", h->lower);
-  if (u->events.n && !unit_kick(u) && !u->contacts.n && !(h->parts.parts & PART_EVENTS))
+  if (program_set_kick(u)) sb_printf(h->out, " * Kicks: a step ignores them. The loop below ends steps at the times of kicks, and calls %s_act.\n", h->lower);
+  if (u->events.n && !program_set_kick(u) && !u->contacts.n && !(h->parts.parts & PART_EVENTS))
     sb_puts(h->out, " * Events: a step ignores them; `lagc header --with events` adds a step that ends at them.\n");
   write_usage(h);
   if (equations) comment_lines(h, equations);
   sb_puts(h->out, " */\n");
 }
 
-void emit_header(const IrUnit *u, const char *name, HeaderParts parts, const char *equations, StrBuf *out) {
+void emit_header(const ProgramSet *u, const char *name, HeaderParts parts, const char *equations, StrBuf *out) {
   Header h = header_new(u, name, parts, out);
   write_head(&h, equations);
   sb_printf(out, "#ifndef %s_H_INCLUDED\n#define %s_H_INCLUDED\n\n", h.upper, h.upper);

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "emit/cfunction.h"
-#include "ir/unit.h"
+#include "ir/program_set.h"
 
 typedef struct {
-  const IrUnit *u;
+  const ProgramSet *u;
   Arena *a;
   const char *const *globals; /* names that functions must not hide, NULL at the end */
   StrBuf *out;
@@ -43,10 +43,10 @@ uint32_t emit_lane_factors(const Series *s);
 void emit_lane_sums(const Series *s, StrBuf *out);
 void emit_lane_orders(const Series *s, StrBuf *out);
 /* The scenes of lag_extras.lanes_4 or lanes_8, of n units with these names. */
-void emit_lane_scenes(const IrUnit *const *units, const char *const *names, uint32_t n, int lanes, StrBuf *out);
+void emit_lane_scenes(const ProgramSet *const *units, const char *const *names, uint32_t n, int lanes, StrBuf *out);
 
 /* The C identifier of scene k. */
-const char *scene_id(const IrUnit *u, uint32_t k);
+const char *scene_id(const ProgramSet *u, uint32_t k);
 
 /* Whether a table of variables (names, units, factors) is written with macros, as runs of numbered names (u[1], u[2], ...) are, so that the
  * text does not grow with the length of families; if so, table_macros must precede it. */

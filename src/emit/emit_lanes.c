@@ -6,7 +6,7 @@
 /* Where a file is compiled for lanes. Clang passes vectors of 8 doubles as the file's flags say, whatever the function's target. */
 static const char *lanes_condition(int lanes) { return lanes == 8 ? "defined(__GNUC__) && defined(__x86_64__) && !defined(__clang__)" : "defined(__GNUC__)"; }
 
-void emit_lanes(const IrUnit *u, const char *name, const char *text, int lanes, StrBuf *out) {
+void emit_lanes(const ProgramSet *u, const char *name, const char *text, int lanes, StrBuf *out) {
   sb_printf(out, "/* %s for vectors of %d doubles. */\n#if %s\n", text, lanes, lanes_condition(lanes));
   if (lanes == 8) sb_puts(out, "#pragma GCC target(\"avx512f,avx512dq\")\n");
   sb_printf(out, "#define LAG_LANES %d\n#define %s %s_lanes_%d\n", lanes, name, name, lanes);
@@ -14,7 +14,7 @@ void emit_lanes(const IrUnit *u, const char *name, const char *text, int lanes, 
   sb_printf(out, "#include \"%s\"\n#endif\n", text);
 }
 
-void emit_lane_scenes(const IrUnit *const *units, const char *const *names, uint32_t n, int lanes, StrBuf *out) {
+void emit_lane_scenes(const ProgramSet *const *units, const char *const *names, uint32_t n, int lanes, StrBuf *out) {
   sb_printf(out, "#if %s\n", lanes_condition(lanes));
   for (uint32_t i = 0; i < n; i++)
     for (uint32_t k = 0; k < units[i]->scenes.n; k++) sb_printf(out, "extern const lag_scene %s_%s_lanes_%d;\n", names[i], scene_id(units[i], k), lanes);

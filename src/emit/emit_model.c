@@ -29,7 +29,7 @@ enum { N_ABI_NAMES = sizeof abi_names / sizeof *abi_names };
 /* --- identifiers --- */
 
 /* Unique identifier of scene i: names that C spells alike get suffixes. */
-const char *scene_id(const IrUnit *u, uint32_t i) {
+const char *scene_id(const ProgramSet *u, uint32_t i) {
   CNames ids = cnames_new(u->arena);
   const char *id = "";
   for (uint32_t k = 0; k <= i; k++) id = cnames_take(&ids, u->scenes.at[k].name);
@@ -37,7 +37,7 @@ const char *scene_id(const IrUnit *u, uint32_t i) {
 }
 
 /* Names of the arrays of the inputs' tables. */
-static const char *const *rows_names(const IrUnit *u) {
+static const char *const *rows_names(const ProgramSet *u) {
   CNames ids = cnames_new(u->arena);
   const char **names = ARENA_ARRAY(u->arena, const char *, u->inputs->tables.n + 1);
   for (uint32_t i = 0; i < u->inputs->tables.n; i++)
@@ -55,7 +55,7 @@ const char *model_id(Arena *a, const char *name) {
   return clash ? arena_printf(a, "%s_model", id) : id;
 }
 
-static const char *const *globals_of(const IrUnit *u, const char *name) {
+static const char *const *globals_of(const ProgramSet *u, const char *name) {
   uint32_t n = N_ABI_NAMES, tables = u->inputs->tables.n, max = n + 8 * u->scenes.n + tables + 2;
   const char **all = ARENA_ARRAY(u->arena, const char *, max);
   memcpy(all, abi_names, sizeof abi_names);
@@ -88,7 +88,7 @@ CStyle model_style(const ModelFile *f, const char *const *own, const char *const
 }
 
 /* Whether the function is called once a step, or once a row of output. */
-static int is_seldom_called(const IrUnit *u, const Prog *p) {
+static int is_seldom_called(const ProgramSet *u, const Prog *p) {
   int seldom = p == u->energy || p == u->charge_values || p == u->charge_powers || p == u->switch_values || p == u->switch_rates || p == u->switch_grips || p == u->contact_laws || p == u->size_values;
   for (uint32_t i = 0; i < u->scenes.n; i++) seldom |= p == u->scenes.at[i].observe || p == u->scenes.at[i].momenta;
   return seldom;
@@ -117,11 +117,11 @@ static void accel(const ModelFile *f) {
   state_function(f, f->u->accel, "accel", arena_printf(f->a, "%s: %s.", what, op_count_text(f->u->accel, f->a)), NULL, written);
 }
 
-void emit_accel(const IrUnit *u, StrBuf *out) { accel(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out}); }
+void emit_accel(const ProgramSet *u, StrBuf *out) { accel(&(ModelFile){.u = u, .a = u->arena, .globals = globals_of(u, NULL), .out = out}); }
 
 static void emit_variation(const ModelFile *f) {
   static const char *const written[] = {"Lq", "Lv", "Q", NULL}, *const derivatives[] = {"h", NULL};
-  const IrUnit *u = f->u;
+  const ProgramSet *u = f->u;
   if (!u->variation) return;
   state_function(f, u->variation, "variation", "dL/dq, the momenta dL/dq', and the generalised forces outside of L.", NULL, written);
   state_function(f, u->second, "second", arena_printf(f->a, "Their nonzero derivatives: %s.", op_count_text(u->second, f->a)), NULL, derivatives);
@@ -130,7 +130,7 @@ static void emit_variation(const ModelFile *f) {
 /* Newton's law of impact for the contact whose constraint is `row`, which its input closes. */
 static void emit_strike(const ModelFile *f) {
   static const char *const written[] = {"v1", NULL};
-  const IrUnit *u = f->u;
+  const ProgramSet *u = f->u;
   if (!u->impact) return;
   state_function(f, u->impact, "impact", "Velocities after the impact of the contact whose entry of g is 1.", "g", written);
   sb_printf(f->out, "\nstatic int strike(int row, int input, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u, LAG_REAL *v1, LAG_REAL *w) {\n"
@@ -142,17 +142,17 @@ static void emit_strike(const ModelFile *f) {
 
 static void emit_events(const ModelFile *f) {
   static const char *const written[] = {"q1", "v1", "z1", NULL};
-  const IrUnit *u = f->u;
+  const ProgramSet *u = f->u;
   if (!u->events.n) return;
   state_function(f, u->event_values, "events", "An event happens where its function changes sign.", NULL, one_out);
   emit_strike(f);
   for (uint32_t i = 0; i < u->events.n; i++)
-    if (!unit_striking_contact(u, i))
+    if (!program_set_striking_contact(u, i))
       state_function(f, u->events.at[i].action, arena_printf(f->a, "act_%s", cname_of_event(u, i)), arena_printf(f->a, "What the event %s does.", u->events.at[i].name), NULL, written);
   sb_puts(f->out, "\nstatic int act(int k, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *v, const LAG_REAL *z,\n    const LAG_REAL *p, const LAG_REAL *u,\n"
                   "    LAG_REAL *q1, LAG_REAL *v1, LAG_REAL *z1, int *stop, LAG_REAL *w) {\n  switch (k) {\n");
   for (uint32_t i = 0; i < u->events.n; i++) {
-    const IrContact *c = unit_striking_contact(u, i);
+    const IrContact *c = program_set_striking_contact(u, i);
     if (c) sb_printf(f->out, "    case %u: return strike(%u, %u, t, q, v, z, p, u, v1, w);\n", i, c->constraint, c->input);
     else sb_printf(f->out, "    case %u:%s return act_%s(t, q, v, z, p, u, q1, v1, z1, w);\n", i, u->events.at[i].stop ? " *stop = 1;" : "", cname_of_event(u, i));
   }
@@ -160,7 +160,7 @@ static void emit_events(const ModelFile *f) {
 }
 
 static void emit_switches(const ModelFile *f) {
-  const IrUnit *u = f->u;
+  const ProgramSet *u = f->u;
   if (!u->switches.n) return;
   state_function(f, u->switch_values, "switch_values", "Switching functions: forces jump, or have a corner, where one of them is 0.", NULL, one_out);
   state_function(f, u->switch_rates, "switch_rates", "Their rates.", NULL, one_out);
@@ -191,7 +191,7 @@ static void emit_charges(const ModelFile *f) {
 #include "ir/flags.def"
 #undef CHARGE_FLAG
   };
-  const IrUnit *u = f->u;
+  const ProgramSet *u = f->u;
   if (!u->charges.n) return;
   state_function(f, u->charge_values, "charge_values", "The charges of symmetries, and the scales of their drifts.", NULL, one_out);
   state_function(f, u->charge_powers, "charge_powers", "Rates of change of the energy and of these charges.", NULL, one_out);
@@ -243,7 +243,7 @@ static void entries(const char *name, const IrEntry *at, uint32_t n, StrBuf *out
 
 static void emit_jumps(const ModelFile *f) {
   static const char *const written[] = {"d", NULL};
-  const IrUnit *u = f->u;
+  const ProgramSet *u = f->u;
   enum { A_LINE = 8 };
   if (!u->jumps) return;
   state_function(f, u->jumps, "jumps", "Linearised events: derivatives of their functions and of the values that their actions set.", NULL, written);
@@ -254,11 +254,11 @@ static void emit_jumps(const ModelFile *f) {
 }
 
 /* With constraints the derivatives are those of headers: see WANT_CONSTRAINED. */
-static int has_linear(const IrUnit *u) { return u->linear && !u->constraints.of.n; }
+static int has_linear(const ProgramSet *u) { return u->linear && !u->constraints.of.n; }
 
 static void emit_linear(const ModelFile *f) {
   static const char *const written[] = {"dr", "M", NULL};
-  const IrUnit *u = f->u;
+  const ProgramSet *u = f->u;
   if (!has_linear(u)) return;
   const char *comment = arena_printf(f->a, "The linearisation, dr: each equation by each component of its state; M: %s.", op_count_text(u->linear, f->a));
   state_function(f, u->linear, "linearise", comment, "a", written);
@@ -274,7 +274,7 @@ static void emit_linear(const ModelFile *f) {
 
 /* --- constraints --- */
 
-static void constraint_table(const IrUnit *u, StrBuf *out) {
+static void constraint_table(const ProgramSet *u, StrBuf *out) {
   const IrConstraints *k = &u->constraints;
   Arena *a = u->arena;
   sb_puts(out, "\nstatic const lag_constraint constraint_table[] = {\n");
@@ -315,23 +315,23 @@ static void emit_constraints(const ModelFile *f) {
 /* --- tables --- */
 
 /* Whether a table of the unit is written with macros. */
-static int has_long_tables(const IrUnit *u) {
+static int has_long_tables(const ProgramSet *u) {
   int is_long = table_needs_macros(u->q.at, u->q.n) || table_needs_macros(u->z.at, u->z.n) || table_needs_macros(u->p.at, u->p.n) ||
                 table_needs_macros(u->u.at, u->u.n);
   for (uint32_t i = 0; i < u->scenes.n; i++) is_long |= table_needs_macros(u->scenes.at[i].outputs.at, u->scenes.at[i].outputs.n);
   return is_long;
 }
 
-static uint32_t work_size(const IrUnit *u) {
-  ProgList all = unit_programs(u);
+static uint32_t work_size(const ProgramSet *u) {
+  ProgList all = program_set_programs(u);
   uint32_t most = 0;
   for (uint32_t i = 0; i < all.n; i++)
     if (prog_work_size(all.at[i]) > most) most = prog_work_size(all.at[i]);
   return most;
 }
 
-static int needs_solver(const IrUnit *u) {
-  ProgList all = unit_programs(u);
+static int needs_solver(const ProgramSet *u) {
+  ProgList all = program_set_programs(u);
   int some = 0;
   for (uint32_t i = 0; i < all.n; i++) some |= prog_solves_dense(all.at[i]);
   return some;
@@ -345,7 +345,7 @@ static const char *digest_text(Arena *a, const char *text) {
 }
 
 /* Table `curves`: input, number of rows and array of each input that is a table. */
-static void emit_curves(const IrUnit *u, StrBuf *out) {
+static void emit_curves(const ProgramSet *u, StrBuf *out) {
   const Prog *p = u->inputs;
   if (!p->tables.n) return;
   sb_puts(out, "\nstatic const lag_table curves[] = {\n");
@@ -356,7 +356,7 @@ static void emit_curves(const IrUnit *u, StrBuf *out) {
   sb_puts(out, "};\n");
 }
 
-static void second_table(const IrUnit *u, StrBuf *out) {
+static void second_table(const ProgramSet *u, StrBuf *out) {
   static const char *const parts[] = {"LAG_QQ", "LAG_VQ", "LAG_VV", "LAG_FQ", "LAG_FV"};
   if (!u->second_at.n) return;
   sb_puts(out, "\nstatic const lag_second second_table[] = {\n");
@@ -367,7 +367,7 @@ static void second_table(const IrUnit *u, StrBuf *out) {
   sb_puts(out, "};\n");
 }
 
-static void emit_tables(const IrUnit *u, const char *name, const char *digest, StrBuf *out) {
+static void emit_tables(const ProgramSet *u, const char *name, const char *digest, StrBuf *out) {
   static const char *const flags[UNIT_FLAGS] = {
 #define MODEL_FLAG(name) "LAG_" #name,
 #include "ir/flags.def"
@@ -415,7 +415,7 @@ static void emit_tables(const IrUnit *u, const char *name, const char *digest, S
   sb_puts(out, "};\n");
 }
 
-static void emit_head(const IrUnit *u, StrBuf *out) {
+static void emit_head(const ProgramSet *u, StrBuf *out) {
   sb_printf(out, "/* %s: %s\n", u->name, comment_text(u->arena, u->doc));
   sb_printf(out, " * Emitted by lagc; effects in use: %s.\n", u->effects[0] ? u->effects : "none");
   if (u->fixed[0]) sb_printf(out, " * Parameters that are numbers here: %s.\n", u->fixed_values);
@@ -426,7 +426,7 @@ static void emit_head(const IrUnit *u, StrBuf *out) {
   sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n\n");
 }
 
-void emit_model(const IrUnit *u, const char *name, StrBuf *out) {
+void emit_model(const ProgramSet *u, const char *name, StrBuf *out) {
   ModelFile f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
   if (u->lanes) sb_puts(out, "#ifndef LAG_AS_LANES\n#define LAG_AS_LANES 1 /* the same bits as in a lane */\n#endif\n");

@@ -1,17 +1,17 @@
-/* IrUnit -> C: for the runtime, the functions and tables of lag_model.h; or one self-contained C99/C++ header for programs that embed the model. */
+/* ProgramSet -> C: for the runtime, the functions and tables of lag_model.h; or one self-contained C99/C++ header for programs that embed the model. */
 #pragma once
 
 #include "base/strbuf.h"
-#include "ir/unit.h"
+#include "ir/program_set.h"
 
 /* Identifier of the lag_model for a model that the user called `name`; free in <math.h> and in the emitted file. */
 const char *model_id(Arena *a, const char *name);
 
 /* Appends one file: a lag_model called NAME (a C identifier), and a lag_scene NAME_scene for each scene. */
-void emit_model(const IrUnit *u, const char *name, StrBuf *out);
+void emit_model(const ProgramSet *u, const char *name, StrBuf *out);
 
 /* Appends only the function that computes the accelerations. */
-void emit_accel(const IrUnit *u, StrBuf *out);
+void emit_accel(const ProgramSet *u, StrBuf *out);
 
 /* Kind of a program, a sum: a simulator with main(), with the gsl-* methods, with pictures as PNG, with rows as HDF5, with MPI, with models also
  * compiled for lanes; or a shared library. */
@@ -19,10 +19,10 @@ typedef enum { PROGRAM_PLAIN, PROGRAM_WITH_GSL = 1, PROGRAM_WITH_PNG = 2, PROGRA
 
 /* Appends the main file of a program: a lag_program of the scenes of n units, and main() or lag_library(). names[i]: the name of units[i] in
  * emit_model. */
-void emit_program(const IrUnit *const *units, const char *const *names, uint32_t n, ProgramKind kind, StrBuf *out);
+void emit_program(const ProgramSet *const *units, const char *const *names, uint32_t n, ProgramKind kind, StrBuf *out);
 
 /* Appends the file that compiles a unit's text, in the file `text`, once more for vectors of so many doubles, where the processor may have them. */
-void emit_lanes(const IrUnit *u, const char *name, const char *text, int lanes, StrBuf *out);
+void emit_lanes(const ProgramSet *u, const char *name, const char *text, int lanes, StrBuf *out);
 
 /* Parts of a header besides the functions of every header. */
 enum { PART_MASS = 1, PART_INVERSE = 2, PART_JAC = 4, PART_LINEAR = 8, PART_PARAMS = 16, PART_CONSTRAINTS = 32, PART_EVENTS = 64, PART_NAMES = 128, PART_RHS = 256,
@@ -39,8 +39,8 @@ typedef struct {
 unsigned header_wants(const char *list);
 
 /* Adds the words of a known list; `all` stands for all that the model has, a library for what its callbacks call and the model has. 0: *error says what the model lacks for one of them. */
-int header_parts(const IrUnit *u, const char *list, HeaderParts *parts, const char **error);
+int header_parts(const ProgramSet *u, const char *list, HeaderParts *parts, const char **error);
 
 /* emit_header.c: appends the header of the unit's first scene. Its names begin with the prefix, or with `name` turned into an identifier,
  * in upper or lower case. equations: text for the head comment, or NULL. */
-void emit_header(const IrUnit *u, const char *name, HeaderParts parts, const char *equations, StrBuf *out);
+void emit_header(const ProgramSet *u, const char *name, HeaderParts parts, const char *equations, StrBuf *out);

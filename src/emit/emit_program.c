@@ -17,8 +17,8 @@ static void emit_main(ProgramKind kind, StrBuf *out) {
   sb_printf(out, "  return lag_app_main(argc, argv, &program, %s);\n}\n", more ? "&extras" : gsl ? "&lag_gsl" : "NULL");
 }
 
-void emit_program(const IrUnit *const *units, const char *const *names, uint32_t n, ProgramKind kind, StrBuf *out) {
-  const IrUnit *first = units[0];
+void emit_program(const ProgramSet *const *units, const char *const *names, uint32_t n, ProgramKind kind, StrBuf *out) {
+  const ProgramSet *first = units[0];
   Arena *a = first->arena;
   int lanes = (kind & PROGRAM_WITH_LANES) != 0;
   sb_puts(out, lanes ? "\n#ifndef LAG_LANES\n#include \"lag.h\"\n\n" : "\n#include \"lag.h\"\n\n");

@@ -11,7 +11,7 @@ static int is_number_like(const Prog *p, const Prog *like) {
 }
 
 /* Number of parameters from i on with one constant value if at least 16; otherwise 1. */
-static uint32_t same_params(const IrUnit *u, const IrScene *s, uint32_t i) {
+static uint32_t same_params(const ProgramSet *u, const IrScene *s, uint32_t i) {
   enum { MANY = 16 };
   uint32_t n = 1;
   while (i + n < u->p.n && is_number_like(s->params[i + n], s->params[i])) n++;
@@ -71,7 +71,7 @@ static void emit_exact(const ModelFile *f, const IrScene *s, const char *id) {
 
 /* Outputs with action variables: their curves, and a function that puts their values behind those in u. Rows of output have no lanes. */
 static void emit_observe(const ModelFile *f, const IrScene *s, const char *id) {
-  const IrUnit *u = f->u;
+  const ProgramSet *u = f->u;
   StrBuf *out = f->out;
   const char *comment = arena_printf(f->a, "Outputs of the scene %s.", s->name);
   uint32_t n = u->u.n + u->nmodes + s->exact_of.n;
@@ -99,7 +99,7 @@ static void emit_observe(const ModelFile *f, const IrScene *s, const char *id) {
   sb_printf(out, "  return values_%s(t, q, v, z, p, with, out, w);\n}\n#else\n#define observe_%s NULL\n#endif\n", id, id);
 }
 
-static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
+static void emit_scene_lists(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
   table_vars(arena_printf(u->arena, "outputs_%s", id), s->outputs.at, s->outputs.n, u->arena, out);
   if (s->options.n) {
     sb_printf(out, "\nstatic const lag_option options_%s[] = {\n", id);
@@ -119,7 +119,7 @@ static void emit_scene_lists(const IrUnit *u, const IrScene *s, const char *id, 
   }
 }
 
-static void emit_measures(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
+static void emit_measures(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
   if (!s->measures.n) return;
   sb_printf(out, "\nstatic const lag_measure measures_%s[] = {\n", id);
   for (uint32_t i = 0; i < s->measures.n; i++) {
@@ -136,7 +136,7 @@ static void emit_flags(const char *stem, const char *id, const unsigned char *fl
 }
 
 /* Table `given` for models with constraints: 1 for components of the state that the start sets, 2 for implied ones. */
-static void emit_given(const IrUnit *u, const IrScene *s, const char *id, StrBuf *out) {
+static void emit_given(const ProgramSet *u, const IrScene *s, const char *id, StrBuf *out) {
   uint32_t n = u->q.n, total = 2 * n + u->z.n, after[] = {0, n, 2 * n};
   if (!u->constraints.of.n) return;
   unsigned char *given = ARENA_ARRAY(u->arena, unsigned char, total);
@@ -148,12 +148,12 @@ static void emit_given(const IrUnit *u, const IrScene *s, const char *id, StrBuf
 /* Whether an output of the scene contains forces. */
 static int has_forces(const IrScene *s) { return s->forces.n && memchr(s->forces.at, 1, s->forces.n); }
 
-static const char *list_name(const IrUnit *u, uint32_t n, const char *stem, const char *id) {
+static const char *list_name(const ProgramSet *u, uint32_t n, const char *stem, const char *id) {
   return n ? arena_printf(u->arena, "%s_%s", stem, id) : "NULL";
 }
 
 void emit_scene(const ModelFile *f, const char *name, uint32_t index) {
-  const IrUnit *u = f->u;
+  const ProgramSet *u = f->u;
   const IrScene *s = &u->scenes.at[index];
   const char *id = scene_id(u, index);
   StrBuf *out = f->out;

@@ -1,5 +1,5 @@
 /* Control of the adaptive steps of an emitted header, for one state and for the lanes of vectors. Enters: trial steps with error estimates (header_steps.c). Holds:
- * sizes as runtime/methods/embedded.c chooses them; a lane has the digits of a state alone. */
+ * sizes as runtime/methods/adaptive_rk.c chooses them; a lane has the digits of a state alone. */
 #include "emit/header_impl.h"
 
 static const char *const type =

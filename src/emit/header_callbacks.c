@@ -46,7 +46,7 @@ static Pattern *jac_pattern(const Header *h) {
 
 /* IDA's: residuals by state, and by rates. */
 static Pattern *residual_pattern(const Header *h) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   uint32_t nq = u->q.n, n = ny(h);
   Pattern *x = u->constraints.of.n ? jac_pattern(h) : pattern_new(h, n);
   for (uint32_t i = 0; i < n && u->constraints.of.n; i++) x[i * n + i] = 1;
@@ -452,7 +452,7 @@ void header_callbacks_declare(const Header *h) {
 }
 
 void header_callbacks_define(const Header *h) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   StrBuf to = strbuf(h->a);
   for (uint32_t i = 0; i < u->events.n; i++) sb_printf(&to, "%s%d", i ? ", " : "", u->events.at[i].direction);
   const char *args = header_state_args(h, 0, ""), *ok = "if (status == LAG_OK) status =";

@@ -30,7 +30,7 @@ static const char *unit_text(const Header *h, const IrVar *v) {
 static void size(const Header *h, const char *name, uint32_t n) { sb_printf(h->out, "  %s_%s = %u,\n", h->upper, name, n); }
 
 static void sizes(const Header *h) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   sb_puts(h->out, "\n/* Sizes: coordinates, states, both with velocities, parameters, inputs, events, constraints, outputs. */\nenum {\n");
   size(h, "NQ", u->q.n);
   size(h, "NZ", u->z.n);
@@ -69,7 +69,7 @@ static void event_indices(const Header *h) {
 static const char *sign_text(int sign) { return sign == 1 ? " > 0" : sign == 2 ? " >= 0" : sign == -1 ? " < 0" : sign == -2 ? " <= 0" : ""; }
 
 static void params_struct(const Header *h) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   long double *value = ARENA_ARRAY(h->a, long double, u->p.n + 1), *y = ARENA_ARRAY(h->a, long double, 2 * u->q.n + u->z.n + 1);
   scene_values(u, h->scene, value, y, ARENA_ARRAY(h->a, long double, u->u.n + 1));
   sb_printf(h->out, "\n/* Parameters, with the values of scene %s. */\ntypedef struct %s_params {\n", h->scene->name, h->lower);
@@ -131,7 +131,7 @@ const char *header_wrapped(const Header *h, const char *prototype) {
 }
 
 int header_has(const Header *h, HeaderFn f) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   switch (f) {
     case FN_INPUTS: case FN_RK4_STEP_WITH: return u->u.n > 0;
     case FN_ENERGY: return u->energy != NULL;
@@ -243,7 +243,7 @@ void header_one_state(const Header *h, const char *name, const char *way) {
 }
 
 void header_declarations(const Header *h) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   header_callbacks_include(h);
   csupport_expand(options, h->upper, h->lower, h->out);
   sizes(h);

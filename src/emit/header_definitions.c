@@ -212,7 +212,7 @@ static void write_demand(const Header *h, const char *demand) { csupport_expand(
 /* lag_sizes: whether parameters have their declared signs, and the sizes that they determine. */
 static void sizes(const Header *h) {
   static const char *const own[] = {"p", "out", NULL}, *const out[] = {"out"};
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   if (u->size_values) {
     CStyle st = style_for(h, own, out);
     CFunction c = {.comment = "Sizes of friction, inertias and coefficients, of parameters alone.", .own_work = 1};
@@ -234,7 +234,7 @@ static void sizes(const Header *h) {
 }
 
 /* Whether parameters can be wrong. */
-static int has_sizes(const IrUnit *u) {
+static int has_sizes(const ProgramSet *u) {
   int some = u->size_values != NULL;
   for (uint32_t i = 0; i < u->p.n; i++) some |= u->p.at[i].sign != 0;
   return some;
@@ -311,12 +311,12 @@ static void act(const Header *h) {
   if (!header_has(h, FN_ACT)) return;
   strike(h);
   for (uint32_t i = 0; i < h->u->events.n; i++)
-    if (!unit_striking_contact(h->u, i)) action(h, i);
+    if (!program_set_striking_contact(h->u, i)) action(h, i);
   sb_printf(h->out, "\n%s {\n  const %s_state was = *s;\n  for (int i = 0; i <= %s_NY; i++) s->lost[i] = %s_C(0.0);\n  switch (event) {\n", header_api(h, FN_ACT), h->lower,
             h->upper, h->upper);
   const char *q = h->u->q.n ? ", s->q, s->v" : "", *z = h->u->z.n ? ", s->z" : "", *args = header_state_args(h, 0, "was.");
   for (uint32_t i = 0; i < h->u->events.n; i++) {
-    const IrContact *c = unit_striking_contact(h->u, i);
+    const IrContact *c = program_set_striking_contact(h->u, i);
     if (c) sb_printf(h->out, "    case %s: return %s_strike(%u, %s, %s, s->v);\n", h->ev[i], h->lower, c->constraint, h->in[c->input], args);
     else sb_printf(h->out, "    case %s:%s return %s(%s%s%s);\n", h->ev[i], h->u->events.at[i].stop ? " *stop = 1;" : "", header_action(h, i), args, q, z);
   }
@@ -384,8 +384,8 @@ static const char *comparison(const Prog *p, int has_scale) {
   return NULL;
 }
 
-static const char *comparison_of_unit(const IrUnit *u) {
-  ProgList all = unit_programs(u);
+static const char *comparison_of_unit(const ProgramSet *u) {
+  ProgList all = program_set_programs(u);
   if (u->constraints.of.n) return "constraints";
   if (u->q.n && (u->linear || u->by_params)) return "linear systems with pivots, for its derivatives";
   for (uint32_t i = 0; i < all.n; i++) {

@@ -67,7 +67,7 @@ unsigned header_wants(const char *list) {
 }
 
 /* Property that the model lacks for a part, or NULL. */
-static const char *lack(const IrUnit *u, unsigned part) {
+static const char *lack(const ProgramSet *u, unsigned part) {
   enum { DENSE = 300 };
   if (part & DERIVATIVES && u->contacts.n) return "no contacts: they open and close";
   if (part & (DERIVATIVES | PART_MASS) && 2 * u->q.n + u->z.n > DENSE) return "at most 300 coordinates, velocities and states: the matrices are dense";
@@ -78,7 +78,7 @@ static const char *lack(const IrUnit *u, unsigned part) {
   return NULL;
 }
 
-int header_parts(const IrUnit *u, const char *list, HeaderParts *parts, const char **error) {
+int header_parts(const ProgramSet *u, const char *list, HeaderParts *parts, const char **error) {
   for (const char *s = list ? list : ""; *s; s += *s == ',') {
     size_t n = strcspn(s, ",");
     int method = header_method(s, n), lib = library(s, n), some;
@@ -87,7 +87,7 @@ int header_parts(const IrUnit *u, const char *list, HeaderParts *parts, const ch
     if (method >= 0) parts->methods |= 1u << method;
     if (lib >= 0) parts->parts |= libraries[lib].part;
     if (lib >= 0 && u->contacts.n) lacks = "no contacts, which open and close: a header without --for shows the loop of steps that they need";
-    if (lib >= 0 && unit_kick(u)) lacks = "no kicks: a header without --for shows the loop of steps that they need";
+    if (lib >= 0 && program_set_kick(u)) lacks = "no kicks: a header without --for shows the loop of steps that they need";
     for (size_t i = 0; i < WORDS && !lacks; i++) {
       if (!(words[i].part & asked)) continue;
       lacks = lack(u, words[i].part);
@@ -271,7 +271,7 @@ const char *header_positions(const Header *h, const IrEntry *at, uint32_t n) {
 /* Chooses lines marked b (coordinates and states), f (states alone), n (no inputs), c (constraints), o (coordinates without), which become plain ones
  * or go. */
 static void write_marked(const Header *h, const char *text, const HeaderWord *w) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   StrBuf b = strbuf(h->a);
   for (const char *s = text; *s; s += strcspn(s, "\n") + 1) {
     int wanted = *s == 'b' ? u->q.n && u->z.n : *s == 'f' ? !u->q.n : *s == 'n' ? !u->u.n : *s == 'c' ? u->constraints.of.n > 0 : *s == 'o' ? u->q.n && !u->constraints.of.n : 1;
@@ -289,7 +289,7 @@ typedef struct {
 
 /* Words of the templates for derivatives by one kind of variables. */
 static Words words_of(const Header *h, const char *name, const IrEntry *at, uint32_t n, const char *columns) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   const char *a = u->q.n ? ", a" : "", *rates = u->z.n && u->q.n ? ", a, zd" : a, *q = u->constraints.of.n ? ", a, lambda" : a;
   const char *out = u->constraints.of.n ? ", m, A" : u->q.n ? ", m" : "";
   return (Words){{{"NAME", name}, {"ENTRIES", header_positions(h, at, n)}, number_word(h, "NENTRIES", n), number_word(h, "NALL", n ? n : 1),
@@ -312,7 +312,7 @@ static void define_by(const Header *h, const Prog *p, const char *name, const Ir
 static void begin(const Header *h, HeaderFn f) { sb_printf(h->out, "\n%s", header_api(h, f)); }
 
 static void derivatives(const Header *h) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   const char *ny = arena_printf(h->a, "%s_NY", h->upper), *nu = arena_printf(h->a, "%s_NU", h->upper), *np = arena_printf(h->a, "%s_NP", h->upper);
   unsigned parts = h->parts.parts;
   if (parts & (PART_JAC | PART_LINEAR | PART_PARAMS) && u->q.n) {
@@ -549,7 +549,7 @@ static void name_rows(const Header *h, const char *of, const IrVar *v, uint32_t 
 }
 
 void header_name_tables(const Header *h) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   if (!(h->parts.parts & PART_NAMES)) return;
   sb_printf(h->out, "\n#ifdef %s_WITH_NAMES\n#include <math.h>\n", h->upper);
   sb_printf(h->out, "/* A name, its unit, the size of the unit in SI (value = factor*number + offset), and bounds of the value in SI. */\n"
@@ -564,7 +564,7 @@ void header_name_tables(const Header *h) {
 
 void header_dynamics_define(const Header *h) {
   static const char *const b[] = {"b", NULL}, *const force[] = {"a", "force", NULL}, *const out[] = {"force"}, *const lambda[] = {"lambda", NULL};
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   const HeaderWord inputs[] = {{"INPUTS", u->u.n ? ", u, 0, 0" : ""}, {NULL, NULL}};
   if (header_has(h, FN_MASS)) {
     filled(h, u->mass, FN_MASS, "mass", "M", arena_printf(h->a, "%s_NQ*%s_NQ", h->upper, h->upper));

@@ -1,14 +1,14 @@
-/* Steps of an emitted header with dry friction, by Moreau's method. Enters: accelerations with held modes (ir/unit.h), switching functions. Leaves: what the state says of surfaces, prototypes
- * and functions of the steps. Holds: a body that sticks at the end of a step has no velocity of slipping there, to rounding; each step has the digits of the runtime's (methods/friction_step.c). Friction of contacts: header_moreau.c. */
+/* Steps of an emitted header with dry friction, by Moreau's method. Enters: accelerations with held modes (ir/program_set.h), switching functions. Leaves: what the state says of surfaces, prototypes
+ * and functions of the steps. Holds: a body that sticks at the end of a step has no velocity of slipping there, to rounding; each step has the digits of the runtime's (methods/moreau_joint_friction.c). Friction of contacts: header_moreau.c. */
 #include "emit/header_impl.h"
 
-uint32_t header_surfaces(const IrUnit *u) {
+uint32_t header_surfaces(const ProgramSet *u) {
   uint32_t n = 0;
   for (uint32_t k = 0; k < u->nmodes; k++) n += u->switches.at[k].jumps != 0;
   return n;
 }
 
-const char *header_friction_lacks(const IrUnit *u) {
+const char *header_friction_lacks(const ProgramSet *u) {
   uint32_t n = header_surfaces(u);
   if (u->contacts.n && n) return "contacts or dry friction, not both: rk4, rk45 and dop853 decide at each state whether a body slips";
   for (uint32_t k = 0; k < u->switches.n; k++) {
@@ -213,7 +213,7 @@ static void held_function(const Header *h, const Prog *p, const char *name, cons
 
 void header_friction_define(const Header *h) {
   static const char *const all[] = {"u", "all", NULL}, *const both[] = {"u", "a", "zd", NULL}, *const a[] = {"u", "a", NULL}, *const zd[] = {"u", "zd", NULL}, *const outputs[] = {"u", "out", NULL};
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   const char *R = h->upper, *z = u->z.n ? ", y + 2*LAG_NQ" : "", *x = u->z.n ? ", x + 2*LAG_NQ" : "";
   int holds = header_has(h, FN_HOLD);
   const HeaderWord words[] = {{"AT_SURFACES", surface_table(h)}, {"NMODES", arena_printf(h->a, "%u", u->nmodes)}, {"NSWITCHES", arena_printf(h->a, "%u", u->switches.n)},

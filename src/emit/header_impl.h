@@ -3,10 +3,10 @@
 
 #include "emit/cfunction.h"
 #include "emit/emit_model.h"
-#include "ir/unit.h"
+#include "ir/program_set.h"
 
 typedef struct {
-  const IrUnit *u;
+  const ProgramSet *u;
   const IrScene *scene;
   Arena *a;
   StrBuf *out;
@@ -57,7 +57,7 @@ typedef struct {
 const char *header_chosen(const Header *h, const char *text, const LineChoice *choices);
 
 /* header_moreau.c: NULL, or what a model needs; indices of contacts and surfaces, what the state says of them, its start; the prototypes and functions of the steps; the change of the middle of a step. */
-const char *header_moreau_lacks(const IrUnit *u);
+const char *header_moreau_lacks(const ProgramSet *u);
 void header_moreau_start(const Header *h);
 void header_moreau_between(const Header *h);
 void header_moreau_indices(const Header *h);
@@ -66,8 +66,8 @@ void header_moreau_declare(const Header *h);
 void header_moreau_define(const Header *h);
 
 /* header_friction.c: the same for models without contacts whose motion may stick; the number of surfaces. */
-uint32_t header_surfaces(const IrUnit *u);
-const char *header_friction_lacks(const IrUnit *u);
+uint32_t header_surfaces(const ProgramSet *u);
+const char *header_friction_lacks(const ProgramSet *u);
 void header_friction_indices(const Header *h);
 void header_friction_members(const Header *h);
 void header_friction_declare(const Header *h);
@@ -109,8 +109,8 @@ const char *header_api(const Header *h, HeaderFn f);
 /* Index of the method with this name of n letters, or -1; programs WANT_... that it needs; NULL, or what a model needs that it steps. */
 int header_method(const char *name, size_t n);
 unsigned header_method_wants(int method);
-const char *header_method_refusal(const IrUnit *u, int method);
-unsigned header_methods(const IrUnit *u); /* bits of those that step the model */
+const char *header_method_refusal(const ProgramSet *u, int method);
+unsigned header_methods(const ProgramSet *u); /* bits of those that step the model */
 int header_has_method(const Header *h, const char *name);
 
 /* Prototype broken into lines at its commas. */

@@ -1,6 +1,6 @@
 /* Steps of an emitted header by Moreau's method. Enters: the unit's contacts, their laws and matrices. Leaves: what the state says of contacts, prototypes and functions of the steps. Holds:
  * each step has the digits of the runtime's, whose laws and sweeps are copied (numeric/contact_impulses.c, methods/band_matrix.c); the frame around them is that of methods/moreau.c and
- * contact_step.c, which give the reasons. */
+ * moreau_contacts.c, which give the reasons. */
 #include <string.h>
 
 #include "emit/header_impl.h"
@@ -402,14 +402,14 @@ static const char *const step =
   " |}\n";
 
 /* Tangents of contact i, which follow it; -1: it is one. */
-static int tangents_of(const IrUnit *u, uint32_t i) {
+static int tangents_of(const ProgramSet *u, uint32_t i) {
   int n = 0;
   if (u->contacts.at[i].is_tangent) return -1;
   while (i + 1 < u->contacts.n && u->contacts.at[++i].is_tangent) n++;
   return n;
 }
 
-static uint32_t bandwidth(const IrUnit *u) {
+static uint32_t bandwidth(const ProgramSet *u) {
   uint32_t band = 0;
   for (uint32_t e = 0; e < u->constraints.mass.n; e++) {
     uint32_t d = u->constraints.mass.at[e].row - u->constraints.mass.at[e].col;
@@ -447,7 +447,7 @@ static const char *contact_table(const Header *h) {
 }
 
 static void define_contacts(const Header *h) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   const IrConstraints *k = &u->constraints;
   int others = k->of.n > u->contacts.n, is_explicit = u->flags & 1u << UNIT_SEPARABLE && !others;
   /* contacts alone, other constraints beside them, steps that hold these, friction, forces that do not depend on velocities, or do */
@@ -481,7 +481,7 @@ static void define_contacts(const Header *h) {
 
 /* --- contacts, or dry friction --- */
 
-const char *header_moreau_lacks(const IrUnit *u) {
+const char *header_moreau_lacks(const ProgramSet *u) {
   if (!u->contacts.n || header_surfaces(u)) return header_friction_lacks(u);
   for (uint32_t i = 0; i < u->contacts.n; i++)
     if (u->contacts.at[i].law || u->contacts.at[i].holds) return "contacts of one friction, at rest and slipping, and of one law of impact, `stronge`";

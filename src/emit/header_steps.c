@@ -279,7 +279,7 @@ static const char *const splitting_step =
   " |}\n";
 
 void header_template(const Header *h, const char *text, const HeaderWord *more) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   const char *call = arena_printf(h->a, "t%s%s, p%s%s%s", u->q.n ? ", y, y + LAG_NQ" : "", u->z.n ? ", y + 2*LAG_NQ" : "",
                                   u->u.n ? ", lag_held(p, t, u, input, context, now)" : "", u->q.n ? ", k + LAG_NQ" : "", u->z.n ? ", k + 2*LAG_NQ" : "");
   const HeaderWord usual[] = {{"HELD", u->u.n ? held : ""}, {"PASS", u->u.n ? ", u, input, context" : ""}, {"CALL", call},
@@ -323,7 +323,7 @@ unsigned header_method_wants(int method) { return methods[method].wants; }
 
 int header_has_method(const Header *h, const char *name) { return is_wanted(h, (uint32_t)header_method(name, strlen(name))); }
 
-const char *header_method_refusal(const IrUnit *u, int i) {
+const char *header_method_refusal(const ProgramSet *u, int i) {
   if (methods[i].wants == WANT_TAYLOR)
     return u->taylor ? NULL : "analytic functions (no if, abs, sign, min, max), no tables and no constraints; rk45 and dop853 step every model";
   if (methods[i].wants == WANT_VARIATION)
@@ -333,7 +333,7 @@ const char *header_method_refusal(const IrUnit *u, int i) {
   return "accelerations that depend on t and coordinates alone, a constant mass matrix, no states and no constraints";
 }
 
-unsigned header_methods(const IrUnit *u) {
+unsigned header_methods(const ProgramSet *u) {
   unsigned all = 0;
   for (int i = 0; i < (int)(sizeof methods / sizeof *methods); i++) all |= header_method_refusal(u, i) ? 0 : 1u << i;
   return all;

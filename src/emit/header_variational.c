@@ -472,7 +472,7 @@ static const char *const steps =
   "u|}\n";
 
 /* One more than the half-bandwidth of the second derivatives, in the order in which coordinates are declared. */
-static uint32_t band(const IrUnit *u) {
+static uint32_t band(const ProgramSet *u) {
   uint32_t most = 0;
   for (uint32_t k = 0; k < u->second_at.n; k++) {
     const IrSecond *s = &u->second_at.at[k];
@@ -483,7 +483,7 @@ static uint32_t band(const IrUnit *u) {
 }
 
 static const char *positions(const Header *h) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   StrBuf b = strbuf(h->a);
   for (uint32_t k = 0; k < u->second_at.n; k++) {
     const IrSecond *s = &u->second_at.at[k];
@@ -493,7 +493,7 @@ static const char *positions(const Header *h) {
 }
 
 static void write(const Header *h, const char *text) {
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   uint32_t n = u->second_at.n;
   const HeaderWord words[] = {{"BAND", arena_printf(h->a, "%u", band(u))}, {"NSECOND", arena_printf(h->a, "%u", n ? n : 1)}, {"NENTRIES", arena_printf(h->a, "%u", n)},
                               {"SECOND_AT", positions(h)}, {"STEP", u->u.n ? "static int lag_variational_advance" : "LAG_API int lag_variational_step"},
@@ -507,7 +507,7 @@ void header_variational_declare(const Header *h) { write(h, memory); }
 
 void header_variational_define(const Header *h) {
   static const char *const first[] = {"Lq", "Lv", "Q", NULL}, *const second[] = {"h", NULL};
-  const IrUnit *u = h->u;
+  const ProgramSet *u = h->u;
   const char *R = h->upper, *state = header_state_args(h, 1, "");
   const char *head = arena_printf(h->a, "static int %s_variation(%s, %s_REAL *Lq, %s_REAL *Lv, %s_REAL *Q)", h->lower, state, R, R, R);
   header_state_function(h, u->variation, "dL/dq, the momenta dL/dq', and the generalised forces outside of L.", header_wrapped(h, head), first, first, 1);

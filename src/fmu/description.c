@@ -1,5 +1,5 @@
 /* modelDescription.xml: variables with their units, starts and bounds, and which depends on which. Value references as in core.in. */
-#include "fmu/fmu_impl.h"
+#include "fmu/fmu_archive_impl.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,7 +18,7 @@ typedef struct {
 } FmuVar;
 
 typedef struct {
-  const IrUnit *u;
+  const ProgramSet *u;
   const IrScene *scene;
   const Fmu *f;
   Arena *a;
@@ -94,13 +94,13 @@ static void add_state(Description *d, FmuVar v, long double start) {
 }
 
 /* Inputs and events of contacts are the steps' own. */
-static int is_contact_input(const IrUnit *u, uint32_t i) {
+static int is_contact_input(const ProgramSet *u, uint32_t i) {
   for (uint32_t k = 0; k < u->contacts.n; k++)
     if (u->contacts.at[k].input == i || (u->contacts.at[k].is_tangent && u->contacts.at[k].force == i)) return 1;
   return 0;
 }
 
-static int is_contact_event(const IrUnit *u, uint32_t i) {
+static int is_contact_event(const ProgramSet *u, uint32_t i) {
   for (uint32_t k = 0; k < u->contacts.n; k++)
     if (u->contacts.at[k].impact == i || u->contacts.at[k].release == i) return 1;
   return 0;
@@ -108,7 +108,7 @@ static int is_contact_event(const IrUnit *u, uint32_t i) {
 
 /* Variables in the order of their value references. */
 static void add_variables(Description *d) {
-  const IrUnit *u = d->u;
+  const ProgramSet *u = d->u;
   Arena *a = d->a;
   uint32_t n = u->q.n;
   long double *p = ARENA_ARRAY(a, long double, u->p.n + 1), *y = ARENA_ARRAY(a, long double, 2 * n + u->z.n + 1), *in = ARENA_ARRAY(a, long double, u->u.n + 1);
@@ -267,10 +267,10 @@ static void write_interface(const Description *d, const char *kind, const char *
   sb_printf(d->out, " %s=\"true\" %s=\"true\"%s", old ? "canGetAndSetFMUstate" : "canGetAndSetFMUState", old ? "canSerializeFMUstate" : "canSerializeFMUState", more);
   if (d->f->has_derivatives) attribute(d->out, old ? "providesDirectionalDerivative" : "providesDirectionalDerivatives", "true");
   if (!old) sb_puts(d->out, "/>\n");
-  else sb_printf(d->out, " canNotUseMemoryManagementFunctions=\"true\">\n    <SourceFiles><File name=\"fmu.c\"/></SourceFiles>\n  </%s>\n", kind);
+  else sb_printf(d->out, " canNotUseMemoryManagementFunctions=\"true\">\n    <SourceFiles><File name=\"fmu_archive.c\"/></SourceFiles>\n  </%s>\n", kind);
 }
 
-void fmu_describe(const IrUnit *u, const Fmu *f, StrBuf *out) {
+void fmu_describe(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   Description d = {.u = u, .scene = &u->scenes.at[0], .f = f, .a = u->arena, .out = out};
   int old = f->version == 2;
   add_variables(&d);

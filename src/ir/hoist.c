@@ -1,6 +1,6 @@
 /* unit_hoist. For each program: slots that depend on parameters alone are marked, and which of them the rest needs; if moving them saves enough
  * operations, they move to the program `derived`, and the rest loads them as parameters. */
-#include "ir/unit.h"
+#include "ir/program_set.h"
 
 #include "ir/roll.h"
 
@@ -130,7 +130,7 @@ static void hoist_from(Hoist *h, const Prog **p) {
   if (left) *p = prog_tidy(left);
 }
 
-void unit_hoist(IrUnit *u) {
+void unit_hoist(ProgramSet *u) {
   IrConstraints *c = &u->constraints;
   Hoist h = {.derived = prog_new(u->arena), .first = u->p.n};
   const Prog *same = c->position == c->velocity ? c->position : NULL;

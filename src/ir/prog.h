@@ -188,7 +188,7 @@ int ir_is_leaf(IrOp op);
 Slot prog_constant_fold(Prog *p, const Ins *i);
 int prog_is_number(const Prog *p, Slot s);
 
-/* eval.c: value at x of the C library's function `name`; NaN for unknown names. */
+/* prog_eval.c: value at x of the C library's function `name`; NaN for unknown names. */
 long double prog_call1(const char *name, long double x);
 
 /* Removes dead code; several divisions by one value become products with its reciprocal. Keeps the order of the rest.

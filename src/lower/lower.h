@@ -1,4 +1,4 @@
-/* Eqns -> Prog and IrUnit: the only reader of mech/eqns.h in src/ir.
+/* Eqns -> Prog and ProgramSet: the only reader of mech/eqns.h in src/ir.
  *
  * Each function below makes the program of one emitted function. Output arrays are numbered in the
  * order of that function's declaration in lag_model.h. */
@@ -7,9 +7,9 @@
 #include "ir/prog.h"
 #include "mech/linearise.h"
 #include "series/series.h"
-#include "ir/unit.h"
+#include "ir/program_set.h"
 #include "mech/eqns.h"
-#include "mech/variation.h"
+#include "mech/lagrangian_hessian.h"
 
 Prog *lower_accel_traced(const Eqns *e, int libm, StrBuf *trace); /* the same, with a listing after each pass */
 Prog *lower_accel(const Eqns *e, int libm); /* out 0: a[nq], out 1: zd[nz]; libm: sin and cos are calls of the C library, not inline */
@@ -55,12 +55,12 @@ Prog *lower_start(const Eqns *e);   /* out 0, 1, 2: q, v, z; only components wit
 
 /* unit_new: the unit of these equations, without scenes; source: path of the file as the user gave it; libm as in lower_accel.
  * unit_add_scene adds the scene of e, which must come from the same file, with the same effects, inputs and fixed parameters. */
-IrUnit *unit_new(const Eqns *e, const char *source, int libm);
+ProgramSet *unit_new(const Eqns *e, const char *source, int libm);
 /* The two parts of unit_new: names, flags and inputs, which unit_accepts_scenes compares; and the programs of equations. */
-IrUnit *unit_head(const Eqns *e, const char *source, int libm);
-void unit_add_programs(IrUnit *u, const Eqns *e);
-int unit_accepts_scenes(const IrUnit *a, const IrUnit *b); /* whether scenes of b may be added to a */
-void unit_add_scene(IrUnit *u, const Eqns *e);
+ProgramSet *unit_head(const Eqns *e, const char *source, int libm);
+void unit_add_programs(ProgramSet *u, const Eqns *e);
+int unit_accepts_scenes(const ProgramSet *a, const ProgramSet *b); /* whether scenes of b may be added to a */
+void unit_add_scene(ProgramSet *u, const Eqns *e);
 
 /* Makes the programs of the WANT_... bits that are still missing. */
-void unit_require(IrUnit *u, Eqns *e, unsigned wants);
+void unit_require(ProgramSet *u, Eqns *e, unsigned wants);

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "base/sparse_solve.h"
 #include "numeric/magnitudes.h"
 

@@ -6,7 +6,7 @@
 
 #include "mech/constrain.h"
 #include "mech/consistent_start.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 
 static int is_fixed(const Eqns *e, Expr x) { return expr_is_constant(e->g, x) && !expr_is_zero(e->g, x); }
 

@@ -57,7 +57,7 @@ SymId *eqns_symbols(const Eqns *e, int velocities) {
   return s;
 }
 
-const Expr *eqns_momenta(const Eqns *e) { return e->first.n ? e->first.theta : e->m->across ? e->momenta : e->p; }
+const Expr *eqns_momenta(const Eqns *e) { return e->first.n ? e->first.theta : e->m->regularising ? e->momenta : e->p; }
 
 Expr eqns_at_rest(const Eqns *e, Expr x) {
   uint32_t n = expr_symbol_count(e->g) + 1;

@@ -139,7 +139,7 @@ typedef struct {
   int conserves_energy;  /* dE/dt = 0 is proved along all motions, for any inputs: charges[0] */
   int energy_jumps;      /* the energy is discontinuous somewhere, as L is; the facts about it hold between such places */
   int loses_energy;      /* not proved to be conserved; less the work of forces that are constant or have a potential,
-                          * the energy cannot rise while inputs stay; derive.c leaves the forces to charges.c */
+                          * the energy cannot rise while inputs stay; derive_equations.c leaves the forces to charges.c */
   int timeless;          /* t occurs in the formulas of inputs only */
   int separable;         /* constant mass, no velocity in f, no states, or H = T(p) + V(q, t): a splitting method can integrate it */
   int sum_hamiltonian;   /* H = T(p) + V(q, t) is given, whatever the forces */

@@ -4,12 +4,12 @@
 
 #include <math.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "base/union_find.h"
 #include "mech/lagrange.h"
 #include "mech/antisymmetric_solve.h"
 #include "sym/diff.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
 

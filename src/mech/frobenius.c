@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "sym/diff.h"
 #include "sym/integrate.h"
 #include "sym/prove.h"

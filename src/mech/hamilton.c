@@ -144,7 +144,7 @@ Hamilton hamilton_derive(Eqns *e) {
   w.form = &e->mass;
   for (uint32_t i = 0; i < e->n; i++) w.p[i] = expr_declare(e->g, SYM_LOCAL, i, arena_printf(a, "p_%s", e->m->coords.at[i].name), SIGN_UNKNOWN);
   Hamilton open = {.p = w.p, .why_not = is_quadratic(e) ? NULL : "L is not quadratic in velocities"};
-  if (e->m->across) open.why_not = "the components of a rotation are not independent";
+  if (e->m->regularising) open.why_not = "the components of a rotation are not independent";
   if (e->singular_mass && !open.why_not) open.why_not = "the mass matrix is singular";
   if (!open.why_not) open.why_not = invert(&w, "the mass matrix");
   return open.why_not ? open : hamilton_equations(&w);

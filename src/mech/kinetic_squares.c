@@ -3,10 +3,10 @@
 
 #include <math.h>
 
-#include "base/dense.h"
-#include "mech/degree.h"
+#include "base/dense_matrix.h"
+#include "mech/velocity_degree.h"
 #include "sym/diff.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/prove.h"
 
 enum { COORDINATES_MOST = 8, FORMS_MOST = 32 };

@@ -11,7 +11,7 @@
 #include "mech/kinetic_squares.h"
 #include "mech/states.h"
 #include "sym/diff.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
 
@@ -58,8 +58,8 @@ static void convective_rates(const Eqns *e, const Expr *p, Expr *out) {
   expr_tangent(g, p, e->n, seed, nseed, "_drift", &rates, out);
 }
 
-/* L plus the regularising terms of Model.across, for rotations and constraints. */
-static Expr regularised_lagrangian(const Eqns *e) { return e->m->across ? expr_add(e->g, e->m->lagrangian, e->m->across) : e->m->lagrangian; }
+/* L plus the regularising terms of Model.regularising, for rotations and constraints. */
+static Expr regularised_lagrangian(const Eqns *e) { return e->m->regularising ? expr_add(e->g, e->m->lagrangian, e->m->regularising) : e->m->lagrangian; }
 
 /* Fills p, dLdq and Q; returns the forces f as differentiated. */
 static Expr *differentiate(Eqns *e) {

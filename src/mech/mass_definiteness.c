@@ -5,9 +5,9 @@
 
 #include "base/sparse_solve.h"
 #include "mech/consistent_start.h"
-#include "mech/degree.h"
+#include "mech/velocity_degree.h"
 #include "sym/diff.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/print.h"
 
 /* --- products of velocities --- */

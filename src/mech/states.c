@@ -172,7 +172,7 @@ const SparseVector *states_row(StateSolver *s, uint32_t k, uint32_t *at) {
 }
 
 uint32_t states_rank(StateSolver *s, uint32_t without, unsigned char *counts, long double *held) {
-  const long double independent = 6e-6L; /* a double's eps^(1/3), as in runtime/constraints/consistent_start.c: singular places are found to eps^(1/2) */
+  const long double independent = 6e-6L; /* a double's eps^(1/3), as in runtime/constraints/nearest_start.c: singular places are found to eps^(1/2) */
   uint32_t at = 0, n = s->e->n;
   RowSpan span = row_span(s->e->m->arena, n);
   for (uint32_t j = 0; held && j < n; j++) held[j] = 0;

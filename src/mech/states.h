@@ -5,7 +5,7 @@
 #include "base/row_span.h"
 #include "base/sparse_solve.h"
 #include "mech/eqns.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 
 typedef struct StateSolver StateSolver;
 

@@ -6,7 +6,7 @@
 
 #include "mech/discontinuity.h"
 #include "sym/diff.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 

@@ -400,7 +400,7 @@ void fill_inferred_units(Builder *b);
 /* Adds the constraint q.q = 1 for the quaternion whose first coordinate is `coord`. */
 void constrain_rotation(Builder *b, Name name, uint32_t coord, Span span);
 
-/* Sets Model.across: a kinetic term in the rate of |q|, which no motion has, so that the mass matrix is regular. */
+/* Sets Model.regularising: a kinetic term in the rate of |q|, which no motion has, so that the mass matrix is regular. */
 void add_rotation_inertia(Builder *b);
 
 /* Rates q' = q (0, w)/2 from the angular velocity w in the body frame; and w from the rates. */

@@ -1,4 +1,4 @@
-/* Declarations: names of a model, and the text of its definitions. The self-check (jets/) evaluates the text from this table, by code of its own. */
+/* Declarations: names of a model, and the text of its definitions. The self-check (self_check/) evaluates the text from this table, by code of its own. */
 #pragma once
 
 #include "model/scope.h"

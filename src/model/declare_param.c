@@ -1,6 +1,6 @@
 /* Declarations of parameters and constants, whose values are evaluated at once; declared signs; -D definitions. */
 #include "model/resolve_impl.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 
 static ExprSign sign_of(AstSign s) {
   switch (s) {

@@ -1,7 +1,7 @@
 /* --fix: parameters that are compiled in as numbers. Marks them, evaluates them with the scene's values, numbers the others. */
 #include "model/builder.h"
 #include "base/words.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 
 /* --- which parameters --- */
 

@@ -284,7 +284,7 @@ typedef struct {
   VEC(Input) inputs;
   Expr kinetic, potential; /* 0 when L was given as a whole */
   Expr lagrangian;         /* 0 when the text declares no coordinates */
-  Expr across;             /* kinetic term in q.q' of each rotation, 0 on its constraint, which makes M regular; 0: none */
+  Expr regularising;             /* kinetic term in q.q' of each rotation, 0 on its constraint, which makes M regular; 0: none */
   Span lagrangian_span;
   Span dissipation_span;
   Span kinetic_span;       /* empty when L was given as a whole */

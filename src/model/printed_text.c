@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/prove.h"
 #include "syntax/parse.h"
 

@@ -7,7 +7,7 @@
 
 #include "base/words.h"
 #include "model/resolve_impl.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 
 /* --- nodes that their parents evaluate --- */
 

@@ -228,6 +228,6 @@ void add_rotation_inertia(Builder *b) {
     if (!trace) trace = expr_int(g, 1);
     Expr square = expr_pow_num(g, along, num_int(2)), product = expr_mul(g, trace, square);
     Expr term = expr_scale(g, num_ratio(1, 6), product);
-    m->across = m->across ? expr_add(g, m->across, term) : term;
+    m->regularising = m->regularising ? expr_add(g, m->regularising, term) : term;
   }
 }

@@ -5,7 +5,7 @@
 
 #include "model/resolve_impl.h"
 #include "sym/diff.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"

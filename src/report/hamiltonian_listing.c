@@ -53,14 +53,14 @@ static const char *mass_heading(const Eqns *e) {
 static void open_form(Text *t, Exprs *roots) {
   const Eqns *e = t->e;
   Arena *a = e->m->arena;
-  if (e->mass.n && !e->m->across) text_heading(t, mass_heading(e));
-  for (uint32_t k = 0; k < e->mass.n && !e->m->across; k++) {
+  if (e->mass.n && !e->m->regularising) text_heading(t, mass_heading(e));
+  for (uint32_t k = 0; k < e->mass.n && !e->m->regularising; k++) {
     Name row = e->m->coords.at[e->mass.at[k].row].name, col = e->m->coords.at[e->mass.at[k].col].name;
     Expr x = e->n <= 16 ? simplify(t->g, e->mass.at[k].e) : e->mass.at[k].e;
     text_named(t, arena_printf(a, "M[%s,%s]", row, col), arena_printf(a, "M_{%s,%s}", text_latex_name(t, row), text_latex_name(t, col)), x, k + 1 == e->mass.n);
     keep(t, roots, x);
   }
-  if (e->mass.n && !e->m->across) text_end(t);
+  if (e->mass.n && !e->m->regularising) text_end(t);
   text_heading(t, "energy: H as a function of velocities");
   text_named(t, "E", "E", e->energy, 1);
   keep(t, roots, e->energy);

@@ -18,7 +18,7 @@
 #pragma once
 
 #include "ir/factorization_record.h"
-#include "ir/unit.h"
+#include "ir/program_set.h"
 
 typedef struct {
   uint32_t row, col;

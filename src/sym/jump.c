@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/prove.h"
 
 typedef long double Real;

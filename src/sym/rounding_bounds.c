@@ -3,7 +3,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/prove.h"
 
 typedef long double Real;

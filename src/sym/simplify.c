@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/prove.h"
 #include "sym/trig_simplify.h"
 

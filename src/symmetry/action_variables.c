@@ -7,7 +7,7 @@
 #include "mech/discontinuity.h"
 #include "numeric/action_integral.h"
 #include "sym/diff.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/simplify.h"
 
 typedef long double Real;

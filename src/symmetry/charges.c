@@ -3,7 +3,7 @@
 #include "symmetry/charges.h"
 
 #include "mech/constrain.h"
-#include "mech/derive.h"
+#include "mech/derive_equations.h"
 #include "mech/lagrange.h"
 #include "symmetry/action_outputs.h"
 #include "symmetry/expression_brackets.h"

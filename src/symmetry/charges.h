@@ -1,7 +1,7 @@
 /* The charges of a model: its energy and those of its declared symmetries, each with its balance. */
 #pragma once
 
-#include "symmetry/noether.h"
+#include "symmetry/noether_theorem.h"
 #include "sym/print.h"
 
 struct Charge {

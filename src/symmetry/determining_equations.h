@@ -9,10 +9,10 @@
  * so u(t) = exp(A t) u(0): the coefficients may be functions of time of any kind. */
 #pragma once
 
-#include "base/dense.h"
-#include "symmetry/noether.h"
+#include "base/dense_matrix.h"
+#include "symmetry/noether_theorem.h"
 #include "symmetry/search_limit.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 
 /* Coefficient of phi_k in xi_i; k is 0 for phi = 1, j + 1 for q_j. */
 typedef struct {

@@ -1,11 +1,11 @@
 /* The search for point symmetries of L: generators affine in q, with coefficients that are functions of time, and gauge functions that are
  * polynomials of q. Lie's method, restricted to that ansatz and done in numbers (P. J. Olver, Applications of Lie Groups to Differential
  * Equations, 2nd ed. (1993), 2.4 and 5.2): random states give linear equations, the space of their solutions is brought to echelon form at two
- * choices of parameters, its entries are recognised as rationals times powers of parameters, and symmetry/noether.h proves each member. Members that
+ * choices of parameters, its entries are recognised as rationals times powers of parameters, and symmetry/noether_theorem.h proves each member. Members that
  * are not proved are counted and not listed. */
 #pragma once
 
-#include "symmetry/noether.h"
+#include "symmetry/noether_theorem.h"
 #include "symmetry/search_limit.h"
 
 typedef enum {

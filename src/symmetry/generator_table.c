@@ -5,7 +5,7 @@
 #include <complex.h>
 #include <math.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "sym/diff.h"
 
 static void multiply(uint32_t n, const long double *a, const long double *b, long double *to) {

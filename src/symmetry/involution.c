@@ -4,13 +4,13 @@
 
 #include <math.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "mech/discontinuity.h"
 #include "symmetry/charges.h"
 #include "symmetry/expression_brackets.h"
 #include "symmetry/find_symmetries.h"
 #include "sym/diff.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/normal_form.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "mech/eqns.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 
 typedef struct {
   Eqns *e;

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "base/tolerance.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/prove.h"
 
 /* Values of all symbols at a choice. */

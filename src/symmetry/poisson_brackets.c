@@ -4,11 +4,11 @@
 
 #include <math.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "mech/lagrange.h"
 #include "symmetry/number_recognition.h"
 #include "sym/diff.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/normal_form.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "mech/discontinuity.h"
 #include "symmetry/momentum_ansatz.h"
 #include "symmetry/number_recognition.h"

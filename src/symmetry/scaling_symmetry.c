@@ -2,11 +2,11 @@
  * parameters, then proved term by term. */
 #include <math.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "symmetry/find_symmetries.h"
 #include "symmetry/number_recognition.h"
 #include "sym/diff.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/prove.h"
 
 typedef struct {

@@ -8,7 +8,7 @@
 #include "base/hash.h"
 #include "base/posix.h" /* generated: a copy of runtime/io/posix.h */
 #include "base/vec.h"
-#include "toolchain/cache.h"
+#include "toolchain/simulator_cache.h"
 #include "toolchain/files.h"
 #include "toolchain/probe_text.h" /* static const char *const probe_text[]: generated from compiler_probe.in */
 #include "toolchain/process.h"

@@ -8,14 +8,14 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "lower/lower.h"
 #include "mech/lagrange.h"
 #include "mech/switches.h"
 #include "lag_model.h"
 #include "symmetry/charges.h"
 #include "model/model.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "syntax/parse.h"
 
 extern const lag_scene *const all_scenes[];
@@ -162,7 +162,7 @@ static int compare_graph(Eqns *e, const Prog *accel, const Prog *energy, const P
 
 /* dL/dq, dL/dq', Q and their derivatives. */
 static int compare_variation(const lag_model *m, const Eqns *e, Point *s) {
-  Variation *x = variation_derive(e);
+  Variation *x = lagrangian_hessian_derive(e);
   Prog *first = lower_variation(e, x), *second = lower_second_derivatives(e, x);
   uint32_t n = x->second.n;
   Real a[3 * MAX], b[3 * MAX], *h = ARENA_ARRAY(e->m->arena, Real, n + 1), *k = ARENA_ARRAY(e->m->arena, Real, n + 1);

@@ -16,11 +16,11 @@ src/report    report/ symmetry/ mech/ model/ sym/ base/
 src/ir        ir/ base/
 src/series    series/ ir/ base/
 src/lower     lower/ series/ ir/ symmetry/charges.h mech/ model/ sym/ base/
-src/jets      jets/ lower/lower.h ir/ mech/ model/ syntax/ base/
+src/self_check      self_check/ lower/lower.h ir/ mech/ model/ syntax/ base/
 src/emit      emit/ ir/ base/
 src/fmu       fmu/ emit/ ir/ base/
 src/toolchain toolchain/ base/
-src/commands  commands/ toolchain/ fmu/ emit/ jets/ lower/ ir/ report/ claims/ symmetry/ mech/ model/ sym/ syntax/ base/
+src/commands  commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ mech/ model/ sym/ syntax/ base/
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
@@ -46,7 +46,7 @@ runtime/include/lag_math.h  lag_sincos.h
 '
 # The inside of a folder, shared by its own files only.
 private='analysis/measure_nodes.h sweep/run_chunks_impl.h syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
-  model/scope.h model/declarations.h sym/expr_impl.h sym/ops.def lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h fmu/fmu_impl.h methods/tableau.h methods/embedded_trial.h
+  model/scope.h model/declarations.h sym/expr_impl.h sym/ops.def lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h fmu/fmu_archive_impl.h methods/tableau.h methods/embedded_trial.h
   methods/steps.h methods/composition.h methods/step_interpolant.h methods/galerkin_rule.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
   methods/predictor.h methods/band_matrix.h methods/newton.h methods/step_control.h'
 
@@ -87,13 +87,13 @@ empty "folders include only what lies before them" "$(awk -v allowed="$allowed" 
     print $1 " includes " $2 (known[folder] || folder ~ /include$/ ? "" : " (a folder without a rule)")
   }' "$list")"
 
-# jets/ reads the meanings of names from the declarations of the model that it compares; nothing behind model/ sees its Builder.
+# self_check/ reads the meanings of names from the declarations of the model that it compares; nothing behind model/ sees its Builder.
 empty "the inside of a folder stays inside" "$(awk -v private="$private" '
   BEGIN { n = split(private, w); for (i = 1; i <= n; i++) inside[w[i]] = 1 }
   inside[$2] && $1 !~ /^grammar\// {
     home = $2; sub(/\/.*/, "", home)
     folder = $1; sub(/\/[^\/]*$/, "", folder); sub(/.*\//, "", folder)
-    if (folder != home && !(folder == "jets" && $2 == "model/declarations.h")) print $1 " includes " $2
+    if (folder != home && !(folder == "self_check" && $2 == "model/declarations.h")) print $1 " includes " $2
   }' "$list")"
 
 # Circles: an edge from each module to each that it includes, where X.c, X.h and X_impl.h are one module; tsort names the circles that it finds.
@@ -162,4 +162,7 @@ if [ -x "$LAGC" ] && ls models/*.lag >/dev/null 2>&1; then
   empty "lagc emit: lag_model.h and <math.h>" "$(includes_of emit '"lag_model.h"\|<math.h>')"
   empty "lagc header: <math.h>" "$(includes_of header '<math.h>')"
 fi
+# A name is found by `find -name` and in a message of the compiler.
+empty "no two files of one name" "$(git ls-files 'src/*.[ch]' 'runtime/*.[ch]' 2>/dev/null | sed 's|.*/||' | sort | uniq -d)"
+
 tap_end

@@ -21,7 +21,7 @@ before() {
 # asinh follows atan wherever the two are alike; the rules that differ stand in lines of their own.
 alike='s/case EX_ATAN:/case EX_ATAN: case EX_ASINH:/; s/op == EX_ATAN /op == EX_ATAN || op == EX_ASINH /'
 behind src/sym/ops.def 'X(ATAN, 1' 'X(ASINH, 1, "asinh")'
-behind src/sym/eval.c 'case EX_ATAN: return' '    case EX_ASINH: return asinhl(x);'
+behind src/sym/expr_eval.c 'case EX_ATAN: return' '    case EX_ASINH: return asinhl(x);'
 edit src/sym/diff.c "/case EX_ATAN: {/!$alike"
 before src/sym/diff.c '    case EX_SINH: return' <<'END'
     case EX_ASINH: {
@@ -33,7 +33,7 @@ behind src/sym/print.c 'case EX_ATAN: call' '    case EX_ASINH: call(p, e, "asin
 for f in canonicalize expr normal_form rounding_bounds traverse; do edit "src/sym/$f.c" "$alike"; done
 edit src/model/resolve_call.c 's/{"atan", NULL, EX_ATAN, 0},/{"atan", NULL, EX_ATAN, 0}, {"asinh", NULL, EX_ASINH, 0},/'
 edit src/lower/lower.c "$alike"
-edit src/ir/eval.c 's/{"atan", atanl},/{"atan", atanl}, {"asinh", asinhl},/'
+edit src/ir/prog_eval.c 's/{"atan", atanl},/{"atan", atanl}, {"asinh", asinhl},/'
 before src/series/series_recurrences.c '/* u u + v v. */' <<'END'
 /* asinh: d = sqrt(1 + u u). */
 static Val area_sine(SeriesBuilder *m, Slot at_zero, Val u) {
@@ -45,7 +45,7 @@ static Val area_sine(SeriesBuilder *m, Slot at_zero, Val u) {
 
 END
 behind src/series/series_recurrences.c 'if (strcmp(name, "atan") == 0)' '  if (strcmp(name, "asinh") == 0) return area_sine(m, at_zero, u);'
-before src/jets/jet.c 'static void logarithm(' <<'END'
+before src/self_check/jet.c 'static void logarithm(' <<'END'
 static void area_sine(JetReal d[DERIVATIVES], JetReal x) {
   JetReal r = 1 / sqrtl(1 + x * x), r3 = r * r * r, r5 = r3 * r * r;
   JetReal cycle[DERIVATIVES] = {asinhl(x), r, -x * r3, (2 * x * x - 1) * r5, (9 * x - 6 * x * x * x) * r5 * r * r};
@@ -53,10 +53,10 @@ static void area_sine(JetReal d[DERIVATIVES], JetReal x) {
 }
 
 END
-behind src/jets/jet.c 'strcmp(name, "atan") == 0' '  else if (strcmp(name, "asinh") == 0) area_sine(d, x);'
-behind src/jets/tape_partial.c 'strcmp(name, "atan") == 0' \
+behind src/self_check/jet.c 'strcmp(name, "atan") == 0' '  else if (strcmp(name, "asinh") == 0) area_sine(d, x);'
+behind src/self_check/tape_partial.c 'strcmp(name, "atan") == 0' \
   '  if (strcmp(name, "asinh") == 0) return quotient(t, da, tape_power(t, tape_op(t, TAPE_ADD, one, square(t, a), 0), num_ratio(1, 2)));'
-edit src/jets/text_eval_node.c 's/"atan", "sinh"/"atan", "asinh", "sinh"/'
+edit src/self_check/direct_eval_node.c 's/"atan", "sinh"/"atan", "asinh", "sinh"/'
 edit src/emit/cnames.c 's/ "asinh",//; s/"atan2", "sinh"/"atan2", "asinh", "sinh"/'
 edit runtime/include/lag_math.h 's/LAG_LANES_1(atan)/LAG_LANES_1(atan) LAG_LANES_1(asinh)/'
 edit grammar/LANGUAGE.md 's/^| `sinh(x)`, `cosh(x)`, `tanh(x)` | hyperbolic functions |/&\

@@ -64,7 +64,7 @@ lagrangian = m/2*(x'^2 + ($form)^2)
 scene s { start x = 1, y = 1 }"
 done
 
-# Mistakes in jets/ are mistakes of the judge: each rule of its partial derivatives is tested, too.
+# Mistakes in self_check/ are mistakes of the judge: each rule of its partial derivatives is tested, too.
 n=0
 while IFS='|' read -r file pattern; do
   [ -n "$file" ] || continue
@@ -101,42 +101,42 @@ model/resolve_time.c|s/seed\[m->time\] = expr_int(b->g, 1)/seed[m->time] = expr_
 mech/lagrange.c|s/expr_sub(g, dLdq\[i\], convective\[i\])/expr_add(g, dLdq[i], convective[i])/
 lower/gram_schmidt.c|s/Slot f = op(y, IR_DIV, product(y, weighted, u), d)/Slot f = op(y, IR_DIV, d, product(y, weighted, u))/
 mech/lagrange.c|s/= expr_sub(g, Q\[d.at\[i\].index\]/= expr_add(g, Q[d.at[i].index]/
-mech/derive.c|s/e->energy = expr_sub(g, moving, l0)/e->energy = expr_add(g, moving, l0)/
+mech/derive_equations.c|s/e->energy = expr_sub(g, moving, l0)/e->energy = expr_add(g, moving, l0)/
 mech/constrain.c|s/expr_neg(e->g, rate(e, r\[at\], "_drift"))/rate(e, r[at], "_drift")/
 mech/first_order.c|s/H = expr_neg(w->g, still)/H = still/
 mech/kinetic_squares.c|s/collect_squares(s, expr_scale(g, p, weight), term)/collect_squares(s, weight, term)/
-jets/tape_partial.c|s/"cos") == 0) return negative(t, product(t, tape_function(t, "sin", a), da));/"cos") == 0) return product(t, tape_function(t, "sin", a), da);/
-jets/tape_partial.c|s/return p->index == ALL ? tape_op(t, TAPE_RATE, r, 0, 0)/return p->index == ALL ? r/
+self_check/tape_partial.c|s/"cos") == 0) return negative(t, product(t, tape_function(t, "sin", a), da));/"cos") == 0) return product(t, tape_function(t, "sin", a), da);/
+self_check/tape_partial.c|s/return p->index == ALL ? tape_op(t, TAPE_RATE, r, 0, 0)/return p->index == ALL ? r/
 symmetry/charges.c|s/with\[m->energy_sym\] = e->energy_stable/with[m->energy_sym] = m->lagrangian/
 model/resolve_name.c|s/strcmp(name, "V") == 0) e = m->potential/strcmp(name, "V") == 0) e = m->kinetic/
 model/resolve_name.c|s/expr_diff(b->g, b->m->lagrangian, v)/expr_diff(b->g, b->m->kinetic, v)/
-jets/tape_partial.c|s/level ? known(p, i.a, level - 1) : 0/0/
-jets/tape_partial.c|s/da ? tape_op(t, TAPE_RATE, da, 0, 0) : 0/0/
-jets/tape_partial.c|s/"log") == 0) return quotient/"log") == 0) return product/
-jets/tape_partial.c|s/num_sub(i.number, num_int(1))/i.number/
-jets/tape_partial.c|s/return db ? sum(t, base,/return db ? sum(t, 0,/
-jets/tape_partial.c|s/return chosen(t, i.a, db, dc)/return chosen(t, i.a, dc, db)/
-jets/tape_partial.c|s/negative(t, product(t, i.a, db))), sum/product(t, i.a, db)), sum/
+self_check/tape_partial.c|s/level ? known(p, i.a, level - 1) : 0/0/
+self_check/tape_partial.c|s/da ? tape_op(t, TAPE_RATE, da, 0, 0) : 0/0/
+self_check/tape_partial.c|s/"log") == 0) return quotient/"log") == 0) return product/
+self_check/tape_partial.c|s/num_sub(i.number, num_int(1))/i.number/
+self_check/tape_partial.c|s/return db ? sum(t, base,/return db ? sum(t, 0,/
+self_check/tape_partial.c|s/return chosen(t, i.a, db, dc)/return chosen(t, i.a, dc, db)/
+self_check/tape_partial.c|s/negative(t, product(t, i.a, db))), sum/product(t, i.a, db)), sum/
 ROWS
 
 # Programs that only `modes` and `lyapunov` need.
 linearisation() { build_with "$1" "$2" && ! "$TMP/lagc" modes models/double_pendulum.lag >"$TMP/said" 2>&1 && grep 'internal error: the linearisation: the text gives' "$TMP/said"; }
 check "the linearisation" linearisation src/mech/linearise.c 's/expr_sub(e->g, e->f\[i\], inertia\[i\])/expr_add(e->g, e->f[i], inertia[i])/'
-check "the columns of its entries" linearisation src/lower/lower_unit.c 's/((IrEntry){dr.at\[k\].row, dr.at\[k\].col})/((IrEntry){dr.at[k].row, dr.at[k ? k - 1 : 0].col})/'
+check "the columns of its entries" linearisation src/lower/lower_program_set.c 's/((IrEntry){dr.at\[k\].row, dr.at\[k\].col})/((IrEntry){dr.at[k].row, dr.at[k ? k - 1 : 0].col})/'
 
 # Programs of headers.
 of_header() { # MODEL WORDS FILE PATTERN
   build_with "$3" "$4" && ! "$TMP/lagc" header "$1" --with all -o "$TMP/out.h" >"$TMP/said" 2>&1 && grep "internal error: $2: the text gives" "$TMP/said" && [ ! -e "$TMP/out.h" ]
 }
 check "a header's mass matrix" of_header models/double_pendulum.lag 'the mass matrix and the bias' src/lower/lower_programs.c 's/prog_store(l.p, 0, M->col \* e->n + M->row, lower_slot(&l, M->e), name)/prog_store(l.p, 0, M->col * e->n + M->row, lower_slot(\&l, e->mass.at[0].e), name)/'
-slow check "its bias" of_header models/double_pendulum.lag 'the mass matrix and the bias' src/lower/lower_unit.c 's/bias\[i\] = expr_neg(e->g, f\[i\])/bias[i] = f[i]/'
+slow check "its bias" of_header models/double_pendulum.lag 'the mass matrix and the bias' src/lower/lower_program_set.c 's/bias\[i\] = expr_neg(e->g, f\[i\])/bias[i] = f[i]/'
 check "the bias with constraints" of_header models/slider_crank.lag 'the mass matrix and the bias' src/mech/linearise.c 's/e->constraints.n ? expr_substitute(e->g, e->f\[i\], with, n, "") : e->f\[i\]/e->Q[i]/'
 check "inverse dynamics" of_header models/double_pendulum.lag 'inverse dynamics' src/mech/linearise.c 's/expr_sub(e->g, x\[i\], f\[i\])/expr_add(e->g, x[i], f[i])/'
 check "derivatives by inputs" of_header tests/exec/callbacks/driven.lag 'the derivatives by inputs' src/mech/linearise.c 's/by == BY_PARAMS ? m->params.at\[d.at\[k\].index\].place : d.at\[k\].index;/d.at[k].index; if (by == BY_INPUTS) continue;/'
-check "derivatives by parameters" of_header models/double_pendulum.lag 'the derivatives by parameters' src/lower/lower_unit.c 's/vec_push(u->arena, &u->by_params_dr, ((IrEntry){dr.at\[k\].row,/vec_push(u->arena, \&u->by_params_dr, ((IrEntry){dr.at[0].row,/'
+check "derivatives by parameters" of_header models/double_pendulum.lag 'the derivatives by parameters' src/lower/lower_program_set.c 's/vec_push(u->arena, &u->by_params_dr, ((IrEntry){dr.at\[k\].row,/vec_push(u->arena, \&u->by_params_dr, ((IrEntry){dr.at[0].row,/'
 check "rows of constraints" of_header models/slider_crank.lag 'the linearisation' src/mech/linearise.c 's/r\[i\] = k->demand\[i\];/r[i] = expr_int(e->g, 0);/'
 check "multipliers of a header" of_header models/slider_crank.lag 'the residual of the equation of motion of [a-z]*' src/lower/lower_constraints.c 's/l.multipliers\[k\], e->constraints.of\[k\]->name/l.multipliers[0], e->constraints.of[k]->name/'
-check "the linearisation of a flow" of_header models/lorenz.lag 'the linearisation' src/lower/lower_unit.c 's/((IrEntry){dr.at\[k\].row, dr.at\[k\].col})/((IrEntry){dr.at[k].row, dr.at[k ? k - 1 : 0].col})/'
+check "the linearisation of a flow" of_header models/lorenz.lag 'the linearisation' src/lower/lower_program_set.c 's/((IrEntry){dr.at\[k\].row, dr.at\[k\].col})/((IrEntry){dr.at[k].row, dr.at[k ? k - 1 : 0].col})/'
 
 # Derivatives by the argument of a function are reported as not compared.
 printf 'model m\ncoord x\nfunction f(s) = d(s^3, s)\nlagrangian = x'"'"'^2/2 - f(x)\n' >"$TMP/argument.lag"

@@ -12,7 +12,7 @@
 #include "emit/cnames.h"
 #include "emit/cwriter.h"
 #include "emit/emit_model.h"
-#include "ir/unit.h"
+#include "ir/program_set.h"
 #include "lower/lower.h"
 #include "symmetry/charges.h"
 #include "report/equation_listing.h"
@@ -146,8 +146,8 @@ static Eqns *derive(Ast *ast, const ModelChoice *choice) {
   return e;
 }
 
-static void verify_all(const IrUnit *u) {
-  if (unit_verify(u)) abort();
+static void verify_all(const ProgramSet *u) {
+  if (program_set_verify(u)) abort();
 }
 
 static void emit(Ast *ast, Eqns *e) {
@@ -157,7 +157,7 @@ static void emit(Ast *ast, Eqns *e) {
   long double *found = ARENA_ARRAY(a, long double, 2 * (size_t)e->n + 1);
   unsigned char *moved = ARENA_ARRAY(a, unsigned char, 2 * (size_t)e->n + 1);
   start_of_scene(e, found, moved);
-  IrUnit *u = unit_new(e, "fuzz.lag", 0);
+  ProgramSet *u = unit_new(e, "fuzz.lag", 0);
   unit_require(u, e, (e->singular_mass ? 0 : WANT_VARIATION) | WANT_TAYLOR | header_wants(everything));
   unit_add_scene(u, e);
   verify_all(u);

@@ -25,7 +25,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 enum { FUZZ_MEMORY = 256 * 1024 * 1024, MAX_SCENES = 8 };
 
 static void write_everything(Arena *a, Eqns *e) {
-  IrUnit *u = unit_new(e, "fuzz.lag", 0);
+  ProgramSet *u = unit_new(e, "fuzz.lag", 0);
   unit_require(u, e, WANT_VARIATION);
   unit_add_scene(u, e);
   if (prog_verify(u->accel)) abort();

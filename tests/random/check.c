@@ -1,4 +1,4 @@
-/* check SEED FROM TO: derives models FROM .. TO of a seed in one process, and lets each compare what it compiled with its text (src/jets).
+/* check SEED FROM TO: derives models FROM .. TO of a seed in one process, and lets each compare what it compiled with its text (src/self_check).
  * Prints those that disagree, and a last line: `N agree, N with nothing decided, N refused, N disagree; seed S`. Exit status 1 where one
  * disagrees, or more than a tenth is refused: a generator whose models are no models tests nothing. */
 #include <setjmp.h>
@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ir/unit.h"
-#include "jets/self_check.h"
+#include "ir/program_set.h"
+#include "self_check/self_check.h"
 #include "lower/lower.h"
 #include "model.h"
 #include "symmetry/charges.h"
@@ -21,7 +21,7 @@ static Outcome judge(Arena *a, Diags *diags, Sources *sources, const char *text)
   Model *m = model_build(ast, &(ModelChoice){0});
   Eqns *e = m ? equations_of(m) : NULL;
   if (!e) return REFUSED;
-  IrUnit *u = unit_new(e, "random.lag", 0);
+  ProgramSet *u = unit_new(e, "random.lag", 0);
   unsigned of_headers = WANT_MASS | WANT_INVERSE | WANT_BY_INPUTS | WANT_BY_PARAMS | WANT_MULTIPLIERS | WANT_CONSTRAINED;
   unit_require(u, e, WANT_TAYLOR | of_headers | (e->singular_mass ? 0 : WANT_VARIATION | WANT_LINEAR));
   unit_add_scene(u, e);

@@ -8,7 +8,7 @@
 
 #include "lower/lower.h"
 #include "symmetry/charges.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "syntax/parse.h"
 
 #define TEST_PI 3.14159265358979323846264338327950288L

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 
 enum { MOST = 9 };
 

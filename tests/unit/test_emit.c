@@ -11,12 +11,12 @@
 
 #include <cmocka.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "emit/cwriter.h"
 #include "lower/lower.h"
 #include "mech/lagrange.h"
 #include "slow.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "symmetry/charges.h"
 #include "syntax/parse.h"
 

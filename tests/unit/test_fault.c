@@ -57,7 +57,7 @@ static const char bad[] =
   "scene t { like s }\nconstraint c: x = 1\n";
 
 static void emit_all(Arena *a, Eqns *e) {
-  IrUnit *u = unit_new(e, "test.lag", 0);
+  ProgramSet *u = unit_new(e, "test.lag", 0);
   unit_require(u, e, WANT_VARIATION);
   unit_add_scene(u, e);
   StrBuf out = strbuf(a), text = strbuf(a);

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "base/dense.h"
+#include "base/dense_matrix.h"
 #include "compile_text.h"
 #include "slow.h"
 #include "symmetry/find_symmetries.h"

@@ -1,4 +1,4 @@
-/* Unit tests of src/jets/jet.c: Taylor coefficients of functions, and the bounds on their errors, against derivatives by Cauchy's integral over the
+/* Unit tests of src/self_check/jet.c: Taylor coefficients of functions, and the bounds on their errors, against derivatives by Cauchy's integral over the
  * C library's complex functions: f^(k)(x) = k!/(N r^k) sum of f(x + r w^j) w^(-jk), w = exp(2 pi i/N), which is exact but for rounding and terms r^N
  * (L. Trefethen, J. Weideman, SIAM Review 56, 2014, doi:10.1137/130932132). */
 #include <complex.h>
@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "jets/jet.h"
+#include "self_check/jet.h"
 
 typedef long double complex Complex;
 

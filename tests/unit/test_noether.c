@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "compile_text.h"
-#include "symmetry/noether.h"
+#include "symmetry/noether_theorem.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 

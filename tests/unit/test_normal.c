@@ -12,7 +12,7 @@
 #include <time.h>
 
 #include "expr_text.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/prove.h"
 
 static jmp_buf out_of_memory;

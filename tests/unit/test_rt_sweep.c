@@ -2,7 +2,7 @@
  * the values of runs in order. */
 #include "test_rt_models.h"
 
-#include "sweep/plan.h"
+#include "sweep/sweep_grid.h"
 #include "sweep/sampling.h"
 
 /* Random123 (D. E. Shaw Research), known answers of philox4x32-10. */

@@ -12,7 +12,7 @@
 
 #include "expr_text.h"
 #include "sym/diff.h"
-#include "sym/eval.h"
+#include "sym/expr_eval.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"

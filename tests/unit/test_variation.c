@@ -38,10 +38,10 @@ static int first_at(const Case *c, const Real *v, First *r) {
 }
 
 static Real lagrangian(const Case *c, const Real *v) { /* with what rotations add to it across their constraints */
-  const Expr parts[2] = {c->e->m->lagrangian, c->e->m->across ? c->e->m->across : c->e->m->lagrangian};
+  const Expr parts[2] = {c->e->m->lagrangian, c->e->m->regularising ? c->e->m->regularising : c->e->m->lagrangian};
   Real l[2];
   expr_eval(c->e->g, parts, 2, v, l);
-  return c->e->m->across ? l[0] + l[1] : l[0];
+  return c->e->m->regularising ? l[0] + l[1] : l[0];
 }
 
 static const Real step = 1e-5L, weight[4] = {1, -8, 8, -1}, place[4] = {-2, -1, 1, 2}; /* over 12 */
@@ -149,7 +149,7 @@ static void check_scene(Ast *ast, const char *path, const char *scene) {
   assert_non_null(e);
   if (!e->n || !e->smooth) return;
   if (e->n > MOST) return;
-  Variation *x = variation_derive(e);
+  Variation *x = lagrangian_hessian_derive(e);
   Case c = {.e = e, .x = x, .variation = lower_variation(e, x), .second = lower_second_derivatives(e, x)};
   c.where = arena_printf(arena, "%s, scene %s", path, scene);
   assert_null(prog_verify(c.variation));
@@ -193,7 +193,7 @@ static const char spring[] =
 static const char *emitted(Arena *arena, unsigned wants) {
   Eqns *e = equations(arena, spring, NULL);
   assert_non_null(e);
-  IrUnit *u = unit_new(e, "test.lag", 0);
+  ProgramSet *u = unit_new(e, "test.lag", 0);
   unit_require(u, e, wants);
   unit_require(u, e, wants);
   unit_add_scene(u, e);
@@ -229,7 +229,7 @@ static void test_entries(void **state) {
               {SECOND_FV, 0, 0, -1}};
   Arena *arena = arena_new(NULL);
   Eqns *e = equations(arena, spring, NULL);
-  Variation *x = variation_derive(e);
+  Variation *x = lagrangian_hessian_derive(e);
   Real h[8];
   assert_int_equal(x->second.n, sizeof hand / sizeof *hand);
   assert_int_equal(run_prog(e, lower_second_derivatives(e, x), random_point(e), h, NULL), 0);

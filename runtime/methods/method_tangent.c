@@ -1,0 +1,153 @@
+/* The variational equations Y' = Df Y, solved by the method that integrates y: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential
+ * Equations I, 2nd ed. (1993), I.14. Applied to (y, Y) an explicit Runge-Kutta method yields exactly the derivative of its own step. */
+#include "methods/method_tangent.h"
+
+#include <string.h>
+
+#include "methods/steps.h"
+
+lag_tangent lag_tangent_layout(lag_problem *pb, int k, double *scratch, double **rest) {
+  lag_tangent w = {pb, k, scratch, scratch + (pb->nq + pb->nz) * pb->n};
+  *rest = w.linear + lag_linear_work(pb->model);
+  return w;
+}
+
+/* Scratch: Jacobian, scratch of the linearisation, y and f of a stage, Y of a stage and of the result; f and its derivative for each stage. */
+size_t lag_tangent_size(const lag_problem *pb, int stages, int k) {
+  size_t n = (size_t)pb->n, block = n * (size_t)k;
+  return (size_t)(pb->nq + pb->nz) * n + lag_linear_work(pb->model) + 2 * n + 2 * block + (size_t)stages * (n + block);
+}
+
+int lag_tangent_at(const lag_tangent *w, double t, const double *y, double *f) {
+  int n = w->pb->n, rc = lag_fine_jacobian(w->pb, t, y, w->jacobian, w->linear);
+  if (rc == LAG_EMETHOD) return lag_step_failed(w->pb, rc, t);
+  if (rc) return lag_step_refused(w->pb, rc, t);
+  if (f) memcpy(f, w->linear, (size_t)n * sizeof *f);
+  return lag_not_finite((w->pb->nq + w->pb->nz) * n, w->jacobian) >= 0 ? lag_step_failed(w->pb, LAG_ENAN, t) : LAG_OK;
+}
+
+void lag_tangent_times(const lag_tangent *w, const double *Y, double *out) {
+  int n = w->pb->n, nq = w->pb->nq, k = w->k;
+  memcpy(out, Y + nq * k, (size_t)(nq * k) * sizeof *out);
+  memset(out + nq * k, 0, (size_t)((n - nq) * k) * sizeof *out);
+  for (int i = 0; i < n - nq; i++)
+    for (int j = 0; j < n; j++) {
+      double c = w->jacobian[i * n + j];
+      if (c != 0.0) lag_tangent_add(k, c, Y + j * k, out + (nq + i) * k);
+    }
+}
+
+/* v[m] := from + dt sum_j coef_j k_j over j < count; from NULL: 0. */
+static void combine(int m, int count, const double *coef, double dt, const double *from, const double *k, double *v) {
+  for (int i = 0; i < m; i++) v[i] = from ? from[i] : 0;
+  for (int j = 0; j < count; j++)
+    if (coef[j] != 0.0) lag_tangent_add(m, dt * coef[j], k + j * m, v);
+}
+
+int lag_tangent_explicit(const lag_tableau *tab, lag_problem *pb, double t0, double dt, const double *y0, int k, double *Y,
+                         double *scratch) {
+  int n = pb->n, m = n * k, last = tab->stages - 1;
+  double *rest;
+  lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
+  double *ys = rest, *Ys = ys + n, *f = Ys + m, *F = f + last * n; /* f[n], F[n k] of each stage */
+
+  for (int s = 0; s <= last; s++) {
+    combine(n, s, tab->a[s], dt, y0, f, ys);
+    combine(m, s, tab->a[s], dt, Y, F, Ys);
+    if (s == last) break;
+    int rc = lag_tangent_at(&w, t0 + tab->c[s] * dt, ys, f + s * n);
+    if (rc) return rc;
+    lag_tangent_times(&w, Ys, F + s * m);
+  }
+  memcpy(Y, Ys, (size_t)m * sizeof *Y);
+  return LAG_OK;
+}
+
+/* Scratch: Jacobian of a stage; right-hand sides, a column, pivots, row scales and the matrix of all stages together. */
+size_t lag_tangent_implicit_size(const lag_problem *pb, int stages, int k) {
+  size_t big = (size_t)(stages * pb->n);
+  return lag_tangent_size(pb, 0, k) + big * ((size_t)k + 3 + big);
+}
+
+void lag_tangent_put_stage(const lag_tangent *w, const lag_band_matrix *m, int stages, int s, double dt, const double *a) {
+  int n = w->pb->n, nq = w->pb->nq;
+  for (int i = 0; i < n; i++) {
+    const double *J = i < nq ? NULL : w->jacobian + (i - nq) * n;
+    for (int q = 0; q < stages; q++) {
+      double *row = lag_band_matrix_at(m, s * n + i, q * n);
+      for (int j = 0; j < n; j++) row[j] = (q == s && i == j ? 1 : 0) - dt * a[q] * (J ? J[j] : j == nq + i);
+    }
+  }
+}
+
+/* The derivatives K_s of the stages solve K_s = J_s (Y + dt sum_q a_sq K_q). */
+int lag_tangent_implicit(int stages, const double *A, const double *c, lag_problem *pb, double t0, double dt, const double *ys, int k,
+                         double *Y, double *scratch) {
+  int n = pb->n, big = stages * n, rc;
+  double *rest;
+  lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
+  double *K = rest, *column = K + big * k, *scale = column + big;
+  lag_band_matrix m = {big, big - 1, scale + 2 * big, scale + big};
+
+  for (int s = 0; s < stages; s++) {
+    if ((rc = lag_tangent_at(&w, t0 + c[s] * dt, ys + s * n, NULL)) != 0) return rc;
+    lag_tangent_put_stage(&w, &m, stages, s, dt, A + s * stages);
+    lag_tangent_times(&w, Y, K + s * n * k);
+  }
+  if (lag_band_matrix_factor(&m, scale)) {
+    pb->detail = "the equations of the tangent are singular; take smaller steps";
+    return lag_step_failed(pb, LAG_EMETHOD, t0);
+  }
+  for (int j = 0; j < k; j++) {
+    for (int i = 0; i < big; i++) column[i] = K[i * k + j];
+    lag_band_matrix_solve(&m, column);
+    for (int i = 0; i < big; i++) Y[i % n * k + j] += dt * A[(stages - 1) * stages + i / n] * column[i];
+  }
+  return LAG_OK;
+}
+
+/* Scratch: y of a stage, two matrices, and one matrix per stage; f of the stages is not needed. */
+size_t lag_tangent_along_size(const lag_problem *pb, int k) { return lag_tangent_size(pb, lag_dop853_tableau.stages, k); }
+
+/* sum (e_i / s_i)^2 of an error estimate, s_i = |Y_i| + |dt| mean |F_i| over the stages. */
+static double square(int m, int stages, const double *e, const double *Y, const double *F, double dt) {
+  double sum = 0;
+  for (int i = 0; i < m; i++) {
+    double gain = 0;
+    for (int j = 0; j < stages; j++) gain += fabs(F[j * m + i]) / stages;
+    double x = e[i] != 0.0 ? e[i] / (fabs(Y[i]) + fabs(dt) * gain) : 0;
+    sum += x * x;
+  }
+  return sum;
+}
+
+int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, double t0, double dt, int k, double *Y, double *scratch) {
+  const lag_tableau *tab = &lag_dop853_tableau;
+  const double tol = fmax(pb->tol, 1e-14), safety = 0.9, shrink_most = 0.2, grow_most = 6, least = 1e-6;
+  int n = pb->n, m = n * k, stages = tab->stages - 1, rc;
+  double *rest;
+  lag_tangent w = lag_tangent_layout(pb, k, scratch, &rest);
+  double *y = rest, *Ys = y + n, *error = Ys + m, *F = error + m;
+  for (double done = 0, part = 1; done < 1;) {
+    part = fmin(part, 1 - done);
+    double h = part * dt, t = t0 + done * dt;
+    for (int s = 0; s < stages; s++) {
+      combine(m, s, tab->a[s], h, Y, F, Ys);
+      path(work, pb, t + tab->c[s] * h, y);
+      if ((rc = lag_tangent_at(&w, t + tab->c[s] * h, y, NULL)) != 0) return rc;
+      lag_tangent_times(&w, Ys, F + s * m);
+    }
+    combine(m, stages, tab->e, 1, NULL, F, error);
+    double fine = square(m, stages, error, Y, F, dt);
+    combine(m, stages, tab->e3, 1, NULL, F, error);
+    double both = fine + 0.01 * square(m, stages, error, Y, F, dt), err = both > 0 ? fabs(h) * fine / sqrt(m * both) / tol : 0;
+    if (!isfinite(err)) return lag_step_failed(pb, LAG_ENAN, t);
+    if (err <= 1 || part < least) {
+      combine(m, stages, tab->a[stages], h, Y, F, Ys);
+      memcpy(Y, Ys, (size_t)m * sizeof *Y);
+      done = part >= 1 - done ? 1 : done + part;
+    }
+    part *= fmin(grow_most, fmax(shrink_most, err > 0 ? safety * pow(err, -1.0 / 8) : grow_most));
+  }
+  return LAG_OK;
+}

@@ -1,0 +1,117 @@
+/* Values of the text against those of the programs: flows, constraints, energy; events, outputs, inputs. */
+#include <math.h>
+
+#include "self_check/self_check_impl.h"
+
+/* Compares value r of the text's outputs, if it has one, with the program's. */
+static CheckVerdict check_output_value(Check *c, Ref r, Real program, Span span, const char *what, const char *name) {
+  return r ? check_value(c, check_coefficient(c->outputs->tape, c->at_outputs, r, 0, 0), program, span, what, name) : AGREES;
+}
+
+/* --- dynamics: values from the last check_run_text, whatever its direction --- */
+
+static CheckVerdict check_flows(Check *c) {
+  const TextDynamics *d = c->dynamics;
+  CheckVerdict v = AGREES;
+  for (uint32_t i = 0; i < c->m->states.n; i++)
+    if (d->flows[i]) v = worse(v, check_value(c, check_coefficient(d->tape, c->at, d->flows[i], 0, 0), c->zd[i], c->m->states.at[i].span, "the rate of", c->m->states.at[i].name));
+  return v;
+}
+
+/* c'' of holonomic constraints and c' of velocity constraints must be 0. */
+static CheckVerdict check_constraints(Check *c) {
+  const Constraints *k = &c->e->constraints;
+  CheckVerdict v = AGREES;
+  for (uint32_t i = 0; i < k->n; i++) {
+    Ref r = c->dynamics->constraints[k->of[i] - c->m->constraints.at];
+    if (!r) continue;
+    Bounded rate = check_coefficient(c->dynamics->tape, c->at, r, 0, i < k->nholonomic ? 2 : 1);
+    BoundedSum t = {rate, 0, 0};
+    for (uint32_t j = 0; j < c->n; j++) t.size += fabsl(c->a[j]) + c->v[j] * c->v[j]; /* magnitude of the terms: accelerations, */
+    for (uint32_t j = 0; j < c->m->constraints.n; j++) t.size += fabsl(c->lambda[j]); /* and the multipliers' forces in them */
+    v = worse(v, check_compare(c, &t, 0, k->of[i]->span, "the rate of the constraint", k->of[i]->name));
+  }
+  return v;
+}
+
+/* The potential that completes the energy, from its expression: its gradient is proved to be the forces, which are compared
+ * on their own. */
+static Bounded potential(const Check *c) {
+  const Model *m = c->m;
+  long double bound, *symbols = model_constants(m);
+  for (uint32_t i = 0; i < c->n; i++) symbols[m->coords.at[i].q] = (long double)c->q[i];
+  for (uint32_t i = 0; i < m->params.n; i++) symbols[m->params.at[i].sym] = (long double)c->given[i];
+  long double value = eqns_potential_at(c->e, symbols, &bound);
+  return (Bounded){(Real)value, (Real)bound};
+}
+
+/* Energy p q' - L, and the potential of forces; p q' is the change of L under the displacement along the velocity. */
+static CheckVerdict check_energy(Check *c) {
+  const TextDynamics *d = c->dynamics;
+  Real value[2] = {0};
+  BoundedSum t = {0};
+  if (!c->u->energy || !d->lagrangian) return AGREES;
+  for (uint32_t i = 0; i < check_components(c); i++) c->c[i] = c->m->first_order ? c->zd[i] * c->m->states.at[i].coordinate : c->v[i];
+  if (!check_run_text(c) || !check_run(c, c->u->energy, (Real *const[]){value})) return DISMISSED;
+  bounded_sum_add(&t, 1, check_coefficient(d->tape, c->at, d->lagrangian, 2, 0));
+  bounded_sum_add(&t, -1, check_coefficient(d->tape, c->at, d->lagrangian, 0, 0));
+  if (c->e->potential) bounded_sum_add(&t, 1, potential(c));
+  c->energy = t;
+  c->has_energy = 1;
+  return check_compare(c, &t, value[0], c->m->lagrangian_span, "the energy", NULL);
+}
+
+static CheckVerdict check_events(Check *c) {
+  const TextOutputs *o = c->outputs;
+  const Model *m = c->m;
+  Real *g = ARENA_ARRAY(c->arena, Real, m->events.n + 1), *set[3];
+  CheckVerdict v = AGREES;
+  if (!m->events.n || !check_run(c, c->u->event_values, (Real *const[]){g})) return AGREES;
+  for (uint32_t i = 0; i < m->events.n; i++)
+    v = worse(v, check_output_value(c, o->events[i], g[i], m->events.at[i].span, "the event", m->events.at[i].name));
+  for (int k = 0; k < 3; k++) set[k] = ARENA_ARRAY(c->arena, Real, (k < 2 ? m->coords.n : m->states.n) + 1);
+  for (uint32_t i = 0; i < o->actions.n; i++) {
+    const TextAction *a = &o->actions.at[i];
+    if (!a->value || !check_run(c, c->u->events.at[a->event].action, set)) continue;
+    v = worse(v, check_output_value(c, a->value, set[a->kind == SYM_COORD ? 0 : a->kind == SYM_VEL ? 1 : 2][a->index],
+                               m->events.at[a->event].span, "the value set by the event", m->events.at[a->event].name));
+  }
+  return v;
+}
+
+static CheckVerdict check_outputs(Check *c) {
+  const TextOutputs *o = c->outputs;
+  const Eqns *e = c->e;
+  const IrScene *scene = &c->u->scenes.at[c->scene];
+  Real *value = ARENA_ARRAY(c->arena, Real, e->noutputs + 1);
+  CheckVerdict v = AGREES;
+  if (!e->noutputs || !check_run(c, scene->observe, (Real *const[]){value})) return AGREES;
+  for (uint32_t i = 0; i < e->noutputs; i++) {
+    v = worse(v, check_output_value(c, o->outputs[i], value[i], e->outputs[i].span, "the output", e->outputs[i].name));
+    if (o->is_energy[i] && c->has_energy) v = worse(v, check_compare(c, &c->energy, value[i], e->outputs[i].span, "the output", e->outputs[i].name));
+  }
+  return v;
+}
+
+static CheckVerdict check_signals(Check *c) {
+  const TextOutputs *o = c->outputs;
+  Real *value = ARENA_ARRAY(c->arena, Real, c->m->inputs.n + 1);
+  CheckVerdict v = AGREES;
+  if (!c->m->inputs.n || !check_run(c, c->u->inputs, (Real *const[]){value})) return AGREES;
+  for (uint32_t i = 0; i < c->m->inputs.n; i++)
+    v = worse(v, check_output_value(c, o->signals[i], value[i], c->m->inputs.at[i].span, "the input", c->m->inputs.at[i].name));
+  return v;
+}
+
+CheckVerdict check_dynamic_values(Check *c) {
+  CheckVerdict v = worse(check_flows(c), check_constraints(c));
+  if (v != DISAGREES) v = check_energy(c);
+  return v == DISAGREES ? v : AGREES; /* DISMISSED values decide nothing */
+}
+
+CheckVerdict check_other_values(Check *c) {
+  int unsure = 0;
+  for (uint32_t i = 0; i < check_components(c); i++) c->c[i] = 0; /* no displacement */
+  tape_run(c->outputs->tape, check_input, c, c->at_outputs, &unsure);
+  return worse(worse(check_events(c), check_outputs(c)), check_signals(c)); /* unsure values have infinite error bounds, and are dismissed */
+}

@@ -1,0 +1,153 @@
+/* Evaluation tapes: the nodes below the roots as a list of steps in ascending order, run in long double. */
+#include "sym/expr_eval.h"
+
+#include <math.h>
+
+static long double power(long double base, Num e) {
+  if (!num_is_exact(e)) return powl(base, num_value(e));
+  if (e.den == 1) {
+    long double r = 1, b = base;
+    for (int64_t n = e.num < 0 ? -e.num : e.num; n; n >>= 1, b *= b)
+      if (n & 1) r *= b;
+    return e.num < 0 ? 1 / r : r;
+  }
+  if (e.den == 3) return power(cbrtl(base), num_int(e.num)); /* the real root, negative for a negative base */
+  if (e.den == 2) return power(sqrtl(base), num_int(e.num));
+  return powl(base, (long double)e.num / (long double)e.den);
+}
+
+static long double number(Num n) { return num_is_exact(n) ? (long double)n.num / (long double)n.den : n.approx; }
+
+/* TapeStep of a tape, for one node: its arguments are t->arg[first ..], indices of earlier steps; coefficients or exponents
+ * of a sum or product are t->number[first ..]. */
+typedef struct {
+  ExprOp op;
+  uint32_t first, n;
+  SymId symbol;
+  long double constant;
+} TapeStep;
+
+struct EvalTape {
+  uint32_t n, nroots;
+  TapeStep *step;
+  long double *value;
+  VEC(uint32_t) arg;
+  VEC(Num) number;
+  int round_to_double;     /* factors and partial products are rounded to double */
+  uint32_t *root; /* step of each root; UINT32_MAX for root 0 */
+};
+
+static long double pairs_value(const EvalTape *t, const TapeStep *o) {
+  long double r = o->op == EX_SUM ? 0 : 1;
+  for (uint32_t i = o->first; i < o->first + o->n; i++) {
+    long double x = t->value[t->arg.at[i]];
+    if (o->op == EX_SUM) r += number(t->number.at[i]) * x;
+    else if (t->round_to_double) r = (double)(r * (double)power(x, t->number.at[i]));
+    else r *= power(x, t->number.at[i]);
+  }
+  return r;
+}
+
+static long double step_value(const EvalTape *t, const TapeStep *o, const long double *symbols) {
+  const uint32_t *arg = t->arg.at + o->first;
+  long double x = 0, y = 0;
+  if (o->op != EX_SUM && o->op != EX_PROD) {
+    if (o->n > 0) x = t->value[arg[0]];
+    if (o->n > 1) y = t->value[arg[1]];
+  }
+  switch (o->op) {
+    case EX_NUM: return o->constant;
+    case EX_SYM: return symbols[o->symbol];
+    case EX_DEF: return x;
+    case EX_SUM: case EX_PROD: return pairs_value(t, o);
+    case EX_POW: return powl(x, y);
+    case EX_SIN: return sinl(x);
+    case EX_COS: return cosl(x);
+    case EX_TAN: return tanl(x);
+    case EX_ASIN: return asinl(x);
+    case EX_ACOS: return acosl(x);
+    case EX_ATAN: return atanl(x);
+    case EX_SINH: return sinhl(x);
+    case EX_COSH: return coshl(x);
+    case EX_TANH: return tanhl(x);
+    case EX_EXP: return expl(x);
+    case EX_LOG: return logl(x);
+    case EX_CBRT: return cbrtl(x);
+    case EX_ABS: return fabsl(x);
+    case EX_SIGN: return (long double)((x > 0) - (x < 0));
+    case EX_FLOOR: return floorl(x);
+    case EX_ATAN2: return atan2l(x, y);
+    case EX_HYPOT: return hypotl(x, y);
+    case EX_MIN: return x < y ? x : y;
+    case EX_MAX: return x > y ? x : y;
+    case EX_LT: return x < y;
+    case EX_LE: return x <= y;
+    case EX_EQ: return x == y;
+    case EX_NOT: return x == 0;
+    case EX_AND: return x != 0 && y != 0;
+    case EX_OR: return x != 0 || y != 0;
+    case EX_SELECT: return x != 0 ? y : t->value[arg[2]];
+    case EX_COUNT: break;
+  }
+  return NAN;
+}
+
+static TapeStep compile_step(EvalTape *t, ExprGraph *g, Arena *a, Expr e, const ExprMap *place) {
+  ExprOp op = expr_op(g, e);
+  TapeStep o = {.op = op, .first = t->arg.n};
+  int pairs = op == EX_SUM || op == EX_PROD;
+  if (op == EX_NUM) o.constant = number(expr_number(g, e));
+  if (op == EX_SYM) o.symbol = expr_sym_id(g, e);
+  uint32_t n = pairs ? expr_pairs(g, e, op) : expr_nargs(g, e);
+  for (uint32_t i = 0; i < n; i++) {
+    Num k = num_int(1);
+    Expr x = pairs ? expr_pair(g, e, op, i, &k) : expr_arg(g, e, i);
+    vec_push(a, &t->arg, expr_map_get(place, x) - 1);
+    vec_push(a, &t->number, k);
+  }
+  o.n = n;
+  return o;
+}
+
+EvalTape *eval_tape(ExprGraph *g, const Expr *roots, uint32_t n) {
+  Arena *a = expr_arena(g);
+  ExprList l = expr_topo(g, roots, n);
+  ExprMap place = expr_map(a);
+  EvalTape *t = ARENA_NEW(a, EvalTape);
+  t->n = l.n;
+  t->nroots = n;
+  vec_push(a, &t->arg, 0); /* keeps the arrays non-NULL where no step has arguments */
+  vec_push(a, &t->number, num_int(0));
+  t->step = ARENA_ARRAY(a, TapeStep, l.n + 1);
+  t->value = ARENA_ARRAY(a, long double, l.n + 1);
+  t->root = ARENA_ARRAY(a, uint32_t, n + 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    t->step[i] = compile_step(t, g, a, l.at[i], &place);
+    expr_map_set(&place, l.at[i], i + 1);
+  }
+  for (uint32_t i = 0; i < n; i++) t->root[i] = roots[i] ? expr_map_get(&place, roots[i]) - 1 : UINT32_MAX;
+  return t;
+}
+
+static void read_roots(const EvalTape *t, long double *out) {
+  for (uint32_t i = 0; i < t->nroots; i++) out[i] = t->root[i] == UINT32_MAX ? 0 : t->value[t->root[i]];
+}
+
+void eval_run(EvalTape *t, const long double *symbols, long double *out) {
+  for (uint32_t i = 0; i < t->n; i++) t->value[i] = step_value(t, &t->step[i], symbols);
+  read_roots(t, out);
+}
+
+void eval_run_double(EvalTape *t, long double (*symbol)(SymId s, const void *data), const void *data, long double *out) {
+  t->round_to_double = 1;
+  for (uint32_t i = 0; i < t->n; i++) {
+    const TapeStep *o = &t->step[i];
+    t->value[i] = (double)(o->op == EX_SYM ? symbol(o->symbol, data) : step_value(t, o, NULL));
+  }
+  t->round_to_double = 0;
+  read_roots(t, out);
+}
+
+void expr_eval(ExprGraph *g, const Expr *roots, uint32_t n, const long double *symbols, long double *out) {
+  eval_run(eval_tape(g, roots, n), symbols, out);
+}
