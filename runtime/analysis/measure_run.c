@@ -3,7 +3,7 @@
  * Each part of the run, a step or what an event leaves of it, is sampled at equal times by dense output: at a few of them, and at the rest where the few
  * leave room for a larger value or a zero. Where the parabola through three samples has its top between two of them, the top is found by golden section
  * (R.P. Brent, Algorithms for Minimization without Derivatives, 1973, ch. 5); where samples change their sign, the zero by kernels/locate.h. Integrals are sums of quadratures over the parts, by the nodes that balances of charges take
- * (core/charges.c): of the order of the method, so that the error of a mean falls with the step as that of the motion does; in methods of long steps,
+ * (core/charge_monitor.c): of the order of the method, so that the error of a mean falls with the step as that of the motion does; in methods of long steps,
  * Taylor's, over halves of halves of them. Both sides of a jump count.
  * A drift, with equal steps, is that of the ends of steps. */
 #include "analysis/measure.h"

@@ -111,7 +111,7 @@ static void extend(Embedded *w, lag_problem *pb) {
 /* Where the extra stages failed: Hermite interpolation, of order 4. */
 static void dense(void *work, lag_problem *pb, double t, double *y) {
   Embedded *w = work;
-  int row = lag_embedded_row(pb);
+  int row = lag_adaptive_rk_row(pb);
   double s = (t - w->t0) / w->dt;
   const double *k1 = w->x + EMBEDDED_K1 * row;
   const lag_step_ends ends = {w->dt, w->x + EMBEDDED_Y0 * row, k1, w->x + EMBEDDED_Y1 * row, k1 + LAST * row};

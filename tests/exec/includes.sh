@@ -28,7 +28,7 @@ runtime/kernels
 runtime/core      core/ kernels/ numeric/ lag.h lag_model.h
 runtime/constraints constraints/ core/core.h core/rhs.h numeric/ lag.h lag_model.h lag_kkt.h
 runtime/methods   methods/ core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_math.h
-runtime/lanes     lanes/ methods/embedded.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
+runtime/lanes     lanes/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
 runtime/analysis  analysis/ core/ kernels/ numeric/ lag.h lag_model.h
 runtime/io        io/ numeric/ lag.h lag_model.h
 runtime/sweep     sweep/ lanes/lane_choice.h lanes/lane_kernel.h analysis/measure.h io/posix.h numeric/ lag.h lag_model.h
