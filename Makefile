@@ -219,8 +219,8 @@ endef
 $(eval $(call as_text,io/page.h,runtime/io/page.html))
 $(eval $(call as_text,commands/verify_driver.h,src/commands/verify_driver.in))
 $(eval $(call as_text,toolchain/probe_text.h,src/toolchain/compiler_probe.in))
-$(eval $(call as_text,emit/lag_math.h,$(BUILD)/gen/emit/lag_math.txt))
-$(eval $(call as_text,emit/lag_kkt.h,runtime/include/lag_kkt.h))
+$(eval $(call as_text,emit/lag_%.h,runtime/include/lag_%.h))
+$(eval $(call as_text,emit/%_kernel.h,runtime/kernels/%.h))
 $(eval $(call as_text,emit/%_text.h,runtime/methods/%.c))
 $(eval $(call as_text,emit/%_text.h,runtime/contacts/%.c))
 $(eval $(call as_text,emit/%_types.h,runtime/contacts/%.h))
@@ -250,11 +250,6 @@ $(BUILD)/gen/numeric/%: runtime/numeric/% runtime/precision.awk
 	@mkdir -p $(@D)
 	awk -v kind=long -v digits=21 -f runtime/precision.awk $< | sed 's/LAG_REAL/long double/g' >$@.part
 	@mv $@.part $@
-# With its section in place, without that file's first line.
-$(BUILD)/gen/emit/lag_math.txt: runtime/include/lag_math.h runtime/include/lag_sincos.h
-	@mkdir -p $(@D)
-	{ sed '/^#include "lag_sincos.h"$$/,$$d' $<; sed 1d runtime/include/lag_sincos.h; sed '1,/^#include "lag_sincos.h"$$/d' $<; } >$@.part
-	@mv $@.part $@
 # Documents that help shows and searches.
 $(BUILD)/gen/commands/python.txt: runtime/python/README.md
 	@mkdir -p $(@D)
@@ -268,7 +263,7 @@ $(BUILD)/obj/src/emit/header_moreau.o: $(patsubst %,$(BUILD)/gen/emit/%_text.h,c
 $(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_BIN)"' '-DLAGC_INCLUDEDIR="$(INCLUDE_FROM_BIN)"'
 $(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/fmu/zip.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
-$(BUILD)/obj/src/emit/embedded_math.o: $(BUILD)/gen/emit/lag_math.h $(BUILD)/gen/emit/lag_kkt.h
+$(BUILD)/obj/src/emit/embedded_math.o: $(patsubst %,$(BUILD)/gen/emit/lag_%.h,math sincos kkt) $(patsubst runtime/kernels/%.h,$(BUILD)/gen/emit/%_kernel.h,$(wildcard runtime/kernels/*.h))
 $(BUILD)/obj/src/emit/header_steps.o: $(patsubst %,$(BUILD)/gen/emit/%_text.h,composition dop853 rk4 rk45)
 $(BUILD)/obj/src/toolchain/toolchain.o: $(BUILD)/gen/toolchain/probe_text.h
 $(BUILD)/obj/src/fmu/fmu_archive.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)

@@ -2,7 +2,7 @@
  *
  * Each part of the run, a step or what an event leaves of it, is sampled at equal times by dense output: at a few of them, and at the rest where the few
  * leave room for a larger value or a zero. Where the parabola through three samples has its top between two of them, the top is found by golden section
- * (R.P. Brent, Algorithms for Minimization without Derivatives, 1973, ch. 5); where samples change their sign, the zero by numeric/root.h. Integrals are sums of quadratures over the parts, by the nodes that balances of charges take
+ * (R.P. Brent, Algorithms for Minimization without Derivatives, 1973, ch. 5); where samples change their sign, the zero by kernels/locate.h. Integrals are sums of quadratures over the parts, by the nodes that balances of charges take
  * (core/charge_monitor.c): of the order of the method, so that the error of a mean falls with the step as that of the motion does; in methods of long steps,
  * Taylor's, over halves of halves of them. Both sides of a jump count.
  * A drift, with equal steps, is that of the ends of steps. */
@@ -16,7 +16,7 @@
 
 #include "analysis/measure_nodes.h"
 #include "core/core.h"
-#include "numeric/root.h"
+#include "kernels/locate.h"
 
 /* ---- Memory */
 
@@ -157,7 +157,8 @@ static void find_passages(Measures *m, Track *track, int n, const double *t, con
   for (int k = -1; k < n; k++) {
     double before = k < 0 ? track->last : x[k];
     if (!(before < 0 && x[k + 1] >= 0)) continue;
-    track->latest = k < 0 || x[k + 1] == 0.0 ? t[k + 1] : lag_root(value_at, &f, t[k], before, t[k + 1], x[k + 1]);
+    track->latest = k < 0 || x[k + 1] == 0.0 ? t[k + 1] :
+                    lag_root(value_at, &f, t[k], before, t[k + 1], x[k + 1], DBL_EPSILON);
     track->passage = track->passages++ ? track->passage : track->latest;
   }
 }

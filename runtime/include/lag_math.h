@@ -230,7 +230,7 @@ LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c) {
 LAG_LANES_1(sin) LAG_LANES_1(cos) LAG_LANES_1(exp) LAG_LANES_1(log)
 #endif
 
-/* ---- sincos ---- */
+/* ---- a file of its own ---- */
 #include "lag_sincos.h"
 
 /* ---- exp ---- */

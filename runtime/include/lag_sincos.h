@@ -1,4 +1,5 @@
 /* Section `sincos` of lag_math.h, its only includer: sine and cosine by a table of multiples of pi/32; of lanes, and with LAG_AS_LANES, by longer polynomials. */
+/* ---- sincos ---- */
 #if LAG_OWN
 /* Payne and Hanek's reduction: returns y, with x modulo pi/2 = y - *lo, |y| <= pi/4, and *quarter, the number of quarter turns modulo 4, for x
  * of any size and next to a multiple of pi/2. Bits of 2/pi whose products with x are multiples of 4 are left out; the next 192 suffice, as no
@@ -403,3 +404,5 @@ LAG_INLINE LAG_REAL lag_cos(LAG_REAL x) {
 #define lag_sincos4(a, sin_a, cos_a, b, sin_b, cos_b, c, sin_c, cos_c, d, sin_d, cos_d) \
   (lag_sincos2(a, sin_a, cos_a, b, sin_b, cos_b), lag_sincos2(c, sin_c, cos_c, d, sin_d, cos_d))
 #endif
+
+/* ---- end ---- */

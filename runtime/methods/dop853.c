@@ -3,6 +3,7 @@
  * Source: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI
  * 10.1007/978-3-540-78862-1: II.5 (the 12 stages of order 8), II.10 (error from estimates of order 5 and 3) and II.6
  * (continuous extension of order 7 from three more stages). The numbers are those of their code dop853.f. */
+#include "kernels/dense_output.h"
 #include "lag.h"
 #include "methods/embedded_trial.h"
 
@@ -107,23 +108,16 @@ static void extend(Embedded *w, lag_problem *pb) {
   for (int j = 0; j < LAG_MAX_DENSE; j++) embedded_combine(pair.tab->d[j], NSTAGES, as, k, w->x + (HIGH + j) * row);
 }
 
-/* HNW II.6, code dop853, function contd8. Where the extra stages failed: Hermite interpolation, of order 4. */
+/* Where the extra stages failed: Hermite interpolation, of order 4. */
 static void dense(void *work, lag_problem *pb, double t, double *y) {
   Embedded *w = work;
-  int n = pb->n, row = lag_adaptive_rk_row(pb);
-  double h = w->dt, s = (t - w->t0) / h, r = 1 - s;
-  const double *k1 = w->x + EMBEDDED_K1 * row, *k13 = k1 + LAST * row, *y0 = w->x + EMBEDDED_Y0 * row;
-  const double *y1 = w->x + EMBEDDED_Y1 * row, *d = w->x + HIGH * row;
+  int row = lag_adaptive_rk_row(pb);
+  double s = (t - w->t0) / w->dt;
+  const double *k1 = w->x + EMBEDDED_K1 * row;
+  const lag_step_ends ends = {w->dt, w->x + EMBEDDED_Y0 * row, k1, w->x + EMBEDDED_Y1 * row, k1 + LAST * row};
   if (w->have_extra == 0.0) extend(w, pb);
-  if (w->have_extra < 0) {
-    lag_hermite(pb->nq, pb->nz, h, s, y0, k1, y1, k13, y);
-    return;
-  }
-  for (int i = 0; i < n; i++) {
-    double diff = y1[i] - y0[i], b = h * k1[i] - diff, c = diff - h * k13[i] - b;
-    double high = d[i] + s * (d[row + i] + r * (d[2 * row + i] + s * d[3 * row + i]));
-    y[i] = y0[i] + s * (diff + r * (b + s * (c + r * h * high)));
-  }
+  if (w->have_extra < 0) lag_hermite_within(&ends, pb->nq, pb->nz, s, y);
+  else lag_contd8(&ends, w->x + HIGH * row, pb->n, row, s, y);
 }
 
 const lag_method lag_dop853 = {

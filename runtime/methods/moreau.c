@@ -7,6 +7,7 @@
 #include <float.h>
 #include <string.h>
 
+#include "kernels/dense_output.h"
 #include "lag.h"
 #include "methods/moreau_contacts.h"
 #include "methods/moreau_joint_friction.h"
@@ -177,19 +178,11 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
   return LAG_OK;
 }
 
-/* The parabola through both ends; about an impact, those with the acceleration of forces alone, which meet in the middle. */
 static void dense(void *work, lag_problem *pb, double t, double *y) {
   const Moreau *w = work;
-  int n = pb->n, nq = pb->nq;
-  const double *y0 = w->x + Y0 * n, *y1 = w->x + Y1 * n, *rate = w->x + RATE * n;
-  double dt = w->step.dt, s = t - w->step.t0, left = s - dt;
-  for (int i = 0; i < nq; i++) {
-    double a = w->struck > 0 ? rate[nq + i] : (y1[nq + i] - y0[nq + i]) / dt;
-    int late = w->struck > 0 && s >= dt / 2;
-    y[i] = late ? y1[i] + left * (y1[nq + i] + left / 2 * a) : y0[i] + s * (y0[nq + i] + s / 2 * a);
-    y[nq + i] = late ? y1[nq + i] + left * a : y0[nq + i] + s * a;
-  }
-  for (int i = 2 * nq; i < n; i++) y[i] = y0[i] + s / dt * (y1[i] - y0[i]);
+  int n = pb->n;
+  const lag_step_ends ends = {w->step.dt, w->x + Y0 * n, w->x + RATE * n, w->x + Y1 * n, NULL};
+  lag_parabola_within(&ends, w->struck > 0, pb->nq, pb->nz, t - w->step.t0, y);
 }
 
 const lag_method lag_moreau = {

@@ -35,6 +35,9 @@ void cwrite_guarded(const char *condition, const char *body, StrBuf *out);
 /* Shortest text that reads back as x; integers below 1e9 without exponent. */
 const char *shortest_double(Arena *a, double x);
 
+/* Section NAME of a text of the runtime: include/lag_math.h, lag_kkt.h, kernels/. */
+void embedded_section(const char *name, const char *prefix, const char *lower, StrBuf *out);
+
 /* Vector lanes (PREFIX_LANES): mask type, selection, functions lane by lane. Must precede everything that has a default. */
 void math_lanes(const char *prefix, const char *lower, StrBuf *out);
 

@@ -1,21 +1,34 @@
-/* Embedding of lag_math.h and lag_kkt.h: the sections that a unit needs, with its prefix. */
+/* Embedding of the runtime's texts: the sections that a unit needs, with its prefix. A section is what
+ * stands between its marker, a line that begins with `---- NAME ----` in a comment, and the next. */
 #include "emit/cfunction.h"
 
 #include <string.h>
 
-#include "emit/lag_kkt.h"  /* static const char *const lag_kkt[]: generated from runtime/include/lag_kkt.h */
-#include "emit/lag_math.h" /* static const char *const lag_math[]: generated from runtime/include/lag_math.h */
+#include "emit/dense_output_kernel.h" /* static const char *const NAME_kernel[]: lines of runtime/kernels/NAME.h */
+#include "emit/lag_kkt.h"             /* static const char *const NAME[]: and of runtime/include/NAME.h */
+#include "emit/lag_math.h"
+#include "emit/lag_sincos.h"
+#include "emit/locate_kernel.h"
 
-/* Appends the section NAME: the lines between its marker `---- NAME ----` and the next marker. */
-static void section_of(const char *const *line, size_t lines, const char *name, const char *prefix, const char *lower, StrBuf *out) {
-  static const char mark[] = "/* ---- ";
-  size_t n = strlen(name), i = 0;
-  while (i < lines && !(strncmp(line[i], mark, sizeof mark - 1) == 0 && strncmp(line[i] + sizeof mark - 1, name, n) == 0)) i++;
-  for (i++; i < lines && strncmp(line[i], mark, sizeof mark - 1) != 0; i++) csupport_expand(line[i], prefix, lower, out);
+#define LINES(text) {text, sizeof text / sizeof *text}
+static const struct {
+  const char *const *line;
+  size_t n;
+} embedded[] = {LINES(lag_math), LINES(lag_sincos), LINES(lag_kkt), LINES(dense_output_kernel), LINES(locate_kernel)};
+
+static const char mark[] = "/* ---- ";
+static int is_marker(const char *line, const char *name) {
+  return strncmp(line, mark, sizeof mark - 1) == 0 && strncmp(line + sizeof mark - 1, name, strlen(name)) == 0;
 }
 
-static void section(const char *name, const char *prefix, const char *lower, StrBuf *out) {
-  section_of(lag_math, sizeof lag_math / sizeof *lag_math, name, prefix, lower, out);
+void embedded_section(const char *name, const char *prefix, const char *lower, StrBuf *out) {
+  const char *whole = arena_printf(out->arena, "%s ----", name);
+  for (size_t text = 0; text < sizeof embedded / sizeof *embedded; text++) {
+    const char *const *line = embedded[text].line;
+    size_t n = embedded[text].n, i = 0;
+    while (i < n && !is_marker(line[i], whole)) i++;
+    for (i++; i < n && !is_marker(line[i], ""); i++) csupport_expand(line[i], prefix, lower, out);
+  }
 }
 
 void math_kkt_solver(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out) {
@@ -23,7 +36,7 @@ void math_kkt_solver(const ProgramSet *u, const char *prefix, const char *lower,
   static const char *const names[] = {"numbers", "band", "kkt"};
   int banded = u->q.n + u->constraints.of.n >= large;
   for (size_t i = 0; u->constraints.of.n && i < sizeof names / sizeof *names; i++)
-    if (i != 1 || banded) section_of(lag_kkt, sizeof lag_kkt / sizeof *lag_kkt, names[i], prefix, lower, out);
+    if (i != 1 || banded) embedded_section(names[i], prefix, lower, out);
 }
 
 static int calls(const Prog *p, const char *name) {
@@ -45,23 +58,23 @@ static int calls_sincos(const ProgramSet *u) { return unit_calls(u, "sin") || un
 
 void math_lanes(const char *prefix, const char *lower, StrBuf *out) {
   sb_puts(out, "/* ---- arithmetic, over doubles and over lanes of them; the model comes after it ---- */\n\n");
-  section("lanes", prefix, lower, out);
+  embedded_section("lanes", prefix, lower, out);
 }
 
 void math_functions(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out) {
   int sincos = !u->libm && calls_sincos(u), e = !u->libm && unit_calls(u, "exp"), l = !u->libm && unit_calls(u, "log");
   if (u->libm) sb_printf(out, "#define %s_OWN 0\n", prefix);
-  else section("own", prefix, lower, out);
-  section("libm", prefix, lower, out);
-  if (sincos) section("sincos", prefix, lower, out);
-  if (e) section("exp", prefix, lower, out);
-  if (l) section("log", prefix, lower, out);
+  else embedded_section("own", prefix, lower, out);
+  embedded_section("libm", prefix, lower, out);
+  if (sincos) embedded_section("sincos", prefix, lower, out);
+  if (e) embedded_section("exp", prefix, lower, out);
+  if (l) embedded_section("log", prefix, lower, out);
   if (u->lanes && (e || l)) sb_printf(out, "#ifndef LAG_LANES\n%s%s#endif\n", e ? "#define exp lag_exp\n" : "", l ? "#define log lag_log\n" : "");
-  if (unit_calls(u, "floor")) section("floor", prefix, lower, out);
+  if (unit_calls(u, "floor")) embedded_section("floor", prefix, lower, out);
   sb_puts(out, "/* ---- the model ---- */\n");
 }
 
-void math_power(const char *prefix, const char *lower, StrBuf *out) { section("power", prefix, lower, out); }
+void math_power(const char *prefix, const char *lower, StrBuf *out) { embedded_section("power", prefix, lower, out); }
 
 const char *math_prefix(const ProgramSet *u, const char *lower) { return u->libm ? NULL : lower; }
 

@@ -211,8 +211,9 @@ static const char *const docs[FN_COUNT] = {
               " * LAG_EUNMET: no small change obeys them; begin nearer, or step shorter.",
   [FN_RK4_STEP] = "A step h by the classical Runge-Kutta method of order 4; on failure *s is as it was. Events, and contacts, are the caller's.",
   [FN_UNTIL_EVENT] = "As _rk4_step, to the first event in the step: *event is its index, and *s the state just behind it, where _act applies; -1: none.\n"
-                     " * Signs are compared at the ends of the step: no function may cross 0 twice in it. A function that is 0 at the start, or whose event has just\n"
-                     " * acted, has the sign with which it leaves 0. Of events at the same time the first is told.\n"
+                     " * Crossings are found one by one, however short the time between them, as in `lagc run --method rk4`.\n"
+                     " * A function that is 0 at the start, or whose event has just acted, has the sign with which it leaves 0. Of\n"
+                     " * events at the same time the first is told.\n"
                      " * LAG_ENAN: an event function is not a number; LAG_EZENO: events follow each other without time between them. *s is as it was then.",
   [FN_RHS] = "dydt[LAG_NY]: the rates of y = (q, v, z), for integrators of first order.",
   [FN_MASS] = "The mass matrix M[LAG_NQ*LAG_NQ], row by row.",

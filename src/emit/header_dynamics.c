@@ -366,100 +366,173 @@ static void constraints(const Header *h) {
 
 /* --- events --- */
 
-static const char *const until_event =
+/* A step with its dense output, and its event functions along it. Lines marked s are for _step_until_event. */
+static const char *const step_path =
   " |\n"
-  " |/* The first event whose function changes sign, as its direction wants, from g0 to g1; -1: none. */\n"
-  " |static int lag_crossed(const LAG_REAL *g0, const LAG_REAL *g1) {\n"
-  " |  static const signed char direction[] = {DIRECTIONS};\n"
-  " |  const LAG_REAL zero = LAG_C(0.0);\n"
-  " |  for (int k = 0; k < LAG_NEV; k++) {\n"
-  " |    if (direction[k] >= 0 && g0[k] < zero && !(g1[k] < zero)) return k;\n"
-  " |    if (direction[k] <= 0 && g0[k] > zero && !(g1[k] > zero)) return k;\n"
-  " |  }\n"
-  " |  return -1;\n"
-  " |}\n"
-  " |\n";
-
-/* Where a state is fresh, from _start or _act, an event may have just fired: its sign is the one that it has left zero with, as in
- * runtime/core/event_location.c. */
-static const char *const until_event_after =
-  " |/* The state after a step h, and its event functions. */\n"
-  " |static int lag_events_after(const lag_params *p, const lag_state *s, LAG_REAL hGIVEN, lag_state *end, LAG_REAL *g) {\n"
+  " |/* A step from *from to *to; at: a state between. */\n"
+  " |typedef struct lag_path {\n"
+  " |  const lag_params *p;\n"
+  " |  const lag_state *from, *to;\n"
+  "u|  const LAG_REAL *u; /* inputs: these, or those of the model and of the caller */\n"
+  "u|  lag_input_fn *input;\n"
+  "u|  void *context;\n"
   "u|  LAG_REAL now[LAG_NU];\n"
-  " |  int status = LAG_OK;\n"
-  " |  *end = *s;\n"
-  " |  if (!(h <= LAG_C(0.0) && h >= LAG_C(0.0))) status = lag_rk4_step(p, end, hWITH);\n"
-  " |  if (status != LAG_OK) return status;\n"
-  "u|  if (!u) lag_inputs(end->t, p, now);\n"
-  " |  status = lag_events(AFTER, g);\n"
+  " |  LAG_REAL y[2][LAG_NY], MEMBERS;\n"
+  " |  lag_step_ends ends;\n"
+  " |  lag_state at;\n"
+  "s|  int stepped; /* states are ends of steps of that length, not dense output */\n"
+  " |} lag_path;\n"
+  " |\n"
+  " |static void lag_path_begin(lag_path *a, const lag_params *p, const lag_state *from, const lag_state *to,\n"
+  " |    LAG_REAL h) {\n"
+  " |  a->p = p, a->from = from, a->to = to;\n"
+  " |  lag_gather(from, a->y[0]);\n"
+  " |  lag_gather(to, a->y[1]);\n"
+  " |  a->ends.h = h, a->ends.y0 = a->y[0], a->ends.y1 = a->y[1];\n"
+  " |  a->ends.f0 = FIRST, a->ends.f1 = LAST;\n"
+  " |}\n"
+  " |\n"
+  " |/* a->at := the state x after the begin of the step; shaken: with its last digits changed. */\n"
+  " |static int lag_path_at(lag_path *a, int shaken, LAG_REAL x) {\n"
+  " |  const LAG_REAL zero = LAG_C(0.0), h = a->ends.h, last = LAG_C(4.0)*lag_epsilon();\n"
+  " |  const int begins = !(x < zero) && !(x > zero);\n"
+  " |  LAG_REAL y[LAG_NY];\n"
+  "s|  a->at = *a->from;\n"
+  "s|  if (a->stepped) return lag_rk4_step(a->p, &a->at, xOF_PATH);\n"
+  " |  a->at = begins ? *a->from : *a->to;\n"
+  " |  if (!begins && (x < h || x > h)) {\n"
+  " |    WITHIN;\n"
+  " |    lag_scatter(y, &a->at);\n"
+  " |    for (int i = 1; i <= LAG_NY; i++) a->at.lost[i] = zero;\n"
+  " |    a->at.lost[0] = a->from->lost[0];\n"
+  " |    a->at.t = lag_sum(a->from->t, x, &a->at.lost[0]);\n"
+  "c|    const int status = lag_onto(a->p, &a->atNOW_AT, 0);\n"
+  "c|    if (status != LAG_OK) return status;\n"
+  " |  }\n"
+  " |  if (!shaken) return LAG_OK;\n"
+  " |  lag_gather(&a->at, y);\n"
+  " |  for (int i = 0; i < LAG_NY; i++)\n"
+  " |    y[i] += LAG_SELECT(i % 2, -last, last)*(LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(y[i] - a->y[0][i]));\n"
+  " |  lag_scatter(y, &a->at);\n"
+  " |  a->at.t *= LAG_C(1.0) + last;\n"
+  " |  return LAG_OK;\n"
+  " |}\n"
+  " |\n"
+  " |static int lag_path_events(void *context, int shaken, LAG_REAL x, LAG_REAL *g) {\n"
+  " |  lag_path *const a = (lag_path *)context;\n"
+  " |  const lag_params *const p = a->p;\n"
+  " |  const lag_state *const end = &a->at;\n"
+  " |  int status = lag_path_at(a, shaken, x);\n"
+  "u|  const LAG_REAL *const u = lag_held(p, end->t, a->u, a->input, a->context, a->now);\n"
+  " |  if (status == LAG_OK) status = lag_events(AFTER, g);\n"
   " |  for (int k = 0; k < LAG_NEV && status == LAG_OK; k++)\n"
-  " |    if (!(g[k] - g[k] == LAG_C(0.0))) status = LAG_ENAN;\n"
+  " |    if (!(g[k] - g[k] >= LAG_C(0.0))) status = LAG_ENAN;\n"
   " |  return status;\n"
   " |}\n"
-  " |\n";
+  " |\n"
+  " |static int lag_event_direction(void *context, int k) {\n"
+  " |  static const signed char direction[] = {DIRECTIONS};\n"
+  " |  (void)context;\n"
+  " |  return direction[k];\n"
+  " |}\n"
+  "s|\n"
+  "s|/* Finds event k by steps, in place of dense output, which is off by more; a->stepped: they show it, near its root. */\n"
+  "s|static int lag_step_to_root(const lag_locator *l, lag_path *a, int k) {\n"
+  "s|  const LAG_REAL h = a->ends.h, x = l->root[k], half = LAG_C(0.5);\n"
+  "s|  const LAG_REAL *const g[] = {l->value, l->value + LAG_NEV};\n"
+  "s|  LAG_REAL d = h*LAG_C(9.5367431640625e-07);\n"
+  "s|  int found = 0, status = LAG_OK;\n"
+  "s|  a->stepped = 1;\n"
+  "s|  for (int i = 0; i < 7 && status == LAG_OK && !found; i++, d *= LAG_C(8.0)) {\n"
+  "s|    const LAG_REAL t[] = {LAG_SELECT(d/x < half, x - d, half*x), LAG_SELECT((x + d)/h < LAG_C(1.0), x + d, h)};\n"
+  "s|    status = lag_path_events(a, 0, t[0], l->value);\n"
+  "s|    if (status == LAG_OK) status = lag_path_events(a, 0, t[1], l->value + LAG_NEV);\n"
+  "s|    if (status == LAG_OK && g[0][k]*l->sign[k] < LAG_C(0.0) && g[1][k]*l->sign[k] > LAG_C(0.0))\n"
+  "s|      status = lag_find_crossing(l, k, LAG_C(0.0), t, g, &found);\n"
+  "s|  }\n"
+  "s|  a->stepped = found;\n"
+  "s|  return status;\n"
+  "s|}\n";
 
+/* Where a state is fresh, from _start or _act, an event may have just fired: its function leaves 0 at
+ * once, and its sign is not known before. */
 static const char *const until_event_body =
   " | {\n"
-  " |  const LAG_REAL zero = LAG_C(0.0);\n"
-  " |  LAG_REAL g0[LAG_NEV], g1[LAG_NEV], noise[LAG_NEV], from = zero, to = h, part = h*LAG_C(5.42101086242752217e-20);\n"
-  " |  lag_state end, other;\n"
-  " |  int fresh = 1, at_zero = 0, status = lag_events_after(p, s, zeroWITH, &end, g0);\n"
-  " |  if (status == LAG_OK) status = lag_events_after(p, s, hWITH, &end, g1);\n"
-  " |  if (status != LAG_OK) return status;\n"
+  " |  const LAG_REAL zero = LAG_C(0.0), together = LAG_C(4.0)*lag_epsilon()*LAG_FN(fabs)(h);\n"
+  " |  const LAG_REAL none = LAG_C(2.0)*LAG_FN(fabs)(h);\n"
+  " |  LAG_REAL value[(int)LAG_LOCATE_ROWS*LAG_NEV], sign[LAG_NEV], noise[LAG_NEV], root[LAG_NEV], first = none;\n"
+  " |  lag_state end = *s;\n"
+  " |  lag_path path;\n"
+  " |  const lag_locator l = {LAG_NEV, lag_path_events, lag_event_direction, &path, lag_epsilon(),\n"
+  " |                         LAG_C(1.3877787807814457e-17), sign, noise, root, value}; /* 2^-56 */\n"
+  " |  int by_steps[LAG_NEV], fresh = 1, found = 0, status = LAG_OK;\n"
+  " |  *event = -1;\n"
+  "u|  path.u = u, path.input = 0, path.context = 0;\n"
+  " |  path.stepped = 0;\n"
+  " |  if (h < zero || h > zero) status = lag_rk4_step(p, &end, hWITH);\n"
+  " |  lag_path_begin(&path, p, s, &end, h);\n"
+  " |  if (status == LAG_OK) status = lag_rates(p, s->t, path.y[0]INPUTS, path.f[0]);\n"
+  " |  if (status == LAG_OK) status = lag_rates(p, end.t, path.y[1]INPUTS, path.f[1]);\n"
   " |  for (int i = 0; i <= LAG_NY; i++)\n"
   " |    if (s->lost[i] < zero || s->lost[i] > zero) fresh = 0;\n"
-  " |  for (int k = 0; k < LAG_NEV; k++) {\n"
-  " |    noise[k] = LAG_C(2.0)*LAG_FN(fabs)(g0[k]);\n"
-  " |    if (!(noise[k] > zero)) at_zero = 1;\n"
+  " |  if (status == LAG_OK) status = lag_path_events(&path, 0, zero, value);\n"
+  " |  if (status == LAG_OK && fresh)\n"
+  " |    status = lag_path_events(&path, 0, h*LAG_C(2.3283064365386963e-10), value + LAG_NEV); /* 2^-32 */\n"
+  " |  for (int k = 0; k < LAG_NEV && status == LAG_OK; k++) {\n"
+  " |    noise[k] = LAG_C(2.0)*LAG_FN(fabs)(value[k]);\n"
+  " |    sign[k] = lag_locate_sign(value[fresh ? LAG_NEV + k : k]);\n"
+  " |    if (fresh && LAG_FN(fabs)(value[LAG_NEV + k]) > noise[k]) sign[k] = zero;\n"
+  " |    root[k] = none;\n"
   " |  }\n"
-  " |  *event = -1;\n"
-  " |  /* Parts 2^-56, 2^-48, ..., 2^-8 of the step: signs with which functions leave zero, and events that follow at once. */\n"
-  " |  for (int i = 0; i < 7 && *event < 0 && (fresh || at_zero); i++) {\n"
-  " |    LAG_REAL g[LAG_NEV];\n"
-  " |    part *= LAG_C(256.0);\n"
-  " |    status = lag_events_after(p, s, partWITH, &other, g);\n"
-  " |    if (status != LAG_OK) return status;\n"
-  " |    for (int k = 0; k < LAG_NEV; k++) {\n"
-  " |      if (noise[k] < zero || (noise[k] > zero && (!fresh || i > 3))) continue; /* the sign is known */\n"
-  " |      g0[k] = g[k];\n"
-  " |      if (LAG_FN(fabs)(g[k]) > noise[k]) noise[k] = -LAG_C(1.0);\n"
-  " |    }\n"
-  " |    *event = lag_crossed(g0, g);\n"
-  " |    if (*event >= 0) to = part, end = other;\n"
-  " |    else from = part;\n"
+  " |  if (status == LAG_OK) status = lag_locate(&l, zero, h, &found);\n"
+  " |  for (int k = 0; k < LAG_NEV && found && status == LAG_OK; k++) {\n"
+  " |    if (!(LAG_FN(fabs)(root[k]) < none)) continue;\n"
+  " |    status = lag_step_to_root(&l, &path, k);\n"
+  " |    by_steps[k] = path.stepped;\n"
+  " |    if (LAG_FN(fabs)(root[k]) < first) first = LAG_FN(fabs)(root[k]);\n"
   " |  }\n"
-  " |  if (*event < 0) *event = lag_crossed(g0, g1);\n"
-  " |  while (*event >= 0) { /* bisection: the event lies between steps of `from` and `to` */\n"
-  " |    const LAG_REAL mid = LAG_C(0.5)*(from + to);\n"
-  " |    if (!(mid > from && mid < to) && !(mid < from && mid > to)) break;\n"
-  " |    status = lag_events_after(p, s, midWITH, &other, g1);\n"
-  " |    if (status != LAG_OK) return status;\n"
-  " |    const int k = lag_crossed(g0, g1);\n"
-  " |    if (k >= 0) {\n"
-  " |      *event = k;\n"
-  " |      to = mid;\n"
-  " |      end = other;\n"
-  " |    } else {\n"
-  " |      from = mid;\n"
-  " |    }\n"
-  " |  }\n"
-  " |  if (*event >= 0 && fresh && !(end.t < s->t) && !(end.t > s->t)) return LAG_EZENO;\n"
+  " |  for (int k = LAG_NEV - 1; k >= 0 && found; k--)\n"
+  " |    if (LAG_FN(fabs)(root[k]) <= first + together) *event = k;\n"
+  " |  if (status == LAG_OK && found) path.stepped = by_steps[*event], status = lag_path_at(&path, 0, root[*event]);\n"
+  " |  if (status != LAG_OK) return status;\n"
+  " |  if (found) end = path.at;\n"
+  " |  if (found && fresh && !(end.t < s->t) && !(end.t > s->t)) return LAG_EZENO;\n"
   " |  *s = end;\n"
   " |  return LAG_OK;\n"
   " |}\n";
 
-static void events(const Header *h) {
-  StrBuf d = strbuf(h->a), after = strbuf(h->a);
-  int inputs = h->u->u.n > 0;
+/* Dense output of the steps that a path is along: rk4 for _step_until_event, in FMUs moreau or dop853. */
+static const struct {
+  const char *kernel, *members, *first, *last, *within;
+} dense_outputs[] = {
+  {"hermite", "f[2][LAG_NY]", "a->f[0]", "a->f[1]", "lag_hermite_within(&a->ends, LAG_NQ, LAG_NZ, x/h, y)"},
+  {"parabola", "f[LAG_NY], struck", "a->f", "a->f",
+   "lag_parabola_within(&a->ends, a->struck > zero, LAG_NQ, LAG_NZ, x, y)"},
+  {"contd8", "k[16][LAG_NY], high[4*LAG_NY]", "a->k[0]", "a->k[12]",
+   "lag_contd8(&a->ends, a->high, LAG_NY, LAG_NY, x/h, y)"},
+};
+
+static void define_path(const Header *h) {
+  int of = header_has(h, FN_UNTIL_EVENT) ? 0 : header_has_method(h, "moreau") ? 1 : 2;
+  const char *const kernels[] = {"ends", dense_outputs[of].kernel, "root", "locate"};
+  StrBuf d = strbuf(h->a);
   for (uint32_t i = 0; i < h->u->events.n; i++) sb_printf(&d, "%s%d", i ? ", " : "", h->u->events.at[i].direction);
-  sb_puts(&after, header_state_args(h, 0, "end->"));
-  if (inputs) after.n--, sb_puts(&after, "u ? u : now"); /* in place of the name u */
-  const HeaderWord w[] = {{"DIRECTIONS", sb_text(&d)}, {"AFTER", sb_text(&after)}, {"GIVEN", inputs ? ", const LAG_REAL *u" : ""}, {"WITH", inputs ? ", u" : ""}, {NULL, NULL}};
-  sb_printf(h->out, "\n#if !defined(%s_LANES) && !defined(%s_COMPLEX)", h->upper, h->upper);
-  header_template(h, until_event, w);
-  header_template(h, until_event_after, w);
-  sb_puts(h->out, header_api(h, FN_UNTIL_EVENT));
-  header_template(h, until_event_body, w);
+  const char *now = h->u->u.n ? ", lag_held(a->p, a->at.t, a->u, a->input, a->context, a->now)" : "";
+  const HeaderWord w[] = {{"DIRECTIONS", sb_text(&d)}, {"AFTER", header_state_args(h, 0, "end->")}, {"NOW_AT", now},
+                          {"MEMBERS", dense_outputs[of].members}, {"WITHIN", dense_outputs[of].within},
+                          {"OF_PATH", h->u->u.n ? ", a->u" : ""}, {"FIRST", dense_outputs[of].first},
+                          {"LAST", dense_outputs[of].last}, {NULL, NULL}};
+  for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
+    embedded_section(kernels[i], h->upper, h->lower, h->out);
+  const LineChoice choices[] = {{'s', header_has(h, FN_UNTIL_EVENT)}, {0, 0}};
+  write_marked(h, header_chosen(h, step_path, choices), w);
+}
+
+static void events(const Header *h) {
+  const HeaderWord w[] = {{"WITH", h->u->u.n ? ", u" : ""}, {"INPUTS", h->u->u.n ? ", u, 0, 0" : ""}, {NULL, NULL}};
+  sb_printf(h->out, "\n#if !defined(%s_LANES) && !defined(%s_COMPLEX)\n", h->upper, h->upper);
+  define_path(h);
+  if (header_has(h, FN_UNTIL_EVENT)) begin(h, FN_UNTIL_EVENT), header_template(h, until_event_body, w);
   sb_puts(h->out, "#endif\n");
 }
 
@@ -508,6 +581,6 @@ void header_dynamics_define(const Header *h) {
     header_state_function(h, u->outputs, NULL, header_wrapped(h, head), d, d, 1);
   }
   if (header_has(h, FN_CONSTRAINTS)) constraints(h);
-  if (header_has(h, FN_UNTIL_EVENT)) events(h);
+  if (header_has(h, FN_UNTIL_EVENT) || h->parts.parts & PART_PATH) events(h);
   header_callbacks_define(h);
 }

@@ -459,6 +459,40 @@ static void define_method(const Header *h, const HeaderMethod *m) {
   define_both(h, m);
 }
 
+/* Steps of dop853 that keep their stages k[16]; the rest of dense output: stages 12 to 15, the highest terms. */
+static void define_dense_steps(const Header *h, const HeaderMethod *m) {
+  int late;
+  const char *at = member(h->a, m, "a"), *d = member(h->a, m, "d");
+  const HeaderWord words[] = {{"CONTROLLER", controller(h, m, &late)}, {NULL, NULL}};
+  Texts c = list_member(h, m, "c"), row;
+  header_template(h,
+    " |\n"
+    " |static int lag_dop853_keep(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL untilHELD,\n"
+    " |    LAG_REAL (*k)[LAG_NY]) {\n"
+    " |  const lag_controller c = {lag_dop853_trial, CONTROLLER};\n"
+    " |  return lag_adapt(&c, p, s, w, untilPASS, k);\n"
+    " |}\n"
+    " |\n"
+    " |static int lag_dop853_extend(const lag_params *p, const lag_state *s, LAG_REAL h, const lag_state *endHELD,\n"
+    " |    LAG_REAL (*k)[LAG_NY], LAG_REAL *high) {\n"
+    " |  LAG_REAL y[LAG_NY], x[LAG_NY];\n"
+    " |  int status = LAG_OK;\n"
+    " |  lag_gather(end, x);\n"
+    " |  lag_gather(s, y);\n"
+    " |  LAG_TRY(lag_rates(p, end->t, xPASS, k[12]));\n", words);
+  for (uint32_t s = (at++, 0); s < 16; s++) {
+    row = list_of(h, &at);
+    if (s > 12) write_stage(h, &row, c.at[s], s);
+  }
+  d++;
+  for (uint32_t j = 0; j < 4; j++) {
+    row = list_of(h, &d);
+    const char *sum = weighted(h, &row, row.n);
+    line(h, arena_printf(h->a, "  for (int i = 0; i < LAG_NY; i++) high[%u*LAG_NY + i] = %s;\n", j, sum));
+  }
+  line(h, "  return status;\n}\n");
+}
+
 /* The step that every header has. */
 static void define_rk4(const Header *h) {
   const HeaderMethod *m = &methods[0];
@@ -499,6 +533,7 @@ static void define_adaptive(const Header *h) {
     (void)controller(h, m, &late);
     write_trial(h, m, 1, late);
     define_method(h, m);
+    if (h->parts.parts & PART_PATH && !header_has_method(h, "moreau")) define_dense_steps(h, m);
   }
   line(h, "#endif\n");
 }
@@ -506,7 +541,6 @@ static void define_adaptive(const Header *h) {
 static void define_taylor(const Header *h) {
   line(h, ordered);
   if (!some_adaptive(h)) math_power(h->upper, h->lower, h->out);
-  header_template(h, epsilon, NULL);
   header_taylor_define(h, longest(h));
   line(h, "#endif\n");
 }
@@ -514,7 +548,6 @@ static void define_taylor(const Header *h) {
 /* Methods that need one state, too: not over lanes. */
 static void define_single(const Header *h) {
   line(h, guard);
-  if (!header_has_method(h, "taylor") && !header_has(h, FN_HOLD)) header_template(h, epsilon, NULL);
   if (header_has_method(h, "variational")) header_variational_define(h);
   if (header_has_method(h, "moreau")) header_moreau_define(h);
   line(h, "#endif\n");
@@ -522,10 +555,13 @@ static void define_single(const Header *h) {
 
 void header_steps_define(const Header *h) {
   header_template(h, support, NULL);
-  if (header_has(h, FN_HOLD)) {
+  int holds = header_has(h, FN_HOLD), events = (h->parts.parts & (PART_EVENTS | PART_PATH)) != 0;
+  if (holds || events || header_has_method(h, "taylor") || has_single(h)) {
+    if (!holds) line(h, ordered);
     header_template(h, epsilon, NULL);
-    header_hold_define(h);
+    if (!holds) line(h, "#endif\n");
   }
+  if (holds) header_hold_define(h);
   header_move(h);
   define_rk4(h);
   if (some_adaptive(h)) define_adaptive(h);

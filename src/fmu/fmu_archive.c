@@ -56,7 +56,10 @@ static void write_head(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   sb_printf(out, "#define WITH_MODES(s, p, u) (s)->t%s%s, p, u\n", u->q.n ? ", (s)->q, (s)->v" : "", u->z.n ? ", (s)->z" : "");
   sb_printf(out, "#define GIVEN(m, u)%s\n", u->u.n ? " &(m)->p, (m)->s.t, u, NULL, NULL," : "");
   sb_printf(out, "#define AND_INPUTS(u)%s\n#define BY_TIME(m)%s\n", u->u.n ? " , u" : "", u->u.n ? " NULL, set_inputs, m," : "");
-  sb_printf(out, "#define STEP(m, until) model_dop853_step%s(&(m)->p, &(m)->s, &(m)->w, until%s)\n", u->u.n ? "_with" : "", u->u.n ? ", set_inputs, m" : "");
+  sb_printf(out, "#define BY_INPUTS(m)%s\n", u->u.n ? " , NULL, set_inputs, m" : "");
+  int keeps = u->events.n && !f->moreau, some = u->u.n > 0;
+  sb_printf(out, "#define STEP(m, until, path) model_dop853_%s(&(m)->p, &(m)->s, &(m)->w, until%s%s)\n", keeps ? "keep" : some ? "step_with" : "step",
+            keeps && some ? ", NULL, set_inputs, m" : some ? ", set_inputs, m" : "", keeps ? ", (path)->k" : "");
 }
 
 static void write_tables(const ProgramSet *u, StrBuf *out) {
@@ -117,6 +120,7 @@ int fmu_make(const ProgramSet *u, int version, const char *equations, Fmu *f, co
   else if (u->contacts.n || !header_parts(u, "dop853", &parts, error)) return 0;
   HeaderParts more = parts;
   int has_derivatives = u->outputs && header_parts(u, u->p.n ? DERIVATIVES ",params" : DERIVATIVES, &more, error);
+  if (u->events.n) parts.parts |= PART_PATH, more.parts |= PART_PATH;
   if (has_derivatives) parts = more, parts.parts |= u->outputs_at.n ? PART_OUTPUTS : 0;
   *f = (Fmu){.version = version, .identifier = cname(a, u->name), .token = "", .has_derivatives = has_derivatives, .moreau = moreau};
   StrBuf header = strbuf(a), all = strbuf(a), wrapper = strbuf(a), description = strbuf(a);

@@ -78,6 +78,7 @@ for v in $versions; do
 done
 check "impacts that follow each other faster than steps" moves 2 cs $here/fmu/bounces.lag s "" 1e-8 1
 check "events twice and more within a step" moves 2 cs $here/fmu/toss.lag s "" 1e-8 1
+check "an event of both directions whose function jumps" moves 2 cs $here/fmu/jump.lag s "--method dop853" 1e-8 1
 check "constraints hold in co-simulation, to rounding" moves 2 cs $here/fmu/held.lag s "" 1e-14 1
 check "and in model exchange, to the tolerance" moves 2 me $here/fmu/held.lag s "" 2e-6 2
 # Four bars lie in one line at t = 0.71 and 1.23: steps of 0.001 s at 1e-9 shrink into these places, and went on with another energy.
@@ -96,6 +97,15 @@ for v in $versions; do
   check "contacts with friction, until an event stops them, FMI $v" ends $v
   check "saved and serialized, too, FMI $v" moves $v saved $cell s "mu=0.1" 1e-11 1 mu=0.1
 done
+# An event of the state within a step of moreau: at the time of the run, along the same parabolas.
+within() {
+  sed 's/^event far.*/event far: x + 0.9975 [m] falling { stop }/' $cell >"$TMP/state.lag" && "$LAGC" run "$TMP/state.lag" >"$TMP/said" && make_fmu "$TMP/state.lag" 2 s && "$LAGC" run $cell s --quiet -o "$TMP/rows.csv" || return 1
+  t=$(sed -n 's/^stopped by an event at t = \([0-9.]*\) s$/\1/p' "$TMP/said")
+  printf '%s\n6,0,0,0,0,0,0,0\n' "$(head -n 47 "$TMP/rows.csv")" >"$TMP/long.csv"
+  "$TMP/import2" "$fmu" "$(echo "$fmu"/binaries/*/*)" cs "$TMP/long.csv" 1e-11 1 >"$TMP/said" 2>&1
+  cat "$TMP/said" && close_to "$(sed -n 's/^stopped at //p' "$TMP/said")" "$t" 1e-8
+}
+slow check "an event of the state within a step" within
 check "contacts without friction" moves 2 cs models/room.lag bounce "--method moreau(step=0.0006) --until 1.8 --every 0.12" 1e-11 1
 lists() { grep -q '<CoSimulation' "$TMP"/cell.*/modelDescription.xml && ! grep -q -e '<ModelExchange' -e 'event(floor)' -e 'name="floor' "$TMP"/cell.*/modelDescription.xml && grep -q 'event(far)' "$TMP"/cell.*/modelDescription.xml; }
 check "they have no model exchange, no inputs and no events of their own" lists

@@ -24,12 +24,13 @@ src/commands  app/options.def commands/ toolchain/ fmu/ emit/ self_check/ lower/
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
-runtime/core      core/ numeric/ lag.h lag_model.h
+runtime/kernels
+runtime/core      core/ kernels/ numeric/ lag.h lag_model.h
 runtime/constraints constraints/ core/core.h core/rhs.h numeric/ lag.h lag_model.h lag_kkt.h
 runtime/contacts  contacts/ core/core.h core/rhs.h numeric/ lag.h lag_model.h
-runtime/methods   methods/ core/rhs.h contacts/contact_impulses.h numeric/ lag.h lag_model.h lag_math.h
+runtime/methods   methods/ core/rhs.h contacts/contact_impulses.h kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/lanes     lanes/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
-runtime/analysis  analysis/ core/ numeric/ lag.h lag_model.h
+runtime/analysis  analysis/ core/ kernels/ numeric/ lag.h lag_model.h
 runtime/io        io/ numeric/ lag.h lag_model.h
 runtime/sweep     sweep/ lanes/lane_choice.h lanes/lane_kernel.h analysis/measure.h io/posix.h numeric/ lag.h lag_model.h
 runtime/app       app/ sweep/ core/ io/ analysis/ numeric/ lag.h lag_model.h
