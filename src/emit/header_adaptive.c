@@ -12,11 +12,6 @@ static const char *const type =
   "} lag_adaptive;\n\n"
   "LAG_API void lag_adaptive_begin(lag_adaptive *w, LAG_REAL tolerance);\n";
 
-const char *const header_held_inputs = "\n * u: the inputs, constant during the step; 0 for the model's formulas.";
-const char *const header_adaptive_lanes =
-  "\n * Over lanes: a try in each lane that is not at its `until`. One whose step is too long keeps its state, and has a shorter step in the next\n"
-  " * call; the others go on. Status: minus the sum of 2^k over the lanes k that failed; until[k] = s->t[k] lets such a lane rest.";
-
 /* Failures of functions within a step. The step of a lane that fails is not taken. */
 static const char *const failures =
   " |\n"

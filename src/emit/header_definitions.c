@@ -6,8 +6,6 @@
 /* Compilers that drop NaN, or reorder sums. As in lag_model.h. */
 #define FAST_MATH "defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)"
 
-static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
-
 static const char *const macros =
   "/* Functions and constants in the scalar's precision. */\n"
   "#ifndef LAG_FN\n"
@@ -125,33 +123,6 @@ static const char *const onto =
 
 /* --- functions around programs --- */
 
-/* Parameter names of a function of the state; extra: its further parameters. */
-static const char *const *own_names(const Header *h, const char *const *extra) {
-  const char **own = ARENA_ARRAY(h->a, const char *, ARR_COUNT + 4);
-  uint32_t n = 0;
-  own[n++] = "t";
-  if (h->u->q.n) own[n++] = "q", own[n++] = "v";
-  if (h->u->z.n) own[n++] = "z";
-  own[n++] = "p";
-  if (h->u->u.n) own[n++] = "u";
-  for (; *extra; extra++) own[n++] = *extra;
-  return own;
-}
-
-static CStyle style_for(const Header *h, const char *const *own, const char *const *out) {
-  return (CStyle){.prefix = h->upper, .in = arrays, .params = h->fields, .out = out, .own = own, .globals = h->globals,
-                  .solve = arena_printf(h->a, "%s_solve", h->lower), .kkt = arena_printf(h->a, "%s_kkt", h->lower), .spline = arena_printf(h->a, "%s_spline", h->lower),
-                  .math = math_prefix(h->u, h->lower)};
-}
-
-const char *header_api(const Header *h, HeaderFn f) { return header_wrapped(h, arena_printf(h->a, "%s_API %s", h->upper, header_prototype(h, f))); }
-
-void header_state_function(const Header *h, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *out, int returns) {
-  CStyle st = style_for(h, own_names(h, own), out);
-  CFunction c = {.comment = comment, .head = head, .returns = returns, .own_work = 1};
-  cfunction(p, &st, &c, h->out);
-}
-
 static void accel(const Header *h) {
   static const char *const out[] = {"a", "zd", NULL}, *const none[] = {"a", NULL};
   const char *const *extra = !h->u->q.n ? out + 1 : h->u->z.n ? out : none;
@@ -172,7 +143,7 @@ static void write_defaults(const Header *h, const char *head, int follow) {
   sb_printf(h->out, "\n%s {\n", head);
   if (!h->u->p.n) sb_printf(h->out, "  p->none = 0;\n%s", follow ? "  (void)given;\n" : "");
   for (uint32_t i = 0; i < h->u->p.n; i++) {
-    CStyle st = style_for(h, own, out);
+    CStyle st = header_style(h, own, out);
     st.loads_inline = 1;
     StrBuf body = strbuf(h->a);
     cwrite_body(h->scene->params[i], &st, h->a, &body);
@@ -197,11 +168,6 @@ static void param(const Header *h) {
   sb_puts(h->out, "    default: return 0;\n  }\n}\n");
 }
 
-const char *header_constant(const Header *h, double x) {
-  const char *text = shortest_double(h->a, x);
-  return arena_printf(h->a, "%s_C(%s%s)", h->upper, text, strpbrk(text, ".en") ? "" : ".0");
-}
-
 /* Condition on p->NAME, or on a size: comparisons by > alone, which types that differentiate have. */
 static const char *demand(const Header *h, const char *x, int sign) {
   return arena_printf(h->a, sign == 1 ? "%s > zero" : sign == -1 ? "zero > %s" : sign == 2 ? "LAG_NOT(zero > %s)" : "LAG_NOT(%s > zero)", x);
@@ -214,7 +180,7 @@ static void sizes(const Header *h) {
   static const char *const own[] = {"p", "out", NULL}, *const out[] = {"out"};
   const ProgramSet *u = h->u;
   if (u->size_values) {
-    CStyle st = style_for(h, own, out);
+    CStyle st = header_style(h, own, out);
     CFunction c = {.comment = "Sizes of friction, inertias and coefficients, of parameters alone.", .own_work = 1};
     c.head = arena_printf(h->a, "static void %s_size_values(const %s_params *p, %s_REAL *out)", h->lower, h->lower, h->upper);
     cfunction(u->size_values, &st, &c, h->out);
@@ -242,7 +208,7 @@ static int has_sizes(const ProgramSet *u) {
 
 static void start(const Header *h) {
   static const char *const own[] = {"p", "s", NULL}, *const out[] = {"s->q", "s->v", "s->z"};
-  CStyle st = style_for(h, own, out);
+  CStyle st = header_style(h, own, out);
   int checks = has_sizes(h->u);
   if (checks) sizes(h);
   sb_printf(h->out, "\n%s {\n", header_api(h, FN_START));
@@ -269,7 +235,7 @@ static void start(const Header *h) {
 static void inputs(const Header *h) {
   static const char *const own[] = {"t", "p", "u", NULL}, *const out[] = {"u"};
   if (!header_has(h, FN_INPUTS)) return;
-  CStyle st = style_for(h, own, out);
+  CStyle st = header_style(h, own, out);
   CFunction c = {.head = header_api(h, FN_INPUTS)};
   cfunction(h->u->inputs, &st, &c, h->out);
 }
@@ -324,11 +290,6 @@ static void act(const Header *h) {
 }
 
 /* --- constraints --- */
-
-void header_internal_function(const Header *h, const Prog *p, const char *name, const char *params, const char *const *extra, const char *const *out) {
-  const char *head = arena_printf(h->a, "static int %s_%s(%s, %s)", h->lower, name, header_state_args(h, 1, ""), params);
-  header_state_function(h, p, NULL, header_wrapped(h, head), extra, out, 1);
-}
 
 static void change(const Header *h, const Prog *p, const char *name) {
   static const char *const extra[] = {"g", "d", "force", NULL}, *const out[] = {"d", "force"};

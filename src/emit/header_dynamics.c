@@ -262,12 +262,6 @@ static const char *const vjp_body =
 
 #define LIST(v) (v).at, (v).n
 
-const char *header_positions(const Header *h, const IrEntry *at, uint32_t n) {
-  StrBuf b = strbuf(h->a);
-  for (uint32_t k = 0; k < n; k++) sb_printf(&b, "%s{%u, %u}", !k ? "" : k % 12 ? ", " : ",\n    ", at[k].row, at[k].col);
-  return n ? sb_text(&b) : "{0, 0}";
-}
-
 /* Chooses lines marked b (coordinates and states), f (states alone), n (no inputs), c (constraints), o (coordinates without), which become plain ones
  * or go. */
 static void write_marked(const Header *h, const char *text, const HeaderWord *w) {

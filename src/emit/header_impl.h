@@ -34,13 +34,11 @@ void header_implementation(const Header *h);
 void header_steps_declare(const Header *h);
 void header_steps_define(const Header *h);
 
-/* header_adaptive.c: the memory of adaptive methods and its filling; what failures do within their trial steps; moves of lanes; the control of their sizes. Sentences
- * about inputs and lanes. */
+/* header_adaptive.c: the memory of adaptive methods and its filling; what failures do within their trial steps; moves of lanes; the control of their sizes. */
 void header_adaptive_declare(const Header *h);
 void header_failures(const Header *h);
 void header_move(const Header *h);
 void header_adaptive_define(const Header *h, const char *longest);
-extern const char *const header_held_inputs, *const header_adaptive_lanes;
 
 /* header_taylor.c, header_variational.c: the memory of a method and its prototypes; its functions. longest: constant of the longest step. */
 void header_taylor_declare(const Header *h);
@@ -48,6 +46,9 @@ void header_taylor_overloads(const Header *h); /* functions that C++98 lacks; ou
 void header_taylor_define(const Header *h, const char *longest);
 void header_variational_declare(const Header *h);
 void header_variational_define(const Header *h);
+
+/* header_text.c: parameters of a function that takes inputs; sentences about inputs and lanes. */
+extern const char *const header_held_parameters, *const header_held_inputs, *const header_adaptive_lanes;
 
 /* Lines of a template whose mark is wanted, with a blank in its place; other lines stay. The list ends with 0. */
 typedef struct {
@@ -97,6 +98,8 @@ void header_callbacks_declare(const Header *h);
 void header_callbacks_define(const Header *h);
 const char *header_libraries(const Header *h);
 
+/* Names in the C of a function around a program with these further parameters and output arrays. */
+CStyle header_style(const Header *h, const char *const *own, const char *const *out);
 /* A function of the state around p; own: its further parameters; out: its output arrays. */
 void header_state_function(const Header *h, const Prog *p, const char *comment, const char *head, const char *const *own, const char *const *out, int returns);
 /* `static int lower_NAME(state, params)` around p; extra, out: as own and out above. The name of the action of an event. */

@@ -418,19 +418,6 @@ static uint32_t bandwidth(const ProgramSet *u) {
   return band;
 }
 
-const char *header_chosen(const Header *h, const char *text, const LineChoice *choices) {
-  StrBuf b = strbuf(h->a);
-  for (const char *s = text; *s;) {
-    size_t n = strcspn(s, "\n") + 1;
-    const LineChoice *c = choices;
-    while (c->mark && c->mark != *s) c++;
-    if (!c->mark) sb_putn(&b, s, n);
-    else if (c->wanted) sb_putc(&b, ' '), sb_putn(&b, s + 1, n - 1);
-    s += n;
-  }
-  return sb_text(&b);
-}
-
 void header_moreau_between(const Header *h) {
   const LineChoice choices[] = {{'n', !h->u->q.n}, {0, 0}};
   header_template(h, larger, NULL);

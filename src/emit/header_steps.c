@@ -123,8 +123,6 @@ static void write_stage(const Header *h, const Texts *row, const char *c, uint32
   line(h, tried(h, arena_printf(h->a, "lag_rates(p, s->t + %s*h, x%s, k[%u])", c, h->u->u.n ? ", u, input, context" : "", s)));
 }
 
-static const char *const held = ", const LAG_REAL *u, lag_input_fn *input, void *context";
-
 /* Error estimates: squared, weighted by the tolerances, in pairs of components as in the runtime. */
 static void write_error(const Header *h, const HeaderMethod *m, uint32_t last, int late) {
   Texts e = list_member(h, m, "e"), e3 = list_member(h, m, "e3");
@@ -148,7 +146,7 @@ static void write_trial(const Header *h, const HeaderMethod *m, int adaptive, in
   const char *at = member(h->a, m, "a");
   Texts c = list_member(h, m, "c");
   uint32_t last = (uint32_t)strtoul(member(h->a, m, "stages"), NULL, 10) - 1;
-  const char *u = h->u->u.n ? held : "", *pass = h->u->u.n ? ", u, input, context" : "";
+  const char *u = h->u->u.n ? header_held_parameters : "", *pass = h->u->u.n ? ", u, input, context" : "";
   line(h, arena_printf(h->a, "\n/* The state after a step h by %s; k[0]: the rates at *s.%s */\n", m->words,
                        adaptive ? " *error: squared, relative to the tolerances; negative where\n * it is not finite." : ""));
   write_prototype(h, arena_printf(h->a, "static int lag_%s_trial(const lag_params *p, const lag_state *s, LAG_REAL h%s, LAG_REAL (*k)[LAG_NY], lag_state *end%s)", m->name, u,
@@ -277,28 +275,6 @@ static const char *const splitting_step =
   " |  LAG_MOVE(taken, s, &end);\n"
   " |  return status;\n"
   " |}\n";
-
-void header_template(const Header *h, const char *text, const HeaderWord *more) {
-  const ProgramSet *u = h->u;
-  const char *call = arena_printf(h->a, "t%s%s, p%s%s%s", u->q.n ? ", y, y + LAG_NQ" : "", u->z.n ? ", y + 2*LAG_NQ" : "",
-                                  u->u.n ? ", lag_held(p, t, u, input, context, now)" : "", u->q.n ? ", k + LAG_NQ" : "", u->z.n ? ", k + 2*LAG_NQ" : "");
-  const HeaderWord usual[] = {{"HELD", u->u.n ? held : ""}, {"PASS", u->u.n ? ", u, input, context" : ""}, {"CALL", call},
-                              {"ARGS", header_state_args(h, 0, "")}, {NULL, NULL}};
-  StrBuf b = strbuf(h->a);
-  for (const char *s = text; *s;) {
-    size_t n = strcspn(s, "\n") + 1;
-    int wanted = *s == 'q' ? u->q.n > 0 : *s == 'z' ? u->z.n > 0 : *s == 'u' ? u->u.n > 0 : 1;
-    for (const char *at = s + 2; wanted && at < s + n;) {
-      const HeaderWord *w = usual;
-      while (w->mark && strncmp(at, w->mark, strlen(w->mark)) != 0) w++;
-      for (w = w->mark ? w : more; w && w->mark && strncmp(at, w->mark, strlen(w->mark)) != 0;) w++;
-      if (w && w->mark) sb_puts(&b, w->text), at += strlen(w->mark);
-      else sb_putc(&b, *at++);
-    }
-    s += n;
-  }
-  line(h, sb_text(&b));
-}
 
 /* --- the methods of a header --- */
 
@@ -442,7 +418,7 @@ static void define_method(const Header *h, const HeaderMethod *m) {
   uint32_t stages = (uint32_t)strtoul(member(h->a, m, "stages"), NULL, 10);
   const char *n = arena_printf(h->a, "%u", is_splitting(m) ? stages : stages - !is_adaptive(h, m));
   const char *own = arena_printf(h->a, "static int lag_%s(const lag_params *p, lag_state *s, %s%s)", m->name,
-                                 is_splitting(m) ? "LAG_REAL h, LAG_REAL *a" : "lag_adaptive *w, LAG_REAL until", held);
+                                 is_splitting(m) ? "LAG_REAL h, LAG_REAL *a" : "lag_adaptive *w, LAG_REAL until", header_held_parameters);
   line(h, "\n");
   write_prototype(h, h->u->u.n ? own : arena_printf(h->a, "LAG_API %s", prototype(h, m, 0)));
   if (is_splitting(m)) {
