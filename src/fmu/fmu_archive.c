@@ -58,8 +58,9 @@ static void write_head(const ProgramSet *u, const Fmu *f, StrBuf *out) {
   sb_printf(out, "#define AND_INPUTS(u)%s\n#define BY_TIME(m)%s\n", u->u.n ? " , u" : "", u->u.n ? " NULL, set_inputs, m," : "");
   sb_printf(out, "#define BY_INPUTS(m)%s\n", u->u.n ? " , NULL, set_inputs, m" : "");
   int keeps = u->events.n && !f->moreau, some = u->u.n > 0;
-  sb_printf(out, "#define STEP(m, until, path) model_dop853_%s(&(m)->p, &(m)->s, &(m)->w, until%s%s)\n", keeps ? "keep" : some ? "step_with" : "step",
-            keeps && some ? ", NULL, set_inputs, m" : some ? ", set_inputs, m" : "", keeps ? ", (path)->k" : "");
+  sb_printf(out, "#define STEP(m, until, path) model_dop853_%s(&(m)->p, &(m)->s, &(m)->w, until%s%s%s)\n",
+            keeps ? "keep" : some ? "step_with" : "step", keeps && some ? ", NULL" : "", some ? ", set_inputs, m" : "",
+            keeps ? ", (path)->k" : "");
 }
 
 static void write_tables(const ProgramSet *u, StrBuf *out) {
