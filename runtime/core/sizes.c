@@ -211,8 +211,9 @@ static double time_scale(Kind k, double time) {
   return q > 0 && k.bend > 0 ? fmin(time, sqrt(q / k.bend)) : time;
 }
 
-/* The power of 1024 next to size, as a change from m to nm or km: a motion of about 1 m has the tolerance in m. */
-static double nearest_unit(double size) { return size > 0 && size < HUGE_VAL ? scalbn(1, 10 * (int)rint(log2(size) / 10)) : 1; }
+/* A power of 1024, as a change from m to nm or km is one: 1 for sizes from 1/16 to 64. A tolerance is at most 16 times that of the
+ * size itself. */
+static double size_unit(double size) { return size > 0 && size < HUGE_VAL ? scalbn(1, 10 * (int)floor((log2(size) + 4) / 10)) : 1; }
 
 /* dy[n] := rates at the start, where y[at + i] is displaced by by[i], less f; NULL: nothing is displaced, or subtracted. Zeros
  * where there are none. */
@@ -284,12 +285,14 @@ void lag_start_sizes(lag_sim *s) {
   rates_beside(s, 0, NULL, NULL, f);
   memset(bend, 0, (size_t)n * sizeof *bend);
   for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
-  time = coordinate_sizes(s, f, time < HUGE_VAL ? time : time_from_zero(s, f, s->pb.span > 0 ? s->pb.span : 10));
+  const double span = s->pb.span;
+  time = time < HUGE_VAL ? time : time_from_zero(s, f, span > 0 ? span : 10);
+  time = coordinate_sizes(s, f, span > 0 ? fmin(time, span) : time);
   for (int i = 2 * nq; i < n; i++) {
     double z = largest_of_unit(m->nz, m->z, s->now + 2 * nq, i - 2 * nq);
     size[i] = z > 0 ? z : largest_of_unit(m->nz, m->z, f + 2 * nq, i - 2 * nq) * time;
   }
-  for (int i = 0; i < n; i++) size[i] = nearest_unit(size[i]);
-  size[n + 1] = nearest_unit(time);
+  for (int i = 0; i < n; i++) size[i] = size_unit(size[i]);
+  size[n + 1] = size_unit(time);
   s->pb.rhs_calls = calls;
 }
