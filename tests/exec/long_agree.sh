@@ -30,7 +30,7 @@ build() { # OUTPUT LIBRARY MODELS OPTIONS...
   files=$TMP/c/scenes.c
   for m in $of; do files="$files $TMP/c/$(name_of "$m").c"; done
   # shellcheck disable=SC2086 # a list of words
-  "$CC" -std=gnu11 -ffp-contract=off -D_XOPEN_SOURCE=700 -Isrc -I"$INC" '-DLAG_REAL=long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L' \
+  "$CC" -std=gnu11 -ffp-contract=off -D_XOPEN_SOURCE=700 -Isrc -I"$BUILD/gen" -I"$INC" '-DLAG_REAL=long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L' \
     "$@" tests/exec/emit_agree.c $files "$library" -lm -o "$output"
 }
 sanitized() {
