@@ -52,6 +52,17 @@ static int make_step(lag_sim *s, double *t, double t_stop) {
   return LAG_OK;
 }
 
+/* Fails where the step, of which no event comes first, ends at a negative friction; judged by the branches of that state. */
+static int judge_end(lag_sim *s) {
+  Run *r = s->run;
+  if (!s->scene->model->nmoving || r->have_step == 0.0 || r->pending != 0.0) return LAG_OK;
+  lag_switch_set_free(s, 1);
+  int rc = lag_check_moving_sizes(s, r->step_t1, s->y);
+  lag_switch_set_free(s, 0);
+  if (rc) r->have_step = 0;
+  return rc;
+}
+
 /* Makes a step of the method and locates its first event. */
 static int take(lag_sim *s, double t_stop) {
   Run *r = s->run;
@@ -73,12 +84,12 @@ static int take(lag_sim *s, double t_stop) {
   rc = rc ? rc : lag_crosses_force_pole(s, t);
   rc = rc ? rc : lag_switch_step(s, t);
   if (rc) return lag_explain(s, rc);
-  if ((rc = lag_check_moving_sizes(s, t, s->y)) != 0) return rc;
   r->steps++;
   r->have_step = 1;
   r->step_t0 = r->from = r->t;
   r->step_t1 = t;
-  return lag_events_locate(s);
+  rc = lag_events_locate(s);
+  return rc ? rc : judge_end(s);
 }
 
 /* `now` := the state at time t of the present step. */
@@ -103,7 +114,10 @@ static int pass_limit(lag_sim *s) {
   rc = rc ? rc : lag_monitors_impulses(s);
   rc = rc ? rc : lag_monitors_record(s, r->t, s->now);
   if (rc) return rc;
-  if (r->pending != 0.0) return lag_events_fire(s);
+  if (r->pending != 0.0) {
+    rc = lag_events_fire(s);
+    return rc ? rc : judge_end(s);
+  }
   r->have_step = 0;
   lag_copy(lag_watched(s), s->sign_end, s->sign);
   return LAG_OK;

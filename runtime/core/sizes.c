@@ -215,12 +215,12 @@ static double time_scale(Kind k, double time) {
  * size itself. */
 static double size_unit(double size) { return size > 0 && size < HUGE_VAL ? scalbn(1, 10 * (int)floor((log2(size) + 4) / 10)) : 1; }
 
-/* dy[n] := rates at the start, where y[at + i] is displaced by by[i], less f; NULL: nothing is displaced, or subtracted. Zeros
+/* dy[n] := rates at the start, where y[at + i] is displaced by by[i], i < count, less f; NULL: nothing is displaced, or subtracted. Zeros
  * where there are none. */
-static void rates_beside(lag_sim *s, int at, const double *by, const double *f, double *dy) {
+static void rates_beside(lag_sim *s, int at, int count, const double *by, const double *f, double *dy) {
   const int n = s->pb.n;
   memcpy(s->ya, s->now, (size_t)n * sizeof *dy);
-  for (int i = 0; i < s->pb.nq && by; i++) s->ya[at + i] += by[i] * lag_uneven(i);
+  for (int i = 0; i < count && by; i++) s->ya[at + i] += by[i] * lag_uneven(i);
   int none = lag_rhs(&s->pb, s->run->t, s->ya, dy) || lag_not_finite(n, dy) >= 0;
   for (int i = 0; i < n; i++) dy[i] = none ? 0 : dy[i] - (f ? f[i] : 0);
 }
@@ -233,7 +233,7 @@ static double coordinate_sizes(lag_sim *s, const double *f, double time) {
   double *bend = s->yc, *size = s->pb.size, *of_v = size + nq;
   for (int turn = 0; turn < 3; turn++) {
     double before = time;
-    if (turn) rates_beside(s, turn == 2 ? nq : 0, turn == 2 ? of_v : size, f, bend);
+    if (turn) rates_beside(s, turn == 2 ? nq : 0, nq, turn == 2 ? of_v : size, f, bend);
     for (int i = 0; i < nq; i++) {
       if (!is_first(m, i)) continue;
       Kind k = kind_of(s, f, bend, i);
@@ -265,7 +265,7 @@ static double time_from_zero(lag_sim *s, const double *f, double time) {
       while (strcmp(m->q[first].unit, m->q[i].unit) != 0) first++;
       size[i] = first < i ? size[first] : reach(kind_of(s, f, bend, i), time);
     }
-    rates_beside(s, 0, size, f, bend);
+    rates_beside(s, 0, s->pb.nq, size, f, bend);
     for (int i = 0; i < s->pb.nq; i++) {
       if (!is_first(m, i)) continue;
       Kind k = kind_of(s, f, bend, i);
@@ -278,20 +278,42 @@ static double time_from_zero(lag_sim *s, const double *f, double time) {
   return time;
 }
 
+/* The sizes of states: at the start; of those that begin at 0, where their rates f lead in `time`, or before, where they change as much as f: a state
+ * that relaxes goes no further. */
+static void state_sizes(lag_sim *s, const double *f, double time) {
+  enum { TURNS = 8 };
+  const lag_model *m = s->scene->model;
+  const int at = 2 * s->pb.nq, nz = m->nz;
+  double *bend = s->yc, *size = s->pb.size + at;
+  int shrinks = 0;
+  for (int i = 0; i < nz; i++) {
+    double z = largest_of_unit(nz, m->z, s->now + at, i);
+    size[i] = z > 0 ? z : largest_of_unit(nz, m->z, f + at, i) * time;
+    shrinks |= !(z > 0);
+  }
+  for (int turn = 0; turn < TURNS && shrinks; turn++) {
+    shrinks = 0;
+    rates_beside(s, at, nz, size, f, bend);
+    for (int i = 0; i < nz; i++) {
+      double rate = largest_of_unit(nz, m->z, f + at, i), change = largest_of_unit(nz, m->z, bend + at, i);
+      if (largest_of_unit(nz, m->z, s->now + at, i) > 0 || !(rate > 0 && change > 2 * rate)) continue;
+      size[i] *= rate / change;
+      shrinks = 1;
+    }
+  }
+}
+
 void lag_start_sizes(lag_sim *s) {
   const lag_model *m = s->scene->model;
   const int nq = m->nq, n = s->pb.n;
   double *f = s->yb, *bend = s->yc, *size = s->pb.size, time = HUGE_VAL, calls = s->pb.rhs_calls;
-  rates_beside(s, 0, NULL, NULL, f);
+  rates_beside(s, 0, 0, NULL, NULL, f);
   memset(bend, 0, (size_t)n * sizeof *bend);
   for (int i = 0; i < nq; i++) time = is_first(m, i) ? time_scale(kind_of(s, f, bend, i), time) : time;
   const double span = s->pb.span;
   time = time < HUGE_VAL ? time : time_from_zero(s, f, span > 0 ? span : 10);
   time = coordinate_sizes(s, f, span > 0 ? fmin(time, span) : time);
-  for (int i = 2 * nq; i < n; i++) {
-    double z = largest_of_unit(m->nz, m->z, s->now + 2 * nq, i - 2 * nq);
-    size[i] = z > 0 ? z : largest_of_unit(m->nz, m->z, f + 2 * nq, i - 2 * nq) * time;
-  }
+  state_sizes(s, f, time);
   for (int i = 0; i < n; i++) size[i] = size_unit(size[i]);
   size[n + 1] = size_unit(time);
   s->pb.rhs_calls = calls;

@@ -449,27 +449,34 @@ static int linear_power(const ProofWork *w, Expr power, LinearPower *to) {
   return 1;
 }
 
-/* Whether x jumps: then forces that are the gradient of x beside the jumps leave no energy conserved. */
-static int jumps_somewhere(const ProofWork *w, Expr x) {
+static int may_jump(const ProofWork *w, Expr x) {
   ExprList l = expr_topo(w->g, &x, 1);
   int may = switch_in(w->g, x, 0) != 0;
   for (uint32_t i = 0; i < l.n && !may; i++) may = expr_op(w->g, l.at[i]) == EX_FLOOR || expr_op(w->g, l.at[i]) == EX_ATAN2;
-  return may && discontinuities_of(w->e, x).n > 0;
+  return may;
 }
 
-/* Whether a force on a periodic coordinate does work over a turn, by values at a random state. */
+/* Whether x jumps: then forces that are the gradient of x beside the jumps leave no energy conserved. */
+static int jumps_somewhere(const ProofWork *w, Expr x) {
+  return may_jump(w, x) && discontinuities_of(w->e, x).n > 0;
+}
+
+/* Whether a force on a periodic coordinate does work over a turn, by values at a random state: the trapezoidal and the midpoint rule, which errors of
+ * the sums move apart, agree on it. A switch shifts both by the width of an interval, so that only more work than that counts. */
 static int works_over_a_turn(const ProofWork *w, uint32_t i, Expr force) {
   enum { POINTS = 256 };
-  const long double turn = 6.28318530717958647692528676655900577L, rounding = 1e-9L;
-  long double bound, sum = 0, size = 0, *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  const long double turn = 6.28318530717958647692528676655900577L;
+  const long double rounding = may_jump(w, force) ? 0.05L : 1e-9L;
+  long double bound, sum[2] = {0, 0}, size = 0, *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
   sample_state(w->g, 1, symbols);
-  for (int k = 0; k < POINTS; k++) {
-    symbols[w->q[i]] = turn * k / POINTS;
+  for (int k = 0; k < 2 * POINTS; k++) {
+    symbols[w->q[i]] = turn * k / (2 * POINTS);
     long double value = value_with_bound(w->g, force, symbols, NULL, &bound);
-    sum += value;
+    sum[k % 2] += value;
     size += fabsl(value);
   }
-  return !(fabsl(sum) <= rounding * size);
+  long double work = fabsl(sum[0] + sum[1]);
+  return !(work <= rounding * size) && !(fabsl(sum[0] - sum[1]) > work / 4);
 }
 
 /* Whether the form a dq + b dt has a potential: 2, each part depends on its own coordinate alone; 1, it has no curl, so that there is one near
@@ -482,7 +489,7 @@ static int has_potential(const ProofWork *w, const LinearPower *by) {
   for (uint32_t i = 0; i <= w->n; i++) {
     ExprList l = expr_topo(g, &by->a[i], 1);
     int turns = i < w->n && is_periodic(w, i) && !expr_is_zero(g, by->a[i]);
-    if (turns && works_over_a_turn(w, i, by->a[i])) return 0;
+    if (turns && (!is_single_valued(w, by->a[i]) || works_over_a_turn(w, i, by->a[i]))) return 0;
     if (turns) is = 1;
     for (uint32_t k = 0; k < l.n; k++) {
       uint32_t j = expr_map_get(&place, l.at[k]);
@@ -513,7 +520,8 @@ static Expr potential_of(const ProofWork *w, Expr power, int *exists) {
   }
   if (!found && is_constrained(w) && !expr_is_zero(g, V))
     found = motion_verdict(w->e, expr_add(g, power, total(w, V))) == PROVED_ZERO;
-  *exists = single && !found ? has_potential(w, &by) : 0;
+  if (!single) linear_power(w, expr_neg(g, power), &by); /* branches that are integrated apart may still have no work over a turn */
+  *exists = single && found ? 0 : has_potential(w, &by);
   return single && found && !jumps_somewhere(w, V) ? V : 0;
 }
 

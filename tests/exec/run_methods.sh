@@ -148,4 +148,10 @@ printf "model rest\ncoord x\nlagrangian = x'^2/2 - x^2/2\nscene s { start x = 0;
 for m in $(sed -n 's/^  \([a-z][a-z0-9_-]*\)  *[0-9][-0-9]*  *[0-9].*/\1/p' "$TMP/table"); do
   is "$m leaves a body at rest" "1,0,0" "$("$LAGC" run "$TMP/rest.lag" --method "$m" -o - --quiet 2>"$TMP/err" | tail -n 1 | cut -d, -f1-3)"
 done
+# A state that begins at 0 and relaxes within 1e-6 of the run has the tolerance of its own size, not of its first rate times the run:
+# a' = -k (a - cos(t)) is (k^2 cos(t) + k sin(t))/(k^2 + 1) behind the first 1e-4 s.
+printf "model relaxes\nstate a\nparam k = 1e5\nflow a' = -k*(a - cos(t))\nscene s { start a = 0; span 1; tolerance 1e-8 }\n" >"$TMP/relaxes.lag"
+for m in dop853 rk45 radau; do
+  check "$m has the digits of a state that begins at 0" close_to "$("$LAGC" run "$TMP/relaxes.lag" --method $m --every 1 -o - --quiet 2>"$TMP/err" | tail -n 1 | cut -d, -f2)" 0.54031072 1e-7
+done
 tap_end
