@@ -503,6 +503,26 @@ static int has_potential(const ProofWork *w, const LinearPower *by) {
   return is;
 }
 
+/* Divisors in x: marks them, or returns whether one is neither marked nor proved to be other than 0. */
+static int find_divisors(ExprGraph *g, Expr x, ExprMap *marked, int marks) {
+  ExprList l = expr_topo(g, &x, 1);
+  for (uint32_t i = 0; i < l.n; i++)
+    for (uint32_t k = 0; expr_op(g, l.at[i]) == EX_PROD && k < expr_nargs(g, l.at[i]); k += 2) {
+      Expr of = expr_arg(g, l.at[i], k);
+      if (num_sign(expr_number(g, expr_arg(g, l.at[i], k + 1))) >= 0) continue;
+      if (marks) expr_map_set(marked, of, 1);
+      else if (!expr_map_get(marked, of) && !expr_is_nonzero(g, of)) return 1;
+    }
+  return 0;
+}
+
+/* Whether V may have no value where the forces have one: -F/b*sin(b*x) of F*cos(b*x) at b = 0. */
+static int may_lack_values(ExprGraph *g, Expr V, Expr power) {
+  ExprMap divisors = expr_map(expr_arena(g));
+  find_divisors(g, power, &divisors, 1);
+  return find_divisors(g, V, &divisors, 0);
+}
+
 /* V(q, t) with power = -dV/dt along motions, of forces and explicit time; 0: none. *exists: whether there is one, whose integral is not
  * found, as has_potential. */
 static Expr potential_of(const ProofWork *w, Expr power, int *exists) {
@@ -521,6 +541,7 @@ static Expr potential_of(const ProofWork *w, Expr power, int *exists) {
   if (!found && is_constrained(w) && !expr_is_zero(g, V))
     found = motion_verdict(w->e, expr_add(g, power, total(w, V))) == PROVED_ZERO;
   if (!single) linear_power(w, expr_neg(g, power), &by); /* branches that are integrated apart may still have no work over a turn */
+  if (single && found && may_lack_values(g, V, power)) return *exists = 2, 0;
   *exists = single && found ? 0 : has_potential(w, &by);
   return single && found && !jumps_somewhere(w, V) ? V : 0;
 }

@@ -132,7 +132,7 @@ static const char *text_of_let(const char *name) {
 
 static Measures *compile(const lag_scene *scene, int n, const char *const *text, char *why) {
   static const MeasureDialect extended = {.past_end = 1, .nfunctions = sizeof functions/sizeof *functions, .functions = functions};
-  enum { WORDS = 3*LINE };
+  enum { WORDS = 12*LINE }; /* names of lets are expanded */
   static char words[2*MAX_FACTS][WORDS];
   static const char *all[2*MAX_FACTS];
   for (int i = 0; i < n; i++) {
