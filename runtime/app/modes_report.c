@@ -65,7 +65,7 @@ static int refuse(const App *app) {
 static const char *caution_of(const App *app, const Equilibrium *r) {
   if (r->pole) return "the mass matrix is nearly singular here: a coordinate has lost its meaning";
   if (!(app->scene->model->flags & LAG_SMOOTH))
-    return "the model has if, abs, sign, min, max or roots: where they switch at the equilibrium, the modes are those of one side";
+    return "the model has if, abs, sign, min, max, atan2 or roots: where they switch at the equilibrium, the modes are those of one side";
   return NULL;
 }
 

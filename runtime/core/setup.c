@@ -237,7 +237,7 @@ static int check_method(lag_sim *s, const lag_method *method) {
                       m->constraints->of[m->contacts[i].constraint].name);
   int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !m->constraints;
   if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH))
-    return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min, max and tables; dop853 does not", method->name);
+    return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min, max, atan2 and tables; dop853 does not", method->name);
   if (((needs & LAG_METHOD_VARIATION) && !m->variation && !splits) || ((needs & LAG_METHOD_JACOBIAN) && !m->linear && !m->constraints) ||
       ((needs & LAG_METHOD_TAYLOR) && !m->taylor)) {
     return lag_fail(s, LAG_EMETHOD,

@@ -59,7 +59,7 @@ enum {
   LAG_CONSERVES_ENERGY = 1, /* dE/dt = 0 along all motions, for any inputs */
   LAG_CONSTANT_MASS = 2,    /* d2L/dq'2 depends on no coordinate, velocity or time */
   LAG_AUTONOMOUS = 4,       /* the right-hand side does not contain t */
-  LAG_SMOOTH = 8,           /* no if, abs, sign, min, max, and no table */
+  LAG_SMOOTH = 8,           /* no if, abs, sign, min, max, atan2 with a cut, and no table */
   LAG_SEPARABLE = 16,       /* constant mass matrix, accelerations that do not depend on velocities, no states; with LAG_FIRST_ORDER a Hamiltonian
                              * T(p) + V(q, t): nz is even, z = [q|p], the rates of q are functions of p alone and those of p of q and t */
   LAG_TIMELESS = 32,        /* t enters only by the formulas and tables of inputs, if at all */

@@ -211,7 +211,8 @@ static void classify(Eqns *e) {
   ExprList l = expr_topo(e->g, roots.at, roots.n);
   for (uint32_t i = 0; i < l.n; i++) {
     ExprOp op = expr_op(e->g, l.at[i]);
-    e->smooth &= op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_FLOOR && op != EX_MIN && op != EX_MAX;
+    int cut = op == EX_ATAN2 && expr_sign(e->g, expr_arg(e->g, l.at[i], 1)) != SIGN_POSITIVE; /* where the angle jumps by 2 pi */
+    e->smooth &= op != EX_SELECT && op != EX_ABS && op != EX_SIGN && op != EX_FLOOR && op != EX_MIN && op != EX_MAX && !cut;
   }
   unsigned lagrangian = kinds_of_lagrangian(e);
   e->energy_jumps = e->energy && discontinuities_of(e, e->energy).n > 0;
@@ -253,7 +254,7 @@ static int check_method(const Eqns *e) {
   const Scene *sc = &e->m->scene;
   const MethodInfo *method = sc->method ? method_find(sc->method, strlen(sc->method)) : NULL;
   if (!method || !(method->flags & METHOD_TAYLOR) || e->smooth) return 1;
-  return diag_error(e->m->diags, sc->method_span, "the method `%s` needs a model without if, abs, sign, min, max and tables"
+  return diag_error(e->m->diags, sc->method_span, "the method `%s` needs a model without if, abs, sign, min, max, atan2 and tables"
                     HELP "`dop853` does not", method->name);
 }
 

@@ -157,7 +157,7 @@ lagrangian = x'^2/2
 force x = u
 scene run { span 2 [s] }
 EOF
-check "if, abs, sign, min, max are refused, and dop853 is named" refused "without if, abs, sign, min, max and tables; dop853" tests/exec/models/motor.lag --method taylor
+check "if, abs, sign, min, max are refused, and dop853 is named" refused "without if, abs, sign, min, max, atan2 and tables; dop853" tests/exec/models/motor.lag --method taylor
 without() {
   "$LAGC" build models/pendulum.lag --method dop853 -o "$TMP/sim" && ! "$TMP/sim" --method taylor 2>"$TMP/err" && grep -q 'lagc run MODEL --method taylor' "$TMP/err" &&
     "$LAGC" build models/pendulum.lag --method taylor -o "$TMP/sim" && "$TMP/sim" --method taylor --quiet --until 1
