@@ -32,7 +32,8 @@ is "a base unit" 'unit:
 is "a unit with a prefix" 'unit:
   [kN], with an SI prefix; `lagc help units` has the table' "$(chapter kN)"
 is "an option" 'option of run, plot, animate, lyapunov, cost, sweep, effects:
-  --tol X               tolerance, absolute and relative' "$(chapter tol)"
+  --tol X               tolerance, relative to values and to the size of the
+                        motion' "$(chapter tol)"
 is "an option with its dashes" "$(chapter tol)" "$(chapter --tol)"
 check "a value of an option" sh -c '"$0" help latex | grep -q "^  --format text|latex|c$" && "$0" help long | grep -q -- "--precision"' "$LAGC"
 is "a word of paper" "losses are a Rayleigh function, \`dissipation = c/2*x'^2\`, or a \`force\`" "$(chapter damping | head -n 1)"

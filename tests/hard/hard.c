@@ -275,7 +275,7 @@ static lag_sim *prepare(const lag_scene *s, const char *id, const lag_method *me
   if (steps) x->opt[x->nopt] = (lag_option){"step", fabs(s->t1 - s->t0) / (double)steps, NULL};
   int bad = x->tol > 0 ? lag_sim_set_tolerance(sim, x->tol) : 0;
   if (!bad) bad = lag_sim_set_method(sim, method, x->opt, x->nopt + (steps != 0));
-  x->refused = bad == LAG_EMETHOD || (bad && strstr(lag_sim_message(sim), "with constraints only order 2"));
+  x->refused = bad == LAG_EMETHOD || (bad && strstr(lag_sim_message(sim), "with constraints it is 2"));
   for (size_t i = 0; i < sizeof starts / sizeof *starts; i++)
     if (!bad && strcmp(starts[i].id, id) == 0 && strcmp(starts[i].scene, s->name) == 0) bad = lag_sim_set(sim, starts[i].name, starts[i].value);
   if (!bad) return sim;
