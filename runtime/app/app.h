@@ -118,7 +118,7 @@ typedef struct App {
 
 #include "app/options.def"
 
-/* What a simulator does: a run, or an analysis in its place. */
+/* Tasks of a simulator: a run, or an analysis in its place. */
 enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, WHERE = 64, REFERENCE = 128, ANY = 255,
        MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | WHERE };
 

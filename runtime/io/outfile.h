@@ -23,5 +23,5 @@ int lag_outfile_close(Outfile *o, int keep);
 int lag_outfile_has_suffix(const char *path, const char *suffixes);
 /* The suffix of the name if it is a known file type that is not in suffixes, as "png" for "svg"; else NULL. */
 const char *lag_outfile_other_type(const char *path, const char *suffixes);
-/* What is written to names that end in one of these suffixes, a hint of options.def: "CSV, or NumPy where the name ends in .npy". */
+/* Contents of files whose names end in one of these suffixes, a hint of options.def: "CSV, or NumPy where the name ends in .npy". */
 const char *lag_outfile_contents(const char *suffixes);

@@ -1,4 +1,4 @@
-/* What has a name in a model: symbols and entities as they are declared, their ranges and units; lists of a model's coordinates, constants and scenes;
+/* Named things of a model: symbols and entities as they are declared, their ranges and units; lists of a model's coordinates, constants and scenes;
  * constraints with their multipliers. */
 #include <math.h>
 #include <string.h>

@@ -157,6 +157,8 @@ lagrangian = x'^2/2
 force x = u
 scene run { span 2 [s] }
 EOF
+printf '%s\n' 'model cut' 'coord x, y' "lagrangian = (x'^2 + y'^2)/2 - x^2/2 - y^2" 'force x = 0.3*atan2(y, x)' 'scene s { start x = 1; span 1 }' >"$TMP/cut.lag"
+check "so is an angle that may pass its cut" refused "atan2 and tables; dop853" "$TMP/cut.lag" --method taylor
 check "if, abs, sign, min, max are refused, and dop853 is named" refused "without if, abs, sign, min, max, atan2 and tables; dop853" tests/exec/models/motor.lag --method taylor
 without() {
   "$LAGC" build models/pendulum.lag --method dop853 -o "$TMP/sim" && ! "$TMP/sim" --method taylor 2>"$TMP/err" && grep -q 'lagc run MODEL --method taylor' "$TMP/err" &&

@@ -167,6 +167,8 @@ changes $free; force x = -x'
 changes $free; force x = y
 changes $free - cos(th) + th'^2/2; coord th periodic; force th = 1/(2 + sin(th))
 undecided $free - cos(th) + th'^2/2; coord th periodic; force th = sin(sin(th))
+undecided $free; param b = 0; force x = cos(b*x)
+conserved $free; param b = 2 > 0; force x = cos(b*x)
 undecided $free - cos(th) + th'^2/2; coord th periodic; force th = abs(sin(th)) - 2/pi
 undecided $free - cos(th) + th'^2/2; coord th periodic; force th = if(sin(th) > 0, 1, -1)
 undecided $free - cos(th) + th'^2/2; coord th periodic; force th = 1/(1.00001 + cos(th)) - 1/sqrt(1.00001^2 - 1)
