@@ -211,9 +211,9 @@ static double time_scale(Kind k, double time) {
   return q > 0 && k.bend > 0 ? fmin(time, sqrt(q / k.bend)) : time;
 }
 
-/* A power of 1024, as a change from m to nm or km is one: 1 for sizes from 1/16 to 64. A tolerance is at most 16 times that of the
+/* A power of 1024, as a change from m to nm or km is one: 1 for sizes from 1/8 to 128. A tolerance is at most 8 times that of the
  * size itself. */
-static double size_unit(double size) { return size > 0 && size < HUGE_VAL ? scalbn(1, 10 * (int)floor((log2(size) + 4) / 10)) : 1; }
+static double size_unit(double size) { return size > 0 && size < HUGE_VAL ? scalbn(1, 10 * (int)floor((log2(size) + 3) / 10)) : 1; }
 
 /* dy[n] := rates at the start, where y[at + i] is displaced by by[i], i < count, less f; NULL: nothing is displaced, or subtracted. Zeros
  * where there are none. */
