@@ -12,13 +12,6 @@ static const char name_variable[] = "LAG_NAME"; /* of the program in messages, w
 
 /* ---- Start */
 
-/* Seconds that mpirun leaves ranks to end after a signal: a run of the sweep must end, and rank 0 says what is kept. One second, its own, is too short on a busy
- * machine. By Open MPI 4 and by 5's PRRTE; set by the user, it stays. */
-static void leave_time_to_end(void) {
-  setenv("OMPI_MCA_odls_base_sigkill_timeout", "30", 0);
-  setenv("PRTE_MCA_odls_base_sigkill_timeout", "30", 0);
-}
-
 /* words[argc + 10] := mpirun with the command line, without --mpi. */
 static void command_of(const Args *a, const char *program, const char **words) {
   const char *const head[] = {"mpirun", "--bind-to", "none", "-x", name_variable, "-n", a->mpi, program};
@@ -51,7 +44,6 @@ int lag_sweep_start(SweepApp *s) {
   program[n] = '\0';
   command_of(a, program, words);
   setenv(name_variable, a->self, 1);
-  leave_time_to_end();
   execvp(words[0], (char *const *)words);
   int none = errno == ENOENT;
   free(words);
