@@ -9,6 +9,7 @@
 #include "core/rhs.h"
 
 static const double tighter = 0.03; /* than the tolerance of the run: its error is then small beside the run's */
+static const double least_tolerance = 4.5 * DBL_EPSILON;
 
 int lag_app_error_begin(App *app) {
   const Args *a = &app->args;
@@ -21,7 +22,7 @@ int lag_app_copy_method(const lag_sim *from, lag_sim *to, double times) {
   lag_option opt[MOST_OPTIONS];
   lag_app_options(from->method, from->options, 1, opt);
   int rc = lag_sim_set_method(to, from->method, opt, from->method->noptions);
-  return rc ? rc : lag_sim_set_tolerance(to, fmax(times * from->tol, 4.5 * DBL_EPSILON));
+  return rc ? rc : lag_sim_set_tolerance(to, fmax(times * from->tol, least_tolerance));
 }
 
 /* Work of a run so far, in operations: a nanosecond or so each. Constraints add the factors of a matrix at each call, events their functions, a Taylor series
@@ -43,27 +44,35 @@ static int enough(void *app, const lag_sim *other) {
   return done || lag_app_interrupted() != EXIT_SIGNAL;
 }
 
-/* A setting whose error is small beside the run's; near the smallest tolerance, one whose error is of another making, and about as small: taylor with a
- * lower order, or, where there is no series, a larger tolerance, which shows an error that is too large, but not 0. */
+/* taylor with a smaller tolerance, a lower order and at most half the run's mean step: the roundings of long series have one sign along a motion, with any
+ * tolerance, and are in proportion to steps. */
+static int set_shorter_series(const ErrorEstimate *e, const lag_sim *run, lag_sim *other) {
+  const double lower = 3;
+  const lag_option shorter[] = {{.name = "order", .value = fmax(lag_taylor_order(run->method_work) - lower, 1)},
+                                {.name = "max_step", .value = 0.5 * fabs(lag_sim_time(run) - e->t0) / run->run->steps}};
+  int rc = lag_sim_set_method(other, &lag_taylor_method, shorter, sizeof shorter / sizeof *shorter);
+  return rc ? rc : lag_sim_set_tolerance(other, fmax(tighter * run->tol, least_tolerance));
+}
+
+/* dop853 beside a method of equal steps. */
+static int set_adaptive(const ErrorEstimate *e, lag_sim *other) {
+  const double small = 8 * DBL_EPSILON;
+  lag_option atol = {.name = "atol"};
+  int rc = lag_error_least_scale(e, other, &atol.value);
+  atol.value *= small;
+  rc = rc ? rc : lag_sim_set_method(other, &lag_dop853, &atol, atol.value < HUGE_VAL);
+  return rc ? rc : lag_sim_set_tolerance(other, small);
+}
+
+/* A setting whose error is small beside the run's; near the smallest tolerance, one whose error is of another making, and about as small, or a larger
+ * tolerance, which shows an error that is too large, but not 0. */
 static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim *other) {
-  const double lower = 3; /* for shorter steps: a higher one would make longer ones, and cancel more digits */
-  const double least = 4.5 * DBL_EPSILON, apart = 3; /* tolerances whose errors differ enough */
-  const double small = 8 * DBL_EPSILON;              /* of the run beside equal steps */
-  const lag_taylor *series = run->scene->model->constraints ? NULL : run->scene->model->taylor;
-  int equal = lag_equal_step(run) > 0, rc;
-  if (!equal && run->tol >= apart * least) return lag_app_copy_method(run, other, tighter);
-  if (!equal && series && run->method == &lag_taylor_method) {
-    const lag_option order = {.name = "order", .value = fmax(lag_taylor_order(run->method_work) - lower, 1)};
-    rc = lag_sim_set_method(other, &lag_taylor_method, &order, 1);
-  } else if (!equal) {
-    return lag_app_copy_method(run, other, 3);
-  } else {
-    lag_option atol = {.name = "atol"};
-    rc = lag_error_least_scale(e, other, &atol.value);
-    atol.value *= small;
-    rc = rc ? rc : lag_sim_set_method(other, &lag_dop853, &atol, atol.value < HUGE_VAL);
-  }
-  return rc ? rc : lag_sim_set_tolerance(other, equal ? small : run->tol);
+  const double rounds = 1e-11; /* of taylor: below, rounding counts as truncation does */
+  const double apart = 3;      /* tolerances whose errors differ enough */
+  const lag_model *m = run->scene->model;
+  if (lag_equal_step(run) > 0) return set_adaptive(e, other);
+  if (run->method == &lag_taylor_method && !m->constraints && run->tol < rounds) return set_shorter_series(e, run, other);
+  return lag_app_copy_method(run, other, run->tol >= apart * least_tolerance ? tighter : apart);
 }
 
 /* Rounding has no law that is worth telling. */
