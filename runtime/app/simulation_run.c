@@ -42,7 +42,7 @@ static void note_tables(const App *app) {
   double from = fmin(lag_sim_time(app->sim), app->until), to = fmax(lag_sim_time(app->sim), app->until);
   for (int i = 0; i < m->ntables && !app->args.quiet; i++) {
     const lag_table *c = &m->tables[i];
-    double first = c->row[0][0], last = c->row[c->n - 1][0];
+    double first = c->row[0], last = c->row[c->width * (c->n - 1)];
     if (isnan(app->sim->hold[c->input]) && (from < first || to > last)) {
       fprintf(stderr, "%s: note: the table of %s reaches from %g to %g s; outside, its first and last values hold\n", app->args.self,
               m->u[c->input].name, first, last);

@@ -365,6 +365,9 @@ enum { LAG_IS_NOTHING, LAG_IS_P, LAG_IS_Q, LAG_IS_V, LAG_IS_Z, LAG_IS_U };
 int lag_find_name(const lag_model *model, const char *name, int *index, const lag_var **var);
 /* The name inside its effect: c of drag.c, v.x of wind.v.x; NULL where there is no dot. */
 const char *lag_name_in_effect(const char *var);
+
+/* The input that is the rate of input i, which stands behind it with a prime in its name; -1: the model needs none. */
+int lag_input_rate(const lag_model *m, int i);
 /* Whether var is a member of the family: th[2] of th, r[1].x of r.x; length is strlen(family). */
 int lag_is_member(const char *var, const char *family, size_t length);
 /* best := the known name nearest to `name`; 0 when none is near. */

@@ -63,6 +63,12 @@ static int find(const lag_model *m, const char *name, int *index, const lag_var 
   return p >= 0 ? LAG_IS_P : LAG_IS_U;
 }
 
+int lag_input_rate(const lag_model *m, int i) {
+  size_t n = strlen(m->u[i].name);
+  int is = i + 1 < m->nu && strncmp(m->u[i + 1].name, m->u[i].name, n) == 0 && strcmp(m->u[i + 1].name + n, "'") == 0;
+  return is ? i + 1 : -1;
+}
+
 int lag_find_name(const lag_model *m, const char *name, int *index, const lag_var **var) {
   int kind = find(m, name, index, var);
   return kind == LAG_IS_U && is_switch(m, *var) ? LAG_IS_NOTHING : kind;

@@ -50,7 +50,7 @@ static int row_after(const lag_table *c, double t, double dir) {
   int k = 0, end = c->n;
   while (k < end) { /* rows before k are <= t (forward) or < t (backward) */
     int mid = (k + end) / 2;
-    if (dir > 0 ? c->row[mid][0] <= t : c->row[mid][0] < t) k = mid + 1;
+    if (dir > 0 ? c->row[c->width * mid] <= t : c->row[c->width * mid] < t) k = mid + 1;
     else end = mid;
   }
   k = dir > 0 ? k : k - 1;
@@ -63,8 +63,8 @@ double lag_next_row(const lag_problem *pb, double t, double *row) {
   for (int i = 0; i < m->ntables; i++) {
     const lag_table *c = &m->tables[i];
     int in_use = isnan(pb->hold[c->input]) && !pb->signal[c->input].fn, k = in_use ? row_after(c, t, pb->dir) : -1;
-    if (k >= 0 && fabs(c->row[k][0] - t) < least) {
-      *row = c->row[k][0];
+    if (k >= 0 && fabs(c->row[c->width * k] - t) < least) {
+      *row = c->row[c->width * k];
       least = fabs(*row - t);
     }
   }

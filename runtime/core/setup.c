@@ -315,6 +315,8 @@ static double in_si(int kind, const lag_var *var, double value) { return value *
 /* Whether var may have `value`, in its declared unit. */
 static int check_value(lag_sim *s, int kind, const lag_var *var, const char *name, double value) {
   if (!isfinite(value)) return lag_fail(s, LAG_EINVAL, "%s = %g: not a finite number", name, value);
+  if (kind == LAG_IS_U && strchr(var->name, '\''))
+    return lag_fail(s, LAG_EINVAL, "%s is the rate of an input, and follows from it; hold the input, or give both a function (lag_sim_set_input)", name);
   if (kind == LAG_IS_P && !sign_ok(var->sign, in_si(kind, var, value)))
     return lag_fail(s, LAG_EINVAL, "%s = %g: the model declares %s %s", name, value, var->name, sign_text(var->sign));
   return LAG_OK;
@@ -328,9 +330,11 @@ static void give(lag_sim *s, int kind, int i, double value) {
     s->p[i] = value;
     s->fixed[i] = 1;
     break;
-  case LAG_IS_U:
-    s->hold[i] = value;
-    s->signal[i] = (lag_signal){0};
+  case LAG_IS_U: /* what is held has no rate */
+    for (; i >= 0; i = lag_input_rate(s->scene->model, i), value = 0) {
+      s->hold[i] = value;
+      s->signal[i] = (lag_signal){0};
+    }
     break;
   default:
     s->start[kind == LAG_IS_Q ? i : kind == LAG_IS_V ? nq + i : 2 * nq + i] = value;
@@ -412,6 +416,19 @@ int lag_sim_set_input(lag_sim *s, const char *name, lag_input_fn *fn, void *cont
     return rc;
   }
   s->hold[i] = NAN;
+  for (int k = lag_input_rate(s->scene->model, i); k >= 0; k = lag_input_rate(s->scene->model, k)) s->hold[k] = NAN;
+  return LAG_OK;
+}
+
+/* Refuses an input that has a function where its rate has none, or the reverse. */
+static int check_rates(lag_sim *s) {
+  const lag_model *m = s->scene->model;
+  for (int i = 0; i < m->nu; i++) {
+    int rate = lag_input_rate(m, i);
+    if (rate < 0 || !s->signal[i].fn == !s->signal[rate].fn) continue;
+    return lag_fail(s, LAG_EINVAL, "the motion depends on %s, too: give it a function as %s has (lag_sim_set_input)", m->u[s->signal[i].fn ? rate : i].name,
+                    m->u[s->signal[i].fn ? i : rate].name);
+  }
   return LAG_OK;
 }
 
@@ -454,7 +471,7 @@ int lag_setup_start(lag_sim *s) {
   int rc = check_digits(s, s->method);
 
   if (rc) return rc;
-  if ((rc = lag_check_parameters(s)) != 0) return rc;
+  if ((rc = lag_check_parameters(s)) != 0 || (rc = check_rates(s)) != 0) return rc;
   set_start_state(s);
   if (lag_not_finite(n, s->now) >= 0) return lag_fail(s, LAG_ENAN, "the start is not finite");
   memcpy(s->begin, s->now, (size_t)n * sizeof(double)); /* the requested start gives the scales of quantities */

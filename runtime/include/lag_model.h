@@ -20,7 +20,7 @@
 extern "C" {
 #endif
 
-#define LAG_ABI 14
+#define LAG_ABI 15
 
 /* The scalar of a model: double, float, long double or __float128; or, where LAG_LANES is 4 or 8, vectors of so many doubles, one state or one
  * set of parameters a lane. The status < 0 of such a call has bit k of its negative set where lane k is singular; the other lanes are right. */
@@ -90,11 +90,11 @@ typedef struct lag_event {
   int direction; /* 1 rising, -1 falling, 0 both, LAG_KICK */
 } lag_event;
 
-/* The table of an input: n rows with increasing times, joined by cubic splines. Used by emitted code; the runtime only ends steps at the rows. */
+/* The table of an input: n rows with increasing times, joined by splines. Used by emitted code; the runtime only ends steps at the rows. */
 typedef struct lag_table {
   int input; /* index of the input */
-  int n;
-  const LAG_LANE (*row)[3]; /* time, value, second derivative */
+  int n, width;
+  const LAG_LANE *row; /* [n * width] time, value, second derivative; or time, value, first and second derivative */
 } lag_table;
 
 /* Row and column of an entry of a sparse matrix. */

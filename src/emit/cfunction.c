@@ -69,8 +69,20 @@ static const char *const solver =
   "  return regular;\n"
   "}\n";
 
-/* Cubic spline. Lanes in different intervals are evaluated one interval after the other. */
-static const char *const spline =
+/* Splines. Lanes in different intervals are evaluated one interval after the other. */
+static const char *const interval =
+  "\n/* The interval of the first lane: of n rows of this width, which begin with a time. */\n"
+  "static int lag_interval(LAG_REAL t, int n, int width, const LAG_LANE *row) {\n"
+  "  int k = 0;\n"
+  "  for (int end = n - 1; end - k > 1;) {\n"
+  "    const int mid = (k + end)/2;\n"
+  "    if (LAG_ANY(t < LAG_C(0.0) + row[width*mid])) end = mid;\n"
+  "    else k = mid;\n"
+  "  }\n"
+  "  return k;\n"
+  "}\n";
+
+static const char *const cubic =
   "\n#define LAG_ROW(t, y, m) {(LAG_LANE)(t), (LAG_LANE)(y), (LAG_LANE)(m)}\n"
   "\n/* The cubic between two rows of time, value and second derivative; outside of them the nearest value. */\n"
   "static LAG_REAL lag_cubic(LAG_REAL t, const LAG_LANE *a, const LAG_LANE *b) {\n"
@@ -82,17 +94,38 @@ static const char *const spline =
   "}\n"
   "\n/* The curve through n rows. Between the first and the last row it has two continuous derivatives. */\n"
   "static LAG_REAL lag_spline(LAG_REAL t, int n, const LAG_LANE (*row)[3]) {\n"
-  "  int k = 0;\n"
-  "  for (int end = n - 1; end - k > 1;) {\n"
-  "    const int mid = (k + end)/2;\n"
-  "    if (LAG_ANY(t < LAG_C(0.0) + row[mid][0])) end = mid;\n"
-  "    else k = mid;\n"
-  "  }\n"
+  "  int k = lag_interval(t, n, 3, row[0]);\n"
   "  LAG_REAL y = lag_cubic(t, row[k], row[k + 1]);\n"
   "  for (k++; k < n - 1; k++) { /* lanes that are further on */\n"
   "    const LAG_MASK later = t >= LAG_C(0.0) + row[k][0];\n"
   "    if (!LAG_ANY(later)) break;\n"
   "    y = LAG_SELECT(later, lag_cubic(t, row[k], row[k + 1]), y);\n"
+  "  }\n"
+  "  return y;\n"
+  "}\n";
+
+static const char *const quintic =
+  "\n#define LAG_JET(t, y, d, m) {(LAG_LANE)(t), (LAG_LANE)(y), (LAG_LANE)(d), (LAG_LANE)(m)}\n"
+  "\n/* Derivative 0, 1 or 2 of the quintic between two rows of time, value, first and second derivative; outside of them the nearest value, and 0. */\n"
+  "static LAG_REAL lag_quintic(LAG_REAL t, int order, const LAG_LANE *a, const LAG_LANE *b) {\n"
+  "  const LAG_LANE h = b[0] - a[0], m = h*a[2], s = h*h*a[3], half = (LAG_LANE)1/(LAG_LANE)2;\n"
+  "  const LAG_LANE A = b[1] - a[1] - m - half*s, B = h*b[2] - m - s, C = h*h*b[3] - s;\n"
+  "  const LAG_LANE c3 = (LAG_LANE)10*A - (LAG_LANE)4*B + half*C, c4 = (LAG_LANE)7*B - (LAG_LANE)15*A - C, c5 = (LAG_LANE)6*A - (LAG_LANE)3*B + half*C;\n"
+  "  const LAG_REAL part = (t - a[0])/h, zero = LAG_C(0.0), one = LAG_C(1.0);\n"
+  "  const LAG_REAL x = LAG_SELECT(part < zero, zero, LAG_SELECT(part > one, one, part));\n"
+  "  if (order == 0) return a[1] + x*(m + x*(half*s + x*(c3 + x*(c4 + x*c5))));\n"
+  "  const LAG_REAL d = order == 1 ? (m + x*(s + x*((LAG_LANE)3*c3 + x*((LAG_LANE)4*c4 + x*((LAG_LANE)5*c5)))))/h\n"
+  "                                : (s + x*((LAG_LANE)6*c3 + x*((LAG_LANE)12*c4 + x*((LAG_LANE)20*c5))))/(h*h);\n"
+  "  return LAG_SELECT(part < zero, zero, LAG_SELECT(part > one, zero, d));\n"
+  "}\n"
+  "\n/* A derivative of the curve through n rows, which has four that are continuous. */\n"
+  "static LAG_REAL lag_curve(LAG_REAL t, int n, const LAG_LANE (*row)[4], int order) {\n"
+  "  int k = lag_interval(t, n, 4, row[0]);\n"
+  "  LAG_REAL y = lag_quintic(t, order, row[k], row[k + 1]);\n"
+  "  for (k++; k < n - 1; k++) { /* lanes that are further on */\n"
+  "    const LAG_MASK later = t >= LAG_C(0.0) + row[k][0];\n"
+  "    if (!LAG_ANY(later)) break;\n"
+  "    y = LAG_SELECT(later, lag_quintic(t, order, row[k], row[k + 1]), y);\n"
   "  }\n"
   "  return y;\n"
   "}\n";
@@ -114,7 +147,13 @@ void csupport_logic(const char *prefix, StrBuf *out) {
   csupport_expand(strcmp(prefix, "LAG") == 0 ? positive : positive_of_header, prefix, "", out);
 }
 void csupport_solver(const char *prefix, const char *lower, StrBuf *out) { csupport_expand(solver, prefix, lower, out); }
-void csupport_spline(const char *prefix, const char *lower, StrBuf *out) { csupport_expand(spline, prefix, lower, out); }
+void csupport_splines(const Prog *inputs, const char *prefix, const char *lower, StrBuf *out) {
+  int some[2] = {0};
+  for (uint32_t i = 0; i < inputs->tables.n; i++) some[inputs->tables.at[i].curve->jet != NULL] = 1;
+  if (some[0] || some[1]) csupport_expand(interval, prefix, lower, out);
+  if (some[0]) csupport_expand(cubic, prefix, lower, out);
+  if (some[1]) csupport_expand(quintic, prefix, lower, out);
+}
 
 /* Whether the program uses the parameter `name`: reads, writes, or needs it as workspace. */
 static int is_used(const Prog *p, const CStyle *st, const char *name) {

@@ -10,8 +10,8 @@ void csupport_logic(const char *prefix, StrBuf *out);
 /* Function that solves a linear system in a loop: lower_solve. With constraints: see math_kkt_solver. */
 void csupport_solver(const char *prefix, const char *lower, StrBuf *out);
 
-/* `static LAG_REAL lower_spline(t, n, row)`, for inputs given by a table. */
-void csupport_spline(const char *prefix, const char *lower, StrBuf *out);
+/* `static LAG_REAL lower_spline(t, n, row)` and `lower_curve(t, n, row, order)`, for inputs given by a table: cubics, and quintics with their derivatives. */
+void csupport_splines(const Prog *inputs, const char *prefix, const char *lower, StrBuf *out);
 
 /* Appends text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
 void csupport_expand(const char *text, const char *prefix, const char *lower, StrBuf *out);

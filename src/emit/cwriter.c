@@ -283,31 +283,48 @@ void cwriter_pivot(Writer *w, const Ins *i) {
 /* Rows of a table, as many on a line as fit. */
 void cwrite_rows(const IrTable *table, const char *name, const char *prefix, const char *indent, Arena *a, StrBuf *out) {
   const Spline *c = table->curve;
-  sb_printf(out, "%s/* %s: time, value, second derivative. */\n", indent, comment_text(a, table->file));
-  sb_printf(out, "%sstatic const %s_LANE %s[%u][3] = {", indent, prefix, name, c->n);
+  const int width = c->jet ? 4 : 3;
+  sb_printf(out, "%s/* %s: time, value, %ssecond derivative. */\n", indent, comment_text(a, table->file), c->jet ? "first and " : "");
+  sb_printf(out, "%sstatic const %s_LANE %s[%u][%d] = {", indent, prefix, name, c->n, width);
   size_t column = WRAP_COLUMNS;
   for (uint32_t k = 0; k < c->n; k++) {
-    char t[32], y[32], m[32];
-    num_format_double(t, c->row[k][0]);
-    num_format_double(y, c->row[k][1]);
-    num_format_double(m, c->row[k][2]);
-    const char *row = arena_printf(a, " %s_ROW(%s, %s, %s)%s", prefix, t, y, m, k + 1 < c->n ? "," : "");
-    const size_t n = strlen(row);
-    if (column + n > WRAP_COLUMNS) {
+    const double *x = c->jet ? c->jet[k] : c->row[k];
+    StrBuf row = strbuf(a);
+    sb_printf(&row, " %s_%s(", prefix, c->jet ? "JET" : "ROW");
+    for (int i = 0; i < width; i++) {
+      char number[32];
+      num_format_double(number, x[i]);
+      sb_printf(&row, "%s%s", i ? ", " : "", number);
+    }
+    sb_puts(&row, k + 1 < c->n ? ")," : ")");
+    if (column + row.n > WRAP_COLUMNS) {
       sb_printf(out, "\n%s ", indent);
       column = strlen(indent) + 1;
     }
-    sb_putn(out, row, n);
-    column += n;
+    sb_putn(out, sb_text(&row), row.n);
+    column += row.n;
   }
   sb_printf(out, "\n%s};\n", indent);
 }
 
+/* The name of a table's rows, which are written once: a rate shares those of its input. */
+static const char *rows_of(Writer *w, const Ins *i) {
+  const IrTable *table = &w->p->tables.at[i->index];
+  if (w->style->rows) return w->style->rows[i->index];
+  for (uint32_t k = 0; k < w->nrows; k++)
+    if (w->rows[k].curve == table->curve) return w->rows[k].name;
+  const char *name = cnames_take(&w->names, arena_printf(w->a, "%s_rows", table->name));
+  cwrite_rows(table, name, w->style->prefix, "  ", w->a, w->out);
+  if (w->nrows < sizeof w->rows / sizeof *w->rows) w->rows[w->nrows].curve = table->curve, w->rows[w->nrows++].name = name;
+  return name;
+}
+
 static void write_table(Writer *w, Slot s, const Ins *i) {
   const IrTable *table = &w->p->tables.at[i->index];
-  const char *name = w->style->rows ? w->style->rows[i->index] : cnames_take(&w->names, arena_printf(w->a, "%s_rows", table->name));
-  if (!w->style->rows) cwrite_rows(table, name, w->style->prefix, "  ", w->a, w->out);
-  w->piece[s] = (CExpr){arena_printf(w->a, "%s(%s, %u, %s)", w->style->spline, cwriter_operand(w, i->a).text, table->curve->n, name), C_ATOM, 0};
+  const char *name = rows_of(w, i), *t = cwriter_operand(w, i->a).text;
+  const char *call = table->curve->jet ? arena_printf(w->a, "%s(%s, %u, %s, %d)", w->style->curve, t, table->curve->n, name, table->order)
+                                       : arena_printf(w->a, "%s(%s, %u, %s)", w->style->spline, t, table->curve->n, name);
+  w->piece[s] = (CExpr){call, C_ATOM, 0};
 }
 
 /* Used loads of one array, by index; 0: none. */

@@ -20,7 +20,7 @@ typedef struct {
   const char *const *globals;         /* names that the function must not hide, NULL at the end; or NULL */
   const char *solve, *kkt;          /* functions that solve a linear system, and one with constraints */
   int is_regular;                   /* 1: linear systems were found regular before, and the function returns no status */
-  const char *spline;               /* function that evaluates tables */
+  const char *spline, *curve;       /* functions that evaluate tables: cubics, and derivatives of quintics */
   const char *const *rows;          /* names of the arrays of table rows; NULL: the body declares them */
   int prefer_short_code;                /* 1: prefer short code to fast code */
   const char *math;                 /* prefix of the embedded sincos, sin and cos; NULL: LAG_FN(sin) */

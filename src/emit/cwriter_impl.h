@@ -31,6 +31,11 @@ typedef struct {
   unsigned char named[ARR_COUNT]; /* arrays whose loads have been declared */
   unsigned char *load_needs_name; /* by slot: a load used outside of loops, or by all turns of one */
   const char *cells, *row, *turn; /* array of sums to which nests add, and the nests' counters */
+  struct {
+    const Spline *curve;
+    const char *name;
+  } rows[8]; /* [nrows] tables that were written */
+  uint32_t nrows;
   const char *parameters; /* array copy of the parameters that nests read, if parameters are struct members; or NULL */
 } Writer;
 

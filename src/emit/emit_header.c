@@ -62,7 +62,7 @@ static const char *const *globals_of(Header *h) {
   const char **all = ARENA_ARRAY(h->a, const char *, h->taken.taken.n + 32);
   uint32_t n = 0;
   for (uint32_t i = 0; i < h->taken.taken.n; i++) all[n++] = h->taken.taken.at[i].name;
-  static const char *const functions[] = {"solve", "cubic", "spline", "params", "state", "step", "input_fn", "sincos", "sincos2", "sincos4", "sin", "cos",
+  static const char *const functions[] = {"solve", "cubic", "spline", "quintic", "curve", "interval", "params", "state", "step", "input_fn", "sincos", "sincos2", "sincos4", "sin", "cos",
                                           "lanes", "lanes_mask", "sum", "rates", "gather", "scatter", "held"};
   for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) all[n++] = arena_printf(h->a, "%s_%s", h->lower, functions[i]);
   all[n++] = "singular";

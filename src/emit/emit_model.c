@@ -41,7 +41,7 @@ static const char *const *rows_names(const ProgramSet *u) {
   CNames ids = cnames_new(u->arena);
   const char **names = ARENA_ARRAY(u->arena, const char *, u->inputs->tables.n + 1);
   for (uint32_t i = 0; i < u->inputs->tables.n; i++)
-    names[i] = arena_printf(u->arena, "rows_%s", cnames_take(&ids, u->inputs->tables.at[i].name));
+    names[i] = u->inputs->tables.at[i].order ? names[i - 1] : arena_printf(u->arena, "rows_%s", cnames_take(&ids, u->inputs->tables.at[i].name));
   return names;
 }
 
@@ -84,7 +84,7 @@ const char *const one_out[] = {"out", NULL};
 
 CStyle model_style(const ModelFile *f, const char *const *own, const char *const *written) {
   return (CStyle){.prefix = "LAG", .in = arrays, .out = written, .own = own, .globals = f->globals, .solve = "lag_solve", .kkt = "lag_kkt",
-                  .spline = "lag_spline", .math = math_prefix(f->u, "lag")};
+                  .spline = "lag_spline", .curve = "lag_curve", .math = math_prefix(f->u, "lag")};
 }
 
 /* Whether the function is called once a step, or once a row of output. */
@@ -226,6 +226,7 @@ static void emit_inputs(const ModelFile *f) {
   CStyle st = model_style(f, own, written);
   st.rows = rows_names(f->u);
   for (uint32_t i = 0; i < p->tables.n; i++) {
+    if (p->tables.at[i].order) continue;
     sb_putc(f->out, '\n');
     cwrite_rows(&p->tables.at[i], st.rows[i], "LAG", "", f->a, f->out);
   }
@@ -345,14 +346,16 @@ static const char *digest_text(Arena *a, const char *text) {
   return arena_printf(a, "%016llx", (unsigned long long)hash_bytes(FNV1A_START, text, strlen(text)));
 }
 
-/* Table `curves`: input, number of rows and array of each input that is a table. */
+/* Table `curves`: input, number of rows, their width and array of each input that is a table; rates share those of their input. */
 static void emit_curves(const ProgramSet *u, StrBuf *out) {
   const Prog *p = u->inputs;
   if (!p->tables.n) return;
   sb_puts(out, "\nstatic const lag_table curves[] = {\n");
   for (uint32_t k = 0; k < p->stores.n; k++) {
     const Ins *i = &p->ins.at[p->stores.at[k].slot];
-    if (i->op == IR_TABLE) sb_printf(out, "  {%u, %u, %s},\n", p->stores.at[k].index, p->tables.at[i->index].curve->n, rows_names(u)[i->index]);
+    if (i->op != IR_TABLE || p->tables.at[i->index].order) continue;
+    const Spline *c = p->tables.at[i->index].curve;
+    sb_printf(out, "  {%u, %u, %d, %s[0]},\n", p->stores.at[k].index, c->n, c->jet ? 4 : 3, rows_names(u)[i->index]);
   }
   sb_puts(out, "};\n");
 }
@@ -440,7 +443,7 @@ void emit_model(const ProgramSet *u, const char *name, StrBuf *out) {
   if (has_long_tables(u)) table_macros(out);
   if (needs_solver(u)) csupport_solver("LAG", "lag", out);
   math_kkt_solver(u, "LAG", "lag", out);
-  if (u->inputs->tables.n) csupport_spline("LAG", "lag", out);
+  csupport_splines(u->inputs, "LAG", "lag", out);
   size_t begin = out->n;
   emit_derive(&f);
   accel(&f);

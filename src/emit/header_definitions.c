@@ -376,7 +376,7 @@ void header_implementation(const Header *h) {
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
   if (prog_solves_dense(h->u->accel) || prog_solves_dense(h->scene->observe_plain) || (h->u->taylor && prog_solves_dense(h->u->taylor->first))) csupport_solver(h->upper, h->lower, h->out);
   math_kkt_solver(h->u, h->upper, h->lower, h->out);
-  if (h->u->inputs->tables.n) csupport_spline(h->upper, h->lower, h->out);
+  csupport_splines(h->u->inputs, h->upper, h->lower, h->out);
   defaults(h);
   param(h);
   header_failures(h);

@@ -123,7 +123,7 @@ static const char *const *own_names(const Header *h, const char *const *extra) {
 
 CStyle header_style(const Header *h, const char *const *own, const char *const *out) {
   return (CStyle){.prefix = h->upper, .in = arrays, .params = h->fields, .out = out, .own = own, .globals = h->globals,
-                  .solve = arena_printf(h->a, "%s_solve", h->lower), .kkt = arena_printf(h->a, "%s_kkt", h->lower), .spline = arena_printf(h->a, "%s_spline", h->lower),
+                  .solve = arena_printf(h->a, "%s_solve", h->lower), .kkt = arena_printf(h->a, "%s_kkt", h->lower), .spline = arena_printf(h->a, "%s_spline", h->lower), .curve = arena_printf(h->a, "%s_curve", h->lower),
                   .math = math_prefix(h->u, h->lower)};
 }
 

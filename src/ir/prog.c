@@ -303,8 +303,8 @@ const char *prog_verify(const Prog *p) {
 }
 
 static int same_table(const IrTable *a, const IrTable *b) {
-  return strcmp(a->name, b->name) == 0 && a->curve->n == b->curve->n &&
-         memcmp(a->curve->row, b->curve->row, a->curve->n * sizeof *a->curve->row) == 0;
+  const Spline *x = a->curve, *y = b->curve;
+  return strcmp(a->name, b->name) == 0 && a->order == b->order && x->n == y->n && !x->jet == !y->jet && memcmp(x->row, y->row, x->n * sizeof *x->row) == 0;
 }
 
 int prog_same(const Prog *a, const Prog *b) {

@@ -126,10 +126,11 @@ static inline int64_t nest_index(const Nest *n, uint32_t k, int64_t i, int64_t j
   return x->first + x->by_row*i + x->by_turn*j;
 }
 
-/* The spline of the table that the user gave for input `name`. */
+/* The spline of the table that the user gave for input `name`; order: of its derivative, 0 unless the curve is quintic. */
 typedef struct {
   const char *name, *file;
   const Spline *curve;
+  int order;
 } IrTable;
 
 typedef struct Prog {

@@ -89,7 +89,7 @@ static int run_ins(Run *r, Slot s, const Ins *i) {
     case IR_SOLVE: r->solution[s] = solved(r->p, &r->p->solves.at[i->index], v, &status); return status;
     case IR_SOLVED: v[s] = r->solution[i->a][i->index]; break;
     case IR_NEST: return run_nest(r, &r->p->nests.at[i->index]);
-    case IR_TABLE: v[s] = spline_at(r->p->tables.at[i->index].curve, x); break;
+    case IR_TABLE: v[s] = spline_at(r->p->tables.at[i->index].curve, r->p->tables.at[i->index].order, x); break;
     case IR_TITLE: break;
   }
   if (fabsl(v[s]) > DBL_MAX) v[s] = copysignl(INFINITY, v[s]); /* doubles overflow here */

@@ -360,7 +360,7 @@ Prog *lower_action(const Eqns *e, uint32_t event) {
 
 static Slot lower_table(Lower *l, const Input *in) {
   Slot t = lower_load(l, ARR_T, expr_symbol(l->g, l->e->m->time));
-  vec_push(l->p->arena, &l->p->tables, ((IrTable){in->name, in->file, in->table}));
+  vec_push(l->p->arena, &l->p->tables, ((IrTable){in->name, in->file, in->table, in->order}));
   return prog_ins(l->p, (Ins){.op = IR_TABLE, .a = t, .index = l->p->tables.n - 1});
 }
 

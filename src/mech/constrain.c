@@ -13,7 +13,7 @@ static int is_holonomic(const Eqns *e, const Constraint *k) { return !(expr_kind
 static Expr rate(const Eqns *e, Expr x, const char *suffix) {
   const Model *m = e->m;
   Expr out, *seed = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(e->g) + 1);
-  seed[m->time] = expr_int(e->g, 1);
+  model_seed_time(m, seed);
   for (uint32_t i = 0; i < e->n; i++) seed[m->coords.at[i].q] = expr_symbol(e->g, m->coords.at[i].v)->node;
   expr_tangent(e->g, &x, 1, seed, expr_symbol_count(e->g) + 1, suffix, NULL, &out);
   return out;

@@ -103,11 +103,11 @@ static unsigned kinds_in(const Eqns *e, const Expr *roots, uint32_t n) {
 
 static int check_momenta(const Eqns *e) {
   for (uint32_t i = 0; i < e->n; i++)
-    if (contains_kind(e, e->p[i], SYM_INPUT)) {
-      diag_error(e->m->diags, e->m->lagrangian_span, "the momentum of `%s` depends on an input, whose derivative would be needed",
-                 e->m->coords.at[i].name);
-      diag_help(e->m->diags, "write the input as a formula of t inside L instead");
-      return 0;
+    for (uint32_t k = 0; k < e->m->inputs.n; k++) {
+      const Input *in = &e->m->inputs.at[k];
+      if (in->rate || !expr_contains_sym(e->g, e->p[i], in->sym)) continue;
+      return diag_error(e->m->diags, e->m->lagrangian_span, "not yet: the momentum of `%s` depends on `%s`, whose derivative would be needed" HELP "write the input as a formula of t inside L instead",
+                        e->m->coords.at[i].name, in->name);
     }
   return 1;
 }

@@ -31,12 +31,15 @@ static void add_derivative(Forms *f, uint32_t i, uint32_t j, uint32_t k, Expr x)
 
 static void differentiate(Forms *f, uint32_t i) {
   const Eqns *e = f->e;
+  Expr rate, *in_time = ARENA_ARRAY(e->m->arena, Expr, expr_symbol_count(f->g) + 1);
+  model_seed_time(e->m, in_time);
   for (uint32_t k = 0; k < f->w; k++) {
     Expr x = f->form[i * f->w + k];
     if (!x) continue;
     ExprPartials by_q = expr_gradient_sparse(f->g, x, SYM_COORD, e->n);
     for (uint32_t j = 0; j < by_q.n; j++) add_derivative(f, i, by_q.at[j].index, k, by_q.at[j].e);
-    add_derivative(f, i, e->n, k, expr_diff(f->g, x, e->m->time));
+    expr_tangent(f->g, &x, 1, in_time, expr_symbol_count(f->g) + 1, "'", NULL, &rate);
+    add_derivative(f, i, e->n, k, rate);
   }
   for (uint32_t p = 0; p < f->w * f->w; p++) {
     Expr *x = &f->d[(size_t)i * f->w * f->w + p];
@@ -142,7 +145,7 @@ Expr frobenius_leaf(const Eqns *e, Expr r) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
   uint32_t n = e->n;
-  if (n > MOST_COORDINATES) return 0;
+  if (n > MOST_COORDINATES || expr_kinds(g, r) & 1u << SYM_INPUT) return 0;
   Expr *a = ARENA_ARRAY(m->arena, Expr, n + 1), rate = expr_int(g, 0);
   SymId *q = ARENA_ARRAY(m->arena, SymId, n + 1);
   for (uint32_t i = 0; i < n; i++) a[i] = expr_int(g, 0), q[i] = m->coords.at[i].q;

@@ -21,7 +21,7 @@
 static Expr *explicit_direction(const Eqns *e) {
   const Model *m = e->m;
   Expr *seed = ARENA_ARRAY(m->arena, Expr, expr_symbol_count(e->g) + 1);
-  seed[m->time] = expr_int(e->g, 1);
+  model_seed_time(m, seed);
   for (uint32_t i = 0; i < e->n; i++) seed[m->coords.at[i].q] = expr_symbol(e->g, m->coords.at[i].v)->node;
   for (uint32_t i = 0; i < m->states.n; i++) seed[m->states.at[i].z] = e->flow[i];
   return seed;

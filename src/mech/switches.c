@@ -244,7 +244,7 @@ const Expr *switch_rates(const Eqns *e) {
   const Model *m = e->m;
   uint32_t n = e->switches.nmodes, nseed = expr_symbol_count(e->g) + 1;
   Expr *seed = ARENA_ARRAY(m->arena, Expr, nseed), *sides = ARENA_ARRAY(m->arena, Expr, n + 1), *rates = ARENA_ARRAY(m->arena, Expr, n + 1);
-  seed[m->time] = expr_int(e->g, 1);
+  model_seed_time(m, seed);
   for (uint32_t i = 0; i < m->coords.n; i++) {
     seed[m->coords.at[i].q] = expr_symbol(e->g, m->coords.at[i].v)->node;
     seed[m->coords.at[i].v] = expr_symbol(e->g, m->coords.at[i].a)->node;

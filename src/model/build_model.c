@@ -452,8 +452,9 @@ static int is_first_order(const Model *m) {
 }
 
 /* Builds everything but the scene. first_order: coordinates become states. */
-static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
+static Builder *build(Ast *ast, const ModelChoice *choice, int first_order, InputRates *rates) {
   Builder *b = builder_new(ast, choice);
+  b->rates_wanted = rates;
   b->m->first_order = first_order;
   scene_select(b, choice);
   find_units(b);
@@ -467,6 +468,7 @@ static Builder *build(Ast *ast, const ModelChoice *choice, int first_order) {
   each_active(b, apply_statement, &en);
   finish_energies(b, &en);
   add_rotation_inertia(b);
+  if (!first_order) want_rates_of_momenta(b);
   apply_unused_lets(b);
   each_active(b, symmetry, NULL); /* before outputs use charges: fixes their units */
   for (uint32_t i = 0; i < b->observes.n; i++) resolve_observe(b, i);
@@ -493,23 +495,35 @@ static void ask_bracket(Builder *b, AstId id) {
   b->m->asked_bracket = v.e;
 }
 
-Model *model_build(Ast *ast, const ModelChoice *choice) {
-  Builder *b = build(ast, choice, 0);
+static Builder *build_whole(Ast *ast, const ModelChoice *choice, InputRates *rates) {
+  Builder *b = build(ast, choice, 0, rates);
   if (!ast->diags->errors && is_first_order(b->m)) {
     if (b->m->constraints.n)
       diag_error(b->diags, b->m->constraints.at[0].span, "not yet: constraints and contacts where %s" HELP
                  "lagc understands the syntax but cannot give it meaning in this version", no_inertia(b->m));
-    else b = build(ast, choice, 1);
+    else b = build(ast, choice, 1, rates);
   }
   ask_bracket(b, choice->bracket);
   add_section(b, &choice->section);
   scene_build(b, choice);
+  fill_input_rates(b);
   fill_inferred_units(b);
   if (!ast->diags->errors) fix_params(b, choice->fix);
   warn_signs(b);
   check_sizes(b);
   command_values(b, choice->values, choice->nvalues);
+  return b;
+}
+
+Model *model_build(Ast *ast, const ModelChoice *choice) {
+  InputRates rates = {0};
+  Diags before = *ast->diags;
+  Builder *b = build_whole(ast, choice, &rates);
+  while (rates.missing) { /* of inputs, which the build took for constants */
+    rates.missing = 0;
+    *ast->diags = before;
+    b = build_whole(ast, choice, &rates);
+  }
   b->m->declared = declarations_of(b);
   return ast->diags->errors ? NULL : b->m;
 }
-

@@ -89,6 +89,18 @@ typedef struct {
   SymId sym;
 } BoundName;
 
+/* The highest rate of an input that is needed: input_rates.c. */
+typedef struct {
+  Name name;
+  int order;
+} InputRate;
+
+/* What builds of the model have found; missing: the last one lacked some. */
+typedef struct {
+  VEC(InputRate) of;
+  int missing;
+} InputRates;
+
 typedef struct Builder Builder;
 struct Builder {
   Ast *ast;
@@ -134,6 +146,7 @@ struct Builder {
   int gives_lagrangian; /* the model itself has L, T or V */
   int brackets;    /* {f, g} in an expression is a Poisson bracket */
   int domains;     /* compute Value.domain, for claims */
+  InputRates *rates_wanted;
 };
 
 /* Evaluates an expression of the text; after an error, reported, the value has e = 0. */
@@ -283,6 +296,14 @@ void set_monitor(Builder *b, const AstStmt *st);
 void set_measure(Builder *b, const AstStmt *st);
 /* The same of the command line: plain numbers are in the unit beside them, units that do not match draw warnings. */
 void ask_measure(Builder *b, const CommandOutput *asked);
+
+/* input_rates.c: notes that the rate of this order of an input, of the inputs in e, or of those that momenta depend on, is needed; declares the rates of an input that an earlier build
+ * noted, behind it; gives them formulas and tables. */
+void want_input_rate(Builder *b, uint32_t input, int order);
+void want_rates_of(Builder *b, Expr e, int order);
+void want_rates_of_momenta(Builder *b);
+void declare_input_rates(Builder *b, uint32_t input);
+void fill_input_rates(Builder *b);
 
 /* input_table.c: sets the formula or, where rhs is a file name, the table of input `index`; stem: its name without the effect. */
 void give_input(Builder *b, uint32_t index, Name stem, AstId rhs, Name effect);

@@ -6,15 +6,13 @@
 #include "base/words.h"
 #include "model/resolve_impl.h"
 
-/* 1 for a constraint without states and inputs; 0, reported, for others. */
+/* 1 for a constraint without states; 0, reported, for others. Its second derivative needs rates of inputs. */
 static int can_be_held(Builder *b, Expr c, const char *what, Name name, Span span) {
   unsigned kinds = expr_kinds(b->g, c);
   if (kinds & 1u << SYM_STATE)
     return diag_error(b->diags, span, "the %s `%s` contains a state: constraints hold between coordinates" HELP "declare the constrained quantity as a coordinate",
                       what, name);
-  if (kinds & 1u << SYM_INPUT)
-    return diag_error(b->diags, span, "the %s `%s` contains an input, whose derivatives would be needed" HELP
-                      "write the input as a formula of t, inside the constraint", what, name);
+  if (kinds & 1u << SYM_INPUT) want_rates_of(b, c, kinds & 1u << SYM_VEL ? 1 : 2);
   return 1;
 }
 

@@ -84,6 +84,7 @@ static void declare_input(Builder *b, const AstStmt *st, Name effect) {
   in.unit = declared_unit(b, st, effect);
   in.sym = declare_symbol(b, SYM_INPUT, i, in.name, SIGN_UNKNOWN, in.unit.dim);
   vec_push(b->arena, &m->inputs, in);
+  declare_input_rates(b, i);
 }
 
 /* --- families whose members are declared one by one --- */

@@ -310,7 +310,7 @@ static void warn_of_overshoot(const Table *t, const Spline *s) {
   }
   for (uint32_t i = 0; i + 1 < s->n; i++)
     for (int k = 0; k <= PARTS; k++) {
-      double y = (double)spline_at(s, s->row[i][0] + (s->row[i + 1][0] - s->row[i][0]) * k / PARTS);
+      double y = (double)spline_at(s, 0, s->row[i][0] + (s->row[i + 1][0] - s->row[i][0]) * k / PARTS);
       low = fmin(low, y);
       high = fmax(high, y);
     }
@@ -352,7 +352,7 @@ static const Spline *fit(Table *t) {
     return NULL;
   }
   Spline *s = ARENA_NEW(b->arena, Spline);
-  *s = (Spline){n, (const double(*)[3])row};
+  *s = (Spline){n, (const double(*)[3])row, NULL};
   warn_of_overshoot(t, s);
   return s;
 }

@@ -48,6 +48,8 @@ typedef struct {
   SymId sym;
   Expr value;          /* of t and parameters; 0 where there is a table */
   const Spline *table; /* or NULL */
+  int order;           /* 1, 2: the first or second rate of the input before it; 0: one that the text declares */
+  uint32_t rate;       /* index of the input that is its rate; 0: none is needed */
   const char *file;    /* path of the table as the text writes it */
   AstId text;          /* the formula; 0: a table */
   Name effect;         /* scope of the formula's names */
@@ -424,6 +426,9 @@ static inline Name model_conditional(const Model *m) {
     if (m->contacts.at[i].margin) return m->contacts.at[i].name;
   return NULL;
 }
+
+/* Seeds of a derivative along the motion, by expr_tangent: t, and the inputs that have a rate. */
+void model_seed_time(const Model *m, Expr *seed);
 
 /* Whether a symbol is an input of a contact, which only the runtime sets. */
 static inline int model_is_contact_switch(const Model *m, SymId sym) {

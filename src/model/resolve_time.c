@@ -18,7 +18,7 @@ static const Expr *time_seeds(Builder *b) {
   Expr *seed = b->seeds = ARENA_ARRAY(b->arena, Expr, b->nseeds + 1);
   b->rates = expr_map(b->arena);
   const Model *m = b->m;
-  seed[m->time] = expr_int(b->g, 1);
+  model_seed_time(m, seed);
   for (uint32_t i = 0; i < m->coords.n; i++) {
     const Coord *c = &m->coords.at[i];
     seed[c->q] = expr_symbol(b->g, c->v)->node;
@@ -46,12 +46,29 @@ static unsigned kinds_in(Builder *b, const Value *v) {
   return kinds;
 }
 
+/* Whether the value contains a symbol of a closed form, numbered behind the inputs. */
+static int has_closed_form(Builder *b, const Value *v) {
+  ExprList l = expr_topo(b->g, v->at, component_count(v));
+  for (uint32_t i = 0; i < l.n; i++)
+    if (expr_op(b->g, l.at[i]) == EX_SYM && expr_sym_of(b->g, l.at[i])->kind == SYM_INPUT && expr_sym_of(b->g, l.at[i])->index >= b->m->inputs.n) return 1;
+  return 0;
+}
+
+/* Notes the rates of the inputs in v; 0 where one is a second rate. */
+static int want_rates(Builder *b, const Value *v) {
+  for (uint32_t i = 0; i < b->m->inputs.n; i++)
+    for (uint32_t k = 0; k < component_count(v); k++)
+      if (b->m->inputs.at[i].order == 2 && expr_contains_sym(b->g, v->at[k], b->m->inputs.at[i].sym)) return 0;
+  for (uint32_t k = 0; k < component_count(v); k++) want_rates_of(b, v->at[k], 1);
+  return 1;
+}
+
 Value time_derivative(Builder *b, Value of, Span span, Context where) {
   unsigned kinds = kinds_in(b, &of), second = 1u << SYM_ACC | 1u << SYM_RATE;
-  if (kinds & 1u << SYM_INPUT && where == IN_OUTPUT && b->m->scene.exacts.n)
+  if (kinds & 1u << SYM_INPUT && has_closed_form(b, &of))
     return refuse(b, span, "inputs and closed forms have no time derivative" HELP
                   "a velocity has a closed form of its own: `exact x' = ...`, and then `error(x')`");
-  if (kinds & 1u << SYM_INPUT) return refuse(b, span, "an input has no time derivative" HELP "declare the derivative as an input of its own");
+  if (kinds & 1u << SYM_INPUT && !want_rates(b, &of)) return refuse(b, span, "not yet: a third time derivative of an input");
   if (kinds & second && !(kinds & 1u << SYM_ACC))
     return refuse(b, span, b->m->hamiltonian ? "the model gives its Hamiltonian, and there is no second derivative" HELP
                                                "write the derivative of the right side of Hamilton's equation"

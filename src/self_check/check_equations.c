@@ -14,6 +14,14 @@ static void input_jet(Jet *out, Real x, Real rate, Real second, Real direction) 
   out->c[2][1].v = direction;
 }
 
+/* An input, with the rates that the model has. */
+static void signal_jet(const Check *c, uint32_t i, Jet *out) {
+  uint32_t rate = i < c->m->inputs.n ? c->m->inputs.at[i].rate : 0, second = rate ? c->m->inputs.at[rate].rate : 0;
+  *out = jet_exact(c->signal[i]);
+  if (rate) out->c[0][1].v = c->signal[rate];
+  if (second) out->c[0][2].v = c->signal[second] / 2;
+}
+
 void check_input(void *data, InputKind kind, uint32_t i, Jet *out) {
   const Check *c = data;
   switch (kind) {
@@ -27,7 +35,7 @@ void check_input(void *data, InputKind kind, uint32_t i, Jet *out) {
       out->c[0][1].e = c->error + c->zd_error[i];
       return;
     case INPUT_PARAM: *out = jet_exact(c->given[i]); return;
-    case INPUT_SIGNAL: *out = jet_exact(c->signal[i]); return;
+    case INPUT_SIGNAL: signal_jet(c, i, out); return;
     case INPUT_MULTIPLIER:
       *out = jet_exact(c->lambda[i]);
       out->c[0][0].e = c->lambda_error[i];

@@ -236,6 +236,8 @@ static Ref signal_value(Walk *w, const Input *in) {
   return v.at[0] ? text_component(w->text, &v, 0, &in->unit) : 0;
 }
 
+static Ref rate_of(Walk *w, Ref signal) { return signal ? tape_op(w->text->tape, TAPE_RATE, signal, 0, 0) : 0; }
+
 static Ref output_value(Walk *w, const OutputText *o) {
   if (!o->id) return 0;
   w->text->member = o->is_member ? o->member : NULL;
@@ -280,7 +282,8 @@ TextOutputs *text_outputs(const Model *m, const Output *outputs, uint32_t noutpu
   o->signals = ARENA_ARRAY(a, Ref, m->inputs.n + 1);
   Walk w = {.text = text_new(m, a), .outputs = o};
   walk(&w, read_output_statement);
-  for (uint32_t i = 0; i < m->inputs.n; i++) o->signals[i] = signal_value(&w, &m->inputs.at[i]);
+  for (uint32_t i = 0; i < m->inputs.n; i++)
+    o->signals[i] = m->inputs.at[i].order ? rate_of(&w, o->signals[i - 1]) : signal_value(&w, &m->inputs.at[i]);
   for (uint32_t i = 0; i < noutputs; i++) {
     o->is_energy[i] = is_energy(w.text, &outputs[i].from) != 0;
     if (!o->is_energy[i]) o->outputs[i] = output_value(&w, &outputs[i].from);

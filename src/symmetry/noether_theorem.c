@@ -332,6 +332,18 @@ static Expr scale_of(const ProofWork *w, Expr F) {
   return expr_add_n(g, terms, w->n + 2);
 }
 
+/* Change of a constraint under the generator: inputs move with the time. */
+static Expr constraint_moved(const ProofWork *w, Expr c) {
+  uint32_t n = expr_symbol_count(w->g) + 1;
+  Expr *seed = ARENA_ARRAY(w->m->arena, Expr, n);
+  memcpy(seed, w->moving, n * sizeof *seed);
+  for (uint32_t i = 0; i < w->m->inputs.n; i++) {
+    const Input *in = &w->m->inputs.at[i];
+    if (in->rate) seed[in->sym] = expr_mul(w->g, w->tau, node(w, w->m->inputs.at[in->rate].sym));
+  }
+  return tangent(w, c, seed, "_delta");
+}
+
 /* lambda^T (A xi + b tau), contacts closed. For a holonomic constraint: the change of c under the generator; for r = A q' + b: A xi + b tau. */
 static Expr power_of_constraints(ProofWork *w, Noether *to) {
   ExprGraph *g = w->g;
@@ -341,7 +353,7 @@ static Expr power_of_constraints(ProofWork *w, Noether *to) {
   for (uint32_t i = 0; i < k->n; i++) {
     const Contact *contact = contact_of_constraint(w->m, k->of[i]);
     if (i < k->nholonomic) {
-      moved = moved_by(w, while_closed(w, contact, k->c[i]));
+      moved = constraint_moved(w, while_closed(w, contact, k->c[i]));
     } else {
       Expr b = at_rest(w, k->r[i]), part = expr_mul(g, b, w->tau);
       Expr slide = tangent(w, k->r[i], seed, "_delta");
@@ -373,9 +385,10 @@ static Expr power_of_change(const ProofWork *w, Noether *to) {
   for (uint32_t i = 0; i < m->inputs.n; i++) {
     const Input *in = &m->inputs.at[i];
     if (!(expr_kinds(g, w->L) & 1u << SYM_INPUT) || !expr_contains_sym(g, w->L, in->sym) || model_is_contact_switch(m, in->sym)) continue;
-    if (in->value) seed[in->sym] = expr_diff(g, in->value, m->time);
-    to->by_formulas |= in->value != 0;
-    to->power_unknown |= !in->value;
+    if (in->rate) seed[in->sym] = expr_symbol(g, m->inputs.at[in->rate].sym)->node;
+    else if (in->value) seed[in->sym] = expr_diff(g, in->value, m->time);
+    to->by_formulas |= !in->rate && in->value;
+    to->power_unknown |= !in->rate && !in->value;
   }
   Expr rate = tangent(w, w->L, seed, "_drift");
   return expr_mul(g, w->tau, rate);

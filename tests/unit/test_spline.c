@@ -25,7 +25,7 @@ typedef struct {
 
 static void fit(Curve *c, uint32_t n) {
   assert_true(spline_fit(c->arena, c->row, n));
-  c->s = (Spline){n, (const double(*)[3])c->row};
+  c->s = (Spline){n, (const double(*)[3])c->row, NULL};
 }
 
 /* n uneven places from a to b: gaps vary by a factor of 3. */
@@ -69,7 +69,7 @@ static void test_polynomials(void **state) {
       fit(c, n);
       for (int i = 0; i <= 100; i++) {
         double x = -1 + 0.04 * i;
-        assert_near(spline_at(&c->s, x), cases[k].f(x), 4e-14);
+        assert_near(spline_at(&c->s, 0, x), cases[k].f(x), 4e-14);
       }
     }
 }
@@ -84,8 +84,8 @@ static void test_other_program(void **state) {
   Curve *c = *state;
   for (int i = 0; i < 8; i++) c->row[i][0] = t[i], c->row[i][1] = y[i];
   fit(c, 8);
-  for (size_t i = 0; i < sizeof at / sizeof *at; i++) assert_near(spline_at(&c->s, at[i][0]), at[i][1], 2e-13);
-  for (int i = 0; i < 8; i++) assert_near(spline_at(&c->s, t[i]), y[i], 0); /* a row comes back as it is */
+  for (size_t i = 0; i < sizeof at / sizeof *at; i++) assert_near(spline_at(&c->s, 0, at[i][0]), at[i][1], 2e-13);
+  for (int i = 0; i < 8; i++) assert_near(spline_at(&c->s, 0, t[i]), y[i], 0); /* a row comes back as it is */
 }
 
 /* The largest error against sin on [0, 3], ends included. */
@@ -93,7 +93,7 @@ static double error_with(Curve *c, uint32_t n) {
   double worst = 0;
   place(c, n, 0, 3, sin);
   fit(c, n);
-  for (int i = 0; i <= 3000; i++) worst = fmax(worst, fabs((double)spline_at(&c->s, 0.001 * i) - sin(0.001 * i)));
+  for (int i = 0; i <= 3000; i++) worst = fmax(worst, fabs((double)spline_at(&c->s, 0, 0.001 * i) - sin(0.001 * i)));
   return worst;
 }
 
@@ -111,7 +111,7 @@ static void test_smooth(void **state) {
   fit(c, 9);
   for (int i = 1; i < 8; i++) {
     long double x = c->row[i][0], h = 1e-4L, f[5];
-    for (int k = 0; k < 5; k++) f[k] = spline_at(&c->s, x + (k - 2) * h);
+    for (int k = 0; k < 5; k++) f[k] = spline_at(&c->s, 0, x + (k - 2) * h);
     assert_near((f[4] - 2 * f[3] + f[2]) / (h * h) - (f[2] - 2 * f[1] + f[0]) / (h * h), 0, 0.01);
     assert_near((f[3] - f[2]) / h - (f[2] - f[1]) / h, 0, 0.01);
     assert_near((f[3] - 2 * f[2] + f[1]) / (h * h), c->row[i][2], 0.01);
@@ -122,8 +122,8 @@ static void test_outside(void **state) {
   Curve *c = *state;
   place(c, 7, -1, 2, cubic);
   fit(c, 7);
-  assert_near(spline_at(&c->s, -1e9), cubic(-1), 0);
-  assert_near(spline_at(&c->s, 2.0001), cubic(2), 0);
+  assert_near(spline_at(&c->s, 0, -1e9), cubic(-1), 0);
+  assert_near(spline_at(&c->s, 0, 2.0001), cubic(2), 0);
 }
 
 static void test_too_close(void **state) {
