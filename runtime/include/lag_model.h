@@ -278,7 +278,7 @@ typedef struct lag_model {
   const lag_var *q;  /* [nq]; the velocity of q has the same name with a prime, unit per second */
   const lag_var *z;  /* [nz] */
   const lag_var *p;  /* [np] */
-  const lag_var *u;  /* [nu] */
+  const lag_var *u;  /* [nu]; the rate of an input, where the motion depends on it, stands behind it with a prime */
   const lag_event *ev; /* [nev] */
 
   /* Derived parameters: p[np ... np + nderived - 1] from p[0 ... np - 1]. A scene's params calls derive; so must code that changes p afterwards.

@@ -400,7 +400,7 @@ static void emit_tables(const ProgramSet *u, const char *name, const char *diges
   if (u->nderived) sb_printf(out, "  .nderived = %u, .derive = derive,\n", u->nderived);
   sb_printf(out, "  .inputs = %s, .accel = accel, .energy = %s,\n  .events = %s, .act = %s,\n", or_null(u->u.n, "inputs"),
             u->energy ? "energy" : "NULL", or_null(u->events.n, "events"), or_null(u->events.n, "act"));
-  if (u->inputs->tables.n) sb_printf(out, "  .ntables = %u, .tables = curves,\n", u->inputs->tables.n);
+  if (u->inputs->tables.n) sb_puts(out, "  .ntables = sizeof curves / sizeof *curves, .tables = curves,\n");
   if (u->constraints.of.n) sb_puts(out, "  .constraints = &constraints,\n");
   if (u->contacts.n) sb_printf(out, "  .ncontacts = %u, .contacts = contact_table,\n", u->contacts.n);
   if (u->contact_laws) sb_puts(out, "  .contact_laws = contact_laws,\n");

@@ -101,17 +101,6 @@ static unsigned kinds_in(const Eqns *e, const Expr *roots, uint32_t n) {
   return kinds;
 }
 
-static int check_momenta(const Eqns *e) {
-  for (uint32_t i = 0; i < e->n; i++)
-    for (uint32_t k = 0; k < e->m->inputs.n; k++) {
-      const Input *in = &e->m->inputs.at[k];
-      if (in->rate || !expr_contains_sym(e->g, e->p[i], in->sym)) continue;
-      return diag_error(e->m->diags, e->m->lagrangian_span, "not yet: the momentum of `%s` depends on `%s`, whose derivative would be needed" HELP "write the input as a formula of t inside L instead",
-                        e->m->coords.at[i].name, in->name);
-    }
-  return 1;
-}
-
 /* Adds the formulas of the inputs that occur to the roots. A table depends on time, and the third derivative of its spline
  * jumps at each row: not autonomous, not smooth. */
 static void add_input_formulas(Eqns *e, ExprVec *roots) {
@@ -269,7 +258,7 @@ Eqns *eqns_derive(const Model *m) {
   e->flow = flow;
   if (e->n) {
     lagrange_momenta_and_forces(e);
-    if (!constrain(e) || !check_momenta(e) || !lagrange_check_mass(e)) return NULL;
+    if (!constrain(e) || !lagrange_check_mass(e)) return NULL;
     drop_idle_time(e);
     derive_energy(e);
   }

@@ -17,9 +17,8 @@ static void input_jet(Jet *out, Real x, Real rate, Real second, Real direction) 
 /* An input, with the rates that the model has. */
 static void signal_jet(const Check *c, uint32_t i, Jet *out) {
   uint32_t rate = i < c->m->inputs.n ? c->m->inputs.at[i].rate : 0, second = rate ? c->m->inputs.at[rate].rate : 0;
-  *out = jet_exact(c->signal[i]);
-  if (rate) out->c[0][1].v = c->signal[rate];
-  if (second) out->c[0][2].v = c->signal[second] / 2;
+  if (rate) input_jet(out, c->signal[i], c->signal[rate], second ? c->signal[second] : 0, 0);
+  else *out = jet_exact(c->signal[i]);
 }
 
 void check_input(void *data, InputKind kind, uint32_t i, Jet *out) {

@@ -11,6 +11,8 @@ mkdir -p "$dir/data"
 
 # last MODEL ARGUMENTS...: the final value of x
 last() { "$LAGC" run "$@" --json 2>"$dir/err" | sed -n 's/.*"final": {"x": \([-0-9.e+]*\).*/\1/p'; }
+# near_rates MODEL: the output `rate` is 0.2 cos t at each row
+near_rates() { "$LAGC" run "$1" --observe rate --every 0.37 -o - --quiet | awk -F, 'NR > 1 { d = $NF - 0.2*cos($1); n++; if (d > 1e-10 || -d > 1e-10) bad = 1 } END { exit bad || n < 8 }'; }
 # near NAME TOLERANCE EXPECTED GOT
 
 # u = 1 + t - 2t^2 + t^3/2 at uneven times from 0 to 3: the spline is this cubic. m x'' = u, from rest:
@@ -166,6 +168,75 @@ is "no step is tried across a jump" 0 "$(rejected)"
 measured() { "$LAGC" run "$m" push u="$dir/data/jump.csv" --until 3 "$@" --measure 'max(x)' --measure 'mean(u)' | awk '$1 == "max(x)" { a = $2 - 4 } $1 == "mean(u)" { b = $2 - 8/3 } END { print a, b; exit !(NR && a*a + b*b < 1e-18 && b != "") }'; }
 check "measures over a jump" measured --method rk45
 check "by another method" measured --method dop853
+# Prescribed motion: the support of a pendulum by a formula of t in L, which needs no input; by an input, its table and its formula, in L and as a constraint.
+# Rows 0.01 s apart: u'' of the quintic is off by 1e-9, th by less.
+cat >"$dir/shaken.lag" <<'END'
+model shaken
+coord th
+input u = DRIVE
+let x = u + 0.4*sin(th)
+let y = -0.4*cos(th)
+lagrangian = (x'^2 + y'^2)/2 - 9.81*y
+expect 0.16*th'' = -3.924*sin(th) - 0.4*u''*cos(th)
+observe rate = u'
+scene s { start th = 0.2; span 3 }
+END
+awk 'BEGIN { for (i = 0; i <= 300; i++) printf "%.17g,%.17g\n", i/100, 0.2*sin(i/100) }' >"$dir/data/record.csv"
+sed 's/u = DRIVE/u = "data\/record.csv"/' "$dir/shaken.lag" >"$dir/table.lag"
+sed 's/u = DRIVE/u = 0.2*sin(t)/' "$dir/shaken.lag" >"$dir/formula.lag"
+sed -e '/^input/d; /^expect/d; /^observe/d' -e 's/x = u +/x = 0.2*sin(t) +/' "$dir/shaken.lag" >"$dir/by_hand.lag"
+sed -e 's/^coord th/coord th, r/; s/u = DRIVE/u = "data\/record.csv"/; s/x = u +/x = r +/; /^expect/d; s/th = 0.2/th = 0.2, th'"'"' = 0/' -e '/^observe/a constraint drive: r = u' "$dir/shaken.lag" >"$dir/driven.lag"
+th() { "$LAGC" run "$@" --tol 1e-11 --quiet --until 3 --json 2>"$dir/err" | sed -n 's/.*"th": \([-0-9.e+]*\).*/\1/p'; }
+hand=$(th "$dir/by_hand.lag")
+near "a support that a table moves" 3e-9 "$hand" "$(th "$dir/table.lag")"
+near "a formula" 1e-10 "$hand" "$(th "$dir/formula.lag")"
+near "a formula by taylor" 1e-10 "$hand" "$(th "$dir/formula.lag" --method taylor)"
+near "a constraint" 3e-9 "$hand" "$(th "$dir/driven.lag")"
+near "rk4 keeps its order" 1e-8 "$hand" "$(th "$dir/table.lag" --method rk4 --step 0.001)"
+sed 's/x = 0.2\*sin(t) +/x =/' "$dir/by_hand.lag" >"$dir/plain.lag"
+near "a support at rest" 1e-10 "$(th "$dir/plain.lag")" "$(th "$dir/table.lag" u=5)"
+check "the rate of a table" near_rates "$dir/table.lag"
+check "the power of the drive" says 0 "dE/dt = u'*lambda(drive)" "$LAGC" derive "$dir/driven.lag"
+check "a rate is not held by itself" says 2 "u' is the rate of an input, and follows from it" "$LAGC" run "$dir/table.lag" "u'=1"
+head -n 5 "$dir/data/record.csv" >"$dir/data/few.csv"
+check "a record too short" says 1 "has 5 rows: a smooth curve needs 6" "$LAGC" run "$dir/table.lag" u="$dir/data/few.csv"
+check "a record that jumps" says 1 "its table \`$dir/data/jump.csv\` jumps at t = 1" "$LAGC" run "$dir/table.lag" u="$dir/data/jump.csv"
+# A function of the program for u asks for one of u', u''. In a header they are inputs of a step.
+cat >"$dir/rates.c" <<'END'
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include "lag.h"
+extern const lag_scene shaken_s;
+static double value(void *c, double t) { (void)c; return 0.2*sin(t); }
+static double rate(void *c, double t) { (void)c; return 0.2*cos(t); }
+static double second(void *c, double t) { (void)c; return -0.2*sin(t); }
+int main(void) {
+  lag_sim *s = lag_sim_new(&shaken_s);
+  if (lag_sim_set_input(s, "u'", rate, NULL)) return 1;
+  if (lag_sim_advance(s, 3) != LAG_EINVAL || !strstr(lag_sim_message(s), "give it a function as")) return 2;
+  if (lag_sim_set_input(s, "u", value, NULL) || lag_sim_set_input(s, "u''", second, NULL) || lag_sim_set_tolerance(s, 1e-11)) return 3;
+  if (lag_sim_advance(s, 3) < 0) return 4;
+  printf("%.17g\n", lag_sim_state_value(s, 0));
+  lag_sim_free(s);
+  return 0;
+}
+END
+"$LAGC" emit "$dir/formula.lag" -o "$dir/formula.c"
+# shellcheck disable=SC2086 # lists of words
+check "functions of the program" $CC $strict -I"$INC" "$dir/rates.c" "$dir/formula.c" $LIBLAG $LIBS -o "$dir/rates"
+near "its support" 1e-9 "$hand" "$("$dir/rates")"
+# A floor that moves, by an input and by its formula: the same bounces.
+cat >"$dir/floor.lag" <<'END'
+model floor
+coord x
+input u = 0.02*sin(30*t)
+lagrangian = x'^2/2 - 9.81*x
+contact table: x >= u, restitution = 0.5
+scene s { start x = 0.1; span 2 }
+END
+sed -e '/^input/d' -e 's/x >= u/x >= 0.02*sin(30*t)/' "$dir/floor.lag" >"$dir/floor_by_hand.lag"
+near "a floor that shakes" 1e-9 "$(last "$dir/floor_by_hand.lag")" "$(last "$dir/floor.lag")"
 printf '0,0\n1,0\n1.000001,1\n2,1\n' >"$dir/data/steep.csv"
 check "lagc run shows the model's warnings" says 0 "warning: between its rows the curve goes from" "$LAGC" run "$m" push u="$dir/data/steep.csv" --quiet
 tap_end
