@@ -145,7 +145,9 @@ Expr frobenius_leaf(const Eqns *e, Expr r) {
   const Model *m = e->m;
   ExprGraph *g = e->g;
   uint32_t n = e->n;
-  if (n > MOST_COORDINATES || expr_kinds(g, r) & 1u << SYM_INPUT) return 0;
+  for (uint32_t i = 0; i < m->inputs.n; i++) /* what u' integrates to is not known from u */
+    if (!model_is_contact_switch(m, m->inputs.at[i].sym) && expr_contains_sym(g, r, m->inputs.at[i].sym)) return 0;
+  if (n > MOST_COORDINATES) return 0;
   Expr *a = ARENA_ARRAY(m->arena, Expr, n + 1), rate = expr_int(g, 0);
   SymId *q = ARENA_ARRAY(m->arena, SymId, n + 1);
   for (uint32_t i = 0; i < n; i++) a[i] = expr_int(g, 0), q[i] = m->coords.at[i].q;
