@@ -80,7 +80,7 @@ static int direction(const lag_level *w, double pull, double *d) {
     for (int a = 0; a < nf; a++) {
       x[a] = 0;
       for (int b = 0; b < nf; b++) {
-        double m = s->full[w->free[a] * nq + w->free[b]];
+        double m = lag_level_weight(w, w->free[a]) * lag_level_weight(w, w->free[b]) * s->full[w->free[a] * nq + w->free[b]];
         s->kkt[a * nf + b] = m;
         x[a] += pull * m * (w->asked[w->free[b]] - w->x[w->free[b]]);
       }
@@ -100,7 +100,8 @@ static double distance(const lag_level *w) {
   const Start *s = w->context;
   double sum = 0;
   for (int i = 0; i < w->n; i++)
-    for (int j = 0; j < w->n; j++) sum += (w->x[i] - w->asked[i]) * s->full[i * w->n + j] * (w->x[j] - w->asked[j]);
+    for (int j = 0; j < w->n; j++)
+      sum += lag_level_weight(w, i) * (w->x[i] - w->asked[i]) * s->full[i * w->n + j] * lag_level_weight(w, j) * (w->x[j] - w->asked[j]);
   return sum;
 }
 
@@ -253,9 +254,9 @@ static int make_room(Start *s, double **block) {
   lag_level *w = &s->level;
   size_t n = (size_t)s->pb->n, nq = (size_t)s->nq, m = (size_t)s->of->n, entries = (size_t)s->of->njacobian;
   const size_t sizes[] = {n, n, n, m, (size_t)s->of->nmass, nq * nq, 2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m,
-                          nq, nq, nq, nq, nq, m, m, m, m, m, entries};
+                          nq, nq, nq, nq, nq, nq, nq, m, m, m, m, m, entries};
   double **const parts[] = {&s->y, &s->asked, &s->best, &s->other, &s->M, &s->full, &s->kkt,
-                            &w->x, &w->asked, &w->best, &w->from, &w->d, &w->residual, &w->size, &w->terms_here, &w->slope, &w->has_terms, &w->A};
+                            &w->x, &w->asked, &w->best, &w->from, &w->d, &w->reach, &w->nearest, &w->residual, &w->size, &w->terms_here, &w->slope, &w->has_terms, &w->A};
   *block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->index = malloc((nq + 2 * entries + 1) * sizeof *s->index);
   if (!*block || !s->index) return 0;

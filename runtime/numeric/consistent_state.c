@@ -37,13 +37,31 @@ static void move(lag_level *w, const double *from, double part) {
   for (int a = 0; a < w->nfree; a++) w->x[w->free[a]] = from[w->free[a]] + part * w->d[a];
 }
 
+double lag_level_weight(const lag_level *w, int i) {
+  const double open = 1e-3;
+  return w->at == LAG_MOVES_LAST && w->stage(w, i) < LAG_MOVES_LAST ? open : 1;
+}
+
+/* The part of the step d that moves no position by more than half of what is typical: far steps lead to other solutions. */
+static double longest_part(lag_level *w) {
+  double part = 1;
+  if (!w->positions) return 1;
+  w->scales(w, w->x, w->reach);
+  for (int a = 0; a < w->nfree; a++) {
+    double most = 0.5 * w->reach[w->free[a]], d = fabs(w->d[a]);
+    if (most > 0 && d * part > most) part = most / d;
+  }
+  return part;
+}
+
 /* Damped Gauss-Newton steps from x; returns whether they arrive at the constraints. */
 static int descend(lag_level *w) {
   double before = merit(w), times;
   for (int step = 0; step < MOST_STEPS && before > 0 && w->nfree > 0; step++) {
-    double part = 1, now = HUGE_VAL;
+    double now = HUGE_VAL;
     copy(w, w->from, w->x);
     if (w->direction(w, 0, w->d)) return 0;
+    double part = longest_part(w);
     for (int i = 0; i < MOST_HALVINGS && !(now < before); i++, part /= 2) {
       move(w, w->from, part);
       now = merit(w);
@@ -77,29 +95,68 @@ static int is_held(const lag_level *w, int i) {
   return e < w->entries;
 }
 
-/* Reaches the constraints by moving free components. Where no step helps, as half-way between two solutions, it tries displaced states: above
- * first, then ever further. */
-static int reach_constraints(lag_level *w) {
+/* Whether x is as near to the request as to leave no other solution nearer, for all that one looks: within a tenth of what is typical. */
+static int is_near(lag_level *w) {
+  int near = 1;
+  w->scales(w, w->asked, w->reach);
+  for (int i = 0; i < w->n; i++) near &= fabs(w->x[i] - w->asked[i]) <= 0.1 * w->reach[i];
+  return near;
+}
+
+/* x := place k of the search: the request, then states displaced from it, ever further. */
+static void go_to_place(lag_level *w, int k) {
   static const double beside[TRIES] = {0, 1e-3, -1e-3, 0.03, -0.03, 0.3, -0.3, 1, -1};
   double typical = 0;
-  int tries = w->positions ? TRIES : 1;
   for (int i = 0; i < w->n; i++) typical = fmax(typical, fabs(w->asked[i]));
-  for (int k = 0; k < tries && w->nfree > 0; k++) {
-    copy(w, w->x, w->asked);
-    for (int a = 0; a < w->nfree; a++) w->x[w->free[a]] += !is_held(w, w->free[a]) ? 0 : beside[k] * (typical > 0 ? typical : 1) * lag_uneven(a);
-    if (descend(w)) {
-      if (w->positions) approach(w);
-      return 1;
-    }
+  copy(w, w->x, w->asked);
+  for (int a = 0; a < w->nfree; a++) w->x[w->free[a]] += beside[k] * (typical > 0 ? typical : 1) * lag_uneven(a);
+}
+
+/* x := a state about as far from the request as the nearest one found, in some direction. */
+static void go_around(lag_level *w, int k) {
+  double far = 0;
+  w->scales(w, w->asked, w->reach);
+  for (int i = 0; i < w->n; i++) far = w->reach[i] > 0 ? fmax(far, fabs(w->nearest[i] - w->asked[i]) / w->reach[i]) : far;
+  copy(w, w->x, w->asked);
+  for (int a = 0; a < w->nfree; a++) w->x[w->free[a]] += far * w->reach[w->free[a]] * (k >> a % 8 & 1 ? 1 : -1) * lag_uneven(a + k);
+}
+
+/* Goes from x to the constraints, and along them towards the request; keeps the state if it is nearer than *least. */
+static void try_from_here(lag_level *w, double *least) {
+  if (!descend(w)) return;
+  approach(w);
+  double far = w->distance(w);
+  if (!(far < *least * (1 - 1e-9))) return;
+  *least = far;
+  copy(w, w->nearest, w->x);
+}
+
+/* Reaches the constraints by moving free components. Positions: the first place that leads there; where that is far from the request, the nearest of
+ * solutions from all around. */
+static int reach_constraints(lag_level *w) {
+  enum { AROUND = 24, FEW = 24 }; /* places; components that may move: a search of many takes long */
+  double least = HUGE_VAL;
+  if (!w->positions) return w->nfree > 0 && (go_to_place(w, 0), descend(w));
+  for (int k = 0; k < TRIES && w->nfree > 0 && !(least < HUGE_VAL); k++) {
+    go_to_place(w, k);
+    try_from_here(w, &least);
   }
-  return 0;
+  if (!(least < HUGE_VAL)) return 0;
+  copy(w, w->x, w->nearest);
+  for (int k = 0; k < AROUND && w->nfree <= FEW && !is_near(w); k++) {
+    go_around(w, k);
+    try_from_here(w, &least);
+    copy(w, w->x, w->nearest);
+  }
+  return 1;
 }
 
 /* w->free := the components that may move at this stage. */
 static void choose_free(lag_level *w, int stage) {
   w->nfree = 0;
+  w->at = stage;
   for (int i = 0; i < w->n; i++)
-    if (w->stage(w, i) <= stage) w->free[w->nfree++] = i;
+    if (w->stage(w, i) <= stage && is_held(w, i)) w->free[w->nfree++] = i;
 }
 
 /* ---- states that are refused */

@@ -36,17 +36,21 @@ struct lag_level {
   int (*is_contact)(const lag_level *w, int k);   /* whether constraint k is a contact, which may have no derivatives */
 
   double *x, *asked;                        /* [n] the state; as requested */
-  double *best, *from, *d;                  /* [n] */
+  double *best, *from, *d, *reach, *nearest; /* [n] */
   double *residual, *size, *terms_here, *slope; /* [rows] at x; sizes of terms at the request, by which residuals are divided */
   double *has_terms;                        /* [rows] 1: the constraint has terms of finite size */
   double *A;                                /* [entries] */
-  int *free, nfree;                         /* [n] components that may move */
+  int *free, nfree, at;                     /* [n] components that may move; the stage at hand */
 };
 
-/* Brings w->x, the requested state, onto the constraints: components that nobody set move first; then to the nearest state in the mass metric.
- * A state that obeys the constraints up to rounding stays. *constraint: the one at fault; w->x is then the last state tried.
+/* Factor of component i in the metric of `direction` and `distance`, on each side of M: where components that somebody set have to move, those that nobody set
+ * are no request, and cost next to nothing. */
+double lag_level_weight(const lag_level *w, int i);
+
+/* Brings w->x, the requested state, onto the constraints: components that nobody set move first; then to the nearest state in the mass metric, the nearest of
+ * those that are found from several places. Components that no constraint contains stay. A state that obeys the constraints up to rounding stays. *constraint: the one at fault; w->x is then the last state tried.
  *
- * Gauss-Newton steps, damped until the residual falls (P. Deuflhard, Newton Methods for Nonlinear Problems (2004), 4.3, DOI
+ * Gauss-Newton steps, no longer than half of what is typical of a component, and damped until the residual falls (P. Deuflhard, Newton Methods for Nonlinear Problems (2004), 4.3, DOI
  * 10.1007/978-3-642-23899-4), from the request or from states displaced from it; then Newton-like steps along the constraints. Velocities: one
  * linear problem, repeated for its rounding. */
 lag_start_kind lag_consistent_state(lag_level *w, int *constraint);

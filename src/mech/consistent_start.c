@@ -122,8 +122,9 @@ static void put_mass(Finder *f, const lag_level *w, long double pull) {
     const SparseElement *x = &f->mass.at[k];
     uint32_t row = f->place[x->row], col = f->place[x->col];
     if (!row || !col) continue;
-    sparse_put(f->e->m->arena, &f->system, row - 1, col - 1, x->value);
-    f->b[row - 1] += pull * x->value * (w->asked[x->col] - w->x[x->col]);
+    long double value = lag_level_weight(w, (int)x->row) * lag_level_weight(w, (int)x->col) * x->value;
+    sparse_put(f->e->m->arena, &f->system, row - 1, col - 1, value);
+    f->b[row - 1] += pull * value * (w->asked[x->col] - w->x[x->col]);
   }
 }
 
@@ -162,7 +163,7 @@ static long double distance(const lag_level *w) {
   find_mass(f, 0);
   for (uint32_t k = 0; k < f->mass.n; k++) {
     uint32_t i = f->mass.at[k].row, j = f->mass.at[k].col;
-    s += (w->x[i] - w->asked[i]) * f->mass.at[k].value * (w->x[j] - w->asked[j]);
+    s += lag_level_weight(w, (int)i) * (w->x[i] - w->asked[i]) * f->mass.at[k].value * lag_level_weight(w, (int)j) * (w->x[j] - w->asked[j]);
   }
   return s;
 }
@@ -237,7 +238,7 @@ static lag_level level_new(Finder *f) {
   lag_level w = {.context = f, .n = (int)n, .entries = (int)A->n, .row = row, .col = col, .exactly = f->e->m->scene.exactly.end != 0, .rounding = DBL_EPSILON,
                  .residuals = residuals, .jacobian = jacobian, .terms = terms, .scales = scales, .direction = direction, .distance = distance,
                  .stage = stage, .is_contact = is_contact, .A = ARENA_ARRAY(a, long double, A->n + 1), .free = ARENA_ARRAY(a, int, n + 1)};
-  long double **const by_component[] = {&w.x, &w.asked, &w.best, &w.from, &w.d}, **const by_row[] = {&w.residual, &w.size, &w.terms_here, &w.slope, &w.has_terms};
+  long double **const by_component[] = {&w.x, &w.asked, &w.best, &w.from, &w.d, &w.reach, &w.nearest}, **const by_row[] = {&w.residual, &w.size, &w.terms_here, &w.slope, &w.has_terms};
   for (size_t i = 0; i < sizeof by_component / sizeof *by_component; i++) *by_component[i] = ARENA_ARRAY(a, long double, n + 1);
   for (size_t i = 0; i < sizeof by_row / sizeof *by_row; i++) *by_row[i] = ARENA_ARRAY(a, long double, m + 1);
   for (uint32_t k = 0; k < A->n; k++) row[k] = (int)A->at[k].row, col[k] = (int)A->at[k].col;
