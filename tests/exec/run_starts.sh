@@ -136,12 +136,12 @@ check "lagc check takes such a scene" kept
 # Two rods and a slider. Nearest by SLSQP (SciPy) from 60 places each: at 2.257, 0.2216 and 1.8148 from the request; other assemblies are 2.4 to 28.7 away.
 model loop <<'END'
 model loop "A loop of three rods"
-coord a, b, c
-let P = 0.8*(cos(a), sin(a)) + 2*(cos(a - b), sin(a - b)) + (cos(a - b - c), sin(a - b - c))
-kinetic = (a'^2 + b'^2 + c'^2)/2
-constraint cx: P.x = 2
-constraint cy: P.y = 0
-scene s { span 1e-9 }
+coord a [rad], b [rad], c [rad]
+let P = 1 [m]*(0.8*(cos(a), sin(a)) + 2*(cos(a - b), sin(a - b)) + (cos(a - b - c), sin(a - b - c)))
+kinetic = 1 [kg*m^2]*(a'^2 + b'^2 + c'^2)/2
+constraint cx: P.x = 2 [m]
+constraint cy: P.y = 0 [m]
+scene s { span 1e-9 [s] }
 END
 moved() { # DISTANCE A B C
   want=$1
