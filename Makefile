@@ -226,7 +226,7 @@ $(eval $(call as_text,emit/%_text.h,runtime/contacts/%.c))
 $(eval $(call as_text,emit/%_types.h,runtime/contacts/%.h))
 $(eval $(call as_text,emit/%_types.h,runtime/methods/%.h))
 $(eval $(call as_text,fmu/%_text.h,src/fmu/%.in))
-$(eval $(call as_text,commands/language.h,grammar/LANGUAGE.md))
+$(eval $(call as_text,commands/language.h,$(BUILD)/gen/commands/language.txt))
 $(eval $(call as_text,commands/tutorial.h,models/TUTORIAL.md))
 $(eval $(call as_text,commands/readme.h,README.md))
 $(eval $(call as_text,commands/python.h,$(BUILD)/gen/commands/python.txt))
@@ -250,7 +250,12 @@ $(BUILD)/gen/numeric/%: runtime/numeric/% runtime/precision.awk
 	@mkdir -p $(@D)
 	awk -v kind=long -v digits=21 -f runtime/precision.awk $< | sed 's/LAG_REAL/long double/g' >$@.part
 	@mv $@.part $@
-# Documents that help shows and searches.
+# Documents that help shows and searches; the reference without the list of commands, which help has itself.
+$(BUILD)/gen/commands/language.txt: grammar/LANGUAGE.md grammar/PHASE_SPACE.md
+	@mkdir -p $(@D)
+	@sed '/^<!-- generated/,/^<!-- end/d' $< >$@.part
+	@sed -n '/^## /,$$p' grammar/PHASE_SPACE.md >>$@.part
+	@mv $@.part $@
 $(BUILD)/gen/commands/python.txt: runtime/python/README.md
 	@mkdir -p $(@D)
 	@sed '/^Tests:/,$$d' $< >$@

@@ -243,7 +243,7 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
     o->command = CMD_HELP;
     return 1;
   }
-  if (o->command == CMD_METHODS && arg) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
+  if (arg && (o->command == CMD_METHODS || (o->command == CMD_MANPAGE && strcmp(arg, "markdown") != 0))) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
   if (o->command == CMD_CACHE && arg) {
     const char *value;
     const OptionRow *row = option_find(o->command, arg, &value);

@@ -162,7 +162,7 @@ static const CommandRow commands[] = {
    "  lagc completion fish | source     in ~/.config/fish/config.fish"},
   {CMD_VERSION, "version", NULL, "", NULL, "Prints the version."},
   {CMD_COMPLETE, "complete", NULL, "WORD...", NULL, NULL}, /* for completion scripts: see completion.h */
-  {CMD_MANPAGE, "manpage", NULL, "", NULL, NULL},          /* for `make install` */
+  {CMD_MANPAGE, "manpage", NULL, "[markdown]", NULL, NULL}, /* for `make install`, and for grammar/LANGUAGE.md */
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 

@@ -198,7 +198,7 @@ every_word() { sed 's/ *|.*//' "$TMP/brought" | tr ' ' '\n' | while read -r w; d
 shown() { sed -n 's/^WAY //p' "$TMP/words" | grep -o '`lagc [a-z]*' | sort -u; }
 empty "the table names commands that exist" "$(shown | while read -r _ c; do words command | grep -q -x "$c" || echo "$c"; done)"
 meant() { sed 's/.*| *//' "$TMP/brought" | tr ' ' '\n' | sort -u; }
-unsaid() { meant | while read -r w; do cat grammar/LANGUAGE.md README.md models/TUTORIAL.md runtime/python/README.md src/commands/command_table.c runtime/app/options.def | grep -qiwF -e "$w" || echo "$w"; done; }
+unsaid() { meant | while read -r w; do cat grammar/*.md README.md models/TUTORIAL.md runtime/python/README.md src/commands/command_table.c runtime/app/options.def | grep -qiwF -e "$w" || echo "$w"; done; }
 empty "synonyms are words that the documents have" "$(unsaid)"
 
 # ---- commands that help shows ----
