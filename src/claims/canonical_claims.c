@@ -3,12 +3,12 @@
 #include "claims/expect.h"
 
 #include "base/words.h"
+#include "phase_space/canonical_map.h"
 #include "sym/diff.h"
 #include "sym/jump.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
-#include "symmetry/canonical_map.h"
 #include "symmetry/charges.h"
 
 typedef struct {

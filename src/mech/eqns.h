@@ -100,7 +100,7 @@ typedef struct {
 } ActionCurve;
 
 typedef struct Charge Charge; /* symmetry/charges.h */
-struct BracketValue; /* symmetry/expression_brackets.h */
+struct BracketValue; /* phase_space/expression_brackets.h */
 
 typedef struct {
   const Model *m;

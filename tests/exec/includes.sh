@@ -10,9 +10,10 @@ src/sym       sym/ base/ numeric/functions.def
 src/syntax    syntax/ base/ numeric/functions.def
 src/model     model/ syntax/ sym/ base/ numeric/functions.def
 src/mech      mech/ model/ sym/ base/ numeric/
-src/symmetry  symmetry/ mech/ model/ sym/ base/ numeric/
-src/claims    claims/ symmetry/ mech/ model/ sym/ base/ numeric/
-src/report    report/ symmetry/ mech/ model/ sym/ base/
+src/phase_space phase_space/ mech/ model/ sym/ base/ numeric/
+src/symmetry  symmetry/ phase_space/ mech/ model/ sym/ base/ numeric/
+src/claims    claims/ symmetry/ phase_space/ mech/ model/ sym/ base/ numeric/
+src/report    report/ symmetry/ phase_space/ mech/ model/ sym/ base/
 src/ir        ir/ base/ numeric/functions.def
 src/series    series/ ir/ base/
 src/lower     lower/ series/ ir/ symmetry/charges.h mech/ model/ sym/ base/
@@ -20,7 +21,7 @@ src/self_check      self_check/ lower/lower.h ir/ mech/ model/ syntax/ base/ num
 src/emit      emit/ ir/ base/ numeric/functions.def
 src/fmu       fmu/ emit/ ir/ base/
 src/toolchain toolchain/ base/
-src/commands  app/options.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ mech/ model/ sym/ syntax/ base/
+src/commands  app/options.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ phase_space/ mech/ model/ sym/ syntax/ base/
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
