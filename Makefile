@@ -188,7 +188,6 @@ RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
 TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def
 API_HEAD := lag.h lag_libraries.h lag_model.h
 
-%/app/profile_run.o: override CFLAGS += -D_GNU_SOURCE # names of the registers in a signal's context
 define precision_rules
 $(BUILD)/gen/$(1)/%: runtime/% runtime/precision.awk
 	@mkdir -p $$(@D)

@@ -140,6 +140,8 @@ static const char *meant_option(const char *arg) {
 static const char *unknown_option(Arena *a, const Options *o, const char *word) {
   const char *value, *arg = arena_printf(a, "%.*s", (int)strcspn(word, "="), word);
   const CommandRow *row = command_find(o->command);
+  if (o->command == CMD_COST && has_word("--method --tol --step", arg))
+    return arena_printf(a, "`lagc cost` has no option `%s`: it runs all methods at many tolerances and steps; --methods NAME,NAME selects some", arg);
   for (size_t i = 0; command_row(i); i++)
     if (option_find(command_row(i)->command, arg, &value))
       return arena_printf(a, "`%s` is an option of `lagc %s`; `lagc help %s` lists those of `lagc %s`", arg, command_row(i)->name, row->name, row->name);

@@ -13,12 +13,12 @@
 
 typedef VEC(char *) Words;
 
-/* The simulator's arguments: the scene, name=value and --until of the command line. Returns 0 if none is needed: --against gives one, --where measures times alone. */
+/* The simulator's arguments: the scene, name=value and --until of the command line. Returns 0 if none is needed: --against gives one. */
 static int reference_words(Compiler *c, double seconds, Words *argv) {
   vec_push(c->arena, argv, c->picture.argv.at[0]);
   vec_push(c->arena, argv, arena_strdup(c->arena, "--reference"));
   for (uint32_t i = 0; i < c->o.rest.n; i++)
-    if (strcmp(c->o.rest.at[i], "--against") == 0 || strncmp(c->o.rest.at[i], "--against=", 10) == 0 || strcmp(c->o.rest.at[i], "--where") == 0) return 0;
+    if (strcmp(c->o.rest.at[i], "--against") == 0 || strncmp(c->o.rest.at[i], "--against=", 10) == 0) return 0;
   if (c->picture.error && strcmp(c->picture.error, "residual") == 0) return 0;
   OptionTexts words = simulator_values(c);
   for (uint32_t i = 0; i < words.n; i++) vec_push(c->arena, argv, arena_strdup(c->arena, words.at[i]));
