@@ -93,7 +93,6 @@ static int restrict_to_tangents(TangentModes *w) {
 /* Adds a mode with the shape T (re + i im), whose largest component becomes 1 declared unit. */
 static int add_mode(TangentModes *w, Mode mode, const double *re, const double *im) {
   const SteadyMotion *s = w->s;
-  const lag_model *m = s->sim->pb.model;
   int nx = w->rest->n, best = 0;
   double *x = lag_pool_doubles(&w->out->pool, 2 * (size_t)nx), *y = x + nx, most = 0;
   if (!x) return LAG_ENOMEM;
@@ -105,15 +104,7 @@ static int add_mode(TangentModes *w, Mode mode, const double *re, const double *
     most = hypot(re[at], im ? im[at] : 0);
     best = i;
   }
-  double a = x[best], b = y[best], size = a * a + b * b, factor = best < s->nq ? m->q[best].factor : m->z[best - s->nq].factor;
-  for (int i = 0; i < nx && size > 0; i++) {
-    double p = x[i], q = y[i];
-    x[i] = factor * (p * a + q * b) / size;
-    y[i] = factor * (q * a - p * b) / size;
-  }
-  mode.shape_re = x;
-  mode.shape_im = y;
-  w->out->mode[w->out->n++] = mode;
+  lag_add_mode(w->out, s->sim->pb.model, mode, nx, x, y, best);
   return LAG_OK;
 }
 
