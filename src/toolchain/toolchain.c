@@ -268,11 +268,11 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
   return ok;
 }
 
-int toolchain_run_once(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, FILE *in, FILE *out, int *status, const char **error) {
+int toolchain_run_once(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, OneRun *run) {
   BuildFolder f;
-  if (!build(a, t, texts, n, &f, error)) return 0;
+  if (!build(a, t, texts, n, &f, &run->error)) return 0;
   char *path = arena_printf(a, "%s/" SIMULATOR, f.path), *argv[] = {path, NULL};
-  *status = process_read_from(in) ? process_to_file(path, argv, out) : -1;
+  run->status = process_read_from(run->in) ? process_to_file(path, argv, run->out) : -1;
   build_folder_remove(&f);
   return 1;
 }
