@@ -567,10 +567,8 @@ static const char *agreeing_effects(Verification *v) {
     prepare(&other, c, e);
     if (!other.ny || !begin(&other, &error) || verify_equations(&other, c, e) != STATUS_OK) continue;
     const char *used = effect_names_joined(s, set);
-    return arena_printf(
-        c->arena,
-        "it agrees with the model %s%s, and the scene `%s` has other effects: compare it with a scene that says `use %s`",
-        names.n ? "with " : "without effects", used, v->m->scene.name, names.n ? used : "none");
+    return arena_printf(c->arena, "it agrees with the model %s%s, and the scene `%s` has other effects: compare it with a scene that says `use %s`",
+                        names.n ? "with " : "without effects", used, v->m->scene.name, names.n ? used : "none");
   }
   return NULL;
 }
