@@ -420,8 +420,6 @@ static double distance(const SteadyMotion *s, const Equilibrium *rest) {
 
 /* ---- The search */
 
-static int is_angle(const lag_var *v) { return v->periodic || strcmp(v->unit, "rad") == 0 || strcmp(v->unit, "deg") == 0 || strcmp(v->unit, "rev") == 0; }
-
 /* A typical rate [1/s]: of the motion; at rest of oscillations, by the accelerations a quarter of a unit away. */
 static double typical_rate(SteadyMotion *s) {
   const double far = 0.25;
@@ -445,7 +443,7 @@ static void choose_units(SteadyMotion *s, Equilibrium *rest) {
     for (int i = 0; i < s->nq; i++) {
       double most = 0;
       for (int j = 0; j < s->nq; j++) most = of_one_unit(m, i, j) ? fmax(most, fabs(s->y[part * s->nq + j])) : most;
-      s->unit[part * s->nq + i] = !part && is_angle(&m->q[i]) ? 1 : most > 0 ? most : part ? rate * s->unit[i] : m->q[i].factor;
+      s->unit[part * s->nq + i] = !part && lag_is_angle(&m->q[i]) ? 1 : most > 0 ? most : part ? rate * s->unit[i] : m->q[i].factor;
     }
     rate = typical_rate(s);
   }

@@ -28,11 +28,8 @@ typedef struct {
 
 static const char *text_of(const Claims *k, Expr x) {
   enum { LONGEST = 200 };
-  StrBuf b = strbuf(k->arena);
   uint32_t distinct;
-  if (expr_tree_size(k->g, x, &distinct) > LONGEST) return NULL;
-  expr_print(k->g, x, PRINT_TEXT, &b);
-  return sb_text(&b);
+  return expr_tree_size(k->g, x, &distinct) > LONGEST ? NULL : expr_text(k->g, x);
 }
 
 /* Left = right at all states; otherwise reported. label: "{Q, P}"; shown: its value, or 0. */

@@ -65,13 +65,12 @@ void check_json_symmetries(Compiler *c, const Eqns *e, Name effect) {
   for (uint32_t i = 1; i < e->ncharges; i++) {
     const Charge *x = &e->charges[i];
     if (x->of->effect != effect) continue;
-    StrBuf *out = begin(c, JSON_SYMMETRIES), charge = strbuf(c->arena);
+    StrBuf *out = begin(c, JSON_SYMMETRIES);
     sb_puts(out, "{\"name\": ");
     sb_json(out, x->name);
     put_span(out, c->sources, x->of->span);
     put_member(out, "verdict", x->proof.broken ? "false" : x->proof.by_value ? "holds in numbers" : verdicts[x->proof.is]);
-    if (x->proof.charge) expr_print(e->g, x->proof.charge, PRINT_TEXT, &charge);
-    put_member(out, "charge", x->proof.charge && x->proof.is <= INVARIANT_UP_TO_F ? sb_text(&charge) : NULL);
+    put_member(out, "charge", x->proof.charge && x->proof.is <= INVARIANT_UP_TO_F ? expr_text(e->g, x->proof.charge) : NULL);
     sb_puts(out, "}");
   }
 }

@@ -26,10 +26,6 @@ static int is_single_valued(const ProofWork *w, Expr V) {
   return 1;
 }
 
-static int is_state(const Symbol *s, const void *states) {
-  return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate;
-}
-
 /* A power a q' + b that forces and explicit time give, by coordinates and t; a[n] is b. */
 typedef struct {
   Expr *a;
@@ -41,7 +37,7 @@ static int linear_power(const ProofWork *w, Expr power, LinearPower *to) {
   const unsigned other = 1u << SYM_INPUT | 1u << SYM_MULTIPLIER, moving = 1u << SYM_VEL | 1u << SYM_RATE;
   Arena *arena = w->m->arena;
   ExprGraph *g = w->g;
-  if (expr_kinds(g, power) & other || expr_contains(g, power, is_state, w->m->states.at)) return 0;
+  if (expr_kinds(g, power) & other || expr_contains(g, power, is_no_coordinate, w->m->states.at)) return 0;
   *to = (LinearPower){ARENA_ARRAY(arena, Expr, w->n + 1), ARENA_ARRAY(arena, SymId, w->n + 1)};
   expr_gradient(g, power, w->v, w->n, to->a);
   to->a[w->n] = noether_at_rest(w, power);
