@@ -278,7 +278,8 @@ static int reference(const ModeSearch *w, const double *re, const double *im) {
 }
 
 void lag_add_mode(Modes *to, const lag_model *m, Mode mode, int n, double *re, double *im, int ref) {
-  double factor = ref < m->nq ? m->q[ref].factor : m->z[ref - m->nq].factor, a = re[ref], b = im[ref], size = a * a + b * b;
+  double factor = ref < m->nq ? m->q[ref].factor : m->z[ref - m->nq].factor, a = re[ref], b = im[ref],
+      size = a * a + b * b;
   for (int i = 0; i < n && size > 0; i++) {
     double x = re[i], y = im[i];
     re[i] = factor * (x * a + y * b) / size;

@@ -295,7 +295,8 @@ static int least_squares(SteadyMotion *s, int rows, int cols, const double *A, c
   int size = rows > cols ? rows : cols;
   double *Q = lag_pool_doubles(&pool, (size_t)size * (size_t)size), *B = lag_pool_doubles(&pool, (size_t)rows * (size_t)size);
   double *N = lag_pool_doubles(&pool, (size_t)size * (size_t)size), *z = lag_pool_doubles(&pool, (size_t)size);
-  int rank = pool.failed ? LAG_ENOMEM : lag_padded_kernel(&pool, s->algebra, size, (Rectangle){rows, cols, A}, 1e-7 * largest(rows * cols, A), Q);
+  int rank = pool.failed ? LAG_ENOMEM : lag_padded_kernel(&pool, s->algebra, size, (Rectangle){rows, cols, A},
+                                                          1e-7 * largest(rows * cols, A), Q);
   for (int i = 0; i < rows && rank > 0; i++)
     for (int k = 0; k < rank; k++)
       for (int j = 0; j < cols; j++) B[i * rank + k] += A[i * cols + j] * Q[j * size + k];

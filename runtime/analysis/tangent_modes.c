@@ -115,8 +115,9 @@ typedef struct Eigenvector {
   int column;
 } Eigenvector;
 
-/* shape[2 n], real and imaginary parts, := T u for the eigenvector z of the block of B without symmetries: u = (x, z) with (B - value) u = 0, whose
- * displacement x by symmetries is left out where it is not determined. */
+/* shape[2 n], real and imaginary parts, := T u for the eigenvector z of the block of B without
+ * symmetries: u = (x, z) with (B - value) u = 0, whose displacement x by symmetries is left out
+ * where it is not determined. */
 static int lift(const TangentModes *w, const Eigenvector *z, double *shape) {
   int k = z->column, n = w->s->n, d = w->d, m = w->shifts, e = d - m, columns = w->spectrum.n;
   Pool pool = {0};

@@ -44,7 +44,8 @@ static int take_curves(const Cost *c, Curve *all) {
   return n;
 }
 
-enum { PICTURE_WIDTH = 800, PICTURE_HEIGHT = 560, MARGIN = 92, NAMES = 240, HEAD = 52, FOOT = 70, SIZE = 20, LINE = 24 };
+enum { PICTURE_WIDTH = 800, PICTURE_HEIGHT = 560, MARGIN = 92, NAMES = 240, HEAD = 52, FOOT = 70, SIZE = 20,
+      LINE = 24 };
 
 /* Whole powers of ten, as decimal logarithms; x0 is the largest error. */
 static Panel panel_of(const Curve *all, int n) {
@@ -86,7 +87,8 @@ static void put_power(FILE *f, double x, double y, const char *anchor, double k)
 
 static void put_axes(FILE *f, const Panel *r) {
   double bottom = r->y + r->h, right = r->x + r->w, stride = ceil((r->x0 - r->x1) / 8);
-  fprintf(f, "<rect x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\" fill=\"none\" stroke=\"#777\"/>\n", r->x, r->y, r->w, r->h);
+  fprintf(f, "<rect x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\" fill=\"none\" stroke=\"#777\"/>\n", r->x, r->y, r->w,
+          r->h);
   for (double k = r->x0; k >= r->x1; k--) {
     fprintf(f, "<path d=\"M%.1f %dV%.1f\" stroke=\"#e4e4e4\"/>\n", lag_panel_x(r, k), HEAD, bottom);
     if (fmod(r->x0 - k, stride) == 0.0) put_power(f, lag_panel_x(r, k), bottom + 26, "middle", k);
@@ -96,15 +98,18 @@ static void put_axes(FILE *f, const Panel *r) {
     put_power(f, MARGIN - 10, lag_panel_y(r, k) + 7, "end", k);
   }
   lag_svg_text(f, (MARGIN + right) / 2, PICTURE_HEIGHT - 14, "text-anchor=\"middle\"", "error");
-  fprintf(f, "<text transform=\"translate(24 %.1f) rotate(-90)\" text-anchor=\"middle\">processor time [s]</text>\n", (HEAD + bottom) / 2);
+  fprintf(f, "<text transform=\"translate(24 %.1f) rotate(-90)\" text-anchor=\"middle\">processor time [s]</text>\n",
+          (HEAD + bottom) / 2);
 }
 
 /* A vertical line at an error below which no curve means anything, with its name. */
 static void put_floor(FILE *f, const Panel *r, double error, const char *name, int at_top) {
   double x = log10(error);
   if (!(x > r->x1 && x < r->x0)) return;
-  fprintf(f, "<path d=\"M%.1f %dV%d\" stroke=\"#777\" stroke-width=\"2\" stroke-dasharray=\"3 5\"/>\n", lag_panel_x(r, x), HEAD, PICTURE_HEIGHT - FOOT);
-  fprintf(f, "<text transform=\"translate(%.1f %d) rotate(-90)\" font-size=\"16\" fill=\"#555\">%s</text>\n", lag_panel_x(r, x) - 6, at_top ? HEAD + 90 : PICTURE_HEIGHT - FOOT - 8, name);
+  fprintf(f, "<path d=\"M%.1f %dV%d\" stroke=\"#777\" stroke-width=\"2\" stroke-dasharray=\"3 5\"/>\n",
+          lag_panel_x(r, x), HEAD, PICTURE_HEIGHT - FOOT);
+  fprintf(f, "<text transform=\"translate(%.1f %d) rotate(-90)\" font-size=\"16\" fill=\"#555\">%s</text>\n",
+          lag_panel_x(r, x) - 6, at_top ? HEAD + 90 : PICTURE_HEIGHT - FOOT - 8, name);
 }
 
 static int by_error(const void *a, const void *b) {
@@ -125,7 +130,8 @@ static void put_front(FILE *f, const Panel *r, const Cost *c) {
   for (int k = 0; k < 2 * n; k++) {
     const CostRun *run = front[k < n ? k : 2 * n - 1 - k];
     double x = log10(fmax(run->error, 1e-17)), y = log10(run->time) + (k < n ? 0 : log10(2));
-    fprintf(f, "%s%.1f %.1f", k ? "L" : "M", lag_panel_x(r, fmax(r->x1, fmin(x, r->x0))), lag_panel_y(r, fmax(r->y0, fmin(y, r->y1))));
+    fprintf(f, "%s%.1f %.1f", k ? "L" : "M", lag_panel_x(r, fmax(r->x1, fmin(x, r->x0))),
+            lag_panel_y(r, fmax(r->y0, fmin(y, r->y1))));
   }
   fputs("Z\"/>\n", f);
 }
@@ -141,7 +147,8 @@ static void put_curve(FILE *f, const Panel *r, const Curve *c) {
   fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"2.5\" stroke-linejoin=\"round\"", colour);
   if (styles[c->family].dash[0]) fprintf(f, " stroke-dasharray=\"%s\"", styles[c->family].dash);
   fputs(" d=\"", f);
-  for (int k = 0; k < c->n; k++) fprintf(f, "%s%.1f %.1f", k ? "L" : "M", lag_panel_x(r, c->x[k]), lag_panel_y(r, c->y[k]));
+  for (int k = 0; k < c->n; k++) fprintf(f, "%s%.1f %.1f", k ? "L" : "M", lag_panel_x(r, c->x[k]),
+                                         lag_panel_y(r, c->y[k]));
   fprintf(f, "\"/>\n<path fill=\"%s\" stroke=\"%s\" stroke-width=\"2\" d=\"", colour, colour);
   for (int k = 0; k < c->n; k++) put_mark(f, c->family, lag_panel_x(r, c->x[k]), lag_panel_y(r, c->y[k]));
   fputs("\"/>\n", f);
@@ -153,10 +160,12 @@ static void put_slope(FILE *f, const Panel *r, const Curve *c) {
   int k = c->n / 2;
   if (isnan(c->m->order) || c->m->method->flags & LAG_METHOD_ADAPTIVE || c->n < 4) return;
   double x = c->x[k], y = c->y[k] - 0.12 * (r->y1 - r->y0) / 4, wide = 1.5;
-  fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"1.5\" d=\"M%.1f %.1fL%.1f %.1fV%.1fZ\"/>\n", styles[c->family].colour, lag_panel_x(r, x), lag_panel_y(r, y),
+  fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"1.5\" d=\"M%.1f %.1fL%.1f %.1fV%.1fZ\"/>\n",
+          styles[c->family].colour, lag_panel_x(r, x), lag_panel_y(r, y),
           lag_panel_x(r, x - wide), lag_panel_y(r, y + wide / c->m->order), lag_panel_y(r, y));
   snprintf(order, sizeof order, "%.1f", c->m->order);
-  lag_svg_text(f, lag_panel_x(r, x - wide) + 4, lag_panel_y(r, y + wide / c->m->order / 2) + 5, "font-size=\"15\"", order);
+  lag_svg_text(f, lag_panel_x(r, x - wide) + 4, lag_panel_y(r, y + wide / c->m->order / 2) + 5, "font-size=\"15\"",
+               order);
 }
 
 static int by_height(const void *a, const void *b) {
@@ -170,13 +179,15 @@ static void put_names(FILE *f, const Panel *r, const Curve *all, int n) {
   double y[LAG_COST_FAMILIES];
   for (int i = 0; i < n; i++) sorted[i] = &all[i];
   qsort(sorted, (size_t)n, sizeof *sorted, by_height);
-  for (int i = 0; i < n; i++) y[i] = fmax(lag_panel_y(r, sorted[i]->y[sorted[i]->n - 1]), i ? y[i - 1] + LINE : HEAD + 10);
+  for (int i = 0; i < n; i++) y[i] = fmax(lag_panel_y(r, sorted[i]->y[sorted[i]->n - 1]),
+                                          i ? y[i - 1] + LINE : HEAD + 10);
   for (int i = n - 1, low = PICTURE_HEIGHT - FOOT - 4; i >= 0 && y[i] > low; i--, low -= LINE) y[i] = low;
   for (int i = 0; i < n; i++) {
     const Curve *c = sorted[i];
     char attributes[64];
     double right = r->x + r->w;
-    fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.5\" d=\"M%.1f %.1fL%.1f %.1fh8\"/>\n", styles[c->family].colour, lag_panel_x(r, c->x[c->n - 1]),
+    fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.5\" d=\"M%.1f %.1fL%.1f %.1fh8\"/>\n",
+            styles[c->family].colour, lag_panel_x(r, c->x[c->n - 1]),
             lag_panel_y(r, c->y[c->n - 1]), right + 6, y[i]);
     snprintf(attributes, sizeof attributes, "fill=\"%s\"", styles[c->family].colour);
     lag_svg_text(f, right + 18, y[i] + 7, attributes, c->m->name);

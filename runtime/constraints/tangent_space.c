@@ -28,8 +28,10 @@ int lag_tangent_dimension(lag_sim *s) {
   return rc ? rc : d;
 }
 
-/* rate[n] := change of the residuals of velocities along e[n], by central differences of order 4, exact for constraints of degree 4 in q and v. c[2 n] is scratch. */
-static int residual_change(lag_problem *pb, double t, const double *y, const double *e, double *there, double *c, double *rate) {
+/* rate[n] := change of the residuals of velocities along e[n], by central differences of order 4,
+ * exact for constraints of degree 4 in q and v. c[2 n] is scratch. */
+static int residual_change(lag_problem *pb, double t, const double *y, const double *e, double *there, double *c,
+                           double *rate) {
   const double part = 0x1p-9;
   double *r = c + pb->model->constraints->n;
   int m = pb->model->constraints->n, rc = LAG_OK;

@@ -152,4 +152,6 @@ void lag_svg_large_head(FILE *f, int width, int height, int size, const char *ti
   lag_svg_text(f, LEFT, 26, attributes, title);
 }
 
-void lag_svg_head(FILE *f, int width, int height, const char *title) { lag_svg_large_head(f, width, height, 12, title); }
+void lag_svg_head(FILE *f, int width, int height, const char *title) {
+  lag_svg_large_head(f, width, height, 12, title);
+}

@@ -72,7 +72,8 @@ static long long length_of_cut_head(const Journal *j, const Head *head) {
 }
 
 int lag_journal_open(Journal *j, const char *path, int resume, char *why, size_t nwhy) {
-  Head head = {.signature = j->signature, .chunks = j->chunks, .size = (int64_t)j->size, .scalar = sizeof(double)}, there;
+  Head head = {.signature = j->signature, .chunks = j->chunks, .size = (int64_t)j->size, .scalar = sizeof(double)},
+      there;
   *j = (Journal){.fd = -1, .chunks = j->chunks, .size = j->size, .signature = j->signature};
   memcpy(head.magic, magic, sizeof magic);
   snprintf(j->path, sizeof j->path, "%s", path);

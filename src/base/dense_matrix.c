@@ -213,8 +213,10 @@ long double dense_largest(const long double *x, size_t n) {
   return most;
 }
 
-/* The solutions X of m X = B, row i of them at [i * (n + count)]; column k of B is rows[k * n ..], without rows of the identity. NULL: m is singular. */
-static const long double *solve_beside(Arena *a, uint32_t n, const long double *m, uint32_t count, const long double *rows, long double tolerance) {
+/* The solutions X of m X = B, row i of them at [i * (n + count)]; column k of B is rows[k * n ..],
+ * without rows of the identity. NULL: m is singular. */
+static const long double *solve_beside(Arena *a, uint32_t n, const long double *m, uint32_t count,
+                                       const long double *rows, long double tolerance) {
   size_t w = (size_t)n + count;
   long double *both = ARENA_ARRAY(a, long double, n * w + 1);
   uint32_t *pivot = ARENA_ARRAY(a, uint32_t, n + 1);

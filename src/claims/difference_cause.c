@@ -196,7 +196,8 @@ static void consider_term(CauseSearch *s, Expr term, const Lack *lack, Cause *be
   const char *text = expr_text(s->g, term);
   if (missing) consider(best, 0, arena_printf(s->arena, "it lacks `%s`", text));
   else if (is_minus_one(s, factor.e)) consider(best, 1, arena_printf(s->arena, "it has `%s` with the opposite sign", text));
-  else consider(best, 1 + factor.size, arena_printf(s->arena, "it has `%s` in place of `%s`", expr_text(s->g, now), text));
+  else consider(best, 1 + factor.size, arena_printf(s->arena, "it has `%s` in place of `%s`", expr_text(s->g, now),
+                                                    text));
 }
 
 /* The change of one term, or a term too many; else the change of two terms that were written as a product with a sum. */
@@ -260,7 +261,8 @@ static const char *cause_in_factor(CauseSearch *s, uint32_t i) {
   values_of(s, factor.e, value);
   for (uint32_t n = 0; n < FEATURE_STATES; n++)
     if (!fits((value[n] - 1) * (s->d->rate[n][s->nq + i] - lack.value[n]), lack.value[n], lack.bound[n])) return NULL;
-  return is_minus_one(s, factor.e) ? "the sign is the opposite one" : arena_printf(s->arena, "there is a factor `%s` too many", expr_text(s->g, factor.e));
+  if (is_minus_one(s, factor.e)) return "the sign is the opposite one";
+  return arena_printf(s->arena, "there is a factor `%s` too many", expr_text(s->g, factor.e));
 }
 
 /* q''_i = N/det M of two coupled equations: a term of the numerator N, or (`below`) of the determinant. */

@@ -1,5 +1,7 @@
-/* Logarithms make a monomial a linear combination of its features' logarithms: found by least squares over more states than features, and accepted
- * only with integer coefficients and no remainder. By orthogonalisation (Bjorck 1996, Numerical Methods for Least Squares Problems, section 2.4). */
+/* Logarithms make a monomial a linear combination of its features' logarithms: found by least
+ * squares over more states than features, and accepted only with integer coefficients and no
+ * remainder. By orthogonalisation (Bjorck 1996, Numerical Methods for Least Squares Problems,
+ * section 2.4). */
 #include "claims/monomial_fit.h"
 
 #include <float.h>

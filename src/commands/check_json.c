@@ -70,7 +70,8 @@ void check_json_symmetries(Compiler *c, const Eqns *e, Name effect) {
     sb_json(out, x->name);
     put_span(out, c->sources, x->of->span);
     put_member(out, "verdict", x->proof.broken ? "false" : x->proof.by_value ? "holds in numbers" : verdicts[x->proof.is]);
-    put_member(out, "charge", x->proof.charge && x->proof.is <= INVARIANT_UP_TO_F ? expr_text(e->g, x->proof.charge) : NULL);
+    int known = x->proof.charge && x->proof.is <= INVARIANT_UP_TO_F;
+    put_member(out, "charge", known ? expr_text(e->g, x->proof.charge) : NULL);
     sb_puts(out, "}");
   }
 }

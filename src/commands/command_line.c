@@ -170,7 +170,8 @@ typedef struct {
   int n, i;
 } Arguments;
 
-static int read_option(Arena *a, Arguments *words, Options *o, const OptionRow *row, const char *value, const char **error) {
+static int read_option(Arena *a, Arguments *words, Options *o, const OptionRow *row, const char *value,
+                       const char **error) {
   const char *arg = words->at[words->i];
   if (row->takes == TAKES_NOTHING && value) return fail_with(error, arena_printf(a, "%s takes no value", row->name));
   if (row->passed) vec_push(a, &o->rest, arg);
@@ -251,7 +252,9 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
     o->command = CMD_HELP;
     return 1;
   }
-  if (arg && (o->command == CMD_METHODS || (o->command == CMD_MANPAGE && strcmp(arg, "markdown") != 0))) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
+  int takes_none = o->command == CMD_METHODS || (o->command == CMD_MANPAGE && arg && strcmp(arg, "markdown") != 0);
+  if (arg && takes_none)
+    return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
   if (o->command == CMD_CACHE && arg) {
     const char *value;
     const OptionRow *row = option_find(o->command, arg, &value);

@@ -13,7 +13,8 @@
 
 typedef VEC(char *) Words;
 
-/* The simulator's arguments: the scene, name=value and --until of the command line. Returns 0 if none is needed: --against gives one. */
+/* The simulator's arguments: the scene, name=value and --until of the command line. Returns 0 if
+ * none is needed: --against gives one. */
 static int reference_words(Compiler *c, double seconds, Words *argv) {
   vec_push(c->arena, argv, c->picture.argv.at[0]);
   vec_push(c->arena, argv, arena_strdup(c->arena, "--reference"));

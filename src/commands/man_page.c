@@ -1,5 +1,6 @@
-/* Commands and options as pages: the man page, which is src/lagc.1 with them in the place of @SYNOPSIS@, @COMMANDS@ and @EXPERT@, in the language of
- * mdoc(7) (`make install` writes it by `lagc manpage`); and a chapter of grammar/LANGUAGE.md (`lagc manpage markdown`). */
+/* Commands and options as pages: the man page, which is src/lagc.1 with them in the place of
+ * @SYNOPSIS@, @COMMANDS@ and @EXPERT@, in the language of mdoc(7) (`make install` writes it by
+ * `lagc manpage`); and a chapter of grammar/LANGUAGE.md (`lagc manpage markdown`). */
 #include <string.h>
 
 #include "commands/command_table.h"
@@ -43,11 +44,13 @@ static void roff_option(StrBuf *out, const OptionRow *o) {
 
 static void roff_command(StrBuf *out, const CommandRow *row) { sb_printf(out, ".Ss lagc %s\n", row->name); }
 
-static const Markup roff = {roff_command, roff_text, roff_text, roff_option, ".Bd -literal -offset indent\n", ".Ed\n", ".Pp\n", ".Bl -tag -width Ds\n", ".El\n"};
+static const Markup roff = {roff_command, roff_text, roff_text, roff_option, ".Bd -literal -offset indent\n", ".Ed\n",
+                            ".Pp\n", ".Bl -tag -width Ds\n", ".El\n"};
 
 /* ---- Markdown ---- */
 
-/* Text filled to lines; outside of code between backticks the signs of emphasis, of strokes and of tags are taken literally. */
+/* Text filled to lines; outside of code between backticks the signs of emphasis, of strokes and of
+ * tags are taken literally. */
 static void markdown_item(StrBuf *out, const char *text, size_t n, size_t indent) {
   StrBuf escaped = strbuf(out->arena);
   int code = 0;
@@ -62,7 +65,8 @@ static void markdown_text(StrBuf *out, const char *text, size_t n) { markdown_it
 
 static void markdown_option(StrBuf *out, const OptionRow *o) {
   Arena *a = out->arena;
-  const char *brief = o->brief ? arena_printf(a, "`%s`, ", o->brief) : "", *space = o->value ? " " : "", *value = o->value ? o->value : "";
+  const char *brief = o->brief ? arena_printf(a, "`%s`, ", o->brief) : "", *space = o->value ? " " : "",
+      *value = o->value ? o->value : "";
   const char *item = arena_printf(a, "- %s`%s%s%s`: %s", brief, o->name, space, value, o->does);
   markdown_item(out, item, strlen(item), 2);
 }
@@ -76,7 +80,8 @@ static void markdown_command(StrBuf *out, const CommandRow *row) {
 
 static void markdown_code(StrBuf *out, const char *line, size_t n) { sb_printf(out, "%.*s\n", (int)n, line); }
 
-static const Markup markdown = {markdown_command, markdown_text, markdown_code, markdown_option, "\n```text\n", "```\n", "\n", "\n", ""};
+static const Markup markdown = {markdown_command, markdown_text, markdown_code, markdown_option, "\n```text\n", "```\n",
+                                "\n", "\n", ""};
 
 /* ---- pages ---- */
 

@@ -78,7 +78,8 @@ static int read_target(Verification *v, const char **error) {
   if (dot && has_word(".py .ipynb .m .jl .f .f90 .rs .js .java .nb", dot))
     return fail_with(error, arena_printf(v->arena, "%s is not C: `lagc verify` compiles and calls a C function; from Python compare with "
                                                    "`lagc.load(MODEL).rhs(t, y)`, or write the formula into the model: `expect x'' = ...`", other));
-  if (!colon || !colon[1] || isdigit((unsigned char)colon[1]) || !is_identifier(colon + 1)) return fail_with(error, arena_printf(v->arena, "--against %s names no function: write FILE.c:FUNCTION", given));
+  if (!colon || !colon[1] || isdigit((unsigned char)colon[1]) || !is_identifier(colon + 1))
+    return fail_with(error, arena_printf(v->arena, "--against %s names no function: write FILE.c:FUNCTION", given));
   v->file = arena_strndup(v->arena, given, (size_t)(colon - given));
   v->function = colon + 1;
   return 1;
@@ -226,7 +227,8 @@ static const char *model_text(const Verification *v, const ProgramSet *u, const 
   return sb_text(&b);
 }
 
-/* Builds and runs the program with derived equations in this precision. Returns 0, with run.error, if it is not built. */
+/* Builds and runs the program with derived equations in this precision. Returns 0, with run.error,
+ * if it is not built. */
 static int run_with(Verification *v, const char *precision) {
   static const char *const flags[] = {"-std=gnu11", "-Werror=incompatible-pointer-types", "-Werror=int-conversion", "-Werror=implicit-function-declaration", "-Wfatal-errors", NULL};
   Toolchain t;
@@ -368,7 +370,6 @@ static const char *signature(const Verification *v) {
   return sb_text(&b);
 }
 
-/* The name of a rate: of component i of dydt. */
 static const char *rate_name(const Verification *v, uint32_t i) { return arena_printf(v->arena, "%s'", name_of(v, i)); }
 
 static int differs(Verification *v, const char *what, uint32_t k, const char *how) {
@@ -543,7 +544,8 @@ static int begin(Verification *v, const char **error) {
   if (!(text = source_read(v->c->sources, v->file, &why))) return fail_with(error, arena_printf(v->arena, "cannot read %s: %s", v->file, why));
   *error = function_missing(v, text->text);
   v->path = file_absolute(v->arena, v->file);
-  if (!*error && (!v->path || strpbrk(v->path, "\"\\\n"))) *error = arena_printf(v->arena, "%s: C cannot include a file of such a name", v->file);
+  if (!*error && (!v->path || strpbrk(v->path, "\"\\\n")))
+    *error = arena_printf(v->arena, "%s: C cannot include a file of such a name", v->file);
   return !*error;
 }
 
@@ -559,14 +561,13 @@ static const char *agreeing_effects(Verification *v) {
     EffectSet set = s->graph.n > ALL ? s->variants.at[i] : i;
     EffectList names = effect_names(s, set);
     if (set == s->used || !effect_set_valid(s, set)) continue;
-    Eqns *e = compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .only = &names, .given = c->given.at, .ngiven = c->given.n,
-                                                .domains = 1});
+    ModelChoice choice = {.scene = c->o.scene, .only = &names, .given = c->given.at, .ngiven = c->given.n, .domains = 1};
+    Eqns *e = compiler_derive(c, &choice);
     Verification other = {.given = v->given, .quiet = 1};
-    const char *error = NULL;
+    const char *used = effect_names_joined(s, set), *error = NULL;
     if (!e) continue;
     prepare(&other, c, e);
     if (!other.ny || !begin(&other, &error) || verify_equations(&other, c, e) != STATUS_OK) continue;
-    const char *used = effect_names_joined(s, set);
     return arena_printf(c->arena, "it agrees with the model %s%s, and the scene `%s` has other effects: compare it with a scene that says `use %s`",
                         names.n ? "with " : "without effects", used, v->m->scene.name, names.n ? used : "none");
   }

@@ -22,7 +22,8 @@ static Slot product(const Gram *y, const Slot *weighted, uint32_t u) {
 /* Gram-Schmidt step for column v: subtracts from the columns in `later`, and from b, their parts along v. */
 static void orthogonalise_by(Gram *y, uint32_t v, const uint32_t *later, uint32_t nlater) {
   Slot *weighted = ARENA_ARRAY(y->l->p->arena, Slot, y->s->n);
-  for (uint32_t k = 0; k < y->s->n; k++) weighted[k] = op(y->l, IR_MUL, lower_slot(y->l, y->s->weight[k]), y->w[k * y->n + v]);
+  for (uint32_t k = 0; k < y->s->n; k++) weighted[k] = op(y->l, IR_MUL, lower_slot(y->l, y->s->weight[k]),
+                                                          y->w[k * y->n + v]);
   Slot d = y->pivot[v] = product(y, weighted, v);
   prog_name(y->l->p, d, lower_numbered(y->l, "D", v, UINT32_MAX));
   lower_pivot(y->l, d, 1);

@@ -317,7 +317,8 @@ void add_constraint(Builder *b, const AstStmt *st, Name effect) {
     Expr c = expr_sub(b->g, left.at[k], right.at[k]);
     if (!can_be_held(b, c, "constraint", name, st->span)) return;
     Name part = left.n ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name;
-    if (margin) add_conditional(b, (Contact){.name = name, .margin = margin}, part, c, dim, st->span, k ? &b->m->contacts.at[from] : NULL);
+    if (margin) add_conditional(b, (Contact){.name = name, .margin = margin}, part, c, dim, st->span,
+                                k ? &b->m->contacts.at[from] : NULL);
     else add_scalar_constraint(b, part, c, dim, st->span);
   }
 }

@@ -116,8 +116,8 @@ static Real polynomial(const Real *x, uint32_t columns, uint32_t i, Real s, int 
   return r;
 }
 
-/* Rows of Taylor coefficients, and the accelerations and rates a, zd of the program at their state after a step h; behind each the same without the
- * last two terms. */
+/* Rows of Taylor coefficients, and the accelerations and rates a, zd of the program at their state
+ * after a step h; behind each the same without the last two terms. */
 typedef struct {
   const Series *s;
   Real *x, h, *a, *zd;
@@ -153,7 +153,8 @@ static Real taylor_step(const Series *s, const Real *x) {
  * estimated by leaving out two terms; off: rounding error of the rate; *said: the rate. */
 static Real taylor_difference(const TaylorStep *y, uint32_t i, Real off, BoundedSum *t, Real *said) {
   const Series *s = y->s;
-  const Real *x = y->x, h = y->h, *at = i < s->nq ? y->a + i : y->zd + (i - s->nq), less = at[i < s->nq ? s->nq : s->nz];
+  const Real *x = y->x, h = y->h, *at = i < s->nq ? y->a + i : y->zd + (i - s->nq),
+      less = at[i < s->nq ? s->nq : s->nz];
   Real slope = polynomial(x, s->columns, s->nq + i, h, 1), last = fabsl(x[(size_t)ORDERS * s->columns + s->nq + i]) * ORDERS * powl(h, ORDERS - 1);
   Real rounding = 1e12L * jet_unit * fabsl(x[s->nq + i]) / h;
   *t = (BoundedSum){{slope, (fabsl(*at - less) + last) / 1024 + off}, fabsl(slope) + rounding, 0};
@@ -165,7 +166,8 @@ static Real taylor_difference(const TaylorStep *y, uint32_t i, Real off, Bounded
  * truncation. As a step may cross a corner or a jump, a difference counts only if a step 64 times shorter shows it, too. */
 static CheckVerdict check_taylor(Check *c) {
   const Series *s = c->u->taylor;
-  TaylorStep y = {.s = s, .x = ARENA_ARRAY(c->arena, Real, (size_t)s->columns * (ORDERS + 2)), .a = ARENA_ARRAY(c->arena, Real, 2 * s->nq + 1),
+  TaylorStep y = {.s = s, .x = ARENA_ARRAY(c->arena, Real, (size_t)s->columns * (ORDERS + 2)),
+                  .a = ARENA_ARRAY(c->arena, Real, 2 * s->nq + 1),
                   .zd = ARENA_ARRAY(c->arena, Real, 2 * s->nz + 1)};
   SavedState kept = copy_state(c);
   CheckVerdict v = AGREES;

@@ -330,7 +330,8 @@ static Expr power_of_constraints(ProofWork *w, Noether *to) {
       to->breaks = moved;
     }
     Expr force = expr_mul(g, proof_node(w, k->of[i]->multiplier), moved);
-    if (contact && !contact->is_tangent) force = expr_mul(g, proof_node(w, contact->closed), force); /* a tangent has it in its row */
+    /* a tangent has it in its row */
+    if (contact && !contact->is_tangent) force = expr_mul(g, proof_node(w, contact->closed), force);
     sum = expr_add(g, sum, force);
   }
   return sum;

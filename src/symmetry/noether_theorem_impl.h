@@ -17,7 +17,8 @@ typedef struct {
   uint32_t symbols; /* entries of a seed */
   Expr *along, *moving; /* seeds of d/dt and of the generator, by symbol */
   int by_value;
-  const Constraint *product; /* a constraint whose states were sought, but perhaps not on each of its factors; or NULL */
+  /* a constraint whose states were sought, but perhaps not on each of its factors; or NULL */
+  const Constraint *product;
 } ProofWork;
 
 static inline Expr proof_node(const ProofWork *w, SymId s) { return expr_symbol(w->g, s)->node; }
@@ -29,6 +30,6 @@ Expr noether_at_rest(const ProofWork *w, Expr x);
 /* d/dt along q'. */
 Expr noether_total(const ProofWork *w, Expr x);
 
-/* V(q, t) with power = -dV/dt along motions, of forces and explicit time; 0: none. *exists: whether there is one, whose integral is not
- * found, as has_potential. */
+/* V(q, t) with power = -dV/dt along motions, of forces and explicit time; 0: none. *exists: whether
+ * there is one, whose integral is not found, as has_potential. */
 Expr noether_potential(const ProofWork *w, Expr power, int *exists);

@@ -1,5 +1,6 @@
-/* Potentials of forces and explicit time, which complete an energy. Enters: their power along motions, linear in velocities; leaves: V(q, t), or whether
- * there is one. Holds: single-valued over periodic coordinates, without jumps, with values wherever the forces have them. */
+/* Potentials of forces and explicit time, which complete an energy. Enters: their power along
+ * motions, linear in velocities; leaves: V(q, t), or whether there is one. Holds: single-valued
+ * over periodic coordinates, without jumps, with values wherever the forces have them. */
 #include "symmetry/noether_theorem_impl.h"
 
 #include <math.h>
@@ -53,7 +54,8 @@ static int linear_power(const ProofWork *w, Expr power, LinearPower *to) {
 static int may_jump(const ProofWork *w, Expr x) {
   ExprList l = expr_topo(w->g, &x, 1);
   int may = switch_in(w->g, x, 0) != 0;
-  for (uint32_t i = 0; i < l.n && !may; i++) may = expr_op(w->g, l.at[i]) == EX_FLOOR || expr_op(w->g, l.at[i]) == EX_ATAN2;
+  for (uint32_t i = 0; i < l.n && !may; i++)
+    may = expr_op(w->g, l.at[i]) == EX_FLOOR || expr_op(w->g, l.at[i]) == EX_ATAN2;
   return may;
 }
 
@@ -62,13 +64,15 @@ static int jumps_somewhere(const ProofWork *w, Expr x) {
   return may_jump(w, x) && discontinuities_of(w->e, x).n > 0;
 }
 
-/* Whether a force on a periodic coordinate does work over a turn, by values at a random state: the trapezoidal and the midpoint rule, which errors of
- * the sums move apart, agree on it. A switch shifts both by the width of an interval, so that only more work than that counts. */
+/* Whether a force on a periodic coordinate does work over a turn, by values at a random state: the
+ * trapezoidal and the midpoint rule, which errors of the sums move apart, agree on it. A switch
+ * shifts both by the width of an interval, so that only more work than that counts. */
 static int works_over_a_turn(const ProofWork *w, uint32_t i, Expr force) {
   enum { POINTS = 256 };
   const long double turn = 6.28318530717958647692528676655900577L;
   const long double rounding = may_jump(w, force) ? 0.05L : 1e-9L;
-  long double bound, sum[2] = {0, 0}, size = 0, *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
+  long double bound, sum[2] = {0, 0}, size = 0;
+  long double *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
   sample_state(w->g, 1, symbols);
   for (int k = 0; k < 2 * POINTS; k++) {
     symbols[w->q[i]] = turn * k / (2 * POINTS);
@@ -80,8 +84,8 @@ static int works_over_a_turn(const ProofWork *w, uint32_t i, Expr force) {
   return !(work <= rounding * size) && !(fabsl(sum[0] - sum[1]) > work / 4);
 }
 
-/* Whether the form a dq + b dt has a potential: 2, each part depends on its own coordinate alone; 1, it has no curl, so that there is one near
- * each position; 0, it has a curl. */
+/* Whether the form a dq + b dt has a potential: 2, each part depends on its own coordinate alone;
+ * 1, it has no curl, so that there is one near each position; 0, it has a curl. */
 static int has_potential(const ProofWork *w, const LinearPower *by) {
   ExprGraph *g = w->g;
   ExprMap place = expr_map(w->m->arena);
@@ -139,7 +143,8 @@ Expr noether_potential(const ProofWork *w, Expr power, int *exists) {
   }
   if (!found && proof_is_constrained(w) && !expr_is_zero(g, V))
     found = motion_verdict(w->e, expr_add(g, power, noether_total(w, V))) == PROVED_ZERO;
-  if (!single) linear_power(w, expr_neg(g, power), &by); /* branches that are integrated apart may still have no work over a turn */
+  /* branches that are integrated apart may still have no work over a turn */
+  if (!single) linear_power(w, expr_neg(g, power), &by);
   if (single && found && may_lack_values(g, V, power)) return *exists = 2, 0;
   *exists = single && found ? 0 : has_potential(w, &by);
   return single && found && !jumps_somewhere(w, V) ? V : 0;

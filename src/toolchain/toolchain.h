@@ -68,5 +68,6 @@ typedef struct {
   const char *error; /* why it was not built */
 } OneRun;
 
-/* Builds a program of the texts in a folder of its own, which is then removed, and runs it. Returns 0, with run->error, when it is not built. */
+/* Builds a program of the texts in a folder of its own, which is then removed, and runs it. Returns
+ * 0, with run->error, when it is not built. */
 int toolchain_run_once(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, OneRun *run);
