@@ -226,6 +226,10 @@ int option_takes_next(Command c, const char *word) {
   return row && row->takes != TAKES_NOTHING && !joined;
 }
 
+int option_listed(const OptionRow *o, Command c) {
+  return (o->commands & 1u << c) != 0 && (c == CMD_RUN || !o->passed || !(o->commands & 1u << CMD_RUN));
+}
+
 int option_expert(const OptionRow *o) { return has_word("--math --fix --dump --no-gsl --define --precision", o->name); }
 
 int command_simulates(Command c) { return ((STEPS | C(MODES) | C(COST) | C(SWEEP)) & 1u << c) != 0; }

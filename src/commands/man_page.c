@@ -106,9 +106,8 @@ static void put_options(StrBuf *out, const Markup *m, Command c) {
   int any = 0;
   for (size_t i = 0; option_row(i); i++) {
     const OptionRow *o = option_row(i);
-    if (strcmp(o->name, "--help") == 0) continue; /* of all commands */
-    int expert = option_expert(o), here = c == CMD_NONE ? expert : !expert && o->commands & 1u << c;
-    if (!here || (c != CMD_NONE && c != CMD_RUN && o->passed && o->commands & 1u << CMD_RUN)) continue;
+    int expert = option_expert(o), here = c == CMD_NONE ? expert : !expert && option_listed(o, c);
+    if (!here || strcmp(o->name, "--help") == 0) continue; /* all commands have --help */
     if (!any++) sb_puts(out, m->list_begins);
     m->option(out, o);
   }
