@@ -35,8 +35,8 @@ static int reference_words(Compiler *c, double seconds, Words *argv) {
 
 /* The cache's file for what this simulator prints with these words, --seconds apart. */
 static const char *cached_path(Arena *a, const char *simulator, const Words *argv) {
-  uint64_t h = hash_bytes(FNV1A_START, simulator, strlen(simulator) + 1);
-  for (uint32_t i = 0; i + 3 < argv->n; i++) h = hash_bytes(h, argv->at[i], strlen(argv->at[i]) + 1);
+  uint64_t h = lag_fnv1a(LAG_FNV1A_START, simulator, strlen(simulator) + 1);
+  for (uint32_t i = 0; i + 3 < argv->n; i++) h = lag_fnv1a(h, argv->at[i], strlen(argv->at[i]) + 1);
   return arena_printf(a, "%s.%08x", simulator, (unsigned)(h ^ h >> 32));
 }
 
