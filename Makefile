@@ -188,7 +188,6 @@ RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
 TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def
 API_HEAD := lag.h lag_libraries.h lag_model.h
 
-%/app/profile_run.o: override CFLAGS += -D_GNU_SOURCE # names of the registers in a signal's context
 define precision_rules
 $(BUILD)/gen/$(1)/%: runtime/% runtime/precision.awk
 	@mkdir -p $$(@D)
@@ -226,7 +225,7 @@ $(eval $(call as_text,emit/%_text.h,runtime/contacts/%.c))
 $(eval $(call as_text,emit/%_types.h,runtime/contacts/%.h))
 $(eval $(call as_text,emit/%_types.h,runtime/methods/%.h))
 $(eval $(call as_text,fmu/%_text.h,src/fmu/%.in))
-$(eval $(call as_text,commands/language.h,grammar/LANGUAGE.md))
+$(eval $(call as_text,commands/language.h,$(BUILD)/gen/commands/language.txt))
 $(eval $(call as_text,commands/tutorial.h,models/TUTORIAL.md))
 $(eval $(call as_text,commands/readme.h,README.md))
 $(eval $(call as_text,commands/python.h,$(BUILD)/gen/commands/python.txt))
@@ -250,7 +249,12 @@ $(BUILD)/gen/numeric/%: runtime/numeric/% runtime/precision.awk
 	@mkdir -p $(@D)
 	awk -v kind=long -v digits=21 -f runtime/precision.awk $< | sed 's/LAG_REAL/long double/g' >$@.part
 	@mv $@.part $@
-# Documents that help shows and searches.
+# Documents that help shows and searches; the reference without the list of commands, which help has itself.
+$(BUILD)/gen/commands/language.txt: grammar/LANGUAGE.md grammar/PHASE_SPACE.md
+	@mkdir -p $(@D)
+	@sed '/^<!-- generated/,/^<!-- end/d' $< >$@.part
+	@sed -n '/^## /,$$p' grammar/PHASE_SPACE.md >>$@.part
+	@mv $@.part $@
 $(BUILD)/gen/commands/python.txt: runtime/python/README.md
 	@mkdir -p $(@D)
 	@sed '/^Tests:/,$$d' $< >$@
@@ -271,7 +275,7 @@ $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,langu
 $(BUILD)/obj/src/commands/verify.o: $(BUILD)/gen/commands/verify_driver.h
 $(BUILD)/obj/src/commands/man_page.o: $(BUILD)/gen/commands/man_frame.h
 $(BUILD)/obj/src/commands/completion.o: $(SHELLS:%=$(BUILD)/gen/commands/complete_%.h)
-$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(BUILD)/gen/numeric/edit_distance.h
+$(LAGC_OBJ) $(BUILD)/obj/src/main.o: | $(TABLES) $(BUILD)/gen/base/visible.h $(BUILD)/gen/base/posix.h $(SHARED:%=$(BUILD)/gen/numeric/%.h) $(patsubst %,$(BUILD)/gen/numeric/%.h,edit_distance fnv1a)
 $(patsubst %,$(BUILD)/obj/src/%.o,toolchain/files commands/build commands/command_line commands/cost_reference) $(BUILD)/obj/gen/toolchain/outfile.o: $(BUILD)/gen/toolchain/outfile.h
 $(BUILD)/obj/gen/toolchain/outfile.o $(BUILD)/obj/gen/base/windows.o: | $(BUILD)/gen/base/posix.h
 # Generated code is not ours to warn about.

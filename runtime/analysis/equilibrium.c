@@ -142,7 +142,7 @@ static const lag_var *unknown(const Equilibrium *r, int i) {
   return i < m->nq ? &m->q[i] : &m->z[i - m->nq];
 }
 
-static int is_angle(const lag_var *v) {
+int lag_is_angle(const lag_var *v) {
   return v->periodic || strcmp(v->unit, "rad") == 0 || strcmp(v->unit, "deg") == 0 || strcmp(v->unit, "rev") == 0;
 }
 
@@ -151,7 +151,7 @@ static void choose_scales(Equilibrium *r) {
     const lag_var *v = unknown(r, i);
     double largest = 0;
     for (int j = 0; j < r->n; j++) largest = strcmp(unknown(r, j)->unit, v->unit) == 0 ? fmax(largest, fabs(r->start[j])) : largest;
-    r->scale[i] = is_angle(v) ? 1 : largest > 0 ? largest : v->factor;
+    r->scale[i] = lag_is_angle(v) ? 1 : largest > 0 ? largest : v->factor;
   }
 }
 

@@ -40,6 +40,8 @@ void lag_equilibrium_free(Equilibrium *rest);
  * curve. */
 int lag_equilibrium_continues(Equilibrium *rest, const double *dx, double c);
 
+int lag_is_angle(const lag_var *v);
+
 /* y := the state at rest for the unknowns x[n]. */
 void lag_equilibrium_state(Equilibrium *rest, const double *x);
 

@@ -277,6 +277,19 @@ static int reference(const ModeSearch *w, const double *re, const double *im) {
   return best[!(far[0] > 1e-12 * far[1])];
 }
 
+void lag_add_mode(Modes *to, const lag_model *m, Mode mode, int n, double *re, double *im, int ref) {
+  double factor = ref < m->nq ? m->q[ref].factor : m->z[ref - m->nq].factor, a = re[ref], b = im[ref],
+      size = a * a + b * b;
+  for (int i = 0; i < n && size > 0; i++) {
+    double x = re[i], y = im[i];
+    re[i] = factor * (x * a + y * b) / size;
+    im[i] = factor * (y * a - x * b) / size;
+  }
+  mode.shape_re = re;
+  mode.shape_im = im;
+  to->mode[to->n++] = mode;
+}
+
 /* Adds a mode with the shape re + i im, [n] with a stride. */
 static int add_mode(ModeSearch *w, Mode mode, const double *re, const double *im, int stride) {
   double *shape_re = lag_pool_doubles(&w->out->pool, (size_t)w->n), *shape_im = lag_pool_doubles(&w->out->pool, (size_t)w->n);
@@ -285,18 +298,7 @@ static int add_mode(ModeSearch *w, Mode mode, const double *re, const double *im
     shape_re[i] = re[i * stride];
     shape_im[i] = im ? im[i * stride] : 0;
   }
-  int ref = reference(w, shape_re, shape_im), nq = w->nq;
-  const lag_model *m = w->pb->model;
-  double factor = ref < nq ? m->q[ref].factor : m->z[ref - nq].factor, a = shape_re[ref], b = shape_im[ref];
-  double size = a * a + b * b;
-  for (int i = 0; i < w->n && size > 0; i++) {
-    double x = shape_re[i], y = shape_im[i];
-    shape_re[i] = factor * (x * a + y * b) / size;
-    shape_im[i] = factor * (y * a - x * b) / size;
-  }
-  mode.shape_re = shape_re;
-  mode.shape_im = shape_im;
-  w->out->mode[w->out->n++] = mode;
+  lag_add_mode(w->out, w->pb->model, mode, w->n, shape_re, shape_im, reference(w, shape_re, shape_im));
   return LAG_OK;
 }
 

@@ -46,6 +46,9 @@ typedef struct Modes {
 int lag_modes_find(Modes *modes, Equilibrium *rest, const lag_algebra *algebra);
 void lag_modes_free(Modes *modes);
 
+/* Adds a mode with the shape re + i im, [n], whose component `ref` becomes 1 declared unit. */
+void lag_add_mode(Modes *to, const lag_model *m, Mode mode, int n, double *re, double *im, int ref);
+
 /* Orders modes as they are listed. */
 void lag_modes_sort(Modes *modes);
 

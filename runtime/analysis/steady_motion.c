@@ -194,16 +194,17 @@ void lag_steady_generator(const SteadyMotion *s, const double *c, const double *
   }
 }
 
-/* column[rows] := G X - DX f for a candidate, in units; zero where it is a symmetry. */
-static void symmetry_defect(const SteadyMotion *s, int k, const double *y, const double *G, const double *f, double *column, double *X, double *DXf) {
+/* column[rows] := G X - DX f for a candidate, in units; zero where it is a symmetry. scratch[2 n]. */
+static void symmetry_defect(const SteadyMotion *s, int k, const double *y, double *column, double *scratch) {
   int n = s->n;
+  double *X = scratch, *DXf = scratch + n;
   memset(X, 0, (size_t)n * sizeof *X);
   memset(DXf, 0, (size_t)n * sizeof *DXf);
   add_candidate(s, k, 1, y, X, NULL);
-  if (k >= count_shifts(s->sim->pb.model)) add_candidate(s, k, 1, f, DXf, NULL); /* linear, so DX f is X at f */
+  if (k >= count_shifts(s->sim->pb.model)) add_candidate(s, k, 1, s->f, DXf, NULL); /* linear, so DX f is X at f */
   for (int r = 0; r < s->nrows; r++) {
     double sum = r < n ? -DXf[r] : 0;
-    for (int j = 0; j < n; j++) sum += G[r * n + j] * X[j];
+    for (int j = 0; j < n; j++) sum += s->G[r * n + j] * X[j];
     column[r] = sum / s->row[r] * row_weight(s, r);
   }
 }
@@ -214,12 +215,12 @@ static int sample(const SteadyMotion *s, int k, double far, double *y) {
   return lag_project(&s->sim->pb, s->sim->run->t, y, NULL);
 }
 
-int lag_padded_kernel(Pool *pool, const lag_algebra *algebra, int rows, int cols, int size, const double *A, double tol, double *Q) {
+int lag_padded_kernel(Pool *pool, const lag_algebra *algebra, int size, Rectangle A, double tol, double *Q) {
   double *square = lag_pool_doubles(pool, (size_t)size * (size_t)size);
   int rank = 0;
   if (!square) return LAG_ENOMEM;
-  for (int i = 0; i < rows; i++)
-    for (int j = 0; j < cols; j++) square[i * size + j] = A[i * cols + j];
+  for (int i = 0; i < A.rows; i++)
+    for (int j = 0; j < A.columns; j++) square[i * size + j] = A.at[i * A.columns + j];
   int rc = algebra->kernel(size, square, tol, Q, &rank);
   return rc ? rc : rank;
 }
@@ -230,7 +231,7 @@ int lag_tangent_kernel(Pool *pool, const SteadyMotion *s, int size, double *Q) {
   for (int r = 0; r < rows && A; r++)
     for (int i = 0; i < n; i++) A[r * n + i] = s->G[(n + r) * n + i] * s->unit[i] / s->row[n + r];
   for (double tol = 1e-5; A && tol > 1e-9; tol /= 1e3) { /* rounding: 1e-12; a rank that depends on the tolerance is none */
-    rank = lag_padded_kernel(pool, s->algebra, rows, n, size, A, tol, Q);
+    rank = lag_padded_kernel(pool, s->algebra, size, (Rectangle){rows, n, A}, tol, Q);
     if (rank < 0 || (last >= 0 && rank != last)) return rank < 0 ? rank : LAG_ESINGULAR;
     last = rank;
   }
@@ -274,11 +275,11 @@ static int find_symmetries(SteadyMotion *s) {
     if (independent == LAG_ENOMEM) return independent;
     s->rank = independent > s->rank ? independent : s->rank;
     for (int c = 0; c < K; c++) {
-      symmetry_defect(s, c, y, s->G, s->f, column, X, X + n);
+      symmetry_defect(s, c, y, column, X);
       for (int r = 0; r < s->nrows; r++) A[(k * s->nrows + r) * K + c] = column[r];
     }
   }
-  int rank = lag_padded_kernel(&s->pool, s->algebra, rows, K, size, A, 1e-8, Q);
+  int rank = lag_padded_kernel(&s->pool, s->algebra, size, (Rectangle){rows, K, A}, 1e-8, Q);
   if (rank < 0) return rank;
   s->m = K - rank;
   s->generators = lag_pool_doubles(&s->pool, (size_t)s->m * (size_t)K + 1);
@@ -294,7 +295,8 @@ static int least_squares(SteadyMotion *s, int rows, int cols, const double *A, c
   int size = rows > cols ? rows : cols;
   double *Q = lag_pool_doubles(&pool, (size_t)size * (size_t)size), *B = lag_pool_doubles(&pool, (size_t)rows * (size_t)size);
   double *N = lag_pool_doubles(&pool, (size_t)size * (size_t)size), *z = lag_pool_doubles(&pool, (size_t)size);
-  int rank = pool.failed ? LAG_ENOMEM : lag_padded_kernel(&pool, s->algebra, rows, cols, size, A, 1e-7 * largest(rows * cols, A), Q);
+  int rank = pool.failed ? LAG_ENOMEM : lag_padded_kernel(&pool, s->algebra, size, (Rectangle){rows, cols, A},
+                                                          1e-7 * largest(rows * cols, A), Q);
   for (int i = 0; i < rows && rank > 0; i++)
     for (int k = 0; k < rank; k++)
       for (int j = 0; j < cols; j++) B[i * rank + k] += A[i * cols + j] * Q[j * size + k];
@@ -419,8 +421,6 @@ static double distance(const SteadyMotion *s, const Equilibrium *rest) {
 
 /* ---- The search */
 
-static int is_angle(const lag_var *v) { return v->periodic || strcmp(v->unit, "rad") == 0 || strcmp(v->unit, "deg") == 0 || strcmp(v->unit, "rev") == 0; }
-
 /* A typical rate [1/s]: of the motion; at rest of oscillations, by the accelerations a quarter of a unit away. */
 static double typical_rate(SteadyMotion *s) {
   const double far = 0.25;
@@ -444,7 +444,7 @@ static void choose_units(SteadyMotion *s, Equilibrium *rest) {
     for (int i = 0; i < s->nq; i++) {
       double most = 0;
       for (int j = 0; j < s->nq; j++) most = of_one_unit(m, i, j) ? fmax(most, fabs(s->y[part * s->nq + j])) : most;
-      s->unit[part * s->nq + i] = !part && is_angle(&m->q[i]) ? 1 : most > 0 ? most : part ? rate * s->unit[i] : m->q[i].factor;
+      s->unit[part * s->nq + i] = !part && lag_is_angle(&m->q[i]) ? 1 : most > 0 ? most : part ? rate * s->unit[i] : m->q[i].factor;
     }
     rate = typical_rate(s);
   }

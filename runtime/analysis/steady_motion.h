@@ -41,9 +41,15 @@ int lag_tangent_kernel(Pool *pool, const SteadyMotion *s, int size, double *Q);
 /* Whether a steady motion lies near y + dx[n], dx in units and made `far` long, nearer than y: then they form a family. */
 int lag_steady_continues(SteadyMotion *s, const double *dx, double far);
 
+/* A matrix by rows. */
+typedef struct Rectangle {
+  int rows, columns;
+  const double *at;
+} Rectangle;
+
 /* Q[size * size], as lag_algebra.kernel has it, of A[rows * cols] in the corner of a square of `size` >= rows, cols; pivots up to tol count as
  * 0. Returns the rank, or a status < 0. */
-int lag_padded_kernel(Pool *pool, const lag_algebra *algebra, int rows, int cols, int size, const double *A, double tol, double *Q);
+int lag_padded_kernel(Pool *pool, const lag_algebra *algebra, int size, Rectangle A, double tol, double *Q);
 
 /* tangent_modes.c: modes about it, in the frame that moves with it. Returns as lag_modes_find. */
 int lag_steady_modes(Modes *modes, SteadyMotion *s, Equilibrium *rest);

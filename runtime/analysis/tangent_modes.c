@@ -54,7 +54,7 @@ static int separate_symmetries(TangentModes *w) {
     for (int l = 0; l < d; l++)
       for (int i = 0; i < n; i++) P[k * d + l] += w->T[i * d + l] * X[i] / s->unit[i];
   }
-  w->shifts = pool.failed ? LAG_ENOMEM : lag_padded_kernel(&pool, s->algebra, m, d, size, P, 1e-8, Q);
+  w->shifts = pool.failed ? LAG_ENOMEM : lag_padded_kernel(&pool, s->algebra, size, (Rectangle){m, d, P}, 1e-8, Q);
   for (int i = 0; i < n && w->shifts >= 0; i++)
     for (int k = 0; k < d; k++)
       for (int l = 0; l < d; l++) T[i * d + k] += w->T[i * d + l] * Q[l * size + k];
@@ -93,7 +93,6 @@ static int restrict_to_tangents(TangentModes *w) {
 /* Adds a mode with the shape T (re + i im), whose largest component becomes 1 declared unit. */
 static int add_mode(TangentModes *w, Mode mode, const double *re, const double *im) {
   const SteadyMotion *s = w->s;
-  const lag_model *m = s->sim->pb.model;
   int nx = w->rest->n, best = 0;
   double *x = lag_pool_doubles(&w->out->pool, 2 * (size_t)nx), *y = x + nx, most = 0;
   if (!x) return LAG_ENOMEM;
@@ -105,43 +104,43 @@ static int add_mode(TangentModes *w, Mode mode, const double *re, const double *
     most = hypot(re[at], im ? im[at] : 0);
     best = i;
   }
-  double a = x[best], b = y[best], size = a * a + b * b, factor = best < s->nq ? m->q[best].factor : m->z[best - s->nq].factor;
-  for (int i = 0; i < nx && size > 0; i++) {
-    double p = x[i], q = y[i];
-    x[i] = factor * (p * a + q * b) / size;
-    y[i] = factor * (q * a - p * b) / size;
-  }
-  mode.shape_re = x;
-  mode.shape_im = y;
-  w->out->mode[w->out->n++] = mode;
+  lag_add_mode(w->out, s->sim->pb.model, mode, nx, x, y, best);
   return LAG_OK;
 }
 
-/* shape[n] := T u for the eigenvector z = re + i im of the block of B without symmetries, column k of both: u = (x, z) with (B - value) u = 0, whose
- * displacement x by symmetries is left out where it is not determined. */
-static int lift(const TangentModes *w, double value_re, double value_im, const double *re, const double *im, int k, double *shape_re, double *shape_im) {
-  int n = w->s->n, d = w->d, m = w->shifts, e = d - m, columns = w->spectrum.n;
+/* Column k of re + i im, whose eigenvalue is value. */
+typedef struct Eigenvector {
+  double value_re, value_im;
+  const double *re, *im; /* im NULL: real */
+  int column;
+} Eigenvector;
+
+/* shape[2 n], real and imaginary parts, := T u for the eigenvector z of the block of B without
+ * symmetries: u = (x, z) with (B - value) u = 0, whose displacement x by symmetries is left out
+ * where it is not determined. */
+static int lift(const TangentModes *w, const Eigenvector *z, double *shape) {
+  int k = z->column, n = w->s->n, d = w->d, m = w->shifts, e = d - m, columns = w->spectrum.n;
   Pool pool = {0};
   double *A = lag_pool_doubles(&pool, 4 * (size_t)m * (size_t)m), *x = lag_pool_doubles(&pool, 2 * (size_t)m);
   for (int i = 0; i < m && !pool.failed; i++) { /* real and imaginary parts of (B_mm - value) x = -B_me z */
-    for (int j = 0; j < m; j++) A[i * 2 * m + j] = A[(m + i) * 2 * m + m + j] = w->B[i * d + j] - (i == j ? value_re : 0);
-    A[i * 2 * m + m + i] = value_im;
-    A[(m + i) * 2 * m + i] = -value_im;
+    for (int j = 0; j < m; j++) A[i * 2 * m + j] = A[(m + i) * 2 * m + m + j] = w->B[i * d + j] - (i == j ? z->value_re : 0);
+    A[i * 2 * m + m + i] = z->value_im;
+    A[(m + i) * 2 * m + i] = -z->value_im;
     for (int l = 0; l < e; l++) {
-      x[i] -= w->B[i * d + m + l] * re[l * columns + k];
-      x[m + i] -= im ? w->B[i * d + m + l] * im[l * columns + k] : 0;
+      x[i] -= w->B[i * d + m + l] * z->re[l * columns + k];
+      x[m + i] -= z->im ? w->B[i * d + m + l] * z->im[l * columns + k] : 0;
     }
   }
-  int along = !pool.failed && hypot(value_re, value_im) > 0 && lag_solve_dense(2 * (size_t)m, 1, A, x) == 0;
+  int along = !pool.failed && hypot(z->value_re, z->value_im) > 0 && lag_solve_dense(2 * (size_t)m, 1, A, x) == 0;
   for (int i = 0; i < n; i++) {
-    shape_re[i] = shape_im[i] = 0;
+    shape[i] = shape[n + i] = 0;
     for (int l = 0; l < e; l++) {
-      shape_re[i] += w->T[i * d + m + l] * re[l * columns + k];
-      shape_im[i] += im ? w->T[i * d + m + l] * im[l * columns + k] : 0;
+      shape[i] += w->T[i * d + m + l] * z->re[l * columns + k];
+      shape[n + i] += z->im ? w->T[i * d + m + l] * z->im[l * columns + k] : 0;
     }
     for (int j = 0; j < m && along; j++) {
-      shape_re[i] += w->T[i * d + j] * x[j];
-      shape_im[i] += w->T[i * d + j] * x[m + j];
+      shape[i] += w->T[i * d + j] * x[j];
+      shape[n + i] += w->T[i * d + j] * x[m + j];
     }
   }
   int rc = pool.failed ? LAG_ENOMEM : LAG_OK;
@@ -194,7 +193,7 @@ static int add_all_zeros(TangentModes *w) {
   for (int i = 0; i < n; i++)
     for (int j = 0; j < m; j++) v[i * m + j] = w->T[i * w->d + j];
   for (int j = 0; j < k && rc == LAG_OK; j++) {
-    rc = lift(w, 0, 0, s->kernel, NULL, s->n - k + j, re, re + n);
+    rc = lift(w, &(Eigenvector){.re = s->kernel, .column = s->n - k + j}, re);
     for (int i = 0; i < n; i++) u[i * k + j] = re[i];
   }
   w->family = rc == LAG_OK && is_family(w, k, u);
@@ -211,7 +210,7 @@ static int add_modes(TangentModes *w) {
     int second = s->im[k] < 0, same = 0;
     for (int i = 0; i < k; i++) same |= s->repeats[k] > 1 && s->re[i] == s->re[k] && s->im[i] == s->im[k];
     if (second || same) continue;
-    rc = lift(w, s->re[k], s->im[k], s->vre, s->vim, k, re, im);
+    rc = lift(w, &(Eigenvector){s->re[k], s->im[k], s->vre, s->vim, k}, re);
     rc = rc ? rc : add_mode(w, (Mode){.re = s->re[k], .im = s->im[k], .repeats = (int)s->repeats[k]}, re, im);
   }
   return rc;

@@ -10,6 +10,7 @@
 #include "core/core.h"
 #include "core/rhs.h"
 #include "numeric/clock.h"
+#include "numeric/magnitudes.h"
 
 int lag_samples_init(Samples *s, int rows, int n) {
   *s = (Samples){.rows = rows, .n = n};
@@ -224,11 +225,6 @@ double lag_cost_error(const Samples *a, const Samples *b, const double *scale) {
 
 /* ---- One setting */
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 lag_sim *lag_cost_prepare(CostMethod *m, const CostScene *scene, double knob, int *rc) {
   lag_sim *sim = scene->fresh(scene->context);
   int adaptive = (m->method->flags & LAG_METHOD_ADAPTIVE) != 0, n = 0;
@@ -309,7 +305,7 @@ int lag_cost_run(CostMethod *m, const CostSweep *s, double enough, int most, dou
     total += times[n++] = run->time;
   }
   own->output = residual ? LAG_SAMPLES_RESIDUAL : own->output;
-  qsort(times, (size_t)n, sizeof *times, ascending);
+  qsort(times, (size_t)n, sizeof *times, lag_ascending);
   run->time = times[n / 2];
   run->spread = n > 1 ? (times[3 * n / 4] - times[n / 4]) / times[n / 2] : NAN;
   return rc;
@@ -328,7 +324,7 @@ double lag_cost_order(const CostMethod *m, double uncertainty) {
   }
   if (n < SLOPES) return NAN;
   last = slope + n - SLOPES;
-  qsort(last, SLOPES, sizeof *last, ascending);
+  qsort(last, SLOPES, sizeof *last, lag_ascending);
   return last[SLOPES / 2];
 }
 

@@ -21,7 +21,8 @@ typedef struct Args {
   const char *target, *seconds, *realtime, *methods, *against, *given, *error; /* for --cost */
   const char *consts, *motions, *rows, *samples, *sampling, *seed, *threads, *lanes, *mpi, *shard, *merge, *histogram; /* for --sweep */
   const char *effects; /* --effects: "runs" measures differences only; of a program made by lagc effects */
-  int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs, where, sweep, zip, go_on, yes, portrait, potential, distance, energy_error, no_monitors;
+  int json, sketch, quiet, help, trace, no_rods, modes, steady, tangent, volume, lyapunov, cost, reference, all, runs,
+      sweep, zip, go_on, yes, portrait, potential, distance, energy_error, no_monitors;
   char **sets; /* name=value, in order */
   int nsets;
   const char **scenes; /* all scenes named; scene is the first */
@@ -119,8 +120,8 @@ typedef struct App {
 #include "app/options.def"
 
 /* Tasks of a simulator: a run, or an analysis in its place. */
-enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, WHERE = 64, REFERENCE = 128, ANY = 255,
-       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS | WHERE };
+enum { RUN = 1, LYAPUNOV = 2, COST = 4, SWEEP = 8, MODES = 16, EFFECTS = 32, REFERENCE = 64, ANY = 127,
+       MOTION = RUN | LYAPUNOV | SWEEP | EFFECTS };
 
 /* A row of options.def. */
 typedef struct Option {
@@ -294,8 +295,6 @@ int lag_app_sweep(App *app);
 
 /* cost.c: --cost and --reference. Returns the exit status. */
 int lag_app_cost(App *app);
-/* profile_run.c: --cost --where. Returns the exit status. */
-int lag_app_where(App *app);
 
 /* Prints that a file cannot be written, with errno; returns EXIT_USAGE. */
 int lag_app_io_error(const App *app, const char *path);

@@ -163,7 +163,7 @@ static unsigned analyses_with(const Option *o) {
 
 /* Refuses options that a run, or the analysis that is asked for, does not use. */
 static int check_analysis(const Args *a) {
-  const unsigned what = a->sweep ? SWEEP : a->modes ? MODES : a->where ? WHERE : a->cost ? COST : a->reference ? REFERENCE
+  const unsigned what = a->sweep ? SWEEP : a->modes ? MODES : a->cost ? COST : a->reference ? REFERENCE
                         : a->lyapunov ? LYAPUNOV : a->effects ? EFFECTS : RUN;
   for (int i = 0; i < NOPTIONS; i++) {
     const Option *o = &options[i];
@@ -174,8 +174,7 @@ static int check_analysis(const Args *a) {
                             : lag_app_error(a, "%s is for %s", o->name, analyses & COST ? "--cost" : analyses & SWEEP ? "--sweep" : analyses & MODES ? "--modes" : "--lyapunov");
     }
     return lag_app_error(a, "%s has no meaning for %s", o->name,
-                     what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some, and --where takes one"
-                     : what == WHERE ? "--where, which takes name=value, --until, --seconds, a method and --json"
+                     what == COST ? "--cost, which runs all methods at many tolerances and steps; --methods NAME,NAME selects some"
                      : what == SWEEP ? "--sweep, which takes name=RANGE, name=value, --measure, --motions, --until, a method, --samples and -o"
                      : what == MODES ? "--modes, which takes name=value, --steady and --json"
                      : what == EFFECTS ? "--effects, which takes name=value, --until and a method"

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "app/cost.h"
+#include "io/svg_panel.h"
 
 /* ---- Curves */
 
@@ -43,12 +44,19 @@ static int take_curves(const Cost *c, Curve *all) {
   return n;
 }
 
-typedef struct Range {
-  double x0, x1, y0, y1; /* whole powers of ten; x0 is the largest error */
-} Range;
+enum { PICTURE_WIDTH = 800, PICTURE_HEIGHT = 560, MARGIN = 92, NAMES = 240, HEAD = 52, FOOT = 70, SIZE = 20,
+      LINE = 24 };
 
-static Range range_of(const Curve *all, int n) {
-  Range r = {-HUGE_VAL, HUGE_VAL, HUGE_VAL, -HUGE_VAL};
+/* Whole powers of ten, as decimal logarithms; x0 is the largest error. */
+static Panel panel_of(const Curve *all, int n) {
+  Panel r = {.x = MARGIN, .y = HEAD, .w = PICTURE_WIDTH - MARGIN - NAMES, .h = PICTURE_HEIGHT - HEAD - FOOT};
+  if (n == 0) {
+    r.x1 = -15;
+    r.y0 = -6;
+    return r;
+  }
+  r.x0 = r.y1 = -HUGE_VAL;
+  r.x1 = r.y0 = HUGE_VAL;
   for (int i = 0; i < n; i++)
     for (int k = 0; k < all[i].n; k++) {
       r.x0 = fmax(r.x0, all[i].x[k]);
@@ -66,49 +74,42 @@ static Range range_of(const Curve *all, int n) {
 
 /* ---- SVG */
 
-enum { WIDTH = 800, HEIGHT = 560, LEFT = 92, RIGHT = 240, TOP = 52, BOTTOM = 70, SIZE = 20, LINE = 24 };
-
 /* Colours of Okabe and Ito, of different lightness; dashes tell them apart without colour. */
 static const struct {
   const char *colour, *dash;
 } styles[LAG_COST_FAMILIES] = {{"#d55e00", ""}, {"#0072b2", ""}, {"#009e73", "9 4"}, {"#cc79a7", "2 3"}, {"#8a7f00", "9 4 2 4"}, {"#444444", ""},
                                {"#56b4e9", "9 4"}, {"#000000", "2 3"}};
 
-static double px(const Range *r, double x) { return LEFT + (r->x0 - x) / (r->x0 - r->x1) * (WIDTH - LEFT - RIGHT); }
-static double py(const Range *r, double y) { return TOP + (r->y1 - y) / (r->y1 - r->y0) * (HEIGHT - TOP - BOTTOM); }
-
-static void put_text(FILE *f, double x, double y, const char *attributes, const char *s) {
-  fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, attributes);
-  lag_write_markup(f, s);
-  fputs("</text>\n", f);
-}
-
 /* 10 to the power k, as a tick. */
 static void put_power(FILE *f, double x, double y, const char *anchor, double k) {
   fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">10<tspan dy=\"-7\" font-size=\"14\">%.0f</tspan></text>\n", x, y, anchor, k);
 }
 
-static void put_axes(FILE *f, const Range *r) {
-  double bottom = HEIGHT - BOTTOM, right = WIDTH - RIGHT, stride = ceil((r->x0 - r->x1) / 8);
-  fprintf(f, "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"#777\"/>\n", LEFT, TOP, WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM);
+static void put_axes(FILE *f, const Panel *r) {
+  double bottom = r->y + r->h, right = r->x + r->w, stride = ceil((r->x0 - r->x1) / 8);
+  fprintf(f, "<rect x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\" fill=\"none\" stroke=\"#777\"/>\n", r->x, r->y, r->w,
+          r->h);
   for (double k = r->x0; k >= r->x1; k--) {
-    fprintf(f, "<path d=\"M%.1f %dV%.1f\" stroke=\"#e4e4e4\"/>\n", px(r, k), TOP, bottom);
-    if (fmod(r->x0 - k, stride) == 0.0) put_power(f, px(r, k), bottom + 26, "middle", k);
+    fprintf(f, "<path d=\"M%.1f %dV%.1f\" stroke=\"#e4e4e4\"/>\n", lag_panel_x(r, k), HEAD, bottom);
+    if (fmod(r->x0 - k, stride) == 0.0) put_power(f, lag_panel_x(r, k), bottom + 26, "middle", k);
   }
   for (double k = r->y0; k <= r->y1; k++) {
-    fprintf(f, "<path d=\"M%d %.1fH%.1f\" stroke=\"#e4e4e4\"/>\n", LEFT, py(r, k), right);
-    put_power(f, LEFT - 10, py(r, k) + 7, "end", k);
+    fprintf(f, "<path d=\"M%d %.1fH%.1f\" stroke=\"#e4e4e4\"/>\n", MARGIN, lag_panel_y(r, k), right);
+    put_power(f, MARGIN - 10, lag_panel_y(r, k) + 7, "end", k);
   }
-  put_text(f, (LEFT + right) / 2, HEIGHT - 14, "text-anchor=\"middle\"", "error");
-  fprintf(f, "<text transform=\"translate(24 %.1f) rotate(-90)\" text-anchor=\"middle\">processor time [s]</text>\n", (TOP + bottom) / 2);
+  lag_svg_text(f, (MARGIN + right) / 2, PICTURE_HEIGHT - 14, "text-anchor=\"middle\"", "error");
+  fprintf(f, "<text transform=\"translate(24 %.1f) rotate(-90)\" text-anchor=\"middle\">processor time [s]</text>\n",
+          (HEAD + bottom) / 2);
 }
 
 /* A vertical line at an error below which no curve means anything, with its name. */
-static void put_floor(FILE *f, const Range *r, double error, const char *name, int at_top) {
+static void put_floor(FILE *f, const Panel *r, double error, const char *name, int at_top) {
   double x = log10(error);
   if (!(x > r->x1 && x < r->x0)) return;
-  fprintf(f, "<path d=\"M%.1f %dV%d\" stroke=\"#777\" stroke-width=\"2\" stroke-dasharray=\"3 5\"/>\n", px(r, x), TOP, HEIGHT - BOTTOM);
-  fprintf(f, "<text transform=\"translate(%.1f %d) rotate(-90)\" font-size=\"16\" fill=\"#555\">%s</text>\n", px(r, x) - 6, at_top ? TOP + 90 : HEIGHT - BOTTOM - 8, name);
+  fprintf(f, "<path d=\"M%.1f %dV%d\" stroke=\"#777\" stroke-width=\"2\" stroke-dasharray=\"3 5\"/>\n",
+          lag_panel_x(r, x), HEAD, PICTURE_HEIGHT - FOOT);
+  fprintf(f, "<text transform=\"translate(%.1f %d) rotate(-90)\" font-size=\"16\" fill=\"#555\">%s</text>\n",
+          lag_panel_x(r, x) - 6, at_top ? HEAD + 90 : PICTURE_HEIGHT - FOOT - 8, name);
 }
 
 static int by_error(const void *a, const void *b) {
@@ -117,7 +118,7 @@ static int by_error(const void *a, const void *b) {
 }
 
 /* A band from the front to twice its time, within the frame. */
-static void put_front(FILE *f, const Range *r, const Cost *c) {
+static void put_front(FILE *f, const Panel *r, const Cost *c) {
   const CostRun *front[LAG_COST_MOST_RUNS * LAG_COST_FAMILIES];
   int n = 0;
   for (int i = 0; i < c->nmethods; i++)
@@ -129,7 +130,8 @@ static void put_front(FILE *f, const Range *r, const Cost *c) {
   for (int k = 0; k < 2 * n; k++) {
     const CostRun *run = front[k < n ? k : 2 * n - 1 - k];
     double x = log10(fmax(run->error, 1e-17)), y = log10(run->time) + (k < n ? 0 : log10(2));
-    fprintf(f, "%s%.1f %.1f", k ? "L" : "M", px(r, fmax(r->x1, fmin(x, r->x0))), py(r, fmax(r->y0, fmin(y, r->y1))));
+    fprintf(f, "%s%.1f %.1f", k ? "L" : "M", lag_panel_x(r, fmax(r->x1, fmin(x, r->x0))),
+            lag_panel_y(r, fmax(r->y0, fmin(y, r->y1))));
   }
   fputs("Z\"/>\n", f);
 }
@@ -140,27 +142,30 @@ static void put_mark(FILE *f, int kind, double x, double y) {
   fprintf(f, "M%.1f %.1f%s", x, y, shapes[kind]);
 }
 
-static void put_curve(FILE *f, const Range *r, const Curve *c) {
+static void put_curve(FILE *f, const Panel *r, const Curve *c) {
   const char *colour = styles[c->family].colour;
   fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"2.5\" stroke-linejoin=\"round\"", colour);
   if (styles[c->family].dash[0]) fprintf(f, " stroke-dasharray=\"%s\"", styles[c->family].dash);
   fputs(" d=\"", f);
-  for (int k = 0; k < c->n; k++) fprintf(f, "%s%.1f %.1f", k ? "L" : "M", px(r, c->x[k]), py(r, c->y[k]));
+  for (int k = 0; k < c->n; k++) fprintf(f, "%s%.1f %.1f", k ? "L" : "M", lag_panel_x(r, c->x[k]),
+                                         lag_panel_y(r, c->y[k]));
   fprintf(f, "\"/>\n<path fill=\"%s\" stroke=\"%s\" stroke-width=\"2\" d=\"", colour, colour);
-  for (int k = 0; k < c->n; k++) put_mark(f, c->family, px(r, c->x[k]), py(r, c->y[k]));
+  for (int k = 0; k < c->n; k++) put_mark(f, c->family, lag_panel_x(r, c->x[k]), lag_panel_y(r, c->y[k]));
   fputs("\"/>\n", f);
 }
 
 /* A triangle under the middle of the curve whose slope is that of the observed order: time grows as error^(-1/order). */
-static void put_slope(FILE *f, const Range *r, const Curve *c) {
+static void put_slope(FILE *f, const Panel *r, const Curve *c) {
   char order[16];
   int k = c->n / 2;
   if (isnan(c->m->order) || c->m->method->flags & LAG_METHOD_ADAPTIVE || c->n < 4) return;
   double x = c->x[k], y = c->y[k] - 0.12 * (r->y1 - r->y0) / 4, wide = 1.5;
-  fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"1.5\" d=\"M%.1f %.1fL%.1f %.1fV%.1fZ\"/>\n", styles[c->family].colour, px(r, x), py(r, y),
-          px(r, x - wide), py(r, y + wide / c->m->order), py(r, y));
+  fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-width=\"1.5\" d=\"M%.1f %.1fL%.1f %.1fV%.1fZ\"/>\n",
+          styles[c->family].colour, lag_panel_x(r, x), lag_panel_y(r, y),
+          lag_panel_x(r, x - wide), lag_panel_y(r, y + wide / c->m->order), lag_panel_y(r, y));
   snprintf(order, sizeof order, "%.1f", c->m->order);
-  put_text(f, px(r, x - wide) + 4, py(r, y + wide / c->m->order / 2) + 5, "font-size=\"15\"", order);
+  lag_svg_text(f, lag_panel_x(r, x - wide) + 4, lag_panel_y(r, y + wide / c->m->order / 2) + 5, "font-size=\"15\"",
+               order);
 }
 
 static int by_height(const void *a, const void *b) {
@@ -169,21 +174,23 @@ static int by_height(const void *a, const void *b) {
 }
 
 /* Names right of the panel, each joined with the end of its curve, none over another. */
-static void put_names(FILE *f, const Range *r, const Curve *all, int n) {
+static void put_names(FILE *f, const Panel *r, const Curve *all, int n) {
   const Curve *sorted[LAG_COST_FAMILIES];
   double y[LAG_COST_FAMILIES];
   for (int i = 0; i < n; i++) sorted[i] = &all[i];
   qsort(sorted, (size_t)n, sizeof *sorted, by_height);
-  for (int i = 0; i < n; i++) y[i] = fmax(py(r, sorted[i]->y[sorted[i]->n - 1]), i ? y[i - 1] + LINE : TOP + 10);
-  for (int i = n - 1, low = HEIGHT - BOTTOM - 4; i >= 0 && y[i] > low; i--, low -= LINE) y[i] = low;
+  for (int i = 0; i < n; i++) y[i] = fmax(lag_panel_y(r, sorted[i]->y[sorted[i]->n - 1]),
+                                          i ? y[i - 1] + LINE : HEAD + 10);
+  for (int i = n - 1, low = PICTURE_HEIGHT - FOOT - 4; i >= 0 && y[i] > low; i--, low -= LINE) y[i] = low;
   for (int i = 0; i < n; i++) {
     const Curve *c = sorted[i];
     char attributes[64];
-    double right = WIDTH - RIGHT;
-    fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.5\" d=\"M%.1f %.1fL%.1f %.1fh8\"/>\n", styles[c->family].colour, px(r, c->x[c->n - 1]),
-            py(r, c->y[c->n - 1]), right + 6, y[i]);
+    double right = r->x + r->w;
+    fprintf(f, "<path fill=\"none\" stroke=\"%s\" stroke-opacity=\"0.5\" d=\"M%.1f %.1fL%.1f %.1fh8\"/>\n",
+            styles[c->family].colour, lag_panel_x(r, c->x[c->n - 1]),
+            lag_panel_y(r, c->y[c->n - 1]), right + 6, y[i]);
     snprintf(attributes, sizeof attributes, "fill=\"%s\"", styles[c->family].colour);
-    put_text(f, right + 18, y[i] + 7, attributes, c->m->name);
+    lag_svg_text(f, right + 18, y[i] + 7, attributes, c->m->name);
   }
 }
 
@@ -198,13 +205,9 @@ int lag_cost_put_picture(const char *path, const App *app, const Cost *c) {
   }
   char title[300];
   int n = take_curves(c, all);
-  Range r = n ? range_of(all, n) : (Range){0, -15, -6, 0};
+  Panel r = panel_of(all, n);
   snprintf(title, sizeof title, "%s, %s: what accuracy costs", app->scene->model->name, app->scene->name);
-  fprintf(o.f, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" font-family=\"DejaVu Sans, "
-          "Helvetica, sans-serif\" font-size=\"%d\" fill=\"#222\">\n<title>", WIDTH, HEIGHT, WIDTH, HEIGHT, SIZE);
-  lag_write_markup(o.f, title);
-  fprintf(o.f, "</title>\n<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n", WIDTH, HEIGHT);
-  put_text(o.f, LEFT, 32, "font-weight=\"bold\"", title);
+  lag_svg_large_head(o.f, PICTURE_WIDTH, PICTURE_HEIGHT, SIZE, title);
   put_axes(o.f, &r);
   put_floor(o.f, &r, DBL_EPSILON, "rounding", 0);
   put_floor(o.f, &r, c->reference.uncertainty, "reference", 1);
@@ -229,7 +232,7 @@ void lag_cost_sketch(FILE *f, const Cost *c) {
   Curve *all = calloc(LAG_COST_FAMILIES, sizeof *all);
   int n = all ? take_curves(c, all) : 0;
   if (n) {
-    Range r = range_of(all, n);
+    Panel r = panel_of(all, n);
     for (int y = 0; y < ROWS; y++) snprintf(cell[y], sizeof cell[y], "%*s", COLUMNS, "");
     for (int i = n - 1; i >= 0; i--)
       for (int k = 0; k + 1 < all[i].n; k++)

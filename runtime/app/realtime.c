@@ -53,8 +53,9 @@ static double clock_cost(void) {
   return least;
 }
 
-/* *error := error of a run with this step, or why := its failure. each: 1: each step is timed, to clock->least. Returns whether there is one. */
-static int run_with(App *app, const Cost *c, FixedStep *x, double step, int each, Samples *own, StepClock *clock, double *error) {
+/* The error of a run with this step; NAN, and why := its failure. each: 1: each step is timed, to clock->least. */
+static double run_with(App *app, const Cost *c, FixedStep *x, double step, int each, Samples *own, StepClock *clock) {
+  double error = NAN;
   lag_sim *sim = lag_app_fresh_bare_sim(app);
   lag_stats st;
   x->option[x->noptions] = (lag_option){.name = "step", .value = step};
@@ -71,9 +72,9 @@ static int run_with(App *app, const Cost *c, FixedStep *x, double step, int each
   }
   if (rc == LAG_INTERRUPTED) snprintf(x->why, sizeof x->why, "a run took longer than %.2g s", 0.1 * c->seconds);
   else if (rc) snprintf(x->why, sizeof x->why, "%.150s", sim ? lag_sim_message(sim) : "out of memory");
-  else *error = lag_cost_error(own, &c->reference, c->scale);
+  else error = lag_cost_error(own, &c->reference, c->scale);
   lag_sim_free(sim);
-  return rc == LAG_OK && own->rows == c->reference.rows && *error <= HUGE_VAL;
+  return rc == LAG_OK && own->rows == c->reference.rows ? error : NAN;
 }
 
 static void measure(App *app, const Cost *c, FixedStep *x, double step, double overhead, double *least, Samples *own) {
@@ -82,11 +83,11 @@ static void measure(App *app, const Cost *c, FixedStep *x, double step, double o
   x->error = NAN;
   for (int i = 0; i < WATCHED; i++) least[i] = HUGE_VAL;
   for (int i = 0; i < RUNS; i++)
-    if (!run_with(app, c, x, step, 1, own, &clock, &error)) return;
+    if (isnan(error = run_with(app, c, x, step, 1, own, &clock))) return;
   x->error = error;
   for (int i = 0; i < WATCHED && least[i] < HUGE_VAL; i++) x->worst = fmax(x->worst, least[i] - overhead);
   clock.least = NULL;
-  if (run_with(app, c, x, step, 0, own, &clock, &error)) x->mean = clock.whole / (double)clock.steps;
+  if (!isnan(run_with(app, c, x, step, 0, own, &clock))) x->mean = clock.whole / (double)clock.steps;
   x->why[0] = '\0';
 }
 
@@ -108,13 +109,13 @@ static void judge(App *app, const Cost *c, FixedStep *x, double step) {
 /* The largest step of H 2^k/2 that stays with the motion, upwards from one that does, or downwards to one. */
 static void find_largest(App *app, const Cost *c, FixedStep *x, double step, Samples *own) {
   const double factor = sqrt(2), span = fabs(c->reference.t[c->reference.rows - 1] - app->scene->t0);
-  double h = step, error;
+  double h = step;
   StepClock clock = {0};
   int stays = x->error < lost;
   x->largest = stays ? h : 0;
   for (int i = 0; i < 40 && h < span && lag_app_interrupted() == EXIT_SIGNAL; i++) {
     h *= stays ? factor : 1 / factor;
-    int good = run_with(app, c, x, h, 1, own, &clock, &error) && error < lost;
+    int good = run_with(app, c, x, h, 1, own, &clock) < lost;
     if (good) x->largest = h;
     if (good != stays) return;
   }

@@ -448,6 +448,25 @@ void lag_report_json_head(const App *app, Json *j) {
   lag_json_string(j, "status", app->status < 0 ? "failed" : lag_status_name(app->status));
 }
 
+/* The energy, the error of the motion, and digits that were lost. */
+static void energy_json(App *app, const lag_stats *st, Json *j) {
+  lag_charge_stats energy = {.absolute = NAN};
+  if (lag_sim_ncharges(app->sim)) lag_sim_charge(app->sim, 0, &energy);
+  int conserved = (energy.flags & LAG_CONSERVED) != 0; /* else null */
+  lag_json_number(j, "energy_drift", conserved ? st->energy_drift : NAN);
+  lag_report_error_json(app, j);
+  lag_json_number(j, "energy_drift_absolute", conserved ? energy.absolute : NAN);
+  lag_json_number(j, "unresolved_period", st->unresolved);
+  lag_json_count(j, "rows_without_value", app->empty_rows);
+  if (!lost_digits(app, &energy)) return;
+  lag_json_begin(j, "digits_lost", '{');
+  lag_json_number(j, "t", energy.energy_jump_t);
+  lag_json_number(j, "energy_step", energy.energy_jump);
+  lag_json_string(j, "coordinate", energy.mass_condition_of);
+  lag_json_number(j, "condition", energy.mass_condition);
+  lag_json_end(j, '}');
+}
+
 void lag_report_json(App *app, FILE *f) {
   const lag_model *m = app->scene->model;
   int n = 2 * m->nq + m->nz;
@@ -467,22 +486,7 @@ void lag_report_json(App *app, FILE *f) {
   lag_json_count(&j, "newton_iterations", st.iterations);
   lag_json_name(&j, "wall_s");
   fprintf(f, "%.6g", app->wall); /* 6 digits in any precision */
-  lag_charge_stats energy = {.absolute = NAN};
-  if (lag_sim_ncharges(app->sim)) lag_sim_charge(app->sim, 0, &energy);
-  int conserved = (energy.flags & LAG_CONSERVED) != 0; /* else null */
-  lag_json_number(&j, "energy_drift", conserved ? st.energy_drift : NAN);
-  lag_report_error_json(app, &j);
-  lag_json_number(&j, "energy_drift_absolute", conserved ? energy.absolute : NAN);
-  lag_json_number(&j, "unresolved_period", st.unresolved);
-  lag_json_count(&j, "rows_without_value", app->empty_rows);
-  if (lost_digits(app, &energy)) {
-    lag_json_begin(&j, "digits_lost", '{');
-    lag_json_number(&j, "t", energy.energy_jump_t);
-    lag_json_number(&j, "energy_step", energy.energy_jump);
-    lag_json_string(&j, "coordinate", energy.mass_condition_of);
-    lag_json_number(&j, "condition", energy.mass_condition);
-    lag_json_end(&j, '}');
-  }
+  energy_json(app, &st, &j);
   charges_json(app, &j);
   lag_report_events_json(app, &j);
   switches_json(app, &j);

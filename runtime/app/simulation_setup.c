@@ -38,7 +38,8 @@ static int choose_scene(App *app) {
     if (!name || strcmp(p->scenes[i]->name, name) == 0) {
       app->scene = p->scenes[i];
       app->whole = app->scene;
-      if (app->args.lyapunov || (app->args.cost && !app->args.where) || app->args.reference || app->args.energy_error || app->args.distance || app->args.cloud || app->compared) app->scene = bare_scene(app, app->scene);
+      if (app->args.lyapunov || app->args.cost || app->args.reference || app->args.energy_error || app->args.distance ||
+          app->args.cloud || app->compared) app->scene = bare_scene(app, app->scene);
       if (app->args.no_monitors) {
         app->unwatched = *app->scene;
         app->unwatched.nmonitors = 0;

@@ -127,8 +127,6 @@ int lag_app_main(int argc, char **argv, const lag_program *program, const lag_ex
     rc = lag_app_lyapunov(&app);
   } else if (rc == 0 && app.args.effects) {
     rc = lag_app_effects(&app);
-  } else if (rc == 0 && app.args.where) {
-    rc = lag_app_where(&app);
   } else if (rc == 0 && (app.args.cost || app.args.reference)) {
     rc = lag_app_cost(&app);
   } else if (rc == 0) {

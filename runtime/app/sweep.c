@@ -393,7 +393,9 @@ static int open_journal(SweepApp *s, int resume) {
   const SweepPlan *p = &s->plan;
   char path[4200], why[4400];
   journal_path(s, s->sweep.shard, path);
-  int rc = lag_journal_open(&s->journal, path, resume, lag_sweep_signature(s), (p->runs - 1) / s->sweep.chunk + 1, (size_t)s->sweep.chunk * lag_sweep_numbers(&s->sweep), why, sizeof why);
+  s->journal = (Journal){.signature = lag_sweep_signature(s), .chunks = (p->runs - 1) / s->sweep.chunk + 1,
+                         .size = (size_t)s->sweep.chunk * lag_sweep_numbers(&s->sweep)};
+  int rc = lag_journal_open(&s->journal, path, resume, why, sizeof why);
   if (rc == 0 && is_stream(result_file(&s->app->args))) unlink(path);
   if (rc == 0 && why[0] && !s->app->args.quiet) fprintf(stderr, "%s: note: %s\n", s->app->args.self, why);
   return rc ? lag_app_error(&s->app->args, "%s", why) : 0;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/sweep.h"
+#include "numeric/magnitudes.h"
 
 /* One measure over the runs that have it. */
 typedef struct Statistics {
@@ -77,11 +78,6 @@ static int take_value(void *values, long long run, const double *row) {
   return 0;
 }
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Quantile by linear interpolation between order statistics: definition 7 of R. J. Hyndman, Y. Fan, The American Statistician 50 (1996) 361. */
 static double quantile(const double *sorted, long long n, double part) {
   double at = part * (double)(n - 1);
@@ -95,7 +91,7 @@ static int statistics_of(SweepApp *s, int column, Statistics *t) {
   *t = (Statistics){.n = 0, .mean = NAN, .deviation = NAN, .least = NAN, .most = NAN, .quantile = {NAN, NAN, NAN}};
   int rc = v.value ? lag_sweep_each_row(s, take_value, &v) : -1;
   if (rc == 0 && v.n) {
-    qsort(v.value, (size_t)v.n, sizeof *v.value, ascending);
+    qsort(v.value, (size_t)v.n, sizeof *v.value, lag_ascending);
     for (long long i = 0; i < v.n; i++) sum += v.value[i];
     t->n = v.n;
     t->mean = sum / (double)v.n;

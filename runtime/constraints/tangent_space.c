@@ -28,9 +28,12 @@ int lag_tangent_dimension(lag_sim *s) {
   return rc ? rc : d;
 }
 
-/* rate[n] := change of the residuals of velocities along e[n], by central differences of order 4, exact for constraints of degree 4 in q and v. r[n] is scratch. */
-static int residual_change(lag_problem *pb, double t, const double *y, const double *e, double *there, double *c, double *r, double *rate) {
+/* rate[n] := change of the residuals of velocities along e[n], by central differences of order 4,
+ * exact for constraints of degree 4 in q and v. c[2 n] is scratch. */
+static int residual_change(lag_problem *pb, double t, const double *y, const double *e, double *there, double *c,
+                           double *rate) {
   const double part = 0x1p-9;
+  double *r = c + pb->model->constraints->n;
   int m = pb->model->constraints->n, rc = LAG_OK;
   double far = 0;
   for (int i = 0; i < 2 * pb->nq; i++) far = fmax(far, fabs(e[i]) / lag_difference_scale(pb, y, i));
@@ -62,7 +65,7 @@ static int project(lag_problem *pb, double t, const double *y, const double *A, 
   }
   rc = of->nholonomic ? lag_least_change(pb, t, y, 1, g, d, force) : LAG_OK;
   for (int i = 0; i < nq && of->nholonomic && rc == LAG_OK; i++) e[i] += d[i];
-  rc = rc ? rc : residual_change(pb, t, y, e, there, c, r, g);
+  rc = rc ? rc : residual_change(pb, t, y, e, there, c, g);
   for (int k = 0; k < of->n; k++) g[k] = -g[k];
   rc = rc ? rc : lag_least_change(pb, t, y, 0, g, d, force);
   for (int i = 0; i < nq && rc == LAG_OK; i++) e[nq + i] += d[i];

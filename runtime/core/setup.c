@@ -194,6 +194,22 @@ static int check_digits(lag_sim *s, const lag_method *method) {
                   "its own", method->name, method->finest, s->tol);
 }
 
+/* Switches that jump, and friction in space. */
+static int check_jumps(lag_sim *s, const lag_method *method, unsigned needs) {
+  const lag_model *m = s->scene->model;
+  for (int k = 0; k < m->nmodes; k++) {
+    if (!m->switches[k].jumps || !(needs & (LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_IMPULSES))) continue;
+    if ((needs & LAG_METHOD_IMPULSES) && !m->switches[k].nonnegative) continue;
+    return lag_fail(s, LAG_EMETHOD, "method %s cannot follow a motion that sticks or slides where `%s` jumps; rk45, dop853, radau and rk4 can", method->name,
+                    m->switches[k].text);
+  }
+  for (int i = 1; i < m->ncontacts && !(needs & LAG_METHOD_IMPULSES); i++)
+    if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent)
+      return lag_fail(s, LAG_EMETHOD, "method %s follows friction in a plane, and the slip of a contact has two components here (%s); --method \"moreau(step=1e-3)\" follows it", method->name,
+                      m->constraints->of[m->contacts[i].constraint].name);
+  return LAG_OK;
+}
+
 /* Whether the method can integrate this model; if not, the message says why, and which method can. */
 static int check_method(lag_sim *s, const lag_method *method) {
   const lag_model *m = s->scene->model;
@@ -225,16 +241,8 @@ static int check_method(lag_sim *s, const lag_method *method) {
     return lag_fail(s, LAG_EMETHOD, "method %s does not find events (%s), as its motion within a step is too rough; dop853 and radau do", method->name,
                     m->ev[0].name);
   }
-  for (int k = 0; k < m->nmodes; k++) {
-    if (!m->switches[k].jumps || !(needs & (LAG_METHOD_STEPS_TO | LAG_METHOD_SYMPLECTIC | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_IMPULSES))) continue;
-    if ((needs & LAG_METHOD_IMPULSES) && !m->switches[k].nonnegative) continue;
-    return lag_fail(s, LAG_EMETHOD, "method %s cannot follow a motion that sticks or slides where `%s` jumps; rk45, dop853, radau and rk4 can", method->name,
-                    m->switches[k].text);
-  }
-  for (int i = 1; i < m->ncontacts && !(needs & LAG_METHOD_IMPULSES); i++)
-    if (m->contacts[i].is_tangent && m->contacts[i - 1].is_tangent)
-      return lag_fail(s, LAG_EMETHOD, "method %s follows friction in a plane, and the slip of a contact has two components here (%s); --method \"moreau(step=1e-3)\" follows it", method->name,
-                      m->constraints->of[m->contacts[i].constraint].name);
+  int rc = check_jumps(s, method, needs);
+  if (rc) return rc;
   int splits = (needs & LAG_METHOD_SPLITS) && (has & LAG_SEPARABLE) && !m->constraints;
   if ((needs & LAG_METHOD_TAYLOR) && !(has & LAG_SMOOTH))
     return lag_fail(s, LAG_EMETHOD, "method %s needs a model without if, abs, sign, min, max, atan2 and tables; dop853 does not", method->name);

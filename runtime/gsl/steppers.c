@@ -2,7 +2,7 @@
  * GSL's abort handler is off while it runs; a time of output is reached exactly, because GSL has no dense output (dense() here is lag_hermite,
  * inaccurate where steps are long).
  *
- * Errors are controlled by GSL's y_new control: |err_i| <= tol (1 + |y_i|). gsl-bsimp and gsl-msbdf need the Jacobian: central finite
+ * Errors are controlled by GSL's y_new control: |err_i| <= tol (1 + |y_i|). gsl-bsimp needs the Jacobian: central finite
  * differences of the right-hand side, 2n + 2 calls each, of relative accuracy about 1e-10. Source: GSL Reference Manual, "Ordinary Differential
  * Equations" (gsl_odeiv2), and the papers named there. */
 #include <float.h>
@@ -154,13 +154,10 @@ static void fini(void *work) {
   gsl_odeiv2_driver_free(w->driver);
 }
 
-/* name in C, name, order, GSL's stepper, doc */
-#define METHODS(X)                                                                                       \
-  X(rk8pd, "gsl-rk8pd", 8, gsl_odeiv2_step_rk8pd, "GSL: Prince-Dormand 8(9), explicit, adaptive")          \
-  X(rkf45, "gsl-rkf45", 5, gsl_odeiv2_step_rkf45, "GSL: Runge-Kutta-Fehlberg 4(5), explicit, adaptive")    \
-  X(msadams, "gsl-msadams", 12, gsl_odeiv2_step_msadams, "GSL: Adams multistep of variable order 1 to 12") \
-  X(bsimp, "gsl-bsimp", 12, gsl_odeiv2_step_bsimp, "GSL: Bulirsch-Stoer-Bader-Deuflhard, implicit, for stiff models") \
-  X(msbdf, "gsl-msbdf", 5, gsl_odeiv2_step_msbdf, "GSL: BDF multistep of variable order 1 to 5, for stiff models")
+/* name in C, name, order, GSL's stepper, doc: with the names of GSL's other steppers, for whoever looks for them */
+#define METHODS(X)                                                                                                  \
+  X(rk8pd, "gsl-rk8pd", 8, gsl_odeiv2_step_rk8pd, "GSL: Prince-Dormand 8(9), explicit; for gsl-rkf45, gsl-msadams") \
+  X(bsimp, "gsl-bsimp", 12, gsl_odeiv2_step_bsimp, "GSL: Bulirsch-Stoer-Bader-Deuflhard, implicit, for stiff models; for gsl-msbdf")
 
 #define DEFINE(id, text, p, type, words)                                    \
   static const lag_method method_##id = {                                   \

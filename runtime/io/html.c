@@ -62,11 +62,44 @@ static void put_marks(Json *j, const Marks *marks, double t0, double tick) {
   lag_json_end(j, '}');
 }
 
+/* Names of the points, in pairs. */
+static void put_names(Json *j, const Table *t, const Animation *a) {
+  lag_json_begin(j, "names", '[');
+  for (int i = 0; i < a->npoints; i++) {
+    lag_json_begin(j, NULL, '[');
+    lag_json_string(j, NULL, t->cols[a->cols[2 * i]].name);
+    lag_json_string(j, NULL, t->cols[a->cols[2 * i + 1]].name);
+    lag_json_end(j, ']');
+  }
+  lag_json_end(j, ']');
+}
+
+/* Times between rows in ticks, then a line a frame: places of the points. */
+static void put_frames(Json *j, const Table *t, const Animation *a, double tick, double zero, double scale) {
+  double t0 = t->nrows ? lag_table_cell(t, 0, 0) : 0;
+  long long before = 0;
+  lag_json_begin(j, "dt", '[');
+  for (size_t i = 1; i < t->nrows; i++) {
+    long long at = (long long)nearbyint((lag_table_cell(t, i, 0) - t0) / tick);
+    lag_json_count(j, NULL, at - before);
+    before = at;
+  }
+  lag_json_end(j, ']');
+  putc('\n', j->f);
+  lag_json_begin(j, "v", '[');
+  for (size_t i = 0; i < t->nrows; i++)
+    for (int k = 0; k < 2 * a->npoints; k++) {
+      double x = (lag_table_cell(t, i, a->cols[k]) - zero) / scale;
+      fputs(k ? "," : i ? ",\n" : "", j->f);
+      if (isfinite(x)) fprintf(j->f, "%.0f", nearbyint(x) + 0.0);
+      else fputs("null", j->f);
+    }
+}
+
 /* Writes the JSON object that page.html describes. */
 static void put_data(FILE *f, const Table *t, const Animation *a) {
   size_t n = t->nrows;
   double t0 = n ? lag_table_cell(t, 0, 0) : 0, t1 = n ? lag_table_cell(t, n - 1, 0) : 0, tick = t1 != t0 ? (t1 - t0) / TICKS : 1, zero, scale;
-  long long before = 0;
   Json j = {.f = f};
 
   choose_resolution(t, a, &zero, &scale);
@@ -84,31 +117,9 @@ static void put_data(FILE *f, const Table *t, const Animation *a) {
   lag_json_string(&j, "unit", a->unit);
   lag_json_truth(&j, "free", x_is_index(t, a));
   lag_json_string(&j, "note", a->note ? a->note : "");
-  lag_json_begin(&j, "names", '[');
-  for (int i = 0; i < a->npoints; i++) {
-    lag_json_begin(&j, NULL, '[');
-    lag_json_string(&j, NULL, t->cols[a->cols[2 * i]].name);
-    lag_json_string(&j, NULL, t->cols[a->cols[2 * i + 1]].name);
-    lag_json_end(&j, ']');
-  }
-  lag_json_end(&j, ']');
+  put_names(&j, t, a);
   put_marks(&j, &a->marks, t0, tick);
-  lag_json_begin(&j, "dt", '[');
-  for (size_t i = 1; i < n; i++) {
-    long long at = (long long)nearbyint((lag_table_cell(t, i, 0) - t0) / tick);
-    lag_json_count(&j, NULL, at - before);
-    before = at;
-  }
-  lag_json_end(&j, ']');
-  putc('\n', f); /* a line a frame */
-  lag_json_begin(&j, "v", '[');
-  for (size_t i = 0; i < n; i++)
-    for (int k = 0; k < 2 * a->npoints; k++) {
-      double x = (lag_table_cell(t, i, a->cols[k]) - zero) / scale;
-      fputs(k ? "," : i ? ",\n" : "", f);
-      if (isfinite(x)) fprintf(f, "%.0f", nearbyint(x) + 0.0);
-      else fputs("null", f);
-    }
+  put_frames(&j, t, a, tick, zero, scale);
   fputs("]}\n", f);
 }
 

@@ -93,7 +93,8 @@ static void curve_by_columns(FILE *f, const Panel *p, const Table *t, int ycol) 
 }
 
 /* Takes the path over an end of the panel, where x is periodic: *turns, those of the point before at (from, y0), become those of (x, y). */
-static void cross_over(FILE *f, const Panel *p, double from, double y0, double x, double y, double *turns, int *pen) {
+static void cross_over(FILE *f, const Panel *p, const double before[2], const double here[2], double *turns, int *pen) {
+  double from = before[0], y0 = before[1], x = here[0], y = here[1];
   double way = x > from ? 1 : -1, period = p->x1 - p->x0, last = floor((x - p->x0) / period);
   for (; *pen && *turns != last; *turns += way) {
     double end = (way > 0 ? p->x1 : p->x0) + *turns * period, crossed = y0 + (y - y0) * (end - from) / (x - from);
@@ -107,12 +108,14 @@ static void cross_over(FILE *f, const Panel *p, double from, double y0, double x
 /* One column against another, or few rows: a path without the points that are nearer than a third of a pixel to the one drawn last. period: of x, or 0. */
 static void path(FILE *f, const Panel *p, const Table *t, int xcol, int ycol, double period) {
   const double near = 0.3;
-  double drawn_x = 0, drawn_y = 0, turns = 0;
+  double drawn_x = 0, drawn_y = 0, turns = 0, before[2];
   int pen = 0;
   for (size_t i = 0; i < t->nrows; i++) {
     double x = lag_table_cell(t, i, xcol), y = lag_table_cell(t, i, ycol);
     if (period > 0 && isfinite(x) && isfinite(y)) {
-      cross_over(f, p, i ? lag_table_cell(t, i - 1, xcol) : x, i ? lag_table_cell(t, i - 1, ycol) : y, x, y, &turns, &pen);
+      before[0] = lag_table_cell(t, i - (i > 0), xcol);
+      before[1] = lag_table_cell(t, i - (i > 0), ycol);
+      cross_over(f, p, before, (const double[2]){x, y}, &turns, &pen);
       x -= turns * period;
     }
     if (pen && hypot(lag_panel_x(p, x) - drawn_x, lag_panel_y(p, y) - drawn_y) < near) continue;

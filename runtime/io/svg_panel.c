@@ -137,15 +137,21 @@ void lag_svg_axes(FILE *f, const Panel *p, const char *ylabel, int last) {
   fputs(p->ylog ? ", logarithmic</text>\n" : "</text>\n", f);
 }
 
-void lag_svg_head(FILE *f, int width, int height, const char *title) {
+void lag_svg_large_head(FILE *f, int width, int height, int size, const char *title) {
+  char attributes[64];
   fprintf(f,
           "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" "
-          "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"12\" fill=\"#333\">\n<title>",
-          width, height, width, height);
+          "font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"%d\" fill=\"#333\">\n<title>",
+          width, height, width, height, size);
   lag_write_markup(f, title);
   fprintf(f,
           "</title>\n<style>.g{stroke:#e4e4e4;stroke-width:1;fill:none}.l{font-size:13px}</style>\n"
           "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
           width, height);
-  lag_svg_text(f, LEFT, 26, "font-size=\"15\" font-weight=\"bold\"", title);
+  snprintf(attributes, sizeof attributes, "font-size=\"%d\" font-weight=\"bold\"", size < 15 ? 15 : size);
+  lag_svg_text(f, LEFT, 26, attributes, title);
+}
+
+void lag_svg_head(FILE *f, int width, int height, const char *title) {
+  lag_svg_large_head(f, width, height, 12, title);
 }

@@ -193,7 +193,7 @@ typedef struct {
   int turns;
 } Panel;
 
-enum { NODES_MOST = 16 };
+enum { NODES_MOST = 16, GAUSS_MOST = 1024 };
 
 /* The largest mean curvature of the room from q to places inside the panel. */
 static double bend_at(Curve *c, double q, double step) {
@@ -214,9 +214,10 @@ static Panel panel_from(Curve *c, double at, double step, int turns, double *dou
   return (Panel){at, step, isfinite(near) && near < 1 ? fmax(near, 1e-15) : 1, turns ? 0 : left, turns};
 }
 
-/* Adds the integrals of p and of dq/q' over a panel, by n points; side: of a curve that goes round,
- * the branch; 0: it turns. */
-static void add_panel(Curve *c, const Panel *x, int side, int n, const double *node, const double *weight, double *J, double *time) {
+/* Adds the integrals of p and of dq/q' over a panel to sum[2], by n points and the weights behind them;
+ * side: of a curve that goes round, the branch; 0: it turns. */
+static void add_panel(Curve *c, const Panel *x, int side, int n, const double *node, double sum[2]) {
+  const double *weight = node + GAUSS_MOST;
   double whole = asinh(1 / x->near);
   c->q = x->at, c->room = x->room; /* from here rooms are integrated */
   for (int k = 0; k < n; k++) {
@@ -225,8 +226,8 @@ static void add_panel(Curve *c, const Panel *x, int side, int n, const double *n
     for (int branch_of = side ? side : -1; branch_of <= (side ? side : 1); branch_of += 2) {
       lag_phase_point at;
       double d = branch(c, q, left, branch_of, &at), sense = side ? 1 : branch_of;
-      *J += (side ? c->middle + d : branch_of * d) * width;
-      if (d != 0) *time += sense * width / at.slope;
+      sum[0] += (side ? c->middle + d : branch_of * d) * width;
+      if (d != 0) sum[1] += sense * width / at.slope;
     }
   }
 }
@@ -268,10 +269,10 @@ static int find_nodes(Curve *c, double low, double high, double *node) {
 }
 
 static void integrate(Curve *c, int side, lag_action_integral *out) {
-  enum { PLACES = 64, LEAST = 16, MOST = 1024 };
+  enum { PLACES = 64, LEAST = 16 };
   for (int k = 1; k < PLACES && !out->why_not; k++) out->why_not = reason_at(c, out->low + (out->high - out->low) * k / PLACES);
   if (out->why_not) return;
-  double ends[NODES_MOST], points[2 * MOST], J = 0, time = 0, doubt = 0, last_J, last_time;
+  double ends[NODES_MOST], points[2 * GAUSS_MOST], sum[2] = {0, 0}, doubt = 0, last_J, last_time;
   Panel panels[2 * NODES_MOST];
   int nodes = find_nodes(c, out->low, out->high, ends), count = 0;
   for (int k = 0; k + 1 < nodes; k++) {
@@ -280,20 +281,20 @@ static void integrate(Curve *c, int side, lag_action_integral *out) {
     panels[count++] = panel_from(c, ends[k + 1], -half, !side && k + 2 == nodes, &doubt);
   }
   out->error = out->time_error = INFINITY;
-  for (int n = LEAST; n <= MOST; n *= 2) {
-    double before = J, time_before = time;
+  for (int n = LEAST; n <= GAUSS_MOST; n *= 2) {
+    const double before = sum[0], time_before = sum[1];
     last_J = out->error, last_time = out->time_error;
-    J = time = 0;
-    lag_gauss_points(n, points, points + MOST);
-    for (int k = 0; k < count; k++) add_panel(c, &panels[k], side, n, points, points + MOST, &J, &time);
+    sum[0] = sum[1] = 0;
+    lag_gauss_points(n, points, points + GAUSS_MOST);
+    for (int k = 0; k < count; k++) add_panel(c, &panels[k], side, n, points, sum);
     if (n == LEAST) continue;
-    out->error = fabs((J - before) / J), out->time_error = fabs((time - time_before) / time);
+    out->error = fabs((sum[0] - before) / sum[0]), out->time_error = fabs((sum[1] - time_before) / sum[1]);
     double worst = fmax(out->error, out->time_error);
     if (worst <= 1024 * DBL_EPSILON || (worst < 1e-9 && worst > fmax(last_J, last_time) / 2)) break; /* rounding of q */
   }
-  out->J = (side ? J : fabs(J)) / (2 * PI);
-  out->time = side ? time : fabs(time);
-  out->time_error += fabs((side ? 1 : 2) * doubt / time);
+  out->J = (side ? sum[0] : fabs(sum[0])) / (2 * PI);
+  out->time = side ? sum[1] : fabs(sum[1]);
+  out->time_error += fabs((side ? 1 : 2) * doubt / sum[1]);
   if (!isfinite(out->time_error)) out->why_not = "it lies on a separatrix, as far as the digits of its start tell: the motion takes for ever";
 }
 

@@ -1,4 +1,4 @@
-/* The hash FNV-1a, 64 bits. */
+/* The hash FNV-1a, 64 bits (G. Fowler, L. C. Noll, K.-P. Vo), in the compiler, too. */
 #pragma once
 
 #include <stddef.h>

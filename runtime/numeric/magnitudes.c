@@ -25,3 +25,8 @@ int lag_worst_residual(int n, const double *residual, const double *terms, doubl
   }
   return which;
 }
+
+int lag_ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}

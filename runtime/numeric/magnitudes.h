@@ -5,6 +5,9 @@
  * those in rad, deg or without a unit. */
 double lag_component_scale(double most, int periodic, const char *unit);
 
+/* Order of doubles, for qsort. */
+int lag_ascending(const void *a, const void *b);
+
 /* Factor from 0.5 to 1.5 of a displacement, different for each i, so that nothing cancels (golden ratio sequence). */
 double lag_uneven(int i);
 

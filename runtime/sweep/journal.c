@@ -71,13 +71,14 @@ static long long length_of_cut_head(const Journal *j, const Head *head) {
   return n >= 0 && n < (off_t)sizeof there && read_all(j->fd, &there, (size_t)n, 0) == 0 && memcmp(&there, head, (size_t)n) == 0 ? n : -1;
 }
 
-int lag_journal_open(Journal *j, const char *path, int resume, uint64_t signature, long long chunks, size_t size, char *why, size_t nwhy) {
-  Head head = {.signature = signature, .chunks = chunks, .size = (int64_t)size, .scalar = sizeof(double)}, there;
-  *j = (Journal){.fd = -1, .chunks = chunks, .size = size, .signature = signature};
+int lag_journal_open(Journal *j, const char *path, int resume, char *why, size_t nwhy) {
+  Head head = {.signature = j->signature, .chunks = j->chunks, .size = (int64_t)j->size, .scalar = sizeof(double)},
+      there;
+  *j = (Journal){.fd = -1, .chunks = j->chunks, .size = j->size, .signature = j->signature};
   memcpy(head.magic, magic, sizeof magic);
   snprintf(j->path, sizeof j->path, "%s", path);
-  j->at = calloc((size_t)chunks + 1, sizeof *j->at);
-  double *row = malloc((size + 1) * sizeof *row);
+  j->at = calloc((size_t)j->chunks + 1, sizeof *j->at);
+  double *row = malloc((j->size + 1) * sizeof *row);
   long long cut = -1;
   int rc = -1;
   why[0] = '\0';

@@ -19,9 +19,10 @@ typedef struct Journal {
   double written, synced; /* clock at the last write, and at the last write to the disk [s] */
 } Journal;
 
-/* Opens the journal at path for a sweep of `chunks` chunks, each of up to `size` numbers. A new one, or with resume 1 one that is there. 0, with
- * why[nwhy] := "", or a note where a file to resume had no run; or -1 with the reason. Free with lag_journal_close, also after an error. */
-int lag_journal_open(Journal *j, const char *path, int resume, uint64_t signature, long long chunks, size_t size, char *why, size_t nwhy);
+/* Opens the journal at path for the sweep that j has: chunks, size, signature. A new one, or with
+ * resume 1 one that is there. 0, with why[nwhy] := "", or a note where a file to resume had no run;
+ * or -1 with the reason. Free with lag_journal_close, also after an error. */
+int lag_journal_open(Journal *j, const char *path, int resume, char *why, size_t nwhy);
 
 /* Adds a chunk: row[n], which is written within a tenth of a second of work, or by lag_journal_flush. -1 with errno set. Not for several threads at once. */
 int lag_journal_put(Journal *j, long long chunk, const double *row, size_t n);

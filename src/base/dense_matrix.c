@@ -207,43 +207,42 @@ DenseRows dense_orthonormal(Arena *a, const DenseRows *from, uint32_t columns) {
   return o;
 }
 
-int dense_invert(Arena *arena, uint32_t n, const long double *a, long double *inverse) {
-  ArenaMark before = arena_mark(arena);
-  size_t w = 2 * (size_t)n;
-  long double *both = ARENA_ARRAY(arena, long double, n * w + 1);
-  uint32_t *pivot = ARENA_ARRAY(arena, uint32_t, n + 1);
-  for (size_t i = 0; i < n; i++) {
-    memcpy(both + i * w, a + i * n, n * sizeof *a);
-    both[i * w + n + i] = 1;
-  }
-  dense_echelon(n, (uint32_t)w, both, 0, pivot);
-  int regular = n == 0 || (pivot[n - 1] == n - 1 && isfinite(dense_largest(a, (size_t)n * n))); /* else a column without a pivot was passed over */
-  for (size_t i = 0; i < n; i++) memcpy(inverse + i * n, both + i * w + n, n * sizeof *inverse);
-  arena_forget(arena, before);
-  return regular;
-}
-
 long double dense_largest(const long double *x, size_t n) {
   long double most = 0;
   for (size_t i = 0; i < n; i++) most = fmaxl(most, fabsl(x[i]));
   return most;
 }
 
-int dense_solve_rows(Arena *a, uint32_t n, const long double *m, uint32_t count, long double *rows) {
-  ArenaMark before = arena_mark(a);
+/* The solutions X of m X = B, row i of them at [i * (n + count)]; column k of B is rows[k * n ..],
+ * without rows of the identity. NULL: m is singular. */
+static const long double *solve_beside(Arena *a, uint32_t n, const long double *m, uint32_t count,
+                                       const long double *rows, long double tolerance) {
   size_t w = (size_t)n + count;
-  long double *both = ARENA_ARRAY(a, long double, n * w);
-  uint32_t *pivot = ARENA_ARRAY(a, uint32_t, n);
+  long double *both = ARENA_ARRAY(a, long double, n * w + 1);
+  uint32_t *pivot = ARENA_ARRAY(a, uint32_t, n + 1);
   for (size_t i = 0; i < n; i++) {
     memcpy(both + i * w, m + i * n, n * sizeof *m);
-    for (size_t k = 0; k < count; k++) both[i * w + n + k] = rows[k * n + i];
+    for (size_t k = 0; k < count; k++) both[i * w + n + k] = rows ? rows[k * n + i] : i == k;
   }
-  dense_echelon(n, (uint32_t)w, both, 1e-13L * dense_largest(m, (size_t)n * n), pivot);
-  int regular = 1;
-  for (size_t i = 0; i < n; i++) {
-    regular = regular && pivot[i] == i && both[i * w + i] != 0;
-    for (size_t k = 0; k < count && regular; k++) rows[k * n + i] = both[i * w + n + k];
-  }
+  uint32_t rank = dense_echelon(n, (uint32_t)w, both, tolerance, pivot);
+  for (uint32_t i = 0; i < n; i++)
+    if (rank < n || pivot[i] != i) return NULL; /* a column without a pivot was passed over */
+  return isfinite(dense_largest(m, (size_t)n * n)) ? both + n : NULL;
+}
+
+int dense_invert(Arena *arena, uint32_t n, const long double *a, long double *inverse) {
+  ArenaMark before = arena_mark(arena);
+  const long double *x = solve_beside(arena, n, a, n, NULL, 0);
+  for (size_t i = 0; i < n && x; i++) memcpy(inverse + i * n, x + i * 2 * n, n * sizeof *inverse);
+  arena_forget(arena, before);
+  return x != NULL;
+}
+
+int dense_solve_rows(Arena *a, uint32_t n, const long double *m, uint32_t count, long double *rows) {
+  ArenaMark before = arena_mark(a);
+  const long double *x = solve_beside(a, n, m, count, rows, 1e-13L * dense_largest(m, (size_t)n * n));
+  for (size_t i = 0; i < n && x; i++)
+    for (size_t k = 0; k < count; k++) rows[k * n + i] = x[i * ((size_t)n + count) + k];
   arena_forget(a, before);
-  return regular;
+  return x != NULL;
 }

@@ -21,7 +21,7 @@ Interner *interner_new(Arena *a) {
 }
 
 Name intern_n(Interner *in, const char *s, size_t n) {
-  uint64_t h = hash_bytes(FNV1A_START, s, n);
+  uint64_t h = lag_fnv1a(LAG_FNV1A_START, s, n);
   uint32_t hash = (uint32_t)(h ^ h >> 32), slot = idtable_start(&in->table, hash), id;
   while (idtable_next(&in->table, hash, &slot, &id)) {
     Name known = in->names.at[id];

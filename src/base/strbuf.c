@@ -55,3 +55,15 @@ void sb_visible(StrBuf *b, const char *s, size_t n, const char *keep) {
     }
   }
 }
+
+void sb_json(StrBuf *b, const char *text) {
+  StrBuf visible = strbuf(b->arena);
+  sb_visible(&visible, text, strlen(text), "\n\t");
+  sb_putc(b, '"');
+  for (const char *s = sb_text(&visible); *s; s++) {
+    if (*s == '"' || *s == '\\') sb_printf(b, "\\%c", *s);
+    else if ((unsigned char)*s < 0x20) sb_printf(b, "\\u%04x", (unsigned)*s);
+    else sb_putc(b, *s);
+  }
+  sb_putc(b, '"');
+}

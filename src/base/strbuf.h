@@ -18,5 +18,8 @@ void sb_printf(StrBuf *b, const char *fmt, ...) __attribute__((format(printf, 2,
 /* Appends s[n] with control characters and characters that reverse the direction of text shown as <U+202E>, except those of `keep`. */
 void sb_visible(StrBuf *b, const char *s, size_t n, const char *keep);
 
+/* Appends the text as a string of JSON, in quotes. */
+void sb_json(StrBuf *b, const char *text);
+
 /* The text; "" when it is empty. */
 const char *sb_text(const StrBuf *b);

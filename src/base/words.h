@@ -10,6 +10,8 @@ int has_word(const char *words, const char *word);
 /* Word i of `words`, or NULL. */
 const char *word_at(Arena *a, const char *words, size_t i);
 
+static inline int is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
 /* Ending of a noun after the number n. */
 static inline const char *plural(unsigned long n) { return n == 1 ? "" : "s"; }
 

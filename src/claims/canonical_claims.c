@@ -3,12 +3,12 @@
 #include "claims/expect.h"
 
 #include "base/words.h"
+#include "phase_space/canonical_map.h"
 #include "sym/diff.h"
 #include "sym/jump.h"
 #include "sym/print.h"
 #include "sym/prove.h"
 #include "sym/simplify.h"
-#include "symmetry/canonical_map.h"
 #include "symmetry/charges.h"
 
 typedef struct {
@@ -28,11 +28,8 @@ typedef struct {
 
 static const char *text_of(const Claims *k, Expr x) {
   enum { LONGEST = 200 };
-  StrBuf b = strbuf(k->arena);
   uint32_t distinct;
-  if (expr_tree_size(k->g, x, &distinct) > LONGEST) return NULL;
-  expr_print(k->g, x, PRINT_TEXT, &b);
-  return sb_text(&b);
+  return expr_tree_size(k->g, x, &distinct) > LONGEST ? NULL : expr_text(k->g, x);
 }
 
 /* Left = right at all states; otherwise reported. label: "{Q, P}"; shown: its value, or 0. */

@@ -28,12 +28,6 @@ typedef struct {
   const Features *features;
 } CauseSearch;
 
-static const char *text_of(const CauseSearch *s, Expr e) {
-  StrBuf b = strbuf(s->arena);
-  expr_print(s->g, e, PRINT_TEXT, &b);
-  return sb_text(&b);
-}
-
 /* A change of the derived value is an explanation of its difference only if it leaves no more than rounding explains, and is itself more than that
  * wherever the value differs. 0: it is none. */
 static int fits(Real change, Real difference, Real bound) {
@@ -199,10 +193,11 @@ static void consider_term(CauseSearch *s, Expr term, const Lack *lack, Cause *be
   if (!missing && !factor.e) return;
   Expr now = missing ? term : expr_mul(s->g, term, factor.e);
   if (!missing && (is_circular(s, now, accelerations_in(s, term), lack) || !is_lack(s, expr_sub(s->g, now, term), lack))) return;
-  const char *text = text_of(s, term);
+  const char *text = expr_text(s->g, term);
   if (missing) consider(best, 0, arena_printf(s->arena, "it lacks `%s`", text));
   else if (is_minus_one(s, factor.e)) consider(best, 1, arena_printf(s->arena, "it has `%s` with the opposite sign", text));
-  else consider(best, 1 + factor.size, arena_printf(s->arena, "it has `%s` in place of `%s`", text_of(s, now), text));
+  else consider(best, 1 + factor.size, arena_printf(s->arena, "it has `%s` in place of `%s`", expr_text(s->g, now),
+                                                    text));
 }
 
 /* The change of one term, or a term too many; else the change of two terms that were written as a product with a sum. */
@@ -211,7 +206,7 @@ static const char *changed_term(CauseSearch *s, const Exprs *terms, const Lack *
   for (uint32_t k = 0; k < terms->n; k++) consider_term(s, terms->at[k], lack, &best);
   Monomial more = features_fit(s->features, lack->value);
   if (more.e && !is_circular(s, more.e, 0, lack) && is_lack(s, more.e, lack))
-    consider(&best, COST_MORE, arena_printf(s->arena, "it has one more term, `%s`", text_of(s, more.e)));
+    consider(&best, COST_MORE, arena_printf(s->arena, "it has one more term, `%s`", expr_text(s->g, more.e)));
   for (uint32_t k = 0; k < terms->n && terms->n <= PAIRS_MAX && !best.text; k++)
     for (uint32_t j = 0; j < k; j++)
       if (accelerations_in(s, terms->at[j]) == accelerations_in(s, terms->at[k])) consider_term(s, expr_add(s->g, terms->at[j], terms->at[k]), lack, &best);
@@ -266,7 +261,8 @@ static const char *cause_in_factor(CauseSearch *s, uint32_t i) {
   values_of(s, factor.e, value);
   for (uint32_t n = 0; n < FEATURE_STATES; n++)
     if (!fits((value[n] - 1) * (s->d->rate[n][s->nq + i] - lack.value[n]), lack.value[n], lack.bound[n])) return NULL;
-  return is_minus_one(s, factor.e) ? "the sign is the opposite one" : arena_printf(s->arena, "there is a factor `%s` too many", text_of(s, factor.e));
+  if (is_minus_one(s, factor.e)) return "the sign is the opposite one";
+  return arena_printf(s->arena, "there is a factor `%s` too many", expr_text(s->g, factor.e));
 }
 
 /* q''_i = N/det M of two coupled equations: a term of the numerator N, or (`below`) of the determinant. */

@@ -4,7 +4,7 @@
 
 #include "claims/case_proofs.h"
 #include "symmetry/charges.h"
-#include "symmetry/expression_brackets.h"
+#include "phase_space/expression_brackets.h"
 #include "claims/suggest_correction.h"
 #include "claims/counterexample.h"
 

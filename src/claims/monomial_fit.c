@@ -1,10 +1,13 @@
-/* Logarithms make a monomial a linear combination of its features' logarithms: found by least squares over more states than features, and accepted
- * only with integer coefficients and no remainder. Orthogonalisation by modified Gram-Schmidt, each vector twice (Bjorck 1996, Numerical Methods for
- * Least Squares Problems, section 2.4). */
+/* Logarithms make a monomial a linear combination of its features' logarithms: found by least
+ * squares over more states than features, and accepted only with integer coefficients and no
+ * remainder. By orthogonalisation (Bjorck 1996, Numerical Methods for Least Squares Problems,
+ * section 2.4). */
 #include "claims/monomial_fit.h"
 
 #include <float.h>
 #include <math.h>
+
+#include "base/dense_matrix.h"
 
 enum { COLUMNS = FEATURES_MAX + 1, EXPONENT_MAX = 8 };
 
@@ -23,14 +26,11 @@ static long double dot(const long double *a, const long double *b) {
   return s;
 }
 
-/* Takes the part along q[0 .. n-1] out of v; coefficients are added to c. */
-static void project_out(const Features *f, uint32_t n, long double *v, long double *c) {
-  for (int pass = 0; pass < 2; pass++)
-    for (uint32_t k = 0; k < n; k++) {
-      long double along = dot(f->q[k], v);
-      c[k] += along;
-      for (int i = 0; i < FEATURE_STATES; i++) v[i] -= along * f->q[k][i];
-    }
+/* c[n] := parts of v along q[0 .. n-1]; v := its direction across them. Returns the length of the part across. */
+static long double split(const Features *f, uint32_t n, long double *v, long double *c) {
+  long double length = sqrtl(dot(v, v));
+  for (uint32_t k = 0; k < n; k++) c[k] = dot(f->q[k], v);
+  return length * dense_gram_schmidt(FEATURE_STATES, v, f->q[0], n);
 }
 
 /* Adds a column, unless it depends on those before. */
@@ -42,13 +42,12 @@ static void add_column(Features *f, Expr feature, const long double *values) {
     if (!isfinite(v[i])) return;
   }
   long double before = sqrtl(dot(v, v));
-  project_out(f, n, v, c);
-  long double norm = sqrtl(dot(v, v));
+  long double norm = split(f, n, v, c);
   if (!(norm > 1e-9L * before)) return;
   for (uint32_t k = 0; k < n; k++) f->r[k][n] = c[k];
   f->r[n][n] = norm;
   for (int i = 0; i < FEATURE_STATES; i++) {
-    f->q[n][i] = v[i] / norm;
+    f->q[n][i] = v[i];
     f->value[n][i] = values[i];
   }
   f->feature[n] = feature;
@@ -91,8 +90,7 @@ static int exponents(const Features *f, const long double *values, int *e) {
     v[i] = logl(fabsl(values[i]));
     if (!isfinite(v[i])) return 0;
   }
-  project_out(f, f->n, v, c);
-  if (sqrtl(dot(v, v)) > 1e-7L) return 0;
+  if (split(f, f->n, v, c) > 1e-7L) return 0;
   for (uint32_t k = f->n; k-- > 1;) {
     for (uint32_t j = k + 1; j < f->n; j++) c[k] -= f->r[k][j] * (long double)e[j];
     long double x = c[k] / f->r[k][k], whole = roundl(x);

@@ -1,10 +1,10 @@
 /* Walks each side from its root down and gives every operand its role. Values with an edit come from those of the nodes beside the way up. */
 #include "claims/mutation_sites.h"
 
+#include "base/words.h"
+
 static int is_product(AstKind k) { return k == AST_MUL || k == AST_DIV; }
 int ast_is_sum(AstKind k) { return k == AST_ADD || k == AST_SUB; }
-
-static int blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 /* The span s with the parentheses around it, if any (one pair, and not a call's). */
 static Span with_parentheses(const Model *m, Span s) {
@@ -12,8 +12,8 @@ static Span with_parentheses(const Model *m, Span s) {
   if (!p.file) return s;
   const char *text = p.file->text;
   uint32_t b = s.begin - p.file->base, e = s.end - p.file->base;
-  while (b > 0 && blank(text[b - 1])) b--;
-  while (e < p.file->len && blank(text[e])) e++;
+  while (b > 0 && is_space(text[b - 1])) b--;
+  while (e < p.file->len && is_space(text[e])) e++;
   if (b == 0 || text[b - 1] != '(' || text[e] != ')') return s;
   return (Span){b - 1 + p.file->base, e + 1 + p.file->base};
 }

@@ -164,12 +164,6 @@ static const Features *gather_features(EditSearch *md) {
 
 /* --- guesses --- */
 
-static const char *text_of(const EditSearch *md, Expr e) {
-  StrBuf b = strbuf(md->arena);
-  expr_print(md->g, e, PRINT_TEXT, &b);
-  return sb_text(&b);
-}
-
 static const AstExpr *ast_of(const EditSearch *md, const Site *s) { return ast_expr(md->m->ast, s->node); }
 
 static void guess(EditSearch *md, const Site *s, Expr with, double cost, Span caret, const char *edit) {
@@ -221,7 +215,7 @@ static void guess_number(EditSearch *md, const Site *s, const char *text, Expr r
     return;
   }
   Guess *g = guess_text(md, s, with, COST_SLIP + (num_sign(n) < 0), number->span,
-                        arena_printf(md->arena, "`%s` should be", text), text_of(md, shown));
+                        arena_printf(md->arena, "`%s` should be", text), expr_text(md->g, shown));
   g->caret = s->span;
   if (x != number) g->after = arena_printf(md->arena, " [%s]", x->unit.text);
 }
@@ -247,7 +241,7 @@ static void guess_power(EditSearch *md, const Site *s, const char *text, const N
             arena_printf(md->arena, "the exponent `%s` should not be there", old));
     else
       guess_text(md, s, with, COST_SLIP, exponent->span, arena_printf(md->arena, "the exponent `%s` should be", old),
-                 text_of(md, shown));
+                 expr_text(md->g, shown));
     return;
   }
   int product = s->role == SITE_FACTOR || s->role == SITE_DIVISOR;
@@ -256,7 +250,7 @@ static void guess_power(EditSearch *md, const Site *s, const char *text, const N
     guess(md, s, with, COST_INVERSE, s->with_op, arena_printf(md->arena, "`%s` %s", text, how));
   }
   if (s->role == SITE_BASE || num_sign(n) <= 0) return;
-  const char *power = text_of(md, expr_num(md->g, n)), *whole = num_is_int(n) ? "^%s" : "^(%s)";
+  const char *power = expr_text(md->g, expr_num(md->g, n)), *whole = num_is_int(n) ? "^%s" : "^(%s)";
   int alone = x->kind == AST_NAME || x->kind == AST_CALL || x->kind == AST_PRIME || x->kind == AST_MEMBER ||
               x->kind == AST_INDEX || s->span.begin < x->span.begin;
   guess_text(md, s, with, COST_POWER, s->span, arena_printf(md->arena, "`%s` should be", text),
@@ -294,7 +288,7 @@ static void guess_factor(EditSearch *md, const Site *s, const char *text, const 
   int alone = s->role == SITE_ROOT && !s->side && expr_op(md->g, s->value) == EX_SYM, number = is_number(md, missing);
   if (s->role == SITE_FACTOR || alone || missing->size > (missing->mixed ? MOST_MIXED : MOST)) return;
   Expr shown = missing->divisor ? missing->divisor : missing->e;
-  const char *what = missing->divisor ? "divisor" : "factor", *formula = text_of(md, shown);
+  const char *what = missing->divisor ? "divisor" : "factor", *formula = expr_text(md->g, shown);
   if (!printed_says(md->m, formula, shown)) return;
   double cost = (number ? COST_SCALE + (expr_number(md->g, missing->e).den == 1 ? 0 : 0.2) : COST_VALUE + COST_FACTOR * missing->size) + cost_of_place(md, s);
   guess(md, s, expr_mul(md->g, s->value, missing->e), cost, s->span, arena_printf(md->arena, "`%s` lacks the %s `%s`", text, what, formula));
@@ -303,14 +297,14 @@ static void guess_factor(EditSearch *md, const Site *s, const char *text, const 
 static void guess_term(EditSearch *md, const Site *s, const char *text, const Monomial *missing) {
   int is_sum = ast_is_sum(ast_of(md, s)->kind);
   if (!is_sum && s->role == SITE_TERM) return;
-  if (!printed_says(md->m, text_of(md, missing->e), missing->e)) return;
-  const char *edit = arena_printf(md->arena, "`%s` lacks the term `%s`", text, text_of(md, missing->e));
+  if (!printed_says(md->m, expr_text(md->g, missing->e), missing->e)) return;
+  const char *edit = arena_printf(md->arena, "`%s` lacks the term `%s`", text, expr_text(md->g, missing->e));
   guess(md, s, expr_add(md->g, s->value, missing->e), COST_VALUE + COST_FACTOR * missing->size + (is_sum ? 0 : 0.1), ast_of(md, s)->span, edit);
 }
 
 static void guess_replacement(EditSearch *md, const Site *s, Expr with, double cost, Span caret) {
   const char *was = short_text(md->m->ast, caret);
-  guess_text(md, s, with, cost, caret, arena_printf(md->arena, "`%s` should be", was), text_of(md, with));
+  guess_text(md, s, with, cost, caret, arena_printf(md->arena, "`%s` should be", was), expr_text(md->g, with));
 }
 
 /* The argument of a function, or a single term of it, should be another. */

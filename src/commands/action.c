@@ -3,8 +3,8 @@
 
 #include <math.h>
 
+#include "phase_space/action_variables.h"
 #include "sym/print.h"
-#include "symmetry/action_variables.h"
 #include "symmetry/charges.h"
 #include "symmetry/find_symmetries.h"
 

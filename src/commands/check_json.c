@@ -6,23 +6,10 @@
 #include "sym/print.h"
 #include "symmetry/charges.h"
 
-static void put_string(StrBuf *out, const char *text) {
-  StrBuf visible = strbuf(out->arena);
-  sb_visible(&visible, text, strlen(text), "\n\t");
-  const char *s = sb_text(&visible);
-  sb_putc(out, '"');
-  for (; *s; s++) {
-    if (*s == '"' || *s == '\\') sb_printf(out, "\\%c", *s);
-    else if ((unsigned char)*s < 0x20) sb_printf(out, "\\u%04x", (unsigned)*s);
-    else sb_putc(out, *s);
-  }
-  sb_putc(out, '"');
-}
-
 /* "name": "text", or null; a comma stands before it. */
 static void put_member(StrBuf *out, const char *name, const char *text) {
   sb_printf(out, ", \"%s\": ", name);
-  if (text) put_string(out, text);
+  if (text) sb_json(out, text);
   else sb_puts(out, "null");
 }
 
@@ -56,19 +43,19 @@ void check_json_facts(Compiler *c, const Eqns *e) {
 void check_json_report(Compiler *c, const StrBuf *lines) {
   for (const char *s = sb_text(lines), *next; *s; s = next + (*next == '\n')) {
     next = s + strcspn(s, "\n");
-    put_string(begin(c, JSON_REPORT), arena_strndup(c->arena, s, (size_t)(next - s)));
+    sb_json(begin(c, JSON_REPORT), arena_strndup(c->arena, s, (size_t)(next - s)));
   }
 }
 
 void check_json_scene(Compiler *c, const char *kind, Name name, const Model *m, int ok) {
   StrBuf *out = begin(c, JSON_SCENES);
   sb_puts(out, "{\"name\": ");
-  put_string(out, name);
+  sb_json(out, name);
   put_member(out, "kind", kind);
   sb_printf(out, ", \"ok\": %s, \"effects\": [", ok ? "true" : "false");
   for (uint32_t i = 0; m && i < m->effects.n; i++) {
     sb_puts(out, i ? ", " : "");
-    put_string(out, m->effects.at[i]);
+    sb_json(out, m->effects.at[i]);
   }
   sb_puts(out, "]}");
 }
@@ -78,13 +65,13 @@ void check_json_symmetries(Compiler *c, const Eqns *e, Name effect) {
   for (uint32_t i = 1; i < e->ncharges; i++) {
     const Charge *x = &e->charges[i];
     if (x->of->effect != effect) continue;
-    StrBuf *out = begin(c, JSON_SYMMETRIES), charge = strbuf(c->arena);
+    StrBuf *out = begin(c, JSON_SYMMETRIES);
     sb_puts(out, "{\"name\": ");
-    put_string(out, x->name);
+    sb_json(out, x->name);
     put_span(out, c->sources, x->of->span);
     put_member(out, "verdict", x->proof.broken ? "false" : x->proof.by_value ? "holds in numbers" : verdicts[x->proof.is]);
-    if (x->proof.charge) expr_print(e->g, x->proof.charge, PRINT_TEXT, &charge);
-    put_member(out, "charge", x->proof.charge && x->proof.is <= INVARIANT_UP_TO_F ? sb_text(&charge) : NULL);
+    int known = x->proof.charge && x->proof.is <= INVARIANT_UP_TO_F;
+    put_member(out, "charge", known ? expr_text(e->g, x->proof.charge) : NULL);
     sb_puts(out, "}");
   }
 }
@@ -94,7 +81,7 @@ void check_json_expects(Compiler *c, const ExpectResults *all) {
   for (const ExpectResult *x = all->at; x < all->at + all->n; x++) {
     StrBuf *out = begin(c, JSON_EXPECTS);
     sb_puts(out, "{\"name\": ");
-    put_string(out, x->label);
+    sb_json(out, x->label);
     put_span(out, c->sources, x->span);
     put_member(out, "verdict", verdicts[x->verdict]);
     sb_printf(out, ", \"digits\": %d, \"states\": %d", x->digits, x->states);
@@ -107,9 +94,9 @@ void check_json_expects(Compiler *c, const ExpectResults *all) {
 void check_json_units(Compiler *c, const FoundUnit *at, uint32_t n) {
   for (uint32_t i = 0; i < n; i++) {
     StrBuf *out = begin(c, JSON_UNITS);
-    put_string(out, at[i].name);
+    sb_json(out, at[i].name);
     sb_puts(out, ": ");
-    put_string(out, at[i].unit);
+    sb_json(out, at[i].unit);
   }
 }
 

@@ -140,6 +140,8 @@ static const char *meant_option(const char *arg) {
 static const char *unknown_option(Arena *a, const Options *o, const char *word) {
   const char *value, *arg = arena_printf(a, "%.*s", (int)strcspn(word, "="), word);
   const CommandRow *row = command_find(o->command);
+  if (o->command == CMD_COST && has_word("--method --tol --step", arg))
+    return arena_printf(a, "`lagc cost` has no option `%s`: it runs all methods at many tolerances and steps; --methods NAME,NAME selects some", arg);
   for (size_t i = 0; command_row(i); i++)
     if (option_find(command_row(i)->command, arg, &value))
       return arena_printf(a, "`%s` is an option of `lagc %s`; `lagc help %s` lists those of `lagc %s`", arg, command_row(i)->name, row->name, row->name);
@@ -162,15 +164,22 @@ static const char *unknown_option(Arena *a, const Options *o, const char *word) 
   return arena_printf(a, "`lagc %s` has no option `%s`; `lagc help %s` lists them%s", row->name, arg, row->name, set);
 }
 
-static int read_option(Arena *a, int argc, char **argv, int *i, Options *o, const OptionRow *row, const char *value, const char **error) {
-  const char *arg = argv[*i];
+/* Words of the command line, and the place of the present one. */
+typedef struct {
+  char **at;
+  int n, i;
+} Arguments;
+
+static int read_option(Arena *a, Arguments *words, Options *o, const OptionRow *row, const char *value,
+                       const char **error) {
+  const char *arg = words->at[words->i];
   if (row->takes == TAKES_NOTHING && value) return fail_with(error, arena_printf(a, "%s takes no value", row->name));
   if (row->passed) vec_push(a, &o->rest, arg);
   if (row->takes != TAKES_NOTHING && !value) {
-    const char *next = *i + 1 < argc ? argv[*i + 1] : NULL, *joined;
+    const char *next = words->i + 1 < words->n ? words->at[words->i + 1] : NULL, *joined;
     if (!next || strcmp(next, "-o") == 0 || (strncmp(next, "--", 2) == 0 && option_find(o->command, next, &joined)))
       return fail_with(error, arena_printf(a, "%s needs a value: %s %s", arg, arg, row->value));
-    value = argv[++*i];
+    value = words->at[++words->i];
     if (row->passed) vec_push(a, &o->rest, value);
   }
   int library = o->command == CMD_BUILD && lag_outfile_has_suffix(value ? value : "", "so"); /* --shared may come later: build.c judges */
@@ -210,11 +219,11 @@ static int read_word(Arena *a, const char *arg, Options *o, const char **error) 
 }
 
 static int read_arguments(Arena *a, int argc, char **argv, Options *o, const char **error) {
-  for (int i = 2; i < argc; i++) {
-    const char *arg = argv[i], *value;
+  for (Arguments words = {argv, argc, 2}; words.i < argc; words.i++) {
+    const char *arg = argv[words.i], *value;
     int ok, dash = arg[0] == '-' && arg[1];
     const OptionRow *row = dash ? option_find(o->command, arg, &value) : NULL;
-    if (row) ok = read_option(a, argc, argv, &i, o, row, value, error);
+    if (row) ok = read_option(a, &words, o, row, value, error);
     else if (!dash) ok = read_word(a, arg, o, error);
     else {
       *error = unknown_option(a, o, arg);
@@ -243,11 +252,13 @@ static int read_one_word(Arena *a, int argc, char **argv, Options *o, const char
     o->command = CMD_HELP;
     return 1;
   }
-  if (o->command == CMD_METHODS && arg) return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
+  int takes_none = o->command == CMD_METHODS || (o->command == CMD_MANPAGE && arg && strcmp(arg, "markdown") != 0);
+  if (arg && takes_none)
+    return fail_with(error, arena_printf(a, "one word too many: `%s`; usage: %s", arg, usage(a, o->command)));
   if (o->command == CMD_CACHE && arg) {
     const char *value;
     const OptionRow *row = option_find(o->command, arg, &value);
-    if (row) return read_option(a, argc, argv, &(int){2}, o, row, value, error);
+    if (row) return read_option(a, &(Arguments){argv, argc, 2}, o, row, value, error);
     return fail_with(error, unknown_option(a, o, arg));
   }
   if (o->command == CMD_COMPLETION && (!arg || !has_word("bash zsh fish", arg)))

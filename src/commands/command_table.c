@@ -162,7 +162,7 @@ static const CommandRow commands[] = {
    "  lagc completion fish | source     in ~/.config/fish/config.fish"},
   {CMD_VERSION, "version", NULL, "", NULL, "Prints the version."},
   {CMD_COMPLETE, "complete", NULL, "WORD...", NULL, NULL}, /* for completion scripts: see completion.h */
-  {CMD_MANPAGE, "manpage", NULL, "", NULL, NULL},          /* for `make install` */
+  {CMD_MANPAGE, "manpage", NULL, "[markdown]", NULL, NULL}, /* for `make install`, and for grammar/LANGUAGE.md */
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
@@ -224,6 +224,10 @@ int option_takes_next(Command c, const char *word) {
   const char *joined = NULL;
   const OptionRow *row = option_find(c, word, &joined);
   return row && row->takes != TAKES_NOTHING && !joined;
+}
+
+int option_listed(const OptionRow *o, Command c) {
+  return (o->commands & 1u << c) != 0 && (c == CMD_RUN || !o->passed || !(o->commands & 1u << CMD_RUN));
 }
 
 int option_expert(const OptionRow *o) { return has_word("--math --fix --dump --no-gsl --define --precision", o->name); }

@@ -110,6 +110,9 @@ const OptionRow *option_find(Command c, const char *arg, const char **value);
 /* Whether the word is an option whose value is the next word: in `--method rk4(step=0.01)` the second word is no setting. */
 int option_takes_next(Command c, const char *word);
 
+/* Whether pages list the option with the command: those that are passed on stand at `run`. */
+int option_listed(const OptionRow *o, Command c);
+
 /* Whether the option is for experts: listed by `lagc help expert`, not on the page of each command. */
 int option_expert(const OptionRow *o);
 

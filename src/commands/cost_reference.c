@@ -13,12 +13,13 @@
 
 typedef VEC(char *) Words;
 
-/* The simulator's arguments: the scene, name=value and --until of the command line. Returns 0 if none is needed: --against gives one, --where measures times alone. */
+/* The simulator's arguments: the scene, name=value and --until of the command line. Returns 0 if
+ * none is needed: --against gives one. */
 static int reference_words(Compiler *c, double seconds, Words *argv) {
   vec_push(c->arena, argv, c->picture.argv.at[0]);
   vec_push(c->arena, argv, arena_strdup(c->arena, "--reference"));
   for (uint32_t i = 0; i < c->o.rest.n; i++)
-    if (strcmp(c->o.rest.at[i], "--against") == 0 || strncmp(c->o.rest.at[i], "--against=", 10) == 0 || strcmp(c->o.rest.at[i], "--where") == 0) return 0;
+    if (strcmp(c->o.rest.at[i], "--against") == 0 || strncmp(c->o.rest.at[i], "--against=", 10) == 0) return 0;
   if (c->picture.error && strcmp(c->picture.error, "residual") == 0) return 0;
   OptionTexts words = simulator_values(c);
   for (uint32_t i = 0; i < words.n; i++) vec_push(c->arena, argv, arena_strdup(c->arena, words.at[i]));
@@ -34,8 +35,8 @@ static int reference_words(Compiler *c, double seconds, Words *argv) {
 
 /* The cache's file for what this simulator prints with these words, --seconds apart. */
 static const char *cached_path(Arena *a, const char *simulator, const Words *argv) {
-  uint64_t h = hash_bytes(FNV1A_START, simulator, strlen(simulator) + 1);
-  for (uint32_t i = 0; i + 3 < argv->n; i++) h = hash_bytes(h, argv->at[i], strlen(argv->at[i]) + 1);
+  uint64_t h = lag_fnv1a(LAG_FNV1A_START, simulator, strlen(simulator) + 1);
+  for (uint32_t i = 0; i + 3 < argv->n; i++) h = lag_fnv1a(h, argv->at[i], strlen(argv->at[i]) + 1);
   return arena_printf(a, "%s.%08x", simulator, (unsigned)(h ^ h >> 32));
 }
 

@@ -9,7 +9,7 @@
 #include "emit/cwriter.h"
 #include "lower/lower.h"
 #include "report/equation_listing.h"
-#include "symmetry/expression_brackets.h"
+#include "phase_space/expression_brackets.h"
 #include "syntax/parse.h"
 
 static PrintStyle style_of(const char *format) { return format && strcmp(format, "latex") == 0 ? PRINT_LATEX : PRINT_TEXT; }

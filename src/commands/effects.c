@@ -117,16 +117,6 @@ static void json_number(StrBuf *out, const char *name, double x) {
   else sb_printf(out, ", \"%s\": null", name);
 }
 
-static void json_text(StrBuf *out, const char *text) {
-  sb_putc(out, '"');
-  for (const char *c = text; *c; c++) {
-    if (*c == '"' || *c == '\\') sb_putc(out, '\\');
-    if ((unsigned char)*c < ' ') sb_printf(out, "\\u%04x", (unsigned)(unsigned char)*c);
-    else sb_putc(out, *c);
-  }
-  sb_putc(out, '"');
-}
-
 static void json_names(const EffectStudy *s, EffectSet set, StrBuf *out) {
   EffectList names = effect_names(s, set);
   sb_putc(out, '[');
@@ -149,7 +139,7 @@ static void json_row(const EffectStudy *s, const EffectRow *row, StrBuf *out) {
   json_names(s, row->together, out);
   if (m->why) {
     sb_puts(out, ", \"failed\": ");
-    json_text(out, m->why);
+    sb_json(out, m->why);
   }
   sb_putc(out, '}');
 }
@@ -175,7 +165,7 @@ static void put_json(const EffectStudy *s, StrBuf *out) {
     json_names(s, s->least, out);
     json_number(out, "difference", s->least_difference);
     sb_printf(out, ", \"sets_run\": %u, \"use\": ", s->tried);
-    json_text(out, effect_use_statement(s, s->least));
+    sb_json(out, effect_use_statement(s, s->least));
     sb_putc(out, '}');
   }
   sb_puts(out, "}\n");

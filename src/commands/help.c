@@ -110,7 +110,7 @@ static void put_options(StrBuf *out, Command c) {
   int experts = 0;
   for (size_t i = 0; option_row(i); i++) {
     const OptionRow *o = option_row(i);
-    if (!(o->commands & 1u << c) || (c != CMD_RUN && o->passed && o->commands & 1u << CMD_RUN)) continue;
+    if (!option_listed(o, c)) continue;
     experts |= option_expert(o);
     if (!option_expert(o)) put_option(out, o);
   }

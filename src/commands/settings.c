@@ -3,13 +3,12 @@
 
 #include <string.h>
 
+#include "base/words.h"
 #include "commands/command_table.h"
 #include "commands/const_ranges.h"
 #include "commands/range.h"
 #include "toolchain/files.h"
 #include "syntax/parse.h"
-
-static int is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 const char *text_trimmed(Arena *a, const char *text, size_t n) {
   char *out = arena_alloc(a, n + 1);

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "base/words.h"
+
 /* Columns of text[n]: bytes that begin a character. */
 static size_t width(const char *text, size_t n) {
   size_t w = 0;
@@ -15,8 +17,6 @@ size_t page_columns(const char *text) { return width(text, strlen(text)); }
 static void put_spaces(StrBuf *out, size_t n) {
   while (n--) sb_putc(out, ' ');
 }
-
-static int is_space(char c) { return c == ' ' || c == '\n' || c == '\t'; }
 
 /* inside: between backticks; whole: this code is short enough not to be broken over lines. */
 typedef struct {

@@ -59,12 +59,14 @@ typedef struct {
   double *results;
   Component *component;          /* [ny] */
   int quiet;                     /* a trial of other effects: nothing is printed */
+  const char *path;              /* of the file, absolute */
+  const ProgramSet *program;     /* derived equations */
+  OneRun run;                    /* arguments and results */
 } Verification;
 
 /* ---- the command line ---- */
 
 static int is_identifier(const char *s) {
-  if (!isalpha((unsigned char)*s) && *s != '_') return 0;
   while (isalnum((unsigned char)*s) || *s == '_') s++;
   return !*s;
 }
@@ -74,14 +76,10 @@ static int read_target(Verification *v, const char **error) {
   if (!given) return fail_with(error, "which function? write --against FILE.c:FUNCTION");
   const char *other = colon ? arena_strndup(v->arena, given, (size_t)(colon - given)) : given, *dot = strrchr(other, '.');
   if (dot && has_word(".py .ipynb .m .jl .f .f90 .rs .js .java .nb", dot))
-    return fail_with(
-        error,
-        arena_printf(
-            v->arena,
-            "%s is not C: `lagc verify` compiles and calls a C function; from Python compare with `lagc.load(MODEL).rhs(t, y)`, or write the formula "
-            "into the model: `expect x'' = ...`",
-            other));
-  if (!colon || !is_identifier(colon + 1)) return fail_with(error, arena_printf(v->arena, "--against %s names no function: write FILE.c:FUNCTION", given));
+    return fail_with(error, arena_printf(v->arena, "%s is not C: `lagc verify` compiles and calls a C function; from Python compare with "
+                                                   "`lagc.load(MODEL).rhs(t, y)`, or write the formula into the model: `expect x'' = ...`", other));
+  if (!colon || !colon[1] || isdigit((unsigned char)colon[1]) || !is_identifier(colon + 1))
+    return fail_with(error, arena_printf(v->arena, "--against %s names no function: write FILE.c:FUNCTION", given));
   v->file = arena_strndup(v->arena, given, (size_t)(colon - given));
   v->function = colon + 1;
   return 1;
@@ -229,16 +227,17 @@ static const char *model_text(const Verification *v, const ProgramSet *u, const 
   return sb_text(&b);
 }
 
-/* Builds and runs the program with derived equations in this precision. Returns 0, with *error, if it is not built. */
-static int run_with(Verification *v, const ProgramSet *u, const char *precision, const char *path, FILE *in, FILE *out, int *status, const char **error) {
+/* Builds and runs the program with derived equations in this precision. Returns 0, with run.error,
+ * if it is not built. */
+static int run_with(Verification *v, const char *precision) {
   static const char *const flags[] = {"-std=gnu11", "-Werror=incompatible-pointer-types", "-Werror=int-conversion", "-Werror=implicit-function-declaration", "-Wfatal-errors", NULL};
   Toolchain t;
-  if (!toolchain_find(v->arena, v->c->argv0, 0, &t, error)) return 0;
+  if (!toolchain_find(v->arena, v->c->argv0, 0, &t, &v->run.error)) return 0;
   toolchain_scalar(&t, precision);
-  SourceText texts[] = {{"model.c", model_text(v, u, &t)}, {"against.c", adapter_text(v, path)}};
+  SourceText texts[] = {{"model.c", model_text(v, v->program, &t)}, {"against.c", adapter_text(v, v->path)}};
   t.flags = flags;
   cache_remove_stale_builds(v->arena);
-  return toolchain_run_once(v->arena, &t, texts, 2, in, out, status, error);
+  return toolchain_run_once(v->arena, &t, texts, 2, &v->run);
 }
 
 /* ---- the points ---- */
@@ -371,7 +370,6 @@ static const char *signature(const Verification *v) {
   return sb_text(&b);
 }
 
-/* The name of a rate: of component i of dydt. */
 static const char *rate_name(const Verification *v, uint32_t i) { return arena_printf(v->arena, "%s'", name_of(v, i)); }
 
 static int differs(Verification *v, const char *what, uint32_t k, const char *how) {
@@ -499,14 +497,14 @@ static int report_break(Verification *v, int status, size_t evaluated) {
 
 /* ---- the command ---- */
 
-static int compare(Verification *v, const ProgramSet *u, const char *path, FILE *in, FILE *out) {
-  const char *error = NULL, *precision = "quad";
-  int status = 0;
-  write_points(v, in);
-  if (fflush(in) != 0) return usage_error("cannot write a temporary file");
+static int compare(Verification *v) {
+  const char *precision = "quad";
+  FILE *out = v->run.out;
+  write_points(v, v->run.in);
+  if (fflush(v->run.in) != 0) return usage_error("cannot write a temporary file");
   if (!v->n) return usage_error("no state inside the model's domain was found: declare signs of coordinates and parameters");
-  int built = run_with(v, u, precision, path, in, out, &status, &error);
-  if (!built) built = run_with(v, u, precision = "long", path, in, out, &status, &error);
+  int built = run_with(v, precision) || run_with(v, precision = "long");
+  const char *error = v->run.error;
   if (!built && v->quiet) return STATUS_USAGE;
   if (!built && !strstr(error, " failed:\n")) return usage_error(error);
   if (!built) return usage_error(arena_printf(v->arena, "%s\nthe function is called as %s(t, y, dydt, p), where t is a double, and the others are arrays of doubles; it takes all four, also those that it does not use", error, v->function));
@@ -514,45 +512,40 @@ static int compare(Verification *v, const ProgramSet *u, const char *path, FILE 
   v->results = ARENA_ARRAY(v->arena, double, want * size);
   rewind(out);
   size_t got = fread(v->results, sizeof(double), want * size, out) / size;
-  if (got < want) return v->quiet ? STATUS_RUN : report_break(v, status, got);
-  status = judge_calls(v);
+  if (got < want) return v->quiet ? STATUS_RUN : report_break(v, v->run.status, got);
+  int status = judge_calls(v);
   return status == STATUS_OK ? report(v, precision) : status;
 }
 
 /* The verification by the equations e, whose arguments and results go through temporary files. */
-static int verify_equations(Verification *v, Compiler *c, Eqns *e, const char *path) {
-  ProgramSet *u = compiler_lower_scene(c, e, 1);
-  FILE *in = u ? tmpfile() : NULL, *out = u ? tmpfile() : NULL;
-  int status = !u ? STATUS_MODEL : in && out ? compare(v, u, path, in, out) : usage_error("cannot write a temporary file");
-  if (in) fclose(in);
-  if (out) fclose(out);
+static int verify_equations(Verification *v, Compiler *c, Eqns *e) {
+  OneRun *run = &v->run;
+  if (!(v->program = compiler_lower_scene(c, e, 1))) return STATUS_MODEL;
+  *run = (OneRun){.in = tmpfile(), .out = tmpfile()};
+  int status = run->in && run->out ? compare(v) : usage_error("cannot write a temporary file");
+  if (run->in) fclose(run->in);
+  if (run->out) fclose(run->out);
   return status;
 }
 
 static void prepare(Verification *v, Compiler *c, Eqns *e) {
-  *v = (Verification){.c = c,
-                      .given = v->given,
-                      .quiet = v->quiet,
-                      .e = e,
-                      .m = e->m,
-                      .g = e->g,
-                      .arena = c->arena,
-                      .points = sample_points_new(e),
-                      .nq = e->m->coords.n};
+  *v = (Verification){.c = c, .given = v->given, .quiet = v->quiet, .e = e, .m = e->m, .g = e->g, .arena = c->arena,
+                      .points = sample_points_new(e), .nq = e->m->coords.n};
   v->ny = sample_state_symbols(v->points).n;
   v->np = sample_parameters(v->points).n;
   v->na = v->ny - v->nq;
   v->component = ARENA_ARRAY(c->arena, Component, v->ny + 1);
 }
 
-static int begin(Verification *v, const char **path, const char **error) {
+static int begin(Verification *v, const char **error) {
   const char *why;
   const Source *text;
   if (!read_target(v, error) || !read_map(v, error)) return 0;
   if (!(text = source_read(v->c->sources, v->file, &why))) return fail_with(error, arena_printf(v->arena, "cannot read %s: %s", v->file, why));
   *error = function_missing(v, text->text);
-  *path = file_absolute(v->arena, v->file);
-  if (!*error && (!*path || strpbrk(*path, "\"\\\n"))) *error = arena_printf(v->arena, "%s: C cannot include a file of such a name", v->file);
+  v->path = file_absolute(v->arena, v->file);
+  if (!*error && (!v->path || strpbrk(v->path, "\"\\\n")))
+    *error = arena_printf(v->arena, "%s: C cannot include a file of such a name", v->file);
   return !*error;
 }
 
@@ -568,20 +561,15 @@ static const char *agreeing_effects(Verification *v) {
     EffectSet set = s->graph.n > ALL ? s->variants.at[i] : i;
     EffectList names = effect_names(s, set);
     if (set == s->used || !effect_set_valid(s, set)) continue;
-    Eqns *e = compiler_derive(
-        c,
-        &(ModelChoice){.scene = c->o.scene, .only = &names, .given = c->given.at, .ngiven = c->given.n, .domains = 1});
+    ModelChoice choice = {.scene = c->o.scene, .only = &names, .given = c->given.at, .ngiven = c->given.n, .domains = 1};
+    Eqns *e = compiler_derive(c, &choice);
     Verification other = {.given = v->given, .quiet = 1};
-    const char *path = NULL, *error = NULL;
+    const char *used = effect_names_joined(s, set), *error = NULL;
     if (!e) continue;
     prepare(&other, c, e);
-    if (!other.ny || !begin(&other, &path, &error) || verify_equations(&other, c, e, path) != STATUS_OK) continue;
-    StrBuf b = strbuf(c->arena);
-    for (uint32_t k = 0; k < names.n; k++) sb_printf(&b, "%s%s", k ? ", " : "", names.at[k]);
-    return arena_printf(
-        c->arena,
-        "it agrees with the model %s%s, and the scene `%s` has other effects: compare it with a scene that says `use %s`",
-        names.n ? "with " : "without effects", sb_text(&b), v->m->scene.name, names.n ? sb_text(&b) : "none");
+    if (!other.ny || !begin(&other, &error) || verify_equations(&other, c, e) != STATUS_OK) continue;
+    return arena_printf(c->arena, "it agrees with the model %s%s, and the scene `%s` has other effects: compare it with a scene that says `use %s`",
+                        names.n ? "with " : "without effects", used, v->m->scene.name, names.n ? used : "none");
   }
   return NULL;
 }
@@ -595,7 +583,7 @@ static const char *values_given(Arena *a, const Options *o) {
 
 int command_verify(Compiler *c) {
   if (!HAS_POSIX) return usage_error("`lagc verify` is not for Windows: a function that does not return can be ended on POSIX systems only; WSL is one");
-  const char *error = NULL, *path = NULL, *given = values_given(c->arena, &c->o);
+  const char *error = NULL, *given = values_given(c->arena, &c->o);
   if (!settings_compiled(c->ast, &c->o, 1, &c->given, &error)) return error ? usage_error(error) : STATUS_MODEL;
   if (c->o.rest.n) return usage_error(arena_printf(c->arena, "%s has no value: write name=value", c->o.rest.at[0]));
   Eqns *e = compiler_derive(c, &(ModelChoice){.scene = c->o.scene, .given = c->given.at, .ngiven = c->given.n, .domains = 1});
@@ -607,6 +595,6 @@ int command_verify(Compiler *c) {
     return usage_error(arena_printf(c->arena, "a function is compared with one set of equations, and those change where `%s` begins to hold: compare models with and "
                                     "without that constraint", conditional));
   if (!v.ny) return usage_error("the model has no coordinates and no states: there is nothing to compare");
-  if (!begin(&v, &path, &error)) return usage_error(error);
-  return verify_equations(&v, c, e, path);
+  if (!begin(&v, &error)) return usage_error(error);
+  return verify_equations(&v, c, e);
 }

@@ -101,7 +101,7 @@ int cname_is_library(const char *id) {
 
 CNames cnames_new(Arena *a) { return (CNames){.arena = a, .table = idtable(a, 0)}; }
 
-static uint32_t hash_of(const char *name) { return (uint32_t)hash_bytes(FNV1A_START, name, strlen(name)); }
+static uint32_t hash_of(const char *name) { return (uint32_t)lag_fnv1a(LAG_FNV1A_START, name, strlen(name)); }
 
 /* The entry of a taken name, or NULL. */
 static CName *find(const CNames *c, const char *name) {

@@ -343,7 +343,7 @@ static const char *or_null(uint32_t n, const char *name) { return n ? name : "NU
 
 /* Digest of the equations' C text (FNV-1a, 64 bits, in hexadecimal), by which a saved state is tied to its equations. */
 static const char *digest_text(Arena *a, const char *text) {
-  return arena_printf(a, "%016llx", (unsigned long long)hash_bytes(FNV1A_START, text, strlen(text)));
+  return arena_printf(a, "%016llx", (unsigned long long)lag_fnv1a(LAG_FNV1A_START, text, strlen(text)));
 }
 
 /* Table `curves`: input, number of rows, their width and array of each input that is a table; rates share those of their input. */

@@ -87,7 +87,7 @@ static void write_tables(const ProgramSet *u, StrBuf *out) {
 
 /* 128 bits of hash, written as a UUID is. */
 static const char *token_of(Arena *a, const StrBuf *text) {
-  uint64_t x = hash_bytes(FNV1A_START, text->at, text->n), y = hash_bytes(0x9e3779b97f4a7c15u, text->at, text->n);
+  uint64_t x = lag_fnv1a(LAG_FNV1A_START, text->at, text->n), y = lag_fnv1a(0x9e3779b97f4a7c15u, text->at, text->n);
   return arena_printf(a, "{%08x-%04x-%04x-%04x-%012llx}", (unsigned)(x >> 32), (unsigned)(x >> 16 & 0xffff), (unsigned)(x & 0xffff), (unsigned)(y >> 48),
                       (unsigned long long)(y & 0xffffffffffffu));
 }

@@ -41,7 +41,7 @@ typedef struct {
 /* --- groups --- */
 
 static uint32_t hash_words(const CanonicalForm *t) {
-  uint64_t h = hash_bytes(FNV1A_START, (const char *)t->words.at, t->words.n * sizeof *t->words.at);
+  uint64_t h = lag_fnv1a(LAG_FNV1A_START, (const char *)t->words.at, t->words.n * sizeof *t->words.at);
   return (uint32_t)(h ^ h >> 32);
 }
 

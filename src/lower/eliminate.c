@@ -15,8 +15,6 @@ typedef struct {
   Slot *positive;    /* [n] diagonal entry before elimination, if proved positive by the declared signs; else 0 */
 } Elimination;
 
-static Slot op(const Elimination *y, IrOp o, Slot a, Slot b) { return prog_op(y->l->p, o, a, b); }
-
 void lower_pivot(Lower *l, Slot d, int positive) {
   const Ins *i = &l->p->ins.at[d];
   if (d && i->op == IR_CONST && (num_sign(i->number) > 0 || !positive)) return;
@@ -63,7 +61,7 @@ static void eliminate_coordinate(Elimination *y, uint32_t v) {
   for (uint32_t k = 0; k < row->n; k++) {
     SparseEntry h = row->at[k];
     if (h.col == v) continue;
-    Slot f = op(y, IR_DIV, h.value, d);
+    Slot f = op(y->l, IR_DIV, h.value, d);
     if (h.col < y->s->n) prog_name(y->l->p, f, lower_numbered(y->l, "L", v, h.col));
     for (uint32_t j = 0; j < below->n; j++) { /* earlier entries of the column */
       SparseEntry g = below->at[j];
@@ -84,8 +82,8 @@ typedef struct {
 static void step_entries(Elimination *y, const SparseRow *row, const SparseRow *c, Slot h, uint32_t v, uint32_t *n, StepEntry *at) {
   *n = 0;
   for (uint32_t i = 0; i < c->n; i++) {
-    Slot hc = op(y, IR_MUL, h, c->at[i].value), r = sparse_get(&y->H, v, c->at[i].col);
-    at[(*n)++] = (StepEntry){c->at[i].col, c->at[i].value, r, op(y, IR_ADD, r, hc)};
+    Slot hc = op(y->l, IR_MUL, h, c->at[i].value), r = sparse_get(&y->H, v, c->at[i].col);
+    at[(*n)++] = (StepEntry){c->at[i].col, c->at[i].value, r, op(y->l, IR_ADD, r, hc)};
   }
   for (uint32_t k = 0; k < row->n; k++) {
     uint32_t col = row->at[k].col, inside = 0;
@@ -107,7 +105,7 @@ static void eliminate_definition(Elimination *y, uint32_t v) {
   step_entries(y, row, c, sparse_get(&y->H, v, v), v, &n, at);
   for (uint32_t i = 0; i < c->n; i++) { /* at[c->n] and later have c = 0 */
     const StepEntry *s = &at[i];
-    Slot twice = op(y, IR_ADD, s->y, s->r);
+    Slot twice = op(y->l, IR_ADD, s->y, s->r);
     add_product(y, s, s, s->c, twice);
     for (uint32_t k = 0; k < n; k++) {
       const StepEntry *t = &at[k];

@@ -12,8 +12,6 @@ typedef struct {
   SparseRow *below;  /* [n] the columns of L below the diagonal */
 } Gram;
 
-static Slot op(const Gram *y, IrOp o, Slot a, Slot b) { return prog_op(y->l->p, o, a, b); }
-
 /* Inner product sum over k of weighted[k] W[k][u]. */
 static Slot product(const Gram *y, const Slot *weighted, uint32_t u) {
   Slot sum = 0;
@@ -24,13 +22,14 @@ static Slot product(const Gram *y, const Slot *weighted, uint32_t u) {
 /* Gram-Schmidt step for column v: subtracts from the columns in `later`, and from b, their parts along v. */
 static void orthogonalise_by(Gram *y, uint32_t v, const uint32_t *later, uint32_t nlater) {
   Slot *weighted = ARENA_ARRAY(y->l->p->arena, Slot, y->s->n);
-  for (uint32_t k = 0; k < y->s->n; k++) weighted[k] = op(y, IR_MUL, lower_slot(y->l, y->s->weight[k]), y->w[k * y->n + v]);
+  for (uint32_t k = 0; k < y->s->n; k++) weighted[k] = op(y->l, IR_MUL, lower_slot(y->l, y->s->weight[k]),
+                                                          y->w[k * y->n + v]);
   Slot d = y->pivot[v] = product(y, weighted, v);
   prog_name(y->l->p, d, lower_numbered(y->l, "D", v, UINT32_MAX));
   lower_pivot(y->l, d, 1);
   for (uint32_t i = 0; i < nlater; i++) {
     uint32_t u = later[i];
-    Slot f = op(y, IR_DIV, product(y, weighted, u), d);
+    Slot f = op(y->l, IR_DIV, product(y, weighted, u), d);
     if (!f) continue;
     prog_name(y->l->p, f, lower_numbered(y->l, "L", v, u));
     for (uint32_t k = 0; k < y->s->n; k++) y->w[k * y->n + u] = prog_sub_product(y->l->p, y->w[k * y->n + u], f, y->w[k * y->n + v]);

@@ -5,7 +5,6 @@
 #include "lower/lower_impl.h"
 #include "mech/switches.h"
 
-static Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
 static Slot select(Lower *l, Slot c, Slot a, Slot b) { return prog_ins(l->p, (Ins){.op = IR_SELECT, .a = c, .b = a, .c = b}); }
 
 static Slot load_mode(Lower *l, const Switch *s) {

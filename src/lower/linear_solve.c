@@ -128,8 +128,6 @@ static uint32_t make_blocks(Lower *l, const RightHandSides *s, Block **blocks) {
 
 /* --- one coordinate, two, and loops --- */
 
-static Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
-
 static void solve_one(Lower *l, const Block *b, Slot *x) {
   Expr M = eqns_mass(l->e, b->at[0], b->at[0]);
   if (expr_sign(l->g, M) != SIGN_POSITIVE) lower_pivot(l, b->M[0], 0);

@@ -11,8 +11,6 @@
 /* --- numbers and powers --- */
 
 static Slot number(Lower *l, Num n) { return prog_num(l->p, n); }
-static Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
-
 Slot lower_slot(const Lower *l, Expr e) { return expr_map_get(&l->slots, e) - 1; }
 
 static Slot power_int(Lower *l, Slot x, int64_t n) {

@@ -19,6 +19,8 @@ typedef struct {
   Slot *multipliers; /* [number of constraints], set by lower_solution */
 } Lower;
 
+static inline Slot op(Lower *l, IrOp o, Slot a, Slot b) { return prog_op(l->p, o, a, b); }
+
 Lower lower_new(const Eqns *e);
 
 /* Lowers the roots and all nodes below them; lower_slot then gives their slots. */

@@ -150,11 +150,10 @@ static void add_sizes(ProgramSet *u, const Eqns *e, int moving) {
     const ModelSize *s = &e->sizes.at[i];
     if (s->moves != moving) continue;
     u->nmoving += moving != 0;
-    StrBuf what = strbuf(u->arena), text = strbuf(u->arena);
+    StrBuf what = strbuf(u->arena);
     for (const char *c = s->what; *c; c++)
       if (*c != '`') sb_putc(&what, *c);
-    expr_print(e->g, s->value, PRINT_TEXT, &text);
-    vec_push(u->arena, &u->sizes, ((IrSize){sb_text(&what), sb_text(&text), s->open, s->part}));
+    vec_push(u->arena, &u->sizes, ((IrSize){sb_text(&what), expr_text(e->g, s->value), s->open, s->part}));
   }
   *(moving ? &u->moving_sizes : &u->size_values) = lower_sizes(e, moving);
 }
@@ -282,17 +281,15 @@ static int outputs_derive(const Eqns *e) {
   return !(kinds & 1u << SYM_MULTIPLIER);
 }
 
-static void add_by_inputs(ProgramSet *u, Eqns *e) {
-  Partials dr = eqns_partials(e, BY_INPUTS);
-  u->by_inputs = lower_linear(e, dr, BY_INPUTS);
-  for (uint32_t k = 0; k < dr.n; k++) vec_push(u->arena, &u->by_inputs_dr, ((IrEntry){dr.at[k].row, dr.at[k].col}));
-  note_mass(u, e);
-}
-
-static void add_by_params(ProgramSet *u, Eqns *e) {
-  Partials dr = eqns_partials(e, BY_PARAMS);
-  u->by_params = lower_linear(e, dr, BY_PARAMS);
-  for (uint32_t k = 0; k < dr.n; k++) vec_push(u->arena, &u->by_params_dr, ((IrEntry){dr.at[k].row, dr.at[k].col}));
+/* Adds the derivatives of rates by inputs, or by parameters. */
+static void add_partials(ProgramSet *u, Eqns *e, PartialsBy by) {
+  Partials dr = eqns_partials(e, by);
+  *(by == BY_INPUTS ? &u->by_inputs : &u->by_params) = lower_linear(e, dr, by);
+  for (uint32_t k = 0; k < dr.n; k++) {
+    IrEntry at = {dr.at[k].row, dr.at[k].col};
+    if (by == BY_INPUTS) vec_push(u->arena, &u->by_inputs_dr, at);
+    else vec_push(u->arena, &u->by_params_dr, at);
+  }
   note_mass(u, e);
 }
 
@@ -322,8 +319,8 @@ void unit_require(ProgramSet *u, Eqns *e, unsigned wants) {
   if (fresh & WANT_MASS && e->n) add_mass(u, e);
   if (fresh & WANT_INVERSE && e->n) u->inverse = lower_forces(e, eqns_inverse_dynamics(e));
   int derives = !e->constraints.n || (wants & WANT_CONSTRAINED && !e->m->contacts.n);
-  if (fresh & WANT_BY_INPUTS && e->m->inputs.n && derives) add_by_inputs(u, e);
-  if (fresh & WANT_BY_PARAMS && u->p.n && derives) add_by_params(u, e);
+  if (fresh & WANT_BY_INPUTS && e->m->inputs.n && derives) add_partials(u, e, BY_INPUTS);
+  if (fresh & WANT_BY_PARAMS && u->p.n && derives) add_partials(u, e, BY_PARAMS);
   if (fresh & WANT_OUTPUTS && derives && outputs_derive(e)) add_outputs(u, e);
   if (fresh & WANT_MULTIPLIERS && e->constraints.n) u->multipliers = lower_multipliers(e);
   if (fresh & WANT_LINEAR && derives) add_linear(u, e);

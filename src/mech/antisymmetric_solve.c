@@ -162,21 +162,20 @@ static void solve_by_pfaffians(const SkewSystem *s, const uint32_t *at, uint32_t
   }
 }
 
-int antisymmetric_solve(ExprGraph *g, uint32_t n, Expr *A, Expr *b, Name name, Expr *x, Expr *divisor, uint32_t *left, uint32_t *nleft) {
+int antisymmetric_solve(ExprGraph *g, uint32_t n, Expr *A, Expr *b, Name name, SkewSolution *to) {
   Arena *arena = expr_arena(g);
+  Expr *x = ARENA_ARRAY(arena, Expr, n + 1);
   SkewSystem s = {g, arena, n, A, b, ARENA_ARRAY(arena, uint8_t, n + 1), ARENA_ARRAY(arena, uint32_t, n + 1)};
   uint32_t *pairs = ARENA_ARRAY(arena, uint32_t, n + 2), npairs = 0;
-  for (uint32_t i = 0; i < n; i++) x[i] = 0;
-  *divisor = 0;
+  *to = (SkewSolution){.x = x, .left = ARENA_ARRAY(arena, uint32_t, n + 1)};
   while (find_pair(&s, &pairs[npairs], &pairs[npairs + 1])) {
     eliminate(&s, pairs[npairs], pairs[npairs + 1]);
     npairs += 2;
   }
-  *nleft = 0;
   for (uint32_t i = 0; i < n; i++)
-    if (!s.gone[i]) left[(*nleft)++] = i;
-  if (*nleft > ANTISYMMETRIC_MOST || *nleft % 2) return 0;
-  if (*nleft) solve_by_pfaffians(&s, left, *nleft, name, x, divisor);
+    if (!s.gone[i]) to->left[to->nleft++] = i;
+  if (to->nleft > ANTISYMMETRIC_MOST || to->nleft % 2) return 0;
+  if (to->nleft) solve_by_pfaffians(&s, to->left, to->nleft, name, x, &to->divisor);
   while (npairs) {
     npairs -= 2;
     substitute(&s, pairs[npairs], pairs[npairs + 1], x);

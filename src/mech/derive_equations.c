@@ -144,7 +144,9 @@ static int raised_by_forces_alone(const Eqns *e, unsigned lagrangian) {
   return constraints_do_no_work(e) && (!m->dissipation || dissipation_is_passive(e));
 }
 
-static int is_no_coordinate(const Symbol *s, const void *states) { return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate; }
+int is_no_coordinate(const Symbol *s, const void *states) {
+  return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate;
+}
 
 /* Kinds of symbols in L; coordinates of a model of first order do not count as states. */
 static unsigned kinds_of_lagrangian(const Eqns *e) {

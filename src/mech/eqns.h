@@ -99,8 +99,11 @@ typedef struct {
   int periodic;
 } ActionCurve;
 
+/* Whether the symbol is a state, none of the coordinates of first order; states: Model.states.at. For expr_contains. */
+int is_no_coordinate(const Symbol *s, const void *states);
+
 typedef struct Charge Charge; /* symmetry/charges.h */
-struct BracketValue; /* symmetry/expression_brackets.h */
+struct BracketValue; /* phase_space/expression_brackets.h */
 
 typedef struct {
   const Model *m;

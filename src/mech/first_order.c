@@ -265,20 +265,20 @@ enum { BLOCK_MOST = 200 };
 
 /* Writes the rates of the block's coordinates into rate[]. 0, reported: the block couples too many coordinates. */
 static int solve(FirstOrderBuilder *w, Block *b, Expr *rate) {
-  Expr *x = ARENA_ARRAY(w->arena, Expr, 2 * (size_t)b->n), divisor = 0;
-  uint32_t *left = ARENA_ARRAY(w->arena, uint32_t, 2 * (size_t)b->n), nleft = 0, m = w->to->closed ? b->n : 2 * b->n;
+  SkewSolution by = {0};
+  uint32_t m = w->to->closed ? b->n : 2 * b->n;
   Name name = intern(w->m->ast->names, "Pf");
   if (!w->to->closed) double_block(w, b);
   int many = b->n > BLOCK_MOST;
-  if (many || !antisymmetric_solve(w->g, m, b->A, b->b, name, x, &divisor, left, &nleft)) {
+  if (many || !antisymmetric_solve(w->g, m, b->A, b->b, name, &by)) {
     int all = many || !w->to->closed;
     diag_error(w->m->diags, w->m->lagrangian_span, "not yet: L is linear in the velocities, and its two-form couples too many coordinates: %s",
-               names_of(w, b, all ? NULL : left, all ? b->n : nleft));
+               names_of(w, b, all ? NULL : by.left, all ? b->n : by.nleft));
     diag_help(w->m->diags, "pairs whose entry cannot vanish are eliminated first: declare signs of parameters, `param G = 1 > 0`");
     return 0;
   }
-  for (uint32_t i = 0; i < b->n; i++) rate[b->at[i]] = x[w->to->closed ? i : b->n + i];
-  if (divisor) vec_push(w->arena, &w->divisors, divisor);
+  for (uint32_t i = 0; i < b->n; i++) rate[b->at[i]] = by.x[w->to->closed ? i : b->n + i];
+  if (by.divisor) vec_push(w->arena, &w->divisors, by.divisor);
   return 1;
 }
 

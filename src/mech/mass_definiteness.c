@@ -177,10 +177,9 @@ void mass_warn_nonpositive(const Eqns *e) {
     expr_map_set(&judged, x.e, 1);
     expr_eval(e->g, &x.e, 1, value, &inertia);
     if ((!(inertia < 0) && !(inertia == 0 && !m->constraints.n)) || !may_be_positive(e, x.e)) continue;
-    StrBuf entry = strbuf(m->arena);
-    expr_print(e->g, x.e, PRINT_TEXT, &entry);
     diag_warning(m->diags, m->coords.at[x.row].span, "the values of the parameters make the inertia of `%s` %s", m->coords.at[x.row].name, inertia < 0 ? "negative" : "zero");
-    diag_help(m->diags, "give them values that make %s positive; with `> 0` after a parameter a run refuses others", sb_text(&entry));
+    diag_help(m->diags, "give them values that make %s positive; with `> 0` after a parameter a run refuses others",
+              expr_text(e->g, x.e));
   }
 }
 

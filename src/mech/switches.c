@@ -90,9 +90,8 @@ static void add(const Eqns *e, SwitchList *to, Expr node, Expr side, SwitchKind 
   int sign;
   if (find(e->g, to->at, to->n, side, kind == SWITCH_FLOOR, &sign) < to->n) return;
   Span place = place_of(e, node, side, kind == SWITCH_SPEED);
-  StrBuf surface = strbuf(e->m->arena);
-  expr_print(e->g, side, PRINT_TEXT, &surface);
-  vec_push(e->m->arena, to, ((Switch){side, kind, jumps, grip_of(e, side), place, text_at(e, place), sb_text(&surface)}));
+  vec_push(e->m->arena, to, ((Switch){side, kind, jumps, grip_of(e, side), place, text_at(e, place),
+                                      expr_text(e->g, side)}));
 }
 
 /* Adds surfaces where a direction v/|v| jumps: factors that divide by a nonnegative function of velocities. */

@@ -276,10 +276,11 @@ static Expr condition_margin(Builder *b, const AstStmt *st, Name name, Name effe
   return 0;
 }
 
-/* Adds constraint `part` of `name`, which holds while margin > 0; its components share the events of the first. */
-static void add_conditional(Builder *b, Name name, Name part, Expr c, Dim dim, Expr margin, Span span, const Contact *first) {
+/* Adds constraint `part`, c = 0, which holds while one.margin > 0; its components share the events of the first. */
+static void add_conditional(Builder *b, Contact one, Name part, Expr c, Dim dim, Span span, const Contact *first) {
   Model *m = b->m;
-  Contact one = {.name = name, .margin = margin, .constraint = m->constraints.n};
+  Expr margin = one.margin;
+  one.constraint = m->constraints.n;
   one.closed = add_signal(b, part, "closed", SIGN_NONNEGATIVE, DIM_NONE, span);
   add_scalar_constraint(b, part, expr_mul(b->g, symbol_node(b, one.closed), c), dim, span);
   one.impact = first ? first->impact : add_switched_event(b, &one, "", 0, expr_neg(b->g, margin), span);
@@ -314,7 +315,8 @@ void add_constraint(Builder *b, const AstStmt *st, Name effect) {
     Expr c = expr_sub(b->g, left.at[k], right.at[k]);
     if (!can_be_held(b, c, "constraint", name, st->span)) return;
     Name part = left.n ? intern_printf(b, "%s.%c", name, "xyz"[k]) : name;
-    if (margin) add_conditional(b, name, part, c, dim, margin, st->span, k ? &b->m->contacts.at[from] : NULL);
+    if (margin) add_conditional(b, (Contact){.name = name, .margin = margin}, part, c, dim, st->span,
+                                k ? &b->m->contacts.at[from] : NULL);
     else add_scalar_constraint(b, part, c, dim, st->span);
   }
 }

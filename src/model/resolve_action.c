@@ -1,4 +1,5 @@
-/* `action(x)` in outputs: a symbol for the action variable of a coordinate; symmetry/action_outputs.c finds its curve, a run its value. */
+/* `action(x)` in outputs: a symbol for the action variable of a coordinate;
+ * phase_space/action_outputs.c finds its curve, a run its value. */
 #include "base/words.h"
 #include "model/resolve_impl.h"
 

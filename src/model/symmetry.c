@@ -102,10 +102,11 @@ static int begins_at_identity(const Mapping *p, SymId target, Expr to, Span span
     return diag_error(b->diags, span, "at %s = 0 the symmetry `%s` turns `%s`" HELP
                       "write by how much %s turns it: about an axis of space by `%s -> turn((0, 0, 1), %s)*%s`, about its own by `%s -> %s*turn((0, 0, 1), %s)`",
                       s, p->of->name, turned, s, turned, s, turned, turned, turned, s);
-  StrBuf text = strbuf(b->arena);
-  expr_print(b->g, simplify(b->g, start), PRINT_TEXT, &text);
-  if (v == PROVED_NONZERO) diag_error(b->diags, span, "at %s = 0 the symmetry `%s` maps `%s` to `%s`, not to itself", s, p->of->name, name, sb_text(&text));
-  else diag_error(b->diags, span, "no proof that the symmetry `%s` maps `%s` to itself at %s = 0: the result is `%s`", p->of->name, name, s, sb_text(&text));
+  const char *text = expr_text(b->g, simplify(b->g, start));
+  if (v == PROVED_NONZERO) diag_error(b->diags, span, "at %s = 0 the symmetry `%s` maps `%s` to `%s`, not to itself", s,
+                                      p->of->name, name, text);
+  else diag_error(b->diags, span, "no proof that the symmetry `%s` maps `%s` to itself at %s = 0: the result is `%s`",
+                  p->of->name, name, s, text);
   diag_help(b->diags, "write the transformed value, a function of %s that equals `%s` at 0: `%s -> %s + %s`", s, name, name, name, s);
   return 0;
 }

@@ -1,8 +1,8 @@
 /* The Hamiltonian in the variables of a canonical transformation, as text and as LaTeX. */
+#include "phase_space/canonical_map.h"
 #include "report/equation_listing.h"
 #include "report/listing_text.h"
 #include "sym/simplify.h"
-#include "symmetry/canonical_map.h"
 
 static Expr node(const Text *t, SymId s) { return expr_symbol(t->g, s)->node; }
 

@@ -116,8 +116,17 @@ static Real polynomial(const Real *x, uint32_t columns, uint32_t i, Real s, int 
   return r;
 }
 
-/* Runs the accelerations at the state of the polynomials of degree `orders` at h. */
-static int run_at(Check *c, const Series *s, Real *x, int orders, Real h, const SavedState *kept, Real *a, Real *zd) {
+/* Rows of Taylor coefficients, and the accelerations and rates a, zd of the program at their state
+ * after a step h; behind each the same without the last two terms. */
+typedef struct {
+  const Series *s;
+  Real *x, h, *a, *zd;
+} TaylorStep;
+
+/* Runs the accelerations at the state of the polynomials of degree `orders`, for part 0 or 1 of their room. */
+static int run_at(Check *c, const TaylorStep *y, int orders, const SavedState *kept, int part) {
+  const Series *s = y->s;
+  Real *x = y->x, h = y->h, *a = y->a + (part ? s->nq : 0), *zd = y->zd + (part ? s->nz : 0);
   Real *top = x + (size_t)(orders + 1) * s->columns, *cut = copied(c, top, s->columns * (uint32_t)(ORDERS - orders));
   for (uint32_t i = 0; i < s->columns * (uint32_t)(ORDERS - orders); i++) top[i] = 0;
   for (uint32_t i = 0; i < s->nq; i++) c->q[i] = polynomial(x, s->columns, i, h, 0), c->v[i] = polynomial(x, s->columns, s->nq + i, h, 0);
@@ -142,8 +151,10 @@ static Real taylor_step(const Series *s, const Real *x) {
 
 /* Returns |rate - slope|: rate i of the program at h, and the slope of polynomial i there. *t: the slope with its truncation error,
  * estimated by leaving out two terms; off: rounding error of the rate; *said: the rate. */
-static Real taylor_difference(const Series *s, const Real *x, Real h, uint32_t i, Real off, const Real *a, const Real *zd, BoundedSum *t, Real *said) {
-  const Real *at = i < s->nq ? a + i : zd + (i - s->nq), less = at[i < s->nq ? s->nq : s->nz];
+static Real taylor_difference(const TaylorStep *y, uint32_t i, Real off, BoundedSum *t, Real *said) {
+  const Series *s = y->s;
+  const Real *x = y->x, h = y->h, *at = i < s->nq ? y->a + i : y->zd + (i - s->nq),
+      less = at[i < s->nq ? s->nq : s->nz];
   Real slope = polynomial(x, s->columns, s->nq + i, h, 1), last = fabsl(x[(size_t)ORDERS * s->columns + s->nq + i]) * ORDERS * powl(h, ORDERS - 1);
   Real rounding = 1e12L * jet_unit * fabsl(x[s->nq + i]) / h;
   *t = (BoundedSum){{slope, (fabsl(*at - less) + last) / 1024 + off}, fabsl(slope) + rounding, 0};
@@ -155,18 +166,19 @@ static Real taylor_difference(const Series *s, const Real *x, Real h, uint32_t i
  * truncation. As a step may cross a corner or a jump, a difference counts only if a step 64 times shorter shows it, too. */
 static CheckVerdict check_taylor(Check *c) {
   const Series *s = c->u->taylor;
-  Real *x = ARENA_ARRAY(c->arena, Real, (size_t)s->columns * (ORDERS + 2));
-  Real *a = ARENA_ARRAY(c->arena, Real, 2 * s->nq + 1), *zd = ARENA_ARRAY(c->arena, Real, 2 * s->nz + 1);
+  TaylorStep y = {.s = s, .x = ARENA_ARRAY(c->arena, Real, (size_t)s->columns * (ORDERS + 2)),
+                  .a = ARENA_ARRAY(c->arena, Real, 2 * s->nq + 1),
+                  .zd = ARENA_ARRAY(c->arena, Real, 2 * s->nz + 1)};
   SavedState kept = copy_state(c);
   CheckVerdict v = AGREES;
-  if (!taylor_rows(c, s, x)) return AGREES;
-  Real h = taylor_step(s, x);
-  for (int shorter = 0; shorter < 2; shorter++, h /= 64) {
+  if (!taylor_rows(c, s, y.x)) return AGREES;
+  y.h = taylor_step(s, y.x);
+  for (int shorter = 0; shorter < 2; shorter++, y.h /= 64) {
     int differs = 0;
-    if (!run_at(c, s, x, ORDERS - 2, h, &kept, a + s->nq, zd + s->nz) || !run_at(c, s, x, ORDERS, h, &kept, a, zd)) return AGREES;
+    if (!run_at(c, &y, ORDERS - 2, &kept, 1) || !run_at(c, &y, ORDERS, &kept, 0)) return AGREES;
     for (uint32_t i = 0; i < s->nq + s->nz; i++) {
       BoundedSum t;
-      Real said, difference = taylor_difference(s, x, h, i, i < s->nq ? c->a_error[i] : c->zd_error[i - s->nq], a, zd, &t, &said);
+      Real said, difference = taylor_difference(&y, i, i < s->nq ? c->a_error[i] : c->zd_error[i - s->nq], &t, &said);
       differs |= difference > 64 * 1024 * t.sum.e + 1e-9L * t.size;
       if (shorter) v = worse(v, check_compare(c, &t, said, c->m->span, "the rate from Taylor coefficients of", i < s->nq ? c->m->coords.at[i].name : c->m->states.at[i - s->nq].name));
     }

@@ -289,13 +289,15 @@ Expr normal_poly_expr(Normal *n, Poly p) {
   return expr_add_n(n->g, term, p.n);
 }
 
-Expr normal_expr(Normal *n, Frac a) {
-  Expr e = normal_poly_expr(n, a.num);
+Expr normal_expr_by(Normal *n, Frac a, Expr (*poly_expr)(Normal *n, Poly p)) {
+  Expr e = poly_expr(n, a.num);
   Den d = frac_den(n->field, a.den);
   for (uint32_t i = 0; i < d.n; i++) {
-    Expr factor = normal_poly_expr(n, poly_at(n->ring, d.at[i].factor));
+    Expr factor = poly_expr(n, poly_at(n->ring, d.at[i].factor));
     Expr power = expr_pow_num(n->g, factor, num_int(-(int64_t)d.at[i].exp));
     e = expr_mul(n->g, e, power);
   }
   return e;
 }
+
+Expr normal_expr(Normal *n, Frac a) { return normal_expr_by(n, a, normal_poly_expr); }

@@ -93,3 +93,5 @@ Circular normal_multiple(Normal *n, uint32_t angle, int32_t k);
 Expr normal_mono_expr(Normal *n, MonoId m);
 Expr normal_poly_expr(Normal *n, Poly p);
 Expr normal_expr(Normal *n, Frac a);
+/* The same, with polynomials as poly_expr writes them. */
+Expr normal_expr_by(Normal *n, Frac a, Expr (*poly_expr)(Normal *n, Poly p));

@@ -367,3 +367,9 @@ void name_print(Name name, PrintStyle style, StrBuf *out) {
   else if (strncmp(name, "lambda(", 7) == 0) sb_printf(out, "\\lambda_{\\mathrm{%.*s}}", (int)(n - 8), name + 7); /* a multiplier */
   else latex_name(name, out);
 }
+
+const char *expr_text(ExprGraph *g, Expr e) {
+  StrBuf b = strbuf(expr_arena(g));
+  expr_print(g, e, PRINT_TEXT, &b);
+  return sb_text(&b);
+}

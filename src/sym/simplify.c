@@ -269,17 +269,6 @@ static Expr poly_expr(Normal *n, Poly p) {
 
 /* --- fractions --- */
 
-static Expr frac_expr(Normal *n, Frac a) {
-  Expr e = poly_expr(n, a.num);
-  Den d = frac_den(n->field, a.den);
-  for (uint32_t i = 0; i < d.n; i++) {
-    Expr factor = poly_expr(n, poly_at(n->ring, d.at[i].factor));
-    Expr power = expr_pow_num(n->g, factor, num_int(-(int64_t)d.at[i].exp));
-    e = expr_mul(n->g, e, power);
-  }
-  return e;
-}
-
 typedef struct {
   ExprGraph *g;
   Expr e, result;
@@ -292,7 +281,7 @@ static void work(Arena *scratch, void *data) {
   Frac f;
   if (normal_run(n, &t->e, 1, &f) != POLY_OK) return;
   Frac smaller = frac_cancel(n->field, f);
-  Expr e = frac_expr(n, smaller);
+  Expr e = normal_expr_by(n, smaller, poly_expr);
   if (n->ring->status == POLY_OK) t->result = e;
 }
 
@@ -306,11 +295,13 @@ typedef struct {
   long double scale;
 } FarState;
 
+static int moves(const ExprGraph *g, SymId s) {
+  return (1u << expr_symbol(g, s)->kind & (1u << SYM_COORD | 1u << SYM_STATE | 1u << SYM_TIME | 1u << SYM_VEL)) != 0;
+}
+
 static long double far_symbol(SymId s, const void *data) {
   const FarState *at = data;
-  SymKind kind = expr_symbol(at->g, s)->kind;
-  int moves = kind == SYM_COORD || kind == SYM_STATE || kind == SYM_TIME || kind == SYM_VEL;
-  return sample_symbol(at->g, s, at->seed) * (moves ? at->scale : 1);
+  return sample_symbol(at->g, s, at->seed) * (moves(at->g, s) ? at->scale : 1);
 }
 
 /* Whether `after` is finite wherever `before` is, in doubles; tested at random states near and far from the origin. */
@@ -356,10 +347,8 @@ typedef struct {
 
 static long double symbol_between(SymId s, const void *data) {
   const Between *at = data;
-  SymKind kind = expr_symbol(at->g, s)->kind;
   long double from = sample_symbol(at->g, s, at->seed), to = sample_symbol(at->g, s, at->seed + 7);
-  int moves = kind == SYM_COORD || kind == SYM_STATE || kind == SYM_TIME || kind == SYM_VEL;
-  return (double)(moves ? from + at->part * (to - from) : from);
+  return (double)(moves(at->g, s) ? from + at->part * (to - from) : from);
 }
 
 /* Value of the second root of the tape at a part of the way. */

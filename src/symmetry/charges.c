@@ -5,8 +5,8 @@
 #include "mech/constrain.h"
 #include "mech/derive_equations.h"
 #include "mech/lagrange.h"
-#include "symmetry/action_outputs.h"
-#include "symmetry/expression_brackets.h"
+#include "phase_space/action_outputs.h"
+#include "phase_space/expression_brackets.h"
 #include "sym/simplify.h"
 
 /* --- generators and charges --- */

@@ -7,7 +7,7 @@
 #include "base/dense_matrix.h"
 #include "mech/discontinuity.h"
 #include "symmetry/charges.h"
-#include "symmetry/expression_brackets.h"
+#include "phase_space/expression_brackets.h"
 #include "symmetry/find_symmetries.h"
 #include "sym/diff.h"
 #include "sym/expr_eval.h"

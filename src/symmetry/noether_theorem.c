@@ -1,6 +1,6 @@
 /* Verdict on one generator: delta L term by term, a gauge function F for the rest, then the charge and its balance.
  * Zero is proved where possible; with constraints it may be seen at random states on every factor of them. */
-#include "symmetry/noether_theorem.h"
+#include "symmetry/noether_theorem_impl.h"
 
 #include <math.h>
 
@@ -11,30 +11,10 @@
 #include "sym/prove.h"
 #include "sym/diff.h"
 #include "sym/integrate.h"
-#include "sym/sides.h"
 #include "sym/simplify.h"
 
 /* Past this number of coordinates charges are not simplified, like the energy (mech/derive_equations.c). */
 enum { SHORTEN_MAX = 64 };
-
-typedef struct {
-  const Eqns *e;
-  const Model *m;
-  ExprGraph *g;
-  uint32_t n;
-  SymId *q, *v;     /* [n] */
-  Expr L;
-  const Expr *p;    /* [n] */
-  const Expr *xi;   /* [n] */
-  Expr tau;
-  Expr *Dxi, Dtau;  /* total time derivatives */
-  uint32_t symbols; /* entries of a seed */
-  Expr *along, *moving; /* seeds of d/dt and of the generator, by symbol */
-  int by_value;
-  const Constraint *product; /* a constraint whose states were sought, but perhaps not on each of its factors; or NULL */
-} ProofWork;
-
-static Expr node(const ProofWork *w, SymId s) { return expr_symbol(w->g, s)->node; }
 
 static Expr *no_seed(const ProofWork *w) { return ARENA_ARRAY(w->m->arena, Expr, w->symbols); }
 
@@ -51,19 +31,18 @@ static Expr tangent(const ProofWork *w, Expr x, const Expr *seed, const char *su
   return out;
 }
 
-/* d/dt along q'. */
-static Expr total(const ProofWork *w, Expr x) { return tangent(w, x, w->along, "'"); }
+Expr noether_total(const ProofWork *w, Expr x) { return tangent(w, x, w->along, "'"); }
 
 static void fill_seeds(ProofWork *w) {
   w->along = no_seed(w);
   w->along[w->m->time] = expr_int(w->g, 1);
-  for (uint32_t i = 0; i < w->n; i++) w->along[w->q[i]] = node(w, w->v[i]);
+  for (uint32_t i = 0; i < w->n; i++) w->along[w->q[i]] = proof_node(w, w->v[i]);
   expr_tangent(w->g, w->xi, w->n, w->along, w->symbols, "'", NULL, w->Dxi);
-  w->Dtau = total(w, w->tau);
+  w->Dtau = noether_total(w, w->tau);
   w->moving = no_seed(w);
   w->moving[w->m->time] = w->tau;
   for (uint32_t i = 0; i < w->n; i++) {
-    Expr slower = expr_mul(w->g, node(w, w->v[i]), w->Dtau);
+    Expr slower = expr_mul(w->g, proof_node(w, w->v[i]), w->Dtau);
     w->moving[w->q[i]] = w->xi[i];
     w->moving[w->v[i]] = expr_sub(w->g, w->Dxi[i], slower);
   }
@@ -85,12 +64,12 @@ static ProofWork begin(const Eqns *e, const Generator *by) {
   return w;
 }
 
-static Expr shorten(const ProofWork *w, Expr x) { return w->n <= SHORTEN_MAX ? simplify(w->g, x) : x; }
+Expr noether_shorten(const ProofWork *w, Expr x) { return w->n <= SHORTEN_MAX ? simplify(w->g, x) : x; }
 
 /* x or its short form, whichever is shorter to read. */
 static Expr readable(const ProofWork *w, Expr x) {
   uint32_t distinct;
-  Expr other = shorten(w, x);
+  Expr other = noether_shorten(w, x);
   return expr_tree_size(w->g, other, &distinct) < expr_tree_size(w->g, x, &distinct) ? other : x;
 }
 
@@ -107,7 +86,7 @@ static Expr delta(const ProofWork *w, Expr term) {
   return expr_add(w->g, moved, stretched);
 }
 
-static Expr at_rest(const ProofWork *w, Expr x) {
+Expr noether_at_rest(const ProofWork *w, Expr x) {
   Expr *zero = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   if (!(expr_kinds(w->g, x) & (1u << SYM_VEL | 1u << SYM_RATE))) return x;
   for (uint32_t i = 0; i < w->n; i++) zero[i] = expr_int(w->g, 0);
@@ -123,7 +102,7 @@ static Expr delta_lagrangian(const ProofWork *w) {
     Num c;
     Expr term = expr_pair(g, w->L, EX_SUM, i, &c), change = delta(w, term);
     if (is_zero(w, change) == PROVED_ZERO) continue;
-    change = expr_scale(g, c, shorten(w, change));
+    change = expr_scale(g, c, noether_shorten(w, change));
     vec_push(w->m->arena, &left, change);
   }
   return expr_add_n(g, left.at, left.n);
@@ -155,13 +134,10 @@ static const Constraint *constraint_with_factors(const ProofWork *w) {
   return NULL;
 }
 
-/* Whether some constraint always holds, which those of contacts do not. */
-static int is_constrained(const ProofWork *w) { return w->e->constraints.n > w->m->contacts.n; }
-
 /* Whether x is zero where the constraints hold, those of contacts excepted. */
 static Verdict zero_on_constraints(ProofWork *w, Expr x) {
   Verdict v = is_zero(w, x);
-  if (v == PROVED_ZERO || !is_constrained(w) || !motion_vanishes(w->e, x)) return v;
+  if (v == PROVED_ZERO || !proof_is_constrained(w) || !motion_vanishes(w->e, x)) return v;
   w->product = constraint_with_factors(w);
   w->by_value = 1;
   return PROVED_ZERO;
@@ -171,9 +147,9 @@ static Verdict zero_on_constraints(ProofWork *w, Expr x) {
 
 /* An F(q, t) whose total derivative removes what it can from dL = a.q' + b + terms of higher order in q'. */
 static Expr find_gauge(const ProofWork *w, Expr dL) {
-  Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1), b = at_rest(w, dL);
+  Expr *a = ARENA_ARRAY(w->m->arena, Expr, w->n + 1), b = noether_at_rest(w, dL);
   expr_gradient(w->g, dL, w->v, w->n, a);
-  for (uint32_t i = 0; i < w->n; i++) a[i] = at_rest(w, a[i]);
+  for (uint32_t i = 0; i < w->n; i++) a[i] = noether_at_rest(w, a[i]);
   Expr F = expr_potential(w->g, a, w->q, w->n, 0), drift = expr_diff(w->g, F, w->m->time);
   Expr left = expr_sub(w->g, b, drift);
   left = simplify(w->g, left);
@@ -192,7 +168,7 @@ static Verdict is_total_derivative(const ProofWork *w, Expr dL) {
       if (v == PROVED_NONZERO) return v;
       if (v == NOT_DECIDED) all = v;
     }
-    Expr change = total(w, a), force = expr_diff(w->g, dL, w->q[i]), left = expr_sub(w->g, force, change);
+    Expr change = noether_total(w, a), force = expr_diff(w->g, dL, w->q[i]), left = expr_sub(w->g, force, change);
     Verdict v = is_zero(w, left);
     if (v == PROVED_NONZERO) return v;
     if (v == NOT_DECIDED) all = v;
@@ -209,8 +185,8 @@ static int is_of_time(const ProofWork *w, Expr x) {
  * terms are a gauge, the rest of delta L is small or 0, and their primitive need not be found. */
 static Expr contraction(const ProofWork *w, int with_phi) {
   Expr *theta = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
-  for (uint32_t i = 0; i < w->n; i++) theta[i] = at_rest(w, w->p[i]);
-  Expr F = dot(w, theta, w->xi, w->n), phi = with_phi ? at_rest(w, w->L) : expr_int(w->g, 0);
+  for (uint32_t i = 0; i < w->n; i++) theta[i] = noether_at_rest(w, w->p[i]);
+  Expr F = dot(w, theta, w->xi, w->n), phi = with_phi ? noether_at_rest(w, w->L) : expr_int(w->g, 0);
   return expr_add(w->g, F, expr_mul(w->g, phi, w->tau));
 }
 
@@ -218,9 +194,9 @@ static Expr contraction(const ProofWork *w, int with_phi) {
 static Expr contracted_gauge(ProofWork *w, Expr dL) {
   ExprGraph *g = w->g;
   for (int with_phi = 0; with_phi < 2; with_phi++) {
-    Expr first = contraction(w, with_phi), taken = total(w, first), rest = simplify(g, expr_sub(g, dL, taken));
+    Expr first = contraction(w, with_phi), taken = noether_total(w, first), rest = simplify(g, expr_sub(g, dL, taken));
     if (expr_is_zero(g, first)) continue;
-    Expr more = find_gauge(w, rest), F = readable(w, expr_add(g, first, more)), DF = total(w, F);
+    Expr more = find_gauge(w, rest), F = readable(w, expr_add(g, first, more)), DF = noether_total(w, F);
     if (zero_on_constraints(w, expr_sub(g, dL, DF)) == PROVED_ZERO) return F;
   }
   return 0;
@@ -233,7 +209,7 @@ static void judge(ProofWork *w, Noether *to) {
   *to = (Noether){.F = zero, .remainder = zero, .by_constraints = zero};
   if (zero_on_constraints(w, dL) == PROVED_ZERO) return;
   dL = readable(w, dL);
-  Expr F = simplify(g, find_gauge(w, dL)), DF = total(w, F), left = expr_sub(g, dL, DF);
+  Expr F = simplify(g, find_gauge(w, dL)), DF = noether_total(w, F), left = expr_sub(g, dL, DF);
   if (!expr_is_zero(g, F) && zero_on_constraints(w, left) == PROVED_ZERO) {
     to->is = INVARIANT_UP_TO_F;
     to->F = F;
@@ -267,7 +243,7 @@ static Expr charge_of(const ProofWork *w, Expr F) {
   Expr px = dot(w, w->p, w->xi, w->n), minus_F = expr_neg(g, F);
   Expr et = expr_mul(g, bare_energy(w->e), w->tau), minus_et = expr_neg(g, et);
   Expr front = expr_add(g, px, minus_F);
-  front = shorten(w, front);
+  front = noether_shorten(w, front);
   return expr_add(g, front, minus_et);
 }
 
@@ -355,18 +331,19 @@ static Expr power_of_constraints(ProofWork *w, Noether *to) {
     if (i < k->nholonomic) {
       moved = constraint_moved(w, while_closed(w, contact, k->c[i]));
     } else {
-      Expr b = at_rest(w, k->r[i]), part = expr_mul(g, b, w->tau);
+      Expr b = noether_at_rest(w, k->r[i]), part = expr_mul(g, b, w->tau);
       Expr slide = tangent(w, k->r[i], seed, "_delta");
       moved = expr_add(g, slide, part);
     }
     if (zero_on_constraints(w, moved) == PROVED_ZERO) continue;
-    moved = shorten(w, moved);
+    moved = noether_shorten(w, moved);
     if (i < k->nholonomic && !to->broken && !contact) {
       to->broken = i + 1;
       to->breaks = moved;
     }
-    Expr force = expr_mul(g, node(w, k->of[i]->multiplier), moved);
-    if (contact && !contact->is_tangent) force = expr_mul(g, node(w, contact->closed), force); /* a tangent has it in its row */
+    Expr force = expr_mul(g, proof_node(w, k->of[i]->multiplier), moved);
+    /* a tangent has it in its row */
+    if (contact && !contact->is_tangent) force = expr_mul(g, proof_node(w, contact->closed), force);
     sum = expr_add(g, sum, force);
   }
   return sum;
@@ -400,7 +377,7 @@ static Expr power_of_forces(const ProofWork *w) {
   Expr *along = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
   if (!w->e->Q) return expr_int(g, 0);
   for (uint32_t i = 0; i < w->n; i++) {
-    Expr carried = expr_mul(g, node(w, w->v[i]), w->tau);
+    Expr carried = expr_mul(g, proof_node(w, w->v[i]), w->tau);
     along[i] = expr_sub(g, w->xi[i], carried);
   }
   return dot(w, w->e->Q, along, w->n);
@@ -419,146 +396,6 @@ static int moves_jumps(const ProofWork *w) {
   return 0;
 }
 
-static int is_periodic(const ProofWork *w, uint32_t i) {
-  return w->e->n ? w->m->coords.at[i].periodic : w->m->states.at[w->e->first.at[i]].periodic;
-}
-
-/* Whether V has one value at each position: coordinates declared periodic enter by periodic functions. */
-static int is_single_valued(const ProofWork *w, Expr V) {
-  Expr turn = expr_mul(w->g, expr_int(w->g, 2), expr_symbol(w->g, w->m->pi)->node);
-  for (uint32_t i = 0; i < w->n; i++) {
-    if (!is_periodic(w, i) || !expr_contains_sym(w->g, V, w->q[i])) continue;
-    Expr there = expr_add(w->g, node(w, w->q[i]), turn), moved = expr_replace(w->g, V, &w->q[i], &there, 1);
-    if (prove_zero(w->g, expr_sub(w->g, moved, V), NULL) != PROVED_ZERO) return 0;
-  }
-  return 1;
-}
-
-static int is_state(const Symbol *s, const void *states) {
-  return s->kind == SYM_STATE && !((const State *)states)[s->index].coordinate;
-}
-
-/* A power a q' + b that forces and explicit time give, by coordinates and t; a[n] is b. */
-typedef struct {
-  Expr *a;
-  SymId *q;
-} LinearPower;
-
-/* Whether the power has that form: velocities enter it linearly, and nothing but q and t otherwise. */
-static int linear_power(const ProofWork *w, Expr power, LinearPower *to) {
-  const unsigned other = 1u << SYM_INPUT | 1u << SYM_MULTIPLIER, moving = 1u << SYM_VEL | 1u << SYM_RATE;
-  Arena *arena = w->m->arena;
-  ExprGraph *g = w->g;
-  if (expr_kinds(g, power) & other || expr_contains(g, power, is_state, w->m->states.at)) return 0;
-  *to = (LinearPower){ARENA_ARRAY(arena, Expr, w->n + 1), ARENA_ARRAY(arena, SymId, w->n + 1)};
-  expr_gradient(g, power, w->v, w->n, to->a);
-  to->a[w->n] = at_rest(w, power);
-  memcpy(to->q, w->q, w->n * sizeof *w->q);
-  to->q[w->n] = w->m->time;
-  for (uint32_t i = 0; i < w->n; i++) {
-    if (expr_kinds(g, to->a[i]) & moving) to->a[i] = shorten(w, to->a[i]);
-    if (expr_kinds(g, to->a[i]) & moving) return 0;
-  }
-  return 1;
-}
-
-static int may_jump(const ProofWork *w, Expr x) {
-  ExprList l = expr_topo(w->g, &x, 1);
-  int may = switch_in(w->g, x, 0) != 0;
-  for (uint32_t i = 0; i < l.n && !may; i++) may = expr_op(w->g, l.at[i]) == EX_FLOOR || expr_op(w->g, l.at[i]) == EX_ATAN2;
-  return may;
-}
-
-/* Whether x jumps: then forces that are the gradient of x beside the jumps leave no energy conserved. */
-static int jumps_somewhere(const ProofWork *w, Expr x) {
-  return may_jump(w, x) && discontinuities_of(w->e, x).n > 0;
-}
-
-/* Whether a force on a periodic coordinate does work over a turn, by values at a random state: the trapezoidal and the midpoint rule, which errors of
- * the sums move apart, agree on it. A switch shifts both by the width of an interval, so that only more work than that counts. */
-static int works_over_a_turn(const ProofWork *w, uint32_t i, Expr force) {
-  enum { POINTS = 256 };
-  const long double turn = 6.28318530717958647692528676655900577L;
-  const long double rounding = may_jump(w, force) ? 0.05L : 1e-9L;
-  long double bound, sum[2] = {0, 0}, size = 0, *symbols = ARENA_ARRAY(w->m->arena, long double, expr_symbol_count(w->g) + 1);
-  sample_state(w->g, 1, symbols);
-  for (int k = 0; k < 2 * POINTS; k++) {
-    symbols[w->q[i]] = turn * k / (2 * POINTS);
-    long double value = value_with_bound(w->g, force, symbols, NULL, &bound);
-    sum[k % 2] += value;
-    size += fabsl(value);
-  }
-  long double work = fabsl(sum[0] + sum[1]);
-  return !(work <= rounding * size) && !(fabsl(sum[0] - sum[1]) > work / 4);
-}
-
-/* Whether the form a dq + b dt has a potential: 2, each part depends on its own coordinate alone; 1, it has no curl, so that there is one near
- * each position; 0, it has a curl. */
-static int has_potential(const ProofWork *w, const LinearPower *by) {
-  ExprGraph *g = w->g;
-  ExprMap place = expr_map(w->m->arena);
-  int is = 2;
-  for (uint32_t i = 0; i <= w->n; i++) expr_map_set(&place, node(w, by->q[i]), i + 1);
-  for (uint32_t i = 0; i <= w->n; i++) {
-    ExprList l = expr_topo(g, &by->a[i], 1);
-    int turns = i < w->n && is_periodic(w, i) && !expr_is_zero(g, by->a[i]);
-    if (turns && (!is_single_valued(w, by->a[i]) || works_over_a_turn(w, i, by->a[i]))) return 0;
-    if (turns) is = 1;
-    for (uint32_t k = 0; k < l.n; k++) {
-      uint32_t j = expr_map_get(&place, l.at[k]);
-      if (!j || j - 1 == i) continue;
-      if (jumps_somewhere(w, by->a[i])) return 0;
-      is = 1;
-      Expr one = expr_diff(g, by->a[i], by->q[j - 1]), other = expr_diff(g, by->a[j - 1], by->q[i]);
-      if (!zero_on_sides(g, expr_sub(g, one, other))) return 0;
-    }
-  }
-  return is;
-}
-
-/* Divisors in x: marks them, or returns whether one is neither marked nor proved to be other than 0. */
-static int find_divisors(ExprGraph *g, Expr x, ExprMap *marked, int marks) {
-  ExprList l = expr_topo(g, &x, 1);
-  for (uint32_t i = 0; i < l.n; i++)
-    for (uint32_t k = 0; expr_op(g, l.at[i]) == EX_PROD && k < expr_nargs(g, l.at[i]); k += 2) {
-      Expr of = expr_arg(g, l.at[i], k);
-      if (num_sign(expr_number(g, expr_arg(g, l.at[i], k + 1))) >= 0) continue;
-      if (marks) expr_map_set(marked, of, 1);
-      else if (!expr_map_get(marked, of) && !expr_is_nonzero(g, of)) return 1;
-    }
-  return 0;
-}
-
-/* Whether V may have no value where the forces have one: -F/b*sin(b*x) of F*cos(b*x) at b = 0. */
-static int may_lack_values(ExprGraph *g, Expr V, Expr power) {
-  ExprMap divisors = expr_map(expr_arena(g));
-  find_divisors(g, power, &divisors, 1);
-  return find_divisors(g, V, &divisors, 0);
-}
-
-/* V(q, t) with power = -dV/dt along motions, of forces and explicit time; 0: none. *exists: whether there is one, whose integral is not
- * found, as has_potential. */
-static Expr potential_of(const ProofWork *w, Expr power, int *exists) {
-  ExprGraph *g = w->g;
-  Expr *slope = ARENA_ARRAY(w->m->arena, Expr, w->n + 1);
-  LinearPower by;
-  *exists = 0;
-  if (!linear_power(w, expr_neg(g, power), &by)) return 0;
-  Expr V = shorten(w, expr_potential(g, by.a, by.q, w->n + 1, 1));
-  int found = !expr_is_zero(g, V), single = is_single_valued(w, V);
-  expr_gradient(g, V, by.q, w->n + 1, slope);
-  for (uint32_t i = 0; i <= w->n; i++) {
-    by.a[i] = expr_sub(g, by.a[i], slope[i]);
-    found = found && zero_on_sides(g, by.a[i]);
-  }
-  if (!found && is_constrained(w) && !expr_is_zero(g, V))
-    found = motion_verdict(w->e, expr_add(g, power, total(w, V))) == PROVED_ZERO;
-  if (!single) linear_power(w, expr_neg(g, power), &by); /* branches that are integrated apart may still have no work over a turn */
-  if (single && found && may_lack_values(g, V, power)) return *exists = 2, 0;
-  *exists = single && found ? 0 : has_potential(w, &by);
-  return single && found && !jumps_somewhere(w, V) ? V : 0;
-}
-
 static int is_shift_of_time(const ProofWork *w) {
   for (uint32_t i = 0; i < w->n; i++)
     if (!expr_is_zero(w->g, w->xi[i])) return 0;
@@ -570,7 +407,7 @@ static void judge_drift(const ProofWork *w, Noether *to, Expr power) {
   if (to->power_unknown) return;
   to->drift = motion_verdict(w->e, to->power);
   int exists = 0;
-  if (to->drift != PROVED_ZERO && is_shift_of_time(w)) to->potential = potential_of(w, power, &exists);
+  if (to->drift != PROVED_ZERO && is_shift_of_time(w)) to->potential = noether_potential(w, power, &exists);
   if (to->potential) to->drift = PROVED_ZERO;
   if (exists) to->drift = NOT_DECIDED;
   to->open_integral = exists == 2;
@@ -582,7 +419,7 @@ static void put_power(ProofWork *w, Noether *to, Expr remainder) {
   ExprGraph *g = w->g;
   to->by_constraints = power_of_constraints(w, to);
   Expr forces = power_of_forces(w), change = power_of_change(w, to);
-  Expr parts[3] = {forces, change, remainder}, rest = shorten(w, expr_add_n(g, parts, 3));
+  Expr parts[3] = {forces, change, remainder}, rest = noether_shorten(w, expr_add_n(g, parts, 3));
   to->power = expr_add(g, states_substitute(w->e, rest), to->by_constraints);
   judge_drift(w, to, expr_add(g, rest, to->by_constraints));
   to->by_value = w->by_value;
@@ -627,9 +464,9 @@ int noether_forces_are_potential(const Eqns *e) {
   ProofWork w = begin(e, &(Generator){.tau = expr_int(e->g, -1)});
   Expr power = power_of_forces(&w);
   for (uint32_t i = 0; i < w.n && m->dissipation; i++) {
-    Expr drag = expr_diff(w.g, m->dissipation, w.v[i]), part = expr_mul(w.g, drag, node(&w, w.v[i]));
+    Expr drag = expr_diff(w.g, m->dissipation, w.v[i]), part = expr_mul(w.g, drag, proof_node(&w, w.v[i]));
     power = expr_add(w.g, power, part);
   }
-  power = shorten(&w, power);
-  return motion_verdict(e, power) == PROVED_ZERO || potential_of(&w, power, &exists) || exists;
+  power = noether_shorten(&w, power);
+  return motion_verdict(e, power) == PROVED_ZERO || noether_potential(&w, power, &exists) || exists;
 }

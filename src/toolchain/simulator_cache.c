@@ -137,11 +137,11 @@ static const char seal_form[] = "\n#lagc %016" PRIx64 " %016" PRIx64 "\n";
 /* Hash of the next n bytes, or of all (n < 0); *n := their number. */
 static uint64_t hash_file(FILE *f, int64_t *n) {
   char block[65536];
-  uint64_t h = FNV1A_START;
+  uint64_t h = LAG_FNV1A_START;
   int64_t left = *n < 0 ? INT64_MAX : *n;
   *n = 0;
   for (size_t some; left > 0 && (some = fread(block, 1, left < (int64_t)sizeof block ? (size_t)left : sizeof block, f)) > 0; left -= (int64_t)some, *n += (int64_t)some)
-    h = hash_bytes(h, block, some);
+    h = lag_fnv1a(h, block, some);
   return h;
 }
 

@@ -268,11 +268,11 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
   return ok;
 }
 
-int toolchain_run_once(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, FILE *in, FILE *out, int *status, const char **error) {
+int toolchain_run_once(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, OneRun *run) {
   BuildFolder f;
-  if (!build(a, t, texts, n, &f, error)) return 0;
+  if (!build(a, t, texts, n, &f, &run->error)) return 0;
   char *path = arena_printf(a, "%s/" SIMULATOR, f.path), *argv[] = {path, NULL};
-  *status = process_read_from(in) ? process_to_file(path, argv, out) : -1;
+  run->status = process_read_from(run->in) ? process_to_file(path, argv, run->out) : -1;
   build_folder_remove(&f);
   return 1;
 }
@@ -300,13 +300,13 @@ static uint64_t hash_library(Arena *a, uint64_t h, const char *path) {
   struct stat st;
   if (stat(path, &st) != 0) return h;
   const char *text = arena_printf(a, "%s %lld %lld.%09ld", path, (long long)st.st_size, (long long)st.st_mtim.tv_sec, st.st_mtim.tv_nsec);
-  return hash_bytes(h, text, strlen(text));
+  return lag_fnv1a(h, text, strlen(text));
 }
 
 static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceText *texts, size_t n) {
-  for (size_t i = 0; i < n; i++) h = hash_bytes(h, texts[i].text, strlen(texts[i].text) + 1);
-  h = hash_bytes(h, t->cc, strlen(t->cc) + 1);
-  h = hash_bytes(h, t->optimise, strlen(t->optimise) + 1);
+  for (size_t i = 0; i < n; i++) h = lag_fnv1a(h, texts[i].text, strlen(texts[i].text) + 1);
+  h = lag_fnv1a(h, t->cc, strlen(t->cc) + 1);
+  h = lag_fnv1a(h, t->optimise, strlen(t->optimise) + 1);
   h = hash_library(a, h, arena_printf(a, "%s/lib%s.a", t->lib, t->library));
   static const char *const parts[] = {"png", "hdf5", "mpi"};
   for (int i = 0; i < 3; i++)
@@ -316,7 +316,7 @@ static uint64_t hash_all(Arena *a, uint64_t h, const Toolchain *t, const SourceT
 
 /* The cache entry's name: a 128-bit hash of texts, compiler and libraries. */
 static const char *name_of(Arena *a, const Toolchain *t, const SourceText *texts, size_t n) {
-  uint64_t h1 = hash_all(a, FNV1A_START, t, texts, n), h2 = hash_all(a, 0x9e3779b97f4a7c15u, t, texts, n);
+  uint64_t h1 = hash_all(a, LAG_FNV1A_START, t, texts, n), h2 = hash_all(a, 0x9e3779b97f4a7c15u, t, texts, n);
   return arena_printf(a, "%016llx%016llx", (unsigned long long)h1, (unsigned long long)h2);
 }
 

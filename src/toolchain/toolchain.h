@@ -61,6 +61,13 @@ int toolchain_build(Arena *a, const Toolchain *t, const SourceText *texts, size_
 /* The path of a simulator of these texts, from the cache or built; NULL, with *error. */
 const char *toolchain_simulator(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, const char **error);
 
-/* Builds a program of the texts in a folder of its own, which is then removed, and runs it once from `in` to `out`. Returns 0, with *error, when it
- * is not built; *status: its exit status, or -1. */
-int toolchain_run_once(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, FILE *in, FILE *out, int *status, const char **error);
+/* One run of a program, from `in` to `out`. */
+typedef struct {
+  FILE *in, *out;
+  int status;        /* its exit status, or -1 */
+  const char *error; /* why it was not built */
+} OneRun;
+
+/* Builds a program of the texts in a folder of its own, which is then removed, and runs it. Returns
+ * 0, with run->error, when it is not built. */
+int toolchain_run_once(Arena *a, const Toolchain *t, const SourceText *texts, size_t n, OneRun *run);

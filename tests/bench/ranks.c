@@ -14,7 +14,8 @@ static int note(void *context, long long runs) {
 
 static double serve(Sweep *s, Journal *j, const char *path, size_t size) {
   char why[4400];
-  if (lag_journal_open(j, path, 0, 1, s->plan->runs / RUNS, size, why, sizeof why)) fprintf(stderr, "%s\n", why), exit(2);
+  *j = (Journal){.signature = 1, .chunks = s->plan->runs / RUNS, .size = size};
+  if (lag_journal_open(j, path, 0, why, sizeof why)) fprintf(stderr, "%s\n", why), exit(2);
   double begin = lag_clock_seconds();
   if (lag_sweep_run(s)) exit(2);
   double time = lag_clock_seconds() - begin;

@@ -31,7 +31,7 @@ is "a base unit" 'unit:
   [s] of the SI, a base unit; takes the SI prefixes' "$(chapter s)"
 is "a unit with a prefix" 'unit:
   [kN], with an SI prefix; `lagc help units` has the table' "$(chapter kN)"
-is "an option" 'option of run, plot, animate, lyapunov, cost, sweep, effects:
+is "an option" 'option of run, plot, animate, lyapunov, sweep, effects:
   --tol X               tolerance, relative to values and to the size of the
                         motion' "$(chapter tol)"
 is "an option with its dashes" "$(chapter tol)" "$(chapter --tol)"
@@ -198,7 +198,7 @@ every_word() { sed 's/ *|.*//' "$TMP/brought" | tr ' ' '\n' | while read -r w; d
 shown() { sed -n 's/^WAY //p' "$TMP/words" | grep -o '`lagc [a-z]*' | sort -u; }
 empty "the table names commands that exist" "$(shown | while read -r _ c; do words command | grep -q -x "$c" || echo "$c"; done)"
 meant() { sed 's/.*| *//' "$TMP/brought" | tr ' ' '\n' | sort -u; }
-unsaid() { meant | while read -r w; do cat grammar/LANGUAGE.md README.md models/TUTORIAL.md runtime/python/README.md src/commands/command_table.c runtime/app/options.def | grep -qiwF -e "$w" || echo "$w"; done; }
+unsaid() { meant | while read -r w; do cat grammar/*.md README.md models/TUTORIAL.md runtime/python/README.md src/commands/command_table.c runtime/app/options.def | grep -qiwF -e "$w" || echo "$w"; done; }
 empty "synonyms are words that the documents have" "$(unsaid)"
 
 # ---- commands that help shows ----
@@ -216,5 +216,7 @@ is "a method: its row" "$(chapter methods | grep '^  verlet ')" "$(chapter verle
 is "its words and options" "$(chapter methods | sed -n '/^  verlet:/,/^$/p')" "$(chapter verlet | sed -n '/^  verlet:/,/^$/p')"
 no_help() { for w in $(chapter methods | sed -n 's/^  \([a-z0-9_-]*\)  *[0-9].*/\1/p') equilibrium picture; do explains "$w" || echo "$w"; done; }
 empty "every method has help" "$(no_help)"
+[ -z "$GSL" ] || check "steppers of GSL that went name the one that stays" says 'unknown method gsl-msadams; did you mean gsl-rk8pd?' build $m --method gsl-msadams
+[ -z "$GSL" ] || check "for stiff models, too" says 'unknown method gsl-msbdf; did you mean gsl-bsimp?' build $m --method 'gsl-msbdf(step=1)'
 check "a mistyped method" says 'no help on `verlett`: did you mean `verlet`?' help verlett
 tap_end

@@ -10,9 +10,10 @@ src/sym       sym/ base/ numeric/functions.def
 src/syntax    syntax/ base/ numeric/functions.def
 src/model     model/ syntax/ sym/ base/ numeric/functions.def
 src/mech      mech/ model/ sym/ base/ numeric/
-src/symmetry  symmetry/ mech/ model/ sym/ base/ numeric/
-src/claims    claims/ symmetry/ mech/ model/ sym/ base/ numeric/
-src/report    report/ symmetry/ mech/ model/ sym/ base/
+src/phase_space phase_space/ mech/ model/ sym/ base/ numeric/
+src/symmetry  symmetry/ phase_space/ mech/ model/ sym/ base/ numeric/
+src/claims    claims/ symmetry/ phase_space/ mech/ model/ sym/ base/ numeric/
+src/report    report/ symmetry/ phase_space/ mech/ model/ sym/ base/
 src/ir        ir/ base/ numeric/functions.def
 src/series    series/ ir/ base/
 src/lower     lower/ series/ ir/ symmetry/charges.h mech/ model/ sym/ base/
@@ -20,7 +21,7 @@ src/self_check      self_check/ lower/lower.h ir/ mech/ model/ syntax/ base/ num
 src/emit      emit/ ir/ base/ numeric/functions.def
 src/fmu       fmu/ emit/ ir/ base/
 src/toolchain toolchain/ base/
-src/commands  app/options.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ mech/ model/ sym/ syntax/ base/
+src/commands  app/options.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ phase_space/ mech/ model/ sym/ syntax/ base/
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
@@ -47,7 +48,7 @@ runtime/include/lag_math.h  lag_sincos.h
 '
 # The inside of a folder, shared by its own files only.
 private='analysis/measure_nodes.h sweep/run_chunks_impl.h syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
-  model/scope.h model/declarations.h sym/expr_impl.h sym/ops.def lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h fmu/fmu_archive_impl.h methods/tableau.h methods/embedded_trial.h
+  model/scope.h model/declarations.h sym/expr_impl.h sym/ops.def symmetry/noether_theorem_impl.h lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h fmu/fmu_archive_impl.h methods/tableau.h methods/embedded_trial.h
   methods/steps.h methods/composition.h methods/step_interpolant.h methods/galerkin_rule.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
   methods/predictor.h methods/band_matrix.h methods/newton.h methods/step_control.h'
 

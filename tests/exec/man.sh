@@ -4,6 +4,7 @@
 . tests/tap.sh
 page=$TMP/lagc.1
 check "it is printed" sh -c '"$LAGC" manpage >"$1"' sh "$page"
+check "it has no other form than the list of the reference" sh -c '"$0" manpage html 2>"$1"; [ $? = 2 ] && grep -q "one word too many" "$1"' "$LAGC" "$TMP/err"
 "$BIN/dump_words" >"$TMP/words"
 
 has() { grep -q -e "$1" "$page" || echo "lagc.1 lacks $2"; } # has PATTERN WHAT

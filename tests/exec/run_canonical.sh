@@ -22,7 +22,7 @@ flips() {
 for m in tests/exec/canonical/*.lag; do empty "$m: a sign changed is refused, with the bracket" "$(flips "$m")"; done
 
 # ---- Delaunay's elements: C.-E. Delaunay, Theorie du mouvement de la lune (1860); M. Born, Atommechanik (1925), 21 and 22 ----
-sed -n '/^model delaunay "/,/^```/p' grammar/LANGUAGE.md | sed '$d' >"$TMP/delaunay.lag"
+sed -n '/^model delaunay "/,/^```/p' grammar/PHASE_SPACE.md | sed '$d' >"$TMP/delaunay.lag"
 check "the generating function of Delaunay's elements, K = -k^2/(2 L^2)" sh -c '"$1" check "$2" | grep -q "canonical elements: proved, where det d2F2/dq dP = .* is not 0; its Hamiltonian is as given$"' sh "$LAGC" "$TMP/delaunay.lag"
 delaunay() { sed "$1" "$TMP/delaunay.lag" >"$TMP/flip.lag"; ! cmp -s "$TMP/flip.lag" "$TMP/delaunay.lag" && ! "$LAGC" check "$TMP/flip.lag" 2>&1 | grep -e 'canonical elements: proved'; }
 for edit in 's/- L\*atan/+ L*atan/' 's/- G\*atan((k/+ G*atan((k/' 's/- G\*atan(G\*c/+ G*atan(G*c/' 's/+ H\*atan/- H*atan/' 's/-k^2\/(2\*L/-k^2\/(L/'; do

@@ -277,7 +277,7 @@ refused "no time to spend" 'example --seconds 60' models/pendulum.lag --seconds 
 refused "a time in words" 'is not a number' models/pendulum.lag --seconds long
 refused "a picture of another kind" 'cost writes a picture, .svg or .png' models/pendulum.lag -o cost.jpg
 refused "no time to run" 'nothing to compute' models/pendulum.lag --until 0
-refused "a tolerance" '--where takes one' models/pendulum.lag --tol 1e-9
+refused "a tolerance" 'it runs all methods' models/pendulum.lag --tol 1e-9
 echo garbage >"$TMP/garbage"
 "$LAGC" build models/pendulum.lag --method taylor -o "$TMP/sim" >"$TMP/out" 2>&1
 bad_reference() { "$TMP/sim" --cost --against "$TMP/garbage" 2>"$TMP/err"; [ $? = 2 ] && grep -q 'holds no reference' "$TMP/err"; }

@@ -45,7 +45,7 @@ check "which outputs show" near "$(final 'exact(x)')" "$(calc '4/(2*0.3*9.81)')"
 check "with the error" near "$(final 'error(x)')" 0 1e-13
 run slide --method rk45
 check "few steps" most "$(number steps)" 50
-for method in verlet variational symplectic_euler ${GSL:+gsl-rk8pd gsl-msadams}; do
+for method in verlet variational symplectic_euler ${GSL:+gsl-rk8pd gsl-bsimp}; do
   check "refused: $method" refuses 2 "method $method cannot follow a motion that sticks or slides where .sign(x'). jumps; rk45, dop853, radau and rk4 can" slide --method $method
 done
 check "check names the surface" sh -c "$LAGC check $TMP/slide.lag | grep -qx \"switching surface: .x'. = 0 (line 5), where a motion may stick\""

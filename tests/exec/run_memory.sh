@@ -85,7 +85,7 @@ check "constraints that follow from others, and their start" each rhomb tests/ex
 check "events, contacts, impacts" each room models/room.lag --until 0.5 --json
 check "constraints that begin and end" each wheel models/rimless_wheel.lag --until 2 --json
 check "a start that is led to its constraints" each crank models/slider_crank.lag --until 0.2 --json
-for method in dop853 radau taylor variational gsl-rk8pd ${SLOW:+gsl-msadams gsl-msbdf} gsl-bsimp; do
+for method in dop853 radau taylor variational gsl-rk8pd gsl-bsimp; do
   with="--method $method"
   check "$method" each "$method" models/double_pendulum.lag --method $method --until 0.1 --json
 done

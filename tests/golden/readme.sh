@@ -3,7 +3,7 @@
 # command's output, to the byte. README and the tutorial are followed in folders of their own: a block after `<!-- file: NAME -->` is such a
 # file, one after `<!-- added to: NAME -->` goes to its end, and one after `<!-- session -->` has commands after `$ ` and their
 # output, where numbers may differ in the last digits, and times at will. BLESS=1 rewrites blocks. Their links, and those of
-# src/README.md, CONTRIBUTING.md and grammar/LANGUAGE.md, lead to files.
+# src/README.md, CONTRIBUTING.md and grammar/, lead to files.
 . tests/tap.sh
 
 # kept_block K PAGE: the block below the K-th `printed by`
@@ -129,7 +129,7 @@ made() { [ -s "$TMP/lesson/orbit.svg" ] && tail -n 1 "$TMP/lesson/double.html" |
 check "the tutorial leaves a picture and an animation" made
 
 links() {
-  for page in README.md src/README.md models/README.md models/TUTORIAL.md .github/CONTRIBUTING.md grammar/LANGUAGE.md; do
+  for page in README.md src/README.md models/README.md models/TUTORIAL.md .github/CONTRIBUTING.md grammar/*.md; do
     sed 's/`[^`]*`//g' "$page" | grep -o ']([^)#]*)' | sed 's/^](//; s/)$//' | while read -r link; do
       case $link in *://*) continue ;; esac
       [ -e "$(dirname "$page")/$link" ] || echo "$page: no $link"

@@ -6,7 +6,7 @@
  * a pair that came off fulfils them with all others. T. Levi-Civita, Math. Ann. 59 (1904) 383, DOI 10.1007/BF01445149. */
 #pragma once
 
-#include "symmetry/expression_brackets.h"
+#include "phase_space/expression_brackets.h"
 
 typedef enum {
   PAIR_TIED,   /* the conditions do not hold */

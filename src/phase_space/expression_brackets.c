@@ -1,5 +1,5 @@
 /* Partial derivatives in canonical coordinates; the result goes back to velocities by p = dL/dq'. */
-#include "symmetry/expression_brackets.h"
+#include "phase_space/expression_brackets.h"
 
 #include "mech/hamilton.h"
 #include "mech/states.h"

@@ -1,5 +1,5 @@
 /* Curves of a phase space and their actions: separation, derivatives of H, the scene's start. The integral is numeric/action_integral.c's, in long double. */
-#include "symmetry/action_variables.h"
+#include "phase_space/action_variables.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* Curves of the actions that outputs contain. */
-#include "symmetry/action_outputs.h"
+#include "phase_space/action_outputs.h"
 
-#include "symmetry/action_variables.h"
+#include "phase_space/action_variables.h"
 
 static int is_used(const Eqns *e, SymId sym) {
   const Scene *sc = &e->m->scene;

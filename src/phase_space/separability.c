@@ -1,5 +1,5 @@
 /* The order in which pairs come off, Levi-Civita's conditions by sym/prove.h, and the separated equations. */
-#include "symmetry/separability.h"
+#include "phase_space/separability.h"
 
 #include "sym/diff.h"
 #include "sym/prove.h"

@@ -6,7 +6,7 @@
  * H. Goldstein, C. Poole, J. Safko, Classical Mechanics, 3rd ed. (2002), 9.1; L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed. (1976), 45. */
 #pragma once
 
-#include "symmetry/expression_brackets.h"
+#include "phase_space/expression_brackets.h"
 
 /* The 2n equations left = right of a generating function: the old conjugates, then the new ones. */
 typedef struct {

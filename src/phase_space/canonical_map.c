@@ -1,5 +1,5 @@
 /* Linear maps are inverted by their transpose, S^-1 = -J S^T J; others unknown by unknown, where an equation is linear in one. */
-#include "symmetry/canonical_map.h"
+#include "phase_space/canonical_map.h"
 
 #include "sym/diff.h"
 #include "sym/integrate.h"

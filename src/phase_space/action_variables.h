@@ -1,11 +1,11 @@
 /* Action variables of the scene's start: J = 1/(2 pi) closed integral p dq along the curve H(q, p) = E of each coordinate, in numbers.
  *
- * A coordinate has a curve of its own where H separates (symmetry/separability.h): the other pairs are held at the start. Cyclic coordinates have p constant.
+ * A coordinate has a curve of its own where H separates (phase_space/separability.h): the other pairs are held at the start. Cyclic coordinates have p constant.
  *
- * The integral is numeric/action_integral.h's, which runs use for outputs `action(x)` (symmetry/action_outputs.h). Long double, about 1e-15. */
+ * The integral is numeric/action_integral.h's, which runs use for outputs `action(x)` (phase_space/action_outputs.h). Long double, about 1e-15. */
 #pragma once
 
-#include "symmetry/separability.h"
+#include "phase_space/separability.h"
 
 typedef struct {
   const char *why_not;     /* reason for no action; NULL: there is one */
