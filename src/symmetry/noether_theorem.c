@@ -310,12 +310,11 @@ static Expr scale_of(const ProofWork *w, Expr F) {
 
 /* Change of a constraint under the generator: inputs move with the time. */
 static Expr constraint_moved(const ProofWork *w, Expr c) {
-  uint32_t n = expr_symbol_count(w->g) + 1;
-  Expr *seed = ARENA_ARRAY(w->m->arena, Expr, n);
-  memcpy(seed, w->moving, n * sizeof *seed);
+  Expr *seed = ARENA_ARRAY(w->m->arena, Expr, w->symbols);
+  memcpy(seed, w->moving, w->symbols * sizeof *seed);
   for (uint32_t i = 0; i < w->m->inputs.n; i++) {
     const Input *in = &w->m->inputs.at[i];
-    if (in->rate) seed[in->sym] = expr_mul(w->g, w->tau, node(w, w->m->inputs.at[in->rate].sym));
+    if (in->rate) seed[in->sym] = expr_mul(w->g, w->tau, proof_node(w, w->m->inputs.at[in->rate].sym));
   }
   return tangent(w, c, seed, "_delta");
 }
@@ -362,7 +361,7 @@ static Expr power_of_change(const ProofWork *w, Noether *to) {
   for (uint32_t i = 0; i < m->inputs.n; i++) {
     const Input *in = &m->inputs.at[i];
     if (!(expr_kinds(g, w->L) & 1u << SYM_INPUT) || !expr_contains_sym(g, w->L, in->sym) || model_is_contact_switch(m, in->sym)) continue;
-    if (in->rate) seed[in->sym] = expr_symbol(g, m->inputs.at[in->rate].sym)->node;
+    if (in->rate) seed[in->sym] = proof_node(w, m->inputs.at[in->rate].sym);
     else if (in->value) seed[in->sym] = expr_diff(g, in->value, m->time);
     to->by_formulas |= !in->rate && in->value;
     to->power_unknown |= !in->rate && !in->value;
