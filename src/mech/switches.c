@@ -169,16 +169,20 @@ static Expr side_of(const Eqns *e, Expr node) {
   return kinds & varying && !(kinds & unknown) ? side : 0;
 }
 
+/* Whether factor i of a product is a root of what may be negative. */
+static int is_root(ExprGraph *g, Expr product, uint32_t i) {
+  Num power;
+  Expr base = expr_pair(g, product, EX_PROD, i, &power);
+  int root = !num_is_exact(power) || (power.den != 1 && power.den != 3);
+  return root && !sign_is_nonnegative(expr_sign(g, base));
+}
+
 /* Whether a node has values for some arguments only: a root, a logarithm. */
 static int is_partial(ExprGraph *g, Expr node) {
   ExprOp op = expr_op(g, node);
   if (op == EX_POW || op == EX_LOG || op == EX_ASIN || op == EX_ACOS) return !expr_is_constant(g, node);
-  for (uint32_t i = 0; op == EX_PROD && i < expr_pairs(g, node, EX_PROD); i++) {
-    Num power;
-    Expr base = expr_pair(g, node, EX_PROD, i, &power);
-    int root = !num_is_exact(power) || (power.den != 1 && power.den != 3);
-    if (root && !sign_is_nonnegative(expr_sign(g, base))) return 1;
-  }
+  for (uint32_t i = 0; op == EX_PROD && i < expr_pairs(g, node, EX_PROD); i++)
+    if (is_root(g, node, i)) return 1;
   return 0;
 }
 
@@ -194,6 +198,14 @@ static void mark_below(ExprGraph *g, Expr root, ExprMap *to) {
   for (uint32_t i = 0; i < l.n; i++) expr_map_set(to, l.at[i], 1);
 }
 
+/* Marks the arguments for which a partial node may have no value: of a product those of its roots. */
+static void mark_arguments(ExprGraph *g, Expr node, ExprMap *to) {
+  Num power;
+  if (expr_op(g, node) != EX_PROD) mark_below(g, node, to);
+  for (uint32_t i = 0; expr_op(g, node) == EX_PROD && i < expr_pairs(g, node, EX_PROD); i++)
+    if (is_root(g, node, i)) mark_below(g, expr_pair(g, node, EX_PROD, i, &power), to);
+}
+
 /* Nodes that no run may hold on a branch, as it may have no value past the surface: those inside roots and logarithms, and choices between such
  * values, as if(x < 0, (-x)^1.5, 0). */
 static const ExprMap *nodes_by_text(const Eqns *e, ExprList nodes) {
@@ -204,7 +216,7 @@ static const ExprMap *nodes_by_text(const Eqns *e, ExprList nodes) {
     Expr node = nodes.at[i];
     ExprOp op = expr_op(g, node);
     uint32_t choice = op == EX_SELECT;
-    if (is_partial(g, node)) mark_below(g, node, to);
+    if (is_partial(g, node)) mark_arguments(g, node, to);
     if (!choice && op != EX_MIN && op != EX_MAX) continue;
     if (!is_partial_below(g, expr_arg(g, node, choice)) && !is_partial_below(g, expr_arg(g, node, choice + 1))) continue;
     expr_map_set(to, node, 1);

@@ -12,7 +12,7 @@ typedef long double Real;
 enum {
   MAX_CANDIDATES = 200,   /* candidates examined: models of many bodies repeat the same few */
   LINES = 64,   /* lines through random states */
-  PLACES = 12   /* sign changes tried for each candidate; one jump suffices */
+  PLACES = 12   /* lines with a sign change tried for each candidate; one jump suffices */
 };
 
 static const unsigned varying_kinds = 1u << SYM_TIME | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE;
@@ -157,25 +157,41 @@ static Real sampling_point(const Search *s, int i) {
   return i < 0 ? -size : size;
 }
 
-/* Sign change of the switching function nearest to the base of the line, bisected to the last bit; returns 0 if there is none. */
-static int find_sign_change(Search *s, EvalTape *side, Real *where) {
-  enum { REACH = 24, HALVINGS = 200 };
-  Real lo = 0, hi = 0, first = switching_value(s, side, 0), left = first, right = first;
-  for (int i = 1; i <= REACH && lo >= hi; i++) {
-    Real before = left, after = right;
-    left = switching_value(s, side, sampling_point(s, -i));
+/* A part of the line at whose ends the switching function has other signs; lo: at its lower end it is positive. */
+typedef struct {
+  Real lo, hi;
+  int positive;
+} SignChange;
+
+enum { CHANGES = 4 }; /* on a line: of a product, as sin(x)*x', one factor may change its sign without a jump */
+
+/* Sign changes of the switching function, those nearest to the base of the line first. */
+static int sign_changes(Search *s, EvalTape *side, SignChange change[CHANGES]) {
+  enum { REACH = 24 };
+  Real left = switching_value(s, side, 0), right = left;
+  int n = 0;
+  for (int i = 1; i <= REACH && n < CHANGES; i++) {
+    Real before = left, after = right, near = sampling_point(s, 1 - i), far = sampling_point(s, -i);
+    left = switching_value(s, side, far);
     right = switching_value(s, side, sampling_point(s, i));
-    if (isfinite(before) && isfinite(left) && (left > 0) != (before > 0)) lo = sampling_point(s, -i), hi = sampling_point(s, 1 - i), first = left;
-    else if (isfinite(after) && isfinite(right) && (right > 0) != (after > 0)) lo = sampling_point(s, i - 1), hi = sampling_point(s, i), first = after;
+    if (isfinite(before) && isfinite(left) && (left > 0) != (before > 0)) change[n++] = (SignChange){far, near, left > 0};
+    near = sampling_point(s, i - 1), far = sampling_point(s, i);
+    if (n < CHANGES && isfinite(after) && isfinite(right) && (right > 0) != (after > 0)) change[n++] = (SignChange){near, far, after > 0};
   }
-  for (int i = 0; i < HALVINGS && lo < hi; i++) {
-    Real mid = (lo + hi) / 2, value = switching_value(s, side, mid);
+  return n;
+}
+
+/* Bisects a sign change to the last bit; returns 0 if there are places without a value. */
+static int find_place(Search *s, EvalTape *side, SignChange c, Real *where) {
+  enum { HALVINGS = 200 };
+  for (int i = 0; i < HALVINGS && c.lo < c.hi; i++) {
+    Real mid = (c.lo + c.hi) / 2, value = switching_value(s, side, mid);
     if (!isfinite(value)) return 0;
-    if ((value > 0) == (first > 0)) lo = mid;
-    else hi = mid;
+    if ((value > 0) == c.positive) c.lo = mid;
+    else c.hi = mid;
   }
-  *where = (lo + hi) / 2;
-  return lo != 0 || hi != 0;
+  *where = (c.lo + c.hi) / 2;
+  return 1;
 }
 
 /* --- both sides --- */
@@ -216,23 +232,29 @@ static Real jump_at(Search *s, Real where) {
   return is;
 }
 
+static void add_jump(Search *s, const Source *from, EvalTape *side, uint32_t seed, Real where, Real by) {
+  Real h = 1e-6L * length_scale(s, where), slope = (switching_value(s, side, where + h) - switching_value(s, side, where - h)) / (2 * h);
+  Real *symbols = ARENA_ARRAY(s->arena, Real, s->nsymbols + 1);
+  sample_state(s->g, seed, symbols); /* symbols without influence on the jump */
+  set_state(s, where);
+  for (uint32_t i = 0; i < s->symbols.n; i++) symbols[s->symbols.at[i]] = s->at[s->symbols.at[i]];
+  vec_push(s->arena, &s->found, ((ExprJump){from->node, from->side, symbols, by, slope}));
+}
+
 static void try_source(Search *s, const Source *from) {
   EvalTape *side = eval_tape(s->g, &from->side, 1);
   uint32_t places = 0;
   for (uint32_t seed = 1; seed <= LINES && places < PLACES; seed++) {
-    Real where;
+    SignChange change[CHANGES];
     draw_line(s, seed);
-    if (!find_sign_change(s, side, &where)) continue;
-    places++;
-    Real by = jump_at(s, where);
-    if (by == 0) continue;
-    Real h = 1e-6L * length_scale(s, where), slope = (switching_value(s, side, where + h) - switching_value(s, side, where - h)) / (2 * h);
-    Real *symbols = ARENA_ARRAY(s->arena, Real, s->nsymbols + 1);
-    sample_state(s->g, seed, symbols); /* symbols without influence on the jump */
-    set_state(s, where);
-    for (uint32_t i = 0; i < s->symbols.n; i++) symbols[s->symbols.at[i]] = s->at[s->symbols.at[i]];
-    vec_push(s->arena, &s->found, ((ExprJump){from->node, from->side, symbols, by, slope}));
-    return;
+    int n = sign_changes(s, side, change);
+    places += n > 0;
+    for (int i = 0; i < n; i++) {
+      Real where, by = find_place(s, side, change[i], &where) ? jump_at(s, where) : 0;
+      if (by == 0) continue;
+      add_jump(s, from, side, seed, where, by);
+      return;
+    }
   }
 }
 

@@ -348,4 +348,41 @@ int main(void) {
 END
 }
 check "_start of a header" start
+
+# ---- slip maps that vary: x' = g(a) a', where g may vanish
+# A ring on x = cos a: J v0^2/2 = Fr (cos 1 - cos a) at the stop, as friction of a path and as a force. Tolerance: 100 of the run's.
+model path <<'END_OF'
+model path
+coord a
+let x = cos(a)
+kinetic = a'^2/2
+friction ring on x: 1
+scene s { start a = 1, a' = 1; span 5; tolerance 1e-9 }
+END_OF
+sed 's/^friction.*/force a = sin(a)*sign(x'"'"')/' "$TMP/path.lag" >"$TMP/force.lag"
+for v in 0.2 0.8 1.1; do
+  for m in path force; do
+    check "$m: a stop from $v" run $m "a'=$v"
+    check "where the work is the energy" near "$(final a)" "$(awk -v v=$v 'BEGIN { c = cos(1) - v*v/2; printf "%.17g", atan2(sqrt(1 - c*c), c) }')" 1e-7
+    check "and stays" near "$(final "a'")" 0 1e-14
+  done
+done
+check "by time steps" run path --method moreau --step 1e-3
+check "to the step's error" near "$(final a)" 1.5304831026006622 1e-3
+# A piston: one coordinate, through asin and its roots, and three with two constraints. Both stop in the third turn.
+model crank <<'END_OF'
+model crank
+coord a
+let b = asin(0.4*sin(a))
+let x = 0.1*cos(a) + 0.25*cos(b)
+kinetic = 0.005*a'^2 + 0.75*x'^2 + 1e-3*b'^2
+friction ring on x: 1
+scene s { start a = 1, a' = 8; span 5; tolerance 1e-9 }
+END_OF
+sed -e 's/^coord a/coord a, b, x/; s/^let b = .*/constraint pin: 0.25*sin(b) = 0.1*sin(a)/; s/^let x = \(.*\)/constraint guide: x = \1/' "$TMP/crank.lag" >"$TMP/bars.lag"
+check "a piston in one coordinate" run crank
+stop=$(final a)
+check "it rests" near "$(final "a'")" 0 1e-14
+check "in three" run bars
+check "they stop at one place" near "$(final a)" "$stop" 1e-7
 tap_end
