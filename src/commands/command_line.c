@@ -72,7 +72,7 @@ static int check_choices(Arena *a, const OptionRow *row, const char *value, cons
 static const char *advice_for_suffix(Command c, const char *suffix) {
   if (c == CMD_PLOT && has_word("png pdf jpg jpeg gif webp eps ps", suffix)) return ", which browsers and `rsvg-convert` turn into other kinds";
   if (c == CMD_RUN && strcmp(suffix, "json") == 0) return "; --json prints the report as JSON";
-  if (c == CMD_RUN && strcmp(suffix, "svg") == 0) return "; --svg FILE draws";
+  if (has_word("svg png", suffix) && option_find(c, "--svg", &(const char *){NULL})) return "; --svg FILE draws";
   if (c != CMD_ANIMATE && has_word("html htm", suffix)) return "; `lagc animate` writes HTML";
   if (c != CMD_HEADER && has_word("h hh hpp hxx", suffix)) return "; `lagc header` writes headers";
   if (c != CMD_EMIT && strcmp(suffix, "c") == 0) return "; `lagc emit` writes C for the runtime, `lagc derive --format c` the accelerations";

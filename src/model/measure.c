@@ -158,10 +158,16 @@ static const Unit *unit_of_symbol(Builder *b, const Symbol *s, Unit *room) {
   return NULL;
 }
 
+/* Refuses comparisons and choices of measures; 0. */
+static int refuse_choice(MeasureReader *r, AstId id) {
+  return diag_error(r->b->diags, ast_expr(r->b->ast, id)->span, "`%s` is a choice among measures, which have none" HELP
+                    "measure both sides, and compare them in the rows of a sweep; along the run a choice is an observable: `max(if(x > 0, x, 0))`", ast_short(r->b, id));
+}
+
 /* An operand of the language by its name in the runtime; it becomes an output where it has none. */
 static Part operand(MeasureReader *r, AstId id) {
   Builder *b = r->b;
-  Value v = resolve(b, id, IN_OUTPUT, NULL);
+  Value v = r->whole[id - r->first] && !refuse_choice(r, id) ? (Value){0} : resolve(b, id, IN_OUTPUT, NULL);
   Part p = part_of(NULL, unit_si(v.dim, ""), 0);
   Span span = ast_expr(b->ast, id)->span;
   p.value.bare = v.bare;
