@@ -19,7 +19,10 @@ enum { LAG_MOST_TOUCHES = 6 };
 /* The largest friction of a contact that sticks, beside the force that presses. */
 static inline double lag_touch_holds(const lag_touch *c) { return c->hold > c->mu ? c->hold : c->mu; }
 
-/* All forces x + sum c[j] D[j][rows] hold the same accelerations. x := those whose least margin, of the largest friction less |F| where a contact sticks and of N where it does not, is
- * largest; c[n_directions] := their coefficients, at most 2 LAG_MOST_TOUCHES. Returns the margin; it is bounded by the size of the forces given, *wedged := 1 where
- * nothing else bounds it. A linear programme, by the simplex method with Bland's rule: R.G. Bland, Math. Oper. Res. 2 (1977) 103, DOI 10.1287/moor.2.2.103. */
-double lag_cone_forces(int n, const lag_touch *of, int rows, double *x, int n_directions, const double *D, double *c, int *wedged);
+/* All forces x + sum c[j] D[j][rows] hold the same accelerations. x := those whose least margin,
+ * of the largest friction less |F| where a contact sticks and of N where it does not, is
+ * largest; c[n_directions] := their coefficients, at most 2 LAG_MOST_TOUCHES. Returns the
+ * margin; it is bounded by the size of the forces given, *wedged := 1 where nothing else bounds
+ * it. A linear programme; numeric/complementarity.h solves its conditions of optimality. */
+double lag_cone_forces(int n, const lag_touch *of, int rows, double *x, int n_directions, const double *D, double *c,
+                       int *wedged);
