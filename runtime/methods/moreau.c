@@ -124,7 +124,7 @@ static int kick(Moreau *w, lag_problem *pb, double tm, double t, double dt, cons
     if (rc || (is_explicit(pb) && !f->n)) return rc;
     for (int i = nq; i < n; i++) {
       size[i] = rate[i];
-      for (int k = 0; k < pb->model->nmodes && f->n; k++) size[i] = fabs(size[i]) + fabs(f->d[k * n + i]); /* at rest forces cancel: rounding is that of friction */
+      for (int k = 0; k < f->n; k++) size[i] = fabs(size[i]) + fabs(f->d[k * n + i]); /* at rest forces cancel: rounding is that of friction */
     }
     double most = set_between(pb, dt, contacts->impacts > 0 ? 1 : 0.5, y, y1, size, mid);
     if (most <= 8 || (most <= 1e4 && most >= before / 2)) return LAG_OK;

@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "methods/band_matrix.h"
+#include "kernels/band_matrix.h"
 #include "methods/steps.h"
 #include "numeric/workspace.h"
 
@@ -202,7 +202,8 @@ int lag_moreau_contacts_solve(MoreauContacts *w, lag_problem *pb, double t, doub
   for (int r = 0; r < w->rows; r++)
     for (int e = (int)w->A.first[r]; e < (int)w->A.first[r + 1]; e++) size = fmax(size, fabs(w->A.value[e] * v[(int)w->A.col[e]]));
   if (!w->n) return 0;
-  int sweeps = lag_contact_impulses(w->n, w->of, &w->A, &w->D, w->response, w->b, enough * size, MOST_SWEEPS, w->P, v);
+  const lag_impulses impulses = {w->n, w->of, w->A, w->D, w->response, w->b, w->P, v};
+  int sweeps = lag_contact_impulses(&impulses, enough * size, MOST_SWEEPS);
   w->sweeps += sweeps;
   return sweeps > MOST_SWEEPS ? fail(pb, t, (int)w->of[0].contact, "and others find no impulses that agree: take smaller steps, or look for bodies that are wedged") : 0;
 }

@@ -12,7 +12,7 @@
  *                                 prices of limits         0, inf           } a linear programme
  *
  * Boxes of Coulomb's law depend on z: -mu N <= F <= mu N. Its solutions are counted by contacts/contact_modes.h for
- * few contacts, found by sweeps for many: contacts/contact_impulses.h. */
+ * few contacts, found by sweeps for many: kernels/impulses.h. */
 #pragma once
 
 /* Between its bounds z may exceed them by `reserve`: static friction holds more than friction while it slips. */

@@ -91,32 +91,49 @@ static const char *const values =
 
 static const char *const solve =
   " |\n"
-  " |/* Finds modes, and x, velocities and states at the end at time t: each quantity is 0 where its mode is within its bounds, else the mode is 1 or -1. d: rates for\n"
-  " | * a mode of 1; response: change of a quantity by its own mode. */\n"
-  " |static int lag_friction_solve(const lag_params *p, LAG_REAL t, LAG_REAL h, const LAG_REAL *yHELD, LAG_REAL (*d)[LAG_NY], const LAG_REAL *response, const LAG_REAL *bound,\n"
-  " |    LAG_REAL epsilon, LAG_REAL *mode, LAG_REAL *x) {\n"
-  " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0);\n"
-  " |  LAG_REAL g[LAG_NSURFACES], size = zero, before = zero;\n"
-  " |  for (int sweep = 0; sweep < 10000; sweep++) {\n"
-  " |    LAG_REAL change = zero;\n"
-  " |    for (int j = 0; j < LAG_NSURFACES; j++) {\n"
-  " |      const int status = lag_friction_slips(p, t, y, xPASS, mode, g);\n"
-  " |      if (status != LAG_OK) return status;\n"
-  " |      LAG_REAL to = response[j] < zero ? mode[j] - g[j]/response[j] : g[j] > zero ? one : g[j] < zero ? -one : zero;\n"
-  " |      if (!(to - to == zero)) return LAG_ECONTACT;\n"
-  " |      if (to > bound[j]) to = one;\n"
-  " |      if (to < -bound[j]) to = -one;\n"
-  " |      const LAG_REAL by = to - mode[j], moved = LAG_FN(fabs)(by*response[j]), slip = LAG_FN(fabs)(g[j]), own = LAG_FN(fabs)(response[j]);\n"
-  " |      for (int i = LAG_NQ; i < LAG_NY; i++) x[i] += h*by*d[j][i];\n"
-  " |      mode[j] = to;\n"
-  " |      change = moved > change ? moved : change;\n"
-  " |      size = slip > size ? slip : size;\n"
-  " |      size = own > size ? own : size;\n"
-  " |    }\n"
-  " |    if (change <= LAG_C(64.0)*epsilon*size || (sweep > 0 && change <= LAG_C(1e7)*epsilon*size && change >= before/LAG_C(2.0))) return LAG_OK;\n"
-  " |    before = change;\n"
-  " |  }\n"
-  " |  return LAG_ECONTACT;\n"
+  " |/* End of a step at time t, from its middle y: velocities and states x change with the modes, by d for a mode of 1. */\n"
+  " |typedef struct lag_friction_end {\n"
+  " |  const lag_params *p;\n"
+  " |  LAG_REAL t, h, (*d)[LAG_NY], *mode, *x;\n"
+  " |  const LAG_REAL *y;\n"
+  "u|  const LAG_REAL *u;\n"
+  "u|  lag_input_fn *input;\n"
+  "u|  void *context;\n"
+  " |} lag_friction_end;\n"
+  " |\n"
+  " |static int lag_friction_slip(void *end, int k, LAG_REAL *slip) {\n"
+  " |  const lag_friction_end *const a = (const lag_friction_end *)end;\n"
+  " |  LAG_REAL g[LAG_NSURFACES];\n"
+  " |  const int status = lag_friction_slips(a->p, a->t, a->y, a->xOF_END, a->mode, g);\n"
+  " |  *slip = g[k];\n"
+  " |  return status;\n"
+  " |}\n"
+  " |\n"
+  " |static void lag_friction_change(void *end, int k, LAG_REAL mode) {\n"
+  " |  const lag_friction_end *const a = (const lag_friction_end *)end;\n"
+  " |  const LAG_REAL by = mode - a->mode[k];\n"
+  " |  for (int i = LAG_NQ; i < LAG_NY; i++) a->x[i] += a->h*by*a->d[k][i];\n"
+  " |  a->mode[k] = mode;\n"
+  " |}\n"
+  " |\n"
+  " |/* Finds modes, and x: each quantity is 0 where its mode is within its bounds, else the mode is 1 or -1. */\n"
+  " |static int lag_friction_solve(lag_friction_end *end, const LAG_REAL *response, const LAG_REAL *bound, LAG_REAL epsilon) {\n"
+  " |  LAG_REAL sticks[LAG_NSURFACES], centre[LAG_NSURFACES], size;\n"
+  " |  lag_surfaces s;\n"
+  " |  int row;\n"
+  " |  for (int j = 0; j < LAG_NSURFACES; j++) centre[j] = LAG_C(0.0);\n"
+  " |  s.n = LAG_NSURFACES;\n"
+  " |  s.slip = lag_friction_slip;\n"
+  " |  s.change = lag_friction_change;\n"
+  " |  s.context = end;\n"
+  " |  s.epsilon = epsilon;\n"
+  " |  s.response = response;\n"
+  " |  s.bound = bound;\n"
+  " |  s.centre = centre;\n"
+  " |  s.mode = end->mode;\n"
+  " |  s.sticks = sticks;\n"
+  " |  const int status = lag_surface_sweeps(&s, &size, &row);\n"
+  " |  return status == LAG_SURFACE_INFINITE || status == LAG_SURFACES_DISAGREE ? (int)LAG_ECONTACT : status;\n"
   " |}\n"
   " |\n"
   " |/* d, response: what a mode of 1 changes in a step, from the states at its middle, mid, and at its end, x. */\n"
@@ -162,6 +179,7 @@ static const char *const step =
   " |  const LAG_REAL half = LAG_C(0.5), epsilon = lag_epsilon();\n"
   " |  LAG_REAL y[LAG_NY], mid[LAG_NY], x[LAG_NY], rate[LAG_NY], d[LAG_NSURFACES][LAG_NY], mode[LAG_NSURFACES], bound[LAG_NSURFACES], response[LAG_NSURFACES], before = -LAG_C(1.0);\n"
   "w|  LAG_REAL now[LAG_NU];\n"
+  " |  lag_friction_end a = {p, s->t + h, h, d, mode, x, midTO_END};\n"
   " |  lag_state end = *s;\n"
   " |  int turn = 0, done = 0;\n"
   " |  lag_gather(s, y);\n"
@@ -173,7 +191,7 @@ static const char *const step =
   " |    status = lag_friction_rates(p, s->t + half*h, midPASS, mode, rate);\n"
   " |    for (int i = LAG_NQ; i < LAG_NY && status == LAG_OK; i++) x[i] = y[i] + h*rate[i];\n"
   " |    if (status == LAG_OK && turn == 0) status = lag_friction_response(p, s, h, midPASS, mode, x, d, response);\n"
-  " |    if (status == LAG_OK) status = lag_friction_solve(p, s->t + h, h, midPASS, d, response, bound, epsilon, mode, x);\n"
+  " |    if (status == LAG_OK) status = lag_friction_solve(&a, response, bound, epsilon);\n"
   " |    if (status != LAG_OK) return status;\n"
   " |    for (int j = 0; j < LAG_NSURFACES; j++) /* at rest forces cancel: rounding is that of friction */\n"
   " |      for (int i = LAG_NQ; i < LAG_NY; i++) rate[i] = LAG_FN(fabs)(rate[i]) + LAG_FN(fabs)(d[j][i]);\n"
@@ -220,13 +238,16 @@ void header_friction_define(const Header *h) {
                               {"PARAMS", u->u.n ? "const lag_params *p, LAG_REAL t, const LAG_REAL *u, lag_input_fn *input, void *context, " : ""},
                               {"INPUTS", u->u.n ? "p, t, u, input, context, " : ""}, {"INPUT", u->u.n ? ", const LAG_REAL *u" : ""}, {"NOW", u->u.n ? ", u, 0, 0" : ""},
                               {"STATE", arena_printf(h->a, "t%s%s", u->q.n ? ", y, y + LAG_NQ" : "", z)}, {"QUANTITY", arena_printf(h->a, "t%s%s", u->q.n ? ", y, x + LAG_NQ" : "", x)},
-                              {"RATES", u->q.n && u->z.n ? "k + LAG_NQ, k + 2*LAG_NQ" : "k + LAG_NQ"}, {"AT_END", u->u.n ? ", lag_held(p, end.t, u, input, context, now)" : ""}, {NULL, NULL}};
+                              {"RATES", u->q.n && u->z.n ? "k + LAG_NQ, k + 2*LAG_NQ" : "k + LAG_NQ"}, {"OF_END", u->u.n ? ", a->u, a->input, a->context" : ""}, {"TO_END", u->u.n ? ", u, input, context" : ""},
+                              {"AT_END", u->u.n ? ", lag_held(p, end.t, u, input, context, now)" : ""}, {NULL, NULL}};
   const char *const parts[] = {values, solve, step};
   const char *rates = u->q.n && u->z.n ? "%s_REAL *a, %s_REAL *zd" : u->q.n ? "%s_REAL *a" : "%s_REAL *zd";
   held_function(h, u->held_accel, "held_accel", arena_printf(h->a, rates, R, R), u->q.n && u->z.n ? both : u->q.n ? a : zd, both + 1);
   held_function(h, u->switch_values, "switch_values", arena_printf(h->a, "%s_REAL *all", R), all, all + 1);
   if (u->switch_grips) held_function(h, u->switch_grips, "switch_grips", arena_printf(h->a, "%s_REAL *all", R), all, all + 1);
   if (h->parts.follows && h->scene->observe_held) held_function(h, h->scene->observe_held, "held_observe", arena_printf(h->a, "%s_REAL *out", R), outputs, outputs + 1);
+  embedded_section("friction", h->upper, h->lower, h->out);
+  embedded_section("surfaces", h->upper, h->lower, h->out);
   header_moreau_between(h);
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     const LineChoice choices[] = {{'n', !u->q.n}, {'g', u->switch_grips != NULL}, {'h', holds}, {'w', holds && u->u.n}, {0, 0}};

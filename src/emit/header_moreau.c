@@ -1,53 +1,8 @@
-/* Steps of an emitted header by Moreau's method. Enters: the unit's contacts, their laws and matrices. Leaves: what the state says of contacts, prototypes and functions of the steps. Holds:
- * each step has the digits of the runtime's, whose laws and sweeps are copied (contacts/contact_impulses.c, methods/band_matrix.c); the frame around them is that of methods/moreau.c and
+/* Steps of an emitted header by Moreau's method. Enters: the unit's contacts, their laws and matrices. Leaves: what the
+ * state says of contacts, prototypes and functions of the steps. Holds: each step has the digits of the runtime's, whose
+ * laws and sweeps it carries (kernels/impulses.h, band_matrix.h); the frame around them is that of methods/moreau.c and
  * moreau_contacts.c, which give the reasons. */
-#include <string.h>
-
 #include "emit/header_impl.h"
-
-#include "emit/band_matrix_text.h" /* static const char *const NAME_text[], NAME_types[]: lines of NAME.c and NAME.h of the runtime */
-#include "emit/band_matrix_types.h"
-#include "emit/contact_impulses_text.h"
-#include "emit/contact_impulses_types.h"
-
-/* --- texts of the runtime --- */
-
-/* Name of the runtime's text, and what a header writes in its place. */
-static const HeaderWord renamed[] = {
-  {"double", "LAG_REAL"}, {"fabs", "LAG_FN(fabs)"}, {"hypot", "LAG_FN(hypot)"}, {"fmax", "lag_larger"}, {"fmin", "lag_smaller"}, {"isnan", "!lag_is_number"}, {"isfinite", "lag_is_number"},
-  {"lag_swap", "lag_swap_entries"}, {"row_scales", "lag_row_scales"}, {"add_impulse", "lag_add_impulse"}, {"into_ball", "lag_into_ball"}, {"soften", "lag_contact_soften"}, {"turn", "lag_contact_turn"}, {"least(", "lag_least("}, {NULL, NULL}};
-
-static int is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-static int is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/* One line of code: names as above, functions static, numbers with a point in the scalar's type. */
-static void copy_line(const Header *h, const char *s, StrBuf *out) {
-  static const char *const types[] = {"int ", "double ", "void "};
-  for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-    if (strncmp(s, types[i], strlen(types[i])) == 0) sb_puts(out, "static ");
-  while (*s) {
-    size_t n = 1;
-    const HeaderWord *w = renamed;
-    while (is_letter(*s) ? is_letter(s[n]) || is_digit(s[n]) : is_digit(*s) && (is_digit(s[n]) || s[n] == '.')) n++;
-    while (w->mark && !(strncmp(s, w->mark, strlen(w->mark)) == 0 && !(is_letter(*s) && strlen(w->mark) < n))) w++;
-    if (w->mark) sb_puts(out, w->text), n = strlen(w->mark);
-    else if (is_digit(*s) && memchr(s, '.', n)) sb_puts(out, arena_printf(h->a, "LAG_C(%.*s)", (int)n, s));
-    else sb_putn(out, s, n);
-    s += n;
-  }
-}
-
-/* The text behind its head, without includes. */
-static void copy_text(const Header *h, const char *const *line, size_t n) {
-  StrBuf b = strbuf(h->a);
-  size_t i = 0;
-  while (i < n && !strstr(line[i], "*/")) i++;
-  for (i++; i < n; i++)
-    if (line[i][0] != '#') copy_line(h, line[i], &b);
-  csupport_expand(sb_text(&b), h->upper, h->lower, h->out);
-}
-
-#define COPY(text) copy_text(h, text, sizeof text / sizeof *text)
 
 /* --- declarations --- */
 
@@ -81,24 +36,6 @@ static const char *const prototypes =
   " |LAG_API int lag_moreau_step_with(const lag_params *p, lag_state *s, LAG_REAL h, lag_input_fn *input, void *context);\n";
 
 /* --- definitions --- */
-
-static const char *const larger =
-  " |\n"
-  " |static LAG_REAL lag_larger(LAG_REAL a, LAG_REAL b) { return a < b || !(a == a) ? b : a; }\n";
-
-static const char *const helpers =
-  " |\n"
-  " |static int lag_is_number(LAG_REAL x) { return x - x == LAG_C(0.0); }\n"
-  " |static LAG_REAL lag_smaller(LAG_REAL a, LAG_REAL b) { return a > b || !(a == a) ? b : a; }\n";
-
-static const char *const swap =
-  " |static void lag_swap_entries(LAG_REAL *a, LAG_REAL *b) {\n"
-  " |  const LAG_REAL was = *a;\n"
-  " |  *a = *b;\n"
-  " |  *b = was;\n"
-  " |}\n"
-  " |\n"
-  " |\n";
 
 static const char *const tables =
   " |\n"
@@ -293,13 +230,20 @@ static const char *const find =
   " |/* v: velocities without contacts, then with them. */\n"
   " |static int lag_contact_solve(lag_contact_room *w, LAG_REAL *v) {\n"
   " |  enum { MOST = 200000 };\n"
-  " |  const lag_sparse_rows A = lag_contact_rows(w->afirst, w->acol, w->avalue), D = lag_contact_rows(w->dfirst, w->dcol, w->dvalue);\n"
+  " |  lag_impulses s;\n"
   " |  LAG_REAL size = LAG_C(0.0);\n"
   " |  for (int e = 0; e < (int)w->afirst[(int)w->rows]; e++) size = lag_larger(size, LAG_FN(fabs)(w->avalue[e]*v[(int)w->acol[e]]));\n"
   " |  if (!(w->n > LAG_C(0.0))) return LAG_OK;\n"
   " |  const LAG_REAL enough = LAG_C(64.0)*w->epsilon*size;\n"
-  " |  if (lag_contact_impulses((int)w->n, w->of, &A, &D, w->response, w->b, enough, MOST, w->P, v) > MOST) return LAG_ECONTACT;\n"
-  " |  return LAG_OK;\n"
+  " |  s.n = (int)w->n;\n"
+  " |  s.of = w->of;\n"
+  " |  s.A = lag_contact_rows(w->afirst, w->acol, w->avalue);\n"
+  " |  s.D = lag_contact_rows(w->dfirst, w->dcol, w->dvalue);\n"
+  " |  s.response = w->response;\n"
+  " |  s.b = w->b;\n"
+  " |  s.P = w->P;\n"
+  " |  s.v = v;\n"
+  " |  return lag_contact_impulses(&s, enough, MOST) > MOST ? (int)LAG_ECONTACT : (int)LAG_OK;\n"
   " |}\n";
 
 static const char *const between =
@@ -420,7 +364,6 @@ static uint32_t bandwidth(const ProgramSet *u) {
 
 void header_moreau_between(const Header *h) {
   const LineChoice choices[] = {{'n', !h->u->q.n}, {0, 0}};
-  header_template(h, larger, NULL);
   header_template(h, header_chosen(h, between, choices), NULL);
 }
 
@@ -448,16 +391,10 @@ static void define_contacts(const Header *h) {
                               {"VELOCITY", k->position == k->velocity ? "correct" : "correct_velocities"}, {NULL, NULL}};
   static const char *const matrices[] = {"A", "M", NULL}, *const law[] = {"law", NULL};
   const char *const parts[] = {tables, inputs, respond_alone, rows, laws, find, kick, step};
-  if (is_explicit) header_template(h, larger, NULL);
-  else header_moreau_between(h);
-  header_template(h, helpers, NULL);
-  COPY(contact_impulses_types);
-  COPY(contact_impulses_text);
-  if (!others) {
-    header_template(h, swap, NULL);
-    COPY(band_matrix_types);
-    COPY(band_matrix_text);
-  }
+  embedded_section("friction", h->upper, h->lower, h->out);
+  embedded_section("impulses", h->upper, h->lower, h->out);
+  if (!others) embedded_section("band_matrix", h->upper, h->lower, h->out);
+  if (!is_explicit) header_moreau_between(h);
   header_internal_function(h, k->matrices, "contact_matrices", arena_printf(h->a, "%s_REAL *A, %s_REAL *M", h->upper, h->upper), matrices, matrices);
   if (u->contact_coefficients) header_internal_function(h, u->contact_coefficients, "contact_coefficients", arena_printf(h->a, "%s_REAL *law", h->upper), law, law);
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
