@@ -94,7 +94,7 @@ static inline int lag_band_matrix_factor(lag_band_matrix *m, LAG_REAL *scale) {
     for (int i = k + 1; i <= lag_band_least(k + m->band, m->n - 1); i++) {
       LAG_REAL *const r = lag_band_matrix_at(m, i, k), f = r[0]/u[0];
       r[0] = f;
-      for (int j = 1; (f < zero || f > zero) && j <= right - k; j++) r[j] -= f*u[j];
+      for (int j = 1; !(f >= zero && f <= zero) && j <= right - k; j++) r[j] -= f*u[j];
     }
   }
   return 0;

@@ -63,6 +63,32 @@ static inline void lag_friction_turn(int n, LAG_REAL response, const LAG_REAL *c
   if (size > holds) lag_into_ball(n, origin, most, x);
 }
 
+/* ---- mean ---- */
+
+typedef struct lag_moreau_ends {
+  LAG_REAL h;
+  const LAG_REAL *y0, *y1, *rate; /* (q, v, z) at both ends of a step; the rates of v and z, or their terms */
+} lag_moreau_ends;
+
+/* mid := y0 + part (y1 - y0) for velocities and states. Returns its largest change, in units of rounding: of
+ * the largest velocity, or of the state itself. */
+static inline LAG_REAL lag_moreau_mean(const lag_moreau_ends *e, LAG_REAL part, LAG_REAL epsilon, int nq, int nz,
+                                       LAG_REAL *mid) {
+  const LAG_REAL *const y0 = e->y0, *const y1 = e->y1;
+  LAG_REAL most = LAG_C(0.0), fastest = LAG_C(0.0);
+  for (int i = nq; i < 2*nq; i++) {
+    const LAG_REAL v0 = LAG_FN(fabs)(y0[i]), v1 = LAG_FN(fabs)(y1[i]);
+    fastest = lag_larger(fastest, lag_larger(LAG_FN(fabs)(e->h*e->rate[i]), lag_larger(v0, v1)));
+  }
+  for (int i = nq; i < 2*nq + nz; i++) {
+    const LAG_REAL next = y0[i] + part*(y1[i] - y0[i]), own = LAG_FN(fabs)(y0[i]) + LAG_FN(fabs)(y1[i]);
+    const LAG_REAL size = LAG_SELECT(i < 2*nq, fastest, own);
+    if (next < mid[i] || next > mid[i]) most = lag_larger(most, LAG_FN(fabs)(next - mid[i])/(epsilon*size));
+    mid[i] = next;
+  }
+  return most;
+}
+
 /* ---- surfaces ---- */
 
 /* Dry friction along n surfaces in a step. mode[n]: the mean of the sign of each slip, so friction in parts

@@ -118,20 +118,9 @@ static const char *const solve =
   " |\n"
   " |/* Finds modes, and x: each quantity is 0 where its mode is within its bounds, else the mode is 1 or -1. */\n"
   " |static int lag_friction_solve(lag_friction_end *end, const LAG_REAL *response, const LAG_REAL *bound, LAG_REAL epsilon) {\n"
-  " |  LAG_REAL sticks[LAG_NSURFACES], centre[LAG_NSURFACES], size;\n"
-  " |  lag_surfaces s;\n"
+  " |  LAG_REAL sticks[LAG_NSURFACES], centre[LAG_NSURFACES] = {0}, size;\n"
+  " |  const lag_surfaces s = {LAG_NSURFACES, lag_friction_slip, lag_friction_change, end, epsilon, response, bound, centre, end->mode, sticks};\n"
   " |  int row;\n"
-  " |  for (int j = 0; j < LAG_NSURFACES; j++) centre[j] = LAG_C(0.0);\n"
-  " |  s.n = LAG_NSURFACES;\n"
-  " |  s.slip = lag_friction_slip;\n"
-  " |  s.change = lag_friction_change;\n"
-  " |  s.context = end;\n"
-  " |  s.epsilon = epsilon;\n"
-  " |  s.response = response;\n"
-  " |  s.bound = bound;\n"
-  " |  s.centre = centre;\n"
-  " |  s.mode = end->mode;\n"
-  " |  s.sticks = sticks;\n"
   " |  const int status = lag_surface_sweeps(&s, &size, &row);\n"
   " |  return status == LAG_SURFACE_INFINITE || status == LAG_SURFACES_DISAGREE ? (int)LAG_ECONTACT : status;\n"
   " |}\n"
@@ -195,7 +184,8 @@ static const char *const step =
   " |    if (status != LAG_OK) return status;\n"
   " |    for (int j = 0; j < LAG_NSURFACES; j++) /* at rest forces cancel: rounding is that of friction */\n"
   " |      for (int i = LAG_NQ; i < LAG_NY; i++) rate[i] = LAG_FN(fabs)(rate[i]) + LAG_FN(fabs)(d[j][i]);\n"
-  " |    const LAG_REAL most = lag_moreau_between(h, half, epsilon, y, x, rate, mid);\n"
+  " |    const lag_moreau_ends ends = {h, y, x, rate};\n"
+  " |    const LAG_REAL most = lag_moreau_mean(&ends, half, epsilon, LAG_NQ, LAG_NZ, mid);\n"
   " |    done = most <= LAG_C(8.0) || (turn > 0 && most <= LAG_C(1e4) && most >= half*before);\n"
   " |    before = most;\n"
   " |  }\n"
@@ -248,7 +238,7 @@ void header_friction_define(const Header *h) {
   if (h->parts.follows && h->scene->observe_held) held_function(h, h->scene->observe_held, "held_observe", arena_printf(h->a, "%s_REAL *out", R), outputs, outputs + 1);
   embedded_section("friction", h->upper, h->lower, h->out);
   embedded_section("surfaces", h->upper, h->lower, h->out);
-  header_moreau_between(h);
+  embedded_section("mean", h->upper, h->lower, h->out);
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     const LineChoice choices[] = {{'n', !u->q.n}, {'g', u->switch_grips != NULL}, {'h', holds}, {'w', holds && u->u.n}, {0, 0}};
     header_template(h, header_chosen(h, parts[i], choices), words);

@@ -66,24 +66,12 @@ static const char *const inputs =
   " |    now[lag_contact_at[i][0]] = only == -1 || only == i ? LAG_C(1.0) : LAG_C(0.0);\n"
   " |    if (lag_contact_at[i][3] < 0) now[lag_contact_at[i][2]] = LAG_C(0.0);\n"
   " |  }\n"
-  " |}\n"
-  " |\n"
-  " |static lag_sparse_rows lag_contact_rows(LAG_REAL *first, LAG_REAL *col, LAG_REAL *value) {\n"
-  " |  lag_sparse_rows A;\n"
-  " |  A.first = first;\n"
-  " |  A.col = col;\n"
-  " |  A.value = value;\n"
-  " |  return A;\n"
   " |}\n";
 
 static const char *const respond_alone =
   " |\n"
   "b|static lag_band_matrix lag_contact_band(lag_contact_room *w) {\n"
-  "b|  lag_band_matrix M;\n"
-  "b|  M.n = LAG_NQ;\n"
-  "b|  M.band = BANDWIDTH;\n"
-  "b|  M.a = w->band;\n"
-  "b|  M.pivot = w->pivot;\n"
+  "b|  const lag_band_matrix M = {LAG_NQ, BANDWIDTH, w->band, w->pivot};\n"
   "b|  return M;\n"
   "b|}\n"
   "b|\n"
@@ -106,7 +94,7 @@ static const char *const respond_alone =
   "b|  return LAG_OK;\n"
   "b|}\n"
   "k|static int lag_contact_respond(const lag_params *p, LAG_REAL tHELD, const LAG_REAL *y, lag_contact_room *w, int i, int row) {\n"
-  "k|  const lag_sparse_rows A = lag_contact_rows(w->afirst, w->acol, w->avalue);\n"
+  "k|  const lag_sparse_rows A = {w->afirst, w->acol, w->avalue};\n"
   "k|  LAG_REAL g[LAG_NC], effort[LAG_NQ], work = LAG_C(0.0), *const now = w->now;\n"
   "k|  for (int k = 0; k < LAG_NC; k++) g[k] = k == lag_contact_at[i][1] ? LAG_C(1.0) : LAG_C(0.0);\n"
   "k|  lag_contact_inputs(p, tPASS, i, now);\n"
@@ -123,7 +111,7 @@ static const char *const rows =
   " |/* The next row of A and D, for contact i. */\n"
   " |static int lag_contact_row(const lag_params *p, LAG_REAL tHELD, const LAG_REAL *y, const LAG_REAL *impulse, lag_contact_room *w, int i) {\n"
   " |  const int r = (int)w->rows, k = lag_contact_at[i][1];\n"
-  " |  const lag_sparse_rows A = lag_contact_rows(w->afirst, w->acol, w->avalue);\n"
+  " |  const lag_sparse_rows A = {w->afirst, w->acol, w->avalue};\n"
   " |  int e = (int)w->afirst[r], f = (int)w->dfirst[r];\n"
   " |  w->rows += LAG_C(1.0);\n"
   " |  for (int j = 0; j < NJACOBIAN; j++) {\n"
@@ -230,37 +218,12 @@ static const char *const find =
   " |/* v: velocities without contacts, then with them. */\n"
   " |static int lag_contact_solve(lag_contact_room *w, LAG_REAL *v) {\n"
   " |  enum { MOST = 200000 };\n"
-  " |  lag_impulses s;\n"
   " |  LAG_REAL size = LAG_C(0.0);\n"
   " |  for (int e = 0; e < (int)w->afirst[(int)w->rows]; e++) size = lag_larger(size, LAG_FN(fabs)(w->avalue[e]*v[(int)w->acol[e]]));\n"
   " |  if (!(w->n > LAG_C(0.0))) return LAG_OK;\n"
   " |  const LAG_REAL enough = LAG_C(64.0)*w->epsilon*size;\n"
-  " |  s.n = (int)w->n;\n"
-  " |  s.of = w->of;\n"
-  " |  s.A = lag_contact_rows(w->afirst, w->acol, w->avalue);\n"
-  " |  s.D = lag_contact_rows(w->dfirst, w->dcol, w->dvalue);\n"
-  " |  s.response = w->response;\n"
-  " |  s.b = w->b;\n"
-  " |  s.P = w->P;\n"
-  " |  s.v = v;\n"
+  " |  const lag_impulses s = {(int)w->n, w->of, {w->afirst, w->acol, w->avalue}, {w->dfirst, w->dcol, w->dvalue}, w->response, w->b, w->P, v};\n"
   " |  return lag_contact_impulses(&s, enough, MOST) > MOST ? (int)LAG_ECONTACT : (int)LAG_OK;\n"
-  " |}\n";
-
-static const char *const between =
-  " |\n"
-  " |/* mid := y + part (y1 - y) for velocities and states. Returns its largest change, in units of rounding. */\n"
-  " |static LAG_REAL lag_moreau_between(LAG_REAL h, LAG_REAL part, LAG_REAL epsilon, const LAG_REAL *y, const LAG_REAL *y1, const LAG_REAL *rate, LAG_REAL *mid) {\n"
-  "q|  LAG_REAL most = LAG_C(0.0), fastest = LAG_C(0.0);\n"
-  "n|  LAG_REAL most = LAG_C(0.0);\n"
-  "n|  (void)h; (void)rate;\n"
-  "q|  for (int i = LAG_NQ; i < 2*LAG_NQ; i++) fastest = lag_larger(fastest, lag_larger(LAG_FN(fabs)(h*rate[i]), lag_larger(LAG_FN(fabs)(y[i]), LAG_FN(fabs)(y1[i]))));\n"
-  " |  for (int i = LAG_NQ; i < LAG_NY; i++) {\n"
-  "q|    const LAG_REAL next = y[i] + part*(y1[i] - y[i]), size = i < 2*LAG_NQ ? fastest : LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(y1[i]);\n"
-  "n|    const LAG_REAL next = y[i] + part*(y1[i] - y[i]), size = LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(y1[i]);\n"
-  " |    most = next == mid[i] ? most : lag_larger(most, LAG_FN(fabs)(next - mid[i])/(epsilon*size));\n"
-  " |    mid[i] = next;\n"
-  " |  }\n"
-  " |  return most;\n"
   " |}\n";
 
 static const char *const kick =
@@ -285,7 +248,8 @@ static const char *const kick =
   " |    if (status == LAG_OK) status = lag_contact_solve(w, y1 + LAG_NQ);\n"
   "e|    return status;\n"
   "i|    if (status != LAG_OK) return status;\n"
-  "i|    const LAG_REAL most = lag_moreau_between(h, w->impacts > LAG_C(0.0) ? LAG_C(1.0) : LAG_C(0.5), w->epsilon, y, y1, rate, mid);\n"
+  "i|    const lag_moreau_ends ends = {h, y, y1, rate};\n"
+  "i|    const LAG_REAL most = lag_moreau_mean(&ends, w->impacts > LAG_C(0.0) ? LAG_C(1.0) : LAG_C(0.5), w->epsilon, LAG_NQ, LAG_NZ, mid);\n"
   "i|    if (most <= LAG_C(8.0) || (turn > 0 && most <= LAG_C(1e4) && most >= before/LAG_C(2.0))) return LAG_OK;\n"
   "i|    before = most;\n"
   " |  }\n"
@@ -362,11 +326,6 @@ static uint32_t bandwidth(const ProgramSet *u) {
   return band;
 }
 
-void header_moreau_between(const Header *h) {
-  const LineChoice choices[] = {{'n', !h->u->q.n}, {0, 0}};
-  header_template(h, header_chosen(h, between, choices), NULL);
-}
-
 static const char *contact_table(const Header *h) {
   StrBuf b = strbuf(h->a);
   for (uint32_t i = 0; i < h->u->contacts.n; i++) {
@@ -394,7 +353,7 @@ static void define_contacts(const Header *h) {
   embedded_section("friction", h->upper, h->lower, h->out);
   embedded_section("impulses", h->upper, h->lower, h->out);
   if (!others) embedded_section("band_matrix", h->upper, h->lower, h->out);
-  if (!is_explicit) header_moreau_between(h);
+  if (!is_explicit) embedded_section("mean", h->upper, h->lower, h->out);
   header_internal_function(h, k->matrices, "contact_matrices", arena_printf(h->a, "%s_REAL *A, %s_REAL *M", h->upper, h->upper), matrices, matrices);
   if (u->contact_coefficients) header_internal_function(h, u->contact_coefficients, "contact_coefficients", arena_printf(h->a, "%s_REAL *law", h->upper), law, law);
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
