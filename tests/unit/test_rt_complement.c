@@ -1,9 +1,10 @@
 /* lag_solve_complementarity: problems solved by hand; random ones against all 3^n choices of
  * bounds, or against the properties that define a solution; problems without solution, with
- * several, with dependent rows. */
+ * several, with dependent rows. The sweeps of kernels/impulses.h against it and lag_contact_modes. */
 #include "test_rt_models.h"
 
-#include "contacts/cone_forces.h"
+#include "contacts/contact_modes.h"
+#include "kernels/impulses.h"
 #include "numeric/complementarity.h"
 
 enum { MOST = 8 };
@@ -240,6 +241,9 @@ static void test_switches(void **state) {
   assert_true(p.at[0] == LAG_BETWEEN && p.at[1] == LAG_AT_LOWER);
   assert_close(p.z[0], -0.5, 1e-15);
   assert_int_equal(solve(&both, &of), LAG_NOT_MONOTONE);
+  both.q[0] = -2;
+  both.at[0] = LAG_AT_LOWER;
+  assert_int_equal(solve(&both, &of), LAG_NOT_MONOTONE);
 }
 
 /* The largest least of `limits` values a[k] + slope[k] c over all c, by all pairs that cross. */
@@ -284,10 +288,131 @@ static void test_margins(void **state) {
   }
 }
 
+/* ---- the same problems by sweeps */
+
+/* Sweeps over rows whose response is M = A A^T, A[n][n] the triangular factor of a random one, from v = 0. */
+typedef struct Sweeps {
+  int n;
+  double M[16], A[16], first[5], col[16], b[4], P[4], v[4], response[4];
+} Sweeps;
+
+static void begin_sweeps(Sweeps *s, int n, uint64_t *seed) {
+  *s = (Sweeps){.n = n};
+  for (int e = 0; e < n * n; e++) {
+    s->A[e] = (e / n == e % n) + 0.5 * chance(seed);
+    s->col[e] = e % n;
+  }
+  for (int i = 0; i <= n; i++) s->first[i] = i * n;
+  for (int e = 0; e < n * n; e++)
+    for (int k = 0; k < n; k++) s->M[e] += s->A[e / n * n + k] * s->A[e % n * n + k];
+  for (int i = 0; i < n; i++) s->response[i] = s->M[i * n + i];
+}
+
+static int sweep(Sweeps *s, int contacts, lag_pressing *of) {
+  const lag_sparse_rows rows = {s->first, s->col, s->A};
+  const lag_impulses impulses = {contacts, of, rows, rows, s->response, s->b, s->P, s->v};
+  return lag_contact_impulses(&impulses, 1e-14, 100000) <= 100000;
+}
+
+/* Contacts without friction, by sweeps and by pivoting. */
+static void test_sweeps_of_contacts(void **state) {
+  (void)state;
+  uint64_t seed = 21;
+  for (int k = 0; k < 200; k++) {
+    Sweeps s;
+    Problem p = {.n = 1 + k % 4};
+    lag_pressing of[4];
+    lag_complementarity solver;
+    begin_sweeps(&s, p.n, &seed);
+    memcpy(p.M, s.M, sizeof s.M);
+    for (int i = 0; i < p.n; i++) {
+      of[i] = (lag_pressing){.contact = i, .row = i};
+      p.q[i] = s.b[i] = chance(&seed);
+      p.box[i] = (lag_box){0, HUGE_VAL, 0, 0};
+    }
+    assert_true(sweep(&s, p.n, of));
+    assert_int_equal(solve(&p, &solver), LAG_SOLVED);
+    for (int i = 0; i < p.n; i++)
+      assert_true(fabs(s.P[i] - p.z[i]) <= 1e-9 * (1 + p.z[i])); /* 1e-14 by the condition of M */
+  }
+}
+
+/* Contacts with friction at rest, by sweeps and by all of their modes. */
+static void test_sweeps_of_friction(void **state) {
+  (void)state;
+  uint64_t seed = 22;
+  int sticks = 0, slips = 0;
+  for (int k = 0; k < 300; k++) {
+    Sweeps s;
+    int n = 1 + k % 2, rows = 2 * n;
+    lag_touch touch[2];
+    lag_pressing of[2];
+    double W[16], pull[4], x[4], room[36];
+    begin_sweeps(&s, rows, &seed);
+    for (int i = 0; i < rows; i++) s.b[i] = chance(&seed) - (i % 2 ? 0 : 1);
+    for (int i = 0; i < rows; i++) { /* gaps first */
+      int of_i = i < n ? 2 * i : 2 * (i - n) + 1;
+      pull[i] = s.b[of_i];
+      for (int j = 0; j < rows; j++) W[i * rows + j] = s.M[of_i * rows + (j < n ? 2 * j : 2 * (j - n) + 1)];
+    }
+    for (int i = 0; i < n; i++) {
+      touch[i] = (lag_touch){.mu = 0.3, .tangent = n + i};
+      of[i] = (lag_pressing){.contact = i, .row = 2 * i, .tangents = 1, .mu = 0.3};
+    }
+    if (lag_contact_modes(n, touch, rows, W, pull, x, room) != 1) continue;
+    assert_true(sweep(&s, n, of));
+    for (int i = 0; i < n; i++) {
+      double near = 1e-9 * (1 + fabs(x[i])); /* 1e-12 of contact_modes by the condition of W */
+      assert_true(fabs(s.P[2 * i] - x[i]) <= near && fabs(s.P[2 * i + 1] - x[n + i]) <= near);
+      sticks += touch[i].mode == LAG_CONTACT_STICKS;
+      slips += touch[i].mode == LAG_CONTACT_SLIPS;
+    }
+  }
+  assert_true(sticks > 50 && slips > 50);
+}
+
+static int slip_of(void *context, int k, double *slip) {
+  const Problem *p = context;
+  *slip = -p->q[k];
+  for (int j = 0; j < p->n; j++) *slip -= p->M[k * p->n + j] * p->z[j];
+  return 0;
+}
+
+static void change_mode(void *context, int k, double mode) { ((Problem *)context)->z[k] = mode; }
+
+/* Surfaces of dry friction, by sweeps and by pivoting; a mode is 1 where the slip is positive, so w = -slip. */
+static void test_sweeps_of_surfaces(void **state) {
+  (void)state;
+  uint64_t seed = 23;
+  for (int k = 0; k < 200; k++) {
+    Sweeps s;
+    Problem p = {.n = 1 + k % 4}, q;
+    double own[4], one[4] = {1, 1, 1, 1}, zero[4] = {0}, sticks[4], size;
+    int row;
+    lag_complementarity solver;
+    begin_sweeps(&s, p.n, &seed);
+    memcpy(p.M, s.M, sizeof s.M);
+    for (int i = 0; i < p.n; i++) {
+      own[i] = -s.response[i];
+      p.q[i] = 2 * chance(&seed);
+      p.box[i] = (lag_box){-1, 1, 0, 0};
+    }
+    q = p;
+    const lag_surfaces of = {p.n, slip_of, change_mode, &q, 0x1p-52, own, one, zero, q.z, sticks};
+    assert_int_equal(lag_surface_sweeps(&of, &size, &row), 0);
+    assert_int_equal(solve(&p, &solver), LAG_SOLVED);
+    for (int i = 0; i < p.n; i++) {
+      assert_true(fabs(q.z[i] - p.z[i]) <= 1e-7); /* sweeps may end at changes of 2e-9, if slow */
+      assert_true(sticks[i] == (p.at[i] == LAG_BETWEEN));
+    }
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_all_choices), cmocka_unit_test(test_contacts), cmocka_unit_test(test_dependent_boxes),
       cmocka_unit_test(test_squeezed), cmocka_unit_test(test_follows), cmocka_unit_test(test_reserve),
-      cmocka_unit_test(test_switches), cmocka_unit_test(test_margins)};
+      cmocka_unit_test(test_switches), cmocka_unit_test(test_margins), cmocka_unit_test(test_sweeps_of_contacts),
+      cmocka_unit_test(test_sweeps_of_friction), cmocka_unit_test(test_sweeps_of_surfaces)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
