@@ -166,7 +166,7 @@ double lag_contacts_response(ContactSet *w, int i) {
   w->g[k] = 1;
   if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) return NAN;
   for (int j = 0; j < nq; j++) s += w->d[j] * w->force[j];
-  return fabs(change_of_rate(w, i, w->d) - 1) > 0.5 ? 0 : 1 / s;
+  return isnan(s) || lag_row_moves(change_of_rate(w, i, w->d)) ? 1 / s : 0;
 }
 
 /* The coefficient of restitution of contact i; NaN where no impulse moves it. */

@@ -14,6 +14,7 @@
 
 #include "kernels/band_matrix.h"
 #include "methods/steps.h"
+#include "numeric/complementarity.h"
 #include "numeric/workspace.h"
 
 enum { MOST_SWEEPS = 200000 };
@@ -91,7 +92,7 @@ static int respond(MoreauContacts *w, lag_problem *pb, double t, const double *y
   rc = rc ? rc : of->velocity(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->g, w->d, w->effort, pb->work);
   double work = 0;
   for (int j = 0; j < nq && rc == 0; j++) work += w->d[j] * w->effort[j];
-  int moves = rc == 0 && work > 0 && fabs(lag_row_product(&w->A, row, w->d) - 1) < 0.5;
+  int moves = rc == 0 && work > 0 && lag_row_moves(lag_row_product(&w->A, row, w->d));
   for (int j = 0; j < nq && rc == 0; j++) w->d[j] = moves ? w->d[j] / work : 0;
   return rc;
 }

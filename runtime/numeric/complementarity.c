@@ -16,7 +16,7 @@ static int is_free(const lag_box *b) { return isinf(b->lower) && isinf(b->upper)
 
 lag_complementarity lag_contact_complementarity(int n, double *M, double *q, double *scale, unsigned char *at) {
   for (int i = 0; i < n; i++) at[i] = LAG_AT_LOWER;
-  return (lag_complementarity){n, -1, M, q, scale, NULL, at, 1e-10, 1e-13};
+  return (lag_complementarity){n, -1, M, q, scale, NULL, at, lag_dependent_row, 1e-13};
 }
 
 /* Exchanges basic variable r with nonbasic variable s. */

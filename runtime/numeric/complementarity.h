@@ -15,6 +15,12 @@
  * few contacts, found by sweeps for many: kernels/impulses.h. */
 #pragma once
 
+/* Rank decisions of all laws. A row depends on others where this part of its response is left beside theirs. */
+static const double lag_dependent_row = 1e-10;
+/* Whether a law moves its row: its rate has changed by `change` where 1 was asked for, or by about 0 where other
+ * constraints imply the row. */
+static inline int lag_row_moves(double change) { return change > 0.5 && change < 1.5; }
+
 /* Between its bounds z may exceed them by `reserve`: static friction holds more than friction while it slips. */
 typedef struct lag_box {
   double lower, upper, reserve;
