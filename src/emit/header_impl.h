@@ -70,7 +70,6 @@ uint32_t header_surfaces(const ProgramSet *u);
 const char *header_friction_lacks(const ProgramSet *u);
 void header_friction_indices(const Header *h);
 void header_friction_members(const Header *h);
-void header_friction_declare(const Header *h);
 void header_friction_define(const Header *h);
 
 /* A word of a template, and its text. */
