@@ -62,7 +62,7 @@ static double nonbasic(const lag_complementarity *p, int i) {
 
 static double basic(const lag_complementarity *p, int i) {
   double x = p->q[i];
-  for (int j = 0; j < p->n; j++) {
+  for (int j = 0; j < p->n && p->box; j++) {
     double at = nonbasic(p, j);
     x += at != 0 ? p->M[i * p->n + j] * at : 0;
   }
@@ -91,7 +91,7 @@ static int violation(const lag_complementarity *p, int r, int upper, double most
 
 /* The first violated bound: its direction, 0: none; *r := its pair. */
 static int first_violation(const lag_complementarity *p, double most, int *r) {
-  for (int k = 0; k < 2 * p->n; k++) {
+  for (int k = 0; k < (p->box ? 2 : 1) * p->n; k++) {
     int direction = violation(p, *r = k % p->n, k >= p->n, most);
     if (direction) return direction;
   }
