@@ -55,9 +55,9 @@ static int maximise(const Programme *p, double *z) {
     }
   }
   lag_complementarity q = {n, -1, M, z, scale, box, at, small, 1e-12};
-  lag_solve_complementarity(&q);
-  for (int i = 0; i < n; i++) z[i] = at[i] == LAG_BETWEEN ? z[i] : 0;
-  return at[n - 1] == LAG_BETWEEN;
+  int found = lag_solve_complementarity(&q) == LAG_SOLVED;
+  for (int i = 0; i < n && !found; i++) z[i] = 0;
+  return found && at[n - 1] == LAG_BETWEEN;
 }
 
 double lag_cone_forces(int n, const lag_touch *of, int rows, double *x, int n_directions, const double *D, double *c,

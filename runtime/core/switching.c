@@ -204,7 +204,7 @@ static int solve_modes(const lag_sim *s, Meeting *w, lag_complementarity *p) {
     for (int j = 0; j < n; j++) w->C[i * n + j] = -w->B[i * n + j];
   }
   int status = lag_solve_complementarity(p);
-  for (int i = 0; i < n; i++) w->m[i] = p->at[i] == LAG_BETWEEN ? w->x[i] : p->at[i] == LAG_AT_UPPER ? 1 : -1;
+  for (int i = 0; i < n && status == LAG_SOLVED; i++) w->m[i] = w->x[i];
   return status;
 }
 

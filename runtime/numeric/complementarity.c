@@ -53,18 +53,17 @@ static void scale_to_unit_diagonal(const lag_complementarity *p) {
   }
 }
 
-/* The nonbasic variable of pair i: z at its bound, or w = 0. */
-static double nonbasic(const lag_complementarity *p, int i) {
+/* z_i where it is at a bound; 0 where it has none. */
+static double bound_of(const lag_complementarity *p, int i) {
   const lag_box *b = box_of(p, i);
-  if (p->at[i] == LAG_BETWEEN || is_free(b)) return 0;
-  return (p->at[i] == LAG_AT_LOWER ? b->lower : b->upper) / p->scale[i];
+  return is_free(b) ? 0 : p->at[i] == LAG_AT_LOWER ? b->lower : b->upper;
 }
 
 static double basic(const lag_complementarity *p, int i) {
   double x = p->q[i];
   for (int j = 0; j < p->n && p->box; j++) {
-    double at = nonbasic(p, j);
-    x += at != 0 ? p->M[i * p->n + j] * at : 0;
+    double at = p->at[j] == LAG_BETWEEN ? 0 : bound_of(p, j);
+    x += at != 0 ? p->M[i * p->n + j] * (at / p->scale[j]) : 0;
   }
   return x;
 }
@@ -138,16 +137,11 @@ static int pivot_first(lag_complementarity *p) {
   return LAG_SOLVED;
 }
 
-/* The basic variable x of pair i in the caller's units, without rounding beyond its bound. */
-static double result(const lag_complementarity *p, int i, double x) {
+/* z_i in the caller's units, without rounding beyond its bounds. */
+static double result(const lag_complementarity *p, int i) {
   const lag_box *b = box_of(p, i);
-  if (p->at[i] == LAG_BETWEEN) return fmin(fmax(x * p->scale[i], b->lower - b->reserve), b->upper + b->reserve);
-  return (is_free(b) ? 0 : p->at[i] == LAG_AT_LOWER ? fmax(x, 0) : fmin(x, 0)) / p->scale[i];
-}
-
-static void set_results(const lag_complementarity *p) {
-  for (int i = 0; i < p->n; i++) p->q[i] = basic(p, i);
-  for (int i = 0; i < p->n; i++) p->q[i] = result(p, i, p->q[i]);
+  if (p->at[i] != LAG_BETWEEN) return bound_of(p, i);
+  return fmin(fmax(basic(p, i) * p->scale[i], b->lower - b->reserve), b->upper + b->reserve);
 }
 
 int lag_solve_complementarity(lag_complementarity *p) {
@@ -158,7 +152,7 @@ int lag_solve_complementarity(lag_complementarity *p) {
   int status = pivot_first(p);
   for (int turn = 0; turn < 1000 + 100 * p->n && status == LAG_SOLVED; turn++) {
     if ((direction = first_violation(p, most, &r)) == 0) {
-      set_results(p);
+      for (int i = 0; i < p->n; i++) p->q[i] = result(p, i);
       return LAG_SOLVED;
     }
     double own = p->M[r * p->n + r];

@@ -30,11 +30,10 @@ typedef struct lag_box {
 enum { LAG_AT_LOWER, LAG_BETWEEN, LAG_AT_UPPER };
 enum { LAG_SOLVED, LAG_NO_SOLUTION, LAG_NOT_MONOTONE, LAG_CYCLES };
 
-/* box: NULL: 0 to infinity, for all. at: where the search begins; on return, of the solution. q: on
- * return z_i where it is between, else w_i. M: on return scaled to a diagonal of ones, where it is
- * positive, and pivoted on those between: there row i depends on them where its diagonal element is at
- * most `zero`. rounding: relative size of a w, or of a z beside its bound, that counts as 0. row:
- * where it ended without a solution. */
+/* box: NULL: 0 to infinity, for all. at: where the search begins; on return, of the solution. q: on return z.
+ * M: on return scaled to a diagonal of ones, where it is positive, and pivoted on those between: there row i
+ * depends on them where its diagonal element is at most `zero`. rounding: relative size of a w, or of a z beside
+ * its bound, that counts as 0. row: where it ended without a solution. */
 typedef struct lag_complementarity {
   int n, row;
   double *M, *q, *scale; /* [n n], [n]; scratch [n] */

@@ -46,15 +46,11 @@ typedef struct Problem {
 
 /* z, w by lag_solve_complementarity; w from z and the problem as it was given. */
 static int solve(Problem *p, lag_complementarity *of) {
-  static double T[MOST * MOST], x[MOST], scale[MOST];
+  static double T[MOST * MOST], scale[MOST];
   memcpy(T, p->M, sizeof T);
-  memcpy(x, p->q, sizeof x);
-  *of = (lag_complementarity){p->n, -1, T, x, scale, p->box, p->at, 1e-10, 1e-13};
+  memcpy(p->z, p->q, sizeof p->z);
+  *of = (lag_complementarity){p->n, -1, T, p->z, scale, p->box, p->at, 1e-10, 1e-13};
   int status = lag_solve_complementarity(of);
-  for (int i = 0; i < p->n; i++) {
-    double end = p->at[i] == LAG_AT_LOWER ? p->box[i].lower : p->box[i].upper;
-    p->z[i] = p->at[i] == LAG_BETWEEN ? x[i] : isinf(end) ? 0 : end;
-  }
   for (int i = 0; i < p->n; i++) {
     p->w[i] = p->q[i];
     for (int j = 0; j < p->n; j++) p->w[i] += p->M[i * p->n + j] * p->z[j];
