@@ -367,6 +367,26 @@ static void test_sweeps_of_friction(void **state) {
   assert_true(sticks > 50 && slips > 50);
 }
 
+/* A body in space that closes with 2 m/s and slips with (3, 4) m/s, responses 1 along the gap and 2 along both
+ * tangents: 2.5 of friction stops it, of 2 mu at most, whatever the guess. */
+static void test_friction_in_space(void **state) {
+  (void)state;
+  const double mu[] = {1.5, 0.5}, along[] = {-1.5, -0.6}, across[] = {-2, -0.8};
+  for (int k = 0; k < 2; k++) {
+    Sweeps s = {.n = 3, .A = {1, 0, 0, 0, sqrt(2), 0, 0, 0, sqrt(2)}, .first = {0, 3, 6, 9}};
+    const double col[] = {0, 1, 2, 0, 1, 2, 0, 1, 2}, rate[] = {-2, 3, 4}, guess[] = {7, 1, 5}, response[] = {1, 2, 2};
+    memcpy(s.col, col, sizeof col);
+    memcpy(s.b, rate, sizeof rate);
+    memcpy(s.P, guess, sizeof guess);
+    memcpy(s.response, response, sizeof response);
+    lag_pressing of = {.tangents = 2, .mu = mu[k]};
+    assert_true(sweep(&s, 1, &of));
+    assert_close(s.P[0], 2, 1e-14);
+    assert_close(s.P[1], along[k], 1e-13);
+    assert_close(s.P[2], across[k], 1e-13);
+  }
+}
+
 static int slip_of(void *context, int k, double *slip) {
   const Problem *p = context;
   *slip = -p->q[k];
@@ -409,6 +429,7 @@ int main(void) {
       cmocka_unit_test(test_all_choices), cmocka_unit_test(test_contacts), cmocka_unit_test(test_dependent_boxes),
       cmocka_unit_test(test_squeezed), cmocka_unit_test(test_follows), cmocka_unit_test(test_reserve),
       cmocka_unit_test(test_switches), cmocka_unit_test(test_margins), cmocka_unit_test(test_sweeps_of_contacts),
-      cmocka_unit_test(test_sweeps_of_friction), cmocka_unit_test(test_sweeps_of_surfaces)};
+      cmocka_unit_test(test_sweeps_of_friction), cmocka_unit_test(test_friction_in_space),
+      cmocka_unit_test(test_sweeps_of_surfaces)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
