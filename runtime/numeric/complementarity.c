@@ -102,6 +102,7 @@ static int first_violation(const lag_complementarity *p, double most, int *r) {
 static int may_move(const lag_complementarity *p, int s, int upper, int *to) {
   const lag_box *b = box_of(p, s);
   *to = upper ? -1 : 1;
+  if (b->is_switch > 0) return 0;
   if (p->at[s] == LAG_BETWEEN) return isfinite(upper ? b->upper : b->lower);
   return is_free(b) || (p->at[s] == LAG_AT_UPPER) == upper;
 }
