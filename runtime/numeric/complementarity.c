@@ -90,8 +90,8 @@ static int violation(const lag_complementarity *p, int r, int upper, double most
 
 /* The first violated bound: its direction, 0: none; *r := its pair. */
 static int first_violation(const lag_complementarity *p, double most, int *r) {
-  for (int k = 0; k < (p->box ? 2 : 1) * p->n; k++) {
-    int direction = violation(p, *r = k % p->n, k >= p->n, most);
+  for (int k = 0; k < 2 * p->n; k += p->box ? 1 : 2) {
+    int direction = violation(p, *r = k / 2, k % 2, most);
     if (direction) return direction;
   }
   return 0;
@@ -112,7 +112,7 @@ static int may_move(const lag_complementarity *p, int s, int upper, int *to) {
 static int move_by_another(lag_complementarity *p, int r, int direction) {
   int n = p->n;
   for (int k = 0; k < 2 * n; k++) {
-    int s = k % n, upper = k >= n, to;
+    int s = k / 2, upper = k % 2, to;
     if (s == r && p->at[r] == (upper ? LAG_AT_LOWER : LAG_AT_UPPER) && isfinite(width_of(box_of(p, r)))) {
       p->at[r] = upper ? LAG_AT_UPPER : LAG_AT_LOWER;
       return 1;

@@ -52,6 +52,6 @@ lag_complementarity lag_contact_complementarity(int n, double *M, double *q, dou
  * Criss-cross method with the least-index rule, finite for sufficient M, whether or not solutions are
  * unique; without start-up and perturbation of dependent rows: D. den Hertog, C. Roos, T. Terlaky,
  * Linear Algebra Appl. 187 (1993) 1, DOI 10.1016/0024-3795(93)90124-7. Each bound counts as a pair of
- * its own, upper ones behind all lower ones. For positive principal minors it is K.G. Murty's, Linear
+ * its own. For positive principal minors it is K.G. Murty's, Linear
  * Algebra Appl. 7 (1974) 65, DOI 10.1016/0024-3795(74)90063-5. */
 int lag_solve_complementarity(lag_complementarity *p);
