@@ -1,5 +1,5 @@
-/* Forces within Coulomb's cones, by a linear programme. Contract: cone_forces.h. */
-#include "contacts/cone_forces.h"
+/* Forces within Coulomb's cones, by a linear programme. Contract: contact_modes.h. */
+#include "contacts/contact_modes.h"
 
 #include <math.h>
 #include <string.h>
