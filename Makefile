@@ -221,9 +221,6 @@ $(eval $(call as_text,toolchain/probe_text.h,src/toolchain/compiler_probe.in))
 $(eval $(call as_text,emit/lag_%.h,runtime/include/lag_%.h))
 $(eval $(call as_text,emit/%_kernel.h,runtime/kernels/%.h))
 $(eval $(call as_text,emit/%_text.h,runtime/methods/%.c))
-$(eval $(call as_text,emit/%_text.h,runtime/contacts/%.c))
-$(eval $(call as_text,emit/%_types.h,runtime/contacts/%.h))
-$(eval $(call as_text,emit/%_types.h,runtime/methods/%.h))
 $(eval $(call as_text,fmu/%_text.h,src/fmu/%.in))
 $(eval $(call as_text,commands/language.h,$(BUILD)/gen/commands/language.txt))
 $(eval $(call as_text,commands/tutorial.h,models/TUTORIAL.md))
@@ -263,7 +260,6 @@ $(BUILD)/obj/src/main.o: SRC_FLAGS += -DLAGC_VERSION='"$(VERSION)"'
 $(BUILD)/obj/src/main.o: runtime/include/lag.h
 $(BUILD)/obj/src/base/method_table.o: SRC_FLAGS += $(if $(GSL),-DLAGC_WITH_GSL)
 $(BUILD)/obj/src/fmu/zip.o: SRC_FLAGS += $(if $(ZIP),-DLAGC_WITH_ZIP)
-$(BUILD)/obj/src/emit/header_moreau.o: $(patsubst %,$(BUILD)/gen/emit/%_text.h,contact_impulses band_matrix) $(patsubst %,$(BUILD)/gen/emit/%_types.h,contact_impulses band_matrix)
 $(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_BIN)"' '-DLAGC_INCLUDEDIR="$(INCLUDE_FROM_BIN)"'
 $(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/fmu/zip.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h

@@ -19,7 +19,7 @@
 
 #include "contacts/contact_set.h"
 #include "core/rhs.h"
-#include "contacts/complementarity.h"
+#include "numeric/complementarity.h"
 #include "numeric/workspace.h"
 
 const lag_contact *lag_contact_of(const lag_model *m, int event) {
@@ -166,7 +166,7 @@ double lag_contacts_response(ContactSet *w, int i) {
   w->g[k] = 1;
   if (lag_least_change(pb, w->sim->run->t, w->y, 0, w->g, w->d, w->force)) return NAN;
   for (int j = 0; j < nq; j++) s += w->d[j] * w->force[j];
-  return fabs(change_of_rate(w, i, w->d) - 1) > 0.5 ? 0 : 1 / s;
+  return isnan(s) || lag_row_moves(change_of_rate(w, i, w->d)) ? 1 / s : 0;
 }
 
 /* The coefficient of restitution of contact i; NaN where no impulse moves it. */
@@ -214,24 +214,25 @@ static int fail_incompatible(ContactSet *w, int a) {
 
 /* Solves the complementarity problem of the contacts that take part: in[n]; push[n] := impulses where in[n]. */
 static int complement(ContactSet *w, const double *q) {
-  int m = 0, n = w->n, row = -1;
+  int m = 0, n = w->n;
   for (int a = 0; a < n; a++)
     if (w->active[a]) {
       w->at[m] = a;
       w->impulse[m++] = q[a];
     }
   for (int k = 0; k < m * m; k++) w->lcp[k] = w->response[w->at[k / m] * n + w->at[k % m]];
-  int found = lag_solve_lcp(m, w->lcp, w->impulse, w->scale, w->closed, &row);
+  lag_complementarity p = lag_contact_complementarity(m, w->lcp, w->impulse, w->scale, w->closed);
+  int status = lag_solve_complementarity(&p);
   for (int k = n - 1; k >= m; k--) w->closed[k] = w->follows[k] = 0;
   for (int k = m - 1; k >= 0; k--) { /* back to their places, which are not lower */
     double push = w->impulse[k];
-    unsigned char in = w->closed[k], follows = !in && w->lcp[k * m + k] <= lag_lcp_zero_pivot;
+    unsigned char in = w->closed[k] == LAG_BETWEEN, follows = !in && w->lcp[k * m + k] <= p.zero;
     w->impulse[k] = w->closed[k] = w->follows[k] = 0;
     w->impulse[w->at[k]] = push;
     w->closed[w->at[k]] = in;
     w->follows[w->at[k]] = follows;
   }
-  return found ? LAG_OK : fail_incompatible(w, row < 0 ? -1 : w->at[row]);
+  return status == LAG_SOLVED ? LAG_OK : fail_incompatible(w, status == LAG_NO_SOLUTION ? w->at[p.row] : -1);
 }
 
 /* Applies the impulses where gaps close: changes y and w->rate. e[n]: coefficients of restitution; struck[n]: gaps that were closing. */

@@ -4,11 +4,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "numeric/complementarity.h"
 #include "numeric/dense.h"
 
 /* Relative tolerances: of a force or an acceleration that may be 0; of two motions that are one. Forces that contacts share are those of least size,
- * as by springs that give way by `soft` of an acceleration, if they obey Coulomb's law, else others that do. Rows are `dependent` on others. */
-static const double nothing = 1e-9, alike = 1e-6, soft = 1e-12, dependent = 1e-9;
+ * as by springs that give way by `soft` of an acceleration, if they obey Coulomb's law, else others that do. */
+static const double nothing = 1e-9, alike = 1e-6, soft = 1e-12;
 
 typedef struct Trial {
   int n, rows;
@@ -110,7 +111,7 @@ static int free_forces(Trial *t, double *D) {
     if (held) row[k] = response(t, k);
     for (int j = 0; j < n; j++) row[j] *= (held ? scale(t, k) : 1 / scale(t, k)) * scale(t, j);
   }
-  lag_gauss_jordan(n, t->A, none, pivot, dependent);
+  lag_gauss_jordan(n, t->A, none, pivot, lag_dependent_row);
   for (int j = 0; j < n; j++) {
     int has_pivot = 0;
     for (int r = 0; r < n; r++) has_pivot |= pivot[r] == j;

@@ -1,9 +1,39 @@
-/* Which contacts with friction stay closed, and which of them stick: Coulomb's law on accelerations, in one tangential direction for each contact. */
+/* Which contacts with friction stay closed, and which of them stick: Coulomb's law on
+ * accelerations, in one tangential direction for each contact; and forces within Coulomb's
+ * cones, where those of several contacts are not unique. */
 #pragma once
 
-#include "contacts/cone_forces.h"
+typedef enum { LAG_CONTACT_OPEN, LAG_CONTACT_STICKS, LAG_CONTACT_SLIPS } lag_contact_mode;
 
-/* Rows 0..n-1 are gaps, behind them the tangents: accelerations are W[rows rows] x + pull for forces x[rows]. Fills in mode, to, shared and x. A contact sticks
- * where some forces that hold it obey Coulomb's law; at rest, with a larger static friction, as few contacts begin to slip as can. Returns the number of motions, 0, 1 or 2: none (Painleve's paradox, where friction is large), one, or more than one. room[rows (rows + 5)] is scratch. All
- * combinations are tried, at most 4^n: n <= LAG_MOST_TOUCHES. P. Loetstedt, SIAM J. Appl. Math. 42 (1982) 281, DOI 10.1137/0142022. */
+typedef struct lag_touch {
+  double mu, hold;       /* friction while it slips; while it sticks, where that is larger */
+  int contact;           /* the caller's number */
+  int tangent;           /* its row; -1: there is no friction */
+  int slip;              /* sign of the slip velocity; 0: at rest */
+  int cannot_stick;
+  int shared;            /* it sticks, and its force is not unique */
+  lag_contact_mode mode; /* without friction a closed contact slips */
+  int to;                /* the side to which it slips: -1, 1 */
+} lag_touch;
+
+enum { LAG_MOST_TOUCHES = 6 };
+
+/* The largest friction of a contact that sticks, beside the force that presses. */
+static inline double lag_touch_holds(const lag_touch *c) { return c->hold > c->mu ? c->hold : c->mu; }
+
+/* Rows 0..n-1 are gaps, behind them the tangents: accelerations are W[rows rows] x + pull for
+ * forces x[rows]. Fills in mode, to, shared and x. A contact sticks where some forces that hold
+ * it obey Coulomb's law; at rest, with a larger static friction, as few contacts begin to slip
+ * as can. Returns the number of motions, 0, 1 or 2: none (Painleve's paradox, where friction is
+ * large), one, or more than one. room[rows (rows + 5)] is scratch. All combinations are tried,
+ * at most 4^n: n <= LAG_MOST_TOUCHES. P. Loetstedt, SIAM J. Appl. Math. 42 (1982) 281, DOI
+ * 10.1137/0142022. */
 int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const double *pull, double *x, double *room);
+
+/* All forces x + sum c[j] D[j][rows] hold the same accelerations. x := those whose least margin,
+ * of the largest friction less |F| where a contact sticks and of N where it does not, is
+ * largest; c[n_directions] := their coefficients, at most 2 LAG_MOST_TOUCHES. Returns the
+ * margin; it is bounded by the size of the forces given, *wedged := 1 where nothing else bounds
+ * it. A linear programme; numeric/complementarity.h solves its conditions of optimality. */
+double lag_cone_forces(int n, const lag_touch *of, int rows, double *x, int n_directions, const double *D, double *c,
+                       int *wedged);

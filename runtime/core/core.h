@@ -91,7 +91,7 @@ struct lag_sim {
   double *grip;          /* [nmodes] the largest mode of a sliding motion */
   double *side_noise, *slid_off, *meets, *left, *meeting; /* [nmodes] switching.c: rounding of the switching functions, their size before events; whether
                           * the motion is at the surface, the side to which it has slid off; scratch */
-  int *meeting_of;       /* [2 nmodes] scratch, and pb.sliding */
+  int *meeting_of;       /* [3 nmodes] scratch, pb.sliding, and bytes of scratch */
   double *u, *work, *ya, *yb, *yc, *g0, *g1, *out, *e, *spare;
   double *saved;         /* one block: Run and the arrays below; it lies in `room`, which is freed */
   char *room;

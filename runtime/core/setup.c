@@ -79,12 +79,12 @@ static int alloc_scratch(lag_sim *s) {
                             &s->contact_was, &s->charge_now, &s->charge_power, &s->charge_gain, &s->sides, &s->grip, &s->side_noise, &s->slid_off, &s->meets, &s->left,
                             &s->meeting, &s->pb.slide, &s->pb.rub, &s->sizes};
   const size_t sizes[] = {nuu, nw, n, n, n, nev, nev, nout, 2 + nev, 11 * nev, held, ranks, sized, (size_t)m->ncontacts, 2 * nc, nc, nc, 3 * (size_t)m->nswitch, nm, nm, nm, nm, nm,
-                          nm * (7 + 2 * nm), nm * (3 + nm), m->contact_laws ? np * (5 + 2 * np) : 0, (size_t)(m->nsizes + m->nmoving)};
+                          nm * (9 + 2 * nm), nm * (3 + nm), m->contact_laws ? np * (5 + 2 * np) : 0, (size_t)(m->nsizes + m->nmoving)};
   s->scratch = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->fixed = calloc((size_t)m->np + 1, 1);
   s->start = malloc((n + 1) * sizeof(double));
   s->signal = calloc(nu + 1, sizeof *s->signal);
-  s->meeting_of = calloc(2 * nm + 1, sizeof *s->meeting_of);
+  s->meeting_of = calloc(3 * nm + 1, sizeof *s->meeting_of);
   if (!s->meeting_of || !s->scratch || !s->fixed || !s->start || !s->signal) return LAG_ENOMEM;
   for (size_t i = 0; i < n; i++) s->start[i] = NAN;
   s->pb.sliding = s->meeting_of + nm;

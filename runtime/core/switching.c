@@ -5,10 +5,10 @@
  * (the equivalent control); of floor: its value; LAG_FREE: the state decides. The event of a switch is that its mode ceases to fit: mode*g falls
  * below 0, or grip^2 - mode^2 of a sliding motion does; grip is 1, or more where static friction is.
  *
- * Where surfaces meet, rates r = dg/dt are linear in the modes, r = r0 + B m: each m is 1 with r >= 0, -1 with r <= 0, or between with r = 0. For a
- * P-matrix -B this has one solution, which principal pivoting by least index finds (K.G. Murty, Linear Algebra Appl. 7 (1974) 65, DOI
- * 10.1016/0024-3795(74)90063-5). A.F. Filippov, Differential Equations with Discontinuous Righthand Sides (1988), DOI 10.1007/978-94-015-7793-9;
- * L. Dieci, L. Lopez, Numer. Math. 117 (2011) 779, DOI 10.1007/s00211-011-0365-4, for intersections. */
+ * Where surfaces meet, rates r = dg/dt are linear in the modes, r = r0 + B m: each m is 1 with r >= 0, -1 with r <= 0, or
+ * between with r = 0, a problem of numeric/complementarity.h; for a P-matrix -B it has one solution. A.F. Filippov,
+ * Differential Equations with Discontinuous Righthand Sides (1988), DOI 10.1007/978-94-015-7793-9; L. Dieci, L. Lopez,
+ * Numer. Math. 117 (2011) 779, DOI 10.1007/s00211-011-0365-4, for intersections. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -16,6 +16,7 @@
 
 #include "core/core.h"
 #include "core/rhs.h"
+#include "numeric/complementarity.h"
 #include "numeric/dense.h"
 
 static double *mode(const lag_sim *s, int k) { return &s->hold[s->scene->model->nu + k]; }
@@ -150,7 +151,9 @@ static int fail_at(lag_sim *s, int status, int k, const char *why) {
 /* The switches at their surface: of[n], with r = r0 + B m and the present choice m. */
 typedef struct Meeting {
   int n, *of;
-  double *r0, *B, *m, *x, *C; /* [n], [n n], [n]; scratch [n], [n n] */
+  double *r0, *B, *m, *x, *C, *scale; /* [n], [n n], [n]; scratch [n], [n n], [n] */
+  lag_box *box;
+  unsigned char *at; /* [n] where m is: at an end, or between */
 } Meeting;
 
 static void set_mode(lag_sim *s, int k, double m) {
@@ -191,35 +194,18 @@ static double rate_of(const Meeting *w, int i) {
   return r;
 }
 
-/* m of the switches that slide (in[i] != 0), the others being given. -1: -B is no P-matrix there, or singular. */
-static int solve_sliding(Meeting *w, const double *in) {
-  int n = w->n, k = 0;
-  for (int i = 0; i < n; i++) w->m[i] = in[i] != 0.0 ? 0 : w->m[i];
+/* Chooses m as a complementarity problem. p->at[n]: where the search begins, and ends. */
+static int solve_modes(const lag_sim *s, Meeting *w, lag_complementarity *p) {
+  int n = w->n;
   for (int i = 0; i < n; i++) {
-    if (in[i] == 0.0) continue;
-    w->x[k++] = rate_of(w, i);
+    double grip = s->grip[w->of[i]];
+    w->box[i] = (lag_box){-1, 1, grip - 1, !can_slide(s, w, i)};
+    w->x[i] = -w->r0[i];
+    for (int j = 0; j < n; j++) w->C[i * n + j] = -w->B[i * n + j];
   }
-  for (int i = 0, a = 0; i < n; i++) {
-    if (in[i] == 0.0) continue;
-    for (int j = 0, b = 0; j < n; j++)
-      if (in[j] != 0.0) w->C[a * k + b++] = -w->B[i * n + j];
-    a++;
-  }
-  for (int p = 0; p < k; p++) { /* without pivoting: the pivots of a P-matrix are positive */
-    if (!(w->C[p * k + p] > 0)) return -1;
-    for (int i = p + 1; i < k; i++) {
-      double f = w->C[i * k + p] / w->C[p * k + p];
-      for (int j = p; j < k; j++) w->C[i * k + j] -= f * w->C[p * k + j];
-      w->x[i] -= f * w->x[p];
-    }
-  }
-  for (int p = k - 1; p >= 0; p--) {
-    for (int j = p + 1; j < k; j++) w->x[p] -= w->C[p * k + j] * w->x[j];
-    w->x[p] /= w->C[p * k + p];
-  }
-  for (int i = 0, a = 0; i < n; i++)
-    if (in[i] != 0.0) w->m[i] = w->x[a++];
-  return 0;
+  int status = lag_solve_complementarity(p);
+  for (int i = 0; i < n && status == LAG_SOLVED; i++) w->m[i] = w->x[i];
+  return status;
 }
 
 /* Rate of switch i after a short time dt on the branches m. */
@@ -241,49 +227,45 @@ static double side_from_rest(lag_sim *s, Meeting *w, int i) {
   return up >= 0 && down >= 0 ? 1 : up <= 0 && down <= 0 ? -1 : 0;
 }
 
-/* The first switch whose choice does not fit, after changing it; -1: all fit. */
-static int pivot(lag_sim *s, Meeting *w, double *in) {
-  const double over = 1e-12, back = 1e-9;
+static const char no_branch[] =
+  "it rests on the surface, or leaves it to either side, and no branch tells which; start beside it";
+static const char no_slide[] = "the motions on both sides do not determine one on the surface";
+static const char no_end[] = "it can neither leave the surface nor slide on it";
+static const char several[] =
+  "it can leave the surface to either side, so that several motions follow; start beside the surface";
+
+/* Where the search begins. left: the side to which a switch has just slid off, else 0. */
+static int begin_choice(lag_sim *s, Meeting *w, const double *left) {
   for (int i = 0; i < w->n; i++) {
-    double r = rate_of(w, i), jump = fabs(w->B[i * w->n + i]);
-    if (in[i] != 0.0) {
-      if (fabs(w->m[i]) <= s->grip[w->of[i]] * (1 + over)) continue;
-      w->m[i] = w->m[i] > 0 ? 1 : -1;
-      in[i] = 0;
-      return i;
-    }
-    if (can_slide(s, w, i) ? w->m[i] * r >= -back * jump : w->m[i] * r >= 0) continue;
-    if (can_slide(s, w, i)) in[i] = 1;
-    else w->m[i] = -w->m[i];
-    return i;
+    double to = left[w->of[i]];
+    int in = can_slide(s, w, i) && to == 0.0;
+    w->m[i] = to != 0.0 ? to : in ? 0 : w->r0[i] < 0 ? -1 : 1;
+    w->at[i] = in ? LAG_BETWEEN : w->m[i] < 0 ? LAG_AT_LOWER : LAG_AT_UPPER;
   }
-  return -1;
+  for (int i = 0; i < w->n; i++) {
+    if (w->at[i] == LAG_BETWEEN || fabs(rate_of(w, i)) > 0 || w->B[i * w->n + i] != 0.0) continue;
+    double side = side_from_rest(s, w, i);
+    if (side == 0.0) return fail_at(s, LAG_ESTALL, w->of[i], no_branch);
+    w->m[i] = side;
+    w->at[i] = side < 0 ? LAG_AT_LOWER : LAG_AT_UPPER;
+  }
+  return LAG_OK;
 }
 
-/* Finds the choice m of the switches that meet. left: the side to which a switch has just slid off, else 0. */
-static int choose(lag_sim *s, Meeting *w, const double *left, double *in) {
-  int rc = linear_rates(s, w), most = 100 * (w->n + 1), at = -1;
+/* Finds the choice m of the switches that meet. */
+static int choose(lag_sim *s, Meeting *w, const double *left) {
+  int rc = linear_rates(s, w);
   rc = rc ? rc : find_grips(s, s->run->t, s->now);
   if (rc) return fail_at(s, LAG_EMODEL, w->of[0], "the model has no rates there");
-  for (int i = 0; i < w->n; i++) {
-    in[i] = can_slide(s, w, i) && left[w->of[i]] == 0.0;
-    w->m[i] = left[w->of[i]] != 0.0 ? left[w->of[i]] : in[i] != 0.0 ? 0 : w->r0[i] < 0 ? -1 : 1;
-  }
-  for (int i = 0; i < w->n; i++) {
-    if (in[i] != 0.0 || fabs(rate_of(w, i)) > 0 || w->B[i * w->n + i] != 0.0) continue;
-    double side = side_from_rest(s, w, i);
-    if (side == 0.0) return fail_at(s, LAG_ESTALL, w->of[i], "it rests on the surface, or leaves it to either side, and no branch tells which; start beside it");
-    w->m[i] = side;
-  }
-  do {
-    if (solve_sliding(w, in)) return fail_at(s, LAG_ESTALL, w->of[0], "the motions on both sides do not determine one on the surface");
-    at = pivot(s, w, in);
-  } while (at >= 0 && --most);
-  if (at >= 0) return fail_at(s, LAG_ESTALL, w->of[at], "it can neither leave the surface nor slide on it");
+  if ((rc = begin_choice(s, w, left)) != 0) return rc;
+  lag_complementarity p = {w->n, -1, w->C, w->x, w->scale, w->box, w->at, 1e-13, 5e-14};
+  int status = solve_modes(s, w, &p);
+  if (status == LAG_CYCLES) return fail_at(s, LAG_ESTALL, w->of[p.row], no_end);
+  if (status != LAG_SOLVED) return fail_at(s, LAG_ESTALL, w->of[0], no_slide);
   for (int i = 0; i < w->n; i++) {
     double r = rate_of(w, i), jump = w->B[i * w->n + i];
-    if (in[i] == 0.0 && r + jump * (1 - w->m[i]) > 0 && r - jump * (1 + w->m[i]) < 0)
-      return fail_at(s, LAG_ESTALL, w->of[i], "it can leave the surface to either side, so that several motions follow; start beside the surface");
+    if (w->at[i] != LAG_BETWEEN && r + jump * (1 - w->m[i]) > 0 && r - jump * (1 + w->m[i]) < 0)
+      return fail_at(s, LAG_ESTALL, w->of[i], several);
   }
   return LAG_OK;
 }
@@ -303,17 +285,19 @@ static void change_mode(lag_sim *s, int k, double m) {
 static int settle(lag_sim *s, int *changed) {
   const lag_model *m = s->scene->model;
   int nm = m->nmodes;
-  double *x = s->meeting, *in = x + nm, *r0 = in + nm, *was = r0 + nm;
-  Meeting w = {0, s->meeting_of, r0, was + nm, was + nm + nm * nm, was + 2 * nm + nm * nm, was + 3 * nm + nm * nm};
+  double *was = s->meeting, *r0 = was + nm, *ends = r0 + nm, *x = ends + nm, *scale = x + nm, *box = scale + nm;
+  double *B = box + 4 * nm, *C = B + nm * nm;
+  unsigned char *at = (unsigned char *)(s->meeting_of + 2 * nm);
+  Meeting w = {0, s->meeting_of, r0, B, ends, x, C, scale, (lag_box *)(void *)box, at};
   for (int k = 0; k < nm; k++) {
     was[k] = *mode(s, k);
     if (s->meets[k] != 0.0) w.of[w.n++] = k;
   }
-  int rc = w.n ? choose(s, &w, s->left, in) : LAG_OK;
+  int rc = w.n ? choose(s, &w, s->left) : LAG_OK;
   for (int k = 0; k < nm; k++) *mode(s, k) = was[k];
   for (int i = 0; i < w.n && rc == 0; i++) {
     int k = w.of[i];
-    change_mode(s, k, in[i] != 0.0 ? 0 : w.m[i]);
+    change_mode(s, k, w.at[i] == LAG_BETWEEN ? 0 : w.m[i]);
     if (changed) *changed |= *mode(s, k) != was[k];
     s->crossed[k] += m->switches[k].is_floor ? *mode(s, k) != was[k] : was[k] != 0.0 && *mode(s, k) == -was[k];
     if (!m->switches[k].is_floor) s->side_noise[k] = fmax(s->side_noise[k], fabs(s->sides[k])); /* a slide has left it a little beside 0 */

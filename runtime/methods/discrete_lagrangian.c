@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "methods/band_matrix.h"
+#include "kernels/band_matrix.h"
 #include "methods/newton.h"
 #include "methods/steps.h"
 #include "methods/method_tangent.h"

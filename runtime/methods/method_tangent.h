@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "lag.h"
-#include "methods/band_matrix.h"
+#include "kernels/band_matrix.h"
 #include "methods/tableau.h"
 
 /* Doubles of scratch of lag_tangent_explicit; with 0 stages: for lag_tangent_layout, two vectors [n] and two matrices [n k]. */

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "kernels/dense_output.h"
+#include "kernels/impulses.h"
 #include "lag.h"
 #include "methods/moreau_contacts.h"
 #include "methods/moreau_joint_friction.h"
@@ -70,18 +71,6 @@ static int is_explicit(const lag_problem *pb) {
   return (m->flags & LAG_SEPARABLE) && (!m->constraints || m->constraints->n == m->ncontacts);
 }
 
-/* mid := y + part (y1 - y) for velocities and states. Returns its largest change, in units of rounding: of the largest velocity, or of the state itself. */
-static double set_between(const lag_problem *pb, double dt, double part, const double *y, const double *y1, const double *rate, double *mid) {
-  double most = 0, fastest = 0;
-  for (int i = pb->nq; i < 2 * pb->nq; i++) fastest = fmax(fastest, fmax(fabs(dt * rate[i]), fmax(fabs(y[i]), fabs(y1[i]))));
-  for (int i = pb->nq; i < pb->n; i++) {
-    double next = y[i] + part * (y1[i] - y[i]), size = i < 2 * pb->nq ? fastest : fabs(y[i]) + fabs(y1[i]);
-    most = next == mid[i] ? most : fmax(most, fabs(next - mid[i]) / (DBL_EPSILON * size));
-    mid[i] = next;
-  }
-  return most;
-}
-
 /* Y1 := FREE with impulses of contacts and dry friction, which agree: in turns, until friction changes nothing more. */
 static int agree(Moreau *w, lag_problem *pb, double tm, double t, double dt, MoreauContacts *contacts, JointFriction *f) {
   enum { ROUNDS = 500 };
@@ -124,9 +113,10 @@ static int kick(Moreau *w, lag_problem *pb, double tm, double t, double dt, cons
     if (rc || (is_explicit(pb) && !f->n)) return rc;
     for (int i = nq; i < n; i++) {
       size[i] = rate[i];
-      for (int k = 0; k < pb->model->nmodes && f->n; k++) size[i] = fabs(size[i]) + fabs(f->d[k * n + i]); /* at rest forces cancel: rounding is that of friction */
+      for (int k = 0; k < f->n; k++) size[i] = fabs(size[i]) + fabs(f->d[k * n + i]); /* at rest forces cancel: rounding is that of friction */
     }
-    double most = set_between(pb, dt, contacts->impacts > 0 ? 1 : 0.5, y, y1, size, mid);
+    const lag_moreau_ends ends = {dt, y, y1, size};
+    double most = lag_moreau_mean(&ends, contacts->impacts > 0 ? 1 : 0.5, DBL_EPSILON, nq, pb->nz, mid);
     if (most <= 8 || (most <= 1e4 && most >= before / 2)) return LAG_OK;
     before = most;
   }

@@ -12,8 +12,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "methods/band_matrix.h"
+#include "kernels/band_matrix.h"
 #include "methods/steps.h"
+#include "numeric/complementarity.h"
 #include "numeric/workspace.h"
 
 enum { MOST_SWEEPS = 200000 };
@@ -91,7 +92,7 @@ static int respond(MoreauContacts *w, lag_problem *pb, double t, const double *y
   rc = rc ? rc : of->velocity(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->g, w->d, w->effort, pb->work);
   double work = 0;
   for (int j = 0; j < nq && rc == 0; j++) work += w->d[j] * w->effort[j];
-  int moves = rc == 0 && work > 0 && fabs(lag_row_product(&w->A, row, w->d) - 1) < 0.5;
+  int moves = rc == 0 && work > 0 && lag_row_moves(lag_row_product(&w->A, row, w->d));
   for (int j = 0; j < nq && rc == 0; j++) w->d[j] = moves ? w->d[j] / work : 0;
   return rc;
 }
@@ -202,7 +203,8 @@ int lag_moreau_contacts_solve(MoreauContacts *w, lag_problem *pb, double t, doub
   for (int r = 0; r < w->rows; r++)
     for (int e = (int)w->A.first[r]; e < (int)w->A.first[r + 1]; e++) size = fmax(size, fabs(w->A.value[e] * v[(int)w->A.col[e]]));
   if (!w->n) return 0;
-  int sweeps = lag_contact_impulses(w->n, w->of, &w->A, &w->D, w->response, w->b, enough * size, MOST_SWEEPS, w->P, v);
+  const lag_impulses impulses = {w->n, w->of, w->A, w->D, w->response, w->b, w->P, v};
+  int sweeps = lag_contact_impulses(&impulses, enough * size, MOST_SWEEPS);
   w->sweeps += sweeps;
   return sweeps > MOST_SWEEPS ? fail(pb, t, (int)w->of[0].contact, "and others find no impulses that agree: take smaller steps, or look for bodies that are wedged") : 0;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/rhs.h"
-#include "contacts/contact_impulses.h"
+#include "kernels/impulses.h"
 
 /* Scratch in pb->contact_room. Rows are those of the contacts that take part, of[n]. */
 typedef struct MoreauContacts {

@@ -1,15 +1,21 @@
-/* Dry friction of joints and sliders in one step of moreau. Enters: coordinates at the middle of a step, velocities and states at its end; leaves: those with friction that holds or brakes, and its modes. */
+/* Dry friction of joints and sliders in one step of moreau. Enters: coordinates at the middle of a step, velocities and
+ * states at its end; leaves: those with friction that holds or brakes, and its modes. */
 #pragma once
 
 #include "core/rhs.h"
 
-/* Room of a method: the first two arrays last from step to step, the others are scratch. Index k is that of the switch. */
+/* Room of a method, for n surfaces on which bodies may stick: the first two arrays last from step to step, the others are
+ * scratch. A mode is the mean of sign(slip) in a step: friction in parts of its size. */
 typedef struct JointFriction {
-  int n;                 /* surfaces on which bodies may stick */
-  double *mode, *sticks; /* [nmodes] mean of the sign of the slip in the last step: friction in parts of its size; whether that held it */
-  double *bound, *response, *before, *was, *entry, *change, *stride; /* [nmodes] the largest mode; change of the slip by a mode of 1; slip at the begin; modes before a round; in pb->hold before the step; change by the last round, and strides in parts of it */
-  double *slip, *other;  /* [nswitch] */
-  double *d, *at;        /* [nmodes n] rates for a mode of 1; [n] */
+  int n;
+  double *mode, *sticks;    /* [n] in the last step; whether that held it */
+  double *at;               /* [n] the model's switch */
+  double *bound, *response; /* [n] the largest mode; change of the slip by a mode of 1 */
+  double *before, *centre;  /* [n] slip at the begin; middle of the interval from there to the slip aimed at */
+  double *was, *entry;      /* [n] modes before a round; in pb->hold before the step */
+  double *change, *stride;  /* [n] change by the last round, and strides in parts of it */
+  double *slip, *other;     /* [nswitch] */
+  double *d, *x;            /* [n states] rates for a mode of 1; [states] */
 } JointFriction;
 
 size_t lag_joint_friction_size(const lag_problem *pb);

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "methods/band_matrix.h"
+#include "kernels/band_matrix.h"
 #include "methods/step_control.h"
 #include "methods/adaptive_rk.h"
 #include "methods/steps.h"

@@ -4,7 +4,9 @@
 
 #include <string.h>
 
-#include "emit/dense_output_kernel.h" /* static const char *const NAME_kernel[]: lines of runtime/kernels/NAME.h */
+#include "emit/band_matrix_kernel.h" /* static const char *const NAME_kernel[]: lines of runtime/kernels/NAME.h */
+#include "emit/dense_output_kernel.h"
+#include "emit/impulses_kernel.h"
 #include "emit/lag_kkt.h"             /* static const char *const NAME[]: and of runtime/include/NAME.h */
 #include "emit/lag_math.h"
 #include "emit/lag_sincos.h"
@@ -14,7 +16,8 @@
 static const struct {
   const char *const *line;
   size_t n;
-} embedded[] = {LINES(lag_math), LINES(lag_sincos), LINES(lag_kkt), LINES(dense_output_kernel), LINES(locate_kernel)};
+} embedded[] = {LINES(lag_math), LINES(lag_sincos), LINES(lag_kkt), LINES(band_matrix_kernel),
+              LINES(dense_output_kernel), LINES(impulses_kernel), LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";
 static int is_marker(const char *line, const char *name) {

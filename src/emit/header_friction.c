@@ -38,29 +38,14 @@ void header_friction_members(const Header *h) {
                   "  LAG_REAL mode[LAG_NSURFACES];  /* mean of the sign of the quantity in that step: friction in parts of its size */\n", h->upper, h->lower, h->out);
 }
 
-static const char *const prototypes =
-  " |\n"
-  " |/* Forces of dry friction do not agree, or a value is not finite. */\n"
-  " |enum { LAG_ECONTACT = -6 };\n"
-  " |\n"
-  " |/* A step h by Moreau's time-stepping: a body that would turn within the step sticks at its end, as long as static friction holds it; else it slips. Order 2\n"
-  " | * but for steps in which a body begins or ends to stick. touch and mode of the state tell which; a copy of the state goes on with the same digits.\n"
-  " | * LAG_ENEWTON: forces change too much in the step; a shorter one may help. On failure *s is as it was.\n"
-  "u| * u: the inputs, constant during the step; 0 for the model's formulas.\n"
-  " | */\n"
-  " |LAG_API int lag_moreau_step(const lag_params *p, lag_state *s, LAG_REAL hINPUT);\n"
-  "u|\n"
-  "u|/* The same with inputs that change from step to step; they are taken at the middle of each. */\n"
-  "u|LAG_API int lag_moreau_step_with(const lag_params *p, lag_state *s, LAG_REAL h, lag_input_fn *input, void *context);\n";
-
-void header_friction_declare(const Header *h) {
-  const HeaderWord words[] = {{"INPUT", h->u->u.n ? ", const LAG_REAL *u" : ""}, {NULL, NULL}};
-  header_template(h, prototypes, words);
-}
-
 static const char *const values =
   " |\n"
   " |static const unsigned short lag_surface_at[] = {AT_SURFACES}; /* mode of each surface */\n"
+  " |\n"
+  " |/* Room of a step. d: rates for a mode of 1; response: change of a quantity by its own mode; bound: the largest mode. */\n"
+  " |typedef struct lag_moreau_room {\n"
+  " |  LAG_REAL d[LAG_NSURFACES][LAG_NY], mode[LAG_NSURFACES], response[LAG_NSURFACES], bound[LAG_NSURFACES], epsilon;\n"
+  " |} lag_moreau_room;\n"
   " |\n"
   " |/* now := the inputs at time t, and modes behind them; those of corners are not held. */\n"
   " |static void lag_friction_inputs(PARAMSconst LAG_REAL *mode, LAG_REAL *now) {\n"
@@ -91,32 +76,38 @@ static const char *const values =
 
 static const char *const solve =
   " |\n"
-  " |/* Finds modes, and x, velocities and states at the end at time t: each quantity is 0 where its mode is within its bounds, else the mode is 1 or -1. d: rates for\n"
-  " | * a mode of 1; response: change of a quantity by its own mode. */\n"
-  " |static int lag_friction_solve(const lag_params *p, LAG_REAL t, LAG_REAL h, const LAG_REAL *yHELD, LAG_REAL (*d)[LAG_NY], const LAG_REAL *response, const LAG_REAL *bound,\n"
-  " |    LAG_REAL epsilon, LAG_REAL *mode, LAG_REAL *x) {\n"
-  " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0);\n"
-  " |  LAG_REAL g[LAG_NSURFACES], size = zero, before = zero;\n"
-  " |  for (int sweep = 0; sweep < 10000; sweep++) {\n"
-  " |    LAG_REAL change = zero;\n"
-  " |    for (int j = 0; j < LAG_NSURFACES; j++) {\n"
-  " |      const int status = lag_friction_slips(p, t, y, xPASS, mode, g);\n"
-  " |      if (status != LAG_OK) return status;\n"
-  " |      LAG_REAL to = response[j] < zero ? mode[j] - g[j]/response[j] : g[j] > zero ? one : g[j] < zero ? -one : zero;\n"
-  " |      if (!(to - to == zero)) return LAG_ECONTACT;\n"
-  " |      if (to > bound[j]) to = one;\n"
-  " |      if (to < -bound[j]) to = -one;\n"
-  " |      const LAG_REAL by = to - mode[j], moved = LAG_FN(fabs)(by*response[j]), slip = LAG_FN(fabs)(g[j]), own = LAG_FN(fabs)(response[j]);\n"
-  " |      for (int i = LAG_NQ; i < LAG_NY; i++) x[i] += h*by*d[j][i];\n"
-  " |      mode[j] = to;\n"
-  " |      change = moved > change ? moved : change;\n"
-  " |      size = slip > size ? slip : size;\n"
-  " |      size = own > size ? own : size;\n"
-  " |    }\n"
-  " |    if (change <= LAG_C(64.0)*epsilon*size || (sweep > 0 && change <= LAG_C(1e7)*epsilon*size && change >= before/LAG_C(2.0))) return LAG_OK;\n"
-  " |    before = change;\n"
-  " |  }\n"
-  " |  return LAG_ECONTACT;\n"
+  " |/* End of a step at time t, from its middle y: velocities and states x change with the modes, by d for a mode of 1. */\n"
+  " |typedef struct lag_friction_end {\n"
+  " |  const lag_params *p;\n"
+  " |  LAG_REAL t, h, (*d)[LAG_NY], *mode, *x;\n"
+  " |  const LAG_REAL *y;\n"
+  "u|  const LAG_REAL *u;\n"
+  "u|  lag_input_fn *input;\n"
+  "u|  void *context;\n"
+  " |} lag_friction_end;\n"
+  " |\n"
+  " |static int lag_friction_slip(void *end, int k, LAG_REAL *slip) {\n"
+  " |  const lag_friction_end *const a = (const lag_friction_end *)end;\n"
+  " |  LAG_REAL g[LAG_NSURFACES];\n"
+  " |  const int status = lag_friction_slips(a->p, a->t, a->y, a->xOF_END, a->mode, g);\n"
+  " |  *slip = g[k];\n"
+  " |  return status;\n"
+  " |}\n"
+  " |\n"
+  " |static void lag_friction_change(void *end, int k, LAG_REAL mode) {\n"
+  " |  const lag_friction_end *const a = (const lag_friction_end *)end;\n"
+  " |  const LAG_REAL by = mode - a->mode[k];\n"
+  " |  for (int i = LAG_NQ; i < LAG_NY; i++) a->x[i] += a->h*by*a->d[k][i];\n"
+  " |  a->mode[k] = mode;\n"
+  " |}\n"
+  " |\n"
+  " |/* Finds modes, and x: each quantity is 0 where its mode is within its bounds, else the mode is 1 or -1. */\n"
+  " |static int lag_friction_solve(lag_friction_end *end, const LAG_REAL *response, const LAG_REAL *bound, LAG_REAL epsilon) {\n"
+  " |  LAG_REAL sticks[LAG_NSURFACES], centre[LAG_NSURFACES] = {0}, size;\n"
+  " |  const lag_surfaces s = {LAG_NSURFACES, lag_friction_slip, lag_friction_change, end, epsilon, response, bound, centre, end->mode, sticks};\n"
+  " |  int row;\n"
+  " |  const int status = lag_surface_sweeps(&s, &size, &row);\n"
+  " |  return status == LAG_SURFACE_INFINITE || status == LAG_SURFACES_DISAGREE ? (int)LAG_ECONTACT : status;\n"
   " |}\n"
   " |\n"
   " |/* d, response: what a mode of 1 changes in a step, from the states at its middle, mid, and at its end, x. */\n"
@@ -142,8 +133,8 @@ static const char *const solve =
 
 static const char *const step =
   " |\n"
-  " |/* Bounds of the modes: static friction, in parts of that of motion, where a body sticks. */\n"
-  " |static int lag_friction_bounds(const lag_params *p, const lag_state *s, const LAG_REAL *yHELD, LAG_REAL *bound) {\n"
+  " |/* Modes before the step and their bounds: static friction, in parts of that of motion, where a body sticks. */\n"
+  " |static int lag_friction_begin(const lag_params *p, const lag_state *s, const LAG_REAL *yHELD, lag_moreau_room *w) {\n"
   " |  LAG_REAL g[LAG_NSURFACES];\n"
   " |  int status = lag_friction_slips(p, s->t, y, yPASS, s->mode, g);\n"
   "g|  LAG_REAL now[LAG_NU + NMODES], grip[NMODES];\n"
@@ -151,59 +142,42 @@ static const char *const step =
   "g|  lag_friction_inputs(INPUTSs->mode, now);\n"
   "g|  if (status == LAG_OK) status = lag_switch_grips(STATE, p, now, grip);\n"
   " |  for (int j = 0; j < LAG_NSURFACES && status == LAG_OK; j++) {\n"
-  " |    bound[j] = LAG_C(1.0);\n"
+  " |    w->mode[j] = s->mode[j];\n"
+  " |    w->bound[j] = LAG_C(1.0);\n"
   "g|    const int rests = s->touch[j] == LAG_STICKS || g[j] == LAG_C(0.0);\n"
-  "g|    if (rests && grip[lag_surface_at[j]] > LAG_C(1.0)) bound[j] = grip[lag_surface_at[j]];\n"
+  "g|    if (rests && grip[lag_surface_at[j]] > LAG_C(1.0)) w->bound[j] = grip[lag_surface_at[j]];\n"
   " |  }\n"
   " |  return status;\n"
   " |}\n"
   " |\n"
-  " |static int lag_moreau(const lag_params *p, lag_state *s, LAG_REAL hHELD) {\n"
-  " |  const LAG_REAL half = LAG_C(0.5), epsilon = lag_epsilon();\n"
-  " |  LAG_REAL y[LAG_NY], mid[LAG_NY], x[LAG_NY], rate[LAG_NY], d[LAG_NSURFACES][LAG_NY], mode[LAG_NSURFACES], bound[LAG_NSURFACES], response[LAG_NSURFACES], before = -LAG_C(1.0);\n"
-  "w|  LAG_REAL now[LAG_NU];\n"
-  " |  lag_state end = *s;\n"
-  " |  int turn = 0, done = 0;\n"
-  " |  lag_gather(s, y);\n"
-  " |  for (int i = 0; i < LAG_NY; i++) mid[i] = x[i] = y[i];\n"
-  "q|  for (int i = 0; i < LAG_NQ; i++) mid[i] = y[i] + (s->lost[1 + i] + half*h*y[LAG_NQ + i]);\n"
-  " |  for (int j = 0; j < LAG_NSURFACES; j++) mode[j] = s->mode[j];\n"
-  " |  int status = lag_friction_bounds(p, s, yPASS, bound);\n"
-  " |  for (; turn < 100 && !done && status == LAG_OK; turn++) {\n"
-  " |    status = lag_friction_rates(p, s->t + half*h, midPASS, mode, rate);\n"
+  " |/* x: velocities and states at the end of a step from y; mid: its middle, at t. */\n"
+  " |static int lag_moreau_kick(const lag_params *p, const lag_state *s, LAG_REAL t, LAG_REAL hHELD, const LAG_REAL *y, LAG_REAL *mid, LAG_REAL *x, lag_moreau_room *w) {\n"
+  " |  const LAG_REAL half = LAG_C(0.5);\n"
+  " |  LAG_REAL rate[LAG_NY], before = -LAG_C(1.0);\n"
+  " |  lag_friction_end a = {p, s->t + h, h, w->d, w->mode, x, midTO_END};\n"
+  " |  for (int turn = 0; turn < 100; turn++) {\n"
+  " |    int status = lag_friction_rates(p, t, midPASS, w->mode, rate);\n"
   " |    for (int i = LAG_NQ; i < LAG_NY && status == LAG_OK; i++) x[i] = y[i] + h*rate[i];\n"
-  " |    if (status == LAG_OK && turn == 0) status = lag_friction_response(p, s, h, midPASS, mode, x, d, response);\n"
-  " |    if (status == LAG_OK) status = lag_friction_solve(p, s->t + h, h, midPASS, d, response, bound, epsilon, mode, x);\n"
+  " |    if (status == LAG_OK && turn == 0) status = lag_friction_response(p, s, h, midPASS, w->mode, x, w->d, w->response);\n"
+  " |    if (status == LAG_OK) status = lag_friction_solve(&a, w->response, w->bound, w->epsilon);\n"
   " |    if (status != LAG_OK) return status;\n"
   " |    for (int j = 0; j < LAG_NSURFACES; j++) /* at rest forces cancel: rounding is that of friction */\n"
-  " |      for (int i = LAG_NQ; i < LAG_NY; i++) rate[i] = LAG_FN(fabs)(rate[i]) + LAG_FN(fabs)(d[j][i]);\n"
-  " |    const LAG_REAL most = lag_moreau_between(h, half, epsilon, y, x, rate, mid);\n"
-  " |    done = most <= LAG_C(8.0) || (turn > 0 && most <= LAG_C(1e4) && most >= half*before);\n"
+  " |      for (int i = LAG_NQ; i < LAG_NY; i++) rate[i] = LAG_FN(fabs)(rate[i]) + LAG_FN(fabs)(w->d[j][i]);\n"
+  " |    const lag_moreau_ends ends = {h, y, x, rate};\n"
+  " |    const LAG_REAL most = lag_moreau_mean(&ends, half, w->epsilon, LAG_NQ, LAG_NZ, mid);\n"
+  " |    if (most <= LAG_C(8.0) || (turn > 0 && most <= LAG_C(1e4) && most >= half*before)) return LAG_OK;\n"
   " |    before = most;\n"
   " |  }\n"
-  " |  if (status != LAG_OK) return status;\n"
-  " |  if (!done) return LAG_ENEWTON;\n"
-  " |  end.t = lag_sum(s->t, h, &end.lost[0]);\n"
-  " |  for (int i = 0; i < LAG_NY; i++) mid[i] = lag_sum(y[i], i < LAG_NQ ? half*h*(y[LAG_NQ + i] + x[LAG_NQ + i]) : x[i] - y[i], &end.lost[1 + i]);\n"
-  " |  lag_scatter(mid, &end);\n"
-  " |  for (int j = 0; j < LAG_NSURFACES; j++) {\n"
-  " |    const LAG_REAL part = LAG_FN(fabs)(mode[j]);\n"
-  " |    end.mode[j] = mode[j];\n"
-  " |    end.touch[j] = part < LAG_C(1.0) || part > LAG_C(1.0) ? (LAG_REAL)LAG_STICKS : (LAG_REAL)LAG_SLIPS;\n"
-  " |  }\n"
-  "h|  status = lag_onto(p, &endAT_END, end.lost + 1);\n"
-  " |  if (status == LAG_OK) status = lag_check(&end);\n"
-  " |  if (status == LAG_OK) *s = end;\n"
-  " |  return status;\n"
+  " |  return LAG_ENEWTON;\n"
   " |}\n"
   " |\n"
-  " |LAG_API int lag_moreau_step(const lag_params *p, lag_state *s, LAG_REAL hINPUT) {\n"
-  " |  return lag_moreau(p, s, hNOW);\n"
-  " |}\n"
-  "u|\n"
-  "u|LAG_API int lag_moreau_step_with(const lag_params *p, lag_state *s, LAG_REAL h, lag_input_fn *input, void *context) {\n"
-  "u|  return lag_moreau(p, s, h, 0, input, context);\n"
-  "u|}\n";
+  " |static void lag_moreau_note(const lag_moreau_room *w, lag_state *s) {\n"
+  " |  for (int j = 0; j < LAG_NSURFACES; j++) {\n"
+  " |    const LAG_REAL part = LAG_FN(fabs)(w->mode[j]);\n"
+  " |    s->mode[j] = w->mode[j];\n"
+  " |    s->touch[j] = part < LAG_C(1.0) || part > LAG_C(1.0) ? (LAG_REAL)LAG_STICKS : (LAG_REAL)LAG_SLIPS;\n"
+  " |  }\n"
+  " |}\n";
 
 /* A function of the state with modes behind the inputs, also where there are no inputs. */
 static void held_function(const Header *h, const Prog *p, const char *name, const char *params, const char *const *extra, const char *const *out) {
@@ -215,21 +189,22 @@ void header_friction_define(const Header *h) {
   static const char *const all[] = {"u", "all", NULL}, *const both[] = {"u", "a", "zd", NULL}, *const a[] = {"u", "a", NULL}, *const zd[] = {"u", "zd", NULL}, *const outputs[] = {"u", "out", NULL};
   const ProgramSet *u = h->u;
   const char *R = h->upper, *z = u->z.n ? ", y + 2*LAG_NQ" : "", *x = u->z.n ? ", x + 2*LAG_NQ" : "";
-  int holds = header_has(h, FN_HOLD);
   const HeaderWord words[] = {{"AT_SURFACES", surface_table(h)}, {"NMODES", arena_printf(h->a, "%u", u->nmodes)}, {"NSWITCHES", arena_printf(h->a, "%u", u->switches.n)},
                               {"PARAMS", u->u.n ? "const lag_params *p, LAG_REAL t, const LAG_REAL *u, lag_input_fn *input, void *context, " : ""},
-                              {"INPUTS", u->u.n ? "p, t, u, input, context, " : ""}, {"INPUT", u->u.n ? ", const LAG_REAL *u" : ""}, {"NOW", u->u.n ? ", u, 0, 0" : ""},
+                              {"INPUTS", u->u.n ? "p, t, u, input, context, " : ""},
                               {"STATE", arena_printf(h->a, "t%s%s", u->q.n ? ", y, y + LAG_NQ" : "", z)}, {"QUANTITY", arena_printf(h->a, "t%s%s", u->q.n ? ", y, x + LAG_NQ" : "", x)},
-                              {"RATES", u->q.n && u->z.n ? "k + LAG_NQ, k + 2*LAG_NQ" : "k + LAG_NQ"}, {"AT_END", u->u.n ? ", lag_held(p, end.t, u, input, context, now)" : ""}, {NULL, NULL}};
+                              {"RATES", u->q.n && u->z.n ? "k + LAG_NQ, k + 2*LAG_NQ" : "k + LAG_NQ"}, {"OF_END", u->u.n ? ", a->u, a->input, a->context" : ""}, {"TO_END", u->u.n ? ", u, input, context" : ""}, {NULL, NULL}};
   const char *const parts[] = {values, solve, step};
   const char *rates = u->q.n && u->z.n ? "%s_REAL *a, %s_REAL *zd" : u->q.n ? "%s_REAL *a" : "%s_REAL *zd";
   held_function(h, u->held_accel, "held_accel", arena_printf(h->a, rates, R, R), u->q.n && u->z.n ? both : u->q.n ? a : zd, both + 1);
   held_function(h, u->switch_values, "switch_values", arena_printf(h->a, "%s_REAL *all", R), all, all + 1);
   if (u->switch_grips) held_function(h, u->switch_grips, "switch_grips", arena_printf(h->a, "%s_REAL *all", R), all, all + 1);
   if (h->parts.follows && h->scene->observe_held) held_function(h, h->scene->observe_held, "held_observe", arena_printf(h->a, "%s_REAL *out", R), outputs, outputs + 1);
-  header_moreau_between(h);
+  embedded_section("friction", h->upper, h->lower, h->out);
+  embedded_section("surfaces", h->upper, h->lower, h->out);
+  embedded_section("mean", h->upper, h->lower, h->out);
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    const LineChoice choices[] = {{'n', !u->q.n}, {'g', u->switch_grips != NULL}, {'h', holds}, {'w', holds && u->u.n}, {0, 0}};
+    const LineChoice choices[] = {{'n', !u->q.n}, {'g', u->switch_grips != NULL}, {0, 0}};
     header_template(h, header_chosen(h, parts[i], choices), words);
   }
 }

@@ -60,7 +60,6 @@ const char *header_chosen(const Header *h, const char *text, const LineChoice *c
 /* header_moreau.c: NULL, or what a model needs; indices of contacts and surfaces, what the state says of them, its start; the prototypes and functions of the steps; the change of the middle of a step. */
 const char *header_moreau_lacks(const ProgramSet *u);
 void header_moreau_start(const Header *h);
-void header_moreau_between(const Header *h);
 void header_moreau_indices(const Header *h);
 void header_moreau_members(const Header *h);
 void header_moreau_declare(const Header *h);
@@ -71,7 +70,6 @@ uint32_t header_surfaces(const ProgramSet *u);
 const char *header_friction_lacks(const ProgramSet *u);
 void header_friction_indices(const Header *h);
 void header_friction_members(const Header *h);
-void header_friction_declare(const Header *h);
 void header_friction_define(const Header *h);
 
 /* A word of a template, and its text. */

@@ -1,53 +1,8 @@
-/* Steps of an emitted header by Moreau's method. Enters: the unit's contacts, their laws and matrices. Leaves: what the state says of contacts, prototypes and functions of the steps. Holds:
- * each step has the digits of the runtime's, whose laws and sweeps are copied (contacts/contact_impulses.c, methods/band_matrix.c); the frame around them is that of methods/moreau.c and
+/* Steps of an emitted header by Moreau's method. Enters: the unit's contacts, their laws and matrices. Leaves: what the
+ * state says of contacts, prototypes and functions of the steps. Holds: each step has the digits of the runtime's, whose
+ * laws and sweeps it carries (kernels/impulses.h, band_matrix.h); the frame around them is that of methods/moreau.c and
  * moreau_contacts.c, which give the reasons. */
-#include <string.h>
-
 #include "emit/header_impl.h"
-
-#include "emit/band_matrix_text.h" /* static const char *const NAME_text[], NAME_types[]: lines of NAME.c and NAME.h of the runtime */
-#include "emit/band_matrix_types.h"
-#include "emit/contact_impulses_text.h"
-#include "emit/contact_impulses_types.h"
-
-/* --- texts of the runtime --- */
-
-/* Name of the runtime's text, and what a header writes in its place. */
-static const HeaderWord renamed[] = {
-  {"double", "LAG_REAL"}, {"fabs", "LAG_FN(fabs)"}, {"hypot", "LAG_FN(hypot)"}, {"fmax", "lag_larger"}, {"fmin", "lag_smaller"}, {"isnan", "!lag_is_number"}, {"isfinite", "lag_is_number"},
-  {"lag_swap", "lag_swap_entries"}, {"row_scales", "lag_row_scales"}, {"add_impulse", "lag_add_impulse"}, {"into_ball", "lag_into_ball"}, {"soften", "lag_contact_soften"}, {"turn", "lag_contact_turn"}, {"least(", "lag_least("}, {NULL, NULL}};
-
-static int is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-static int is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/* One line of code: names as above, functions static, numbers with a point in the scalar's type. */
-static void copy_line(const Header *h, const char *s, StrBuf *out) {
-  static const char *const types[] = {"int ", "double ", "void "};
-  for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-    if (strncmp(s, types[i], strlen(types[i])) == 0) sb_puts(out, "static ");
-  while (*s) {
-    size_t n = 1;
-    const HeaderWord *w = renamed;
-    while (is_letter(*s) ? is_letter(s[n]) || is_digit(s[n]) : is_digit(*s) && (is_digit(s[n]) || s[n] == '.')) n++;
-    while (w->mark && !(strncmp(s, w->mark, strlen(w->mark)) == 0 && !(is_letter(*s) && strlen(w->mark) < n))) w++;
-    if (w->mark) sb_puts(out, w->text), n = strlen(w->mark);
-    else if (is_digit(*s) && memchr(s, '.', n)) sb_puts(out, arena_printf(h->a, "LAG_C(%.*s)", (int)n, s));
-    else sb_putn(out, s, n);
-    s += n;
-  }
-}
-
-/* The text behind its head, without includes. */
-static void copy_text(const Header *h, const char *const *line, size_t n) {
-  StrBuf b = strbuf(h->a);
-  size_t i = 0;
-  while (i < n && !strstr(line[i], "*/")) i++;
-  for (i++; i < n; i++)
-    if (line[i][0] != '#') copy_line(h, line[i], &b);
-  csupport_expand(sb_text(&b), h->upper, h->lower, h->out);
-}
-
-#define COPY(text) copy_text(h, text, sizeof text / sizeof *text)
 
 /* --- declarations --- */
 
@@ -68,37 +23,23 @@ static void contact_members(const Header *h) {
 
 static const char *const prototypes =
   " |\n"
-  " |/* The impulses of contacts do not agree, nothing can keep a gap from closing, or a value is not finite. */\n"
+  "c|/* The impulses of contacts do not agree, nothing can keep a gap from closing, or a value is not finite. */\n"
+  "d|/* Forces of dry friction do not agree, or a value is not finite. */\n"
   " |enum { LAG_ECONTACT = -6 };\n"
   " |\n"
-  " |/* A step h by Moreau's time-stepping: all contacts act by impulses at its middle, with friction, however many they are; no impact is located. Order 2\n"
-  " | * where none occurs. touch, struck and impulse of the state tell what each contact did; a copy of the state goes on with the same digits.\n"
-  " | * LAG_ENEWTON: forces change too much in the step. A shorter step may help then, as where LAG_ECONTACT says that impulses do not agree. On failure\n"
-  " | * *s is as it was. u: the inputs, constant during the step; 0 for the model's formulas. Inputs that close contacts are not read. */\n"
-  " |LAG_API int lag_moreau_step(const lag_params *p, lag_state *s, LAG_REAL h, const LAG_REAL *u);\n"
-  " |\n"
-  " |/* The same with inputs that change from step to step; they are taken at the middle of each. */\n"
-  " |LAG_API int lag_moreau_step_with(const lag_params *p, lag_state *s, LAG_REAL h, lag_input_fn *input, void *context);\n";
+  "c|/* A step h by Moreau's time-stepping: all contacts act by impulses at its middle, with friction, however many they are; no impact is located. Order 2\n"
+  "c| * where none occurs. touch, struck and impulse of the state tell what each contact did; a copy of the state goes on with the same digits.\n"
+  "c| * LAG_ENEWTON: forces change too much in the step. A shorter step may help then, as where LAG_ECONTACT says that impulses do not agree. On failure\n"
+  "c| * *s is as it was. u: the inputs, constant during the step; 0 for the model's formulas. Inputs that close contacts are not read. */\n"
+  "d|/* A step h by Moreau's time-stepping: a body that would turn within the step sticks at its end, as long as static friction holds it; else it slips. Order 2\n"
+  "d| * but for steps in which a body begins or ends to stick. touch and mode of the state tell which; a copy of the state goes on with the same digits.\n"
+  "d| * LAG_ENEWTON: forces change too much in the step; a shorter one may help. On failure *s is as it was.OF_INPUTS */\n"
+  " |LAG_API int lag_moreau_step(const lag_params *p, lag_state *s, LAG_REAL hINPUT);\n"
+  "u|\n"
+  "u|/* The same with inputs that change from step to step; they are taken at the middle of each. */\n"
+  "u|LAG_API int lag_moreau_step_with(const lag_params *p, lag_state *s, LAG_REAL h, lag_input_fn *input, void *context);\n";
 
 /* --- definitions --- */
-
-static const char *const larger =
-  " |\n"
-  " |static LAG_REAL lag_larger(LAG_REAL a, LAG_REAL b) { return a < b || !(a == a) ? b : a; }\n";
-
-static const char *const helpers =
-  " |\n"
-  " |static int lag_is_number(LAG_REAL x) { return x - x == LAG_C(0.0); }\n"
-  " |static LAG_REAL lag_smaller(LAG_REAL a, LAG_REAL b) { return a > b || !(a == a) ? b : a; }\n";
-
-static const char *const swap =
-  " |static void lag_swap_entries(LAG_REAL *a, LAG_REAL *b) {\n"
-  " |  const LAG_REAL was = *a;\n"
-  " |  *a = *b;\n"
-  " |  *b = was;\n"
-  " |}\n"
-  " |\n"
-  " |\n";
 
 static const char *const tables =
   " |\n"
@@ -109,7 +50,7 @@ static const char *const tables =
   " |static const unsigned short lag_contact_jacobian[][2] = {JACOBIAN}, lag_contact_mass[][2] = {ENTRIES};\n"
   " |\n"
   " |/* Room of a step. Rows are those of the contacts that take part, of[n]. */\n"
-  " |typedef struct lag_contact_room {\n"
+  " |typedef struct lag_moreau_room {\n"
   " |  LAG_REAL n, rows, impacts, epsilon;\n"
   " |  lag_pressing of[LAG_NCONTACTS];\n"
   " |  LAG_REAL afirst[LAG_NCONTACTS + 1], acol[NJACOBIAN], avalue[NJACOBIAN], dfirst[LAG_NCONTACTS + 1], dcol[NRESPONSES], dvalue[NRESPONSES];\n"
@@ -117,7 +58,7 @@ static const char *const tables =
   " |  LAG_REAL c[LAG_NC], r0[LAG_NC], r1[LAG_NC], pace[LAG_NC], bend[LAG_NC]; /* gaps, rates at the begin, at the end without contacts, what forces and curvature change them by, curvature in half a step */\n"
   " |  LAG_REAL d[LAG_NQ], jacobian[NJACOBIAN], mass[NMASS], now[LAG_NU];\n"
   "b|  LAG_REAL band[NBAND], pivot[LAG_NQ], scale[LAG_NQ];\n"
-  " |} lag_contact_room;\n";
+  " |} lag_moreau_room;\n";
 
 static const char *const inputs =
   " |\n"
@@ -129,28 +70,16 @@ static const char *const inputs =
   " |    now[lag_contact_at[i][0]] = only == -1 || only == i ? LAG_C(1.0) : LAG_C(0.0);\n"
   " |    if (lag_contact_at[i][3] < 0) now[lag_contact_at[i][2]] = LAG_C(0.0);\n"
   " |  }\n"
-  " |}\n"
-  " |\n"
-  " |static lag_sparse_rows lag_contact_rows(LAG_REAL *first, LAG_REAL *col, LAG_REAL *value) {\n"
-  " |  lag_sparse_rows A;\n"
-  " |  A.first = first;\n"
-  " |  A.col = col;\n"
-  " |  A.value = value;\n"
-  " |  return A;\n"
   " |}\n";
 
 static const char *const respond_alone =
   " |\n"
-  "b|static lag_band_matrix lag_contact_band(lag_contact_room *w) {\n"
-  "b|  lag_band_matrix M;\n"
-  "b|  M.n = LAG_NQ;\n"
-  "b|  M.band = BANDWIDTH;\n"
-  "b|  M.a = w->band;\n"
-  "b|  M.pivot = w->pivot;\n"
+  "b|static lag_band_matrix lag_contact_band(lag_moreau_room *w) {\n"
+  "b|  const lag_band_matrix M = {LAG_NQ, BANDWIDTH, w->band, w->pivot};\n"
   "b|  return M;\n"
   "b|}\n"
   "b|\n"
-  "b|static int lag_contact_factor(lag_contact_room *w) {\n"
+  "b|static int lag_contact_factor(lag_moreau_room *w) {\n"
   "b|  lag_band_matrix M = lag_contact_band(w);\n"
   "b|  for (int i = 0; i < NBAND; i++) w->band[i] = LAG_C(0.0);\n"
   "b|  for (int e = 0; e < NMASS; e++) {\n"
@@ -161,15 +90,15 @@ static const char *const respond_alone =
   "b|}\n"
   "b|\n"
   " |/* d := change of velocities by a unit impulse of contact i, whose row of A is `row`. */\n"
-  "b|static int lag_contact_respond(lag_contact_room *w, int row) {\n"
+  "b|static int lag_contact_respond(lag_moreau_room *w, int row) {\n"
   "b|  lag_band_matrix M = lag_contact_band(w);\n"
   "b|  for (int j = 0; j < LAG_NQ; j++) w->d[j] = LAG_C(0.0);\n"
   "b|  for (int e = (int)w->afirst[row]; e < (int)w->afirst[row + 1]; e++) w->d[(int)w->acol[e]] = w->avalue[e];\n"
   "b|  lag_band_matrix_solve(&M, w->d);\n"
   "b|  return LAG_OK;\n"
   "b|}\n"
-  "k|static int lag_contact_respond(const lag_params *p, LAG_REAL tHELD, const LAG_REAL *y, lag_contact_room *w, int i, int row) {\n"
-  "k|  const lag_sparse_rows A = lag_contact_rows(w->afirst, w->acol, w->avalue);\n"
+  "k|static int lag_contact_respond(const lag_params *p, LAG_REAL tHELD, const LAG_REAL *y, lag_moreau_room *w, int i, int row) {\n"
+  "k|  const lag_sparse_rows A = {w->afirst, w->acol, w->avalue};\n"
   "k|  LAG_REAL g[LAG_NC], effort[LAG_NQ], work = LAG_C(0.0), *const now = w->now;\n"
   "k|  for (int k = 0; k < LAG_NC; k++) g[k] = k == lag_contact_at[i][1] ? LAG_C(1.0) : LAG_C(0.0);\n"
   "k|  lag_contact_inputs(p, tPASS, i, now);\n"
@@ -184,9 +113,9 @@ static const char *const respond_alone =
 static const char *const rows =
   " |\n"
   " |/* The next row of A and D, for contact i. */\n"
-  " |static int lag_contact_row(const lag_params *p, LAG_REAL tHELD, const LAG_REAL *y, const LAG_REAL *impulse, lag_contact_room *w, int i) {\n"
+  " |static int lag_contact_row(const lag_params *p, LAG_REAL tHELD, const LAG_REAL *y, const LAG_REAL *impulse, lag_moreau_room *w, int i) {\n"
   " |  const int r = (int)w->rows, k = lag_contact_at[i][1];\n"
-  " |  const lag_sparse_rows A = lag_contact_rows(w->afirst, w->acol, w->avalue);\n"
+  " |  const lag_sparse_rows A = {w->afirst, w->acol, w->avalue};\n"
   " |  int e = (int)w->afirst[r], f = (int)w->dfirst[r];\n"
   " |  w->rows += LAG_C(1.0);\n"
   " |  for (int j = 0; j < NJACOBIAN; j++) {\n"
@@ -214,7 +143,7 @@ static const char *const rows =
 static const char *const laws =
   " |\n"
   " |/* *e := restitution of contact i, from its law of impact. */\n"
-  " |static int lag_contact_restitution(const lag_params *p, LAG_REAL tHELD, const LAG_REAL *y, lag_contact_room *w, int i, LAG_REAL *e) {\n"
+  " |static int lag_contact_restitution(const lag_params *p, LAG_REAL tHELD, const LAG_REAL *y, lag_moreau_room *w, int i, LAG_REAL *e) {\n"
   " |  LAG_REAL v1[LAG_NQ], change = LAG_C(0.0), *const now = w->now;\n"
   " |  lag_contact_inputs(p, tPASS, i, now);\n"
   " |  for (int j = 0; j < LAG_NQ; j++) v1[j] = y[LAG_NQ + j];\n"
@@ -226,7 +155,7 @@ static const char *const laws =
   " |}\n"
   " |\n"
   " |/* Gaps, their rates at both ends without contacts, what forces and curvature change them by, and matrices. */\n"
-  " |static int lag_contact_evaluate(const lag_params *p, LAG_REAL t, LAG_REAL hHELD, const LAG_REAL *y, const LAG_REAL *free, lag_contact_room *w) {\n"
+  " |static int lag_contact_evaluate(const lag_params *p, LAG_REAL t, LAG_REAL hHELD, const LAG_REAL *y, const LAG_REAL *free, lag_moreau_room *w) {\n"
   " |  LAG_REAL *const now = w->now;\n"
   " |  lag_contact_inputs(p, tPASS, -1, now);\n"
   " |  LAG_REAL begin[LAG_NQ];\n"
@@ -254,7 +183,7 @@ static const char *const laws =
 static const char *const find =
   " |\n"
   " |/* The law of contact i, whose rows are there. */\n"
-  " |static int lag_contact_set_law(const lag_params *p, LAG_REAL t, LAG_REAL hHELD, const LAG_REAL *y, const LAG_REAL *law, lag_contact_room *w, int i, lag_pressing *c) {\n"
+  " |static int lag_contact_set_law(const lag_params *p, LAG_REAL t, LAG_REAL hHELD, const LAG_REAL *y, const LAG_REAL *law, lag_moreau_room *w, int i, lag_pressing *c) {\n"
   " |  const int row = (int)c->row, k = lag_contact_at[i][1], strikes = lag_contact_strikes(w->r0[k], w->pace[k]) && w->response[row] > LAG_C(0.0);\n"
   " |  LAG_REAL e = LAG_C(0.0);\n"
   " |  if (strikes) {\n"
@@ -269,7 +198,7 @@ static const char *const find =
   " |}\n"
   " |\n"
   " |/* Chooses the contacts that take part. y: coordinates at the middle of the step, velocities and states at its begin; free: velocities at its end without contacts. */\n"
-  " |static int lag_contact_find(const lag_params *p, LAG_REAL t, LAG_REAL hHELD, const LAG_REAL *y, const LAG_REAL *free, const LAG_REAL *impulse, lag_contact_room *w) {\n"
+  " |static int lag_contact_find(const lag_params *p, LAG_REAL t, LAG_REAL hHELD, const LAG_REAL *y, const LAG_REAL *free, const LAG_REAL *impulse, lag_moreau_room *w) {\n"
   " |  LAG_REAL law[2*LAG_NCONTACTS + 2] = {0};\n"
   "f|  LAG_REAL *const now = w->now;\n"
   " |  int status = lag_contact_evaluate(p, t, hPASS, y, free, w);\n"
@@ -291,38 +220,20 @@ static const char *const find =
   " |}\n"
   " |\n"
   " |/* v: velocities without contacts, then with them. */\n"
-  " |static int lag_contact_solve(lag_contact_room *w, LAG_REAL *v) {\n"
+  " |static int lag_contact_solve(lag_moreau_room *w, LAG_REAL *v) {\n"
   " |  enum { MOST = 200000 };\n"
-  " |  const lag_sparse_rows A = lag_contact_rows(w->afirst, w->acol, w->avalue), D = lag_contact_rows(w->dfirst, w->dcol, w->dvalue);\n"
   " |  LAG_REAL size = LAG_C(0.0);\n"
   " |  for (int e = 0; e < (int)w->afirst[(int)w->rows]; e++) size = lag_larger(size, LAG_FN(fabs)(w->avalue[e]*v[(int)w->acol[e]]));\n"
   " |  if (!(w->n > LAG_C(0.0))) return LAG_OK;\n"
   " |  const LAG_REAL enough = LAG_C(64.0)*w->epsilon*size;\n"
-  " |  if (lag_contact_impulses((int)w->n, w->of, &A, &D, w->response, w->b, enough, MOST, w->P, v) > MOST) return LAG_ECONTACT;\n"
-  " |  return LAG_OK;\n"
-  " |}\n";
-
-static const char *const between =
-  " |\n"
-  " |/* mid := y + part (y1 - y) for velocities and states. Returns its largest change, in units of rounding. */\n"
-  " |static LAG_REAL lag_moreau_between(LAG_REAL h, LAG_REAL part, LAG_REAL epsilon, const LAG_REAL *y, const LAG_REAL *y1, const LAG_REAL *rate, LAG_REAL *mid) {\n"
-  "q|  LAG_REAL most = LAG_C(0.0), fastest = LAG_C(0.0);\n"
-  "n|  LAG_REAL most = LAG_C(0.0);\n"
-  "n|  (void)h; (void)rate;\n"
-  "q|  for (int i = LAG_NQ; i < 2*LAG_NQ; i++) fastest = lag_larger(fastest, lag_larger(LAG_FN(fabs)(h*rate[i]), lag_larger(LAG_FN(fabs)(y[i]), LAG_FN(fabs)(y1[i]))));\n"
-  " |  for (int i = LAG_NQ; i < LAG_NY; i++) {\n"
-  "q|    const LAG_REAL next = y[i] + part*(y1[i] - y[i]), size = i < 2*LAG_NQ ? fastest : LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(y1[i]);\n"
-  "n|    const LAG_REAL next = y[i] + part*(y1[i] - y[i]), size = LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(y1[i]);\n"
-  " |    most = next == mid[i] ? most : lag_larger(most, LAG_FN(fabs)(next - mid[i])/(epsilon*size));\n"
-  " |    mid[i] = next;\n"
-  " |  }\n"
-  " |  return most;\n"
+  " |  const lag_impulses s = {(int)w->n, w->of, {w->afirst, w->acol, w->avalue}, {w->dfirst, w->dcol, w->dvalue}, w->response, w->b, w->P, v};\n"
+  " |  return lag_contact_impulses(&s, enough, MOST) > MOST ? (int)LAG_ECONTACT : (int)LAG_OK;\n"
   " |}\n";
 
 static const char *const kick =
   " |\n"
   " |/* y1: velocities and states at the end of a step from y; mid: its middle, at t. */\n"
-  " |static int lag_moreau_kick(const lag_params *p, const lag_state *s, LAG_REAL t, LAG_REAL hHELD, const LAG_REAL *y, LAG_REAL *mid, LAG_REAL *y1, lag_contact_room *w) {\n"
+  " |static int lag_moreau_kick(const lag_params *p, const lag_state *s, LAG_REAL t, LAG_REAL hHELD, const LAG_REAL *y, LAG_REAL *mid, LAG_REAL *y1, lag_moreau_room *w) {\n"
   " |  LAG_REAL rate[LAG_NY], rate0[LAG_NY], now[LAG_NU];\n"
   "i|  LAG_REAL before = -LAG_C(1.0);\n"
   "i|  for (int turn = 0; turn < 100; turn++) {\n"
@@ -341,7 +252,8 @@ static const char *const kick =
   " |    if (status == LAG_OK) status = lag_contact_solve(w, y1 + LAG_NQ);\n"
   "e|    return status;\n"
   "i|    if (status != LAG_OK) return status;\n"
-  "i|    const LAG_REAL most = lag_moreau_between(h, w->impacts > LAG_C(0.0) ? LAG_C(1.0) : LAG_C(0.5), w->epsilon, y, y1, rate, mid);\n"
+  "i|    const lag_moreau_ends ends = {h, y, y1, rate};\n"
+  "i|    const LAG_REAL most = lag_moreau_mean(&ends, w->impacts > LAG_C(0.0) ? LAG_C(1.0) : LAG_C(0.5), w->epsilon, LAG_NQ, LAG_NZ, mid);\n"
   "i|    if (most <= LAG_C(8.0) || (turn > 0 && most <= LAG_C(1e4) && most >= before/LAG_C(2.0))) return LAG_OK;\n"
   "i|    before = most;\n"
   " |  }\n"
@@ -351,7 +263,7 @@ static const char *const kick =
 static const char *const step =
   " |\n"
   " |/* Contacts at the end of a step: open, slipping or sticking, with impulses. */\n"
-  " |static void lag_moreau_note(const lag_contact_room *w, lag_state *s) {\n"
+  " |static void lag_moreau_note(const lag_moreau_room *w, lag_state *s) {\n"
   " |  for (int i = 0; i < LAG_NCONTACTS; i++) s->touch[i] = s->struck[i] = s->impulse[i] = LAG_C(0.0);\n"
   " |  for (int j = 0; j < (int)w->n; j++) {\n"
   " |    const lag_pressing *const c = &w->of[j];\n"
@@ -365,41 +277,47 @@ static const char *const step =
   " |    s->touch[i] = rub < c->mu*w->P[r]*(LAG_C(1.0) - LAG_C(64.0)*w->epsilon) ? (LAG_REAL)LAG_STICKS : (LAG_REAL)LAG_SLIPS;\n"
   " |    if (lag_contact_strikes(w->r0[k], w->pace[k])) s->struck[i] = -w->r0[k];\n"
   " |  }\n"
-  " |}\n"
+  " |}\n";
+
+/* Contacts, or dry friction: room, kick and note above. */
+static const char *const whole_step =
   " |\n"
   " |static int lag_moreau(const lag_params *p, lag_state *s, LAG_REAL hHELD) {\n"
   " |  LAG_REAL y[LAG_NY], mid[LAG_NY], y1[LAG_NY];\n"
-  "h|  LAG_REAL now[LAG_NU];\n"
-  " |  lag_contact_room w;\n"
+  "w|  LAG_REAL now[LAG_NU];\n"
+  " |  lag_moreau_room w;\n"
   " |  lag_state end = *s;\n"
-  " |  w.n = w.rows = w.impacts = LAG_C(0.0);\n"
+  " |  int status = LAG_OK;\n"
   " |  w.epsilon = lag_epsilon();\n"
+  "c|  w.n = w.rows = w.impacts = LAG_C(0.0);\n"
   " |  lag_gather(s, y);\n"
-  " |  for (int i = 0; i < LAG_NY; i++) mid[i] = i < LAG_NQ ? y[i] + (s->lost[1 + i] + h/LAG_C(2.0)*y[LAG_NQ + i]) : y[i];\n"
-  " |  int status = lag_moreau_kick(p, s, s->t + h/LAG_C(2.0), hPASS, y, mid, y1, &w);\n"
+  "d|  status = lag_friction_begin(p, s, yPASS, &w);\n"
+  " |  for (int i = 0; i < LAG_NY; i++) mid[i] = y1[i] = y[i];\n"
+  "q|  for (int i = 0; i < LAG_NQ; i++) mid[i] = y[i] + (s->lost[1 + i] + h/LAG_C(2.0)*y[LAG_NQ + i]);\n"
+  " |  if (status == LAG_OK) status = lag_moreau_kick(p, s, s->t + h/LAG_C(2.0), hPASS, y, mid, y1, &w);\n"
   " |  if (status != LAG_OK) return status;\n"
   " |  end.t = lag_sum(s->t, h, &end.lost[0]);\n"
   " |  for (int i = 0; i < LAG_NY; i++) {\n"
   " |    const LAG_REAL d = i < LAG_NQ ? h/LAG_C(2.0)*(y[LAG_NQ + i] + y1[LAG_NQ + i]) : y1[i] - y[i];\n"
   " |    mid[i] = lag_sum(y[i], d, &end.lost[1 + i]);\n"
-  " |    if (!lag_is_number(mid[i])) return LAG_ECONTACT;\n"
+  "c|    if (!lag_is_number(mid[i])) return LAG_ECONTACT;\n"
   " |  }\n"
   " |  lag_scatter(mid, &end);\n"
   " |  lag_moreau_note(&w, &end);\n"
-  "h|  lag_contact_inputs(p, end.tPASS, -2, now);\n"
-  "h|  status = lag_onto(p, &end, now, end.lost + 1);\n"
+  "k|  lag_contact_inputs(p, end.tPASS, -2, now);\n"
+  "h|  status = lag_onto(p, &endAT_END, end.lost + 1);\n"
   " |  if (status == LAG_OK) status = lag_check(&end);\n"
   " |  if (status == LAG_OK) *s = end;\n"
   " |  return status;\n"
   " |}\n"
   " |\n"
-  " |LAG_API int lag_moreau_step(const lag_params *p, lag_state *s, LAG_REAL h, const LAG_REAL *u) {\n"
-  " |  return lag_moreau(p, s, h, u, 0, 0);\n"
+  " |LAG_API int lag_moreau_step(const lag_params *p, lag_state *s, LAG_REAL hINPUT) {\n"
+  " |  return lag_moreau(p, s, hNOW);\n"
   " |}\n"
-  " |\n"
-  " |LAG_API int lag_moreau_step_with(const lag_params *p, lag_state *s, LAG_REAL h, lag_input_fn *input, void *context) {\n"
-  " |  return lag_moreau(p, s, h, 0, input, context);\n"
-  " |}\n";
+  "u|\n"
+  "u|LAG_API int lag_moreau_step_with(const lag_params *p, lag_state *s, LAG_REAL h, lag_input_fn *input, void *context) {\n"
+  "u|  return lag_moreau(p, s, h, 0, input, context);\n"
+  "u|}\n";
 
 /* Tangents of contact i, which follow it; -1: it is one. */
 static int tangents_of(const ProgramSet *u, uint32_t i) {
@@ -418,12 +336,6 @@ static uint32_t bandwidth(const ProgramSet *u) {
   return band;
 }
 
-void header_moreau_between(const Header *h) {
-  const LineChoice choices[] = {{'n', !h->u->q.n}, {0, 0}};
-  header_template(h, larger, NULL);
-  header_template(h, header_chosen(h, between, choices), NULL);
-}
-
 static const char *contact_table(const Header *h) {
   StrBuf b = strbuf(h->a);
   for (uint32_t i = 0; i < h->u->contacts.n; i++) {
@@ -437,8 +349,8 @@ static void define_contacts(const Header *h) {
   const ProgramSet *u = h->u;
   const IrConstraints *k = &u->constraints;
   int others = k->of.n > u->contacts.n, is_explicit = u->flags & 1u << UNIT_SEPARABLE && !others;
-  /* contacts alone, other constraints beside them, steps that hold these, friction, forces that do not depend on velocities, or do */
-  const LineChoice choices[] = {{'b', !others}, {'k', others}, {'h', others}, {'f', u->contact_coefficients != NULL}, {'e', is_explicit}, {'i', !is_explicit}, {0, 0}};
+  /* contacts alone, other constraints beside them, friction, forces that do not depend on velocities, or do */
+  const LineChoice choices[] = {{'b', !others}, {'k', others}, {'f', u->contact_coefficients != NULL}, {'e', is_explicit}, {'i', !is_explicit}, {0, 0}};
   uint32_t band = bandwidth(u), nq = u->q.n, width = 3 * band + 1 < nq ? 3 * band + 1 : nq;
   const char *z = u->z.n ? ", y + 2*LAG_NQ" : "", *mid = arena_printf(h->a, "t, y, y + LAG_NQ%s, p, now", z);
   const HeaderWord words[] = {{"AT_CONTACTS", contact_table(h)}, {"JACOBIAN", header_positions(h, k->jacobian.at, k->jacobian.n)}, {"ENTRIES", header_positions(h, k->mass.at, k->mass.n)},
@@ -448,16 +360,10 @@ static void define_contacts(const Header *h) {
                               {"VELOCITY", k->position == k->velocity ? "correct" : "correct_velocities"}, {NULL, NULL}};
   static const char *const matrices[] = {"A", "M", NULL}, *const law[] = {"law", NULL};
   const char *const parts[] = {tables, inputs, respond_alone, rows, laws, find, kick, step};
-  if (is_explicit) header_template(h, larger, NULL);
-  else header_moreau_between(h);
-  header_template(h, helpers, NULL);
-  COPY(contact_impulses_types);
-  COPY(contact_impulses_text);
-  if (!others) {
-    header_template(h, swap, NULL);
-    COPY(band_matrix_types);
-    COPY(band_matrix_text);
-  }
+  embedded_section("friction", h->upper, h->lower, h->out);
+  embedded_section("impulses", h->upper, h->lower, h->out);
+  if (!others) embedded_section("band_matrix", h->upper, h->lower, h->out);
+  if (!is_explicit) embedded_section("mean", h->upper, h->lower, h->out);
   header_internal_function(h, k->matrices, "contact_matrices", arena_printf(h->a, "%s_REAL *A, %s_REAL *M", h->upper, h->upper), matrices, matrices);
   if (u->contact_coefficients) header_internal_function(h, u->contact_coefficients, "contact_coefficients", arena_printf(h->a, "%s_REAL *law", h->upper), law, law);
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
@@ -492,12 +398,21 @@ void header_moreau_start(const Header *h) {
   csupport_expand(text, h->upper, h->lower, h->out);
 }
 
-void header_moreau_declare(const Header *h) {
-  if (h->u->contacts.n) header_template(h, prototypes, NULL);
-  else header_friction_declare(h);
+/* contacts, dry friction, contacts and steps that hold constraints beside them, steps that hold constraints, with inputs */
+static void write_step(const Header *h, const char *text) {
+  const ProgramSet *u = h->u;
+  int meets = u->contacts.n > 0, holds = u->constraints.of.n > u->contacts.n;
+  const char *at_end = meets ? ", now" : u->u.n ? ", lag_held(p, end.t, u, input, context, now)" : "";
+  const HeaderWord words[] = {{"INPUT", u->u.n ? ", const LAG_REAL *u" : ""}, {"NOW", u->u.n ? ", u, 0, 0" : ""}, {"AT_END", at_end},
+                              {"OF_INPUTS", u->u.n ? "\n * u: the inputs, constant during the step; 0 for the model's formulas." : ""}, {NULL, NULL}};
+  const LineChoice choices[] = {{'c', meets}, {'d', !meets}, {'k', meets && holds}, {'h', holds}, {'w', holds && u->u.n}, {0, 0}};
+  header_template(h, header_chosen(h, text, choices), words);
 }
+
+void header_moreau_declare(const Header *h) { write_step(h, prototypes); }
 
 void header_moreau_define(const Header *h) {
   if (h->u->contacts.n) define_contacts(h);
   else header_friction_define(h);
+  write_step(h, whole_step);
 }

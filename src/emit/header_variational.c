@@ -1,6 +1,6 @@
 /* Steps of an emitted header by the variational integrator. Enters: the unit's derivatives of L. Leaves: the memory of the method, its prototypes and
  * functions. Holds: each step has the digits of the runtime's, whose text this is for one rule without constraints: methods/galerkin_rule.c,
- * discrete_lagrangian.c, band_matrix.c, predictor.c and implicit_symplectic.c give the reasons. */
+ * discrete_lagrangian.c, predictor.c and implicit_symplectic.c give the reasons. */
 #include "emit/header_impl.h"
 
 static const char *const memory =
@@ -36,7 +36,7 @@ static const char *const memory =
   " |  LAG_REAL dq[LAG_NQ], dp[LAG_NQ], ql[LAG_NQ], pl[LAG_NQ], next[LAG_NQ]; /* increments in a step; v at its end */\n"
   " |  LAG_REAL at_q[LAG_NQ], at_v[LAG_NQ], Lq[LAG_NQ], Lv[LAG_NQ], Q[LAG_NQ];\n"
   " |  LAG_REAL x[LAG_NNEWTON], force[LAG_NNEWTON], R[LAG_NNEWTON], S[LAG_NNEWTON], dx[LAG_NNEWTON], second[NSECOND];\n"
-  " |  LAG_REAL J[LAG_NNEWTON][LAG_NBAND];\n"
+  " |  LAG_REAL J[LAG_NNEWTON*LAG_NBAND];\n"
   " |  LAG_REAL pivot[LAG_NNEWTON]; /* rows exchanged */\n"
   " |  lag_rule rule, momentum; /* of a step; of v from p */\n"
   " |  lag_past past, past_v;\n"
@@ -231,83 +231,20 @@ static const char *const equations =
   " |  return LAG_OK;\n"
   " |}\n";
 
-static const char *const band_matrix =
-  " |\n"
-  " |static int lag_band(const lag_rule *r) { return lag_points(r)*BAND - 1; }\n"
-  " |\n"
-  " |/* Entry of Newton's matrix; entries of a row within the band are contiguous. */\n"
-  " |static LAG_REAL *lag_entry(const lag_discrete *d, int i, int j) {\n"
-  " |  const int n = lag_points(d->rule)*LAG_NQ, all = 3*lag_band(d->rule) + 1, width = all < n ? all : n;\n"
-  " |  int first = i - lag_band(d->rule);\n"
-  " |  if (first > n - width) first = n - width;\n"
-  " |  return &d->w->J[i][j - (first > 0 ? first : 0)];\n"
-  " |}\n"
-  " |\n"
-  " |static int lag_least(int a, int b) { return a < b ? a : b; }\n"
-  " |static void lag_swap_entries(LAG_REAL *a, LAG_REAL *b) {\n"
-  " |  const LAG_REAL was = *a;\n"
-  " |  *a = *b;\n"
-  " |  *b = was;\n"
-  " |}\n"
-  " |\n"
-  " |/* J = L U with partial pivoting; rows are compared relative to their largest entries. */\n"
-  " |static int lag_factor(const lag_discrete *d) {\n"
-  " |  const int n = lag_points(d->rule)*LAG_NQ, band = lag_band(d->rule);\n"
-  " |  LAG_REAL *const scale = d->w->dx, zero = LAG_C(0.0);\n"
-  " |  for (int i = 0; i < n; i++) {\n"
-  " |    scale[i] = zero;\n"
-  " |    for (int j = i > band ? i - band : 0; j <= lag_least(i + band, n - 1); j++) {\n"
-  " |      const LAG_REAL x = LAG_FN(fabs)(*lag_entry(d, i, j));\n"
-  " |      if (x > scale[i] || !(x - x == zero)) scale[i] = x;\n"
-  " |    }\n"
-  " |    if (!(scale[i] > zero && scale[i] - scale[i] == zero)) return LAG_ENEWTON;\n"
-  " |  }\n"
-  " |  for (int k = 0; k < n; k++) {\n"
-  " |    const int below = lag_least(k + band, n - 1), right = lag_least(k + 2*band, n - 1);\n"
-  " |    LAG_REAL best = LAG_FN(fabs)(*lag_entry(d, k, k))/scale[k];\n"
-  " |    int best_row = k;\n"
-  " |    for (int i = k + 1; i <= below; i++) {\n"
-  " |      const LAG_REAL x = LAG_FN(fabs)(*lag_entry(d, i, k))/scale[i];\n"
-  " |      if (!(x > best)) continue;\n"
-  " |      best = x;\n"
-  " |      best_row = i;\n"
-  " |    }\n"
-  " |    if (!(best > zero)) return LAG_ENEWTON;\n"
-  " |    d->w->pivot[k] = (LAG_REAL)best_row;\n"
-  " |    if (best_row != k) {\n"
-  " |      lag_swap_entries(&scale[k], &scale[best_row]);\n"
-  " |      for (int j = k; j <= right; j++) lag_swap_entries(lag_entry(d, k, j), lag_entry(d, best_row, j));\n"
-  " |    }\n"
-  " |    const LAG_REAL *const upper = lag_entry(d, k, k);\n"
-  " |    for (int i = k + 1; i <= below; i++) {\n"
-  " |      LAG_REAL *const row = lag_entry(d, i, k), f = row[0]/upper[0];\n"
-  " |      row[0] = f;\n"
-  " |      for (int j = 1; j <= right - k; j++) row[j] -= f*upper[j];\n"
-  " |    }\n"
-  " |  }\n"
-  " |  return LAG_OK;\n"
-  " |}\n"
-  " |\n"
-  " |static void lag_back(const lag_discrete *d, LAG_REAL *b) {\n"
-  " |  const int n = lag_points(d->rule)*LAG_NQ, band = lag_band(d->rule);\n"
-  " |  for (int k = 0; k < n; k++) {\n"
-  " |    lag_swap_entries(&b[k], &b[(int)d->w->pivot[k]]);\n"
-  " |    for (int i = k + 1; i <= lag_least(k + band, n - 1); i++) b[i] -= *lag_entry(d, i, k)*b[k];\n"
-  " |  }\n"
-  " |  for (int k = n - 1; k >= 0; k--) {\n"
-  " |    const LAG_REAL *const upper = lag_entry(d, k, k);\n"
-  " |    for (int j = 1; j <= lag_least(2*band, n - 1 - k); j++) b[k] -= upper[j]*b[k + j];\n"
-  " |    b[k] /= upper[0];\n"
-  " |  }\n"
-  " |}\n"
-  " |\n";
-
 static const char *const matrix =
+  " |\n"
+  " |static lag_band_matrix lag_newton_matrix(const lag_discrete *d) {\n"
+  " |  const int n = lag_points(d->rule);\n"
+  " |  const lag_band_matrix M = {n*LAG_NQ, n*BAND - 1, d->w->J, d->w->pivot};\n"
+  " |  return M;\n"
+  " |}\n"
+  " |\n"
   " |/* Adds of[k] by[l] x to the block (row, col): equation k, column of free velocity l. */\n"
   " |static void lag_block(const lag_discrete *d, int row, int col, const LAG_REAL *of, const LAG_REAL *by, LAG_REAL x) {\n"
+  " |  const lag_band_matrix M = lag_newton_matrix(d);\n"
   " |  const int n = lag_points(d->rule);\n"
   " |  for (int k = 0; k < n; k++)\n"
-  " |    for (int l = 0; l < n; l++) *lag_entry(d, row*n + k, col*n + l) += of[k]*by[l]*x;\n"
+  " |    for (int l = 0; l < n; l++) *lag_band_matrix_at(&M, row*n + k, col*n + l) += of[k]*by[l]*x;\n"
   " |}\n"
   " |\n"
   " |/* Newton's matrix at the present velocities, factored. */\n"
@@ -317,9 +254,9 @@ static const char *const matrix =
   " |  lag_variational *const w = d->w;\n"
   " |  const lag_rule *const r = d->rule;\n"
   " |  const int n = lag_points(r);\n"
+  " |  lag_band_matrix M = lag_newton_matrix(d);\n"
   "u|  LAG_REAL now[LAG_NU];\n"
-  " |  for (int i = 0; i < n*LAG_NQ; i++)\n"
-  " |    for (int j = 0; j < LAG_NBAND; j++) w->J[i][j] = LAG_C(0.0);\n"
+  " |  for (int i = 0; i < lag_band_matrix_size(M.n, M.band); i++) M.a[i] = LAG_C(0.0);\n"
   " |  for (int i = 0; i < n; i++) {\n"
   " |    const LAG_REAL t = lag_discrete_at(d, i);\n"
   " |    LAG_REAL of_f[LAG_NFREE], of_p[LAG_NFREE], by_q[LAG_NFREE];\n"
@@ -338,7 +275,7 @@ static const char *const matrix =
   " |      else if (row != col && (part == QQ || part == VV)) lag_block(d, col, row, of, by, w->second[e]);\n"
   " |    }\n"
   " |  }\n"
-  " |  return lag_factor(d);\n"
+  " |  return lag_band_matrix_factor(&M, w->dx) ? (int)LAG_ENEWTON : (int)LAG_OK;\n"
   " |}\n";
 
 static const char *const newton =
@@ -347,6 +284,7 @@ static const char *const newton =
   " |static int lag_discrete_solve(const lag_discrete *d) {\n"
   " |  lag_variational *const w = d->w;\n"
   " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0);\n"
+  " |  const lag_band_matrix M = lag_newton_matrix(d);\n"
   " |  const int n = lag_points(d->rule);\n"
   " |  LAG_REAL part_before = one, rounding_before = one;\n"
   " |  for (int turn = 0, settled = 0; turn <= 25; turn++) {\n"
@@ -358,7 +296,7 @@ static const char *const newton =
   " |    LAG_REAL part = zero, work = zero, whole = zero;\n"
   " |    for (int a = 0; a < LAG_NQ; a++)\n"
   " |      for (int k = 0; k < n; k++) w->dx[a*n + k] = -w->R[k*LAG_NQ + a];\n"
-  " |    lag_back(d, w->dx);\n"
+  " |    lag_band_matrix_solve(&M, w->dx);\n"
   " |    for (int a = 0; a < LAG_NQ; a++)\n"
   " |      for (int k = 0; k < n; k++) {\n"
   " |        LAG_REAL *const x = &d->x[k*LAG_NQ + a];\n"
@@ -516,7 +454,8 @@ void header_variational_define(const Header *h) {
   write(h, rules);
   write(h, predictor);
   write(h, equations);
-  write(h, band_matrix);
+  sb_puts(h->out, "\n");
+  embedded_section("band_matrix", h->upper, h->lower, h->out);
   write(h, matrix);
   write(h, newton);
   write(h, steps);

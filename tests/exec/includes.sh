@@ -29,7 +29,7 @@ runtime/kernels
 runtime/core      core/ kernels/ numeric/ lag.h lag_model.h
 runtime/constraints constraints/ core/core.h core/rhs.h numeric/ lag.h lag_model.h lag_kkt.h
 runtime/contacts  contacts/ core/core.h core/rhs.h numeric/ lag.h lag_model.h
-runtime/methods   methods/ core/rhs.h contacts/contact_impulses.h kernels/ numeric/ lag.h lag_model.h lag_math.h
+runtime/methods   methods/ core/rhs.h kernels/ numeric/ lag.h lag_model.h lag_math.h
 runtime/lanes     lanes/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
 runtime/analysis  analysis/ core/ kernels/ numeric/ lag.h lag_model.h
 runtime/io        io/ numeric/ lag.h lag_model.h
@@ -50,7 +50,7 @@ runtime/include/lag_math.h  lag_sincos.h
 private='analysis/measure_nodes.h sweep/run_chunks_impl.h syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
   model/scope.h model/declarations.h sym/expr_impl.h sym/ops.def symmetry/noether_theorem_impl.h lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h fmu/fmu_archive_impl.h methods/tableau.h methods/embedded_trial.h
   methods/steps.h methods/composition.h methods/step_interpolant.h methods/galerkin_rule.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
-  methods/predictor.h methods/band_matrix.h methods/newton.h methods/step_control.h'
+  methods/predictor.h methods/newton.h methods/step_control.h'
 
 # Every #include as `FILE HEADER`; <stdio.h> keeps its brackets.
 list=$TMP/list

@@ -5,7 +5,7 @@
 #include "slow.h"
 #include "test_rt_systems.h"
 
-#include "methods/band_matrix.h"
+#include "kernels/band_matrix.h"
 #include "methods/galerkin_rule.h"
 
 /* ---- Digits */

@@ -1,0 +1,304 @@
+/* impulses.h: laws of contacts and dry friction by projected Gauss-Seidel. Includes <math.h> only.
+ *
+ * Enters: velocities without contacts and friction, response of the motion to each; their laws. Leaves:
+ * impulses and velocities that obey all laws: the problem of numeric/complementarity.h with boxes of
+ * friction that depend on the forces which press, for any number of contacts.
+ *
+ * Turn by turn each law is obeyed, until a sweep changes nothing noticeably: M. Jean, Comput. Methods
+ * Appl. Mech. Eng. 177 (1999) 235, DOI 10.1016/S0045-7825(98)00383-1.
+ *
+ * lagc copies the sections below into headers, with their prefix for LAG_ and lag_. LAG_REAL is a
+ * scalar. The caller's memory alone; nothing is kept between calls. */
+#ifndef LAG_IMPULSES_H
+#define LAG_IMPULSES_H
+
+#include <math.h>
+
+#ifndef LAG_REAL
+#define LAG_REAL double
+#define LAG_REAL_IS_DOUBLE 1
+#endif
+#ifndef LAG_FN
+#define LAG_FN(f) f
+#endif
+#ifndef LAG_C
+#define LAG_C(x) x
+#endif
+#ifndef LAG_SELECT
+#define LAG_SELECT(c, a, b) ((c) ? (LAG_REAL)(a) : (LAG_REAL)(b))
+#endif
+
+/* ---- friction ---- */
+
+/* A number counts as larger, and as smaller, than none. */
+static inline LAG_REAL lag_larger(LAG_REAL a, LAG_REAL b) { return LAG_SELECT(a >= b || !(b >= b), a, b); }
+static inline LAG_REAL lag_smaller(LAG_REAL a, LAG_REAL b) { return LAG_SELECT(a <= b || !(b >= b), a, b); }
+static inline int lag_is_number(LAG_REAL x) { return x - x >= LAG_C(0.0); }
+
+/* x := the point nearest to x[n] of a ball, n = 2, or an interval, n = 1. */
+static inline void lag_into_ball(int n, const LAG_REAL *centre, LAG_REAL radius, LAG_REAL *x) {
+  if (n == 1) {
+    x[0] = lag_smaller(lag_larger(x[0], centre[0] - radius), centre[0] + radius);
+    return;
+  }
+  const LAG_REAL far = LAG_FN(hypot)(x[0] - centre[0], x[1] - centre[1]);
+  for (int k = 0; k < n && far > radius; k++) x[k] = centre[k] + (x[k] - centre[k])*(radius/far);
+}
+
+/* Coulomb's law. slip[n]: now, under the friction x[n], of which 1 changes it by `response`. x := friction
+ * that drives the slip to the nearest point of a ball, if it is at most `holds`, else `most` against it.
+ * slip := that point. */
+static inline void lag_friction_turn(int n, LAG_REAL response, const LAG_REAL *centre, LAG_REAL radius,
+                                     LAG_REAL holds, LAG_REAL most, LAG_REAL *slip, LAG_REAL *x) {
+  const LAG_REAL origin[2] = {LAG_C(0.0), LAG_C(0.0)};
+  LAG_REAL to[2], size = LAG_C(0.0);
+  for (int k = 0; k < n; k++) to[k] = slip[k] - response*x[k];
+  lag_into_ball(n, centre, radius, to);
+  for (int k = 0; k < n; k++) {
+    x[k] += (to[k] - slip[k])/response;
+    slip[k] = to[k];
+  }
+  if (n > 1) size = LAG_FN(hypot)(x[0], x[1]);
+  else size = LAG_FN(fabs)(x[0]);
+  if (size > holds) lag_into_ball(n, origin, most, x);
+}
+
+/* ---- mean ---- */
+
+typedef struct lag_moreau_ends {
+  LAG_REAL h;
+  const LAG_REAL *y0, *y1, *rate; /* (q, v, z) at both ends of a step; the rates of v and z, or their terms */
+} lag_moreau_ends;
+
+/* mid := y0 + part (y1 - y0) for velocities and states. Returns its largest change, in units of rounding: of
+ * the largest velocity, or of the state itself. */
+static inline LAG_REAL lag_moreau_mean(const lag_moreau_ends *e, LAG_REAL part, LAG_REAL epsilon, int nq, int nz,
+                                       LAG_REAL *mid) {
+  const LAG_REAL *const y0 = e->y0, *const y1 = e->y1;
+  LAG_REAL most = LAG_C(0.0), fastest = LAG_C(0.0);
+  for (int i = nq; i < 2*nq; i++) {
+    const LAG_REAL v0 = LAG_FN(fabs)(y0[i]), v1 = LAG_FN(fabs)(y1[i]);
+    fastest = lag_larger(fastest, lag_larger(LAG_FN(fabs)(e->h*e->rate[i]), lag_larger(v0, v1)));
+  }
+  for (int i = nq; i < 2*nq + nz; i++) {
+    const LAG_REAL next = y0[i] + part*(y1[i] - y0[i]), own = LAG_FN(fabs)(y0[i]) + LAG_FN(fabs)(y1[i]);
+    const LAG_REAL size = LAG_SELECT(i < 2*nq, fastest, own);
+    if (next < mid[i] || next > mid[i]) most = lag_larger(most, LAG_FN(fabs)(next - mid[i])/(epsilon*size));
+    mid[i] = next;
+  }
+  return most;
+}
+
+/* ---- surfaces ---- */
+
+/* Dry friction along n surfaces in a step. mode[n]: the mean of the sign of each slip, so friction in parts
+ * of its size while it slips; sticks[n]: its slip is 0 at the end. Surfaces with a response < 0 are driven
+ * to the nearest slip of an interval about centre[n]; those without one slip. */
+typedef struct lag_surfaces {
+  int n;
+  int (*slip)(void *context, int k, LAG_REAL *slip);   /* slip of surface k. Not 0: the search ends */
+  void (*change)(void *context, int k, LAG_REAL mode); /* mode k becomes `mode` */
+  void *context;
+  LAG_REAL epsilon;                                  /* rounding of LAG_REAL */
+  const LAG_REAL *response, *bound, *centre;         /* [n]; bound: largest mode of a body that sticks */
+  LAG_REAL *mode, *sticks;
+} lag_surfaces;
+
+enum { LAG_SURFACE_INFINITE = -101, LAG_SURFACES_DISAGREE = -102 };
+
+/* One turn of surface k; *size, *change: the largest slip, and change of one. */
+static inline int lag_surface_turn(const lag_surfaces *s, int k, LAG_REAL *size, LAG_REAL *change) {
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), own = s->response[k], was = s->mode[k];
+  LAG_REAL slip[1], to[1];
+  const int status = s->slip(s->context, k, slip);
+  const LAG_REAL g = LAG_FN(fabs)(slip[0]), response = LAG_FN(fabs)(own);
+  if (status != 0) return status;
+  to[0] = was;
+  if (own < zero) {
+    lag_friction_turn(1, own, s->centre + k, LAG_FN(fabs)(s->centre[k]), s->bound[k], one, slip, to);
+  } else {
+    to[0] = LAG_SELECT(slip[0] > zero, one, LAG_SELECT(slip[0] < zero, -one, zero));
+    slip[0] = zero;
+  }
+  if (!lag_is_number(to[0])) return LAG_SURFACE_INFINITE;
+  const LAG_REAL part = LAG_FN(fabs)(to[0]);
+  const int at_limit = !(part < one || part > one);
+  s->change(s->context, k, to[0]);
+  s->sticks[k] = LAG_SELECT(slip[0] < zero || slip[0] > zero || at_limit, zero, one);
+  *change = lag_larger(LAG_FN(fabs)((to[0] - was)*own), *change);
+  *size = lag_larger(lag_larger(g, response), *size);
+  return 0;
+}
+
+/* Finds modes that agree. *size: the largest slip. LAG_SURFACE_INFINITE: that of *row has no finite values. */
+static inline int lag_surface_sweeps(const lag_surfaces *s, LAG_REAL *size, int *row) {
+  LAG_REAL last = LAG_C(0.0);
+  *size = LAG_C(0.0);
+  for (int sweep = 0; sweep < 10000; sweep++) {
+    LAG_REAL change = LAG_C(0.0);
+    for (int k = 0; k < s->n; k++) {
+      const int status = lag_surface_turn(s, *row = k, size, &change);
+      if (status != 0) return status;
+    }
+    const LAG_REAL unit = s->epsilon*(*size);
+    if (change <= LAG_C(64.0)*unit) return 0;
+    if (sweep > 0 && change <= LAG_C(1e7)*unit && change >= last/LAG_C(2.0)) return 0;
+    last = change;
+  }
+  *row = 0;
+  return LAG_SURFACES_DISAGREE;
+}
+
+/* ---- impulses ---- */
+
+/* Rows of a sparse matrix: row r has the entries first[r] .. first[r + 1] - 1. Indices are scalars, since
+ * they lie in blocks of scalars. */
+typedef struct lag_sparse_rows {
+  LAG_REAL *first, *col, *value;
+} lag_sparse_rows;
+
+/* A contact: rows row (the gap) and row + 1 .. row + tangents (slip velocities). least: the least rate of the
+ * gap after the impulse. Friction drives the slip velocity to the nearest point of a ball (an interval in a
+ * plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate, slip[tangents]: at the begin. */
+typedef struct lag_pressing {
+  LAG_REAL contact, row, tangents, mu, least, radius, centre[2], strikes, rate, slip[2];
+} lag_pressing;
+
+/* The product of row r with x. */
+static inline LAG_REAL lag_row_product(const lag_sparse_rows *A, int r, const LAG_REAL *x) {
+  LAG_REAL sum = LAG_C(0.0);
+  for (int e = (int)A->first[r]; e < (int)A->first[r + 1]; e++) sum += A->value[e]*x[(int)A->col[e]];
+  return sum;
+}
+
+/* --- laws --- */
+
+/* Whether a contact takes part in a step h: its gap is closed at the middle, or may close until the end. r0,
+ * r1: rates at the begin, and at the end without contacts; pace: rates that forces and curvature cause in a
+ * step. */
+static inline int lag_contact_takes_part(LAG_REAL gap, LAG_REAL r0, LAG_REAL r1, LAG_REAL pace, LAG_REAL h) {
+  const LAG_REAL zero = LAG_C(0.0);
+  return gap <= zero || (gap + h/LAG_C(2.0)*(lag_smaller(r0, r1) - pace) <= zero && r0 >= -pace);
+}
+
+/* Whether it strikes: the gap closes faster than forces and curvature alone make it close in a step. */
+static inline int lag_contact_strikes(LAG_REAL r0, LAG_REAL pace) { return r0 < -pace; }
+
+/* Fills in c->least, centre and radius. bend: change of the rate of the gap by its curvature until the middle;
+ * e: restitution of an impact, 0 where there is none; back: the same along the surface; slip[c->tangents]: at
+ * the begin.
+ *
+ * Half a gap is left by its rate -gap/h, and the next middle has none. On a curve that bends towards the body
+ * the rate is that which curvature takes away until the end; the middle lies inside by h/4 of it, and a body
+ * deeper than that is led out, no faster than the gap closed. */
+static inline void lag_contact_law(lag_pressing *c, LAG_REAL gap, LAG_REAL r0, LAG_REAL bend, LAG_REAL h, LAG_REAL e,
+                                   LAG_REAL back, int strikes, const LAG_REAL *slip) {
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), two = LAG_C(2.0);
+  const LAG_REAL down = lag_smaller(bend, zero), part = LAG_SELECT(strikes, back, (one + back)/two);
+  const LAG_REAL left = gap - down*(h/LAG_C(4.0));
+  LAG_REAL size = zero;
+  c->least = LAG_SELECT(left > zero || down < zero, -down - left/h, zero);
+  if (r0 > zero || down < zero) c->least = lag_smaller(-r0, c->least);
+  if (strikes) c->least = lag_larger(-down, -lag_smaller(lag_larger(e, zero), one)*r0);
+  for (int j = 0; j < (int)c->tangents; j++) {
+    c->slip[j] = slip[j];
+    c->centre[j] = -part*slip[j];
+    size = LAG_FN(hypot)(size, slip[j]);
+  }
+  c->radius = LAG_SELECT(strikes, zero, (one - back)/two*size);
+  c->strikes = LAG_SELECT(strikes, one, zero);
+  c->rate = r0;
+}
+
+/* --- sweeps --- */
+
+/* Changes impulse r by dP. */
+static inline void lag_add_impulse(const lag_sparse_rows *D, int r, LAG_REAL dP, LAG_REAL *P, LAG_REAL *v) {
+  P[r] += dP;
+  for (int e = (int)D->first[r]; e < (int)D->first[r + 1]; e++) v[(int)D->col[e]] += dP*D->value[e];
+}
+
+/* Contacts of[n] of a step. A, D: one row each for each impulse, D = M^-1 A^T; response[rows]: the diagonal of
+ * A D, 0: no impulse moves this row; b[rows]: rate without velocities. P[rows], v[]: impulses, velocities. */
+typedef struct lag_impulses {
+  int n;
+  lag_pressing *of;
+  lag_sparse_rows A, D;
+  const LAG_REAL *response, *b;
+  LAG_REAL *P, *v;
+} lag_impulses;
+
+static inline LAG_REAL lag_rate_of(const lag_impulses *s, int r) { return lag_row_product(&s->A, r, s->v) + s->b[r]; }
+
+/* One turn of a contact; returns the largest change of a rate. */
+static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressing *c) {
+  const LAG_REAL zero = LAG_C(0.0);
+  const int r = (int)c->row, n = (int)c->tangents;
+  LAG_REAL change = zero, slip[2], x[2], w = zero;
+  if (s->response[r] > zero) {
+    const LAG_REAL to = lag_larger(zero, s->P[r] + (c->least - lag_rate_of(s, r))/s->response[r]);
+    change = LAG_FN(fabs)(to - s->P[r])*s->response[r];
+    lag_add_impulse(&s->D, r, to - s->P[r], s->P, s->v);
+  }
+  /* the trace: no less than the largest eigenvalue, and the same in all directions */
+  for (int k = 1; k <= n; k++) w += s->response[r + k];
+  if (!(w > zero)) return change;
+  for (int k = 0; k < n; k++) {
+    slip[k] = lag_rate_of(s, r + 1 + k);
+    x[k] = s->P[r + 1 + k];
+  }
+  lag_friction_turn(n, w, c->centre, c->radius, c->mu*s->P[r], c->mu*s->P[r], slip, x);
+  for (int k = 0; k < n; k++) {
+    const LAG_REAL by = x[k] - s->P[r + 1 + k];
+    change = lag_larger(change, LAG_FN(fabs)(by)*w);
+    lag_add_impulse(&s->D, r + 1 + k, by, s->P, s->v);
+  }
+  return change;
+}
+
+/* Whether friction by the slip at the end brings in energy in an impact; then its ball becomes that of the
+ * mean slip, whose diameter goes from -slip to the centre. */
+static inline int lag_contact_soften(const lag_impulses *s, lag_pressing *c, LAG_REAL enough) {
+  const LAG_REAL zero = LAG_C(0.0), two = LAG_C(2.0), *const P = s->P;
+  const int r = (int)c->row, n = (int)c->tangents;
+  LAG_REAL work = P[r]*(c->rate + lag_rate_of(s, r)), size = P[r], width = zero;
+  if (!(c->strikes > zero) || c->radius > zero) return 0;
+  for (int k = 0; k < n; k++) {
+    work += P[r + 1 + k]*(c->slip[k] + lag_rate_of(s, r + 1 + k));
+    size += LAG_FN(fabs)(P[r + 1 + k]);
+    width = LAG_FN(hypot)(width, c->slip[k] + c->centre[k]);
+  }
+  if (!(work > enough*size && width > zero)) return 0;
+  for (int k = 0; k < n; k++) c->centre[k] = (c->centre[k] - c->slip[k])/two;
+  c->radius = width/two;
+  return 1;
+}
+
+/* Finds impulses P >= 0 along gaps, and of friction within mu times them, so that velocities v + D P obey these
+ * laws: the rate A v + b of a gap is at least `least`, and equal where P > 0; slip velocities are in the ball
+ * where friction can hold them there, else friction is at its limit and acts towards its centre. P: a guess,
+ * then the impulses; v: without impulses, then with them. Ends where a sweep changes no rate by more than
+ * `enough`. Returns the number of sweeps, forth and back in turn; `most` + 1 where these do not suffice. */
+static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, int most) {
+  const LAG_REAL zero = LAG_C(0.0);
+  for (int i = 0; i < s->n; i++)
+    for (int k = (int)s->of[i].row; k <= (int)(s->of[i].row + s->of[i].tangents); k++) {
+      const LAG_REAL guess = LAG_SELECT(s->response[k] > zero, s->P[k], zero);
+      s->P[k] = zero;
+      lag_add_impulse(&s->D, k, guess, s->P, s->v);
+    }
+  for (int sweep = 1; sweep <= most; sweep++) {
+    LAG_REAL change = zero;
+    int softer = 0;
+    for (int i = 0; i < s->n; i++) {
+      const LAG_REAL one = lag_contact_turn(s, &s->of[sweep % 2 ? i : s->n - 1 - i]);
+      change = LAG_SELECT(one > change || !lag_is_number(one), one, change);
+    }
+    for (int i = 0; i < s->n && !(change > enough); i++) softer += lag_contact_soften(s, &s->of[i], enough);
+    if (!(change > enough) && softer == 0) return sweep;
+  }
+  return most + 1;
+}
+
+/* ---- end ---- */
+#endif
