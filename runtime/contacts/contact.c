@@ -169,11 +169,18 @@ double lag_contacts_response(ContactSet *w, int i) {
   return isnan(s) || lag_row_moves(change_of_rate(w, i, w->d)) ? 1 / s : 0;
 }
 
-/* The coefficient of restitution of contact i; NaN where no impulse moves it. */
-static double restitution(ContactSet *w, int i) {
+static double restitution_at(ContactSet *w, int i, double speed) {
   lag_sim *s = w->sim;
-  double to = lag_contacts_response(w, i), speed = w->rate_size[i] > 0 ? w->rate_size[i] : 1; /* test velocity: the gap closes with a typical speed */
-  return to > 0 ? lag_contact_restitution(&s->pb, s->run->t, w->y, i, w->rate[i], speed, w->d, w->A, s->yc, w->test) : NAN;
+  return lag_contact_restitution(&s->pb, s->run->t, w->y, i, w->rate[i], speed, w->d, w->A, s->yc, w->test);
+}
+
+/* The coefficient of restitution of contact i, at a typical speed, where it has the most digits, unless it depends on the speed; NaN where no impulse moves it. */
+static double restitution(ContactSet *w, int i) {
+  const double same = 1e-6, roundings = 1e4 * DBL_EPSILON;
+  double to = lag_contacts_response(w, i), typical = w->rate_size[i] > 0 ? w->rate_size[i] : 1;
+  if (!(to > 0)) return NAN;
+  double e = restitution_at(w, i, typical), now = w->rate[i] < 0 ? restitution_at(w, i, -w->rate[i]) : e;
+  return fabs(now - e) > fmax(same, roundings * typical / -w->rate[i]) ? now : e;
 }
 
 /* Computes W for the contacts of[n]. */
@@ -498,6 +505,7 @@ static int check_all(lag_sim *s) {
       continue;
     }
     double e = s->scene->model->contacts[i].conditional ? NAN : restitution(&w, i);
+    if (isfinite(e) && fabs(restitution_at(&w, i, 2 * (w.rate_size[i] > 0 ? w.rate_size[i] : 1)) - e) > 1e-6) continue; /* of an impact's speed, not of any */
     rc = isfinite(e) ? check_restitution(s, i, s->run->dir < 0 ? fmax(e, 1) : e) : LAG_OK;
   }
   free_contacts(&w);

@@ -315,7 +315,8 @@ void lag_charges_jump(lag_sim *s, double t, const double *ya, const double *yb) 
 void lag_charges_add_work(lag_sim *s, double at_events, double rubbed) {
   if (!lag_sim_ncharges(s)) return;
   Charge *c = &s->charges[0];
-  int known = c->balanced != 0.0 && s->scene->model->charges->dry_friction;
+  const lag_charges *of = s->scene->model->charges; /* NULL: the energy is the only one, and no force takes from it */
+  int known = c->balanced != 0.0 && of && of->dry_friction;
   *(known ? &c->work : &c->first) += rubbed;
   *(known ? &s->run->dry_work : &s->run->at_events) += rubbed;
   c->first += at_events;

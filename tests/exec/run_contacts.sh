@@ -154,6 +154,23 @@ example() { # MODEL SCENE: coordinates and velocities at the end, in $TMP/state
   timeout 20 "$TMP/eg" | tail -n 1 >"$TMP/state"
 }
 state() { cut -d ' ' -f "$1" "$TMP/state"; }
+# A restitution of the speed, k v^(-1/4), at most 1: 37 bounces one by one. Tolerance: 1e-11 a step, and v^(3/4) makes errors smaller.
+model speed <<'END'
+model speed "A ball that is the more elastic the slower it falls"
+coord y
+param k = 0.8, g = 9.81
+lagrangian = y'^2/2 - g*y
+contact floor: y >= 0, restitution = min(1, k*abs(y')^(-0.25))
+scene s { start y = 5; span 6; tolerance 1e-11; output y, y' every 6 }
+END
+bounces() { awk 'BEGIN { g = 9.81; v = sqrt(2*g*5); t = v/g; for (;;) { e = 0.8*v^(-0.25); if (e > 1) e = 1; v *= e; if (t + 2*v/g > 6) break; t += 2*v/g } s = 6 - t; printf "%.17g %.17g\n", v*s - g*s*s/2, v - g*s }'; }
+check "a restitution that depends on the speed" run speed s
+set -- $(bounces)
+check "where it is after 37 bounces" near "$(cell 6 2)" "$1" 1e-8
+check "and its velocity" near "$(cell 6 3)" "$2" 1e-8
+check "by time steps, too" "$LAGC" run "$TMP/speed.lag" --method moreau --step 1e-3 --quiet
+sed -i 's/min(1, k\*abs(y.)^(-0.25))/1.1*k*abs(y'"'"')^0.25/' "$TMP/speed.lag"
+check "one above 1 ends the run" says 2 "which must be between 0 and 1" "$LAGC" run "$TMP/speed.lag" --quiet
 check "a header says that contacts are the loop's" sh -c "'$LAGC' header '$TMP/ball.lag' | grep -q 'Contacts: a step ignores them. The loop below calls ball_events, ball_act and ball_hold'"
 check "its loop compiles and runs" example ball drop
 check "the ball bounces to rest" near "$(state 1)" 0 1e-8
