@@ -98,7 +98,7 @@ LAG_INLINE LaneMask embedded_lane_stages(int n, EmbeddedLanes *b, Lanes dt) {
   embedded_lane_sum(n, tab->a[last], last - 1, k, sum);
   for (int i = 0; i < n; i++) {
     b->comp1[i] = b->comp[i];
-    b->y1[i] = lane_compensated_sum(b->y0[i], dt * (sum[i] + lane_all(tab->a[last][last - 1]) * k[(last - 1) * n + i]), &b->comp1[i]);
+    b->y1[i] = lag_compensated_sum(b->y0[i], dt * (sum[i] + lane_all(tab->a[last][last - 1]) * k[(last - 1) * n + i]), &b->comp1[i]);
   }
   return bad;
 }
@@ -152,7 +152,7 @@ LAG_INLINE LaneMask embedded_lane_step(int n, EmbeddedLanes *b, LaneMask busy, L
   Lanes seen = lane_abs(pb->t - pb->t_begin), none = lane_all(0);
   Lanes most = b->h_max > 0 ? lane_all(b->h_max) : lane_select(seen > none, seen, lane_all(HUGE_VAL));
   Lanes h = b->h_fixed > 0 ? lane_all(b->h_fixed) : lane_min(b->h, b->longest > 0 ? lane_min(most, lane_all(b->longest)) : most);
-  Lanes dt = lane_all(pb->dir) * h, tc = b->tc, end = lane_compensated_sum(pb->t, dt, &tc);
+  Lanes dt = lane_all(pb->dir) * h, tc = b->tc, end = lag_compensated_sum(pb->t, dt, &tc);
   *bad = (h <= lane_all(4 * DBL_EPSILON) * lane_abs(pb->t)) | (h < lane_all(DBL_MIN / DBL_EPSILON));
   *bad |= embedded_lane_stages(n, b, dt) | lane_rates(pb, end, b->y1, b->k + last * n);
   Lanes err2 = pair->tab->order_embedded ? embedded_lane_errors(n, b, dt) : none;

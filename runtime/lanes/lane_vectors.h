@@ -10,6 +10,7 @@
 #define LAG_LANES 4
 #endif
 #include "core/core.h"
+#include "kernels/compensated_sum.h"
 #include "lag_math.h"
 #include "lanes/lane_kernel.h"
 
@@ -29,13 +30,6 @@ LAG_INLINE Lanes lane_max(Lanes a, Lanes b) { return lane_select(a > b, a, b); }
 #endif
 
 LAG_INLINE LaneMask lane_select_mask(LaneMask c, LaneMask a, LaneMask b) { return (c & a) | (~c & b); }
-
-/* lag_compensated_sum of lanes. */
-LAG_INLINE Lanes lane_compensated_sum(Lanes s, Lanes d, Lanes *c) {
-  const Lanes x = d + *c, r = s + x, b = r - s;
-  *c = (s - (r - b)) + (x - b);
-  return r;
-}
 
 /* Lanes whose bit is set. */
 LAG_INLINE LaneMask lane_mask(unsigned bits) {

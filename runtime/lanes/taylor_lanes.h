@@ -103,7 +103,7 @@ LAG_INLINE void taylor_ends(int n, TaylorLanes *b, Lanes dt) {
   b->ty->at(b->order, dt / b->unit, b->x[b->now], b->sum, b->slope);
   for (int i = 0; i < n; i++) {
     b->comp1[i] = b->comp[i];
-    b->y1[i] = lane_compensated_sum(b->pb.y[i], b->sum[i], &b->comp1[i]);
+    b->y1[i] = lag_compensated_sum(b->pb.y[i], b->sum[i], &b->comp1[i]);
   }
 }
 

@@ -4,17 +4,22 @@
 
 #include <string.h>
 
-#include "emit/dense_output_kernel.h" /* static const char *const NAME_kernel[]: lines of runtime/kernels/NAME.h */
+#include "emit/compensated_sum_kernel.h" /* static const char *const NAME_kernel[]: lines of runtime/kernels/NAME.h */
+#include "emit/composition_kernel.h"
+#include "emit/dense_output_kernel.h"
 #include "emit/lag_kkt.h"             /* static const char *const NAME[]: and of runtime/include/NAME.h */
 #include "emit/lag_math.h"
 #include "emit/lag_sincos.h"
 #include "emit/locate_kernel.h"
+#include "emit/scalar_kernel.h"
+#include "emit/splitting_kernel.h"
 
 #define LINES(text) {text, sizeof text / sizeof *text}
 static const struct {
   const char *const *line;
   size_t n;
-} embedded[] = {LINES(lag_math), LINES(lag_sincos), LINES(lag_kkt), LINES(dense_output_kernel), LINES(locate_kernel)};
+} embedded[] = {LINES(lag_math),  LINES(lag_sincos), LINES(lag_kkt), LINES(scalar_kernel), LINES(compensated_sum_kernel), LINES(composition_kernel), LINES(splitting_kernel),
+                LINES(dense_output_kernel), LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";
 static int is_marker(const char *line, const char *name) {

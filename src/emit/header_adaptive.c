@@ -12,39 +12,6 @@ static const char *const type =
   "} lag_adaptive;\n\n"
   "LAG_API void lag_adaptive_begin(lag_adaptive *w, LAG_REAL tolerance);\n";
 
-/* Failures of functions within a step. The step of a lane that fails is not taken. */
-static const char *const failures =
-  " |\n"
-  " |#ifdef LAG_LANES /* a lane that fails does not stop the others */\n"
-  " |#define LAG_TRY(call) status = -(-status | -(call))\n"
-  " |#define LAG_WHERE(lanes, status) -(-(status) & lag_lanes_bits(lanes))\n"
-  " |#define LAG_STATUS(lanes, code) -lag_lanes_bits(lanes)\n"
-  " |#define LAG_FAILED(status) lag_failed(status)\n"
-  " |/* Lanes that a status names. */\n"
-  " |static LAG_MASK lag_failed(int status) {\n"
-  " |  LAG_MASK lanes = {0};\n"
-  " |  for (int i = 0; i < LAG_LANES; i++) lanes[i] = -(-status >> i & 1);\n"
-  " |  return lanes;\n"
-  " |}\n"
-  " |#else\n"
-  " |#define LAG_TRY(call) do { status = (call); if (status != LAG_OK) return status; } while (0)\n"
-  " |#define LAG_WHERE(lanes, status) (status)\n"
-  " |#define LAG_STATUS(fails, code) ((fails) ? (int)(code) : (int)LAG_OK)\n"
-  " |#define LAG_FAILED(status) ((status) != LAG_OK)\n"
-  " |#endif\n"
-  " |\n"
-  " |#ifdef LAG_COMPLEX\n"
-  " |#define LAG_IS_FINITE(x) ((x) - (x) == LAG_C(0.0))\n"
-  " |#else\n"
-  " |#define LAG_IS_FINITE(x) (LAG_C(1.0) > (x) - (x))\n"
-  " |#endif\n"
-  " |/* Whether all of x[n] is finite. */\n"
-  " |static LAG_MASK lag_finite(const LAG_REAL *x, int n) {\n"
-  " |  LAG_MASK finite = LAG_IS_FINITE(LAG_C(0.0));\n"
-  " |  for (int i = 0; i < n; i++) finite = LAG_AND(finite, LAG_IS_FINITE(x[i]));\n"
-  " |  return finite;\n"
-  " |}\n";
-
 static const char *const move =
   " |\n"
   " |/* LAG_ENAN where the state is not finite. */\n"
@@ -144,7 +111,7 @@ static const char *const lanes =
   " |  const LAG_REAL wanted = LAG_SELECT(LAG_AND(w->longest > zero, w->longest < w->step), w->longest, w->step);\n"
   " |  const LAG_MASK clipped = LAG_NOT(wanted*(one + LAG_C(1e-4)) < gap); /* of NaN, too */\n"
   " |  const LAG_REAL h = LAG_SELECT(clipped, gap, wanted);\n"
-  " |  end.t = lag_sum(s->t, dir*h, &end.lost[0]);\n"
+  " |  end.t = lag_compensated_sum(s->t, dir*h, &end.lost[0]);\n"
   " |  end.t = LAG_SELECT(clipped, until, end.t);\n"
   " |  end.lost[0] = LAG_SELECT(clipped, zero, end.lost[0]);\n"
   " |  LAG_TRY(c->trial(p, s, dir*hPASS, k, &end, w, &error));\n"
@@ -174,7 +141,7 @@ static const char *const adapt =
   " |    lag_state end = *s;\n"
   " |    LAG_REAL error;\n"
   " |    w->step = clipped ? gap : wanted;\n"
-  " |    end.t = lag_sum(s->t, dir*w->step, &end.lost[0]);\n"
+  " |    end.t = lag_compensated_sum(s->t, dir*w->step, &end.lost[0]);\n"
   " |    if (clipped) end.t = until, end.lost[0] = zero;\n"
   " |    if (!(end.t > s->t) && !(end.t < s->t)) return LAG_ESTEP;\n"
   " |    status = c->trial(p, s, dir*w->stepPASS, k, &end, w, &error);\n"
@@ -213,7 +180,6 @@ static const char *const adaptive_begin =
 
 void header_adaptive_declare(const Header *h) { csupport_expand(type, h->upper, h->lower, h->out); }
 
-void header_failures(const Header *h) { header_template(h, failures, NULL); }
 void header_move(const Header *h) { header_template(h, move, NULL); }
 
 void header_adaptive_define(const Header *h, const char *longest) {

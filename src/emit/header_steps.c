@@ -4,8 +4,7 @@
 
 #include "emit/header_impl.h"
 
-#include "emit/composition_text.h" /* static const char *const NAME_text[]: lines of runtime/methods/NAME.c */
-#include "emit/dop853_text.h"
+#include "emit/dop853_text.h" /* static const char *const NAME_text[]: lines of runtime/methods/NAME.c */
 #include "emit/rk4_text.h"
 #include "emit/rk45_text.h"
 
@@ -24,11 +23,11 @@ static const HeaderMethod methods[] = {
   {"rk4", "lag_tableau tableau", "the classical Runge-Kutta method of order 4", LINES(rk4_text), 0},
   {"rk45", "lag_dopri5_tableau", "Dormand and Prince's Runge-Kutta pair of order 5(4)", LINES(rk45_text), 0},
   {"dop853", "lag_dop853_tableau", "Dormand and Prince's Runge-Kutta method of order 8(5,3)", LINES(dop853_text), 0},
-  {"symplectic_euler", "lag_compose_euler", "symplectic Euler, order 1", LINES(composition_text), 0},
-  {"verlet", "lag_compose_verlet", "Stoermer and Verlet's method, symplectic, order 2", LINES(composition_text), 0},
-  {"verlet4", "lag_compose_verlet4", "Blanes and Moan's symplectic method of order 4", LINES(composition_text), 0},
-  {"verlet6", "lag_compose_verlet6", "Blanes and Moan's symplectic method of order 6", LINES(composition_text), 0},
-  {"verlet8", "lag_compose_verlet8", "Blanes, Casas and Escorihuela's symplectic method of order 8", LINES(composition_text), 0},
+  {"symplectic_euler", NULL, "symplectic Euler, order 1", NULL, 0, 0},
+  {"verlet", NULL, "Stoermer and Verlet's method, symplectic, order 2", NULL, 0, 0},
+  {"verlet4", NULL, "Blanes and Moan's symplectic method of order 4", NULL, 0, 0},
+  {"verlet6", NULL, "Blanes and Moan's symplectic method of order 6", NULL, 0, 0},
+  {"verlet8", NULL, "Blanes, Casas and Escorihuela's symplectic method of order 8", NULL, 0, 0},
   {"variational", NULL, NULL, NULL, 0, WANT_VARIATION},
   {"taylor", NULL, NULL, NULL, 0, WANT_TAYLOR},
   {"moreau", NULL, NULL, NULL, 0, 0},
@@ -159,7 +158,7 @@ static void write_trial(const Header *h, const HeaderMethod *m, int adaptive, in
   Texts row = list_of(h, &at);
   for (uint32_t s = 1; s < last; s++, row = list_of(h, &at)) write_stage(h, &row, c.at[s], s);
   const char *sum = weighted(h, &row, last);
-  line(h, arena_printf(h->a, "  for (int i = 0; i < LAG_NY; i++) x[i] = lag_sum(y[i], h*(%s), &end->lost[i + 1]);\n  lag_scatter(x, end);\n", sum));
+  line(h, arena_printf(h->a, "  for (int i = 0; i < LAG_NY; i++) x[i] = lag_compensated_sum(y[i], h*(%s), &end->lost[i + 1]);\n  lag_scatter(x, end);\n", sum));
   const char *hold = arena_printf(h->a, "lag_onto(p, end%s, end->lost + 1)", h->u->u.n ? ", lag_held(p, end->t, u, input, context, now)" : "");
   if (!late && holds && !adaptive) line(h, tried(h, hold));
   if (!late && adaptive) {
@@ -196,12 +195,6 @@ static const char *const support =
   "z|  for (int i = 0; i < LAG_NZ; i++) s->z[i] = y[2*LAG_NQ + i];\n"
   " |}\n"
   " |\n"
-  " |/* s + d; *lost is the rounding lost so far, which this sum takes in (A. Neumaier, ZAMM 54 (1974) 39). */\n"
-  " |static LAG_REAL lag_sum(LAG_REAL s, LAG_REAL d, LAG_REAL *lost) {\n"
-  " |  const LAG_REAL x = d + *lost, r = s + x, b = r - s;\n"
-  " |  *lost = (s - (r - b)) + (x - b);\n"
-  " |  return r;\n"
-  " |}\n"
   "u|\n"
   "u|/* The inputs at time t: those held, or the model's own and the caller's. */\n"
   "u|static const LAG_REAL *lag_held(const lag_params *p, LAG_REAL t, const LAG_REAL *u, lag_input_fn *input, void *context, LAG_REAL *now) {\n"
@@ -222,7 +215,7 @@ static const char *const fixed_step =
   " | {\n"
   " |  LAG_REAL y[LAG_NY], k[STAGES][LAG_NY];\n"
   " |  lag_state end = *s;\n"
-  " |  end.t = lag_sum(s->t, h, &end.lost[0]);\n"
+  " |  end.t = lag_compensated_sum(s->t, h, &end.lost[0]);\n"
   " |  lag_gather(s, y);\n"
   " |  int status = LAG_OK;\n"
   " |  LAG_TRY(lag_rates(p, s->t, yPASS, k[0]));\n"
@@ -240,35 +233,24 @@ static const char *const adaptive_step =
   " |  return lag_adapt(&c, p, s, w, untilPASS, k);\n"
   " |}\n";
 
-/* Kicks and drifts with sums of increments, as runtime/methods/verlet.c. */
-static const char *const splitting_step =
-  " | {\n"
-  " |  const LAG_REAL kick[] = {KICKS};\n"
-  " |  const LAG_REAL drift[] = {DRIFTS};\n"
-  " |  LAG_REAL dq[LAG_NQ], dv[LAG_NQ], b[LAG_NQ], at = LAG_C(0.0);\n"
+/* Kicks and drifts: the frame of kernels/splitting.h, whose text comes after what it calls. */
+static const char *const splitting_forces =
+  " |#define LAG_MODEL const lag_params *pHELD\n"
+  " |#define LAG_FORCES(t, q, v, a) lag_forces(p, t, q, vPASS, a)\n"
+  " |static int lag_forces(const lag_params *p, LAG_REAL t, const LAG_REAL *q, const LAG_REAL *vHELD, LAG_REAL *a) {\n"
   "u|  LAG_REAL now[LAG_NU];\n"
-  " |  const LAG_REAL *f = a;\n"
+  "u|  return lag_accel(t, q, v, p, lag_held(p, t, u, input, context, now), a);\n"
+  "n|  return lag_accel(t, q, v, p, a);\n"
+  " |}\n";
+
+static const char *const splitting_step =
+  " |static int lag_splitting_step(const lag_composition *c, const lag_params *p, lag_state *s, LAG_REAL h, LAG_REAL *aHELD) {\n"
+  " |  LAG_REAL dq[LAG_NQ], dv[LAG_NQ], b[LAG_NQ];\n"
   " |  lag_state end = *s;\n"
+  " |  const lag_splitting m = {LAG_NQ, s->q, s->v, a, s->lost + 1, end.q, end.v, b, end.lost + 1, end.v, dq, dv};\n"
   " |  int status = LAG_OK;\n"
-  " |  for (int i = 0; i < LAG_NQ; i++) dq[i] = dv[i] = LAG_C(0.0);\n"
-  " |  for (int k = 0; k < STAGES; k++) {\n"
-  " |    for (int i = 0; i < LAG_NQ; i++) {\n"
-  " |      dv[i] += kick[k]*h*f[i];\n"
-  " |      end.v[i] = s->v[i] + (s->lost[1 + LAG_NQ + i] + dv[i]);\n"
-  " |      dq[i] += drift[k]*h*end.v[i];\n"
-  " |      end.q[i] = s->q[i] + (s->lost[1 + i] + dq[i]);\n"
-  " |    }\n"
-  " |    at += drift[k];\n"
-  " |    if (k < STAGES - 1) LAG_TRY(lag_accel(s->t + at*h, end.q, end.v, pDURING, b));\n"
-  " |    f = b;\n"
-  " |  }\n"
-  " |  end.t = lag_sum(s->t, h, &end.lost[0]);\n"
-  " |  for (int i = 0; i < LAG_NQ; i++) end.q[i] = lag_sum(s->q[i], dq[i], &end.lost[1 + i]);\n"
-  " |  LAG_TRY(lag_accel(end.t, end.q, end.v, pAT_END, b));\n"
-  " |  for (int i = 0; i < LAG_NQ; i++) {\n"
-  " |    dv[i] += kick[STAGES]*h*b[i];\n"
-  " |    end.v[i] = lag_sum(s->v[i], dv[i], &end.lost[1 + LAG_NQ + i]);\n"
-  " |  }\n"
+  " |  end.t = lag_compensated_sum(s->t, h, &end.lost[0]);\n"
+  " |  LAG_TRY(lag_split(pPASS, &m, c, s->t, end.t, h));\n"
   " |  LAG_TRY(lag_check(&end));\n"
   " |  const LAG_MASK taken = LAG_NOT(LAG_FAILED(status));\n"
   " |  for (int i = 0; i < LAG_NQ; i++) a[i] = LAG_SELECT(taken, b[i], a[i]);\n"
@@ -279,9 +261,9 @@ static const char *const splitting_step =
 /* --- the methods of a header --- */
 
 static int is_adaptive(const Header *h, const HeaderMethod *m) { return member(h->a, m, "order_embedded")[0] != 0; }
-static int is_splitting(const HeaderMethod *m) { return m->lines == composition_text; }
+static int is_splitting(const HeaderMethod *m) { return m->words && !m->lines; }
 static int is_wanted(const Header *h, uint32_t i) { return i == 0 || (h->parts.methods >> i & 1) != 0; }
-static int has_table(const HeaderMethod *m) { return m->lines != NULL; }
+static int has_table(const HeaderMethod *m) { return m->words != NULL; }
 
 static int some_adaptive(const Header *h) {
   for (uint32_t i = 0; i < sizeof methods / sizeof *methods; i++)
@@ -394,45 +376,41 @@ static const char *controller(const Header *h, const HeaderMethod *m, int *late)
   return sb_text(&b);
 }
 
-static const char *listed(const Header *h, const HeaderMethod *m, const char *name, uint32_t n, int steps) {
-  Texts t = list_member(h, m, name);
-  int stages = (int)strtol(member(h->a, m, "stages"), NULL, 10), order = (int)strtol(member(h->a, m, "order"), NULL, 10);
-  StrBuf b = strbuf(h->a);
-  for (int i = 0; i < (int)n; i++) { /* tables hold first halves: methods/composition.h */
-    int k = steps ? (2 * i < stages ? i : stages - 1 - i) : 2 * i <= stages || order == 1 ? i : stages - i;
-    sb_printf(&b, "%s%s", i == 0 ? "" : i % 2 ? ", " : ",\n    ", t.at[k][0] ? t.at[k] : "LAG_C(0.0)");
-  }
-  return sb_text(&b);
-}
-
 /* With inputs, one internal function serves both kinds: u held, or evaluated at each stage. */
 static void define_both(const Header *h, const HeaderMethod *m) {
-  for (int with = 0; h->u->u.n && with < 2; with++) {
-    line(h, "\n");
+  int splits = is_splitting(m);
+  const char *call = splits ? arena_printf(h->a, "lag_splitting_step(&lag_compose_%s, p, s, h, a", m->name) : arena_printf(h->a, "lag_%s(p, s, w, until", m->name);
+  for (int with = 0; (h->u->u.n || splits) && with < (h->u->u.n ? 2 : 1); with++) {
+    if (!splits || with) line(h, "\n");
     write_prototype(h, arena_printf(h->a, "LAG_API %s", prototype(h, m, with)));
-    line(h, arena_printf(h->a, " {\n  return lag_%s(p, s, %s, %s);\n}\n", m->name, is_splitting(m) ? "h, a" : "w, until", with ? "0, input, context" : "u, 0, 0"));
+    line(h, arena_printf(h->a, " {\n  return %s%s);\n}\n", call, !h->u->u.n ? "" : with ? ", 0, input, context" : ", u, 0, 0"));
   }
 }
 
 static void define_method(const Header *h, const HeaderMethod *m) {
   uint32_t stages = (uint32_t)strtoul(member(h->a, m, "stages"), NULL, 10);
-  const char *n = arena_printf(h->a, "%u", is_splitting(m) ? stages : stages - !is_adaptive(h, m));
-  const char *own = arena_printf(h->a, "static int lag_%s(const lag_params *p, lag_state *s, %s%s)", m->name,
-                                 is_splitting(m) ? "LAG_REAL h, LAG_REAL *a" : "lag_adaptive *w, LAG_REAL until", header_held_parameters);
-  line(h, "\n");
-  write_prototype(h, h->u->u.n ? own : arena_printf(h->a, "LAG_API %s", prototype(h, m, 0)));
-  if (is_splitting(m)) {
-    const HeaderWord words[] = {{"STAGES", n}, {"KICKS", listed(h, m, "kick", stages + 1, 0)}, {"DRIFTS", listed(h, m, "drift", stages, 1)},
-                          {"DURING", h->u->u.n ? ", lag_held(p, s->t + at*h, u, input, context, now)" : ""},
-                          {"AT_END", h->u->u.n ? ", lag_held(p, end.t, u, input, context, now)" : ""}, {NULL, NULL}};
-    header_template(h, splitting_step, words);
-    define_both(h, m);
-    return;
-  }
   int late;
-  const HeaderWord words[] = {{"STAGES", n}, {"METHOD", m->name}, {"CONTROLLER", controller(h, m, &late)}, {NULL, NULL}};
+  const HeaderWord words[] = {{"STAGES", arena_printf(h->a, "%u", stages)}, {"METHOD", m->name}, {"CONTROLLER", controller(h, m, &late)}, {NULL, NULL}};
+  line(h, "\n");
+  write_prototype(h, h->u->u.n ? arena_printf(h->a, "static int lag_%s(const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL until%s)", m->name, header_held_parameters)
+                               : arena_printf(h->a, "LAG_API %s", prototype(h, m, 0)));
   header_template(h, adaptive_step, words);
   define_both(h, m);
+}
+
+static void define_splitting(const Header *h) {
+  int some = 0;
+  for (uint32_t i = 1; i < sizeof methods / sizeof *methods; i++) {
+    if (!is_wanted(h, i) || !is_splitting(&methods[i])) continue;
+    if (!some++) {
+      header_section(h, "composition");
+      header_template(h, splitting_forces, NULL);
+      header_section(h, "splitting");
+      header_template(h, splitting_step, NULL);
+    }
+    header_section(h, methods[i].name);
+    define_both(h, &methods[i]);
+  }
 }
 
 /* Steps of dop853 that keep their stages k[16]; the rest of dense output: stages 12 to 15, the highest terms. */
@@ -531,6 +509,7 @@ static void define_single(const Header *h) {
 
 void header_steps_define(const Header *h) {
   header_template(h, support, NULL);
+  header_section(h, "sum");
   int holds = header_has(h, FN_HOLD), events = (h->parts.parts & (PART_EVENTS | PART_PATH)) != 0;
   if (holds || events || header_has_method(h, "taylor") || has_single(h)) {
     if (!holds) line(h, ordered);
@@ -543,6 +522,5 @@ void header_steps_define(const Header *h) {
   if (some_adaptive(h)) define_adaptive(h);
   if (header_has_method(h, "taylor")) define_taylor(h);
   if (has_single(h)) define_single(h);
-  for (uint32_t i = 1; i < sizeof methods / sizeof *methods; i++)
-    if (is_wanted(h, i) && is_splitting(&methods[i])) define_method(h, &methods[i]);
+  define_splitting(h);
 }

@@ -190,7 +190,7 @@ static const char *const try =
   " |  w->step = LAG_SELECT(busy, zero, w->step);\n"
   " |  LAG_TRY(LAG_STATUS(LAG_NOT(LAG_AND(length > least, h >= LAG_TINY/w->epsilon)), LAG_ESTEP));\n"
   " |  lag_taylor_at(w->order, dt/(dir*w->unit), w->x[0], w->sum, w->slope);\n"
-  " |  for (int i = 0; i < LAG_NY; i++) y1[i] = lag_sum(y[i], w->sum[i], &end.lost[1 + i]);\n"
+  " |  for (int i = 0; i < LAG_NY; i++) y1[i] = lag_compensated_sum(y[i], w->sum[i], &end.lost[1 + i]);\n"
   " |  *why = lag_taylor_order_0(p, end.t, y1, w->end, &w->workGIVEN);\n"
   " |  const LAG_MASK good = LAG_AND(busy, LAG_NOT(LAG_FAILED(status)));\n"
   " |  const LAG_REAL error = LAG_SELECT(LAG_FAILED(*why), -one, lag_taylor_error(w, dir, dt));\n"

@@ -24,12 +24,12 @@ src/commands  app/options.def commands/ toolchain/ fmu/ emit/ self_check/ lower/
 src           commands/ toolchain/gallery.h syntax/ base/
 grammar       syntax/scan.h syntax/parse_state.h
 runtime/numeric   numeric/
-runtime/kernels
+runtime/kernels   kernels/
 runtime/core      core/ kernels/ numeric/ lag.h lag_model.h
 runtime/constraints constraints/ core/core.h core/rhs.h numeric/ lag.h lag_model.h lag_kkt.h
 runtime/contacts  contacts/ core/core.h core/rhs.h numeric/ lag.h lag_model.h
 runtime/methods   methods/ core/rhs.h contacts/contact_impulses.h kernels/ numeric/ lag.h lag_model.h lag_math.h
-runtime/lanes     lanes/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
+runtime/lanes     lanes/ kernels/ methods/adaptive_rk.h methods/taylor.h methods/verlet.h core/core.h lag.h lag_model.h lag_math.h
 runtime/analysis  analysis/ core/ kernels/ numeric/ lag.h lag_model.h
 runtime/io        io/ numeric/ lag.h lag_model.h
 runtime/sweep     sweep/ lanes/lane_choice.h lanes/lane_kernel.h analysis/measure.h io/posix.h numeric/ lag.h lag_model.h
@@ -48,7 +48,7 @@ runtime/include/lag_math.h  lag_sincos.h
 # The inside of a folder, shared by its own files only.
 private='analysis/measure_nodes.h sweep/run_chunks_impl.h syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
   model/scope.h model/declarations.h sym/expr_impl.h sym/ops.def lower/lower_impl.h ir/nest_impl.h emit/header_impl.h emit/emit_impl.h fmu/fmu_archive_impl.h methods/tableau.h methods/embedded_trial.h
-  methods/steps.h methods/composition.h methods/step_interpolant.h methods/galerkin_rule.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
+  methods/steps.h methods/step_interpolant.h methods/galerkin_rule.h methods/discrete_lagrangian.h methods/implicit_symplectic.h
   methods/predictor.h methods/band_matrix.h methods/newton.h methods/step_control.h'
 
 # Every #include as `FILE HEADER`; <stdio.h> keeps its brackets.
