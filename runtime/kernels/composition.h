@@ -25,13 +25,6 @@
 
 /* ---- composition ---- */
 
-/* A number that all lanes share. */
-#ifdef LAG_LANES
-#define LAG_COEF(x) x
-#else
-#define LAG_COEF(x) LAG_C(x)
-#endif
-
 enum { LAG_MAX_DRIFTS = 19 };
 
 typedef struct lag_composition {

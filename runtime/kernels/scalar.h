@@ -34,6 +34,7 @@
 /* ---- failures ---- */
 
 #ifdef LAG_LANES /* a lane that fails does not stop the others */
+#define LAG_COEF(x) x /* a number that all lanes share */
 #define LAG_TRY(call) status = -(-status | -(call))
 #define LAG_WHERE(lanes, status) -(-(status) & lag_lanes_bits(lanes))
 #define LAG_STATUS(lanes, code) -lag_lanes_bits(lanes)
@@ -45,6 +46,7 @@ static inline LAG_MASK lag_failed(int status) {
   return lanes;
 }
 #else
+#define LAG_COEF(x) LAG_C(x)
 #define LAG_TRY(call) do { status = (call); if (status != 0) return status; } while (0)
 #define LAG_WHERE(lanes, status) (status)
 #define LAG_STATUS(fails, code) ((fails) ? (int)(code) : 0)
