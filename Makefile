@@ -185,7 +185,7 @@ REAL_quad := -std=gnu11 -include quadmath.h -DLAG_REAL=__float128 '-DLAG_OF_REAL
 DIGITS_long := $(if $(filter long,$(PRECISIONS)),$(LONG_DIGITS))
 DIGITS_quad := 36
 RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
-TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def
+TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def $(BUILD)/gen/kernels/steppers.def
 API_HEAD := lag.h lag_libraries.h lag_model.h
 
 %/app/profile_run.o: override CFLAGS += -D_GNU_SOURCE # names of the registers in a signal's context

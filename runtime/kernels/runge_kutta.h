@@ -1,4 +1,4 @@
-/* runge_kutta.h: a step of an explicit Runge-Kutta method, and its error: the code to which tables of tableau.h expand,
+/* runge_kutta.h: a step of an explicit Runge-Kutta method, and its error: the code to which tables of runge_kutta_tables.h expand,
  * unrolled, without coefficients that are 0. Needs no library.
  *
  * A step's function has variables n (components), t, h, y (the state at t), x (the state at a stage, then the result),
@@ -12,7 +12,7 @@
 #define LAG_RUNGE_KUTTA_H
 
 #include "kernels/compensated_sum.h"
-#include "kernels/tableau.h"
+#include "kernels/runge_kutta_tables.h"
 
 /* ---- runge_kutta ---- */
 

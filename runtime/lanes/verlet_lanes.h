@@ -1,6 +1,7 @@
 /* The Verlet family over lanes, for models whose accelerations depend on t and q only: kernels/splitting.h over vectors. */
 #pragma once
 
+#include "kernels/steppers.def"
 #include "lanes/lane_vectors.h"
 #include "methods/verlet.h"
 
@@ -101,8 +102,5 @@ static LaneMask verlet_step(void *batch, LaneMask busy, LaneMask *bad) {
 
 static unsigned verlet_advance(void *batch, unsigned busy, unsigned *bad) { return lane_advance(batch, busy, bad, verlet_step); }
 
-LANE_KERNEL(symplectic_euler, verlet)
-LANE_KERNEL(verlet, verlet)
-LANE_KERNEL(verlet4, verlet)
-LANE_KERNEL(verlet6, verlet)
-LANE_KERNEL(verlet8, verlet)
+#define VERLET_KERNEL(name, general, order, flags, line, words) LANE_KERNEL(name, verlet)
+LAG_SPLITTING_METHODS(VERLET_KERNEL)

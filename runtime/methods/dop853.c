@@ -5,7 +5,7 @@
  * (continuous extension of order 7 from three more stages). The numbers are those of their code dop853.f. */
 #include "kernels/dense_output.h"
 #include "lag.h"
-#include "kernels/tableau.h"
+#include "kernels/runge_kutta_tables.h"
 #include "methods/adaptive_rk.h"
 
 /* The method's tables, and its trial step. */

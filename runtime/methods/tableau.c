@@ -1,7 +1,7 @@
-/* Tables of kernels/tableau.h as numbers, for tangents, errors along constraints and tests. */
+/* Tables of kernels/runge_kutta_tables.h as numbers, for tangents, errors along constraints and tests. */
 #include "methods/tableau.h"
 
-#include "kernels/tableau.h"
+#include "kernels/runge_kutta_tables.h"
 
 #define LAG_LEAD(j, weight) [j] = weight
 #define LAG_TERM(j, weight) , [j] = weight

@@ -12,6 +12,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "kernels/steppers.def"
 #include "methods/implicit_symplectic.h"
 #include "methods/step_interpolant.h"
 #include "methods/steps.h"
@@ -170,25 +171,13 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
   return LAG_OK;
 }
 
-/* name, table for models that are not separable, order, flags, line for help */
-#define METHODS(X)                                                                                                       \
-  X(symplectic_euler, symplectic_euler, 1, 0, "semi-implicit Euler: kick, drift; one force a step. DOI 10.1017/S0962492902000144") \
-  X(verlet, verlet, 2, LAG_METHOD_SYMMETRIC,                                                                     \
-    "Stoermer-Verlet, leapfrog, as kick, drift, kick; one force a step. DOI 10.1103/PhysRev.159.98")                                \
-  X(verlet4, any4, 4, LAG_METHOD_SYMMETRIC,                                                                     \
-    "Blanes-Moan SRKN 6b, or S 6; 6 forces a step. DOI 10.1016/S0377-0427(01)00492-7")                                   \
-  X(verlet6, any6, 6, LAG_METHOD_SYMMETRIC,                                                                     \
-    "Blanes-Moan SRKN 11b, or S 10; 11 forces a step. DOI 10.1016/S0377-0427(01)00492-7")                                \
-  X(verlet8, any8, 8, LAG_METHOD_SYMMETRIC,                                                                     \
-    "Blanes-Casas-Escorihuela B19, or Kahan-Li; 19 forces a step. DOI 10.1016/j.apnum.2022.07.010")
-
-#define DEFINE(id, general, p, properties, words)                                                                         \
+#define DEFINE(id, general, p, properties, line, words)                                                                   \
   static const VerletMember member_##id = {&lag_compose_##id, &lag_compose_##general};                                       \
   const lag_method lag_##id = {                                                                                           \
       .name = #id,                                                                                                        \
       .order = p,                                                                                                         \
       .dense_order = p,                                                                                                   \
-      .doc = words,                                                                                                       \
+      .doc = line,                                                                                                        \
       .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_NEWTON |\
                LAG_METHOD_CONSTRAINTS | (properties),                                              \
       .noptions = 1,                                                                                                      \
@@ -202,4 +191,4 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
       .tangent = tangent,                                                                                                 \
       .variant = &member_##id,                                                                                            \
   };
-METHODS(DEFINE)
+LAG_SPLITTING_METHODS(DEFINE)

@@ -3,25 +3,22 @@
 #include <string.h>
 
 #include "emit/header_impl.h"
+#include "kernels/steppers.def"
 
-/* Method of a header: one with tables in runtime/kernels (table: its name there in upper case), or of header_taylor.c, header_variational.c, header_moreau.c. */
+/* Method of a header: of kernels/steppers.def (table: its name there in upper case), or of header_taylor.c, header_variational.c, header_moreau.c. */
 typedef enum { OTHER, FIXED, ADAPTIVE, SPLITTING } MethodKind;
 typedef struct {
   const char *name, *table, *words;
   MethodKind kind;
-  int late; /* two estimates, which do not use the last stage: it is computed once the step is accepted */
+  int late;
   unsigned wants;
 } HeaderMethod;
 
+#define RUNGE_KUTTA_ROW(name, table, kind, late, words) {#name, #table, words, kind, late, 0},
+#define SPLITTING_ROW(name, general, order, flags, line, words) {#name, NULL, words, SPLITTING, 0, 0},
 static const HeaderMethod methods[] = {
-  {"rk4", "RK4", "the classical Runge-Kutta method of order 4", FIXED, 0, 0},
-  {"rk45", "RK45", "Dormand and Prince's Runge-Kutta pair of order 5(4)", ADAPTIVE, 0, 0},
-  {"dop853", "DOP853", "Dormand and Prince's Runge-Kutta method of order 8(5,3)", ADAPTIVE, 1, 0},
-  {"symplectic_euler", NULL, "symplectic Euler, order 1", SPLITTING, 0, 0},
-  {"verlet", NULL, "Stoermer and Verlet's method, symplectic, order 2", SPLITTING, 0, 0},
-  {"verlet4", NULL, "Blanes and Moan's symplectic method of order 4", SPLITTING, 0, 0},
-  {"verlet6", NULL, "Blanes and Moan's symplectic method of order 6", SPLITTING, 0, 0},
-  {"verlet8", NULL, "Blanes, Casas and Escorihuela's symplectic method of order 8", SPLITTING, 0, 0},
+  LAG_RUNGE_KUTTA_METHODS(RUNGE_KUTTA_ROW) /* rk4, which every header has, is the first */
+  LAG_SPLITTING_METHODS(SPLITTING_ROW)
   {"variational", NULL, NULL, OTHER, 0, WANT_VARIATION},
   {"taylor", NULL, NULL, OTHER, 0, WANT_TAYLOR},
   {"moreau", NULL, NULL, OTHER, 0, 0},

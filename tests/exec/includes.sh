@@ -17,7 +17,7 @@ src/ir        ir/ base/ numeric/functions.def
 src/series    series/ ir/ base/
 src/lower     lower/ series/ ir/ symmetry/charges.h mech/ model/ sym/ base/
 src/self_check      self_check/ lower/lower.h ir/ mech/ model/ syntax/ base/ numeric/functions.def
-src/emit      emit/ ir/ base/ numeric/functions.def
+src/emit      emit/ ir/ base/ numeric/functions.def kernels/steppers.def
 src/fmu       fmu/ emit/ ir/ base/
 src/toolchain toolchain/ base/
 src/commands  app/options.def commands/ toolchain/ fmu/ emit/ self_check/ lower/ ir/ report/ claims/ symmetry/ mech/ model/ sym/ syntax/ base/

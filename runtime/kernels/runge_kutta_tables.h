@@ -1,4 +1,4 @@
-/* tableau.h: explicit Runge-Kutta methods as data, in macros that expand to code (runge_kutta.h) or to numbers
+/* runge_kutta_tables.h: explicit Runge-Kutta methods as data, in macros that expand to code (runge_kutta.h) or to numbers
  * (methods/tableau.c). Needs no library. A section holds a method's tables: lagc copies those that a header asks for.
  *
  * STAGES: LAG_STAGE(s, c, older, newest): stage s at t + c h, from the rates of older stages, LAG_LEAD(j, a) and then
@@ -6,8 +6,8 @@
  * end of the step, whose rates are stage s. ERRORS: LAG_ERROR(0, terms) with the weights of the result less those of the
  * embedded method; 1: a second, coarser estimate. CONTROL: the members of lag_controller (step_size.h). DENSE:
  * LAG_DENSE(j, terms) of the highest terms of dense output, EXTRA: further stages for them. */
-#ifndef LAG_TABLEAU_H
-#define LAG_TABLEAU_H
+#ifndef LAG_RUNGE_KUTTA_TABLES_H
+#define LAG_RUNGE_KUTTA_TABLES_H
 
 #include "kernels/scalar.h"
 
