@@ -15,6 +15,8 @@
 #include "emit/scalar_kernel.h"
 #include "emit/splitting_kernel.h"
 #include "emit/step_size_kernel.h"
+#include "emit/taylor_order_kernel.h"
+#include "emit/taylor_size_kernel.h"
 #include "emit/runge_kutta_tables_kernel.h"
 
 #define LINES(text) {text, sizeof text / sizeof *text}
@@ -22,7 +24,7 @@ static const struct {
   const char *const *line;
   size_t n;
 } embedded[] = {LINES(lag_math),  LINES(lag_sincos), LINES(lag_kkt), LINES(scalar_kernel), LINES(compensated_sum_kernel), LINES(composition_kernel), LINES(splitting_kernel),
-                LINES(runge_kutta_tables_kernel), LINES(runge_kutta_kernel), LINES(step_size_kernel), LINES(dense_output_kernel), LINES(locate_kernel)};
+                LINES(runge_kutta_tables_kernel), LINES(runge_kutta_kernel), LINES(step_size_kernel), LINES(taylor_order_kernel), LINES(taylor_size_kernel), LINES(dense_output_kernel), LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";
 static int is_marker(const char *line, const char *name) {
