@@ -1,23 +1,27 @@
-/* composition.h: splitting methods as data: kicks v += kick_i h f and drifts q += drift_i h v in turn, a kick first and
- * last. Needs no library. A section holds a method's table: lagc copies those that a header asks for.
+/* composition.h: splitting methods as data: kicks v += kick_i h f and drifts q += drift_i h v in
+ * turn, a kick first and last. Needs no library. A section holds a method's table: lagc copies
+ * those that a header asks for.
  *
  * Facts: sum drift = sum kick = 1; all but symplectic Euler are symmetric, to the last digit.
  *
- * Choice of the tables for separable models: the smallest error at equal number of evaluations, measured by their test
- * against the compositions of Verlet steps by Suzuki, Yoshida, McLachlan, Kahan and Li. They solve the order conditions
- * of q'' = f(t, q), where [B, [B, [B, A]]] = 0 (A drift, B kick): fewer than for any two flows, which leaves parameters
- * to reduce the error. They need constant M: separable here means that. Choice of the tables for any two flows: the
- * smallest error at equal number of substeps on the double pendulum, a fifth of Suzuki's composition of order 4, a
- * fortieth of Kahan and Li's of order 6.
+ * Choice of the tables for separable models: the smallest error at equal number of evaluations,
+ * measured by their test against the compositions of Verlet steps by Suzuki, Yoshida, McLachlan,
+ * Kahan and Li. They solve the order conditions of q'' = f(t, q), where [B, [B, [B, A]]] = 0 (A
+ * drift, B kick): fewer than for any two flows, which leaves parameters to reduce the error. They
+ * need constant M: separable here means that. Choice of the tables for any two flows: the smallest
+ * error at equal number of substeps on the double pendulum, a fifth of Suzuki's composition of
+ * order 4, a fortieth of Kahan and Li's of order 6.
  *
- * Digits beyond the 15 to 30 published solve the order conditions (words in A and B up to the order, without
- * [B, [B, [B, A]]] where it is 0) by Newton's method from the published values, with the least change: less than 2e-15.
+ * Digits beyond the 15 to 30 published solve the order conditions (words in A and B up to the
+ * order, without [B, [B, [B, A]]] where it is 0) by Newton's method from the published values,
+ * with the least change: less than 2e-15.
  *
- * For an L that is not separable a kick with the drift after it becomes symplectic Euler, a drift with the kick after it
- * its adjoint, both implicit. With substeps of lengths a_0, b_0, a_1, b_1, ... and kick_0 = a_0, drift_i = a_i + b_i,
- * kick_i = b_(i-1) + a_i the composition has the order that the splitting has for any two flows: R.I. McLachlan, SIAM J.
- * Sci. Comput. 16 (1995) 151, DOI 10.1137/0916010; Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed.
- * (2006), III.3.4. */
+ * For an L that is not separable a kick with the drift after it becomes symplectic Euler, a drift
+ * with the kick after it its adjoint, both implicit. With substeps of lengths a_0, b_0, a_1, b_1,
+ * ... and kick_0 = a_0, drift_i = a_i + b_i, kick_i = b_(i-1) + a_i the composition has the order
+ * that the splitting has for any two flows: R.I. McLachlan, SIAM J. Sci. Comput. 16 (1995) 151,
+ * DOI 10.1137/0916010; Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006),
+ * III.3.4. */
 #ifndef LAG_COMPOSITION_H
 #define LAG_COMPOSITION_H
 
@@ -35,19 +39,20 @@ typedef struct lag_composition {
 
 /* ---- symplectic_euler ---- */
 
-/* Kick, then drift. R. de Vogelaere (1956); E. Hairer, C. Lubich, G. Wanner, Acta Numerica 12 (2003) 399,
- * DOI 10.1017/S0962492902000144, eq. 1.3. */
+/* Kick, then drift. R. de Vogelaere (1956); E. Hairer, C. Lubich, G. Wanner, Acta Numerica 12
+ * (2003) 399, DOI 10.1017/S0962492902000144, eq. 1.3. */
 static const lag_composition lag_compose_symplectic_euler = {1, 1, {LAG_COEF(1.0)}, {LAG_COEF(1.0), LAG_COEF(0.0)}};
 
 /* ---- verlet ---- */
 
-/* Kick, drift, kick. L. Verlet, Phys. Rev. 159 (1967) 98, DOI 10.1103/PhysRev.159.98; in this form W.C. Swope et al.,
- * J. Chem. Phys. 76 (1982) 637, DOI 10.1063/1.442716. */
+/* Kick, drift, kick. L. Verlet, Phys. Rev. 159 (1967) 98, DOI 10.1103/PhysRev.159.98; in this form
+ * W.C. Swope et al., J. Chem. Phys. 76 (1982) 637, DOI 10.1063/1.442716. */
 static const lag_composition lag_compose_verlet = {2, 1, {LAG_COEF(1.0)}, {LAG_COEF(0.5), LAG_COEF(0.5)}};
 
 /* ---- verlet4 ---- */
 
-/* SRKN_6^b of S. Blanes, P.C. Moan, J. Comput. Appl. Math. 142 (2002) 313, DOI 10.1016/S0377-0427(01)00492-7, table 3. */
+/* SRKN_6^b of S. Blanes, P.C. Moan, J. Comput. Appl. Math. 142 (2002) 313, DOI
+ * 10.1016/S0377-0427(01)00492-7, table 3. */
 static const lag_composition lag_compose_verlet4 = {
     4, 6,
     {LAG_COEF(0.245298957184271123448654456278295662), LAG_COEF(0.604872665711079923626184329892519463),
@@ -135,7 +140,8 @@ static const lag_composition lag_compose_any6 = {
 
 /* ---- any8 ---- */
 
-/* 17 Verlet steps: s17odr8a of W. Kahan, R.-C. Li, Math. Comp. 66 (1997) 1089, DOI 10.1090/S0025-5718-97-00873-9. */
+/* 17 Verlet steps: s17odr8a of W. Kahan, R.-C. Li, Math. Comp. 66 (1997) 1089, DOI
+ * 10.1090/S0025-5718-97-00873-9. */
 static const lag_composition lag_compose_any8 = {
     8, 17,
     {LAG_COEF(0.130202483088890080878817632096700522), LAG_COEF(0.561162981775108384561964407700150567),

@@ -1,8 +1,8 @@
-/* runge_kutta.h: a step of an explicit Runge-Kutta method, and its error: the code to which tables of runge_kutta_tables.h expand,
- * unrolled, without coefficients that are 0. Needs no library.
+/* runge_kutta.h: a step of an explicit Runge-Kutta method, and its error: the code to which tables
+ * of runge_kutta_tables.h expand, unrolled, without coefficients that are 0. Needs no library.
  *
- * A step's function has variables n (components), t, h, y (the state at t), x (the state at a stage, then the result),
- * k (rates of stages) and status; for errors also square[2] = {0}, even[2] and two, whether the table has two estimates.
+ * A step's function has variables n (components), t, h, y (the state at t), x (the state at a
+ * stage, then the result), k (rates of stages) and status; for errors also square[2] = {0}, even[2].
  * An instance defines:
  *   LAG_RATES(t, x, s)    a status; rates of stage s := f(t, x)
  *   LAG_ADD(i, d)         the result's component i := y + d, with compensation of rounding
@@ -24,8 +24,10 @@
 #define LAG_SET(x, i, value) (x)[i] = value
 #endif
 /* The newest stage is added last, so that other terms need not wait for it. */
-#define LAG_LEAD(j, a) (a)*LAG_AT(LAG_RATE(j), i)
-#define LAG_TERM(j, a) + (a)*LAG_AT(LAG_RATE(j), i)
+#define LAG_LEAD_OF(j, a) (a)*LAG_AT(LAG_RATE(j), i)
+#define LAG_TERM_OF(j, a) + (a)*LAG_AT(LAG_RATE(j), i)
+#define LAG_LEAD(j, number) LAG_C(number)*LAG_AT(LAG_RATE(j), i)
+#define LAG_TERM(j, number) + LAG_C(number)*LAG_AT(LAG_RATE(j), i)
 #define LAG_STAGE_1(s, c, newest) \
   LAG_EACH(i) LAG_SET(x, i, LAG_AT(y, i) + (h*(newest))*LAG_NEWEST(LAG_RATE((s) - 1), i)); \
   LAG_TRY(LAG_RATES(t + (c)*h, x, s));
@@ -59,8 +61,9 @@
     errors \
   }
 
-/* The squared error of a step h: |e|^2, or of two estimates |e|^4/(|e|^2 + 0.01 |e3|^2), |x|^2 = 1/n sum (x_i/s_i)^2 with
- * allowed errors s_i; not a number where one is not finite. per: 1/n. HNW II.4, II.10. */
+/* The squared error of a step h: |e|^2, or of two estimates |e|^4/(|e|^2 + 0.01 |e3|^2), |x|^2 =
+ * 1/n sum (x_i/s_i)^2 with allowed errors s_i; not a number where one is not finite. per: 1/n. HNW
+ * II.4, II.10. */
 static inline LAG_REAL lag_squared_error(const LAG_REAL *square, int two, LAG_REAL h, LAG_LANE per) {
   const LAG_REAL zero = LAG_C(0.0), fine = square[0]*(h*h*per), coarse = two ? square[1]*(LAG_C(0.01)*h*h*per) : zero;
   const LAG_REAL both = fine + coarse;

@@ -1,5 +1,6 @@
-/* scalar.h: the scalar of all kernels, selections and logic over it, and what failures do within a step: of one state, or
- * of the lanes of vectors, by lag_math.h with LAG_LANES. Includes <math.h> only. */
+/* scalar.h: the scalar of all kernels, selections and logic over it, and what failures do within a
+ * step: of one state, or of the lanes of vectors, by lag_math.h with LAG_LANES. Includes <math.h>
+ * only. */
 #ifndef LAG_SCALAR_H
 #define LAG_SCALAR_H
 
@@ -33,6 +34,7 @@
 #endif
 /* ---- failures ---- */
 
+#define LAG_OVER(n, d) (LAG_C(n)/LAG_C(d))
 #ifdef LAG_LANES /* a lane that fails does not stop the others */
 #define LAG_COEF(x) x /* a number that all lanes share */
 #define LAG_TRY(call) status = -(-status | -(call))

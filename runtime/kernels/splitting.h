@@ -1,11 +1,11 @@
-/* splitting.h: a step of kicks and drifts by a table of composition.h. Enters: time, q, v and their accelerations; leaves:
- * q, v and the accelerations one step later. Holds: sums over steps of q and v are compensated; a drift advances t with q,
- * so that a force with explicit time keeps the order. The map is symplectic where the forces have a potential.
+/* splitting.h: a step of kicks and drifts by a table of composition.h. Enters: time, q, v and
+ * their accelerations; leaves: q, v and the accelerations one step later. Holds: sums over steps
+ * of q and v are compensated; a drift advances t with q, so that a force with explicit time keeps
+ * the order. The map is symplectic where the forces have a potential.
  *
  * An instance defines before it includes this text:
  *   LAG_MODEL                 the first parameters of functions: the model with its inputs
- *   LAG_FORCES(t, q, v, a)    a status; a[n] := accelerations at t, q, v
- *   LAG_TRY(call)             does a failed call end the function, or is it noted in `status`? */
+ *   LAG_FORCES(t, q, v, a)    a status; a[n] := accelerations at t, q, v */
 #ifndef LAG_SPLITTING_H
 #define LAG_SPLITTING_H
 
@@ -24,7 +24,8 @@ typedef struct lag_splitting {
   LAG_REAL *dq, *dv;            /* scratch: increments */
 } lag_splitting;
 
-/* A step h from t to t1. Accelerations do not depend on velocities: those of the last stage serve until the last kick. */
+/* A step h from t to t1. Accelerations do not depend on velocities: those of the last stage serve
+ * until the last kick. */
 static inline int lag_split(LAG_MODEL, const lag_splitting *s, const lag_composition *c, LAG_REAL t, LAG_REAL t1,
                             LAG_REAL h) {
   const int n = s->n;

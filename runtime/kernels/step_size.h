@@ -1,6 +1,7 @@
-/* step_size.h: sizes of adaptive steps by their errors. E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential
- * Equations I, 2nd ed. (1993), DOI 10.1007/978-3-540-78862-1, II.4: PI controller, first step. An instance has
- * lag_rough_power(x, p), x^p within a few percent (lag_math.h), over its scalar. */
+/* step_size.h: sizes of adaptive steps by their errors. E. Hairer, S.P. Norsett, G. Wanner,
+ * Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI 10.1007/978-3-540-78862-1, II.4:
+ * PI controller, first step. An instance has lag_rough_power(x, p), x^p within a few percent
+ * (lag_math.h), over its scalar. */
 #ifndef LAG_STEP_SIZE_H
 #define LAG_STEP_SIZE_H
 
@@ -14,11 +15,12 @@ typedef struct lag_controller {
   LAG_LANE beta, safety, least, most;
 } lag_controller;
 
-/* Factor from an accepted step to the next. error: its square; retried: not the first try; *memory: err_old^-beta, 0 where
- * none is known. One power serves the error and its memory. */
+/* Factor from an accepted step to the next. error: its square; retried: not the first try;
+ * *memory: err_old^-beta, 0 where none is known. One power serves the error and its memory. */
 static inline LAG_REAL lag_growth(const lag_controller *c, LAG_REAL error, LAG_MASK retried, LAG_REAL *memory) {
   const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), tiny = LAG_C(1e-24), floor_of_error = LAG_C(1e-8);
-  const LAG_REAL exponent = -c->beta/LAG_C(2.0), power = lag_rough_power(LAG_SELECT(error > tiny, error, tiny), exponent);
+  const LAG_REAL exponent = -c->beta/LAG_C(2.0);
+  const LAG_REAL power = lag_rough_power(LAG_SELECT(error > tiny, error, tiny), exponent);
   const LAG_REAL least = zero + c->least, most = LAG_SELECT(retried, one, zero + c->most);
   LAG_REAL f = zero + c->safety;
   f /= LAG_SELECT(*memory > zero, *memory, lag_rough_power(floor_of_error, exponent));
@@ -28,14 +30,16 @@ static inline LAG_REAL lag_growth(const lag_controller *c, LAG_REAL error, LAG_M
   return LAG_SELECT(least > f, least, f);
 }
 
-/* Factor from a rejected step to its next try; an error that is not finite, or negative, halves it. */
+/* Factor from a rejected step to its next try; an error that is not finite, or negative, halves
+ * it. */
 static inline LAG_REAL lag_shrinkage(const lag_controller *c, LAG_REAL error) {
   const LAG_REAL zero = LAG_C(0.0), half = LAG_C(0.5), least = zero + c->least;
   const LAG_REAL less = c->safety*lag_rough_power(error, -half*(LAG_LANE)c->ratio*c->beta);
   return LAG_SELECT(error >= zero, LAG_SELECT(least > less, least, less), half);
 }
 
-/* First step: an Euler step h0 from d0 and d1, norms of y and its rates f in allowed errors; longest 0: no limit. */
+/* First step: an Euler step h0 from d0 and d1, norms of y and its rates f in allowed errors;
+ * longest 0: no limit. */
 static inline LAG_REAL lag_first_euler_step(LAG_REAL d0, LAG_REAL d1, LAG_REAL longest) {
   const LAG_REAL zero = LAG_C(0.0), tiny = LAG_C(1e-5);
   const LAG_REAL h0 = LAG_SELECT(LAG_OR(d0 < tiny, d1 < tiny), LAG_C(1e-6), LAG_C(0.01)*d0/d1);

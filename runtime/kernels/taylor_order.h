@@ -1,4 +1,5 @@
-/* taylor_order.h: the order of a Taylor series, from the tolerance and what an order costs. Includes <math.h> only. */
+/* taylor_order.h: the order of a Taylor series, from the tolerance and what an order costs.
+ * Includes <math.h> only. */
 #ifndef LAG_TAYLOR_ORDER_H
 #define LAG_TAYLOR_ORDER_H
 
@@ -6,26 +7,28 @@
 
 /* ---- taylor_order ---- */
 
-/* The relative error aimed at in a step, as -log2: a fraction of the tolerance, and far below rounding where the tolerance
- * is near rounding: 10 bits at 1e-15, 0 at 1e-13. Errors of one sign add up as the number of steps, rounding as its root. */
+/* The relative error aimed at in a step, as -log2: a fraction of the tolerance, and far below
+ * rounding where the tolerance is near rounding: 10 bits at 1e-15, 0 at 1e-13. Errors of one sign
+ * add up as the number of steps, rounding as its root. */
 static inline LAG_REAL lag_taylor_bits(LAG_REAL tolerance, LAG_REAL epsilon) {
-  const LAG_REAL left = LAG_C(1.5)*(LAG_C(9.0) - LAG_FN(log2)(tolerance/epsilon)), most = LAG_C(10.0), zero = LAG_C(0.0);
+  const LAG_REAL left = LAG_C(1.5)*(LAG_C(9.0) - LAG_FN(log2)(tolerance/epsilon));
+  const LAG_REAL most = LAG_C(10.0), zero = LAG_C(0.0);
   const LAG_REAL more = LAG_SELECT(left < zero, zero, LAG_SELECT(left > most, most, left));
   return LAG_C(2.0) - LAG_FN(log2)(tolerance) + more;
 }
 
-/* Costs in operations: of a step besides its series, of an operation of order 0, of a term in the sums over lower orders,
- * of each product in such a term; numbers of operations of order 0, of orders above, and of sums. Measured for doubles, of
- * which two or four are summed at a time. */
+/* Costs in operations: of a step besides its series, of an operation of order 0, of a term in the
+ * sums over lower orders, of each product in such a term; numbers of operations of order 0, of
+ * orders above, and of sums. Measured for doubles, of which two or four are summed at a time. */
 typedef struct lag_taylor_costs {
   LAG_LANE step, first, term, product, of_first, of_next, sums;
 } lag_taylor_costs;
 
-/* The order with the most time covered per operation, of 6, 6 + stride, ..., at most `most`; 0: there is none. The rounding
- * of an increment is proportional to the step: where only rounding is left, products count fully, which gives lower orders
- * and shorter steps. */
-static inline LAG_REAL lag_taylor_best_order(const lag_taylor_costs *c, LAG_REAL tolerance, LAG_REAL epsilon, int stride,
-                                             int most) {
+/* The order with the most time covered per operation, of 6, 6 + stride, ..., at most `most`; 0:
+ * there is none. The rounding of an increment is proportional to the step: where only rounding is
+ * left, products count fully, which gives lower orders and shorter steps. */
+static inline LAG_REAL lag_taylor_best_order(const lag_taylor_costs *c, LAG_REAL tolerance, LAG_REAL epsilon,
+                                             int stride, int most) {
   const LAG_REAL one = LAG_C(1.0), zero = LAG_C(0.0), bits = lag_taylor_bits(tolerance, epsilon);
   const LAG_MASK full = LAG_AND(tolerance < LAG_C(16.0)*epsilon, zero + c->product < one);
   const LAG_REAL term = c->term + LAG_SELECT(full, one, zero + c->product)*c->sums;

@@ -5,6 +5,8 @@
 
 #define LAG_LEAD(j, weight) [j] = weight
 #define LAG_TERM(j, weight) , [j] = weight
+#define LAG_LEAD_OF LAG_LEAD
+#define LAG_TERM_OF LAG_TERM
 #define LAG_STAGE_1(s, part, newest) .c[s] = part, .a[s] = {[(s) - 1] = newest},
 #define LAG_STAGE(s, part, older, newest) .c[s] = part, .a[s] = {older, [(s) - 1] = newest},
 #define LAG_RESULT_1(s, newest) .c[s] = 1, .a[s] = {[(s) - 1] = newest},

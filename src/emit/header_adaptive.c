@@ -66,82 +66,45 @@ static const char *const begin =
   " |  return LAG_SELECT(failed, h0*LAG_C(1e-3), lag_first_size(order, h0, d1, lag_norm(w, k[1], y)/h0));\n"
   " |}\n";
 
-/* Tries of several states, each with its own size. */
-static const char *const lanes =
-  " |\n"
-  " |#ifdef LAG_LANES\n"
-  " |/* After a try of h: the sizes of the next steps of the lanes in `taken`, and of the next tries of those in `again`, whose memory is then negative.\n"
-  " | * wanted: the size without `until`, which ended the steps in `clipped`. */\n"
-  " |static void lag_resize(const lag_controller *c, lag_adaptive *w, LAG_REAL h, LAG_REAL error, LAG_MASK taken, LAG_MASK again, LAG_REAL wanted,\n"
-  " |    LAG_MASK clipped) {\n"
-  " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0);\n"
-  " |  LAG_REAL memory = w->memory, next = h*lag_growth(c, error, memory < zero, &memory);\n"
-  " |  next = LAG_SELECT(LAG_AND(clipped, LAG_NOT(next > wanted)), wanted, next);\n"
-  " |  w->step = LAG_SELECT(taken, next, LAG_SELECT(again, h*lag_shrinkage(c, error), w->step));\n"
-  " |  w->memory = LAG_SELECT(taken, memory, LAG_SELECT(again, -one, w->memory));\n"
-  " |}\n"
+/* A step of one state, or a try of several, each with its own size: memory is negative where the last try was rejected. */
+static const char *const adapt =
   " |\n"
   " |static int lag_adapt(lag_trial *trial, const lag_controller *c, const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL untilHELD,\n"
   " |    LAG_REAL (*k)[LAG_NY]) {\n"
   " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), dir = LAG_SELECT(until < s->t, -one, one), gap = dir*(until - s->t);\n"
   " |  const LAG_MASK busy = until != s->t;\n"
   " |  LAG_REAL y[LAG_NY], error;\n"
-  " |  lag_state end = *s;\n"
+  " |  int status = LAG_OK;\n"
+  " |  LAG_TRY(LAG_STATUS(LAG_NOT(LAG_AND(w->tolerance >= zero, LAG_AND(w->absolute >= zero, w->tolerance + w->absolute > zero))), LAG_ETOLERANCE));\n"
   " |  if (!LAG_ANY(busy)) return LAG_OK;\n"
   " |  lag_gather(s, y);\n"
-  " |  int status = lag_rates(p, s->t, yPASS, k[0]);\n"
-  " |  LAG_TRY(LAG_STATUS(LAG_NOT(BOUNDED), LAG_ETOLERANCE));\n"
+  " |  LAG_TRY(lag_rates(p, s->t, yPASS, k[0]));\n"
   " |  const LAG_MASK first = LAG_AND(LAG_AND(busy, LAG_NOT(w->step > zero)), LAG_NOT(LAG_FAILED(status)));\n"
   " |  if (LAG_ANY(first)) w->step = LAG_SELECT(first, lag_first_step(p, w, c->order, dir, s->t, yPASS, k), w->step);\n"
-  " |  const LAG_REAL wanted = LAG_SELECT(LAG_AND(w->longest > zero, w->longest < w->step), w->longest, w->step);\n"
-  " |  const LAG_MASK clipped = LAG_NOT(wanted*(one + LAG_C(1e-4)) < gap); /* of NaN, too */\n"
-  " |  const LAG_REAL h = LAG_SELECT(clipped, gap, wanted);\n"
-  " |  end.t = lag_compensated_sum(s->t, dir*h, &end.lost[0]);\n"
-  " |  end.t = LAG_SELECT(clipped, until, end.t);\n"
-  " |  end.lost[0] = LAG_SELECT(clipped, zero, end.lost[0]);\n"
-  " |  LAG_TRY(trial(p, s, dir*hPASS, k, &end, w, &error));\n"
-  " |  const LAG_MASK moves = LAG_AND(h*c->least > zero, LAG_OR(end.t > s->t, end.t < s->t)), failed = LAG_AND(busy, LAG_OR(LAG_NOT(moves), LAG_FAILED(status)));\n"
-  " |  const LAG_MASK good = LAG_AND(busy, LAG_NOT(failed)), taken = LAG_AND(good, LAG_AND(error >= zero, error <= one));\n"
-  " |  lag_resize(c, w, h, error, taken, LAG_AND(good, LAG_NOT(taken)), wanted, clipped);\n"
-  " |  LAG_MOVE(taken, s, &end);\n"
-  " |  return -lag_lanes_bits(failed);\n"
-  " |}\n"
-  " |#else\n";
-
-/* Steps of one state. */
-static const char *const adapt =
-  " |static int lag_adapt(lag_trial *trial, const lag_controller *c, const lag_params *p, lag_state *s, lag_adaptive *w, LAG_REAL untilHELD,\n"
-  " |    LAG_REAL (*k)[LAG_NY]) {\n"
-  " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), dir = until < s->t ? -one : one;\n"
-  " |  LAG_REAL y[LAG_NY];\n"
-  " |  if (!(BOUNDED)) return LAG_ETOLERANCE;\n"
-  " |  if (!(until < s->t) && until <= s->t) return LAG_OK;\n"
-  " |  lag_gather(s, y);\n"
-  " |  int status = lag_rates(p, s->t, yPASS, k[0]);\n"
-  " |  if (status != LAG_OK) return status;\n"
-  " |  if (!(w->step > zero)) w->step = lag_first_step(p, w, c->order, dir, s->t, yPASS, k);\n"
-  " |  for (int retried = 0;; retried = 1) {\n"
-  " |    const LAG_REAL wanted = w->longest > zero && w->longest < w->step ? w->longest : w->step, gap = dir*(until - s->t);\n"
-  " |    const int clipped = !(wanted*(one + LAG_C(1e-4)) < gap); /* of NaN, too */\n"
+  " |  for (;;) {\n"
+  " |    const LAG_REAL wanted = LAG_SELECT(LAG_AND(w->longest > zero, w->longest < w->step), w->longest, w->step);\n"
+  " |    const LAG_MASK clipped = LAG_NOT(wanted*(one + LAG_C(1e-4)) < gap); /* of NaN, too */\n"
+  " |    const LAG_REAL h = LAG_SELECT(clipped, gap, wanted);\n"
   " |    lag_state end = *s;\n"
-  " |    LAG_REAL error;\n"
-  " |    w->step = clipped ? gap : wanted;\n"
-  " |    end.t = lag_compensated_sum(s->t, dir*w->step, &end.lost[0]);\n"
-  " |    if (clipped) end.t = until, end.lost[0] = zero;\n"
-  " |    if (!(end.t > s->t) && !(end.t < s->t)) return LAG_ESTEP;\n"
-  " |    status = trial(p, s, dir*w->stepPASS, k, &end, w, &error);\n"
-  " |    if (status != LAG_OK) return status;\n"
-  " |    if (error >= zero && error <= one) {\n"
-  " |      w->step *= lag_growth(c, error, retried, &w->memory);\n"
-  " |      if (clipped && !(w->step > wanted)) w->step = wanted;\n"
-  " |      *s = end;\n"
-  " |      return LAG_OK;\n"
-  " |    }\n"
-  " |    w->memory = zero;\n"
-  " |    w->step *= lag_shrinkage(c, error);\n"
+  " |    end.t = lag_compensated_sum(s->t, dir*h, &end.lost[0]);\n"
+  " |    end.t = LAG_SELECT(clipped, until, end.t);\n"
+  " |    end.lost[0] = LAG_SELECT(clipped, zero, end.lost[0]);\n"
+  " |    const LAG_MASK moves = LAG_AND(h*c->least > zero, LAG_OR(end.t > s->t, end.t < s->t));\n"
+  " |    LAG_TRY(LAG_STATUS(LAG_NOT(moves), LAG_ESTEP));\n"
+  " |    LAG_TRY(trial(p, s, dir*hPASS, k, &end, w, &error));\n"
+  " |    const LAG_MASK good = LAG_AND(busy, LAG_NOT(LAG_FAILED(status))), taken = LAG_AND(good, LAG_AND(error >= zero, error <= one));\n"
+  " |    LAG_REAL memory = w->memory, next = LAG_SELECT(taken, h*lag_growth(c, error, memory < zero, &memory), zero);\n"
+  " |    next = LAG_SELECT(LAG_AND(clipped, LAG_NOT(next > wanted)), wanted, next);\n"
+  " |    w->step = LAG_SELECT(taken, next, LAG_SELECT(good, h*lag_shrinkage(c, error), w->step));\n"
+  " |    w->memory = LAG_SELECT(taken, memory, LAG_SELECT(good, -one, w->memory));\n"
+  " |    LAG_MOVE(taken, s, &end);\n"
+  " |#ifdef LAG_LANES\n"
+  " |    return LAG_WHERE(busy, status);\n"
+  " |#else\n"
+  " |    if (taken) return LAG_OK;\n"
+  " |#endif\n"
   " |  }\n"
-  " |}\n"
-  " |#endif\n";
+  " |}\n";
 
 static const char *const adaptive_begin =
   " | {\n"
@@ -155,10 +118,9 @@ void header_adaptive_declare(const Header *h) { csupport_expand(type, h->upper, 
 void header_move(const Header *h) { header_template(h, move, NULL); }
 
 void header_adaptive_define(const Header *h, const char *longest) {
-  const HeaderWord words[] = {{"LONGEST", longest}, {"BOUNDED", "LAG_AND(w->tolerance >= zero, LAG_AND(w->absolute >= zero, w->tolerance + w->absolute > zero))"}, {NULL, NULL}};
+  const HeaderWord words[] = {{"LONGEST", longest}, {NULL, NULL}};
   header_template(h, begin, NULL);
-  header_template(h, lanes, words);
-  header_template(h, adapt, words);
+  header_template(h, adapt, NULL);
   csupport_expand("\nLAG_API void lag_adaptive_begin(lag_adaptive *w, LAG_REAL tolerance)", h->upper, h->lower, h->out);
   header_template(h, adaptive_begin, words);
 }
