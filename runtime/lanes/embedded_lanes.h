@@ -74,7 +74,9 @@ static int embedded_aim(void *batch, int lane, const lag_sim *s) {
 }
 
 /* Instance of kernels/runge_kutta.h. */
-LAG_INLINE int embedded_lane_rates(EmbeddedLanes *b, Lanes t, const Lanes *y, Lanes *f) { return -lag_lanes_bits(lane_rates(&b->pb, t, y, f)); }
+LAG_INLINE int embedded_lane_rates(EmbeddedLanes *b, Lanes t, const Lanes *y, Lanes *f) {
+  return -lag_lanes_bits(lane_rates(&b->pb, t, y, f));
+}
 
 LAG_INLINE void embedded_lane_add(EmbeddedLanes *b, int i, Lanes d) {
   b->comp1[i] = b->comp[i];

@@ -1,5 +1,5 @@
-/* A step of one explicit Runge-Kutta method over lanes. embedded_lanes.h includes this file for each method, behind its EMBEDDED_ID, EMBEDDED_STAGES and,
- * of a pair, EMBEDDED_ERRORS. */
+/* A step of one explicit Runge-Kutta method over lanes. embedded_lanes.h includes this file for each
+ * method, behind its EMBEDDED_ID, EMBEDDED_STAGES and, of a pair, EMBEDDED_ERRORS. */
 #define EMBEDDED_OF(name) EMBEDDED_PASTE(EMBEDDED_ID, name)
 #define EMBEDDED_PASTE(id, name) EMBEDDED_PASTED(id, name)
 #define EMBEDDED_PASTED(id, name) id##_##name
@@ -34,7 +34,8 @@ LAG_INLINE LaneMask EMBEDDED_OF(lane_step)(int n, EmbeddedLanes *b, LaneMask bus
   }
   Lanes seen = lane_abs(pb->t - pb->t_begin), none = lane_all(0);
   Lanes most = b->h_max > 0 ? lane_all(b->h_max) : lane_select(seen > none, seen, lane_all(HUGE_VAL));
-  Lanes h = b->h_fixed > 0 ? lane_all(b->h_fixed) : lane_min(b->h, b->longest > 0 ? lane_min(most, lane_all(b->longest)) : most);
+  if (b->longest > 0) most = lane_min(most, lane_all(b->longest));
+  Lanes h = b->h_fixed > 0 ? lane_all(b->h_fixed) : lane_min(b->h, most);
   Lanes dt = lane_all(pb->dir) * h, tc = b->tc, end = lag_compensated_sum(pb->t, dt, &tc);
   *bad = (h <= lane_all(4 * DBL_EPSILON) * lane_abs(pb->t)) | (h < lane_all(DBL_MIN / DBL_EPSILON));
   *bad |= EMBEDDED_OF(lane_stages)(n, b, dt) | lane_rates(pb, end, b->y1, b->k + last * n);
@@ -69,9 +70,12 @@ static LaneMask EMBEDDED_OF(step)(void *batch, LaneMask busy, LaneMask *bad) {
   }
 }
 
-static unsigned EMBEDDED_OF(advance)(void *batch, unsigned busy, unsigned *bad) { return lane_advance(batch, busy, bad, EMBEDDED_OF(step)); }
+static unsigned EMBEDDED_OF(advance)(void *batch, unsigned busy, unsigned *bad) {
+  return lane_advance(batch, busy, bad, EMBEDDED_OF(step));
+}
 
-static const LaneKernel EMBEDDED_OF(kernel) = {EMBEDDED_NAME(EMBEDDED_ID), embedded_open, lane_close, embedded_load, EMBEDDED_OF(advance), embedded_store, embedded_aim};
+static const LaneKernel EMBEDDED_OF(kernel) = {EMBEDDED_NAME(EMBEDDED_ID), embedded_open, lane_close, embedded_load,
+                                              EMBEDDED_OF(advance), embedded_store, embedded_aim};
 
 #undef EMBEDDED_ID
 #undef EMBEDDED_STAGES

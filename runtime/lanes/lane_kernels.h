@@ -6,4 +6,5 @@
 #include "lanes/verlet_lanes.h"
 
 #define VERLET_ENTRY(name, general, order, flags, line, words) &name##_kernel,
-static const LaneKernel *const kernels[] = {&taylor_kernel, &dop853_kernel, &rk45_kernel, &rk4_kernel, LAG_SPLITTING_METHODS(VERLET_ENTRY) NULL};
+static const LaneKernel *const kernels[] = {&taylor_kernel, &dop853_kernel, &rk45_kernel, &rk4_kernel,
+                                            LAG_SPLITTING_METHODS(VERLET_ENTRY) NULL};

@@ -103,7 +103,9 @@ LAG_INLINE void taylor_ends(int n, TaylorLanes *b, Lanes dt) {
 
 /* Errors of steps of dt that end at y1, in tolerances. */
 LAG_INLINE Lanes taylor_errors(int n, const TaylorLanes *b, Lanes dt) {
-  return lag_taylor_error(b->order, b->pb.nq, n - 2 * b->pb.nq, b->unit, lane_abs(dt), b->slope, b->x[1 - b->now] + n, b->scale) / lane_all(b->pb.tol);
+  const Lanes *rates = b->x[1 - b->now] + n;
+  int nq = b->pb.nq, nz = n - 2 * nq;
+  return lag_taylor_error(b->order, nq, nz, b->unit, lane_abs(dt), b->slope, rates, b->scale) / lane_all(b->pb.tol);
 }
 
 /* 2^k <= |x| < 2^(k+1). */

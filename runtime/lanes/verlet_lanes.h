@@ -1,4 +1,5 @@
-/* The Verlet family over lanes, for models whose accelerations depend on t and q only: kernels/splitting.h over vectors. */
+/* The Verlet family over lanes, for models whose accelerations depend on t and q only:
+ * kernels/splitting.h over vectors. */
 #pragma once
 
 #include "kernels/steppers.def"
@@ -74,8 +75,8 @@ LAG_INLINE int verlet_lane_forces(LaneProblem *pb, Lanes t, const Lanes *y, Lane
 /* All kicks and drifts of a step from y0 at t: y1, and f1 at its end. Returns the lanes where the model fails. */
 static LaneMask verlet_lane_compose(VerletLanes *b, Lanes end, double dt) {
   int n = b->pb.n, nq = b->pb.nq;
-  const lag_splitting s = {.n = nq, .q = b->y0, .v = b->y0 + nq, .a = b->f0 + nq, .q1 = b->y1, .v1 = b->y1 + nq, .a1 = b->f1 + nq,
-                           .lost = b->comp, .lost1 = b->comp1, .rate = b->y1 + nq, .dq = b->dy, .dv = b->dy + nq};
+  const lag_splitting s = {.n = nq, .q = b->y0, .v = b->y0 + nq, .a = b->f0 + nq, .lost = b->comp,
+                           .q1 = b->y1, .v1 = b->y1 + nq, .a1 = b->f1 + nq, .lost1 = b->comp1, .rate = b->y1 + nq, .dq = b->dy, .dv = b->dy + nq};
   int status = lag_split(&b->pb, &s, b->c, b->pb.t, end, lane_all(dt));
   for (int i = 0; i < nq; i++) b->f1[i] = b->y1[nq + i];
   return lane_mask((unsigned)-status) | lane_not_finite(n, b->y1);

@@ -10,7 +10,8 @@
 
 /* The method's tables, and its trial step. */
 static double trial(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc);
-static const EmbeddedPair pair = {.tab = &lag_dop853_tableau, .late = 1, .control = {LAG_DOP853_CONTROL}, .more = LAG_MAX_DENSE, .trial = trial};
+static const EmbeddedPair pair = {.tab = &lag_dop853_tableau, .late = 1, .control = {LAG_DOP853_CONTROL},
+                                 .more = LAG_MAX_DENSE, .trial = trial};
 #define EMBEDDED_STAGES LAG_DOP853_STAGES
 #define EMBEDDED_RESULT LAG_DOP853_RESULT
 #define EMBEDDED_ERRORS LAG_DOP853_ERRORS

@@ -1,5 +1,6 @@
-/* Stages and error of one trial step by kernels/runge_kutta.h: euler.c, rk4.c, rk45.c and dop853.c include this file behind the method's tables,
- * EMBEDDED_STAGES, EMBEDDED_RESULT and, of a pair, EMBEDDED_ERRORS, and `pair`.
+/* Stages and error of one trial step by kernels/runge_kutta.h: euler.c, rk4.c, rk45.c and dop853.c
+ * include this file behind `pair` and the method's tables, EMBEDDED_STAGES, EMBEDDED_RESULT and, of
+ * a pair, EMBEDDED_ERRORS.
  * Holds: each component is summed in the same order for every n, so its value does not depend on the other components. */
 #pragma once
 
@@ -52,9 +53,11 @@ LAG_ALWAYS_INLINE int embedded_call(lag_problem *pb, int nq, double t, const dou
 
 /* The result's components i, with compensation: as lag_compensated_sum. */
 LAG_ALWAYS_INLINE void embedded_add(Embedded *w, EmbeddedShape as, int i, embedded_part d) {
-  const embedded_part y = embedded_at(w->x + EMBEDDED_Y0 * as.row + i), x = d + embedded_at(w->x + EMBEDDED_COMP * as.row + i), r = y + x, b = r - y;
-  embedded_set(w->x + EMBEDDED_Y1 * as.row + i, r);
-  embedded_set(w->x + EMBEDDED_COMP1 * as.row + i, (y - (r - b)) + (x - b));
+  double *at = w->x + i;
+  const embedded_part y = embedded_at(at + EMBEDDED_Y0 * as.row), x = d + embedded_at(at + EMBEDDED_COMP * as.row);
+  const embedded_part r = y + x, b = r - y;
+  embedded_set(at + EMBEDDED_Y1 * as.row, r);
+  embedded_set(at + EMBEDDED_COMP1 * as.row, (y - (r - b)) + (x - b));
 }
 
 /* Scale of the error of component i: tol (floor + max(|y0|, |y1|)). */
@@ -73,7 +76,8 @@ LAG_ALWAYS_INLINE double embedded_square(embedded_part x) {
 }
 
 /* 1/(allowed errors) of components i, of y before a step and x after. */
-LAG_ALWAYS_INLINE embedded_part embedded_weight(const Embedded *w, const lag_problem *pb, int i, const double *y, const double *x) {
+LAG_ALWAYS_INLINE embedded_part embedded_weight(const Embedded *w, const lag_problem *pb, int i, const double *y,
+                                                const double *x) {
   double scale[EMBEDDED_WIDTH];
   for (int j = 0; j < EMBEDDED_WIDTH; j++) scale[j] = embedded_scale(w, pb, i + j, y[i + j], x[i + j]);
   return 1 / embedded_at(scale);
@@ -120,7 +124,8 @@ LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape a
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
 }
 
-LAG_ALWAYS_INLINE double embedded_trial(Embedded *w, lag_problem *pb, EmbeddedShape as, double t, double tb, double dt, int *rc) {
+LAG_ALWAYS_INLINE double embedded_trial(Embedded *w, lag_problem *pb, EmbeddedShape as, double t, double tb, double dt,
+                                        int *rc) {
   int row = as.row, last = pair.tab->stages - 1;
   double *end = w->x + EMBEDDED_K1 * row + last * row, err = 0;
   if ((*rc = embedded_stages(w, pb, as, t, dt)) != 0) return NAN;

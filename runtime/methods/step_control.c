@@ -24,7 +24,8 @@ double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const dou
 double lag_first_step(lag_problem *pb, const lag_tolerance *tol, int order, double h_max, double t, const double *y,
                       const double *f0, double *y1, double *f1) {
   const double unit = tol->limits->atol > 0 ? 1 : pb->size[pb->n + 1]; /* of h0, h1, 1/d1 and 1/d2 */
-  double d1 = unit * lag_error_norm(pb, tol, f0, y), h0 = lag_first_euler_step(lag_error_norm(pb, tol, y, y), d1, h_max / unit);
+  double d0 = lag_error_norm(pb, tol, y, y), d1 = unit * lag_error_norm(pb, tol, f0, y);
+  double h0 = lag_first_euler_step(d0, d1, h_max / unit);
 
   for (int i = 0; i < pb->n; i++) y1[i] = y[i] + pb->dir * h0 * unit * f0[i];
   if (lag_rhs(pb, t + pb->dir * h0 * unit, y1, f1) != 0) return h0 * unit * 1e-3;

@@ -16,6 +16,8 @@
 
 const lag_tableau lag_euler_tableau = {.stages = 2, .order = 1, LAG_EULER_RESULT};
 const lag_tableau lag_rk4_tableau = {.stages = 5, .order = 4, LAG_RK4_STAGES LAG_RK4_RESULT};
-const lag_tableau lag_rk45_tableau = {.stages = 7, .order = 5, .order_embedded = 4, LAG_RK45_STAGES LAG_RK45_RESULT LAG_RK45_ERRORS LAG_RK45_DENSE};
+const lag_tableau lag_rk45_tableau = {.stages = 7, .order = 5, .order_embedded = 4, LAG_RK45_STAGES LAG_RK45_RESULT
+                                      LAG_RK45_ERRORS LAG_RK45_DENSE};
 const lag_tableau lag_dop853_tableau = {
-    .stages = 13, .extra = 3, .order = 8, .order_embedded = 5, LAG_DOP853_STAGES LAG_DOP853_RESULT LAG_DOP853_EXTRA LAG_DOP853_ERRORS LAG_DOP853_DENSE};
+    .stages = 13, .extra = 3, .order = 8, .order_embedded = 5, LAG_DOP853_STAGES LAG_DOP853_RESULT LAG_DOP853_EXTRA
+    LAG_DOP853_ERRORS LAG_DOP853_DENSE};

@@ -9,7 +9,7 @@ typedef struct lag_tableau {
   int order, order_embedded;
   double c[LAG_MAX_STAGES];
   double a[LAG_MAX_STAGES][LAG_MAX_STAGES]; /* a[i][j], j < i; row stages - 1 holds the weights of the result */
-  double errors[2][LAG_MAX_STAGES];         /* of the result minus those of the embedded method; of a second, coarser estimate, or zeros */
+  double errors[2][LAG_MAX_STAGES];         /* of the result minus the embedded method; a second estimate, or zeros */
   double d[LAG_MAX_DENSE][LAG_MAX_STAGES];  /* weights of the highest terms of dense output */
 } lag_tableau;
 

@@ -135,8 +135,9 @@ static double root_test_step(Taylor *w, lag_problem *pb, const double *y) {
 /* Error of a step of dt that ends at Y1, in tolerances: item 2 above. */
 static double error_of(Taylor *w, lag_problem *pb, double dt) {
   const double *rates = lag_taylor_series(w, pb, 1 - w->now) + pb->n;
-  return lag_taylor_error((int)w->order, pb->nq, pb->nz, w->unit[w->now > 0], fabs(dt), lag_taylor_array(w, pb, TAYLOR_SLOPE), rates,
-                          lag_taylor_array(w, pb, TAYLOR_SCALE)) / pb->tol;
+  const double *slope = lag_taylor_array(w, pb, TAYLOR_SLOPE), *scale = lag_taylor_array(w, pb, TAYLOR_SCALE);
+  double unit = w->unit[w->now > 0];
+  return lag_taylor_error((int)w->order, pb->nq, pb->nz, unit, fabs(dt), slope, rates, scale) / pb->tol;
 }
 
 /* Y1, COMP1 := the state at t + dt and its compensation. */

@@ -23,7 +23,9 @@
 static int half_of(const lag_problem *pb) { return pb->nq ? pb->nq : pb->n / 2; }
 
 /* A step's instance of kernels/splitting.h: q begins a whole state, a is the second half of its rates. */
-static int forces(lag_problem *pb, double t, const double *q, double *a) { return lag_step_rhs(pb, t, q, a - half_of(pb)); }
+static int forces(lag_problem *pb, double t, const double *q, double *a) {
+  return lag_step_rhs(pb, t, q, a - half_of(pb));
+}
 #define LAG_MODEL lag_problem *pb
 #define LAG_FORCES(t, q, v, a) forces(pb, t, q, a)
 #include "kernels/splitting.h"
@@ -72,8 +74,9 @@ static int init(void *work, lag_problem *pb, const double *opt) {
 static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double t, double tb, const double *y, double dt) {
   int n = pb->n, nq = half_of(pb), rc;
   double *y1 = w->x + VERLET_Y1 * n, *f1 = w->x + VERLET_F1 * n;
-  const lag_splitting s = {.n = nq, .q = y, .v = y + nq, .a = w->x + VERLET_F0 * n + nq, .q1 = y1, .v1 = y1 + nq, .a1 = f1 + nq,
-                           .lost = w->x + VERLET_COMP * n, .lost1 = w->x + VERLET_COMP1 * n, .rate = pb->nq ? y1 + nq : f1, .dq = w->x + VERLET_DY * n, .dv = w->x + VERLET_DY * n + nq};
+  const lag_splitting s = {.n = nq, .q = y, .v = y + nq, .a = w->x + VERLET_F0 * n + nq, .lost = w->x + VERLET_COMP * n,
+                           .q1 = y1, .v1 = y1 + nq, .a1 = f1 + nq, .lost1 = w->x + VERLET_COMP1 * n, .rate = pb->nq ? y1 + nq : f1,
+                           .dq = w->x + VERLET_DY * n, .dv = w->x + VERLET_DY * n + nq};
   if ((rc = lag_split(pb, &s, c, t, tb, dt)) != 0) return rc;
   if (pb->nq) lag_copy(nq, y1 + nq, f1);
   else if ((rc = lag_step_rhs(pb, tb, y1, f1)) != 0) return rc;
