@@ -185,7 +185,7 @@ REAL_quad := -std=gnu11 -include quadmath.h -DLAG_REAL=__float128 '-DLAG_OF_REAL
 DIGITS_long := $(if $(filter long,$(PRECISIONS)),$(LONG_DIGITS))
 DIGITS_quad := 36
 RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
-TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def
+TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def $(BUILD)/gen/kernels/steppers.def
 API_HEAD := lag.h lag_libraries.h lag_model.h
 
 define precision_rules
@@ -264,7 +264,6 @@ $(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_
 $(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/fmu/zip.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
 $(BUILD)/obj/src/emit/embedded_math.o: $(patsubst %,$(BUILD)/gen/emit/lag_%.h,math sincos kkt) $(patsubst runtime/kernels/%.h,$(BUILD)/gen/emit/%_kernel.h,$(wildcard runtime/kernels/*.h))
-$(BUILD)/obj/src/emit/header_steps.o: $(patsubst %,$(BUILD)/gen/emit/%_text.h,composition dop853 rk4 rk45)
 $(BUILD)/obj/src/toolchain/toolchain.o: $(BUILD)/gen/toolchain/probe_text.h
 $(BUILD)/obj/src/fmu/fmu_archive.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)
 $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,language python readme tutorial)

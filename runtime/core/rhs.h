@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "kernels/compensated_sum.h"
 #include "lag.h"
 
 #ifdef __GNUC__
@@ -11,14 +12,6 @@
 #else
 #define LAG_ALWAYS_INLINE static inline
 #endif
-
-/* s + d with compensation: *c is the rounding lost so far (two-sum, for operands of any size). A. Neumaier, ZAMM 54
- * (1974) 39, DOI 10.1002/zamm.19740540106. Rounding then grows at most with the root of the number of steps. */
-static inline double lag_compensated_sum(double s, double d, double *c) {
-  double x = d + *c, r = s + x, b = r - s;
-  *c = (s - (r - b)) + (x - b);
-  return r;
-}
 
 /* to[n] := from[n]. */
 LAG_ALWAYS_INLINE void lag_copy(int n, const double *from, double *to) {

@@ -4,13 +4,7 @@
 #ifndef LAG_DENSE_OUTPUT_H
 #define LAG_DENSE_OUTPUT_H
 
-#ifndef LAG_REAL
-#define LAG_REAL double
-#define LAG_REAL_IS_DOUBLE 1
-#endif
-#ifndef LAG_C
-#define LAG_C(x) x
-#endif
+#include "kernels/scalar.h"
 
 /* ---- ends ---- */
 

@@ -14,21 +14,7 @@
 #ifndef LAG_LOCATE_H
 #define LAG_LOCATE_H
 
-#include <math.h>
-
-#ifndef LAG_REAL
-#define LAG_REAL double
-#define LAG_REAL_IS_DOUBLE 1
-#endif
-#ifndef LAG_FN
-#define LAG_FN(f) f
-#endif
-#ifndef LAG_C
-#define LAG_C(x) x
-#endif
-#ifndef LAG_SELECT
-#define LAG_SELECT(c, a, b) ((c) ? (LAG_REAL)(a) : (LAG_REAL)(b))
-#endif
+#include "kernels/scalar.h"
 
 /* ---- root ---- */
 

@@ -73,118 +73,39 @@ static int embedded_aim(void *batch, int lane, const lag_sim *s) {
   return ((const Embedded *)(const void *)s->method_work)->ready != 0.0;
 }
 
-/* out[n] := sum_j coef[j] k_j over j < count. */
-LAG_INLINE void embedded_lane_sum(int n, const double *coef, int count, const Lanes *k, Lanes *out) {
-  for (int i = 0; i < n; i++) out[i] = lane_all(coef[0]) * k[i];
-  for (int j = 1; j < count; j++) {
-    if (coef[j] == 0.0) continue;
-    const Lanes c = lane_all(coef[j]), *const kj = k + j * n;
-    for (int i = 0; i < n; i++) out[i] += c * kj[i];
-  }
+/* Instance of kernels/runge_kutta.h. */
+LAG_INLINE int embedded_lane_rates(EmbeddedLanes *b, Lanes t, const Lanes *y, Lanes *f) {
+  return -lag_lanes_bits(lane_rates(&b->pb, t, y, f));
 }
 
-/* y1, comp1 and the stages but the last, of n components. Returns the lanes where the model fails. */
-LAG_INLINE LaneMask embedded_lane_stages(int n, EmbeddedLanes *b, Lanes dt) {
-  const lag_tableau *tab = b->pair->tab;
-  int last = tab->stages - 1;
-  Lanes sum[n], *k = b->k, *ys = b->ys;
-  LaneMask bad = {0};
-  for (int s = 1; s < last; s++) {
-    Lanes newest = dt * lane_all(tab->a[s][s - 1]);
-    if (s > 1) embedded_lane_sum(n, tab->a[s], s - 1, k, sum);
-    for (int i = 0; i < n; i++) ys[i] = (s > 1 ? b->y0[i] + dt * sum[i] : b->y0[i]) + newest * k[(s - 1) * n + i];
-    bad |= lane_rates(&b->pb, b->pb.t + lane_all(tab->c[s]) * dt, ys, k + s * n);
-  }
-  embedded_lane_sum(n, tab->a[last], last - 1, k, sum);
-  for (int i = 0; i < n; i++) {
-    b->comp1[i] = b->comp[i];
-    b->y1[i] = lane_compensated_sum(b->y0[i], dt * (sum[i] + lane_all(tab->a[last][last - 1]) * k[(last - 1) * n + i]), &b->comp1[i]);
-  }
-  return bad;
+LAG_INLINE void embedded_lane_add(EmbeddedLanes *b, int i, Lanes d) {
+  b->comp1[i] = b->comp[i];
+  b->y1[i] = lag_compensated_sum(b->y0[i], d, &b->comp1[i]);
 }
 
-/* Squared norms of the errors. */
-LAG_INLINE Lanes embedded_lane_errors(int n, EmbeddedLanes *b, Lanes dt) {
-  const EmbeddedPair *pair = b->pair;
-  const lag_tableau *tab = pair->tab;
-  Lanes fine = lane_all(0), coarse = fine, e[n + 1], e3[n + 1];
-  embedded_lane_sum(n, tab->e, tab->stages - pair->late, b->k, e);
-  if (pair->late) embedded_lane_sum(n, tab->e3, tab->stages - 1, b->k, e3);
-  for (int i = 0; i < n; i++) {
-    Lanes a = lane_abs(b->y0[i]), c = lane_abs(b->y1[i]), scale = lane_all(b->pb.tol) * b->floor[i] + lane_all(b->pb.tol) * lane_max(a, c), per = lane_all(1) / scale;
-    e[i] = per * e[i];
-    e3[i] = pair->late ? per * e3[i] : lane_all(0);
-  }
-  e[n] = e3[n] = lane_all(0);
-  for (int i = 0; i < n; i += 2) {
-    fine += e[i] * e[i] + e[i + 1] * e[i + 1];
-    if (pair->late) coarse += e3[i] * e3[i] + e3[i + 1] * e3[i + 1];
-  }
-  fine *= dt * dt * lane_all(b->per);
-  coarse *= lane_all(0.01) * dt * dt * lane_all(b->per);
-  Lanes both = fine + coarse;
-  return pair->late ? lane_select(both > lane_all(0), fine * (fine / both), both * lane_all(0)) : fine + both * lane_all(0);
-}
+#define LAG_RATES(t, x, s) embedded_lane_rates(b, t, x, k[s])
+#define LAG_ADD(i, d) embedded_lane_add(b, i, d)
+#define LAG_ALLOWED(i, size) (lane_all(b->pb.tol) * b->floor[i] + lane_all(b->pb.tol) * (size))
+#include "kernels/runge_kutta.h"
 
 /* The sizes of the next steps of the lanes in `taken`, and of the next tries of others in `busy`. */
 static void embedded_lane_sizes(EmbeddedLanes *b, Lanes h, Lanes err2, LaneMask taken, LaneMask busy) {
-  const EmbeddedPair *pair = b->pair;
-  const double least = 1e-8;
-  Lanes known = lag_rough_power(lane_all(least), lane_all(-pair->beta / 2));
-  Lanes power = lag_rough_power(lane_max(err2, lane_all(1e-24)), lane_all(-pair->beta / 2)), f = lane_all(pair->safety);
-  f /= lane_select(b->err_power > lane_all(0), b->err_power, known);
-  for (int i = 0; i < pair->ratio; i++) f *= power;
-  Lanes most = lane_select(b->again, lane_all(1), lane_all(pair->grow_most));
-  Lanes next = h * lane_max(lane_all(pair->shrink_most), lane_min(most, f));
-  Lanes shorter = h * lane_max(lane_all(pair->safety) * lag_rough_power(err2, lane_all(-0.5 * pair->ratio * pair->beta)), lane_all(pair->shrink_most));
-  b->h = lane_select(taken, next, lane_select(busy, shorter, b->h));
-  b->err_power = lane_select(taken, lane_select(err2 > lane_all(least), power, known), lane_select(busy, lane_all(0), b->err_power));
+  const lag_controller *c = &b->pair->control;
+  Lanes memory = b->err_power, next = h * lag_growth(c, err2, b->again, &memory);
+  b->h = lane_select(taken, next, lane_select(busy, h * lag_shrinkage(c, err2), b->h));
+  b->err_power = lane_select(taken, memory, lane_select(busy, lane_all(0), b->err_power));
 }
 
-LAG_INLINE LaneMask embedded_lane_step(int n, EmbeddedLanes *b, LaneMask busy, LaneMask *bad) {
-  LaneProblem *pb = &b->pb;
-  const EmbeddedPair *pair = b->pair;
-  int last = pair->tab->stages - 1;
-  for (int i = 0; i < n; i++) {
-    b->k[i] = lane_select(b->fresh, b->k[last * n + i], b->k[i]);
-    b->y0[i] = pb->y[i];
-  }
-  Lanes seen = lane_abs(pb->t - pb->t_begin), none = lane_all(0);
-  Lanes most = b->h_max > 0 ? lane_all(b->h_max) : lane_select(seen > none, seen, lane_all(HUGE_VAL));
-  Lanes h = b->h_fixed > 0 ? lane_all(b->h_fixed) : lane_min(b->h, b->longest > 0 ? lane_min(most, lane_all(b->longest)) : most);
-  Lanes dt = lane_all(pb->dir) * h, tc = b->tc, end = lane_compensated_sum(pb->t, dt, &tc);
-  *bad = (h <= lane_all(4 * DBL_EPSILON) * lane_abs(pb->t)) | (h < lane_all(DBL_MIN / DBL_EPSILON));
-  *bad |= embedded_lane_stages(n, b, dt) | lane_rates(pb, end, b->y1, b->k + last * n);
-  Lanes err2 = pair->tab->order_embedded ? embedded_lane_errors(n, b, dt) : none;
-  LaneMask taken = busy & ~*bad & (err2 <= lane_all(1));
-  *bad |= (err2 != err2) | (taken & (lane_not_finite(n, b->y1) | lane_not_finite(n, b->k + last * n)));
-  *bad &= busy;
-  taken &= ~*bad;
-  if (!(b->h_fixed > 0)) embedded_lane_sizes(b, h, err2, taken, busy);
-  for (int i = 0; i < n; i++) {
-    pb->y[i] = lane_select(taken, b->y1[i], pb->y[i]);
-    b->comp[i] = lane_select(taken, b->comp1[i], b->comp[i]);
-  }
-  b->fresh = lane_select_mask(busy, taken, b->fresh);
-  b->again = busy & ~taken;
-  b->tc = lane_select(taken, tc, b->tc);
-  b->dt = lane_select(taken, dt, b->dt);
-  lane_moved(pb, taken, end);
-  return taken;
-}
+#define EMBEDDED_ID rk4
+#define EMBEDDED_STAGES LAG_RK4_STAGES LAG_RK4_RESULT
+#include "lanes/embedded_step.h"
 
-static LaneMask embedded_step(void *batch, LaneMask busy, LaneMask *bad) {
-  EmbeddedLanes *b = batch;
-  switch (b->pb.n) { /* numbers of components that the compiler knows */
-  case 2: return embedded_lane_step(2, b, busy, bad);
-  case 4: return embedded_lane_step(4, b, busy, bad);
-  case 6: return embedded_lane_step(6, b, busy, bad);
-  default: return embedded_lane_step(b->pb.n, b, busy, bad);
-  }
-}
+#define EMBEDDED_ID rk45
+#define EMBEDDED_STAGES LAG_RK45_STAGES LAG_RK45_RESULT
+#define EMBEDDED_ERRORS LAG_RK45_ERRORS
+#include "lanes/embedded_step.h"
 
-static unsigned embedded_advance(void *batch, unsigned busy, unsigned *bad) { return lane_advance(batch, busy, bad, embedded_step); }
-
-LANE_KERNEL(dop853, embedded)
-LANE_KERNEL(rk45, embedded)
-LANE_KERNEL(rk4, embedded)
+#define EMBEDDED_ID dop853
+#define EMBEDDED_STAGES LAG_DOP853_STAGES LAG_DOP853_RESULT
+#define EMBEDDED_ERRORS LAG_DOP853_ERRORS
+#include "lanes/embedded_step.h"

@@ -5,5 +5,6 @@
 #include "lanes/taylor_lanes.h"
 #include "lanes/verlet_lanes.h"
 
-static const LaneKernel *const kernels[] = {&taylor_kernel, &dop853_kernel, &rk45_kernel, &rk4_kernel, &symplectic_euler_kernel, &verlet_kernel, &verlet4_kernel, &verlet6_kernel,
-                                            &verlet8_kernel, NULL};
+#define VERLET_ENTRY(name, general, order, flags, line, words) &name##_kernel,
+static const LaneKernel *const kernels[] = {&taylor_kernel, &dop853_kernel, &rk45_kernel, &rk4_kernel,
+                                            LAG_SPLITTING_METHODS(VERLET_ENTRY) NULL};

@@ -10,6 +10,7 @@
 #define LAG_LANES 4
 #endif
 #include "core/core.h"
+#include "kernels/compensated_sum.h"
 #include "lag_math.h"
 #include "lanes/lane_kernel.h"
 
@@ -19,23 +20,14 @@ typedef LAG_MASK LaneMask;
 LAG_INLINE Lanes lane_all(double x) { return lag_lanes_all(x); }
 LAG_INLINE Lanes lane_select(LaneMask c, Lanes a, Lanes b) { return lag_lanes_select(c, a, b); }
 LAG_INLINE Lanes lane_abs(Lanes x) { return (Lanes)((LaneMask)x & 0x7fffffffffffffffLL); }
-/* As lag_min and lag_max: b where a or b is NaN, as the processors' instructions have it, too. */
+/* As lag_min: b where a or b is NaN, as the processors' instructions have it, too. */
 #if LAG_LANES == 8 && defined(__AVX512F__) && !defined(__clang__)
 LAG_INLINE Lanes lane_min(Lanes a, Lanes b) { return __builtin_ia32_minpd512_mask(a, b, a, (unsigned char)-1, 4); }
-LAG_INLINE Lanes lane_max(Lanes a, Lanes b) { return __builtin_ia32_maxpd512_mask(a, b, a, (unsigned char)-1, 4); }
 #else
 LAG_INLINE Lanes lane_min(Lanes a, Lanes b) { return lane_select(a < b, a, b); }
-LAG_INLINE Lanes lane_max(Lanes a, Lanes b) { return lane_select(a > b, a, b); }
 #endif
 
 LAG_INLINE LaneMask lane_select_mask(LaneMask c, LaneMask a, LaneMask b) { return (c & a) | (~c & b); }
-
-/* lag_compensated_sum of lanes. */
-LAG_INLINE Lanes lane_compensated_sum(Lanes s, Lanes d, Lanes *c) {
-  const Lanes x = d + *c, r = s + x, b = r - s;
-  *c = (s - (r - b)) + (x - b);
-  return r;
-}
 
 /* Lanes whose bit is set. */
 LAG_INLINE LaneMask lane_mask(unsigned bits) {

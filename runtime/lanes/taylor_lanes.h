@@ -9,7 +9,7 @@ typedef struct TaylorLanes {
   LaneProblem pb;
   const lag_taylor *ty;
   int order, columns, width, now;      /* now: the series of the next step; the other one is of the last step */
-  double reach, h_max, per_order[TAYLOR_WINDOW];
+  double reach, h_max;
   LaneMask again;                      /* the last step was rejected; h is the next to try */
   Lanes h, last, noise, unit, unit_last, dt;
   Lanes *x[2], *comp, *y1, *comp1, *sum, *slope, *scale, *floor, *follows;
@@ -46,7 +46,6 @@ static int taylor_load(void *batch, int lane, lag_sim *s, int pause) {
   b->reach = w->reach;
   for (int i = 0; i < s->pb.n; i++) b->floor[i][lane] = lag_tolerance_floor(&w->limits, &s->pb, i);
   b->h_max = w->limits.h_max;
-  memcpy(b->per_order, w->per_order, sizeof b->per_order);
   b->again[lane] = 0;
   b->last[lane] = HUGE_VAL;
   b->noise[lane] = w->noise;
@@ -84,13 +83,8 @@ static int taylor_aim(void *batch, int lane, const lag_sim *s) {
 LAG_INLINE Lanes taylor_sizes(int n, TaylorLanes *b) {
   int columns = b->columns;
   const Lanes *x = b->x[b->now], none = lane_all(0);
-  Lanes root = none;
   for (int i = 0; i < n; i++) b->scale[i] = lane_all(1) / (lane_abs(b->pb.y[i]) + lane_abs(x[columns + i]) + b->floor[i]);
-  for (int k = b->order; k > b->order - TAYLOR_WINDOW && k > 0; k--) {
-    Lanes most = none;
-    for (int i = 0; i < n; i++) most = lane_max(lane_abs(x[k * columns + i]) * b->scale[i], most);
-    root = lane_max(lane_select(most > lane_all(DBL_MIN), lag_rough_power(most, lane_all(b->per_order[b->order - k])), none), root);
-  }
+  Lanes root = lag_taylor_root(x, b->order, columns, n, b->scale, lane_all(DBL_MIN));
   Lanes h = lane_select(root > none, lane_abs(b->unit) * lane_all(b->reach) / root, lane_all(HUGE_VAL)), seen = lane_abs(b->pb.t - b->pb.t_begin);
   Lanes most = b->h_max > 0 ? lane_all(b->h_max) : lane_select(seen > none, seen, lane_all(HUGE_VAL));
   h = lane_min(h, most);
@@ -103,21 +97,15 @@ LAG_INLINE void taylor_ends(int n, TaylorLanes *b, Lanes dt) {
   b->ty->at(b->order, dt / b->unit, b->x[b->now], b->sum, b->slope);
   for (int i = 0; i < n; i++) {
     b->comp1[i] = b->comp[i];
-    b->y1[i] = lane_compensated_sum(b->pb.y[i], b->sum[i], &b->comp1[i]);
+    b->y1[i] = lag_compensated_sum(b->pb.y[i], b->sum[i], &b->comp1[i]);
   }
 }
 
 /* Errors of steps of dt that end at y1, in tolerances. */
 LAG_INLINE Lanes taylor_errors(int n, const TaylorLanes *b, Lanes dt) {
-  int nq = b->pb.nq, m = n - nq;
-  const Lanes *rates = b->x[1 - b->now] + n, *slope = b->slope + nq;
-  Lanes per_unit = lane_all(1) / b->unit, worst = lane_all(0), h = lane_abs(dt), to_v = h / lane_all(b->order + 1), to_q = h / lane_all(b->order + 2);
-  for (int i = 0; i < m; i++) {
-    Lanes error = lane_abs(slope[i] * per_unit - rates[i]) * to_v;
-    worst = lane_max(error * b->scale[nq + i], worst);
-    if (i < nq) worst = lane_max(error * to_q * b->scale[i], worst);
-  }
-  return worst / lane_all(b->pb.tol);
+  const Lanes *rates = b->x[1 - b->now] + n;
+  int nq = b->pb.nq, nz = n - 2 * nq;
+  return lag_taylor_error(b->order, nq, nz, b->unit, lane_abs(dt), b->slope, rates, b->scale) / lane_all(b->pb.tol);
 }
 
 /* 2^k <= |x| < 2^(k+1). */
@@ -130,13 +118,10 @@ static void taylor_keep(TaylorLanes *b, LaneMask taken) {
   for (int i = 0; i < (b->order + 1) * b->columns; i++) x[i] = lane_select(taken, x[i], was[i]);
 }
 
-static void taylor_reject(TaylorLanes *b, unsigned lanes, Lanes h, Lanes error) {
-  for (int k = 0; k < LAG_LANES; k++) {
-    if (!(lanes >> k & 1)) continue;
-    b->again[k] = -1;
-    b->last[k] = error[k];
-    b->h[k] = h[k] * fmax(0.5, pow(error[k] * (1 << TAYLOR_AIM), -1.0 / (b->order + 1)));
-  }
+static void taylor_reject(TaylorLanes *b, LaneMask lanes, Lanes h, Lanes error) {
+  b->again |= lanes;
+  b->last = lane_select(lanes, error, b->last);
+  b->h = lane_select(lanes, h * lag_taylor_shrinkage(b->order, error), b->h);
 }
 
 /* A step of each lane of `busy`, of n components. Returns those accepted; *bad: those left to taylor.c. */
@@ -154,9 +139,9 @@ LAG_INLINE LaneMask taylor_lane_step(int n, TaylorLanes *b, LaneMask busy, LaneM
   b->ty->rest(b->order, unit, next, pb->work);
   *bad = busy & (*bad | (taken & lane_not_finite(n, next + b->order * b->columns)));
   b->noise = lane_select(taken, noise * lane_all(0.9), lane_select(busy, noise, b->noise));
-  unsigned rejected = (unsigned)lag_lanes_bits(busy & ~taken & ~*bad);
+  LaneMask rejected = busy & ~taken & ~*bad;
   if (lag_lanes_any(~taken)) taylor_keep(b, taken);
-  if (rejected) taylor_reject(b, rejected, h, error);
+  if (lag_lanes_any(rejected)) taylor_reject(b, rejected, h, error);
   pb->from = b->x[b->now]; /* order 0 of the last series is the state there */
   b->now = 1 - b->now;
   for (int i = 0; i < n; i++) {

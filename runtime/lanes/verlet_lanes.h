@@ -1,6 +1,8 @@
-/* The Verlet family over lanes, for models whose accelerations depend on t and q only: the steps of methods/verlet.c of several runs at once. */
+/* The Verlet family over lanes, for models whose accelerations depend on t and q only:
+ * kernels/splitting.h over vectors. */
 #pragma once
 
+#include "kernels/steppers.def"
 #include "lanes/lane_vectors.h"
 #include "methods/verlet.h"
 
@@ -9,15 +11,15 @@ typedef struct VerletLanes {
   const lag_composition *c;
   double h;
   Lanes tc;
-  Lanes *f0, *f1, *y0, *y1, *ys, *dy, *comp, *comp1;
+  Lanes *f0, *f1, *y0, *y1, *dy, *comp, *comp1;
 } VerletLanes;
 
 static void *verlet_open(const lag_sim *like, const void *model) {
   size_t n = (size_t)like->pb.n, head = (sizeof(VerletLanes) + sizeof(Lanes) - 1) / sizeof(Lanes);
   LaneRoom room;
-  if (!lane_room(&room, head + lane_problem_size(like, model) + 8 * n)) return NULL;
+  if (!lane_room(&room, head + lane_problem_size(like, model) + 7 * n)) return NULL;
   VerletLanes *b = (VerletLanes *)(void *)lane_take(&room, head);
-  Lanes **const parts[] = {&b->f0, &b->f1, &b->y0, &b->y1, &b->ys, &b->dy, &b->comp, &b->comp1};
+  Lanes **const parts[] = {&b->f0, &b->f1, &b->y0, &b->y1, &b->dy, &b->comp, &b->comp1};
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) *parts[i] = lane_take(&room, n);
   lane_problem_init(&b->pb, &room, like, model);
   b->pb.from = b->y0;
@@ -61,58 +63,30 @@ static int verlet_aim(void *batch, int lane, const lag_sim *s) {
   return ((const Verlet *)(const void *)s->method_work)->ready != 0.0;
 }
 
-static void verlet_lane_kick(VerletLanes *b, double h, const Lanes *f) {
-  int nq = b->pb.nq;
-  for (int i = 0; i < nq; i++) b->dy[nq + i] += lane_all(h) * f[nq + i];
+/* a := accelerations, the second half of the rates; the lanes where the model fails, as bits of the negative. */
+LAG_INLINE int verlet_lane_forces(LaneProblem *pb, Lanes t, const Lanes *y, Lanes *a) {
+  Lanes *f = a - pb->nq;
+  return -lag_lanes_bits(lane_rates(pb, t, y, f) | lane_not_finite(pb->n, f));
 }
-
-static void verlet_lane_drift(VerletLanes *b, double h) {
-  int nq = b->pb.nq;
-  for (int i = 0; i < nq; i++) {
-    b->ys[nq + i] = b->y0[nq + i] + (b->comp[nq + i] + b->dy[nq + i]);
-    b->dy[i] += lane_all(h) * b->ys[nq + i];
-    b->ys[i] = b->y0[i] + (b->comp[i] + b->dy[i]);
-  }
-}
-
-/* y1, comp1 := y0 + increments, for nq components from i0 on. */
-static void verlet_lane_add(VerletLanes *b, int i0) {
-  for (int i = i0; i < i0 + b->pb.nq; i++) {
-    b->comp1[i] = b->comp[i];
-    b->y1[i] = lane_compensated_sum(b->y0[i], b->dy[i], &b->comp1[i]);
-  }
-}
+#define LAG_MODEL LaneProblem *pb
+#define LAG_FORCES(t, q, v, a) verlet_lane_forces(pb, t, q, a)
+#include "kernels/splitting.h"
 
 /* All kicks and drifts of a step from y0 at t: y1, and f1 at its end. Returns the lanes where the model fails. */
 static LaneMask verlet_lane_compose(VerletLanes *b, Lanes end, double dt) {
-  LaneProblem *pb = &b->pb;
-  const lag_composition *c = b->c;
-  int n = pb->n, nq = pb->nq, last = c->stages - 1;
-  double at = 0;
-  LaneMask bad = {0};
-  Lanes *f = b->f0;
-  for (int i = 0; i < n; i++) b->dy[i] = lane_all(0);
-  for (int s = 0; s < c->stages; s++) {
-    verlet_lane_kick(b, lag_composition_kick(c, s) * dt, f);
-    verlet_lane_drift(b, lag_composition_drift(c, s) * dt);
-    at += lag_composition_drift(c, s);
-    f = b->f1;
-    if (s < last) bad |= lane_rates(pb, pb->t + lane_all(at * dt), b->ys, f) | lane_not_finite(n, f);
-  }
-  for (int i = nq; i < n; i++) b->y1[i] = b->ys[i];
-  verlet_lane_add(b, 0);
-  bad |= lane_rates(pb, end, b->y1, f) | lane_not_finite(n, f);
-  verlet_lane_kick(b, lag_composition_kick(c, c->stages) * dt, f);
-  verlet_lane_add(b, nq);
-  for (int i = 0; i < nq; i++) f[i] = b->y1[nq + i];
-  return bad | lane_not_finite(n, b->y1);
+  int n = b->pb.n, nq = b->pb.nq;
+  const lag_splitting s = {.n = nq, .q = b->y0, .v = b->y0 + nq, .a = b->f0 + nq, .lost = b->comp,
+                           .q1 = b->y1, .v1 = b->y1 + nq, .a1 = b->f1 + nq, .lost1 = b->comp1, .rate = b->y1 + nq, .dq = b->dy, .dv = b->dy + nq};
+  int status = lag_split(&b->pb, &s, b->c, b->pb.t, end, lane_all(dt));
+  for (int i = 0; i < nq; i++) b->f1[i] = b->y1[nq + i];
+  return lane_mask((unsigned)-status) | lane_not_finite(n, b->y1);
 }
 
 static LaneMask verlet_step(void *batch, LaneMask busy, LaneMask *bad) {
   VerletLanes *b = batch;
   LaneProblem *pb = &b->pb;
   double dt = b->h * pb->dir;
-  Lanes tc = b->tc, end = lane_compensated_sum(pb->t, lane_all(dt), &tc), *was = b->f0;
+  Lanes tc = b->tc, end = lag_compensated_sum(pb->t, lane_all(dt), &tc), *was = b->f0;
   b->f0 = b->f1;
   b->f1 = was;
   for (int i = 0; i < pb->n; i++) b->y0[i] = pb->y[i];
@@ -129,8 +103,5 @@ static LaneMask verlet_step(void *batch, LaneMask busy, LaneMask *bad) {
 
 static unsigned verlet_advance(void *batch, unsigned busy, unsigned *bad) { return lane_advance(batch, busy, bad, verlet_step); }
 
-LANE_KERNEL(symplectic_euler, verlet)
-LANE_KERNEL(verlet, verlet)
-LANE_KERNEL(verlet4, verlet)
-LANE_KERNEL(verlet6, verlet)
-LANE_KERNEL(verlet8, verlet)
+#define VERLET_KERNEL(name, general, order, flags, line, words) LANE_KERNEL(name, verlet)
+LAG_SPLITTING_METHODS(VERLET_KERNEL)

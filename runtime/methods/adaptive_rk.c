@@ -70,17 +70,6 @@ int lag_adaptive_rk_prepare(const EmbeddedPair *pair, Embedded *w, lag_problem *
   return LAG_OK;
 }
 
-/* PI controller: the size of the next step from err2, the squared error. One power serves the error and its memory. */
-static void next_size(const EmbeddedPair *pair, Embedded *w, double err2, int retried) {
-  const double least = 1e-8; /* floor of the remembered squared error, and its value where none is known */
-  double power = lag_rough_power(lag_max(err2, 1e-24), -pair->beta / 2), f = pair->safety;
-  double memory = err2 > least ? power : lag_rough_power(least, -pair->beta / 2);
-  f /= w->err_power > 0 ? w->err_power : lag_rough_power(least, -pair->beta / 2);
-  for (int i = 0; i < pair->ratio; i++) f *= power;
-  w->h *= lag_max(pair->shrink_most, lag_min(retried ? 1 : pair->grow_most, f));
-  w->err_power = memory;
-}
-
 /* Makes the step just computed the last accepted one. */
 static void accept(Embedded *w, lag_problem *pb, double *t, double *y, double dt, double tb, double tc) {
   lag_copy(pb->n, lag_adaptive_rk_array(w, pb, EMBEDDED_Y1), y);
@@ -118,8 +107,8 @@ static double square_along(Embedded *w, lag_problem *pb, double tb, int count, c
 }
 
 double lag_adaptive_rk_error_along(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, double tb, double dt, double whole) {
-  double fine = dt * dt * square_along(w, pb, tb, tab->stages - late, tab->e);
-  double coarse = late ? 0.01 * dt * dt * square_along(w, pb, tb, tab->stages - 1, tab->e3) : 0, both = fine + coarse;
+  double fine = dt * dt * square_along(w, pb, tb, tab->stages - late, tab->errors[0]);
+  double coarse = late ? 0.01 * dt * dt * square_along(w, pb, tb, tab->stages - 1, tab->errors[1]) : 0, both = fine + coarse;
   w->across = whole;
   return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
 }
@@ -203,7 +192,7 @@ int lag_adaptive_rk_step(void *work, lag_problem *pb, double *t, double *y, doub
     }
     if (err <= 1 || (w->limits.fixed != 0.0 && !isnan(err))) {
       if (w->limits.fixed == 0.0) {
-        next_size(pair, w, err, retried);
+        w->h *= lag_growth(&pair->control, err, retried, &w->err_power);
         w->h = clipped ? lag_max(w->h, wanted) : w->h;
       } else {
         w->h = wanted;
@@ -211,14 +200,9 @@ int lag_adaptive_rk_step(void *work, lag_problem *pb, double *t, double *y, doub
       accept(w, pb, t, y, dt, tb, tc);
       return LAG_OK;
     }
-    if (isnan(err)) {
-      cause = rc ? LAG_EDOMAIN : LAG_ENAN;
-      pb->bad_t = tb;
-      w->h /= 2;
-    } else {
-      cause = LAG_ESTEP;
-      w->h *= fmax(pair->shrink_most, pair->safety * lag_rough_power(err, -0.5 * pair->ratio * pair->beta));
-    }
+    cause = !isnan(err) ? LAG_ESTEP : rc ? LAG_EDOMAIN : LAG_ENAN;
+    if (isnan(err)) pb->bad_t = tb;
+    w->h *= lag_shrinkage(&pair->control, err);
     if (w->limits.fixed != 0.0) return too_small(pair, w, pb, *t, cause);
     retried = 1;
     w->err_power = 0;

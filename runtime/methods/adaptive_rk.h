@@ -12,9 +12,7 @@ typedef struct Embedded Embedded;
 struct EmbeddedPair {
   const lag_tableau *tab;
   int late;            /* 1: the error does not use the last stage, which is computed once the step is accepted */
-  double beta;         /* PI controller: h grows by the factor safety err_old^beta / err^(ratio beta) */
-  int ratio;
-  double safety, shrink_most, grow_most;
+  lag_controller control;
   int more;            /* rows of Embedded.x behind the stages, for dense output */
 
   /* One trial step from (t, Y0) to tb = t + dt: fills Y1 and COMP1, returns the squared norm of the error, NaN where a value is not

@@ -1,5 +1,6 @@
-/* Stages and error of one trial step, inlined for a constant tableau: euler.c, rk4.c, rk45.c and dop853.c include this file and expand
- * EMBEDDED_TRIAL. Sums over stages are then unrolled, without zero coefficients.
+/* Stages and error of one trial step by kernels/runge_kutta.h: euler.c, rk4.c, rk45.c and dop853.c
+ * include this file behind `pair` and the method's tables, EMBEDDED_STAGES, EMBEDDED_RESULT and, of
+ * a pair, EMBEDDED_ERRORS.
  * Holds: each component is summed in the same order for every n, so its value does not depend on the other components. */
 #pragma once
 
@@ -43,25 +44,6 @@ LAG_ALWAYS_INLINE embedded_part embedded_newest(const volatile double *k) {
 #endif
 }
 
-#define EMBEDDED_TERM(j)                          \
-  if (j < count && coef[j] != 0.0) {              \
-    s += coef[j] * embedded_at(k + (j) * row);    \
-  }
-
-/* sum_j coef[j] k_j over j < count, for the components of one part. */
-LAG_ALWAYS_INLINE embedded_part embedded_sum(const double *coef, int count, const double *k, int row) {
-  embedded_part s = coef[0] * embedded_at(k);
-  EMBEDDED_TERM(1) EMBEDDED_TERM(2) EMBEDDED_TERM(3) EMBEDDED_TERM(4) EMBEDDED_TERM(5) EMBEDDED_TERM(6) EMBEDDED_TERM(7)
-  EMBEDDED_TERM(8) EMBEDDED_TERM(9) EMBEDDED_TERM(10) EMBEDDED_TERM(11) EMBEDDED_TERM(12) EMBEDDED_TERM(13)
-  EMBEDDED_TERM(14) EMBEDDED_TERM(15)
-  return s;
-}
-
-/* out[row] := sum_j coef[j] k_j over j < count. */
-LAG_ALWAYS_INLINE void embedded_combine(const double *coef, int count, EmbeddedShape as, const double *k, double *out) {
-  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) embedded_set(out + i, embedded_sum(coef, count, k + i, as.row));
-}
-
 /* k := f(t, y). > 0: a smaller step may help. */
 LAG_ALWAYS_INLINE int embedded_call(lag_problem *pb, int nq, double t, const double *y, double *k) {
   int rc = lag_rhs_inline(pb, nq, t, y, k);
@@ -69,33 +51,13 @@ LAG_ALWAYS_INLINE int embedded_call(lag_problem *pb, int nq, double t, const dou
   return rc < -1 ? LAG_EMODEL : rc;
 }
 
-/* K_s := f(t0 + c_s dt, y0 + dt sum a_sj K_j). The newest stage is added last, so that other terms need not wait for it. */
-LAG_ALWAYS_INLINE int embedded_stage(const lag_tableau *tab, lag_problem *pb, EmbeddedShape as, int s, double t0, double dt, const double *y0, double *k,
-                                   double *ys) {
-  int row = as.row;
-  double newest = dt * tab->a[s][s - 1];
-
-  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
-    embedded_part y = embedded_at(y0 + i);
-    if (s > 1) y += dt * embedded_sum(tab->a[s], s - 1, k + i, row);
-    embedded_set(ys + i, y + newest * embedded_newest(k + i + (s - 1) * row));
-  }
-  return embedded_call(pb, as.nq, t0 + tab->c[s] * dt, ys, k + s * row);
-}
-
-/* Y1 := the result of the step, COMP1 := its compensation. */
-LAG_ALWAYS_INLINE void embedded_result(const lag_tableau *tab, Embedded *w, EmbeddedShape as, double dt) {
-  int row = as.row, last = tab->stages - 1;
-  double newest = tab->a[last][last - 1];
-  const double *comp = w->x + EMBEDDED_COMP * row, *y0 = w->x + EMBEDDED_Y0 * row, *k = w->x + EMBEDDED_K1 * row;
-  double *comp1 = w->x + EMBEDDED_COMP1 * row, *y1 = w->x + EMBEDDED_Y1 * row;
-  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
-    embedded_part sum = newest * embedded_newest(k + i + (last - 1) * row);
-    if (last > 1) sum += embedded_sum(tab->a[last], last - 1, k + i, row);
-    embedded_part y = embedded_at(y0 + i), x = dt * sum + embedded_at(comp + i), r = y + x, b = r - y; /* as lag_compensated_sum */
-    embedded_set(y1 + i, r);
-    embedded_set(comp1 + i, (y - (r - b)) + (x - b));
-  }
+/* The result's components i, with compensation: as lag_compensated_sum. */
+LAG_ALWAYS_INLINE void embedded_add(Embedded *w, EmbeddedShape as, int i, embedded_part d) {
+  double *at = w->x + i;
+  const embedded_part y = embedded_at(at + EMBEDDED_Y0 * as.row), x = d + embedded_at(at + EMBEDDED_COMP * as.row);
+  const embedded_part r = y + x, b = r - y;
+  embedded_set(at + EMBEDDED_Y1 * as.row, r);
+  embedded_set(at + EMBEDDED_COMP1 * as.row, (y - (r - b)) + (x - b));
 }
 
 /* Scale of the error of component i: tol (floor + max(|y0|, |y1|)). */
@@ -113,23 +75,46 @@ LAG_ALWAYS_INLINE double embedded_square(embedded_part x) {
 #endif
 }
 
-/* Squared norm of the error of the step just computed; NaN where it is not finite. */
-LAG_ALWAYS_INLINE double embedded_error(const lag_tableau *tab, int late, Embedded *w, const lag_problem *pb, EmbeddedShape as, double dt) {
-  int row = as.row;
-  const double *y0 = w->x + EMBEDDED_Y0 * row, *y1 = w->x + EMBEDDED_Y1 * row, *k = w->x + EMBEDDED_K1 * row;
-  double fine = 0, coarse = 0;
-  for (int i = 0; i < as.n; i += EMBEDDED_WIDTH) {
-    double scale[EMBEDDED_WIDTH];
-    for (int j = 0; j < EMBEDDED_WIDTH; j++) scale[j] = embedded_scale(w, pb, i + j, y0[i + j], y1[i + j]);
-    embedded_part per = 1 / embedded_at(scale);
-    fine += embedded_square(per * embedded_sum(tab->e, tab->stages - late, k + i, row));
-    coarse += late ? embedded_square(per * embedded_sum(tab->e3, tab->stages - 1, k + i, row)) : 0;
-  }
-  fine *= dt * dt * w->per;
-  coarse *= 0.01 * dt * dt * w->per;
-  double both = fine + coarse;
-  return !isfinite(both) ? NAN : late ? (both > 0 ? fine * (fine / both) : 0) : fine;
+/* 1/(allowed errors) of components i, of y before a step and x after. */
+LAG_ALWAYS_INLINE embedded_part embedded_weight(const Embedded *w, const lag_problem *pb, int i, const double *y,
+                                                const double *x) {
+  double scale[EMBEDDED_WIDTH];
+  for (int j = 0; j < EMBEDDED_WIDTH; j++) scale[j] = embedded_scale(w, pb, i + j, y[i + j], x[i + j]);
+  return 1 / embedded_at(scale);
 }
+
+#define LAG_EACH(i) for (int i = 0; i < as.n; i += EMBEDDED_WIDTH)
+#define LAG_RATE(s) (k + (s) * as.row)
+#define LAG_AT(x, i) embedded_at((x) + (i))
+#define LAG_NEWEST(x, i) embedded_newest((x) + (i))
+#define LAG_SET(x, i, value) embedded_set((x) + (i), value)
+#define LAG_RATES(t, x, s) embedded_call(pb, as.nq, t, x, LAG_RATE(s))
+#define LAG_ADD(i, d) embedded_add(w, as, i, d)
+#define LAG_WEIGH(per, i) const embedded_part per = embedded_weight(w, pb, i, y, x)
+#define LAG_SQUARE(e, value) square[e] += embedded_square(value)
+#define LAG_HIGH(j) (high + (j) * as.row)
+#include "kernels/runge_kutta.h"
+
+/* All stages but the last, and the result. > 0: a smaller step may help. */
+LAG_ALWAYS_INLINE int embedded_stages(Embedded *w, lag_problem *pb, EmbeddedShape as, double t, double h) {
+  double *k = w->x + EMBEDDED_K1 * as.row, *x = w->x + EMBEDDED_YS * as.row;
+  const double *y = w->x + EMBEDDED_Y0 * as.row;
+  int status = 0;
+  (void)pb, (void)t, (void)x, (void)y; /* euler has no stages */
+  EMBEDDED_STAGES
+  EMBEDDED_RESULT
+  return status;
+}
+
+#ifdef EMBEDDED_ERRORS
+/* Squared norm of the error of the step just computed; NaN where it is not finite. */
+LAG_ALWAYS_INLINE double embedded_error(Embedded *w, const lag_problem *pb, EmbeddedShape as, double h) {
+  const double *y = w->x + EMBEDDED_Y0 * as.row, *x = w->x + EMBEDDED_Y1 * as.row, *k = w->x + EMBEDDED_K1 * as.row;
+  double square[2] = {0, 0};
+  LAG_SQUARES(EMBEDDED_ERRORS)
+  return lag_squared_error(square, pair.late, h, w->per);
+}
+#endif
 
 /* The last stage: projects the end of the step to the constraints, then k := f there. > 0: a smaller step may help. */
 LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape as, double tb, double *k) {
@@ -139,40 +124,29 @@ LAG_ALWAYS_INLINE int embedded_end(lag_problem *pb, Embedded *w, EmbeddedShape a
   return rc ? rc : embedded_call(pb, as.nq, tb, y1, k);
 }
 
-#define EMBEDDED_STAGE(s)                                                 \
-  if (s < last && (*rc = embedded_stage(tab, pb, as, s, t, dt, y0, k, ys)) != 0) { \
-    return NAN;                                                           \
-  }
-
-LAG_ALWAYS_INLINE double embedded_trial(const lag_tableau *tab, int late, Embedded *w, lag_problem *pb, EmbeddedShape as, double t, double tb,
-                                      double dt, int *rc) {
-  int row = as.row, last = tab->stages - 1;
-  double *k = w->x + EMBEDDED_K1 * row, *ys = w->x + EMBEDDED_YS * row;
-  const double *y0 = w->x + EMBEDDED_Y0 * row;
-
-  EMBEDDED_STAGE(1) EMBEDDED_STAGE(2) EMBEDDED_STAGE(3) EMBEDDED_STAGE(4) EMBEDDED_STAGE(5) EMBEDDED_STAGE(6)
-  EMBEDDED_STAGE(7) EMBEDDED_STAGE(8) EMBEDDED_STAGE(9) EMBEDDED_STAGE(10) EMBEDDED_STAGE(11)
-  embedded_result(tab, w, as, dt);
-  if (!tab->order_embedded && lag_not_finite(pb->n, w->x + EMBEDDED_Y1 * row) >= 0) return NAN;
-  if (!late && (*rc = embedded_end(pb, w, as, tb, k + last * row)) != 0) return NAN;
-  if (!tab->order_embedded) return lag_not_finite(pb->n, k + last * row) < 0 ? 0 : NAN;
-  double err = embedded_error(tab, late, w, pb, as, dt);
-  if (err > 1 && pb->model->constraints) err = lag_adaptive_rk_error_along(tab, late, w, pb, tb, dt, err);
-  if (late && (err <= 1 || (w->limits.fixed != 0.0 && !isnan(err)))) {
-    *rc = embedded_end(pb, w, as, tb, k + last * row);
-    if (*rc || lag_not_finite(pb->n, k + last * row) >= 0) return NAN;
-  }
-  return err;
+LAG_ALWAYS_INLINE double embedded_trial(Embedded *w, lag_problem *pb, EmbeddedShape as, double t, double tb, double dt,
+                                        int *rc) {
+  int row = as.row, last = pair.tab->stages - 1;
+  double *end = w->x + EMBEDDED_K1 * row + last * row, err = 0;
+  if ((*rc = embedded_stages(w, pb, as, t, dt)) != 0) return NAN;
+#ifdef EMBEDDED_ERRORS
+  if (!pair.late && (*rc = embedded_end(pb, w, as, tb, end)) != 0) return NAN;
+  err = embedded_error(w, pb, as, dt);
+  if (err > 1 && pb->model->constraints) err = lag_adaptive_rk_error_along(pair.tab, pair.late, w, pb, tb, dt, err);
+  if (!pair.late || !(err <= 1 || (w->limits.fixed != 0.0 && !isnan(err)))) return err;
+#else
+  if (lag_not_finite(pb->n, w->x + EMBEDDED_Y1 * row) >= 0) return NAN;
+#endif
+  *rc = embedded_end(pb, w, as, tb, end);
+  return *rc || lag_not_finite(pb->n, end) >= 0 ? NAN : err;
 }
 
-/* Defines EmbeddedPair.trial for a tableau of at most 13 stages, specialised for one, two and three coordinates. */
-#define EMBEDDED_TRIAL(tableau, late)                                                                     \
-  static double trial(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc)              \
-  {                                                                                                       \
-    switch (pb->nz == 0 ? pb->nq : 0) {                                                                   \
-    case 1: return embedded_trial(&tableau, late, w, pb, (EmbeddedShape){1, 2, EMBEDDED_SMALL}, t, tb, dt, rc); \
-    case 2: return embedded_trial(&tableau, late, w, pb, (EmbeddedShape){2, 4, EMBEDDED_SMALL}, t, tb, dt, rc); \
-    case 3: return embedded_trial(&tableau, late, w, pb, (EmbeddedShape){3, 6, EMBEDDED_SMALL}, t, tb, dt, rc); \
-    default: return embedded_trial(&tableau, late, w, pb, embedded_shape(pb), t, tb, dt, rc);             \
-    }                                                                                                     \
+/* EmbeddedPair.trial, specialised for one, two and three coordinates. */
+static double trial(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc) {
+  switch (pb->nz == 0 ? pb->nq : 0) {
+  case 1: return embedded_trial(w, pb, (EmbeddedShape){1, 2, EMBEDDED_SMALL}, t, tb, dt, rc);
+  case 2: return embedded_trial(w, pb, (EmbeddedShape){2, 4, EMBEDDED_SMALL}, t, tb, dt, rc);
+  case 3: return embedded_trial(w, pb, (EmbeddedShape){3, 6, EMBEDDED_SMALL}, t, tb, dt, rc);
+  default: return embedded_trial(w, pb, embedded_shape(pb), t, tb, dt, rc);
   }
+}

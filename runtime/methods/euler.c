@@ -1,14 +1,15 @@
 /* euler: Euler's method with a fixed step, y1 = y0 + dt f(t0, y0). Oscillations gain energy, which courses show beside
  * symplectic_euler. Steps: adaptive_rk.c, without an error estimate. Source: L. Euler, Institutiones calculi integralis I (1768), paragraph 650. Dense output is the tangent. */
 #include "lag.h"
-#include "methods/embedded_trial.h"
+#include "methods/adaptive_rk.h"
 #include "methods/steps.h"
 
-static const lag_tableau tableau = {.stages = 2, .order = 1, .c = {0, 1}, .a = {{0}, {1}}};
-
-EMBEDDED_TRIAL(tableau, 0)
-
-static const EmbeddedPair pair = {.tab = &tableau, .trial = trial};
+/* The method's tables, and its trial step. */
+static double trial(Embedded *w, lag_problem *pb, double t, double tb, double dt, int *rc);
+static const EmbeddedPair pair = {.tab = &lag_euler_tableau, .trial = trial};
+#define EMBEDDED_STAGES LAG_EULER_STAGES
+#define EMBEDDED_RESULT LAG_EULER_RESULT
+#include "methods/embedded_trial.h"
 
 static const lag_method_option options[] = {LAG_STEP_OPTION};
 

@@ -124,13 +124,26 @@ void lag_implicit_init(void *work, lag_problem *pb, double h, int order, const l
   lag_implicit_reset(work, pb);
 }
 
+/* part[2 LAG_MAX_DRIFTS] := lengths of the substeps a_0, b_0, a_1, ...; a last one of length 0 is
+ * left out. Returns their number. */
+static int substeps_of(const lag_composition *c, double *part) {
+  double before = 0;
+  int n = 2 * c->stages;
+  for (int i = 0; i < c->stages; i++) {
+    part[2 * i] = c->kick[i] - before;
+    part[2 * i + 1] = before = c->drift[i] - part[2 * i];
+  }
+  for (int i = 0; i < n / 2 && c->order > 1; i++) part[n - 1 - i] = part[i]; /* symmetric to the last bit */
+  return n - (part[n - 1] == 0.0);
+}
+
 void lag_implicit_compose(void *work, lag_problem *pb, double h, const lag_composition *c) {
   Implicit *w = work;
   lag_rule rule;
   lag_rule_euler(&rule, 0);
   lag_implicit_init(work, pb, h, c->order, &rule);
   lag_rule_euler(&w->rule[1], 1);
-  w->substeps = lag_composition_substeps(c, w->part);
+  w->substeps = substeps_of(c, w->part);
 }
 
 /* First step from y: p := dL/dv, compensations and histories := 0. */

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lag.h"
-#include "methods/composition.h"
+#include "kernels/composition.h"
 #include "methods/galerkin_rule.h"
 #include "methods/steps.h"
 

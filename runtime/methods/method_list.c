@@ -1,10 +1,16 @@
-/* The list of methods that liblag.a offers, the default first. A new method is entered here and declared in lag.h. */
+/* The list of methods that liblag.a offers, the default first. A new method is entered here and
+ * declared in lag.h; splitting methods are in kernels/steppers.def. */
 #include <string.h>
 
+#include "kernels/steppers.def"
 #include "lag.h"
 
-const lag_method *const lag_methods[] = {&lag_rk45, &lag_dop853, &lag_rk4, &lag_euler, &lag_symplectic_euler, &lag_verlet,
-                                         &lag_verlet4, &lag_verlet6, &lag_verlet8, &lag_variational, &lag_gauss, &lag_radau,
+#define DECLARE(name, general, order, flags, line, words) extern const lag_method lag_##name;
+#define ENTRY(name, general, order, flags, line, words) &lag_##name,
+LAG_SPLITTING_METHODS(DECLARE)
+
+const lag_method *const lag_methods[] = {&lag_rk45, &lag_dop853, &lag_rk4, &lag_euler,
+                                         LAG_SPLITTING_METHODS(ENTRY) &lag_variational, &lag_gauss, &lag_radau,
                                          &lag_taylor_method, &lag_moreau};
 const int lag_nmethods = (int)(sizeof lag_methods / sizeof *lag_methods);
 

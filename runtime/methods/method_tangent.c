@@ -137,9 +137,9 @@ int lag_tangent_along(lag_tangent_path *path, void *work, lag_problem *pb, doubl
       if ((rc = lag_tangent_at(&w, t + tab->c[s] * h, y, NULL)) != 0) return rc;
       lag_tangent_times(&w, Ys, F + s * m);
     }
-    combine(m, stages, tab->e, 1, NULL, F, error);
+    combine(m, stages, tab->errors[0], 1, NULL, F, error);
     double fine = square(m, stages, error, Y, F, dt);
-    combine(m, stages, tab->e3, 1, NULL, F, error);
+    combine(m, stages, tab->errors[1], 1, NULL, F, error);
     double both = fine + 0.01 * square(m, stages, error, Y, F, dt), err = both > 0 ? fabs(h) * fine / sqrt(m * both) / tol : 0;
     if (!isfinite(err)) return lag_step_failed(pb, LAG_ENAN, t);
     if (err <= 1 || part < least) {

@@ -25,14 +25,10 @@ double lag_first_step(lag_problem *pb, const lag_tolerance *tol, int order, doub
                       const double *f0, double *y1, double *f1) {
   const double unit = tol->limits->atol > 0 ? 1 : pb->size[pb->n + 1]; /* of h0, h1, 1/d1 and 1/d2 */
   double d0 = lag_error_norm(pb, tol, y, y), d1 = unit * lag_error_norm(pb, tol, f0, y);
-  double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
+  double h0 = lag_first_euler_step(d0, d1, h_max / unit);
 
-  if (h_max > 0 && h0 * unit > h_max) h0 = h_max / unit;
   for (int i = 0; i < pb->n; i++) y1[i] = y[i] + pb->dir * h0 * unit * f0[i];
   if (lag_rhs(pb, t + pb->dir * h0 * unit, y1, f1) != 0) return h0 * unit * 1e-3;
   for (int i = 0; i < pb->n; i++) f1[i] -= f0[i];
-  double d2 = unit * lag_error_norm(pb, tol, f1, y) / h0, d = d1 > d2 ? d1 : d2;
-  double h1 = d <= 1e-15 ? fmax(1e-6, h0 * 1e-3) : pow(0.01 / d, 1.0 / order);
-  double h = fmin(100 * h0, h1);
-  return unit * (isfinite(h) && h > 0 ? h : h0 * 1e-3);
+  return unit * lag_first_size(order, h0, d1, unit * lag_error_norm(pb, tol, f1, y) / h0);
 }

@@ -54,6 +54,7 @@ static inline double lag_longest_step(const lag_step_limits *l, double t, double
 #else
 static inline double lag_rough_power(double x, double p) { return pow(x, p); }
 #endif
+#include "kernels/step_size.h"
 
 /* Weighted root mean square of x[n], with weights 1/(relative (floor_i + |y_i|)). */
 double lag_error_norm(const lag_problem *pb, const lag_tolerance *tol, const double *x, const double *y);

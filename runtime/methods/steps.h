@@ -15,6 +15,7 @@ typedef struct lag_next_step {
   double dt, tb, tc;
 } lag_next_step;
 
+#ifndef LAG_LANES /* sums are of vectors there */
 /* A step of the size s->h, or to a kick within it. LAG_ESTEP: the step is lost in the rounding of t. */
 static inline int lag_fixed_step_begin(const lag_fixed_step *s, lag_problem *pb, double t, lag_next_step *next) {
   next->dt = s->h * pb->dir;
@@ -32,6 +33,7 @@ static inline int lag_fixed_step_begin(const lag_fixed_step *s, lag_problem *pb,
   }
   return LAG_OK;
 }
+#endif
 
 static inline void lag_fixed_step_end(lag_fixed_step *s, const lag_next_step *next, double *t) {
   s->t0 = *t;

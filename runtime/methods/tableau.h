@@ -9,9 +9,8 @@ typedef struct lag_tableau {
   int order, order_embedded;
   double c[LAG_MAX_STAGES];
   double a[LAG_MAX_STAGES][LAG_MAX_STAGES]; /* a[i][j], j < i; row stages - 1 holds the weights of the result */
-  double e[LAG_MAX_STAGES];                 /* error weights: those of the result minus those of the embedded method */
-  double e3[LAG_MAX_STAGES];                /* weights of a second, coarser error estimate, or zeros */
+  double errors[2][LAG_MAX_STAGES];         /* of the result minus the embedded method; a second estimate, or zeros */
   double d[LAG_MAX_DENSE][LAG_MAX_STAGES];  /* weights of the highest terms of dense output */
 } lag_tableau;
 
-extern const lag_tableau lag_dopri5_tableau, lag_dop853_tableau;
+extern const lag_tableau lag_euler_tableau, lag_rk4_tableau, lag_rk45_tableau, lag_dop853_tableau;

@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "core/rhs.h"
+#include "kernels/taylor_order.h"
 #include "lag.h"
 #include "methods/step_control.h"
 #include "methods/steps.h"
@@ -51,52 +52,21 @@ static void reset(void *work, lag_problem *pb) {
   memset(lag_taylor_array(w, pb, TAYLOR_COMP), 0, (size_t)lag_taylor_width(pb) * sizeof(double));
 }
 
-/* The relative error aimed at in a step, as -log2: a fraction of the tolerance, and far below rounding where the tolerance is near
- * rounding. Errors of one sign add up as the number of steps, rounding as its root. */
-static double target_bits(const lag_problem *pb) {
-  double left = 1.5 * (9 - log2(pb->tol / DBL_EPSILON)); /* extra bits: 10 at 1e-15, 0 at 1e-13 */
-  return TAYLOR_AIM - log2(pb->tol) + (left < 0 ? 0 : left > 10 ? 10 : left);
-}
-
-/* Costs in operations of `next`: of a step besides its series, of an operation of order 0, of a term in the sums over lower orders, and of
- * each product in such a term. Measured for doubles, of which two or four are summed at a time; in lanes, instructions are counted. */
-typedef struct Costs {
-  double step, first, term, product;
-} Costs;
-
-static Costs costs_of(const lag_taylor *ty) {
-#if DBL_MANT_DIG == 53
-  return ty->lanes ? (Costs){800, 0.5, 0, 1.3} : (Costs){400, 0.5, 1, 0.2};
-#else
-  (void)ty;
-  return (Costs){100, 1, 1, 2};
-#endif
-}
-
-/* The order with the most time covered per operation. The rounding of an increment is proportional to the step: where only rounding is
- * left, products count fully, which gives lower orders and shorter steps. In lanes sums are computed for three orders at once. */
+/* In lanes instructions are counted, and sums are computed for three orders at once. */
 static double best_order(const lag_problem *pb) {
-  enum { ROUNDING = 16 };
   const lag_taylor *ty = pb->model->taylor;
-  Costs c = costs_of(ty);
-  double product = pb->tol < ROUNDING * DBL_EPSILON ? fmax(c.product, 1) : c.product;
-  double bits = target_bits(pb), least = HUGE_VAL, term = c.term + product * ty->sums;
-  int best = LEAST_ORDER;
-
-  for (int p = LEAST_ORDER; p <= ty->order; p += ty->lanes ? 3 : 1) {
-    double orders = p * (ty->cost_next + 5.0) + p * (p - 1) / 2.0 * term;
-    double cost = (c.step + c.first * ty->cost_first + orders) * exp2(bits / (p + 1));
-    best = cost < least ? p : best;
-    least = fmin(cost, least);
-  }
-  return best;
+  lag_taylor_costs c = {400, 0.5, 1, 0.2, ty->cost_first, ty->cost_next, ty->sums};
+#if DBL_MANT_DIG != 53
+  c.step = 100, c.first = 1, c.product = 2;
+#endif
+  if (ty->lanes) c.step = 800, c.term = 0, c.product = 1.3;
+  return fmax(LEAST_ORDER, lag_taylor_best_order(&c, pb->tol, DBL_EPSILON, ty->lanes ? 3 : 1, ty->order));
 }
 
 static int init(void *work, lag_problem *pb, const double *opt) {
   Taylor *w = work;
   w->order = fmin(pb->model->taylor->order, opt[OPT_ORDER] > 0 ? opt[OPT_ORDER] : best_order(pb));
-  w->reach = exp2(-target_bits(pb) / (w->order + 1));
-  for (int i = 0; i < TAYLOR_WINDOW; i++) w->per_order[i] = 1 / fmax(w->order - i, 1);
+  w->reach = exp2(-lag_taylor_bits(pb->tol, DBL_EPSILON) / (w->order + 1));
   lag_step_limits_init(&w->limits, pb, opt);
   for (int i = 0; i < pb->model->nu; i++) lag_taylor_follows(w, pb)[i] = isnan(pb->hold[i]) && pb->model->inputs;
   reset(work, pb);
@@ -154,35 +124,20 @@ int lag_taylor_prepare(Taylor *w, lag_problem *pb, double t, const double *y) {
 
 /* Step size by the root test, item 1 above. HUGE_VAL where the last coefficients are zero. */
 static double root_test_step(Taylor *w, lag_problem *pb, const double *y) {
-  int n = pb->n, order = (int)w->order, columns = pb->model->taylor->columns;
+  int n = pb->n, columns = pb->model->taylor->columns;
   const double *x = lag_taylor_series(w, pb, w->now);
-  double *scale = lag_taylor_array(w, pb, TAYLOR_SCALE), root = 0;
+  double *scale = lag_taylor_array(w, pb, TAYLOR_SCALE);
   for (int i = 0; i < n; i++) scale[i] = 1 / (fabs(y[i]) + fabs(x[columns + i]) + lag_tolerance_floor(&w->limits, pb, i));
-  for (int k = order; k > order - TAYLOR_WINDOW && k > 0; k--) {
-    const double *row = x + k * columns;
-    double most = 0;
-    for (int i = 0; i < n; i++) {
-      double size = fabs(row[i]) * scale[i];
-      most = size > most ? size : most;
-    }
-    root = lag_max(most > DBL_MIN ? lag_rough_power(most, w->per_order[order - k]) : 0, root);
-  }
+  double root = lag_taylor_root(x, (int)w->order, columns, n, scale, DBL_MIN);
   return root > 0 ? fabs(w->unit[w->now > 0]) * w->reach / root : HUGE_VAL;
 }
 
-/* Error of a step of dt that ends at Y1, in tolerances: item 2 above. If the polynomial omits c t^(p+1) + ..., its defect at the
- * end is (p + 1) c h^p; the error of q is one order smaller. */
+/* Error of a step of dt that ends at Y1, in tolerances: item 2 above. */
 static double error_of(Taylor *w, lag_problem *pb, double dt) {
-  int nq = pb->nq, m = nq + pb->nz, order = (int)w->order;
-  double per_unit = 1 / w->unit[w->now > 0], worst = 0, h = fabs(dt), to_v = h / (order + 1), to_q = h / (order + 2);
-  const double *slope = lag_taylor_array(w, pb, TAYLOR_SLOPE) + nq, *scale = lag_taylor_array(w, pb, TAYLOR_SCALE), *rates = lag_taylor_series(w, pb, 1 - w->now) + pb->n;
-  for (int i = 0; i < m; i++) {
-    double error = fabs(slope[i] * per_unit - rates[i]) * to_v, size = error * scale[nq + i];
-    double of_q = i < nq ? error * to_q * scale[i] : 0;
-    worst = size > worst ? size : worst;
-    worst = of_q > worst ? of_q : worst;
-  }
-  return worst / pb->tol;
+  const double *rates = lag_taylor_series(w, pb, 1 - w->now) + pb->n;
+  const double *slope = lag_taylor_array(w, pb, TAYLOR_SLOPE), *scale = lag_taylor_array(w, pb, TAYLOR_SCALE);
+  double unit = w->unit[w->now > 0];
+  return lag_taylor_error((int)w->order, pb->nq, pb->nz, unit, fabs(dt), slope, rates, scale) / pb->tol;
 }
 
 /* Y1, COMP1 := the state at t + dt and its compensation. */
@@ -241,7 +196,7 @@ static int step(void *work, lag_problem *pb, double *t, double *y, double t_stop
     pb->bad_t = tb;
     if (w->limits.fixed != 0.0) return cause;
     last = rc ? HUGE_VAL : error;
-    h *= rc ? 0.5 : fmax(0.5, pow(error * (1 << TAYLOR_AIM), -1 / (w->order + 1)));
+    h *= lag_taylor_shrinkage((int)w->order, rc ? -1 : error);
     pb->rejected++;
   }
 }

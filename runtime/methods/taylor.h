@@ -2,15 +2,13 @@
 #pragma once
 
 #include "lag.h"
-#include "methods/step_control.h"
+#include "methods/step_control.h" /* lag_rough_power */
 
-/* Orders of the root test; -log2 of the part of the tolerance that a step is to use. */
-enum { TAYLOR_WINDOW = 5, TAYLOR_AIM = 2 };
+#include "kernels/taylor_size.h"
 
 /* Saved state of the method, doubles only; x holds the arrays named below. */
 typedef struct Taylor {
   double order, reach; /* reach: r h of item 1 above */
-  double per_order[TAYLOR_WINDOW]; /* 1/k of the orders in the root test, from the highest down */
   lag_step_limits limits;
   double ready;     /* 1: series[now] is expanded at t, y */
   double now;       /* 0 or 1: series of the next step; the other one is of the last step */

@@ -1,4 +1,4 @@
-/* symplectic_euler, verlet, verlet4, verlet6, verlet8: kicks and drifts (composition.c). Explicit, in this file, for models whose
+/* symplectic_euler, verlet, verlet4, verlet6, verlet8: kicks and drifts (kernels/splitting.h). Explicit, in this file, for models whose
  * accelerations depend on t and q only, y = [q|v], and for Hamiltonians T(p) + V(q, t), whose states are [q|p]. For other models a composition of
  * symplectic Euler and its adjoint in q and p, by Newton's method (implicit_symplectic.c); two halves make the generalised Stoermer-Verlet method,
  * the Lobatto IIIA-IIIB pair: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. (2006), VI.3 and II.2.2. Enters: t, y; leaves: t + h,
@@ -12,12 +12,23 @@
 #include <math.h>
 #include <string.h>
 
-#include "methods/composition.h"
+#include "kernels/steppers.def"
 #include "methods/implicit_symplectic.h"
 #include "methods/step_interpolant.h"
 #include "methods/steps.h"
 #include "methods/method_tangent.h"
 #include "methods/verlet.h"
+
+/* Number of coordinates, the first half of [q|v] or [q|p]. */
+static int half_of(const lag_problem *pb) { return pb->nq ? pb->nq : pb->n / 2; }
+
+/* A step's instance of kernels/splitting.h: q begins a whole state, a is the second half of its rates. */
+static int forces(lag_problem *pb, double t, const double *q, double *a) {
+  return lag_step_rhs(pb, t, q, a - half_of(pb));
+}
+#define LAG_MODEL lag_problem *pb
+#define LAG_FORCES(t, q, v, a) forces(pb, t, q, a)
+#include "kernels/splitting.h"
 
 static const lag_method_option options[] = {LAG_STEP_OPTION};
 
@@ -59,67 +70,16 @@ static int init(void *work, lag_problem *pb, const double *opt) {
   return LAG_OK;
 }
 
-/* Number of coordinates, the first half of [q|v] or [q|p]. */
-static int half_of(const lag_problem *pb) { return pb->nq ? pb->nq : pb->n / 2; }
-
-/* Adds one kick to the increment of v, or p. */
-static void kick(Verlet *w, const lag_problem *pb, double h, const double *f) {
-  int nq = half_of(pb);
-  double *dv = w->x + VERLET_DY * pb->n + nq;
-  for (int i = 0; i < nq; i++) dv[i] += h * f[nq + i];
-}
-
-/* Adds one drift to the increment of q; YS := the state after it. The rate of q is v, or dT/dp at the new p. */
-static int drift(Verlet *w, lag_problem *pb, double t, double h, const double *y) {
-  int nq = half_of(pb), n = pb->n, rc;
-  const double *comp = w->x + VERLET_COMP * n;
-  double *dy = w->x + VERLET_DY * n, *ys = w->x + VERLET_YS * n;
-  const double *rate = pb->nq ? ys + nq : w->x + VERLET_FS * n;
-  for (int i = 0; i < nq; i++) {
-    ys[nq + i] = y[nq + i] + (comp[nq + i] + dy[nq + i]);
-    ys[i] = y[i] + (comp[i] + dy[i]);
-  }
-  if (!pb->nq && (rc = lag_step_rhs(pb, t, ys, w->x + VERLET_FS * n)) != 0) return rc;
-  for (int i = 0; i < nq; i++) {
-    dy[i] += h * rate[i];
-    ys[i] = y[i] + (comp[i] + dy[i]);
-  }
-  return 0;
-}
-
-/* Y1, COMP1 := y + increments with compensation, for the coordinates or the other half, from i0 on. */
-static void add(Verlet *w, const lag_problem *pb, const double *y, int i0) {
-  int n = pb->n;
-  const double *comp = w->x + VERLET_COMP * n, *dy = w->x + VERLET_DY * n;
-  double *y1 = w->x + VERLET_Y1 * n, *comp1 = w->x + VERLET_COMP1 * n;
-  for (int i = i0; i < i0 + half_of(pb); i++) {
-    comp1[i] = comp[i];
-    y1[i] = lag_compensated_sum(y[i], dy[i], &comp1[i]);
-  }
-}
-
 /* All kicks and drifts of a step, from F0 = f(t, y) to Y1 and F1 = f(tb, Y1). */
 static int compose(const lag_composition *c, Verlet *w, lag_problem *pb, double t, double tb, const double *y, double dt) {
-  int n = pb->n, nq = half_of(pb), last = c->stages - 1, rc;
-  double at = 0, *y1 = w->x + VERLET_Y1 * n, *f = w->x + VERLET_F0 * n;
-  memset(w->x + VERLET_DY * n, 0, (size_t)n * sizeof(double));
-  for (int s = 0; s < c->stages; s++) {
-    kick(w, pb, lag_composition_kick(c, s) * dt, f);
-    if ((rc = drift(w, pb, t + at * dt, lag_composition_drift(c, s) * dt, y)) != 0) return rc;
-    at += lag_composition_drift(c, s);
-    if (s < last) {
-      f = w->x + VERLET_FS * n;
-      if ((rc = lag_step_rhs(pb, t + at * dt, w->x + VERLET_YS * n, f)) != 0) return rc;
-    }
-  }
-  /* Accelerations do not depend on velocities: those of the last stage serve until the last kick. */
-  memcpy(y1 + nq, w->x + VERLET_YS * n + nq, (size_t)nq * sizeof(double));
-  add(w, pb, y, 0);
-  if ((rc = lag_step_rhs(pb, tb, y1, w->x + VERLET_F1 * n)) != 0) return rc;
-  kick(w, pb, lag_composition_kick(c, c->stages) * dt, w->x + VERLET_F1 * n);
-  add(w, pb, y, nq);
-  if (pb->nq) memcpy(w->x + VERLET_F1 * n, y1 + nq, (size_t)nq * sizeof(double));
-  else if ((rc = lag_step_rhs(pb, tb, y1, w->x + VERLET_F1 * n)) != 0) return rc;
+  int n = pb->n, nq = half_of(pb), rc;
+  double *y1 = w->x + VERLET_Y1 * n, *f1 = w->x + VERLET_F1 * n;
+  const lag_splitting s = {.n = nq, .q = y, .v = y + nq, .a = w->x + VERLET_F0 * n + nq, .lost = w->x + VERLET_COMP * n,
+                           .q1 = y1, .v1 = y1 + nq, .a1 = f1 + nq, .lost1 = w->x + VERLET_COMP1 * n, .rate = pb->nq ? y1 + nq : f1,
+                           .dq = w->x + VERLET_DY * n, .dv = w->x + VERLET_DY * n + nq};
+  if ((rc = lag_split(pb, &s, c, t, tb, dt)) != 0) return rc;
+  if (pb->nq) lag_copy(nq, y1 + nq, f1);
+  else if ((rc = lag_step_rhs(pb, tb, y1, f1)) != 0) return rc;
   pb->bad_index = lag_not_finite(n, y1);
   return pb->bad_index >= 0 ? lag_step_failed(pb, LAG_ENAN, tb) : LAG_OK;
 }
@@ -202,37 +162,25 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
   for (int s = 0; s <= c->stages; s++) {
     if ((rc = lag_tangent_at(&all, w->step.t0 + at * dt, y, f)) != 0) return rc;
     lag_tangent_times(&all, Y, F);
-    kick_both(nq, k, lag_composition_kick(c, s) * dt, f, F, y, Y);
+    kick_both(nq, k, c->kick[s] * dt, f, F, y, Y);
     if (s < c->stages) {
       if (!pb->nq && (rc = lag_tangent_at(&all, w->step.t0 + at * dt, y, f)) != 0) return rc;
       if (!pb->nq) lag_tangent_times(&all, Y, F);
-      lag_tangent_add(nq, lag_composition_drift(c, s) * dt, pb->nq ? y + nq : f, y);
-      lag_tangent_add(nq * k, lag_composition_drift(c, s) * dt, pb->nq ? Y + nq * k : F, Y);
-      at += lag_composition_drift(c, s);
+      lag_tangent_add(nq, c->drift[s] * dt, pb->nq ? y + nq : f, y);
+      lag_tangent_add(nq * k, c->drift[s] * dt, pb->nq ? Y + nq * k : F, Y);
+      at += c->drift[s];
     }
   }
   return LAG_OK;
 }
 
-/* name, table for separable models, table for others, order, flags, line for help */
-#define METHODS(X)                                                                                                       \
-  X(symplectic_euler, euler, euler, 1, 0, "semi-implicit Euler: kick, drift; one force a step. DOI 10.1017/S0962492902000144") \
-  X(verlet, verlet, verlet, 2, LAG_METHOD_SYMMETRIC,                                                                     \
-    "Stoermer-Verlet, leapfrog, as kick, drift, kick; one force a step. DOI 10.1103/PhysRev.159.98")                                \
-  X(verlet4, verlet4, any4, 4, LAG_METHOD_SYMMETRIC,                                                                     \
-    "Blanes-Moan SRKN 6b, or S 6; 6 forces a step. DOI 10.1016/S0377-0427(01)00492-7")                                   \
-  X(verlet6, verlet6, any6, 6, LAG_METHOD_SYMMETRIC,                                                                     \
-    "Blanes-Moan SRKN 11b, or S 10; 11 forces a step. DOI 10.1016/S0377-0427(01)00492-7")                                \
-  X(verlet8, verlet8, any8, 8, LAG_METHOD_SYMMETRIC,                                                                     \
-    "Blanes-Casas-Escorihuela B19, or Kahan-Li; 19 forces a step. DOI 10.1016/j.apnum.2022.07.010")
-
-#define DEFINE(id, table, general, p, properties, words)                                                                  \
-  static const VerletMember member_##id = {&lag_compose_##table, &lag_compose_##general};                                       \
+#define DEFINE(id, general, p, properties, line, words)                                                                   \
+  static const VerletMember member_##id = {&lag_compose_##id, &lag_compose_##general};                                       \
   const lag_method lag_##id = {                                                                                           \
       .name = #id,                                                                                                        \
       .order = p,                                                                                                         \
       .dense_order = p,                                                                                                   \
-      .doc = words,                                                                                                       \
+      .doc = line,                                                                                                        \
       .flags = LAG_METHOD_SYMPLECTIC | LAG_METHOD_NO_STATES | LAG_METHOD_VARIATION | LAG_METHOD_SPLITS | LAG_METHOD_NEWTON |\
                LAG_METHOD_CONSTRAINTS | (properties),                                              \
       .noptions = 1,                                                                                                      \
@@ -246,4 +194,4 @@ static int tangent(void *work, lag_problem *pb, double t, int k, double *Y, doub
       .tangent = tangent,                                                                                                 \
       .variant = &member_##id,                                                                                            \
   };
-METHODS(DEFINE)
+LAG_SPLITTING_METHODS(DEFINE)

@@ -1,7 +1,7 @@
 /* Saved state of the Verlet family, for verlet.c and for its steps over lanes (lanes/verlet_lanes.h). */
 #pragma once
 
-#include "methods/composition.h"
+#include "kernels/composition.h"
 #include "methods/steps.h"
 
 /* Saved state of the explicit methods, doubles only; x holds the arrays of n named below, then the path of step_interpolant.h. */
@@ -12,8 +12,8 @@ typedef struct Verlet {
   double x[];
 } Verlet;
 
-/* f = [v|a] at both ends and at a stage; y at both ends and at a stage; increments of y; compensation of y before and after. */
-enum { VERLET_F0, VERLET_F1, VERLET_FS, VERLET_Y0, VERLET_Y1, VERLET_YS, VERLET_DY, VERLET_COMP, VERLET_COMP1, VERLET_NARRAYS };
+/* f = [v|a] and y at both ends; increments of y; compensation of y before and after. */
+enum { VERLET_F0, VERLET_F1, VERLET_Y0, VERLET_Y1, VERLET_DY, VERLET_COMP, VERLET_COMP1, VERLET_NARRAYS };
 
 /* A method of the family: its table for separable models, and the one for others. */
 typedef struct VerletMember {

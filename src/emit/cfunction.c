@@ -6,22 +6,6 @@
 #include "base/num.h"
 
 /* In all texts below LAG_ and lag_ stand for the prefix in upper and lower case. */
-static const char *const logic =
-  "#ifndef LAG_SELECT\n"
-  "#define LAG_SELECT(c, a, b) ((c) ? (LAG_REAL)(a) : (LAG_REAL)(b))\n"
-  "#define LAG_NOT(c) (!(c))\n"
-  "#define LAG_AND(a, b) ((a) && (b))\n"
-  "#define LAG_OR(a, b) ((a) || (b))\n"
-  "#define LAG_ANY(c) (c)\n"
-  "#define LAG_MASK int\n"
-  "#define LAG_PIVOTS (void)0\n"
-  "#define LAG_PIVOT(c) do { if (!(c)) return LAG_ESINGULAR; } while (0)\n"
-  "#define LAG_PIVOTS_STATUS LAG_OK\n"
-  "#endif\n"
-  "#ifndef LAG_LANE\n"
-  "#define LAG_LANE LAG_REAL\n"
-  "#endif\n";
-
 /* Test of a positive pivot. NaN passes in a simulator, which finds and names the expression without a value; a program around a
  * header gets a status for it. */
 static const char *const positive =
@@ -143,7 +127,7 @@ void csupport_expand(const char *text, const char *prefix, const char *lower, St
 }
 
 void csupport_logic(const char *prefix, StrBuf *out) {
-  csupport_expand(logic, prefix, "", out);
+  embedded_section("logic", prefix, "", out);
   csupport_expand(strcmp(prefix, "LAG") == 0 ? positive : positive_of_header, prefix, "", out);
 }
 void csupport_solver(const char *prefix, const char *lower, StrBuf *out) { csupport_expand(solver, prefix, lower, out); }

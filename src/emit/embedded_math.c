@@ -5,19 +5,28 @@
 #include <string.h>
 
 #include "emit/band_matrix_kernel.h" /* static const char *const NAME_kernel[]: lines of runtime/kernels/NAME.h */
+#include "emit/compensated_sum_kernel.h"
+#include "emit/composition_kernel.h"
 #include "emit/dense_output_kernel.h"
 #include "emit/impulses_kernel.h"
 #include "emit/lag_kkt.h"             /* static const char *const NAME[]: and of runtime/include/NAME.h */
 #include "emit/lag_math.h"
 #include "emit/lag_sincos.h"
 #include "emit/locate_kernel.h"
+#include "emit/runge_kutta_kernel.h"
+#include "emit/scalar_kernel.h"
+#include "emit/splitting_kernel.h"
+#include "emit/step_size_kernel.h"
+#include "emit/taylor_order_kernel.h"
+#include "emit/taylor_size_kernel.h"
+#include "emit/runge_kutta_tables_kernel.h"
 
 #define LINES(text) {text, sizeof text / sizeof *text}
 static const struct {
   const char *const *line;
   size_t n;
-} embedded[] = {LINES(lag_math), LINES(lag_sincos), LINES(lag_kkt), LINES(band_matrix_kernel),
-              LINES(dense_output_kernel), LINES(impulses_kernel), LINES(locate_kernel)};
+} embedded[] = {LINES(lag_math),  LINES(lag_sincos), LINES(lag_kkt), LINES(scalar_kernel), LINES(compensated_sum_kernel), LINES(composition_kernel), LINES(splitting_kernel),
+                LINES(runge_kutta_tables_kernel), LINES(runge_kutta_kernel), LINES(step_size_kernel), LINES(taylor_order_kernel), LINES(taylor_size_kernel), LINES(dense_output_kernel), LINES(band_matrix_kernel), LINES(impulses_kernel), LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";
 static int is_marker(const char *line, const char *name) {

@@ -18,7 +18,7 @@ static const char *cased(Arena *a, const char *s, int upper) {
 
 static const char *const header_names[] = {"REAL", "API", "STATIC", "IMPLEMENTATION", "IMPLEMENTED", "H_INCLUDED", "MASK", "LANE",
                                            "LANES", "LIBM", "OWN", "COMPLEX", "ABS", "BITS", "IS_float", "IS_double", "IS_long",
-                                           "FMA", "NO_FMA", "INLINE", "TRY", "WHERE", "FAILED", "STATUS", "EUNMET", "PIVOTS", "PIVOTS_STATUS", "OK", "ABI", "WITH_NAMES", "ESINGULAR", "ESTEP", "NQ", "NZ", "NY", "NC", "NHOLONOMIC", "NP", "NU", "NEV", "NOUT", "NNZ", "NNZ_IDA", "ENEWTON", "ENAN", "EZENO", "ETOLERANCE", "ESIZE", "IS_FINITE", "ECONTACT", "DEGREE", "LOCATE_ROWS", "LOCATE_UNSEEN", "LOCATE_ROUGH", "LOCATE_FINEST", "SURFACE_INFINITE", "SURFACES_DISAGREE", "NCONTACTS", "NSURFACES", "OPEN", "SLIPS", "STICKS",
+                                           "FMA", "NO_FMA", "INLINE", "TRY", "WHERE", "FAILED", "STATUS", "EUNMET", "PIVOTS", "PIVOTS_STATUS", "OK", "ABI", "WITH_NAMES", "ESINGULAR", "ESTEP", "NQ", "NZ", "NY", "NC", "NHOLONOMIC", "NP", "NU", "NEV", "NOUT", "NNZ", "NNZ_IDA", "ENEWTON", "ENAN", "EZENO", "ETOLERANCE", "ESIZE", "IS_FINITE", "ECONTACT", "DEGREE", "LOCATE_ROWS", "LOCATE_UNSEEN", "LOCATE_ROUGH", "LOCATE_FINEST", "SURFACE_INFINITE", "SURFACES_DISAGREE", "MODEL", "MAX_DRIFTS", "RK4_LAST", "RK45_LAST", "DOP853_LAST", "NCONTACTS", "NSURFACES", "OPEN", "SLIPS", "STICKS",
                                            "NFREE", "NNEWTON", "NBAND", "VARIATIONAL_ORDER", "TAYLOR_ORDER", "TAYLOR_COLUMNS", "TAYLOR_WIDTH", "TAYLOR_GROUP",
                                            "TAYLOR_SQUARES", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_STATE", "TAYLOR_PAIRED", "TAYLOR_SQUARED", "TAYLOR_PER_PAIR"};
 
@@ -63,7 +63,7 @@ static const char *const *globals_of(Header *h) {
   uint32_t n = 0;
   for (uint32_t i = 0; i < h->taken.taken.n; i++) all[n++] = h->taken.taken.at[i].name;
   static const char *const functions[] = {"solve", "cubic", "spline", "quintic", "curve", "interval", "params", "state", "step", "input_fn", "sincos", "sincos2", "sincos4", "sin", "cos",
-                                          "lanes", "lanes_mask", "sum", "rates", "gather", "scatter", "held"};
+                                          "lanes", "lanes_mask", "compensated_sum", "rates", "gather", "scatter", "held"};
   for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) all[n++] = arena_printf(h->a, "%s_%s", h->lower, functions[i]);
   all[n++] = "singular";
   return all;

@@ -97,7 +97,7 @@ static const char *const onto =
   " |      LAG_TRY(LAG_WHERE(on, CORRECT));\n"
   " |      for (int i = 0; i < LAG_NQ; i++) {\n"
   " |        LAG_REAL rest = lost ? lost[level*LAG_NQ + i] : zero;\n"
-  " |        const LAG_REAL sum = lag_sum(x[i], d[i], &rest);\n"
+  " |        const LAG_REAL sum = lag_compensated_sum(x[i], d[i], &rest);\n"
   " |        x[i] = LAG_SELECT(on, sum, x[i]);\n"
   " |        if (lost) lost[level*LAG_NQ + i] = LAG_SELECT(on, rest, lost[level*LAG_NQ + i]);\n"
   " |      }\n"
@@ -379,7 +379,8 @@ void header_implementation(const Header *h) {
   csupport_splines(h->u->inputs, h->upper, h->lower, h->out);
   defaults(h);
   param(h);
-  header_failures(h);
+  header_section(h, "failures");
+  header_section(h, "finite");
   start(h);
   inputs(h);
   accel(h);

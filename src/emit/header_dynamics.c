@@ -399,7 +399,7 @@ static const char *const step_path =
   " |    lag_scatter(y, &a->at);\n"
   " |    for (int i = 1; i <= LAG_NY; i++) a->at.lost[i] = zero;\n"
   " |    a->at.lost[0] = a->from->lost[0];\n"
-  " |    a->at.t = lag_sum(a->from->t, x, &a->at.lost[0]);\n"
+  " |    a->at.t = lag_compensated_sum(a->from->t, x, &a->at.lost[0]);\n"
   "c|    const int status = lag_onto(a->p, &a->atNOW_AT, 0);\n"
   "c|    if (status != LAG_OK) return status;\n"
   " |  }\n"
@@ -518,7 +518,7 @@ static void define_path(const Header *h) {
                           {"OF_PATH", h->u->u.n ? ", a->u" : ""}, {"FIRST", dense_outputs[of].first},
                           {"LAST", dense_outputs[of].last}, {NULL, NULL}};
   for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
-    embedded_section(kernels[i], h->upper, h->lower, h->out);
+    header_section(h, kernels[i]);
   const LineChoice choices[] = {{'s', header_has(h, FN_UNTIL_EVENT)}, {0, 0}};
   write_marked(h, header_chosen(h, step_path, choices), w);
 }

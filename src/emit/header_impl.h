@@ -36,7 +36,6 @@ void header_steps_define(const Header *h);
 
 /* header_adaptive.c: the memory of adaptive methods and its filling; what failures do within their trial steps; moves of lanes; the control of their sizes. */
 void header_adaptive_declare(const Header *h);
-void header_failures(const Header *h);
 void header_move(const Header *h);
 void header_adaptive_define(const Header *h, const char *longest);
 
@@ -77,7 +76,10 @@ typedef struct {
   const char *mark, *text;
 } HeaderWord;
 
-/* Appends a template: its lines begin with a mark, q, z or u for models with coordinates, states or inputs, and `|`. HELD, PASS: parameters and arguments for
+/* Appends a section of the runtime's kernels. */
+void header_section(const Header *h, const char *name);
+
+/* Appends a template: its lines begin with a mark, q, z or u for models with coordinates, states or inputs, n for those without inputs, and `|`. HELD, PASS: parameters and arguments for
  * inputs, CALL: arguments of _accel, ARGS: of functions of the state; further words end with {NULL, NULL}. LAG_ and lag_ become the prefix. */
 void header_template(const Header *h, const char *text, const HeaderWord *more);
 

@@ -38,8 +38,8 @@ static const char *const overloads =
   "using lagc_overloads_2::log2;\n"
   "#endif\n";
 
-/* Order and aim of a step. The costs of doubles are those of sums in vectors, as in the runtime. */
-static const char *const begin =
+/* Functions of vectors that kernels/taylor_order.h calls; the largest of the lanes. */
+static const char *const vectors =
   " |\n"
   " |#ifdef LAG_LANES\n"
   " |LAG_LANES_1(exp2) LAG_LANES_1(log2)\n"
@@ -51,31 +51,9 @@ static const char *const begin =
   " |}\n"
   " |#else\n"
   " |static LAG_LANE lag_most(LAG_REAL x) { return x; }\n"
-  " |#endif\n"
-  " |\n"
-  " |/* The relative error aimed at in a step, as -log2: a fraction of the tolerance, and far below rounding where the tolerance is near it. */\n"
-  " |static LAG_REAL lag_taylor_bits(const lag_taylor *w) {\n"
-  " |  const LAG_REAL left = LAG_C(1.5)*(LAG_C(9.0) - LAG_FN(log2)(w->tolerance/w->epsilon)), most = LAG_C(10.0), zero = LAG_C(0.0);\n"
-  " |  return LAG_C(2.0) - LAG_FN(log2)(w->tolerance) + LAG_SELECT(left < zero, zero, LAG_SELECT(left > most, most, left));\n"
-  " |}\n"
-  " |\n"
-  " |/* The order with the most time covered per operation; 0: no order is low enough. */\n"
-  " |static LAG_REAL lag_taylor_best_order(const lag_taylor *w) {\n"
-  " |  const int wide = sizeof(LAG_LANE) <= sizeof(double);\n"
-  " |  const LAG_MASK rounding = w->tolerance < LAG_C(16.0)*w->epsilon;\n"
-  " |  const LAG_REAL per_step = wide ? LAG_C(400.0) : LAG_C(100.0), per_first = wide ? LAG_C(0.5) : LAG_C(1.0), zero = LAG_C(0.0);\n"
-  " |  const LAG_REAL product = wide ? LAG_SELECT(rounding, LAG_C(1.0), LAG_C(0.2)) : LAG_C(2.0), term = LAG_C(1.0) + product*LAG_C(SUMS.0);\n"
-  " |  const LAG_REAL bits = lag_taylor_bits(w);\n"
-  " |  LAG_REAL least = zero, best = zero;\n"
-  " |  for (int k = 6; k <= LAG_TAYLOR_ORDER; k++) {\n"
-  " |    const LAG_REAL of = zero + (LAG_LANE)k, orders = of*(LAG_C(NEXT.0) + LAG_C(5.0)) + of*(of - LAG_C(1.0))/LAG_C(2.0)*term;\n"
-  " |    const LAG_REAL cost = (per_step + per_first*LAG_C(FIRST.0) + orders)*LAG_FN(exp2)(bits/(of + LAG_C(1.0)));\n"
-  " |    const LAG_MASK better = LAG_OR(LAG_NOT(best > zero), cost < least);\n"
-  " |    best = LAG_SELECT(better, of, best);\n"
-  " |    least = LAG_SELECT(better, cost, least);\n"
-  " |  }\n"
-  " |  return best;\n"
-  " |}\n"
+  " |#endif\n";
+
+static const char *const begin =
   " |\n"
   " |LAG_API void lag_taylor_begin(lag_taylor *w, LAG_REAL tolerance, int order) {\n"
   " |  w->tolerance = w->absolute = tolerance;\n"
@@ -84,9 +62,12 @@ static const char *const begin =
   " |  w->epsilon = LAG_C(0.0) + lag_epsilon();\n"
   " |  for (int k = 0; k <= LAG_TAYLOR_ORDER; k++)\n"
   " |    for (int i = 0; i < LAG_TAYLOR_COLUMNS; i++) w->x[k][i] = LAG_C(0.0);\n"
-  " |  if (order <= 0) order = (int)lag_most(lag_taylor_best_order(w));\n"
+  " |  const int wide = sizeof(LAG_LANE) <= sizeof(double); /* sums are in vectors then */\n"
+  " |  const lag_taylor_costs c = {wide ? LAG_COEF(400.0) : LAG_COEF(100.0), wide ? LAG_COEF(0.5) : LAG_COEF(1.0), LAG_COEF(1.0),\n"
+  " |    wide ? LAG_COEF(0.2) : LAG_COEF(2.0), LAG_COEF(FIRST.0), LAG_COEF(NEXT.0), LAG_COEF(SUMS.0)};\n"
+  " |  if (order <= 0) order = (int)lag_most(lag_taylor_best_order(&c, w->tolerance, w->epsilon, 1, LAG_TAYLOR_ORDER));\n"
   " |  w->order = order > 0 && order < LAG_TAYLOR_ORDER ? order : LAG_TAYLOR_ORDER;\n"
-  " |  w->reach = LAG_FN(exp2)(-lag_taylor_bits(w)/(LAG_C(1.0) + (LAG_LANE)w->order));\n"
+  " |  w->reach = LAG_FN(exp2)(-lag_taylor_bits(w->tolerance, w->epsilon)/(LAG_C(1.0) + (LAG_LANE)w->order));\n"
   " |}\n";
 
 static const char *const parts =
@@ -139,39 +120,16 @@ static const char *const series =
   " |\n"
   " |/* The step by the root test of the last coefficients; 0: they are 0. */\n"
   " |static LAG_REAL lag_taylor_size(lag_taylor *w, const LAG_REAL *y) {\n"
-  " |  LAG_REAL root = LAG_C(0.0);\n"
   " |  for (int i = 0; i < LAG_NY; i++) w->scale[i] = LAG_C(1.0)/(LAG_FN(fabs)(y[i]) + LAG_FN(fabs)(w->x[1][i]) + w->absolute/w->tolerance);\n"
-  " |  for (int k = w->order, last = k - 5; k > last && k > 0; k--) {\n"
-  " |    LAG_REAL most = LAG_C(0.0), one;\n"
-  " |    for (int i = 0; i < LAG_NY; i++) {\n"
-  " |      const LAG_REAL size = LAG_FN(fabs)(w->x[k][i])*w->scale[i];\n"
-  " |      most = LAG_SELECT(size > most, size, most);\n"
-  " |    }\n"
-  " |    one = LAG_SELECT(most > LAG_TINY, lag_rough_power(most, LAG_C(1.0)/(LAG_LANE)k), LAG_C(0.0));\n"
-  " |    root = LAG_SELECT(one > root, one, root);\n"
-  " |  }\n"
+  " |  const LAG_REAL root = lag_taylor_root(w->x[0], w->order, LAG_TAYLOR_COLUMNS, LAG_NY, w->scale, LAG_TINY);\n"
   " |  return LAG_SELECT(root > LAG_C(0.0), w->unit*w->reach/root, LAG_C(0.0));\n"
-  " |}\n"
-  " |\n"
-  " |/* The error of a step dt in tolerances, by the defect at its end. */\n"
-  " |static LAG_REAL lag_taylor_error(const lag_taylor *w, LAG_REAL dir, LAG_REAL dt) {\n"
-  " |  const LAG_REAL per_unit = LAG_C(1.0)/(dir*w->unit), h = LAG_FN(fabs)(dt), *const rates = w->end + LAG_NY;\n"
-  " |  const LAG_REAL to_v = h/(LAG_LANE)(w->order + 1), to_q = h/(LAG_LANE)(w->order + 2);\n"
-  " |  LAG_REAL worst = LAG_C(0.0);\n"
-  " |  for (int i = 0; i < LAG_NQ + LAG_NZ; i++) {\n"
-  " |    const LAG_REAL error = LAG_FN(fabs)(w->slope[LAG_NQ + i]*per_unit - rates[i])*to_v, size = error*w->scale[LAG_NQ + i];\n"
-  " |    const LAG_REAL of_q = i < LAG_NQ ? error*to_q*w->scale[i] : LAG_C(0.0);\n"
-  " |    worst = LAG_SELECT(size > worst, size, worst);\n"
-  " |    worst = LAG_SELECT(of_q > worst, of_q, worst);\n"
-  " |  }\n"
-  " |  return worst/w->tolerance;\n"
   " |}\n"
   " |\n";
 
 static const char *const try =
   " |/* A try of a step of the lanes in `busy`. *why: failure of the model at the end of a step that is tried again. */\n"
   " |static int lag_taylor_try(const lag_params *p, lag_state *s, lag_taylor *w, LAG_REAL until, LAG_MASK busy, int *whyHOLDS) {\n"
-  " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), half = LAG_C(0.5), dir = LAG_SELECT(until < s->t, -one, one);\n"
+  " |  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), dir = LAG_SELECT(until < s->t, -one, one);\n"
   " |  const LAG_MASK again = w->step > zero;\n"
   " |  LAG_REAL y[LAG_NY], y1[LAG_NY];\n"
   " |  int status = LAG_OK;\n"
@@ -190,10 +148,11 @@ static const char *const try =
   " |  w->step = LAG_SELECT(busy, zero, w->step);\n"
   " |  LAG_TRY(LAG_STATUS(LAG_NOT(LAG_AND(length > least, h >= LAG_TINY/w->epsilon)), LAG_ESTEP));\n"
   " |  lag_taylor_at(w->order, dt/(dir*w->unit), w->x[0], w->sum, w->slope);\n"
-  " |  for (int i = 0; i < LAG_NY; i++) y1[i] = lag_sum(y[i], w->sum[i], &end.lost[1 + i]);\n"
+  " |  for (int i = 0; i < LAG_NY; i++) y1[i] = lag_compensated_sum(y[i], w->sum[i], &end.lost[1 + i]);\n"
   " |  *why = lag_taylor_order_0(p, end.t, y1, w->end, &w->workGIVEN);\n"
   " |  const LAG_MASK good = LAG_AND(busy, LAG_NOT(LAG_FAILED(status)));\n"
-  " |  const LAG_REAL error = LAG_SELECT(LAG_FAILED(*why), -one, lag_taylor_error(w, dir, dt));\n"
+  " |  const LAG_REAL defect = lag_taylor_error(w->order, LAG_NQ, LAG_NZ, dir*w->unit, LAG_FN(fabs)(dt), w->slope, w->end + LAG_NY, w->scale);\n"
+  " |  const LAG_REAL error = LAG_SELECT(LAG_FAILED(*why), -one, defect/w->tolerance);\n"
   " |  const LAG_MASK same = LAG_AND(LAG_AND(good, again), LAG_AND(w->last >= zero, error > w->last/LAG_C(2.0))); /* it did not shrink with the step */\n"
   " |  w->noise = LAG_SELECT(same, error, w->noise);\n"
   " |  const LAG_MASK taken = LAG_AND(LAG_AND(good, error >= zero), LAG_OR(error <= one, error <= LAG_C(2.0)*w->noise));\n"
@@ -201,10 +160,8 @@ static const char *const try =
   " |  w->noise = LAG_SELECT(taken, w->noise*LAG_C(0.9), w->noise);\n"
   " |  w->unit = LAG_SELECT(LAG_AND(taken, LAG_NOT(clipped)), lag_power_below(length), w->unit);\n"
   " |  if (LAG_ANY(shorter)) {\n"
-  " |    LAG_REAL less = LAG_FN(pow)(error*LAG_C(4.0), LAG_C(-1.0)/(LAG_LANE)(w->order + 1));\n"
-  " |    less = LAG_SELECT(LAG_AND(error >= zero, less > half), less, half);\n"
   " |    w->last = LAG_SELECT(shorter, error, w->last);\n"
-  " |    w->step = LAG_SELECT(shorter, LAG_SELECT(clipped, length, h)*less, w->step);\n"
+  " |    w->step = LAG_SELECT(shorter, LAG_SELECT(clipped, length, h)*lag_taylor_shrinkage(w->order, error), w->step);\n"
   " |  }\n"
   " |  lag_scatter(y1, &end);\n"
   " |  LAG_MOVE(taken, s, &end);\n"
@@ -267,6 +224,9 @@ void header_taylor_define(const Header *h, const char *longest) {
                               {"LAG_TINY", "LAG_C(2.2250738585072014e-308)"}, {NULL, NULL}};
   csupport_expand("\n/* Taylor coefficients along the motion: of a value x(t), x^(k)(t) T^k/k! for orders k = 0, 1, ... */", h->upper, h->lower, h->out);
   emit_taylor_functions(h->u->taylor, &st, h->lower, h->out);
+  header_template(h, vectors, words);
+  header_section(h, "taylor_order");
+  header_section(h, "taylor_size");
   header_template(h, begin, words);
   header_template(h, parts, words);
   header_template(h, series, words);

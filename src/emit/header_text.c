@@ -153,6 +153,8 @@ const char *header_positions(const Header *h, const IrEntry *at, uint32_t n) {
 
 /* ---- templates */
 
+void header_section(const Header *h, const char *name) { embedded_section(name, h->upper, h->lower, h->out); }
+
 const char *const header_held_inputs = "\n * u: the inputs, constant during the step; 0 for the model's formulas.";
 const char *const header_adaptive_lanes =
   "\n * Over lanes: a try in each lane that is not at its `until`. One whose step is too long keeps its state, and has a shorter step in the next\n"
@@ -169,7 +171,7 @@ void header_template(const Header *h, const char *text, const HeaderWord *more) 
   StrBuf b = strbuf(h->a);
   for (const char *s = text; *s;) {
     size_t n = strcspn(s, "\n") + 1;
-    int wanted = *s == 'q' ? u->q.n > 0 : *s == 'z' ? u->z.n > 0 : *s == 'u' ? u->u.n > 0 : 1;
+    int wanted = *s == 'q' ? u->q.n > 0 : *s == 'z' ? u->z.n > 0 : *s == 'u' ? u->u.n > 0 : *s == 'n' ? !u->u.n : 1;
     for (const char *at = s + 2; wanted && at < s + n;) {
       const HeaderWord *w = usual;
       while (w->mark && strncmp(at, w->mark, strlen(w->mark)) != 0) w++;

@@ -90,8 +90,8 @@ static void the_table_has_order_8(void **state)
   int count;
   (void)state;
   for (int i = 0; i < STAGES; i++) {
-    fine[i] = b[i] - tab->e[i];
-    coarse[i] = b[i] - tab->e3[i];
+    fine[i] = b[i] - tab->errors[0][i];
+    coarse[i] = b[i] - tab->errors[1][i];
   }
   for (int i = 0; i < tab->stages + tab->extra; i++) {
     double sum = 0;
@@ -195,8 +195,8 @@ static void the_error_is_that_of_the_book(void **state)
   for (int i = 0; i < 4; i++) {
     double e5 = 0, e3 = 0;
     for (int s = 0; s < STAGES; s++) {
-      e5 += tab->e[s] * k[s][i];
-      e3 += tab->e3[s] * k[s][i];
+      e5 += tab->errors[0][s] * k[s][i];
+      e3 += tab->errors[1][s] * k[s][i];
     }
     fine += e5 * e5;
     coarse += e3 * e3;

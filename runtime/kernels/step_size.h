@@ -1,0 +1,59 @@
+/* step_size.h: sizes of adaptive steps by their errors. E. Hairer, S.P. Norsett, G. Wanner,
+ * Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI 10.1007/978-3-540-78862-1, II.4:
+ * PI controller, first step. An instance has lag_rough_power(x, p), x^p within a few percent
+ * (lag_math.h), over its scalar. */
+#ifndef LAG_STEP_SIZE_H
+#define LAG_STEP_SIZE_H
+
+#include "kernels/scalar.h"
+
+/* ---- step_size ---- */
+
+/* h grows by the factor safety err_old^beta/err^(ratio beta), between least and most. */
+typedef struct lag_controller {
+  int order, ratio;
+  LAG_LANE beta, safety, least, most;
+} lag_controller;
+
+/* Factor from an accepted step to the next. error: its square; retried: not the first try;
+ * *memory: err_old^-beta, 0 where none is known. One power serves the error and its memory. */
+static inline LAG_REAL lag_growth(const lag_controller *c, LAG_REAL error, LAG_MASK retried, LAG_REAL *memory) {
+  const LAG_REAL zero = LAG_C(0.0), one = LAG_C(1.0), tiny = LAG_C(1e-24), floor_of_error = LAG_C(1e-8);
+  const LAG_REAL exponent = -c->beta/LAG_C(2.0);
+  const LAG_REAL power = lag_rough_power(LAG_SELECT(error > tiny, error, tiny), exponent);
+  const LAG_REAL least = zero + c->least, most = LAG_SELECT(retried, one, zero + c->most);
+  LAG_REAL f = zero + c->safety;
+  f /= LAG_SELECT(*memory > zero, *memory, lag_rough_power(floor_of_error, exponent));
+  for (int i = 0; i < c->ratio; i++) f *= power;
+  *memory = LAG_SELECT(error > floor_of_error, power, lag_rough_power(floor_of_error, exponent));
+  f = LAG_SELECT(most < f, most, f);
+  return LAG_SELECT(least > f, least, f);
+}
+
+/* Factor from a rejected step to its next try; an error that is not finite, or negative, halves
+ * it. */
+static inline LAG_REAL lag_shrinkage(const lag_controller *c, LAG_REAL error) {
+  const LAG_REAL zero = LAG_C(0.0), half = LAG_C(0.5), least = zero + c->least;
+  const LAG_REAL less = c->safety*lag_rough_power(error, -half*(LAG_LANE)c->ratio*c->beta);
+  return LAG_SELECT(error >= zero, LAG_SELECT(least > less, least, less), half);
+}
+
+/* First step: an Euler step h0 from d0 and d1, norms of y and its rates f in allowed errors;
+ * longest 0: no limit. */
+static inline LAG_REAL lag_first_euler_step(LAG_REAL d0, LAG_REAL d1, LAG_REAL longest) {
+  const LAG_REAL zero = LAG_C(0.0), tiny = LAG_C(1e-5);
+  const LAG_REAL h0 = LAG_SELECT(LAG_OR(d0 < tiny, d1 < tiny), LAG_C(1e-6), LAG_C(0.01)*d0/d1);
+  return LAG_SELECT(LAG_AND(longest > zero, h0 > longest), longest, h0);
+}
+
+/* Then the step of a method of this order; d2: norm of the change of f in h0, by h0. */
+static inline LAG_REAL lag_first_size(int order, LAG_REAL h0, LAG_REAL d1, LAG_REAL d2) {
+  const LAG_REAL zero = LAG_C(0.0), d = LAG_SELECT(d1 > d2, d1, d2), most = LAG_C(100.0)*h0, little = LAG_C(1e-3)*h0;
+  LAG_REAL h = LAG_SELECT(little > LAG_C(1e-6), little, LAG_C(1e-6));
+  h = LAG_SELECT(d <= LAG_C(1e-15), h, LAG_FN(pow)(LAG_C(0.01)/d, LAG_C(1.0)/(LAG_LANE)order));
+  h = LAG_SELECT(h < most, h, most);
+  return LAG_SELECT(LAG_AND(h > zero, h - h == zero), h, little);
+}
+
+/* ---- end ---- */
+#endif
