@@ -1,23 +1,12 @@
 /* band_matrix.h: linear systems with a band matrix, or a full one: L U with partial pivoting. Includes
- * <math.h> only. Elimination within a band: G.H. Golub, C.F. Van Loan, Matrix Computations, 4th ed. (2013),
+ * scalar.h. Elimination within a band: G.H. Golub, C.F. Van Loan, Matrix Computations, 4th ed. (2013),
  * algorithms 3.4.1 and 4.3.1. Multipliers are not exchanged with later rows: lag_band_matrix_solve repeats
  * the exchanges one by one. lagc copies the section below into headers, with their prefix for LAG_ and
  * lag_. */
 #ifndef LAG_BAND_MATRIX_H
 #define LAG_BAND_MATRIX_H
 
-#include <math.h>
-
-#ifndef LAG_REAL
-#define LAG_REAL double
-#define LAG_REAL_IS_DOUBLE 1
-#endif
-#ifndef LAG_FN
-#define LAG_FN(f) f
-#endif
-#ifndef LAG_C
-#define LAG_C(x) x
-#endif
+#include "kernels/scalar.h"
 
 /* ---- band_matrix ---- */
 

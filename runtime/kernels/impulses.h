@@ -1,4 +1,4 @@
-/* impulses.h: laws of contacts and dry friction by projected Gauss-Seidel. Includes <math.h> only.
+/* impulses.h: laws of contacts and dry friction by projected Gauss-Seidel. Includes scalar.h.
  *
  * Enters: velocities without contacts and friction, response of the motion to each; their laws. Leaves:
  * impulses and velocities that obey all laws: the problem of numeric/complementarity.h with boxes of
@@ -12,21 +12,7 @@
 #ifndef LAG_IMPULSES_H
 #define LAG_IMPULSES_H
 
-#include <math.h>
-
-#ifndef LAG_REAL
-#define LAG_REAL double
-#define LAG_REAL_IS_DOUBLE 1
-#endif
-#ifndef LAG_FN
-#define LAG_FN(f) f
-#endif
-#ifndef LAG_C
-#define LAG_C(x) x
-#endif
-#ifndef LAG_SELECT
-#define LAG_SELECT(c, a, b) ((c) ? (LAG_REAL)(a) : (LAG_REAL)(b))
-#endif
+#include "kernels/scalar.h"
 
 /* ---- friction ---- */
 
