@@ -12,6 +12,11 @@
 #include "kernels/compensated_sum.h"
 #include "kernels/composition.h"
 
+#ifndef LAG_MODEL /* no instance: the text by itself */
+#define LAG_MODEL const void *model
+#define LAG_FORCES(t, q, v, a) ((void)model, (void)(t), (void)(q), (void)(v), (void)(a), 0)
+#endif
+
 /* ---- splitting ---- */
 
 typedef struct lag_splitting {
