@@ -1,11 +1,17 @@
 /* step_size.h: sizes of adaptive steps by their errors. E. Hairer, S.P. Norsett, G. Wanner,
  * Solving Ordinary Differential Equations I, 2nd ed. (1993), DOI 10.1007/978-3-540-78862-1, II.4:
- * PI controller, first step. An instance has lag_rough_power(x, p), x^p within a few percent
- * (lag_math.h), over its scalar. */
+ * PI controller, first step. */
 #ifndef LAG_STEP_SIZE_H
 #define LAG_STEP_SIZE_H
 
 #include "kernels/scalar.h"
+
+/* x^p within a few percent; headers have that of lag_math.h, too. */
+#if defined(LAG_REAL_IS_DOUBLE) || defined(LAG_LANES)
+#include "lag_math.h"
+#else
+static inline LAG_REAL lag_rough_power(LAG_REAL x, LAG_REAL p) { return LAG_FN(pow)(x, p); }
+#endif
 
 /* ---- step_size ---- */
 

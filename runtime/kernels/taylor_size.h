@@ -1,9 +1,9 @@
 /* taylor_size.h: the size of a step by a Taylor series, and its error. Sources:
- * runtime/methods/taylor.c. An instance has lag_rough_power(x, p), as step_size.h. */
+ * runtime/methods/taylor.c. */
 #ifndef LAG_TAYLOR_SIZE_H
 #define LAG_TAYLOR_SIZE_H
 
-#include "kernels/scalar.h"
+#include "kernels/step_size.h"
 
 /* ---- taylor_size ---- */
 

@@ -48,12 +48,6 @@ static inline double lag_longest_step(const lag_step_limits *l, double t, double
   return l->fixed != 0.0 ? HUGE_VAL : longest > 0 ? lag_min(most, longest) : most;
 }
 
-/* x^p, roughly. */
-#if defined(LAG_REAL_IS_DOUBLE) || defined(LAG_LANES)
-#include "lag_math.h"
-#else
-static inline double lag_rough_power(double x, double p) { return pow(x, p); }
-#endif
 #include "kernels/step_size.h"
 
 /* Weighted root mean square of x[n], with weights 1/(relative (floor_i + |y_i|)). */
