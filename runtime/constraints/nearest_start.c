@@ -254,9 +254,9 @@ static int make_room(Start *s, double **block) {
   lag_level *w = &s->level;
   size_t n = (size_t)s->pb->n, nq = (size_t)s->nq, m = (size_t)s->of->n, entries = (size_t)s->of->njacobian;
   const size_t sizes[] = {n, n, n, m, (size_t)s->of->nmass, nq * nq, 2 * (nq * nq + m * nq) + 3 * nq + m + m * m + 9 * m,
-                          nq, nq, nq, nq, nq, nq, nq, m, m, m, m, m, entries};
+                          nq, nq, nq, nq, nq, nq, nq, nq, m, m, m, m, m, entries};
   double **const parts[] = {&s->y, &s->asked, &s->best, &s->other, &s->M, &s->full, &s->kkt,
-                            &w->x, &w->asked, &w->best, &w->from, &w->d, &w->reach, &w->nearest, &w->residual, &w->size, &w->terms_here, &w->slope, &w->has_terms, &w->A};
+                            &w->x, &w->asked, &w->best, &w->from, &w->d, &w->along, &w->reach, &w->nearest, &w->residual, &w->size, &w->terms_here, &w->slope, &w->has_terms, &w->A};
   *block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   s->index = malloc((nq + 2 * entries + 1) * sizeof *s->index);
   if (!*block || !s->index) return 0;

@@ -39,7 +39,7 @@ static void move(lag_level *w, const double *from, double part) {
 
 double lag_level_weight(const lag_level *w, int i) {
   const double open = 1e-3;
-  return w->at == LAG_MOVES_LAST && w->stage(w, i) < LAG_MOVES_LAST ? open : 1;
+  return w->at == LAG_MOVES_LAST && !w->alike && w->stage(w, i) < LAG_MOVES_LAST ? open : 1;
 }
 
 /* The part of the step d that moves no position by more than half of what is typical: far steps lead to other solutions. */
@@ -54,9 +54,18 @@ static double longest_part(lag_level *w) {
   return part;
 }
 
+/* Whether the constraints hold to rounding: of their terms here, or at the request, from which components have come that are near 0. */
+static int arrived(lag_level *w) {
+  double times;
+  if (w->terms(w, w->terms_here) || w->residuals(w, w->residual)) return 0;
+  for (int k = 0; k < w->rows; k++) w->terms_here[k] = fmax(w->terms_here[k], w->has_terms[k] != 0.0 ? w->size[k] : 0);
+  lag_worst_residual(w->rows, w->residual, w->terms_here, w->rounding, &times);
+  return times <= 0x1p10;
+}
+
 /* Damped Gauss-Newton steps from x; returns whether they arrive at the constraints. */
 static int descend(lag_level *w) {
-  double before = merit(w), times;
+  double before = merit(w);
   for (int step = 0; step < MOST_STEPS && before > 0 && w->nfree > 0; step++) {
     double now = HUGE_VAL;
     copy(w, w->from, w->x);
@@ -70,21 +79,26 @@ static int descend(lag_level *w) {
     if (!(now < before * (1 - 1e-6))) break;
     before = now;
   }
-  worst(w, &times);
-  return times <= 0x1p10;
+  return arrived(w);
 }
 
-/* Moves x along the constraints towards `asked`, as long as steps lead nearer. */
+/* Goes a part of the step along[n] from best, and to the constraints; returns whether that is nearer to `asked`. */
+static int is_nearer(lag_level *w, double part, double before) {
+  for (int a = 0; a < w->nfree; a++) w->x[w->free[a]] = w->best[w->free[a]] + part * w->along[a];
+  return descend(w) && w->distance(w) < before * (1 - 1e-14);
+}
+
+/* Moves x along the constraints towards `asked`, as long as steps, or parts of them, lead nearer. */
 static void approach(lag_level *w) {
-  for (int step = 0; step < MOST_STEPS; step++) {
+  const double least = 1e-3;
+  int nearer = 1;
+  for (int step = 0; step < MOST_STEPS && nearer; step++) {
+    double part = 1, before;
     copy(w, w->best, w->x);
-    if (w->residuals(w, w->residual) || w->direction(w, 1, w->d)) break;
-    double before = w->distance(w);
-    move(w, w->best, 1);
-    if (!descend(w) || !(w->distance(w) < before * (1 - 1e-14))) {
-      copy(w, w->x, w->best);
-      break;
-    }
+    if (w->residuals(w, w->residual) || w->direction(w, 1, w->along)) break;
+    before = w->distance(w);
+    while (!(nearer = is_nearer(w, part, before)) && part > least) part /= 2;
+    if (!nearer) copy(w, w->x, w->best);
   }
 }
 
@@ -139,6 +153,12 @@ static int reach_constraints(lag_level *w) {
   if (!w->positions) return w->nfree > 0 && (go_to_place(w, 0), descend(w));
   for (int k = 0; k < TRIES && w->nfree > 0 && !(least < HUGE_VAL); k++) {
     go_to_place(w, k);
+    try_from_here(w, &least);
+  }
+  for (int k = 0; k < AROUND && w->at == LAG_MOVES_LAST && w->nfree <= FEW && !(least < HUGE_VAL); k++) {
+    w->scales(w, w->asked, w->reach);
+    for (int i = 0; i < w->n; i++) w->nearest[i] = w->asked[i] + 3 * w->reach[i]; /* an angle may have to turn round */
+    go_around(w, k);
     try_from_here(w, &least);
   }
   if (!(least < HUGE_VAL)) return 0;
@@ -233,11 +253,14 @@ lag_start_kind lag_consistent_state(lag_level *w, int *constraint) {
   if (!isfinite(merit(w))) return refuse(w, LAG_START_NONE, constraint);
   if (off <= 2) return check_derivatives(w, 1, constraint);
   if (w->exactly && !(off <= sqrt(w->rounding) / w->rounding)) return refuse(w, LAG_START_BROKEN, constraint);
+  w->alike = 0;
   for (int stage = LAG_MOVES_FIRST; stage <= LAG_MOVES_LAST; stage++) {
     int before = w->nfree;
     choose_free(w, stage);
     if ((stage == LAG_MOVES_FIRST || w->nfree != before) && reach_constraints(w)) return check_derivatives(w, 1, constraint);
   }
+  w->alike = 1;
+  if (reach_constraints(w)) return check_derivatives(w, 1, constraint);
   copy(w, w->x, w->asked);
   descend(w); /* as near as possible, for the message */
   lag_start_kind kind = check_derivatives(w, 0, constraint);

@@ -36,15 +36,15 @@ struct lag_level {
   int (*is_contact)(const lag_level *w, int k);   /* whether constraint k is a contact, which may have no derivatives */
 
   double *x, *asked;                        /* [n] the state; as requested */
-  double *best, *from, *d, *reach, *nearest; /* [n] */
+  double *best, *from, *d, *along, *reach, *nearest; /* [n] */
   double *residual, *size, *terms_here, *slope; /* [rows] at x; sizes of terms at the request, by which residuals are divided */
   double *has_terms;                        /* [rows] 1: the constraint has terms of finite size */
   double *A;                                /* [entries] */
-  int *free, nfree, at;                     /* [n] components that may move; the stage at hand */
+  int *free, nfree, at, alike;              /* [n] components that may move; the stage at hand; 1: all cost alike */
 };
 
 /* Factor of component i in the metric of `direction` and `distance`, on each side of M: where components that somebody set have to move, those that nobody set
- * are no request, and cost next to nothing. */
+ * are no request, and cost next to nothing; unless no state is found so. */
 double lag_level_weight(const lag_level *w, int i);
 
 /* Brings w->x, the requested state, onto the constraints: components that nobody set move first; then to the nearest state in the mass metric, the nearest of

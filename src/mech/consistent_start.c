@@ -238,7 +238,7 @@ static lag_level level_new(Finder *f) {
   lag_level w = {.context = f, .n = (int)n, .entries = (int)A->n, .row = row, .col = col, .exactly = f->e->m->scene.exactly.end != 0, .rounding = DBL_EPSILON,
                  .residuals = residuals, .jacobian = jacobian, .terms = terms, .scales = scales, .direction = direction, .distance = distance,
                  .stage = stage, .is_contact = is_contact, .A = ARENA_ARRAY(a, long double, A->n + 1), .free = ARENA_ARRAY(a, int, n + 1)};
-  long double **const by_component[] = {&w.x, &w.asked, &w.best, &w.from, &w.d, &w.reach, &w.nearest}, **const by_row[] = {&w.residual, &w.size, &w.terms_here, &w.slope, &w.has_terms};
+  long double **const by_component[] = {&w.x, &w.asked, &w.best, &w.from, &w.d, &w.along, &w.reach, &w.nearest}, **const by_row[] = {&w.residual, &w.size, &w.terms_here, &w.slope, &w.has_terms};
   for (size_t i = 0; i < sizeof by_component / sizeof *by_component; i++) *by_component[i] = ARENA_ARRAY(a, long double, n + 1);
   for (size_t i = 0; i < sizeof by_row / sizeof *by_row; i++) *by_row[i] = ARENA_ARRAY(a, long double, m + 1);
   for (uint32_t k = 0; k < A->n; k++) row[k] = (int)A->at[k].row, col[k] = (int)A->at[k].col;

@@ -72,7 +72,7 @@ static int check_contact(Builder *b, const AstStmt *st, Name name, const Value *
     return diag_error(b->diags, span, "the gap of the contact `%s` contains %s" HELP
                       "a gap is a distance between positions: `contact floor: y >= 0, restitution = 0.8`", name, kinds & 1u << SYM_VEL ? "a velocity" : "no coordinate");
   double value = expr_is_num(b->g, e->e) ? num_value(expr_number(b->g, e->e)) : 0.5;
-  const unsigned of_impact = 1u << SYM_PARAM | 1u << SYM_CONST | 1u << SYM_COORD | 1u << SYM_VEL;
+  const unsigned of_impact = 1u << SYM_PARAM | 1u << SYM_CONST | 1u << SYM_COORD | 1u << SYM_VEL | 1u << SYM_INPUT | 1u << SYM_TIME;
   if (expr_kinds(b->g, e->e) & ~of_impact || value < 0 || value > 1)
     return diag_error(b->diags, bounce, "a coefficient of restitution is a number from 0 to 1, made of parameters, and of positions and velocities at the impact");
   if (expr_is_constant(b->g, e->e)) add_size(b, e->e, arena_printf(b->arena, "the contact `%s` has a restitution", name), bounce, 1);
