@@ -210,10 +210,11 @@ int lag_contacts_strike(ContactSet *w, const double *e) {
 
 /* ---- contacts that rest */
 
-/* The state after dt of the flow with all contacts open, in two equal steps. */
+/* The state after dt of the flow along the surfaces without friction, in two equal steps. */
 static int flow_on(ContactSet *w, double dt) {
   lag_sim *s = w->sim;
   lag_contacts_close_only(w, 0, -1);
+  for (int a = 0; a < w->n; a++) lag_contact_set_closed(s, w->of[a], w->active[a]);
   memcpy(w->test, w->y, (size_t)s->pb.n * sizeof *w->test);
   for (int half = 0; half < 2; half++) {
     if (lag_rhs(&s->pb, s->run->t, w->test, s->ya)) return LAG_ERETRY;

@@ -73,12 +73,12 @@ static int fail_zeno(lag_sim *s, int k) {
                   "which comes to rest", s->scene->model->ev[k].name, s->interval[k], LAG_TEXT(s->run->t));
 }
 
-/* Fails where restarts, the last of which is event k, do not advance the time. A series of ever shorter intervals has an end of its own. */
-static int watch_restarts(lag_sim *s, int k) {
+/* Fails where restarts, the last of which is event k, do not advance the time. A series of ever shorter intervals ends by itself, in the time `rest`. */
+static int watch_restarts(lag_sim *s, int k, double rest) {
   const lag_model *m = s->scene->model;
-  int series = s->shorter[k] > 2 && s->interval[k] > 64 * DBL_EPSILON * fabs(s->run->t), which = k - m->nev;
+  int which = k - m->nev;
   double led;
-  if (!lag_restarts_stall(s, &led) || series) return LAG_OK;
+  if (!lag_restarts_stall(s, &led) || rest < 1000 * led) return LAG_OK;
   if (which >= 0) return lag_switch_fail_zeno(s, which);
   const lag_contact *c = lag_contact_of(m, k);
   if (c && c->impact == k && !c->is_tangent && !c->conditional && !lag_contact_is_closed(s, c))
@@ -146,7 +146,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
     rc = lag_settle_constraints(s, s->yb, of && !moved ? NULL : who, k, ends, moved + elsewhere, rounding_of_events(s));
   }
   if (rc == 0 && contact && rest < HUGE_VAL && lag_contact_is_closed(s, contact)) s->skipped[k] = fmax(s->skipped[k], rest);
-  if (rc == 0 && !kick) rc = watch_restarts(s, k);
+  if (rc == 0 && !kick) rc = watch_restarts(s, k, rest);
   if (rc) return rc;
   int before = *changed;
   *changed |= of != NULL; /* the set of closed contacts may be another */
@@ -205,7 +205,8 @@ static int meet_switch(lag_sim *s, int k) {
   double since = s->count[k] > 0 ? fabs(r->t - s->last[k]) : HUGE_VAL;
   s->last[k] = r->t;
   s->count[k]++;
-  int which = k - s->scene->model->nev, rc = is_zeno(s, k, series_rest(s, k, since), 0) ? lag_switch_fail_zeno(s, which) : watch_restarts(s, k);
+  double rest = series_rest(s, k, since);
+  int which = k - s->scene->model->nev, rc = is_zeno(s, k, rest, 0) ? lag_switch_fail_zeno(s, which) : watch_restarts(s, k, rest);
   if (rc) return rc;
   lag_switch_meet(s, which);
   return lag_tangent_meet(s, k);

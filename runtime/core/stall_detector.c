@@ -107,13 +107,13 @@ static int hangs_at(lag_sim *s, double t, double led) {
   return k < s->scene->model->nmodes ? -1 : k;
 }
 
-/* Whether `most` steps or restarts, of `all`, hardly advanced the time from *since to t; *led := by how much. */
+/* Whether `most` steps or restarts, of `all`, hardly advanced the time from *since to t; *led := by how much. `never`: of the whole run. */
 static int crawls(const lag_sim *s, double *since, double t, double most, double all, double *led) {
-  const double pace = 1e-5, mean = 1e-2;
+  const double pace = 1e-5, mean = 1e-2, never = 1e-9;
   double gone = fabs(t - s->scene->t0);
   *led = fabs(t - *since);
   *since = t;
-  return *led <= pace * gone && *led * all <= mean * most * gone;
+  return *led <= never * s->pb.span || (*led <= pace * gone && *led * all <= mean * most * gone);
 }
 
 int lag_restarts_stall(lag_sim *s, double *led) {

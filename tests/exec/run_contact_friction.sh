@@ -308,6 +308,93 @@ split() {
 }
 check "a run in two parts is the same run" split
 
+# ---- rails: a crank, a rod of inertia and a slider between two rails without play, in the coordinate and the constraint formulation. Values: classical Runge-Kutta of the
+# one-coordinate equation with friction mu |N|, steps of 2e-5 s (5e-4 s without friction)
+model rails <<'END_OF'
+model rails
+coord a [rad], y [m]
+param r = 0.1 [m] > 0, l = 0.25 [m] > 0, I = 0.01 [kg*m^2] > 0, m = 1.5 [kg] > 0, mu = 0.1 >= 0
+let b = asin((r*sin(a) - y)/l)
+let x = r*cos(a) + l*cos(b)
+kinetic = I/2*a'^2 + m/2*(x'^2 + y'^2) + 1e-3 [kg*m^2]*b'^2
+contact low: y >= 0, restitution = 0, friction = mu, slip = x'
+contact high: -y >= 0 [m], restitution = 0, friction = mu, slip = x'
+scene s { start a = 1, a' = 5 [rad/s]; span 2 [s]; output lambda(low), lambda(high) every 0.01 [s] }
+END_OF
+# inclined by 0.5 rad, off the origin, by two constraints: gaps are differences of terms that are not 0
+model inclined <<'END_OF'
+model inclined
+coord a [rad], b [rad], x [m], y [m]
+param r = 0.1 [m] > 0, l = 0.25 [m] > 0, I = 0.01 [kg*m^2] > 0, m = 1.5 [kg] > 0, mu = 0.1 >= 0, h = 0.3 [m], al = 0.5 [rad], g = 0 [m/s^2]
+let n = y*cos(al) - x*sin(al)
+let s = y*sin(al) + x*cos(al)
+let b0 = asin(r*sin(1)/l)
+let s0 = r*cos(1) + l*cos(b0)
+let b1 = 5 [rad/s]*r*cos(1)/(l*cos(b0))
+let s1 = -5 [rad/s]*r*sin(1) - l*sin(b0)*b1
+kinetic = I/2*a'^2 + m/2*(x'^2 + y'^2) + 1e-3 [kg*m^2]*b'^2
+potential = m*g*y
+constraint px: s = r*cos(a) + l*cos(b)
+constraint py: n = r*sin(a) - l*sin(b) + h
+contact low: n >= h, restitution = 0, friction = mu, slip = s'
+contact high: h - n >= 0 [m], restitution = 0, friction = mu, slip = s'
+scene s { start a = 1, b = b0, x = s0*cos(al) - h*sin(al), y = s0*sin(al) + h*cos(al), a' = 5, b' = b1, x' = s1*cos(al), y' = s1*sin(al); span 2 [s]; output lambda(low), lambda(high) every 0.01 [s] }
+END_OF
+least_prestress() { awk -F, 'NR > 1 && ($2 < -1e-9 || $3 < -1e-9 || ($2 > 1e-9 && $3 > 1e-9)) { print; bad = 1 } END { exit bad || NR < 100 }' "$TMP/csv"; }
+soon() { timeout 3 "$LAGC" run "$TMP/$1.lag" s --quiet "mu=$2" --method "$3" -o "$TMP/csv" --json >"$TMP/json" 2>&1 || { cat "$TMP/json"; return 1; }; }
+for name in rails inclined; do # 100 times the tolerance 1e-9 of a, which is 13
+  check "$name: as fast as without them" soon $name 0 dop853
+  check "the same motion" near "$(final a)" 13.28438136329 1e-6
+  check "with friction" soon $name 0.1 dop853
+  check "mu |N|" near "$(final a)" 12.906422612614756 1e-6
+  check "one rail presses at a time" least_prestress
+  check "by moreau" soon $name 0.1 'moreau(step=1e-3)'
+  check "error of order 2, near 2e-5" near "$(final a)" 12.906422612614756 1e-4
+  check "one rail presses here, too" least_prestress
+done
+
+# ---- a tube in a tube, two pairs of guides d apart, pulled e beside its axis: each pair presses with F e/d, so it jams from mu = d/(2 e) on
+model telescope <<'END_OF'
+model telescope
+coord x [m], y [m], th [rad]
+param d = 0.2 [m] > 0, e = 0.3 [m], F = 10 [N], mu = 0.2 >= 0
+kinetic = 1 [kg]/2*(x'^2 + y'^2) + 0.01 [kg*m^2]/2*th'^2
+force x = F
+force th = -F*e
+let y1 = y - d/2*sin(th)
+let y2 = y + d/2*sin(th)
+contact l1: y1 >= 0, restitution = 0, friction = mu, slip = x'
+contact u1: -y1 >= 0 [m], restitution = 0, friction = mu, slip = x'
+contact l2: y2 >= 0, restitution = 0, friction = mu, slip = x'
+contact u2: -y2 >= 0 [m], restitution = 0, friction = mu, slip = x'
+scene s { span 1 [s] }
+END_OF
+for mu in 0.3 0.33 0.34 0.5; do
+  check "a telescope, mu = $mu" soon telescope $mu dop853
+  check "slides by (1 - 2 mu e/d) F, or jams" near "$(final x)" "$(calc "$mu < 1/3 ? 5*(1 - 3*$mu) : 0")" 1e-12
+done
+
+# ---- dead centres: a crank pushes a block over a floor. There the rod implies the slip, and it turns by its own acceleration. Values: Runge-Kutta of the
+# one-coordinate equation, steps of 1e-5 s
+model dead <<'END_OF'
+model dead
+coord a [rad], x [m], y [m]
+param r = 0.1 [m] > 0, l = 0.25 [m] > 0, I = 0.01 [kg*m^2] > 0, m = 1.5 [kg] > 0, mu = 0.1 >= 0, g = 9.81 [m/s^2] > 0
+kinetic = I/2*a'^2 + m/2*(x'^2 + y'^2)
+potential = m*g*y
+force a = 0.3 [N*m] - 0.02 [N*m*s/rad]*a'
+constraint rod: hypot(x - r*cos(a), y - r*sin(a)) = l
+contact floor: y >= 0, restitution = 0, friction = mu, slip = x'
+scene s { start a = 0, x = r + l, a' = 5 [rad/s]; span 2 [s]; output a every 0.01 [s] }
+scene rest { like s; start a = atan2(0, -1), x = l - r, a' = 0; span 0.7 [s] }
+END_OF
+check "over dead centres" soon dead 0.1 dop853
+check "as one coordinate" near "$(final a)" 15.449847487022 1e-7
+check "moreau" soon dead 0.1 'moreau(step=1e-3)'
+check "to its error of order 2" near "$(final a)" 15.449847487022 1e-4
+check "from rest at one" run dead rest
+check "it leaves it" near "$(final a)" 6.0327733454941 1e-6
+
 # ---- refusals
 for method in verlet variational symplectic_euler gauss taylor; do
   check "refused: $method" refuses 2 "method $method cannot follow contacts with friction (plane); rk45, dop853, radau, rk4 and moreau can" slope s --method $method
