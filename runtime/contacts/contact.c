@@ -575,6 +575,8 @@ int lag_contact_arm(lag_sim *s, const double *g) {
     if (g[k] <= noise) { /* no sign yet; below -noise the event fires */
       s->sign[k] = 0;
       s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* with a larger factor it would grow at each impact */
+    } else if (k == c->release && !c->conditional) { /* its force before may be that of an open contact */
+      s->sign[k] = 1;
     }
   }
   return rc;
