@@ -20,7 +20,6 @@
 #include "contacts/contact_set.h"
 #include "core/rhs.h"
 #include "numeric/complementarity.h"
-#include "numeric/magnitudes.h"
 #include "numeric/workspace.h"
 
 const lag_contact *lag_contact_of(const lag_model *m, int event) {
@@ -111,17 +110,6 @@ static int term_sizes(lag_sim *s, const double *y, int holonomic, double *size, 
   return rc;
 }
 
-/* Raises the sizes of slip velocities to those at a state whose positions are displaced as well. */
-static void displace_slips(ContactSet *w) {
-  const lag_model *m = w->sim->scene->model;
-  const lag_problem *pb = &w->sim->pb;
-  memcpy(w->test, w->y, (size_t)pb->n * sizeof *w->test);
-  for (int i = 0; i < 2 * pb->nq; i++) w->test[i] += lag_uneven(i) * lag_typical_magnitude(pb, w->y, i < pb->nq, i % pb->nq);
-  int rc = lag_contacts_rates(w, w->test, w->ahead);
-  for (int i = 0; i < m->ncontacts && rc == 0; i++)
-    if (m->contacts[i].is_tangent && isfinite(w->ahead[i])) w->rate_size[i] = fmax(w->rate_size[i], fabs(w->ahead[i]));
-}
-
 /* *w := all contacts at the state y, which stays the caller's; w->of has room for all, n is 0. */
 static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
   const lag_model *m = s->scene->model;
@@ -141,7 +129,6 @@ static int evaluate_contacts(lag_sim *s, double *y, ContactSet *w) {
   for (int i = 0; i < m->ncontacts; i++) w->gap_size[i] = m->contacts[i].is_tangent ? 1 : w->g[m->contacts[i].constraint];
   rc = rc ? rc : term_sizes(s, y, 0, w->g, w->c);
   for (int i = 0; i < m->ncontacts; i++) w->rate_size[i] = w->g[m->contacts[i].constraint];
-  if (rc == 0 && m->contact_laws) displace_slips(w);
   rc = rc ? rc : lag_inputs(pb, t);
   if (rc == 0 && m->contact_laws) rc = lag_contact_laws(s, y, w->law);
   rc = rc ? rc : m->constraints->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->A, w->mass, pb->work);
@@ -189,16 +176,6 @@ static double restitution(ContactSet *w, int i) {
   return to > 0 ? lag_contact_restitution(&s->pb, s->run->t, w->y, i, w->rate[i], speed, w->d, w->A, s->yc, w->test) : NAN;
 }
 
-/* Whether row i is large enough at this state to move anything: at a dead centre the lever of a slip is rounding of what it is elsewhere. */
-static int has_lever(ContactSet *w, int i) {
-  const lag_model *m = w->sim->scene->model;
-  const lag_constraints *of = m->constraints;
-  double lever = 0;
-  for (int e = 0; e < of->njacobian; e++)
-    if (of->jacobian[e].row == m->contacts[i].constraint) lever += fabs(w->A[e]) * lag_typical_magnitude(&w->sim->pb, w->y, 0, of->jacobian[e].col);
-  return lever > lag_dependent_row * w->rate_size[i];
-}
-
 /* Computes W for the contacts of[n]. */
 static int find_responses(ContactSet *w) {
   size_t n = (size_t)w->rows;
@@ -209,7 +186,7 @@ static int find_responses(ContactSet *w) {
   w->impulse = w->rhs + n;
   w->scale = w->impulse + n;
   for (int a = 0; a < w->rows; a++) {
-    double to = has_lever(w, w->of[a]) ? lag_contacts_response(w, w->of[a]) : 0;
+    double to = lag_contacts_response(w, w->of[a]);
     if (!isfinite(to)) return lag_contacts_no_values(w, w->of[a]);
     for (int b = 0; b < w->rows; b++) w->response[b * w->rows + a] = to * change_of_rate(w, w->of[b], w->d);
     w->response[a * w->rows + a] = to;
