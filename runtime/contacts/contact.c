@@ -71,9 +71,9 @@ static int make_room(ContactSet *w) {
   const lag_model *m = w->sim->scene->model;
   const lag_constraints *of = m->constraints;
   size_t p = (size_t)m->ncontacts, n = (size_t)of->n, nq = (size_t)m->nq;
-  double **const parts[] = {&w->gap, &w->rate, &w->gap_size, &w->rate_size, &w->g, &w->c, &w->r, &w->d, &w->force, &w->test, &w->events,
+  double **const parts[] = {&w->gap, &w->rate, &w->gap_size, &w->rate_size, &w->g, &w->c, &w->r, &w->d, &w->force, &w->test, &w->events, &w->ahead,
                             &w->A, &w->mass, &w->law, &w->side};
-  const size_t sizes[] = {p, p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)(m->nev + m->nmodes), (size_t)of->njacobian, (size_t)of->nmass, 3 * p, p};
+  const size_t sizes[] = {p, p, p, p, n, n, n, nq, nq, (size_t)w->sim->pb.n, (size_t)(m->nev + m->nmodes), p, (size_t)of->njacobian, (size_t)of->nmass, 3 * p, p};
   w->block = lag_workspace(sizeof sizes / sizeof *sizes, parts, sizes);
   w->of = calloc(p, sizeof *w->of);
   w->at = calloc(p, sizeof *w->at);
@@ -198,6 +198,8 @@ static int find_responses(ContactSet *w) {
     for (int b = 0; b < w->rows; b++) w->response[b * w->rows + a] = to * change_of_rate(w, w->of[b], w->d);
     w->response[a * w->rows + a] = to;
   }
+  for (int k = 0; k < w->rows * w->rows; k++) /* what constraints imply, others do not move either */
+    if (!(w->response[k / w->rows * (w->rows + 1)] > 0 && w->response[k % w->rows * (w->rows + 1)] > 0)) w->response[k] = 0;
   return LAG_OK;
 }
 
@@ -558,6 +560,8 @@ int lag_contact_arm(lag_sim *s, const double *g) {
     if (g[k] <= noise) { /* no sign yet; below -noise the event fires */
       s->sign[k] = 0;
       s->noise[k] = fmax(noise, fabs(g[k]) * (1 + 0x1p-20)); /* with a larger factor it would grow at each impact */
+    } else if (k == c->release && !c->conditional) { /* its force before may be that of an open contact */
+      s->sign[k] = 1;
     }
   }
   return rc;

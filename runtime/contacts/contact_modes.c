@@ -18,7 +18,8 @@ typedef struct Trial {
   int held[2 * LAG_MOST_TOUCHES]; /* rows whose acceleration is 0 */
   double first_size[2 * LAG_MOST_TOUCHES];
   int edge[LAG_MOST_TOUCHES];
-  int may_wedge; /* forces that only their own size bounds */
+  int may_wedge; /* forces that only their own size bounds, and prestress */
+  unsigned char prestress[1 << LAG_MOST_TOUCHES]; /* [sets of closed contacts, as bits] some of them can press on each other without any load */
   int breaks;    /* contacts at rest that slip although static friction may hold them */
   double *x, *A, *a, *first, *force, *size; /* [rows], [rows rows], accelerations, those of the first motion found, forces of it, sizes of the terms */
 } Trial;
@@ -169,8 +170,45 @@ static int count_breaks(const Trial *t) {
   return n;
 }
 
+/* Whether contacts a and others in `set` press on each other, each of them needed: forces p > 0 without a load, as on both sides of a rail. */
+static int is_ring(const Trial *t, int set, int a) {
+  double A[LAG_MOST_TOUCHES * LAG_MOST_TOUCHES], p[LAG_MOST_TOUCHES], left = 1;
+  int of[LAG_MOST_TOUCHES], n = 0;
+  for (int i = 0; i < t->n; i++) {
+    if (set >> i & 1 && !(response(t, i) > 0)) return 0;
+    if (i != a && set >> i & 1) of[n++] = i;
+  }
+  for (int k = 0; k < n * n; k++) A[k] = t->W[of[k / n] * t->rows + of[k % n]] * scale(t, of[k / n]) * scale(t, of[k % n]);
+  for (int k = 0; k < n; k++) p[k] = -t->W[of[k] * t->rows + a] * scale(t, of[k]) * scale(t, a);
+  if (n == 0 || lag_solve_dense((size_t)n, 1, A, p)) return 0;
+  for (int k = 0; k < n; k++) {
+    if (!(p[k] > alike)) return 0;
+    left += p[k] * t->W[a * t->rows + of[k]] * scale(t, of[k]) * scale(t, a);
+  }
+  return fabs(left) <= lag_dependent_row;
+}
+
+static void find_prestress(Trial *t) {
+  for (int set = 1; set < 1 << t->n; set++) {
+    int first = 0, some = 0;
+    for (int i = t->n - 1; i >= 0; i--) {
+      if (!(set >> i & 1)) continue;
+      first = i;
+      some |= t->prestress[set & ~(1 << i)];
+    }
+    t->prestress[set] = some || is_ring(t, set, first);
+  }
+}
+
+/* Whether closed contacts can press on each other by a force that nothing determines; the least is none: one of them is open. */
+static int has_prestress(const Trial *t) {
+  int set = 0;
+  for (int i = 0; i < t->n; i++) set |= (t->of[i].mode != LAG_CONTACT_OPEN) << i;
+  return t->prestress[set];
+}
+
 static int find_motion(Trial *t) {
-  if (count_breaks(t) != t->breaks) return NONE;
+  if (count_breaks(t) != t->breaks || (!t->may_wedge && has_prestress(t))) return NONE;
   for (int i = 0; i < t->n; i++)
     if (!may_be(&t->of[i])) return NONE;
   if (!solve(t)) return NONE;
@@ -253,9 +291,10 @@ static int try_breaks(Trial *t, lag_touch *found) {
 }
 
 int lag_contact_modes(int n, lag_touch *of, int rows, const double *W, const double *pull, double *x, double *room) {
-  Trial t = {n, rows, of, W, pull, {0}, {0}, {0}, 0, 0, x, room, room + rows * rows, room + rows * (rows + 1), room + rows * (rows + 2), room + rows * (rows + 3)};
+  Trial t = {n, rows, of, W, pull, {0}, {0}, {0}, 0, {0}, 0, x, room, room + rows * rows, room + rows * (rows + 1), room + rows * (rows + 2), room + rows * (rows + 3)};
   lag_touch found[LAG_MOST_TOUCHES];
   find_edges(&t);
+  find_prestress(&t);
   int motions = try_breaks(&t, found);
   if (!motions) {
     t.may_wedge = 1;

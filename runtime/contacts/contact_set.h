@@ -21,7 +21,7 @@ typedef struct ContactSet {
   unsigned char *active, *closed; /* [n] takes part; pushes */
   unsigned char *was_closed;    /* [contacts] closed before */
   unsigned char *follows;       /* [n] its gap is held by the contacts that push */
-  double *g, *c, *r, *d, *force, *test, *events; /* scratch: [constraints], [constraints], [constraints], [nq], [nq], [n of the state], [nev] */
+  double *g, *c, *r, *d, *force, *test, *events, *ahead; /* scratch: [constraints], [constraints], [constraints], [nq], [nq], [n of the state], [nev], [contacts] */
   double *law, *side;           /* [3 contacts] of the model's contact_laws; [n] side to which a contact slips, NaN: it sticks, 0: by a force that is not unique */
   double *A, *mass;             /* sparse entries of the constraints' Jacobian, with all contacts closed, and of M */
   double *block;

@@ -31,9 +31,8 @@ typedef struct Run {
   double stall_since;    /* time when the stall detector last judged the pace of steps */
   double energy_jump, energy_jump_t;   /* largest energy change in one step, and its time; replaced only by a change more than twice as large */
   double mass_condition, mass_condition_of; /* condition of the mass matrix at energy_jump_t, and the coordinate of least inertia */
-  double chatter, chatter_since; /* impacts that follow another at once and leave the gap open, and the time of the first of them */
+  double restarts, restart_since; /* events, ends of branches, turns of a slip; time when the stall detector last judged their pace */
   double pole_calls;     /* right-hand sides that the search for poles of forces took */
-  double rattles;        /* ends of branches of switches that followed another at once */
   double row_origin, row_every, row_next;  /* output grid, kept here for app/ */
   double seal;           /* in a saved state: hash of its numbers, and of what they belong to */
 } Run;
@@ -246,6 +245,8 @@ static inline int lag_watched(const lag_sim *s) {
 /* stall_detector.c: judges the step from `now` to y at t. LAG_OK; LAG_ESTALL or LAG_ESTEP where the motion makes no progress, with the reason in
  * pb. */
 int lag_detect_stall(lag_sim *sim, double t);
+/* The one watch of restarts by events, contacts, impacts and switches: counts one; whether the last ones advanced the time by next to nothing, *led. */
+int lag_restarts_stall(lag_sim *sim, double *led);
 
 /* force_pole.c: whether the step of equal size from `now` to y at t crosses a pole of a derivative. LAG_OK, or LAG_EDOMAIN with the derivative
  * in pb. */

@@ -43,12 +43,6 @@ int lag_events_inputs_jump(lag_sim *s) {
 /* Intervals below this part of a series, or of the run so far, count as 0. */
 static const double at_once = 1e-7;
 
-/* Whether an event that follows another by dt does so at once: also within a hundredth of the step,
- * as late in a run 1e-7 of it is long. */
-static int follows_at_once(const lag_sim *s, double dt) {
-  return dt <= at_once * fabs(s->run->t - s->scene->t0) && dt <= 0.01 * fabs(s->run->step_t1 - s->run->step_t0);
-}
-
 /* Time in which event k will fire for ever, dt after it fired last: the rest of the geometric
  * series of its intervals; HUGE_VAL: they do not become shorter. Others may fire between. */
 static double series_rest(lag_sim *s, int k, double dt) {
@@ -79,20 +73,19 @@ static int fail_zeno(lag_sim *s, int k) {
                   "which comes to rest", s->scene->model->ev[k].name, s->interval[k], LAG_TEXT(s->run->t));
 }
 
-/* Fails after 1000 impacts of event k in a row that follow at once (dt since the last) and leave contact c open, since nothing presses there.
- * Some happen; without end where a floor falls away and the first-order path of a method lies below it at once. */
-static int fail_chatter(lag_sim *s, int k, const lag_contact *c, double dt) {
-  const int most = 1000;
-  const double pace = 1e-5; /* of the run so far */
-  Run *r = s->run;
-  if (lag_contact_is_closed(s, c) || s->shorter[k] > 2 || !follows_at_once(s, dt)) return LAG_OK;
-  if (!(fabs(r->t - r->chatter_since) <= pace * fabs(r->t - s->scene->t0))) {
-    r->chatter_since = r->t;
-    r->chatter = 0;
-  }
-  if (++r->chatter < most) return LAG_OK;
-  return lag_fail(s, LAG_EZENO, "contact %s strikes at t = %s s again and again, and neither closes nor opens: the dense output of %s is too "
-                  "rough there; take verlet or dop853, or moreau, which does not locate impacts", s->scene->model->ev[k].name, LAG_TEXT(r->t), s->method->name);
+/* Fails where restarts, the last of which is event k, do not advance the time. A series of ever shorter intervals ends by itself, in the time `rest`. */
+static int watch_restarts(lag_sim *s, int k, double rest) {
+  const lag_model *m = s->scene->model;
+  int which = k - m->nev;
+  double led;
+  if (!lag_restarts_stall(s, &led) || rest < 1000 * led) return LAG_OK;
+  if (which >= 0) return lag_switch_fail_zeno(s, which);
+  const lag_contact *c = lag_contact_of(m, k);
+  if (c && c->impact == k && !c->is_tangent && !c->conditional && !lag_contact_is_closed(s, c))
+    return lag_fail(s, LAG_EZENO, "contact %s strikes at t = %s s again and again, and neither closes nor opens: the dense output of %s is too "
+                    "rough there; take verlet or dop853, or moreau, which does not locate impacts", m->ev[k].name, LAG_TEXT(s->run->t), s->method->name);
+  return lag_fail(s, LAG_EZENO, "at t = %s s event %s and others happen again and again: the last 1000 advanced the time by only %.3g s; %s", LAG_TEXT(s->run->t), m->ev[k].name, led,
+                  c ? "take moreau, which does not locate contacts" : "let it stop the run, or set a state from which its function moves away from 0");
 }
 
 /* Rounding of event functions at this time: their own, and of those that have fired also the distance from zero. */
@@ -153,7 +146,7 @@ static int act(lag_sim *s, int k, int *stop, int *changed) {
     rc = lag_settle_constraints(s, s->yb, of && !moved ? NULL : who, k, ends, moved + elsewhere, rounding_of_events(s));
   }
   if (rc == 0 && contact && rest < HUGE_VAL && lag_contact_is_closed(s, contact)) s->skipped[k] = fmax(s->skipped[k], rest);
-  if (rc == 0 && contact) rc = fail_chatter(s, k, contact, since);
+  if (rc == 0 && !kick) rc = watch_restarts(s, k, rest);
   if (rc) return rc;
   int before = *changed;
   *changed |= of != NULL; /* the set of closed contacts may be another */
@@ -208,14 +201,13 @@ static int next_due(const lag_sim *s) {
 
 /* The branch of a switch ends, at event k. Fails where that comes to no end. */
 static int meet_switch(lag_sim *s, int k) {
-  const int most = 100;
   Run *r = s->run;
   double since = s->count[k] > 0 ? fabs(r->t - s->last[k]) : HUGE_VAL;
   s->last[k] = r->t;
   s->count[k]++;
-  r->rattles = follows_at_once(s, since) ? r->rattles + 1 : 0;
-  int which = k - s->scene->model->nev;
-  if (is_zeno(s, k, series_rest(s, k, since), 0) || r->rattles > most) return lag_switch_fail_zeno(s, which);
+  double rest = series_rest(s, k, since);
+  int which = k - s->scene->model->nev, rc = is_zeno(s, k, rest, 0) ? lag_switch_fail_zeno(s, which) : watch_restarts(s, k, rest);
+  if (rc) return rc;
   lag_switch_meet(s, which);
   return lag_tangent_meet(s, k);
 }

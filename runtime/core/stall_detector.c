@@ -8,6 +8,7 @@
  * tolerance below that makes steps shrink in front of it, accepted one by one, for ever. So do places where a constraint or a force jumps with
  * the position. Criterion: MOST steps advanced the time by less than 1e-5 of the run so far, at less than 1e-2 of its mean pace (a fast event,
  * as a stiff spring that is struck, takes some hundred steps); and there is a cause, nearly dependent constraints or a model that jumps.
+ * The same of 1000 restarts, by events, contacts, impacts and switches, whatever the cause: these would go on for ever.
  * 3. Equal steps longer than half a period: an implicit method keeps the energy of such an oscillation, and nothing else of it. The square of
  * the frequency is estimated along a step as -(change of acceleration).(change of position)/|change of position|^2. It does not end the run;
  * the report mentions it. */
@@ -106,16 +107,31 @@ static int hangs_at(lag_sim *s, double t, double led) {
   return k < s->scene->model->nmodes ? -1 : k;
 }
 
+/* Whether `most` steps or restarts, of `all`, hardly advanced the time from *since to t; *led := by how much. `never`: of the whole run. */
+static int crawls(const lag_sim *s, double *since, double t, double most, double all, double *led) {
+  const double pace = 1e-5, mean = 1e-2, never = 1e-9;
+  double gone = fabs(t - s->scene->t0);
+  *led = fabs(t - *since);
+  *since = t;
+  return *led <= never * s->pb.span || (*led <= pace * gone && *led * all <= mean * most * gone);
+}
+
+int lag_restarts_stall(lag_sim *s, double *led) {
+  const double most = 1000;
+  Run *r = s->run;
+  r->restarts++;
+  return fmod(r->restarts, most) == 0 && crawls(s, &r->restart_since, r->t, most, r->restarts, led);
+}
+
 /* Criterion 2: shrinking steps. */
 static int check_pace(lag_sim *s, double t) {
-  const double pace = 1e-5, mean = 1e-2, dependent = 1e-2;
+  const double dependent = 1e-2;
   Run *r = s->run;
   lag_problem *pb = &s->pb;
-  double led = fabs(t - r->stall_since), gone = fabs(t - s->scene->t0);
+  double led;
   int k = -1;
   char line[32];
-  r->stall_since = t;
-  if (led > pace * gone || led * r->steps > mean * MOST * gone || lag_equal_step(s) > 0) return 0;
+  if (!crawls(s, &r->stall_since, t, MOST, r->steps, &led) || lag_equal_step(s) > 0) return 0;
   double apart = pb->model->constraints ? lag_independence(pb, t, s->y, &k) : 1;
   if ((k < 0 || apart > dependent) && lag_facts(pb) & LAG_SMOOTH) return 0;
   int at = hangs_at(s, t, led);

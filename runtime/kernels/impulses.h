@@ -145,9 +145,10 @@ typedef struct lag_sparse_rows {
 
 /* A contact: rows row (the gap) and row + 1 .. row + tangents (slip velocities). least: the least rate of the
  * gap after the impulse. Friction drives the slip velocity to the nearest point of a ball (an interval in a
- * plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate, slip[tangents]: at the begin. */
+ * plane), about centre[tangents], of this radius. strikes: 1 in an impact; rate, slip[tangents]: at the begin.
+ * opposite: the contact on the other side of the same rail, or -1; head, next: of chains by first column. */
 typedef struct lag_pressing {
-  LAG_REAL contact, row, tangents, mu, least, radius, centre[2], strikes, rate, slip[2];
+  LAG_REAL contact, row, tangents, mu, least, radius, centre[2], strikes, rate, slip[2], opposite, head, next;
 } lag_pressing;
 
 /* The product of row r with x. */
@@ -216,6 +217,46 @@ typedef struct lag_impulses {
 
 static inline LAG_REAL lag_rate_of(const lag_impulses *s, int r) { return lag_row_product(&s->A, r, s->v) + s->b[r]; }
 
+static inline int lag_rows_are_opposite(const lag_sparse_rows *A, int a, int b) {
+  const LAG_REAL rounding = LAG_C(1e-12);
+  int i = (int)A->first[a], j = (int)A->first[b], same = (int)A->first[a + 1] - i == (int)A->first[b + 1] - j;
+  for (; same && i < (int)A->first[a + 1]; i++, j++)
+    same = (int)A->col[i] == (int)A->col[j] &&
+           LAG_FN(fabs)(A->value[i] + A->value[j]) <= rounding*LAG_FN(fabs)(A->value[i]);
+  return same;
+}
+
+/* Finds the pairs on both sides of a rail. Nothing determines by how much both press: the guess is the least. */
+static inline void lag_find_opposites(const lag_impulses *s) {
+  const LAG_REAL none = LAG_C(-1.0);
+  for (int i = 0; i < s->n; i++) s->of[i].opposite = s->of[i].head = none;
+  for (int i = 0; i < s->n; i++) {
+    const int row = (int)s->of[i].row, first = (int)s->A.first[row];
+    if (first == (int)s->A.first[row + 1]) continue;
+    lag_pressing *const chain = &s->of[(int)s->A.col[first] % s->n];
+    for (int j = (int)chain->head; j >= 0; j = (int)s->of[j].next) {
+      const int other = (int)s->of[j].row;
+      const LAG_REAL both = lag_smaller(s->P[row], s->P[other]);
+      if (!lag_rows_are_opposite(&s->A, row, other)) continue;
+      s->of[i].opposite = (LAG_REAL)j;
+      s->of[j].opposite = (LAG_REAL)i;
+      s->P[row] -= both;
+      s->P[other] -= both;
+    }
+    s->of[i].next = chain->head;
+    chain->head = (LAG_REAL)i;
+  }
+}
+
+/* Changes the impulse of the gap of c by dP, and first that on the other side of its rail. */
+static inline void lag_press(const lag_impulses *s, const lag_pressing *c, LAG_REAL dP) {
+  const int other = c->opposite < LAG_C(0.0) ? -1 : (int)s->of[(int)c->opposite].row;
+  LAG_REAL less = LAG_C(0.0);
+  if (other >= 0 && dP > less) less = lag_smaller(dP, s->P[other]);
+  if (less > LAG_C(0.0)) lag_add_impulse(&s->D, other, -less, s->P, s->v);
+  lag_add_impulse(&s->D, (int)c->row, dP - less, s->P, s->v);
+}
+
 /* One turn of a contact; returns the largest change of a rate. */
 static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressing *c) {
   const LAG_REAL zero = LAG_C(0.0);
@@ -224,7 +265,7 @@ static inline LAG_REAL lag_contact_turn(const lag_impulses *s, const lag_pressin
   if (s->response[r] > zero) {
     const LAG_REAL to = lag_larger(zero, s->P[r] + (c->least - lag_rate_of(s, r))/s->response[r]);
     change = LAG_FN(fabs)(to - s->P[r])*s->response[r];
-    lag_add_impulse(&s->D, r, to - s->P[r], s->P, s->v);
+    lag_press(s, c, to - s->P[r]);
   }
   /* the trace: no less than the largest eigenvalue, and the same in all directions */
   for (int k = 1; k <= n; k++) w += s->response[r + k];
@@ -267,6 +308,8 @@ static inline int lag_contact_soften(const lag_impulses *s, lag_pressing *c, LAG
  * `enough`. Returns the number of sweeps, forth and back in turn; `most` + 1 where these do not suffice. */
 static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, int most) {
   const LAG_REAL zero = LAG_C(0.0);
+  LAG_REAL before = enough*LAG_C(1e8); /* change 1000 sweeps ago: rows that depend on others agree to their own rounding only */
+  lag_find_opposites(s);
   for (int i = 0; i < s->n; i++)
     for (int k = (int)s->of[i].row; k <= (int)(s->of[i].row + s->of[i].tangents); k++) {
       const LAG_REAL guess = LAG_SELECT(s->response[k] > zero, s->P[k], zero);
@@ -282,6 +325,9 @@ static inline int lag_contact_impulses(const lag_impulses *s, LAG_REAL enough, i
     }
     for (int i = 0; i < s->n && !(change > enough); i++) softer += lag_contact_soften(s, &s->of[i], enough);
     if (!(change > enough) && softer == 0) return sweep;
+    if (sweep % 1000 != 0) continue;
+    if (change <= LAG_C(1e7)*enough && change >= LAG_C(0.9)*before) return sweep;
+    before = change;
   }
   return most + 1;
 }

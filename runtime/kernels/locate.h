@@ -209,7 +209,8 @@ static inline int lag_sample_part(const lag_locator *l, LAG_REAL ta, LAG_REAL tb
   for (int turn = *known; turn < 2 && status == 0; turn++) {
     *most = 0;
     for (int k = 0; k < l->n; k++) {
-      const int of_k = lag_locate_halvings(l->value + k, l->n, turn ? rounding[k] : LAG_C(0.0));
+      const LAG_REAL own = turn ? rounding[k] : LAG_C(0.0);
+      const int of_k = lag_locate_halvings(l->value + k, l->n, lag_larger_modulus(own, l->noise[k]));
       *most = of_k > *most ? of_k : *most;
     }
     if (*most == 0 || turn) break;

@@ -308,6 +308,124 @@ split() {
 }
 check "a run in two parts is the same run" split
 
+# ---- rails: a crank, a rod of inertia and a slider between two rails without play, in the coordinate and the constraint formulation. Values: classical Runge-Kutta of the
+# one-coordinate equation with friction mu |N|, steps of 2e-5 s (5e-4 s without friction)
+model rails <<'END_OF'
+model rails
+coord a [rad], y [m]
+param r = 0.1 [m] > 0, l = 0.25 [m] > 0, I = 0.01 [kg*m^2] > 0, m = 1.5 [kg] > 0, mu = 0.1 >= 0
+let b = asin((r*sin(a) - y)/l)
+let x = r*cos(a) + l*cos(b)
+kinetic = I/2*a'^2 + m/2*(x'^2 + y'^2) + 1e-3 [kg*m^2]*b'^2
+contact low: y >= 0, restitution = 0, friction = mu, slip = x'
+contact high: -y >= 0 [m], restitution = 0, friction = mu, slip = x'
+scene s { start a = 1, a' = 5 [rad/s]; span 2 [s]; output lambda(low), lambda(high) every 0.01 [s] }
+END_OF
+# inclined by 0.5 rad, off the origin, by two constraints: gaps are differences of terms that are not 0
+model inclined <<'END_OF'
+model inclined
+coord a [rad], b [rad], x [m], y [m]
+param r = 0.1 [m] > 0, l = 0.25 [m] > 0, I = 0.01 [kg*m^2] > 0, m = 1.5 [kg] > 0, mu = 0.1 >= 0, h = 0.3 [m], al = 0.5 [rad], w0 = 5 [rad/s] > 0
+let n = y*cos(al) - x*sin(al)
+let s = y*sin(al) + x*cos(al)
+let b0 = asin(r*sin(1)/l)
+let s0 = r*cos(1) + l*cos(b0)
+let b1 = w0*r*cos(1)/(l*cos(b0))
+let s1 = -w0*r*sin(1) - l*sin(b0)*b1
+kinetic = I/2*a'^2 + m/2*(x'^2 + y'^2) + 1e-3 [kg*m^2]*b'^2
+constraint px: s = r*cos(a) + l*cos(b)
+constraint py: n = r*sin(a) - l*sin(b) + h
+contact low: n >= h, restitution = 0, friction = mu, slip = s'
+contact high: h - n >= 0 [m], restitution = 0, friction = mu, slip = s'
+scene s { start a = 1, b = b0, x = s0*cos(al) - h*sin(al), y = s0*sin(al) + h*cos(al), a' = w0, b' = b1, x' = s1*cos(al), y' = s1*sin(al); span 2 [s]; output lambda(low), lambda(high) every 0.01 [s] }
+END_OF
+least_prestress() { awk -F, 'NR > 1 && ($2 < -1e-9 || $3 < -1e-9 || ($2 > 1e-9 && $3 > 1e-9)) { print; bad = 1 } END { exit bad || NR < 100 }' "$TMP/csv"; }
+soon() { # soon MODEL MU METHOD VALUES...
+  name=$1 mu=$2 method=$3
+  shift 3
+  timeout 3 "$LAGC" run "$TMP/$name.lag" s --quiet "mu=$mu" --method "$method" "$@" -o "$TMP/csv" --json >"$TMP/json" 2>&1 || { cat "$TMP/json"; return 1; }
+}
+for name in rails inclined; do # 100 times the tolerance 1e-9 of a, which is 13
+  check "$name: as fast as without them" soon $name 0 dop853
+  check "the same motion" near "$(final a)" 13.28438136329 1e-6
+  check "with friction" soon $name 0.1 dop853
+  check "mu |N|" near "$(final a)" 12.906422612614756 1e-6
+  check "one rail presses at a time" least_prestress
+  check "by moreau" soon $name 0.1 'moreau(step=1e-3)'
+  check "error of order 2, near 2e-5" near "$(final a)" 12.906422612614756 1e-4
+  check "one rail presses here, too" least_prestress
+done
+
+check "rails along an axis, y = 0" soon inclined 0 dop853 h=0 al=0
+check "its rounding is no crossing" near "$(final a)" 13.28438136329 1e-6
+for case in 'rk45 1' 'dop853 1' 'dop853 2'; do # where both sides let go and one takes hold at one time: the next release is seen
+  check "over dead centres under no load: method, h = $case" soon inclined 0.1 ${case% *} h=${case#* }
+  check "no release is missed" near "$(final a)" 12.906422612614756 1e-6
+done
+# a slider with two pairs of guides and a pin beside its axis comes to rest: rows of friction depend on each other
+model long <<'END_OF'
+model long
+coord a [rad], b [rad], x [m], y [m], th [rad]
+param r = 0.1 [m] > 0, l = 0.25 [m] > 0, mu = 0.1 >= 0, d = 0.05 [m] > 0, p = 0.02 [m], w = 0.02 [m] > 0
+kinetic = 5e-3 [kg*m^2]*a'^2 + 0.75 [kg]*(x'^2 + y'^2) + 1e-3 [kg*m^2]*(b'^2 + th'^2)
+potential = 15 [N]*y
+constraint px: x - p*sin(th) = r*cos(a) + l*cos(b)
+constraint py: y + p*cos(th) = r*sin(a) - l*sin(b) + p
+contact l1: y - d*sin(th) - w*cos(th) + w >= 0, restitution = 0, friction = mu, slip = x' + w*th'
+contact l2: y + d*sin(th) - w*cos(th) + w >= 0, restitution = 0, friction = mu, slip = x' + w*th'
+contact u1: -y + d*sin(th) - w*cos(th) + w >= 0, restitution = 0, friction = mu, slip = x' - w*th'
+contact u2: -y - d*sin(th) - w*cos(th) + w >= 0, restitution = 0, friction = mu, slip = x' - w*th'
+scene s { start a' = 8 [rad/s], b' = 3.2 [rad/s], x = r + l; span 2 [s]; output a every 0.5 [s] }
+END_OF
+for mu in 0.1 0.3; do
+  check "a long slider, mu = $mu" soon long $mu dop853
+  long=$(final a)
+  check "and by moreau" soon long $mu 'moreau(step=1e-3)'
+  check "rests at the same place, to an error of order 2, near 1e-4" near "$(final a)" "$long" 3e-4
+done
+
+# ---- a tube in a tube, two pairs of guides d apart, pulled e beside its axis: each pair presses with F e/d, so it jams from mu = d/(2 e) on
+model telescope <<'END_OF'
+model telescope
+coord x [m], y [m], th [rad]
+param d = 0.2 [m] > 0, e = 0.3 [m], F = 10 [N], mu = 0.2 >= 0
+kinetic = 1 [kg]/2*(x'^2 + y'^2) + 0.01 [kg*m^2]/2*th'^2
+force x = F
+force th = -F*e
+let y1 = y - d/2*sin(th)
+let y2 = y + d/2*sin(th)
+contact l1: y1 >= 0, restitution = 0, friction = mu, slip = x'
+contact u1: -y1 >= 0 [m], restitution = 0, friction = mu, slip = x'
+contact l2: y2 >= 0, restitution = 0, friction = mu, slip = x'
+contact u2: -y2 >= 0 [m], restitution = 0, friction = mu, slip = x'
+scene s { span 1 [s] }
+END_OF
+for mu in 0.3 0.33 0.34 0.5; do
+  check "a telescope, mu = $mu" soon telescope $mu dop853
+  check "slides by (1 - 2 mu e/d) F, or jams" near "$(final x)" "$(calc "$mu < 1/3 ? 5*(1 - 3*$mu) : 0")" 1e-12
+done
+
+# ---- dead centres: a crank pushes a block over a floor. There the rod implies the slip, and it turns by its own acceleration. Values: Runge-Kutta of the
+# one-coordinate equation, steps of 1e-5 s
+model dead <<'END_OF'
+model dead
+coord a [rad], x [m], y [m]
+param r = 0.1 [m] > 0, l = 0.25 [m] > 0, I = 0.01 [kg*m^2] > 0, m = 1.5 [kg] > 0, mu = 0.1 >= 0, g = 9.81 [m/s^2] > 0
+kinetic = I/2*a'^2 + m/2*(x'^2 + y'^2)
+potential = m*g*y
+force a = 0.3 [N*m] - 0.02 [N*m*s/rad]*a'
+constraint rod: hypot(x - r*cos(a), y - r*sin(a)) = l
+contact floor: y >= 0, restitution = 0, friction = mu, slip = x'
+scene s { start a = 0, x = r + l, a' = 5 [rad/s]; span 2 [s]; output a every 0.01 [s] }
+scene rest { like s; start a = atan2(0, -1), x = l - r, a' = 0; span 0.7 [s] }
+END_OF
+check "over dead centres" soon dead 0.1 dop853
+check "as one coordinate" near "$(final a)" 15.449847487022 1e-7
+check "moreau" soon dead 0.1 'moreau(step=1e-3)'
+check "to its error of order 2" near "$(final a)" 15.449847487022 1e-4
+check "from rest at one" run dead rest
+check "it leaves it" near "$(final a)" 6.0327733454941 1e-6
+
 # ---- refusals
 for method in verlet variational symplectic_euler gauss taylor; do
   check "refused: $method" refuses 2 "method $method cannot follow contacts with friction (plane); rk45, dop853, radau, rk4 and moreau can" slope s --method $method

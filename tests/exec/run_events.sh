@@ -89,4 +89,9 @@ piles_up() { # METHOD
 for method in rk45 dop853 rk4 verlet4; do
   check "$method: bounces without end" piles_up $method
 done
+
+# A pawl that slips back by 1e-13 m each time it is reached: 1e13 events to the end
+printf '%s\n' 'model m' 'coord x [m]' "kinetic = x'^2/2 * 1 [kg]" 'event pawl: x - 1 [m] rising { x = 1 [m] - 1e-13 [m] }' "scene s { start x' = 1; span 2 [s] }" >"$TMP/pawl.lag"
+goes_on() { timeout 5 "$LAGC" run "$TMP/pawl.lag" s >"$TMP/out" 2>&1; [ $? = 3 ] && grep -q 'FAILED: at t = 1.00000000.* s event pawl and others happen again and again: the last 1000 advanced the time by only 1e-10 s' "$TMP/out"; }
+check "events that do not advance the time end the run" goes_on
 tap_end
