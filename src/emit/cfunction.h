@@ -1,17 +1,8 @@
-/* Parts common to all emitted files: macros of the scalar type, support functions (linear solver, splines), the C function around the body
- * of a Prog, and (embedded_math.c) sections of runtime/include/lag_math.h and lag_kkt.h. */
+/* Parts common to all emitted files: the C function around the body of a Prog, and (embedded_math.c) what is taken from
+ * the headers of runtime/include. */
 #pragma once
 
 #include "emit/cwriter.h"
-
-/* Macros for selection and logic (PREFIX_SELECT, PREFIX_MASK, ...), each under #ifndef: vector types have no ternary in C. */
-void csupport_logic(const char *prefix, StrBuf *out);
-
-/* Function that solves a linear system in a loop: lower_solve. With constraints: see math_kkt_solver. */
-void csupport_solver(const char *prefix, const char *lower, StrBuf *out);
-
-/* `static LAG_REAL lower_spline(t, n, row)` and `lower_curve(t, n, row, order)`, for inputs given by a table: cubics, and quintics with their derivatives. */
-void csupport_splines(const Prog *inputs, const char *prefix, const char *lower, StrBuf *out);
 
 /* Appends text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
 void csupport_expand(const char *text, const char *prefix, const char *lower, StrBuf *out);
@@ -37,6 +28,19 @@ const char *shortest_double(Arena *a, double x);
 
 /* Section NAME of a text of the runtime: include/lag_math.h, lag_kkt.h, kernels/. */
 void embedded_section(const char *name, const char *prefix, const char *lower, StrBuf *out);
+
+/* The generic text of a model file: the runtime's headers that it needs, or, alone, their sections. solver: of dense systems. */
+void math_of_model(const ProgramSet *u, int solver, int alone, StrBuf *out);
+
+/* Macros for selection and logic (PREFIX_SELECT, PREFIX_MASK, ...), each under #ifndef: vector types have no ternary in C. */
+void math_logic(const char *prefix, StrBuf *out);
+
+/* Function that solves a linear system in a loop: lower_solve. With constraints: see math_kkt_solver. */
+void math_solver(const char *prefix, const char *lower, StrBuf *out);
+
+/* `static LAG_REAL lower_spline(t, n, row)` and `lower_curve(t, n, row, order)`, for inputs given by a table: cubics, and
+ * quintics with their derivatives. */
+void math_curves(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out);
 
 /* Vector lanes (PREFIX_LANES): mask type, selection, functions lane by lane. Must precede everything that has a default. */
 void math_lanes(const char *prefix, const char *lower, StrBuf *out);

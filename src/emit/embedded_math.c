@@ -8,15 +8,17 @@
 #include "emit/dense_output_kernel.h"
 #include "emit/impulses_kernel.h"
 #include "emit/lag_kkt.h"             /* static const char *const NAME[]: and of runtime/include/NAME.h */
+#include "emit/lag_lanes.h"
 #include "emit/lag_math.h"
 #include "emit/lag_sincos.h"
+#include "emit/lag_support.h"
 #include "emit/locate_kernel.h"
 
 #define LINES(text) {text, sizeof text / sizeof *text}
 static const struct {
   const char *const *line;
   size_t n;
-} embedded[] = {LINES(lag_math), LINES(lag_sincos), LINES(lag_kkt), LINES(band_matrix_kernel),
+} embedded[] = {LINES(lag_lanes), LINES(lag_math), LINES(lag_sincos), LINES(lag_support), LINES(lag_kkt), LINES(band_matrix_kernel),
               LINES(dense_output_kernel), LINES(impulses_kernel), LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";
@@ -34,12 +36,31 @@ void embedded_section(const char *name, const char *prefix, const char *lower, S
   }
 }
 
+/* Whether its linear systems are large enough for a band: LAG_BAND_LEAST of lag_kkt.h. */
+static int has_band(const ProgramSet *u) { return u->q.n + u->constraints.of.n >= 62; }
+
 void math_kkt_solver(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out) {
-  static const uint32_t large = 62; /* LAG_BAND_LEAST of lag_kkt.h: smaller systems have no band solver */
   static const char *const names[] = {"numbers", "band", "kkt"};
-  int banded = u->q.n + u->constraints.of.n >= large;
   for (size_t i = 0; u->constraints.of.n && i < sizeof names / sizeof *names; i++)
-    if (i != 1 || banded) embedded_section(names[i], prefix, lower, out);
+    if (i != 1 || has_band(u)) embedded_section(names[i], prefix, lower, out);
+}
+
+void math_logic(const char *prefix, StrBuf *out) { embedded_section("logic", prefix, "", out); }
+
+void math_solver(const char *prefix, const char *lower, StrBuf *out) { embedded_section("solver", prefix, lower, out); }
+
+/* Bit 0: some input is a curve by cubics, bit 1: by quintics. */
+static unsigned curves_of(const ProgramSet *u) {
+  unsigned some = 0;
+  for (uint32_t i = 0; i < u->inputs->tables.n; i++) some |= u->inputs->tables.at[i].curve->jet ? 2 : 1;
+  return some;
+}
+
+void math_curves(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out) {
+  unsigned some = curves_of(u);
+  if (some) embedded_section("interval", prefix, lower, out);
+  if (some & 1) embedded_section("cubic", prefix, lower, out);
+  if (some & 2) embedded_section("quintic", prefix, lower, out);
 }
 
 static int calls(const Prog *p, const char *name) {
@@ -60,7 +81,6 @@ int unit_calls(const ProgramSet *u, const char *name) {
 static int calls_sincos(const ProgramSet *u) { return unit_calls(u, "sin") || unit_calls(u, "cos"); }
 
 void math_lanes(const char *prefix, const char *lower, StrBuf *out) {
-  sb_puts(out, "/* ---- arithmetic, over doubles and over lanes of them; the model comes after it ---- */\n\n");
   embedded_section("lanes", prefix, lower, out);
 }
 
@@ -72,9 +92,36 @@ void math_functions(const ProgramSet *u, const char *prefix, const char *lower, 
   if (sincos) embedded_section("sincos", prefix, lower, out);
   if (e) embedded_section("exp", prefix, lower, out);
   if (l) embedded_section("log", prefix, lower, out);
-  if (u->lanes && (e || l)) sb_printf(out, "#ifndef LAG_LANES\n%s%s#endif\n", e ? "#define exp lag_exp\n" : "", l ? "#define log lag_log\n" : "");
-  if (unit_calls(u, "floor")) embedded_section("floor", prefix, lower, out);
-  sb_puts(out, "/* ---- the model ---- */\n");
+}
+
+static int calls_own(const ProgramSet *u) { return !u->libm && (calls_sincos(u) || unit_calls(u, "exp") || unit_calls(u, "log")); }
+
+/* Over lanes exp and log are the runtime's, and a double has the same bits. */
+static void exp_and_log_as_lanes(const ProgramSet *u, StrBuf *out) {
+  static const char *const names[] = {"exp", "log"};
+  for (int i = 0; u->lanes && !u->libm && i < 2; i++)
+    if (unit_calls(u, names[i])) sb_printf(out, "#ifndef LAG_LANES\n#define %s lag_%s\n#endif\n", names[i], names[i]);
+}
+
+void math_of_model(const ProgramSet *u, int solver, int alone, StrBuf *out) {
+  if (u->lanes) sb_puts(out, "#define LAG_AS_LANES 1 /* the same bits as in a lane */\n");
+  if (u->libm && !alone) sb_puts(out, "#define LAG_LIBM 1\n");
+  if (u->constraints.of.n && !has_band(u) && !alone) sb_puts(out, "#define LAG_NO_BAND 1 /* so few unknowns have none */\n");
+  if (alone) {
+    math_lanes("LAG", "lag", out);
+    embedded_section("scalar", "LAG", "lag", out);
+    math_logic("LAG", out);
+    embedded_section("positive", "LAG", "lag", out);
+    math_functions(u, "LAG", "lag", out);
+    if (solver) math_solver("LAG", "lag", out);
+    math_kkt_solver(u, "LAG", "lag", out);
+    math_curves(u, "LAG", "lag", out);
+  } else {
+    sb_puts(out, calls_own(u) ? "#include \"lag_math.h\"\n" : "#include \"lag_lanes.h\"\n");
+    if (solver || curves_of(u)) sb_puts(out, "#include \"lag_support.h\"\n");
+    if (u->constraints.of.n) sb_puts(out, "#include \"lag_kkt.h\"\n");
+  }
+  exp_and_log_as_lanes(u, out);
 }
 
 void math_power(const char *prefix, const char *lower, StrBuf *out) { embedded_section("power", prefix, lower, out); }
@@ -83,6 +130,6 @@ const char *math_prefix(const ProgramSet *u, const char *lower) { return u->libm
 
 const char *math_source_text(const ProgramSet *u) {
   if (u->libm) return "Functions: the C library's.";
-  if (!calls_sincos(u)) return "Functions: the C library's; over lanes exp and log are below.";
-  return "Functions: sin and cos are below, to less than 1 unit in the last place; the others are the C library's.";
+  if (!calls_sincos(u)) return "Functions: the C library's; over lanes exp and log are lagc's.";
+  return "Functions: sin and cos are lagc's, to less than 1 unit in the last place; the others are the C library's.";
 }

@@ -30,6 +30,11 @@ static const char *const macros =
   "#endif\n"
   "#ifndef LAG_C\n"
   "#define LAG_C(x) (sizeof(LAG_REAL) > sizeof(double) ? (LAG_REAL)x##L : (LAG_REAL)x)\n"
+  "#endif\n"
+  "#ifdef LAG_COMPLEX /* has no order */\n"
+  "#define LAG_POSITIVE(d) LAG_PIVOT((d) != LAG_C(0.0))\n"
+  "#elif !defined(LAG_POSITIVE) /* NaN does not pass: a program around a header gets a status */\n"
+  "#define LAG_POSITIVE(d) LAG_PIVOT((d) > LAG_C(0.0))\n"
   "#endif\n";
 
 /* cbrt and hypot of float and long double, once in a program text: libc++ has them for every standard. */
@@ -370,13 +375,12 @@ void header_implementation(const Header *h) {
   sb_puts(h->out, "#if " FAST_MATH "\n#error \"this header needs NaN and exact sums: compile it without -ffast-math, -Ofast and /fp:fast\"\n#endif\n#include <math.h>\n\n");
   math_lanes(h->upper, h->lower, h->out);
   scalar_macros(h);
-  csupport_logic(h->upper, h->out);
-  sb_putc(h->out, '\n');
+  math_logic(h->upper, h->out);
   math_functions(h->u, h->upper, h->lower, h->out);
   sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
-  if (prog_solves_dense(h->u->accel) || prog_solves_dense(h->scene->observe_plain) || (h->u->taylor && prog_solves_dense(h->u->taylor->first))) csupport_solver(h->upper, h->lower, h->out);
+  if (prog_solves_dense(h->u->accel) || prog_solves_dense(h->scene->observe_plain) || (h->u->taylor && prog_solves_dense(h->u->taylor->first))) math_solver(h->upper, h->lower, h->out);
   math_kkt_solver(h->u, h->upper, h->lower, h->out);
-  csupport_splines(h->u->inputs, h->upper, h->lower, h->out);
+  math_curves(h->u, h->upper, h->lower, h->out);
   defaults(h);
   param(h);
   header_failures(h);
