@@ -22,6 +22,9 @@
 
 #include "lag_lanes.h"
 
+/* ---- kkt: front ---- */
+static inline LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w);
+
 /* ---- numbers ---- */
 #ifdef LAG_LANES
 #define LAG_LANE_FN(f) f

@@ -19,7 +19,7 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 #endif
 #endif
 
-/* ---- lanes ---- */
+/* ---- lanes: front ---- */
 #ifdef LAG_LANES
 /* Selection, logic and functions of vectors of doubles. */
 #if !defined(__GNUC__) || (LAG_LANES != 4 && LAG_LANES != 8)
@@ -29,85 +29,20 @@ typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
 typedef long long lag_lanes_mask __attribute__((vector_size(8 * LAG_LANES)));
 typedef unsigned long long lag_lanes_word __attribute__((vector_size(8 * LAG_LANES)));
 
-LAG_INLINE LAG_REAL lag_lanes_all(double x) {
-  const LAG_REAL zero = {0};
-  return x - zero;
-}
-
-LAG_INLINE LAG_REAL lag_lanes_select(lag_lanes_mask c, LAG_REAL a, LAG_REAL b) {
-  return (LAG_REAL)((c & (lag_lanes_mask)a) | (~c & (lag_lanes_mask)b));
-}
-
-/* Bit k: whether the condition holds in lane k. */
-LAG_INLINE int lag_lanes_bits(lag_lanes_mask c) {
-#if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
-  return (unsigned char)__builtin_ia32_cvtq2mask512(c);
-#elif defined(__AVX__) && LAG_LANES == 4
-  return __builtin_ia32_movmskpd256((LAG_REAL)c);
-#else
-  int bits = 0;
-  for (int k = 0; k < LAG_LANES; k++) bits |= (int)(c[k] & 1) << k;
-  return bits;
-#endif
-}
-
-LAG_INLINE int lag_lanes_any(lag_lanes_mask c) {
-#if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
-  return __builtin_ia32_cvtq2mask512(c) != 0;
-#else
-  typedef long long half __attribute__((vector_size(4 * LAG_LANES)));
-  union { lag_lanes_mask all; half part[2]; } u = {c};
-  const half h = u.part[0] | u.part[1];
-  long long some = h[0] | h[1];
-  for (int k = 2; k < LAG_LANES/2; k++) some |= h[k];
-  return some != 0;
-#endif
-}
-
-/* Whether any lane is 2^bit or more. */
-LAG_INLINE int lag_lanes_reach(lag_lanes_word w, int bit) {
-#if defined(__AVX512F__) && LAG_LANES == 8 && !defined(__clang__)
-  const lag_lanes_mask no = {0}, all = no + (long long)(~0ULL << bit);
-  return __builtin_ia32_ptestmq512((lag_lanes_mask)w, all, (unsigned char)-1) != 0;
-#elif defined(__AVX__) && LAG_LANES == 4
-  const lag_lanes_mask no = {0}, all = no + (long long)(~0ULL << bit);
-  return !__builtin_ia32_ptestz256((lag_lanes_mask)w, all);
-#else
-  return lag_lanes_any((lag_lanes_mask)(w >> bit));
-#endif
-}
-
-LAG_INLINE LAG_REAL lag_lanes_fabs(LAG_REAL x) {
-  return (LAG_REAL)((lag_lanes_word)x & ~0ULL >> 1);
-}
-
-LAG_INLINE LAG_REAL lag_lanes_sqrt(LAG_REAL x) {
-#if defined(__AVX512F__) && LAG_LANES == 8 && !defined(__clang__)
-  return __builtin_ia32_sqrtpd512_mask(x, x, (char)-1, 4);
-#elif defined(__AVX512F__) && LAG_LANES == 8
-  return __builtin_ia32_sqrtpd512(x, 4);
-#elif defined(__AVX__) && LAG_LANES == 4
-  return __builtin_ia32_sqrtpd256(x);
-#else
-  for (int k = 0; k < LAG_LANES; k++) x[k] = sqrt(x[k]);
-  return x;
-#endif
-}
-
+LAG_INLINE LAG_REAL lag_lanes_all(double x);
+LAG_INLINE LAG_REAL lag_lanes_select(lag_lanes_mask c, LAG_REAL a, LAG_REAL b);
+LAG_INLINE int lag_lanes_bits(lag_lanes_mask c);
+LAG_INLINE int lag_lanes_any(lag_lanes_mask c);
+LAG_INLINE int lag_lanes_reach(lag_lanes_word w, int bit);
+LAG_INLINE LAG_REAL lag_lanes_fabs(LAG_REAL x);
+LAG_INLINE LAG_REAL lag_lanes_sqrt(LAG_REAL x);
 /* Functions without a vector form: one lane after the other. */
-#define LAG_LANES_1(f) \
-  LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x) { \
-    for (int k = 0; k < LAG_LANES; k++) x[k] = f(x[k]); \
-    return x; \
-  }
-#define LAG_LANES_2(f) \
-  LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x, LAG_REAL y) { \
-    for (int k = 0; k < LAG_LANES; k++) x[k] = f(x[k], y[k]); \
-    return x; \
-  }
-LAG_LANES_1(tan) LAG_LANES_1(asin) LAG_LANES_1(acos) LAG_LANES_1(atan) LAG_LANES_1(sinh) LAG_LANES_1(cosh)
-LAG_LANES_1(tanh) LAG_LANES_1(cbrt) LAG_LANES_1(floor)
-LAG_LANES_2(pow) LAG_LANES_2(atan2) LAG_LANES_2(hypot)
+#define LAG_LANES_EACH(one, two) \
+  one(tan) one(asin) one(acos) one(atan) one(sinh) one(cosh) one(tanh) one(cbrt) one(floor) \
+  two(pow) two(atan2) two(hypot)
+#define LAG_DECLARE_1(f) LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x);
+#define LAG_DECLARE_2(f) LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x, LAG_REAL y);
+LAG_LANES_EACH(LAG_DECLARE_1, LAG_DECLARE_2)
 
 #define LAG_MASK lag_lanes_mask
 #define LAG_LANE double
@@ -173,7 +108,7 @@ LAG_LANES_2(pow) LAG_LANES_2(atan2) LAG_LANES_2(hypot)
 #define LAG_POSITIVE(d) LAG_PIVOT(!((d) <= LAG_C(0.0))) /* NaN passes: the caller finds its cause */
 #endif
 
-/* ---- own ---- */
+/* ---- own: front ---- */
 /* LAG_OWN: 1 where the functions below are used; for scalars other than double, and with LAG_LIBM or LAG_COMPLEX defined, those of the library
  * are. */
 #define LAG_JOIN2(a, b) a##b
@@ -199,6 +134,106 @@ typedef unsigned long long lag_bits;
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif
+#if !defined(LAG_LANES) && defined(__GNUC__)
+#define LAG_INLINE static __inline__ __attribute__((always_inline, unused))
+#elif !defined(LAG_LANES)
+#define LAG_INLINE static inline
+#endif
+#if (defined(__FMA__) || defined(FP_FAST_FMA) || defined(__ARM_FEATURE_FMA)) && !defined(LAG_NO_FMA)
+#define LAG_FMA 1
+#else
+#define LAG_FMA 0
+#endif
+LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c);
+#endif
+
+/* ---- libm: front ---- */
+#if defined(LAG_LANES) && !LAG_OWN
+LAG_DECLARE_1(sin) LAG_DECLARE_1(cos) LAG_DECLARE_1(exp) LAG_DECLARE_1(log)
+#endif
+
+/* ---- lanes ---- */
+#ifdef LAG_LANES
+LAG_INLINE LAG_REAL lag_lanes_all(double x) {
+  const LAG_REAL zero = {0};
+  return x - zero;
+}
+
+LAG_INLINE LAG_REAL lag_lanes_select(lag_lanes_mask c, LAG_REAL a, LAG_REAL b) {
+  return (LAG_REAL)((c & (lag_lanes_mask)a) | (~c & (lag_lanes_mask)b));
+}
+
+/* Bit k: whether the condition holds in lane k. */
+LAG_INLINE int lag_lanes_bits(lag_lanes_mask c) {
+#if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
+  return (unsigned char)__builtin_ia32_cvtq2mask512(c);
+#elif defined(__AVX__) && LAG_LANES == 4
+  return __builtin_ia32_movmskpd256((LAG_REAL)c);
+#else
+  int bits = 0;
+  for (int k = 0; k < LAG_LANES; k++) bits |= (int)(c[k] & 1) << k;
+  return bits;
+#endif
+}
+
+LAG_INLINE int lag_lanes_any(lag_lanes_mask c) {
+#if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
+  return __builtin_ia32_cvtq2mask512(c) != 0;
+#else
+  typedef long long half __attribute__((vector_size(4 * LAG_LANES)));
+  union { lag_lanes_mask all; half part[2]; } u = {c};
+  const half h = u.part[0] | u.part[1];
+  long long some = h[0] | h[1];
+  for (int k = 2; k < LAG_LANES/2; k++) some |= h[k];
+  return some != 0;
+#endif
+}
+
+/* Whether any lane is 2^bit or more. */
+LAG_INLINE int lag_lanes_reach(lag_lanes_word w, int bit) {
+#if defined(__AVX512F__) && LAG_LANES == 8 && !defined(__clang__)
+  const lag_lanes_mask no = {0}, all = no + (long long)(~0ULL << bit);
+  return __builtin_ia32_ptestmq512((lag_lanes_mask)w, all, (unsigned char)-1) != 0;
+#elif defined(__AVX__) && LAG_LANES == 4
+  const lag_lanes_mask no = {0}, all = no + (long long)(~0ULL << bit);
+  return !__builtin_ia32_ptestz256((lag_lanes_mask)w, all);
+#else
+  return lag_lanes_any((lag_lanes_mask)(w >> bit));
+#endif
+}
+
+LAG_INLINE LAG_REAL lag_lanes_fabs(LAG_REAL x) {
+  return (LAG_REAL)((lag_lanes_word)x & ~0ULL >> 1);
+}
+
+LAG_INLINE LAG_REAL lag_lanes_sqrt(LAG_REAL x) {
+#if defined(__AVX512F__) && LAG_LANES == 8 && !defined(__clang__)
+  return __builtin_ia32_sqrtpd512_mask(x, x, (char)-1, 4);
+#elif defined(__AVX512F__) && LAG_LANES == 8
+  return __builtin_ia32_sqrtpd512(x, 4);
+#elif defined(__AVX__) && LAG_LANES == 4
+  return __builtin_ia32_sqrtpd256(x);
+#else
+  for (int k = 0; k < LAG_LANES; k++) x[k] = sqrt(x[k]);
+  return x;
+#endif
+}
+
+#define LAG_LANES_1(f) \
+  LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x) { \
+    for (int k = 0; k < LAG_LANES; k++) x[k] = f(x[k]); \
+    return x; \
+  }
+#define LAG_LANES_2(f) \
+  LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x, LAG_REAL y) { \
+    for (int k = 0; k < LAG_LANES; k++) x[k] = f(x[k], y[k]); \
+    return x; \
+  }
+LAG_LANES_EACH(LAG_LANES_1, LAG_LANES_2)
+#endif
+
+/* ---- own ---- */
+#if LAG_OWN
 #define LAG_BITS(high, low) ((lag_bits)(high) << 32 | (low))
 #ifdef LAG_LANES
 typedef lag_lanes_word lag_word;
@@ -206,11 +241,6 @@ LAG_INLINE lag_word lag_to_word(LAG_REAL x) { return (lag_word)x; }
 LAG_INLINE LAG_REAL lag_to_real(lag_word w) { return (LAG_REAL)w; }
 #define LAG_K(x) lag_lanes_all(x)
 #else
-#if defined(__GNUC__)
-#define LAG_INLINE static __inline__ __attribute__((always_inline, unused))
-#else
-#define LAG_INLINE static inline
-#endif
 typedef lag_bits lag_word;
 LAG_INLINE lag_word lag_to_word(double x) {
   union { double x; lag_word w; } u;
@@ -225,11 +255,6 @@ LAG_INLINE double lag_to_real(lag_word w) {
 #define LAG_K(x) (x)
 #endif
 
-#if (defined(__FMA__) || defined(FP_FAST_FMA) || defined(__ARM_FEATURE_FMA)) && !defined(LAG_NO_FMA)
-#define LAG_FMA 1
-#else
-#define LAG_FMA 0
-#endif
 /* a*b + c, fused where the processor has an instruction for it. */
 LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c) {
 #if !LAG_FMA

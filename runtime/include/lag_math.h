@@ -21,6 +21,14 @@
 /* ---- a file of its own ---- */
 #include "lag_sincos.h"
 
+/* ---- exp: front ---- */
+#if LAG_OWN
+LAG_INLINE LAG_REAL lag_exp(LAG_REAL x);
+#define lag_lanes_exp lag_exp
+#else
+#define lag_exp(x) LAG_FN(exp)(x)
+#endif
+
 /* ---- exp ---- */
 #if LAG_OWN
 /* exp x = 2^k e^y, x = k log 2 + y - tail: Cody and Waite's reduction with log 2 in two parts, and a minimax polynomial (tests/math/remez.py).
@@ -49,9 +57,14 @@ LAG_INLINE LAG_REAL lag_exp(LAG_REAL x) {
   const lag_word n = (lag_to_word(sum) + 2048) & 4095, half = n >> 1; /* k + 2048 */
   return (h + (l + lag_mad(y*y, p, tail)))*lag_to_real((half - 1) << 52)*lag_to_real((n - half - 1) << 52);
 }
-#define lag_lanes_exp lag_exp
+#endif
+
+/* ---- log: front ---- */
+#if LAG_OWN
+LAG_INLINE LAG_REAL lag_log(LAG_REAL x);
+#define lag_lanes_log lag_log
 #else
-#define lag_exp(x) LAG_FN(exp)(x)
+#define lag_log(x) LAG_FN(log)(x)
 #endif
 
 /* ---- log ---- */
@@ -95,9 +108,6 @@ LAG_INLINE LAG_REAL lag_log(LAG_REAL x) {
 #endif
   return y;
 }
-#define lag_lanes_log lag_log
-#else
-#define lag_log(x) LAG_FN(log)(x)
 #endif
 
 /* ---- rsqrt ---- */

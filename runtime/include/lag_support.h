@@ -5,6 +5,9 @@
 
 #include "lag_lanes.h"
 
+/* ---- solver: front ---- */
+LAG_UNUSED static LAG_MASK lag_solve(int n, LAG_REAL *M, LAG_REAL *b);
+
 /* ---- solver ---- */
 /* M x = b by elimination with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed., algorithm 3.4.1):
  * M[n*n] row-major is destroyed, b becomes x. Rows are exchanged under a mask, so that each lane has its own pivots.
@@ -50,9 +53,11 @@ LAG_UNUSED static int lag_interval(LAG_REAL t, int n, int width, const LAG_LANE 
   return k;
 }
 
-/* ---- cubic ---- */
+/* ---- cubic: front ---- */
 #define LAG_ROW(t, y, m) {(LAG_LANE)(t), (LAG_LANE)(y), (LAG_LANE)(m)}
+LAG_UNUSED static LAG_REAL lag_spline(LAG_REAL t, int n, const LAG_LANE (*row)[3]);
 
+/* ---- cubic ---- */
 /* The cubic between two rows of time, value and second derivative; outside of them the nearest value. */
 LAG_UNUSED static LAG_REAL lag_cubic(LAG_REAL t, const LAG_LANE *a, const LAG_LANE *b) {
   const LAG_LANE h = b[0] - a[0];
@@ -74,9 +79,11 @@ LAG_UNUSED static LAG_REAL lag_spline(LAG_REAL t, int n, const LAG_LANE (*row)[3
   return y;
 }
 
-/* ---- quintic ---- */
+/* ---- quintic: front ---- */
 #define LAG_JET(t, y, d, m) {(LAG_LANE)(t), (LAG_LANE)(y), (LAG_LANE)(d), (LAG_LANE)(m)}
+LAG_UNUSED static LAG_REAL lag_curve(LAG_REAL t, int n, const LAG_LANE (*row)[4], int order);
 
+/* ---- quintic ---- */
 /* Derivative 0, 1 or 2 of the quintic between two rows of time, value, first and second derivative; outside of them
  * the nearest value, and 0. */
 LAG_UNUSED static LAG_REAL lag_quintic(LAG_REAL t, int order, const LAG_LANE *a, const LAG_LANE *b) {

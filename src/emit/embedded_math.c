@@ -36,33 +36,6 @@ void embedded_section(const char *name, const char *prefix, const char *lower, S
   }
 }
 
-/* Whether its linear systems are large enough for a band: LAG_BAND_LEAST of lag_kkt.h. */
-static int has_band(const ProgramSet *u) { return u->q.n + u->constraints.of.n >= 62; }
-
-void math_kkt_solver(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out) {
-  static const char *const names[] = {"numbers", "band", "kkt"};
-  for (size_t i = 0; u->constraints.of.n && i < sizeof names / sizeof *names; i++)
-    if (i != 1 || has_band(u)) embedded_section(names[i], prefix, lower, out);
-}
-
-void math_logic(const char *prefix, StrBuf *out) { embedded_section("logic", prefix, "", out); }
-
-void math_solver(const char *prefix, const char *lower, StrBuf *out) { embedded_section("solver", prefix, lower, out); }
-
-/* Bit 0: some input is a curve by cubics, bit 1: by quintics. */
-static unsigned curves_of(const ProgramSet *u) {
-  unsigned some = 0;
-  for (uint32_t i = 0; i < u->inputs->tables.n; i++) some |= u->inputs->tables.at[i].curve->jet ? 2 : 1;
-  return some;
-}
-
-void math_curves(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out) {
-  unsigned some = curves_of(u);
-  if (some) embedded_section("interval", prefix, lower, out);
-  if (some & 1) embedded_section("cubic", prefix, lower, out);
-  if (some & 2) embedded_section("quintic", prefix, lower, out);
-}
-
 static int calls(const Prog *p, const char *name) {
   for (uint32_t k = 0; k < prog_parts(p); k++)
     for (Slot s = 1; s < prog_part(p, k)->ins.n; s++)
@@ -79,22 +52,43 @@ int unit_calls(const ProgramSet *u, const char *name) {
 }
 
 static int calls_sincos(const ProgramSet *u) { return unit_calls(u, "sin") || unit_calls(u, "cos"); }
-
-void math_lanes(const char *prefix, const char *lower, StrBuf *out) {
-  embedded_section("lanes", prefix, lower, out);
-}
-
-void math_functions(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out) {
-  int sincos = !u->libm && calls_sincos(u), e = !u->libm && unit_calls(u, "exp"), l = !u->libm && unit_calls(u, "log");
-  if (u->libm) sb_printf(out, "#define %s_OWN 0\n", prefix);
-  else embedded_section("own", prefix, lower, out);
-  embedded_section("libm", prefix, lower, out);
-  if (sincos) embedded_section("sincos", prefix, lower, out);
-  if (e) embedded_section("exp", prefix, lower, out);
-  if (l) embedded_section("log", prefix, lower, out);
-}
-
 static int calls_own(const ProgramSet *u) { return !u->libm && (calls_sincos(u) || unit_calls(u, "exp") || unit_calls(u, "log")); }
+
+/* Whether its linear systems are large enough for a band: LAG_BAND_LEAST of lag_kkt.h. */
+static int has_band(const ProgramSet *u) { return u->q.n + u->constraints.of.n >= 62; }
+
+/* Bit 0: some input is a curve by cubics, bit 1: by quintics. */
+static unsigned curves_of(const ProgramSet *u) {
+  unsigned some = 0;
+  for (uint32_t i = 0; i < u->inputs->tables.n; i++) some |= u->inputs->tables.at[i].curve->jet ? 2 : 1;
+  return some;
+}
+
+/* The sections that a unit needs, or of those that have one the front: `NAME: front`. */
+static void sections(const MathText *m, int front, StrBuf *out) {
+  const ProgramSet *u = m->u;
+  int own = !u->libm, kkt = u->constraints.of.n > 0;
+  unsigned curves = curves_of(u);
+  const struct {
+    const char *name;
+    int needed;
+  } rows[] = {{"lanes", !front}, {"own", own}, {"libm", 1}, {"sincos", own && calls_sincos(u)},
+              {"exp", own && unit_calls(u, "exp")}, {"log", own && unit_calls(u, "log")}, {"solver", m->solver},
+              {"numbers", kkt}, {"band", kkt && has_band(u)}, {"kkt", kkt},
+              {"interval", curves != 0}, {"cubic", curves & 1}, {"quintic", curves & 2}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    if (rows[i].needed) embedded_section(front ? arena_printf(out->arena, "%s: front", rows[i].name) : rows[i].name, m->prefix, m->lower, out);
+}
+
+void math_lanes(const MathText *m, StrBuf *out) { embedded_section("lanes: front", m->prefix, m->lower, out); }
+
+void math_front(const MathText *m, StrBuf *out) {
+  embedded_section("logic", m->prefix, m->lower, out);
+  if (m->u->libm) sb_printf(out, "#define %s_OWN 0\n", m->prefix);
+  sections(m, 1, out);
+}
+
+void math_bodies(const MathText *m, StrBuf *out) { sections(m, 0, out); }
 
 /* Over lanes exp and log are the runtime's, and a double has the same bits. */
 static void exp_and_log_as_lanes(const ProgramSet *u, StrBuf *out) {
@@ -103,23 +97,22 @@ static void exp_and_log_as_lanes(const ProgramSet *u, StrBuf *out) {
     if (unit_calls(u, names[i])) sb_printf(out, "#ifndef LAG_LANES\n#define %s lag_%s\n#endif\n", names[i], names[i]);
 }
 
-void math_of_model(const ProgramSet *u, int solver, int alone, StrBuf *out) {
+void math_of_model(const MathText *m, int alone, StrBuf *out) {
+  const ProgramSet *u = m->u;
+  int kkt = u->constraints.of.n > 0;
   if (u->lanes) sb_puts(out, "#define LAG_AS_LANES 1 /* the same bits as in a lane */\n");
-  if (u->libm && !alone) sb_puts(out, "#define LAG_LIBM 1\n");
-  if (u->constraints.of.n && !has_band(u) && !alone) sb_puts(out, "#define LAG_NO_BAND 1 /* so few unknowns have none */\n");
   if (alone) {
-    math_lanes("LAG", "lag", out);
-    embedded_section("scalar", "LAG", "lag", out);
-    math_logic("LAG", out);
-    embedded_section("positive", "LAG", "lag", out);
-    math_functions(u, "LAG", "lag", out);
-    if (solver) math_solver("LAG", "lag", out);
-    math_kkt_solver(u, "LAG", "lag", out);
-    math_curves(u, "LAG", "lag", out);
+    sb_puts(out, "\n");
+    math_lanes(m, out);
+    embedded_section("scalar", m->prefix, m->lower, out);
+    embedded_section("positive", m->prefix, m->lower, out);
+    math_front(m, out);
   } else {
+    if (u->libm) sb_puts(out, "#define LAG_LIBM 1\n");
+    if (kkt && !has_band(u)) sb_puts(out, "#define LAG_NO_BAND 1 /* so few unknowns have none */\n");
     sb_puts(out, calls_own(u) ? "#include \"lag_math.h\"\n" : "#include \"lag_lanes.h\"\n");
-    if (solver || curves_of(u)) sb_puts(out, "#include \"lag_support.h\"\n");
-    if (u->constraints.of.n) sb_puts(out, "#include \"lag_kkt.h\"\n");
+    if (m->solver || curves_of(u)) sb_puts(out, "#include \"lag_support.h\"\n");
+    if (kkt) sb_puts(out, "#include \"lag_kkt.h\"\n");
   }
   exp_and_log_as_lanes(u, out);
 }

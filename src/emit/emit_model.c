@@ -427,7 +427,8 @@ static void emit_head(const ProgramSet *u, StrBuf *out) {
 void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
   ModelFile f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
-  math_of_model(u, needs_solver(u), alone, out);
+  MathText math = {u, "LAG", "lag", needs_solver(u)};
+  math_of_model(&math, alone, out);
   if (has_long_tables(u)) table_macros(out);
   size_t begin = out->n;
   emit_derive(&f);
@@ -445,4 +446,7 @@ void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
   emit_variation(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, name, i);
+  if (!alone) return;
+  sb_puts(out, "\n/* ---- lag_math.h and others, of lagc ---- */\n\n");
+  math_bodies(&math, out);
 }
