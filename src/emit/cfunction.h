@@ -39,8 +39,8 @@ typedef struct {
 /* Vector lanes (PREFIX_LANES): mask type, selection, functions lane by lane. Must precede everything that has a default. */
 void math_lanes(const MathText *m, StrBuf *out);
 
-/* Macros and prototypes: selection and logic (PREFIX_SELECT, PREFIX_MASK, ...), lower_sincos, exp and log over lanes, lower_solve,
- * lower_kkt, lower_spline and lower_curve. Must follow PREFIX_FN and PREFIX_C. */
+/* Macros and prototypes: selection and logic (PREFIX_SELECT, PREFIX_MASK, ...), lower_sincos, exp and log over lanes,
+ * lower_solve, lower_kkt, lower_spline and lower_curve. Must follow PREFIX_FN and PREFIX_C. */
 void math_front(const MathText *m, StrBuf *out);
 
 /* The functions themselves, which stand behind those of the model. */

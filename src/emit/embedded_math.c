@@ -18,8 +18,8 @@
 static const struct {
   const char *const *line;
   size_t n;
-} embedded[] = {LINES(lag_lanes), LINES(lag_math), LINES(lag_sincos), LINES(lag_support), LINES(lag_kkt), LINES(band_matrix_kernel),
-              LINES(dense_output_kernel), LINES(impulses_kernel), LINES(locate_kernel)};
+} embedded[] = {LINES(lag_lanes), LINES(lag_math), LINES(lag_sincos), LINES(lag_support), LINES(lag_kkt),
+              LINES(band_matrix_kernel), LINES(dense_output_kernel), LINES(impulses_kernel), LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";
 static int is_marker(const char *line, const char *name) {
@@ -52,7 +52,9 @@ int unit_calls(const ProgramSet *u, const char *name) {
 }
 
 static int calls_sincos(const ProgramSet *u) { return unit_calls(u, "sin") || unit_calls(u, "cos"); }
-static int calls_own(const ProgramSet *u) { return !u->libm && (calls_sincos(u) || unit_calls(u, "exp") || unit_calls(u, "log")); }
+static int calls_own(const ProgramSet *u) {
+  return !u->libm && (calls_sincos(u) || unit_calls(u, "exp") || unit_calls(u, "log"));
+}
 
 /* Whether its linear systems are large enough for a band: LAG_BAND_LEAST of lag_kkt.h. */
 static int has_band(const ProgramSet *u) { return u->q.n + u->constraints.of.n >= 62; }
@@ -76,8 +78,10 @@ static void sections(const MathText *m, int front, StrBuf *out) {
               {"exp", own && unit_calls(u, "exp")}, {"log", own && unit_calls(u, "log")}, {"solver", m->solver},
               {"numbers", kkt}, {"band", kkt && has_band(u)}, {"kkt", kkt},
               {"interval", curves != 0}, {"cubic", curves & 1}, {"quintic", curves & 2}};
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-    if (rows[i].needed) embedded_section(front ? arena_printf(out->arena, "%s: front", rows[i].name) : rows[i].name, m->prefix, m->lower, out);
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    const char *name = front ? arena_printf(out->arena, "%s: front", rows[i].name) : rows[i].name;
+    if (rows[i].needed) embedded_section(name, m->prefix, m->lower, out);
+  }
 }
 
 void math_lanes(const MathText *m, StrBuf *out) { embedded_section("lanes: front", m->prefix, m->lower, out); }

@@ -372,7 +372,8 @@ static void for_scalars(const Header *h) {
 
 static int solves_dense(const Header *h) {
   const ProgramSet *u = h->u;
-  return prog_solves_dense(u->accel) || prog_solves_dense(h->scene->observe_plain) || (u->taylor && prog_solves_dense(u->taylor->first));
+  return prog_solves_dense(u->accel) || prog_solves_dense(h->scene->observe_plain) ||
+         (u->taylor && prog_solves_dense(u->taylor->first));
 }
 
 void header_implementation(const Header *h) {
