@@ -187,6 +187,8 @@ DIGITS_quad := 36
 RT_HEAD  := $(patsubst runtime/%,%,$(wildcard runtime/*/*.h))
 TABLES   := $(BUILD)/gen/app/options.def $(BUILD)/gen/numeric/functions.def $(BUILD)/gen/kernels/steppers.def
 API_HEAD := lag.h lag_libraries.h lag_model.h
+# Of every scalar; emitted C includes them.
+ANY_HEAD := lag_lanes.h lag_math.h lag_sincos.h lag_support.h lag_kkt.h
 
 define precision_rules
 $(BUILD)/gen/$(1)/%: runtime/% runtime/precision.awk
@@ -196,10 +198,13 @@ $(BUILD)/gen/$(1)/%: runtime/% runtime/precision.awk
 $(BUILD)/lag-$(1)/%.h: $(BUILD)/gen/$(1)/include/%.h
 	@mkdir -p $$(@D)
 	cp $$< $$@
+$(ANY_HEAD:%=$(BUILD)/lag-$(1)/%): $(BUILD)/lag-$(1)/%.h: runtime/include/%.h
+	@mkdir -p $$(@D)
+	cp $$< $$@
 $(BUILD)/obj/$(1)/%.o: $(BUILD)/gen/$(1)/%.c $(RT_HEAD:%=$(BUILD)/gen/$(1)/%) | $(BUILD)/gen/io/page.h $(TABLES)
 	@mkdir -p $$(@D)
 	$$(CCACHE) $$(CC) $$(REAL_$(1)) -w $$(CPPFLAGS_ALL) -I$(BUILD)/gen/$(1)/include -I$(BUILD)/gen/$(1) -I$(BUILD)/gen -ffp-contract=off $$(PIC) $$(CFLAGS) $$(SAFE) -c -o $$@ $$<
-$(BUILD)/liblag_$(1).a: $(RT_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%)
+$(BUILD)/liblag_$(1).a: $(RT_SRC:runtime/%.c=$(BUILD)/obj/$(1)/%.o) $(API_HEAD:%=$(BUILD)/lag-$(1)/%) $(ANY_HEAD:%=$(BUILD)/lag-$(1)/%)
 	$$(ARCHIVE) $$(filter %.o,$$^)
 	$$(INDEX)
 endef
@@ -263,7 +268,7 @@ $(BUILD)/obj/src/fmu/zip.o: SRC_FLAGS += $(if $(ZIP),-DLAGC_WITH_ZIP)
 $(BUILD)/obj/src/toolchain/toolchain.o: SRC_FLAGS += '-DLAGC_LIBDIR="$(LIB_FROM_BIN)"' '-DLAGC_INCLUDEDIR="$(INCLUDE_FROM_BIN)"'
 $(BUILD)/obj/src/base/method_table.o $(BUILD)/obj/src/fmu/zip.o $(BUILD)/obj/src/toolchain/toolchain.o: $(CONFIG)
 $(BUILD)/obj/runtime/io/html.o: $(BUILD)/gen/io/page.h
-$(BUILD)/obj/src/emit/embedded_math.o: $(patsubst %,$(BUILD)/gen/emit/lag_%.h,math sincos kkt) $(patsubst runtime/kernels/%.h,$(BUILD)/gen/emit/%_kernel.h,$(wildcard runtime/kernels/*.h))
+$(BUILD)/obj/src/emit/embedded_math.o: $(patsubst %,$(BUILD)/gen/emit/lag_%.h,lanes math sincos support kkt) $(patsubst runtime/kernels/%.h,$(BUILD)/gen/emit/%_kernel.h,$(wildcard runtime/kernels/*.h))
 $(BUILD)/obj/src/toolchain/toolchain.o: $(BUILD)/gen/toolchain/probe_text.h
 $(BUILD)/obj/src/fmu/fmu_archive.o: $(patsubst %,$(BUILD)/gen/fmu/%_text.h,core cosimulation fmi2 fmi3)
 $(BUILD)/obj/src/commands/manual.o: $(patsubst %,$(BUILD)/gen/commands/%.h,language python readme tutorial)

@@ -5,7 +5,7 @@ MODELS := $(wildcard models/*.lag models/*.csv)
 PC     := $(BUILD)/liblag.pc
 # Where lagc.py goes; `make install PYTHONDIR=...` puts it where a Python looks.
 PYTHONDIR ?= $(PREFIX)/share/lagc/python
-HEADERS := lag.h lag_libraries.h lag_model.h lag_math.h lag_sincos.h lag_kkt.h
+HEADERS := $(API_HEAD) $(ANY_HEAD)
 FILL_IN = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(call below,$${prefix}/,$(LIBDIR))|' \
             -e 's|@INCLUDEDIR@|$(call below,$${prefix}/,$(INCLUDEDIR))|' -e 's|@VERSION@|$(VERSION)|'
 # The same for CMake: from its folder LIBDIR/cmake/lagc up to PREFIX, where LIBDIR is below it.

@@ -1,4 +1,4 @@
-/* lag_kkt.h: accelerations, or changes of a state, under constraints. Includes only <math.h>.
+/* lag_kkt.h: accelerations, or changes of a state, under constraints. Includes lag_lanes.h.
  *
  *   M x - A^T l = f        M[n*n] symmetric, A[m*n]
  *   A x         = g
@@ -16,24 +16,14 @@
  * more than rounding: with s the independence of the weakest constraint, a residual of 1e-16 moves a position by 1e-16/s, and turns the directions
  * which constraints allow by 1e-16/s^2.
  *
- * lagc copies the sections below into emitted C; in headers with their prefix for LAG_ and lag_. LAG_REAL may be a vector; LAG_LANE is its scalar. */
+ * LAG_REAL may be a vector; LAG_LANE is its scalar. LAG_NO_BAND leaves the band out. */
 #ifndef LAG_KKT_H
 #define LAG_KKT_H
 
-#include <math.h>
+#include "lag_lanes.h"
 
-#ifndef LAG_REAL
-#define LAG_REAL double
-#endif
-#ifndef LAG_LANE
-#define LAG_LANE LAG_REAL
-#endif
-#ifndef LAG_FN
-#define LAG_FN(f) f
-#endif
-#ifndef LAG_MASK
-#define LAG_MASK int
-#endif
+/* ---- kkt: front ---- */
+static inline LAG_MASK lag_kkt(int n, int m, int coarse, LAG_REAL *w);
 
 /* ---- numbers ---- */
 #ifdef LAG_LANES
@@ -43,6 +33,7 @@
 #endif
 
 /* ---- band ---- */
+#ifndef LAG_NO_BAND
 /* The whole system [M A^T; A 0] within a band, for large systems: along chains, ladders and loops of any number of links its work grows
  * linearly, also where M is singular, or M^-1 full. Unknowns are in the order of Cuthill and McKee (ACM '69: Proc. 24th nat. conf., 157, DOI
  * 10.1145/800195.805928), begun at an end; the factorization is L U with row exchanges, which widen the band by half at most, where the pivots
@@ -234,6 +225,8 @@ static int lag_banded(int n, int m, const LAG_LANE *M, const LAG_LANE *A, LAG_LA
   for (int i = 0; i < all; i++) *(i < n ? x + i : l + i - n) = z[i];
   return 1;
 }
+
+#endif
 
 /* ---- kkt ---- */
 

@@ -1,11 +1,9 @@
 /* lag_math.h: sincos, sin, cos, exp, log and the reciprocal square root, inline, of a double or of each lane of a vector of 4 or 8 doubles;
- * lag_sincos2 and lag_sincos4 take two or four angles at once, and give the same bits as lag_sincos. Includes only <math.h> and its own section
+ * lag_sincos2 and lag_sincos4 take two or four angles at once, and give the same bits as lag_sincos. Includes lag_lanes.h and its own section
  * lag_sincos.h; for C99 and C++ with GCC, Clang or any compiler that has IEEE doubles.
  *
- * LAG_REAL is double, or, with LAG_LANES defined as 4 or 8, the type of a vector with so many lanes (GCC and Clang; arrays of it are aligned to
- * its size: aligned_alloc; -Wno-psabi silences GCC on how it passes them). Eight lanes need AVX-512 to be fast, four AVX2 with FMA. Largest
- * errors seen at a million points, in units in the last place (tests/math measures them against libquadmath, and fails where one is more than
- * 1):
+ * Eight lanes need AVX-512 to be fast, four AVX2 with FMA. Largest errors seen at a million points, in units in the
+ * last place (tests/math measures them against libquadmath, and fails where one is more than 1):
  *
  *   sin, cos   0.86    all finite x; Payne and Hanek's reduction where x is large
  *   exp        0.77
@@ -14,224 +12,22 @@
  *
  * All lanes, of 4 or of 8, get the same bits. Fused multiply-add is used by name where the processor has it: results then differ in the last
  * place from those of a processor without, but not from one compiler to another; LAG_NO_FMA does without it everywhere. A compiler may contract
- * further products and sums (-ffp-contract=fast): the bounds hold.
- *
- * lagc copies the sections below, from a line `---- NAME ----` to the next, into what it emits, with LAG_ and lag_ replaced by the prefix of an
- * emitted header. */
+ * further products and sums (-ffp-contract=fast): the bounds hold. */
 #ifndef LAG_MATH_H
 #define LAG_MATH_H
 
-#include <math.h>
-
-#ifndef LAG_REAL
-#ifdef LAG_LANES
-typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
-#define LAG_REAL lag_lanes
-#else
-#define LAG_REAL double
-#endif
-#endif
-
-/* ---- lanes ---- */
-#ifdef LAG_LANES
-/* Selection, logic and functions of vectors of doubles. */
-#if !defined(__GNUC__) || (LAG_LANES != 4 && LAG_LANES != 8)
-#error "LAG_LANES must be 4 or 8, and the compiler GCC or Clang"
-#endif
-#define LAG_INLINE static __inline__ __attribute__((always_inline, unused))
-typedef long long lag_lanes_mask __attribute__((vector_size(8 * LAG_LANES)));
-typedef unsigned long long lag_lanes_word __attribute__((vector_size(8 * LAG_LANES)));
-
-LAG_INLINE LAG_REAL lag_lanes_all(double x) {
-  const LAG_REAL zero = {0};
-  return x - zero;
-}
-
-LAG_INLINE LAG_REAL lag_lanes_select(lag_lanes_mask c, LAG_REAL a, LAG_REAL b) {
-  return (LAG_REAL)((c & (lag_lanes_mask)a) | (~c & (lag_lanes_mask)b));
-}
-
-/* Bit k: whether the condition holds in lane k. */
-LAG_INLINE int lag_lanes_bits(lag_lanes_mask c) {
-#if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
-  return (unsigned char)__builtin_ia32_cvtq2mask512(c);
-#elif defined(__AVX__) && LAG_LANES == 4
-  return __builtin_ia32_movmskpd256((LAG_REAL)c);
-#else
-  int bits = 0;
-  for (int k = 0; k < LAG_LANES; k++) bits |= (int)(c[k] & 1) << k;
-  return bits;
-#endif
-}
-
-LAG_INLINE int lag_lanes_any(lag_lanes_mask c) {
-#if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
-  return __builtin_ia32_cvtq2mask512(c) != 0;
-#else
-  typedef long long half __attribute__((vector_size(4 * LAG_LANES)));
-  union { lag_lanes_mask all; half part[2]; } u = {c};
-  const half h = u.part[0] | u.part[1];
-  long long some = h[0] | h[1];
-  for (int k = 2; k < LAG_LANES/2; k++) some |= h[k];
-  return some != 0;
-#endif
-}
-
-/* Whether any lane is 2^bit or more. */
-LAG_INLINE int lag_lanes_reach(lag_lanes_word w, int bit) {
-#if defined(__AVX512F__) && LAG_LANES == 8 && !defined(__clang__)
-  const lag_lanes_mask no = {0}, all = no + (long long)(~0ULL << bit);
-  return __builtin_ia32_ptestmq512((lag_lanes_mask)w, all, (unsigned char)-1) != 0;
-#elif defined(__AVX__) && LAG_LANES == 4
-  const lag_lanes_mask no = {0}, all = no + (long long)(~0ULL << bit);
-  return !__builtin_ia32_ptestz256((lag_lanes_mask)w, all);
-#else
-  return lag_lanes_any((lag_lanes_mask)(w >> bit));
-#endif
-}
-
-LAG_INLINE LAG_REAL lag_lanes_fabs(LAG_REAL x) {
-  return (LAG_REAL)((lag_lanes_word)x & ~0ULL >> 1);
-}
-
-LAG_INLINE LAG_REAL lag_lanes_sqrt(LAG_REAL x) {
-#if defined(__AVX512F__) && LAG_LANES == 8 && !defined(__clang__)
-  return __builtin_ia32_sqrtpd512_mask(x, x, (char)-1, 4);
-#elif defined(__AVX512F__) && LAG_LANES == 8
-  return __builtin_ia32_sqrtpd512(x, 4);
-#elif defined(__AVX__) && LAG_LANES == 4
-  return __builtin_ia32_sqrtpd256(x);
-#else
-  for (int k = 0; k < LAG_LANES; k++) x[k] = sqrt(x[k]);
-  return x;
-#endif
-}
-
-/* Functions without a vector form: one lane after the other. */
-#define LAG_LANES_1(f) \
-  LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x) { \
-    for (int k = 0; k < LAG_LANES; k++) x[k] = f(x[k]); \
-    return x; \
-  }
-#define LAG_LANES_2(f) \
-  LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x, LAG_REAL y) { \
-    for (int k = 0; k < LAG_LANES; k++) x[k] = f(x[k], y[k]); \
-    return x; \
-  }
-LAG_LANES_1(tan) LAG_LANES_1(asin) LAG_LANES_1(acos) LAG_LANES_1(atan) LAG_LANES_1(sinh) LAG_LANES_1(cosh)
-LAG_LANES_1(tanh) LAG_LANES_1(cbrt)
-LAG_LANES_2(pow) LAG_LANES_2(atan2) LAG_LANES_2(hypot)
-
-#define LAG_MASK lag_lanes_mask
-#define LAG_LANE double
-#define LAG_FN(f) lag_lanes_##f
-#define LAG_C(x) lag_lanes_all(x)
-#define LAG_SELECT(c, a, b) lag_lanes_select(c, a, b)
-#define LAG_NOT(c) (~(c))
-#define LAG_AND(a, b) ((a) & (b))
-#define LAG_OR(a, b) ((a) | (b))
-#define LAG_ANY(c) lag_lanes_any(c)
-/* Checks of pivots. A lane with a singular matrix does not stop the others: its results are not finite, and its bit is set in the negative of
- * the status; so for a lane whose matrix is not finite. */
-#if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
-#define LAG_PIVOTS int singular __attribute__((unused)) = 0
-#define LAG_PIVOT(c) singular |= lag_lanes_bits(~(c))
-#define LAG_POSITIVE(d) singular |= (unsigned char)__builtin_ia32_cmppd512_mask(d, LAG_C(0.0), 26 /* not greater, or unordered */, (unsigned char)-1, 4)
-#define LAG_PIVOTS_STATUS -singular
-#else
-#define LAG_PIVOTS LAG_MASK singular __attribute__((unused)) = {0}
-#define LAG_PIVOT(c) singular |= ~(c)
-#define LAG_POSITIVE(d) LAG_PIVOT((d) > LAG_C(0.0))
-#define LAG_PIVOTS_STATUS -lag_lanes_bits(singular)
-#endif
-#endif
-
-/* ---- own ---- */
-/* LAG_OWN: 1 where the functions below are used; for scalars other than double, and with LAG_LIBM or LAG_COMPLEX defined, those of the library
- * are. */
-#define LAG_JOIN2(a, b) a##b
-#define LAG_JOIN(a, b) LAG_JOIN2(a, b)
-#define LAG_IS_float 0
-#define LAG_IS_double 1
-#define LAG_IS_long 0 && /* double */
-#if defined(LAG_LIBM) || defined(LAG_COMPLEX)
-#define LAG_OWN 0
-#elif defined(LAG_LANES) || LAG_JOIN(LAG_IS_, LAG_REAL)
-#define LAG_OWN 1
-#else
-#define LAG_OWN 0
-#endif
-
-#if LAG_OWN
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wlong-long" /* C++98 has none */
-#endif
-typedef long long lag_signed;
-typedef unsigned long long lag_bits;
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
-#define LAG_BITS(high, low) ((lag_bits)(high) << 32 | (low))
-#ifdef LAG_LANES
-typedef lag_lanes_word lag_word;
-LAG_INLINE lag_word lag_to_word(LAG_REAL x) { return (lag_word)x; }
-LAG_INLINE LAG_REAL lag_to_real(lag_word w) { return (LAG_REAL)w; }
-#define LAG_K(x) lag_lanes_all(x)
-#else
-#if defined(__GNUC__)
-#define LAG_INLINE static __inline__ __attribute__((always_inline, unused))
-#else
-#define LAG_INLINE static inline
-#endif
-typedef lag_bits lag_word;
-LAG_INLINE lag_word lag_to_word(double x) {
-  union { double x; lag_word w; } u;
-  u.x = x;
-  return u.w;
-}
-LAG_INLINE double lag_to_real(lag_word w) {
-  union { lag_word w; double x; } u;
-  u.w = w;
-  return u.x;
-}
-#define LAG_K(x) (x)
-#endif
-
-#if (defined(__FMA__) || defined(FP_FAST_FMA) || defined(__ARM_FEATURE_FMA)) && !defined(LAG_NO_FMA)
-#define LAG_FMA 1
-#else
-#define LAG_FMA 0
-#endif
-/* a*b + c, fused where the processor has an instruction for it. */
-LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c) {
-#if !LAG_FMA
-  return a*b + c;
-#elif !defined(LAG_LANES)
-  return fma(a, b, c);
-#elif LAG_LANES == 8 && defined(__AVX512F__)
-  return __builtin_ia32_vfmaddpd512_mask(a, b, c, (unsigned char)-1, 4);
-#elif LAG_LANES == 4 && defined(__FMA__)
-  return __builtin_ia32_vfmaddpd256(a, b, c);
-#elif defined(__FMA__)
-  typedef double half __attribute__((vector_size(32)));
-  union { LAG_REAL all; half part[2]; } x = {a}, y = {b}, z = {c};
-  for (int k = 0; k < 2; k++) z.part[k] = __builtin_ia32_vfmaddpd256(x.part[k], y.part[k], z.part[k]);
-  return z.all;
-#else
-  for (int k = 0; k < LAG_LANES; k++) a[k] = fma(a[k], b[k], c[k]);
-  return a;
-#endif
-}
-#endif
-
-/* ---- libm ---- */
-#if defined(LAG_LANES) && !LAG_OWN
-LAG_LANES_1(sin) LAG_LANES_1(cos) LAG_LANES_1(exp) LAG_LANES_1(log)
-#endif
+#include "lag_lanes.h"
 
 /* ---- a file of its own ---- */
 #include "lag_sincos.h"
+
+/* ---- exp: front ---- */
+#if LAG_OWN
+LAG_INLINE LAG_REAL lag_exp(LAG_REAL x);
+#define lag_lanes_exp lag_exp
+#else
+#define lag_exp(x) LAG_FN(exp)(x)
+#endif
 
 /* ---- exp ---- */
 #if LAG_OWN
@@ -261,9 +57,14 @@ LAG_INLINE LAG_REAL lag_exp(LAG_REAL x) {
   const lag_word n = (lag_to_word(sum) + 2048) & 4095, half = n >> 1; /* k + 2048 */
   return (h + (l + lag_mad(y*y, p, tail)))*lag_to_real((half - 1) << 52)*lag_to_real((n - half - 1) << 52);
 }
-#define lag_lanes_exp lag_exp
+#endif
+
+/* ---- log: front ---- */
+#if LAG_OWN
+LAG_INLINE LAG_REAL lag_log(LAG_REAL x);
+#define lag_lanes_log lag_log
 #else
-#define lag_exp(x) LAG_FN(exp)(x)
+#define lag_log(x) LAG_FN(log)(x)
 #endif
 
 /* ---- log ---- */
@@ -307,9 +108,6 @@ LAG_INLINE LAG_REAL lag_log(LAG_REAL x) {
 #endif
   return y;
 }
-#define lag_lanes_log lag_log
-#else
-#define lag_log(x) LAG_FN(log)(x)
 #endif
 
 /* ---- rsqrt ---- */
@@ -348,11 +146,6 @@ LAG_INLINE LAG_REAL lag_rsqrt(LAG_REAL x) {
 #define lag_rsqrt(x) (LAG_C(1.0)/LAG_FN(sqrt)(x))
 #endif
 
-/* ---- floor ---- */
-#ifdef LAG_LANES
-LAG_LANES_1(floor)
-#endif
-
 /* ---- power ---- */
 #if LAG_OWN
 /* x^p for a normal x > 0, with relative error 2e-4 for |p| <= 1/8 and 6e-4 for |p| <= 1, enough for a step size; pow would take a tenth of a short
@@ -372,10 +165,4 @@ LAG_INLINE LAG_REAL lag_rough_power(LAG_REAL x, LAG_REAL p) {
 #endif
 
 /* ---- end ---- */
-#ifndef LAG_FN
-#define LAG_FN(f) f
-#endif
-#ifndef LAG_C
-#define LAG_C(x) ((LAG_REAL)x)
-#endif
 #endif

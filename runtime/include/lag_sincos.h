@@ -1,4 +1,39 @@
 /* Section `sincos` of lag_math.h, its only includer: sine and cosine by a table of multiples of pi/32; of lanes, and with LAG_AS_LANES, by longer polynomials. */
+/* ---- sincos: front ---- */
+#if LAG_OWN
+#if defined(LAG_LANES) || defined(LAG_AS_LANES)
+#define LAG_SINCOS_2 1
+#elif defined(__GNUC__) && defined(__SSE2__) && (defined(__FMA__) || !LAG_FMA)
+#define LAG_SINCOS_2 1
+#if LAG_FMA && defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector)
+#define LAG_SINCOS_4 1
+#endif
+#endif
+#endif
+LAG_INLINE void lag_sincos(LAG_REAL x, LAG_REAL *s, LAG_REAL *c);
+LAG_INLINE LAG_REAL lag_sin(LAG_REAL x);
+LAG_INLINE LAG_REAL lag_cos(LAG_REAL x);
+#define lag_lanes_sin lag_sin
+#define lag_lanes_cos lag_cos
+#else
+#define lag_sincos(x, s, c) (void)(*(s) = LAG_FN(sin)(x), *(c) = LAG_FN(cos)(x))
+#define lag_sin(x) LAG_FN(sin)(x)
+#define lag_cos(x) LAG_FN(cos)(x)
+#endif
+#ifdef LAG_SINCOS_2
+LAG_INLINE void lag_sincos2(LAG_REAL a, LAG_REAL *sin_a, LAG_REAL *cos_a, LAG_REAL b, LAG_REAL *sin_b, LAG_REAL *cos_b);
+#else
+#define lag_sincos2(a, sin_a, cos_a, b, sin_b, cos_b) (lag_sincos(a, sin_a, cos_a), lag_sincos(b, sin_b, cos_b))
+#endif
+#ifdef LAG_SINCOS_4
+LAG_INLINE void lag_sincos4(double a, double *sin_a, double *cos_a, double b, double *sin_b, double *cos_b,
+                            double c, double *sin_c, double *cos_c, double d, double *sin_d, double *cos_d);
+#else
+#define lag_sincos4(a, sin_a, cos_a, b, sin_b, cos_b, c, sin_c, cos_c, d, sin_d, cos_d) \
+  (lag_sincos2(a, sin_a, cos_a, b, sin_b, cos_b), lag_sincos2(c, sin_c, cos_c, d, sin_d, cos_d))
+#endif
+
 /* ---- sincos ---- */
 #if LAG_OWN
 /* Payne and Hanek's reduction: returns y, with x modulo pi/2 = y - *lo, |y| <= pi/4, and *quarter, the number of quarter turns modulo 4, for x
@@ -147,7 +182,6 @@ LAG_INLINE void lag_sincos(LAG_REAL x, LAG_REAL *s, LAG_REAL *c) {
 }
 
 /* Two angles: one branch decides for both whether they are in the short range. */
-#define LAG_SINCOS_2 1
 LAG_INLINE void lag_sincos2(LAG_REAL a, LAG_REAL *sin_a, LAG_REAL *cos_a, LAG_REAL b, LAG_REAL *sin_b, LAG_REAL *cos_b) {
   const LAG_REAL sum_a = lag_quarters(a), sum_b = lag_quarters(b);
   if (LAG_SINCOS_IS_FAR(lag_quarters_far(sum_a) | lag_quarters_far(sum_b))) {
@@ -271,14 +305,7 @@ LAG_INLINE void lag_sincos(double x, double *s, double *c) {
 }
 
 /* Two or four angles side by side in a register: the same bits as one after the other, in little more time than one angle takes. */
-#if defined(__GNUC__) && defined(__SSE2__) && (defined(__FMA__) || !LAG_FMA)
-#define LAG_SINCOS_2 1
-#if LAG_FMA && defined(__has_builtin)
-#if __has_builtin(__builtin_shufflevector)
-#define LAG_SINCOS_4 1
-#endif
-#endif
-
+#ifdef LAG_SINCOS_2
 __attribute__((cold, noinline, unused)) static lag_pair lag_sincos_any(double x) {
   lag_pair y;
   lag_sincos(x, &y.s, &y.c);
@@ -390,19 +417,6 @@ LAG_INLINE LAG_REAL lag_cos(LAG_REAL x) {
   lag_sincos(x, &s, &c);
   return c;
 }
-#define lag_lanes_sin lag_sin
-#define lag_lanes_cos lag_cos
-#else
-#define lag_sincos(x, s, c) (void)(*(s) = LAG_FN(sin)(x), *(c) = LAG_FN(cos)(x))
-#define lag_sin(x) LAG_FN(sin)(x)
-#define lag_cos(x) LAG_FN(cos)(x)
-#endif
-#ifndef LAG_SINCOS_2
-#define lag_sincos2(a, sin_a, cos_a, b, sin_b, cos_b) (lag_sincos(a, sin_a, cos_a), lag_sincos(b, sin_b, cos_b))
-#endif
-#ifndef LAG_SINCOS_4
-#define lag_sincos4(a, sin_a, cos_a, b, sin_b, cos_b, c, sin_c, cos_c, d, sin_d, cos_d) \
-  (lag_sincos2(a, sin_a, cos_a, b, sin_b, cos_b), lag_sincos2(c, sin_c, cos_c, d, sin_d, cos_d))
 #endif
 
 /* ---- end ---- */

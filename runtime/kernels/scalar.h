@@ -17,7 +17,7 @@
 #define LAG_C(x) x
 #endif
 
-/* ---- logic ---- */
+/* ---- logic of kernels: in headers that of lag_lanes.h ---- */
 #ifndef LAG_SELECT
 #define LAG_SELECT(c, a, b) ((c) ? (LAG_REAL)(a) : (LAG_REAL)(b))
 #define LAG_NOT(c) (!(c))

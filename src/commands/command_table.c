@@ -128,11 +128,12 @@ static const CommandRow commands[] = {
    "With --for it also has callbacks for solvers, exact Jacobians included, and includes their headers: `gsl_odeiv2_system sys = pend_gsl_system(&data);`, "
    "`CVodeInit(cvode, pend_cvode_rhs, t, y);`, or in Python `casadi.external(\"pend_ode\", \"./pend.so\")`. Where the model has constraints, accelerations obey them, positions drift as far as the "
    "solver's errors do (`pend_hold` leads back)."},
-  {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [--method NAME] [--with linear] [-o FILE.c]", "write C for the runtime",
+  {CMD_EMIT, "emit", NULL, "MODEL [SCENE] [--method NAME] [--with linear] [--standalone] [-o FILE.c]", "write C for the runtime",
    "Writes C for the runtime: a `const lag_model` and a `const lag_scene` (see lag_model.h). liblag "
    "integrates them; its interface is lag.h:\n\n"
    "  cc main.c pendulum.c $(pkg-config --cflags --libs liblag)\n\n"
-   "With -DLAG_LANES=4 or 8 its functions take vectors of 4 or 8 doubles, and compute as many states at once."},
+   "With -DLAG_LANES=4 or 8 its functions take vectors of 4 or 8 doubles, and compute as many states at once.\n\n"
+   "The file begins with the model; what models have in common, sines and linear systems, it includes from lag_math.h and other headers beside lag_model.h. With --standalone it has these functions itself."},
   {CMD_FMU, "fmu", "fmi", "MODEL [SCENE] -o FILE.fmu [--fmi 2|3] [--also-cc CC,CC]", "write an FMU, for Simulink, Modelica tools and others",
    "Writes the scene as a Functional Mock-up Unit (FMI 2.0, or 3.0), for model exchange and co-simulation: sources and a binary for this machine, "
    "which need nothing of lagc. Coordinates, velocities and states are its continuous states, with the starts of the scene; the scene's outputs are outputs; "

@@ -13,6 +13,6 @@ int command_emit(Compiler *c) {
   ProgramSet *u = compiler_lower_scene(c, e, 1);
   if (!u) return STATUS_MODEL;
   StrBuf out = strbuf(c->arena);
-  emit_model(u, model_id(c->arena, u->name), &out);
+  emit_model(u, model_id(c->arena, u->name), c->o.standalone, &out);
   return compiler_write(c, c->o.output, &out);
 }

@@ -174,7 +174,7 @@ Texts simulator_texts(Compiler *c, const Units *units, ProgramKind kind) {
     names[i] = arena_printf(c->arena, "%s_%u", model_id(c->arena, units->at[i]->name), i);
     StrBuf b = strbuf(c->arena);
     const char *file = arena_printf(c->arena, "model_%u.c", i);
-    emit_model(units->at[i], names[i], &b);
+    emit_model(units->at[i], names[i], 0, &b);
     if (i + 1 == units->n) emit_program((const ProgramSet *const *)units->at, names, units->n, kind, &b);
     for (int lanes = 4; lanes <= 8 && kind & PROGRAM_WITH_LANES; lanes *= 2) add_lanes(c, units->at[i], names[i], file, lanes, &texts);
     vec_push(c->arena, &texts, ((SourceText){file, sb_text(&b)}));

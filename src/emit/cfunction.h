@@ -1,17 +1,8 @@
-/* Parts common to all emitted files: macros of the scalar type, support functions (linear solver, splines), the C function around the body
- * of a Prog, and (embedded_math.c) sections of runtime/include/lag_math.h and lag_kkt.h. */
+/* Parts common to all emitted files: the C function around the body of a Prog, and (embedded_math.c) what is taken from
+ * the headers of runtime/include. */
 #pragma once
 
 #include "emit/cwriter.h"
-
-/* Macros for selection and logic (PREFIX_SELECT, PREFIX_MASK, ...), each under #ifndef: vector types have no ternary in C. */
-void csupport_logic(const char *prefix, StrBuf *out);
-
-/* Function that solves a linear system in a loop: lower_solve. With constraints: see math_kkt_solver. */
-void csupport_solver(const char *prefix, const char *lower, StrBuf *out);
-
-/* `static LAG_REAL lower_spline(t, n, row)` and `lower_curve(t, n, row, order)`, for inputs given by a table: cubics, and quintics with their derivatives. */
-void csupport_splines(const Prog *inputs, const char *prefix, const char *lower, StrBuf *out);
 
 /* Appends text with LAG_ and lag_ replaced by the prefix in upper and lower case. */
 void csupport_expand(const char *text, const char *prefix, const char *lower, StrBuf *out);
@@ -38,18 +29,28 @@ const char *shortest_double(Arena *a, double x);
 /* Section NAME of a text of the runtime: include/lag_math.h, lag_kkt.h, kernels/. */
 void embedded_section(const char *name, const char *prefix, const char *lower, StrBuf *out);
 
-/* Vector lanes (PREFIX_LANES): mask type, selection, functions lane by lane. Must precede everything that has a default. */
-void math_lanes(const char *prefix, const char *lower, StrBuf *out);
+/* What a file needs of the headers of runtime/include, with the prefix of its names. solver: of dense linear systems. */
+typedef struct {
+  const ProgramSet *u;
+  const char *prefix, *lower;
+  int solver;
+} MathText;
 
-/* Functions that the unit calls and that do not come from the C library: lower_sincos, lower_sin, lower_cos, and exp and log
- * over lanes. Must follow PREFIX_FN and PREFIX_C. */
-void math_functions(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out);
+/* Vector lanes (PREFIX_LANES): mask type, selection, functions lane by lane. Must precede everything that has a default. */
+void math_lanes(const MathText *m, StrBuf *out);
+
+/* Macros and prototypes: selection and logic (PREFIX_SELECT, PREFIX_MASK, ...), lower_sincos, exp and log over lanes,
+ * lower_solve, lower_kkt, lower_spline and lower_curve. Must follow PREFIX_FN and PREFIX_C. */
+void math_front(const MathText *m, StrBuf *out);
+
+/* The functions themselves, which stand behind those of the model. */
+void math_bodies(const MathText *m, StrBuf *out);
+
+/* What precedes a model: the headers of the runtime, or, alone, all fronts. */
+void math_of_model(const MathText *m, int alone, StrBuf *out);
 
 /* lower_rough_power(x, p), for step sizes. */
 void math_power(const char *prefix, const char *lower, StrBuf *out);
-
-/* `static LAG_MASK lower_kkt(n, m, coarse, w)`, if the model has constraints. */
-void math_kkt_solver(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out);
 
 /* Whether some program of the unit calls a function of the C library. */
 int unit_calls(const ProgramSet *u, const char *name);

@@ -10,8 +10,10 @@
 #include "emit/dense_output_kernel.h"
 #include "emit/impulses_kernel.h"
 #include "emit/lag_kkt.h"             /* static const char *const NAME[]: and of runtime/include/NAME.h */
+#include "emit/lag_lanes.h"
 #include "emit/lag_math.h"
 #include "emit/lag_sincos.h"
+#include "emit/lag_support.h"
 #include "emit/locate_kernel.h"
 #include "emit/runge_kutta_kernel.h"
 #include "emit/scalar_kernel.h"
@@ -25,7 +27,7 @@
 static const struct {
   const char *const *line;
   size_t n;
-} embedded[] = {LINES(lag_math),  LINES(lag_sincos), LINES(lag_kkt), LINES(scalar_kernel), LINES(compensated_sum_kernel), LINES(composition_kernel), LINES(splitting_kernel),
+} embedded[] = {LINES(lag_lanes), LINES(lag_math), LINES(lag_sincos), LINES(lag_support), LINES(lag_kkt), LINES(scalar_kernel), LINES(compensated_sum_kernel), LINES(composition_kernel), LINES(splitting_kernel),
                 LINES(runge_kutta_tables_kernel), LINES(runge_kutta_kernel), LINES(step_size_kernel), LINES(taylor_order_kernel), LINES(taylor_size_kernel), LINES(dense_output_kernel), LINES(band_matrix_kernel), LINES(impulses_kernel), LINES(locate_kernel)};
 
 static const char mark[] = "/* ---- ";
@@ -41,14 +43,6 @@ void embedded_section(const char *name, const char *prefix, const char *lower, S
     while (i < n && !is_marker(line[i], whole)) i++;
     for (i++; i < n && !is_marker(line[i], ""); i++) csupport_expand(line[i], prefix, lower, out);
   }
-}
-
-void math_kkt_solver(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out) {
-  static const uint32_t large = 62; /* LAG_BAND_LEAST of lag_kkt.h: smaller systems have no band solver */
-  static const char *const names[] = {"numbers", "band", "kkt"};
-  int banded = u->q.n + u->constraints.of.n >= large;
-  for (size_t i = 0; u->constraints.of.n && i < sizeof names / sizeof *names; i++)
-    if (i != 1 || banded) embedded_section(names[i], prefix, lower, out);
 }
 
 static int calls(const Prog *p, const char *name) {
@@ -67,23 +61,73 @@ int unit_calls(const ProgramSet *u, const char *name) {
 }
 
 static int calls_sincos(const ProgramSet *u) { return unit_calls(u, "sin") || unit_calls(u, "cos"); }
-
-void math_lanes(const char *prefix, const char *lower, StrBuf *out) {
-  sb_puts(out, "/* ---- arithmetic, over doubles and over lanes of them; the model comes after it ---- */\n\n");
-  embedded_section("lanes", prefix, lower, out);
+static int calls_own(const ProgramSet *u) {
+  return !u->libm && (calls_sincos(u) || unit_calls(u, "exp") || unit_calls(u, "log"));
 }
 
-void math_functions(const ProgramSet *u, const char *prefix, const char *lower, StrBuf *out) {
-  int sincos = !u->libm && calls_sincos(u), e = !u->libm && unit_calls(u, "exp"), l = !u->libm && unit_calls(u, "log");
-  if (u->libm) sb_printf(out, "#define %s_OWN 0\n", prefix);
-  else embedded_section("own", prefix, lower, out);
-  embedded_section("libm", prefix, lower, out);
-  if (sincos) embedded_section("sincos", prefix, lower, out);
-  if (e) embedded_section("exp", prefix, lower, out);
-  if (l) embedded_section("log", prefix, lower, out);
-  if (u->lanes && (e || l)) sb_printf(out, "#ifndef LAG_LANES\n%s%s#endif\n", e ? "#define exp lag_exp\n" : "", l ? "#define log lag_log\n" : "");
-  if (unit_calls(u, "floor")) embedded_section("floor", prefix, lower, out);
-  sb_puts(out, "/* ---- the model ---- */\n");
+/* Whether its linear systems are large enough for a band: LAG_BAND_LEAST of lag_kkt.h. */
+static int has_band(const ProgramSet *u) { return u->q.n + u->constraints.of.n >= 62; }
+
+/* Bit 0: some input is a curve by cubics, bit 1: by quintics. */
+static unsigned curves_of(const ProgramSet *u) {
+  unsigned some = 0;
+  for (uint32_t i = 0; i < u->inputs->tables.n; i++) some |= u->inputs->tables.at[i].curve->jet ? 2 : 1;
+  return some;
+}
+
+/* The sections that a unit needs, or of those that have one the front: `NAME: front`. */
+static void sections(const MathText *m, int front, StrBuf *out) {
+  const ProgramSet *u = m->u;
+  int own = !u->libm, kkt = u->constraints.of.n > 0;
+  unsigned curves = curves_of(u);
+  const struct {
+    const char *name;
+    int needed;
+  } rows[] = {{"lanes", !front}, {"own", own}, {"libm", 1}, {"sincos", own && calls_sincos(u)},
+              {"exp", own && unit_calls(u, "exp")}, {"log", own && unit_calls(u, "log")}, {"solver", m->solver},
+              {"numbers", kkt}, {"band", kkt && has_band(u)}, {"kkt", kkt},
+              {"interval", curves != 0}, {"cubic", curves & 1}, {"quintic", curves & 2}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    const char *name = front ? arena_printf(out->arena, "%s: front", rows[i].name) : rows[i].name;
+    if (rows[i].needed) embedded_section(name, m->prefix, m->lower, out);
+  }
+}
+
+void math_lanes(const MathText *m, StrBuf *out) { embedded_section("lanes: front", m->prefix, m->lower, out); }
+
+void math_front(const MathText *m, StrBuf *out) {
+  embedded_section("logic", m->prefix, m->lower, out);
+  if (m->u->libm) sb_printf(out, "#define %s_OWN 0\n", m->prefix);
+  sections(m, 1, out);
+}
+
+void math_bodies(const MathText *m, StrBuf *out) { sections(m, 0, out); }
+
+/* Over lanes exp and log are the runtime's, and a double has the same bits. */
+static void exp_and_log_as_lanes(const ProgramSet *u, StrBuf *out) {
+  static const char *const names[] = {"exp", "log"};
+  for (int i = 0; u->lanes && !u->libm && i < 2; i++)
+    if (unit_calls(u, names[i])) sb_printf(out, "#ifndef LAG_LANES\n#define %s lag_%s\n#endif\n", names[i], names[i]);
+}
+
+void math_of_model(const MathText *m, int alone, StrBuf *out) {
+  const ProgramSet *u = m->u;
+  int kkt = u->constraints.of.n > 0;
+  if (u->lanes) sb_puts(out, "#define LAG_AS_LANES 1 /* the same bits as in a lane */\n");
+  if (alone) {
+    sb_puts(out, "\n");
+    math_lanes(m, out);
+    embedded_section("scalar", m->prefix, m->lower, out);
+    embedded_section("positive", m->prefix, m->lower, out);
+    math_front(m, out);
+  } else {
+    if (u->libm) sb_puts(out, "#define LAG_LIBM 1\n");
+    if (kkt && !has_band(u)) sb_puts(out, "#define LAG_NO_BAND 1 /* so few unknowns have none */\n");
+    sb_puts(out, calls_own(u) ? "#include \"lag_math.h\"\n" : "#include \"lag_lanes.h\"\n");
+    if (m->solver || curves_of(u)) sb_puts(out, "#include \"lag_support.h\"\n");
+    if (kkt) sb_puts(out, "#include \"lag_kkt.h\"\n");
+  }
+  exp_and_log_as_lanes(u, out);
 }
 
 void math_power(const char *prefix, const char *lower, StrBuf *out) { embedded_section("power", prefix, lower, out); }
@@ -92,6 +136,6 @@ const char *math_prefix(const ProgramSet *u, const char *lower) { return u->libm
 
 const char *math_source_text(const ProgramSet *u) {
   if (u->libm) return "Functions: the C library's.";
-  if (!calls_sincos(u)) return "Functions: the C library's; over lanes exp and log are below.";
-  return "Functions: sin and cos are below, to less than 1 unit in the last place; the others are the C library's.";
+  if (!calls_sincos(u)) return "Functions: the C library's; over lanes exp and log are lagc's.";
+  return "Functions: sin and cos are lagc's, to less than 1 unit in the last place; the others are the C library's.";
 }

@@ -8,13 +8,6 @@
 
 static const char *const arrays[ARR_COUNT] = {"t", "q", "v", "z", "p", "u", "a", "g"};
 
-static const char *const prelude =
-  "/* The scalar and its spelling. Another precision: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l'\n"
-  " * '-DLAG_C(x)=x##L'; -DLAG_LANES=4 or 8: a vector of so many doubles, each with a state of its own. */\n"
-  "#ifndef LAG_NUMBER\n#define LAG_NUMBER(x) x /* of the tables below */\n#endif\n"
-  "#ifndef LAG_FN\n#define LAG_FN(f) f\n#endif\n"
-  "#ifndef LAG_C\n#define LAG_C(x) ((LAG_REAL)x)\n#endif\n";
-
 /* Names that the head of an emitted file defines, besides lag_... and LAG_..., which no name of a model becomes (emit/cnames.c). */
 static const char *const abi_names[] = {
   "jump_table", "TAYLOR_COLUMNS", "TAYLOR_SUMS", "TAYLOR_CONSTANTS", "TAYLOR_WIDTH", "TAYLOR_LANES", "TAYLOR_GROUP", "TAYLOR_UNROLL",
@@ -428,22 +421,15 @@ static void emit_head(const ProgramSet *u, StrBuf *out) {
   if (u->nderived) sb_printf(out, " * Once for a set of parameters: %s.\n", op_count_text(u->derived, u->arena));
   sb_printf(out, " * %s\n", math_source_text(u));
   sb_puts(out, " * This text may be used for any purpose without conditions (0BSD). */\n");
-  sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n\n");
+  sb_puts(out, "#include <math.h>\n\n#include \"lag_model.h\"\n");
 }
 
-void emit_model(const ProgramSet *u, const char *name, StrBuf *out) {
+void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out) {
   ModelFile f = {.u = u, .a = u->arena, .globals = globals_of(u, name), .out = out};
   emit_head(u, out);
-  if (u->lanes) sb_puts(out, "#ifndef LAG_AS_LANES\n#define LAG_AS_LANES 1 /* the same bits as in a lane */\n#endif\n");
-  math_lanes("LAG", "lag", out);
-  sb_puts(out, prelude);
-  csupport_logic("LAG", out);
-  sb_putc(out, '\n');
-  math_functions(u, "LAG", "lag", out);
+  MathText math = {u, "LAG", "lag", needs_solver(u)};
+  math_of_model(&math, alone, out);
   if (has_long_tables(u)) table_macros(out);
-  if (needs_solver(u)) csupport_solver("LAG", "lag", out);
-  math_kkt_solver(u, "LAG", "lag", out);
-  csupport_splines(u->inputs, "LAG", "lag", out);
   size_t begin = out->n;
   emit_derive(&f);
   accel(&f);
@@ -460,4 +446,7 @@ void emit_model(const ProgramSet *u, const char *name, StrBuf *out) {
   emit_variation(&f);
   emit_tables(u, name, digest, out);
   for (uint32_t i = 0; i < u->scenes.n; i++) emit_scene(&f, name, i);
+  if (!alone) return;
+  sb_puts(out, "\n/* ---- lag_math.h and others, of lagc ---- */\n\n");
+  math_bodies(&math, out);
 }

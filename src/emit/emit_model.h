@@ -7,8 +7,9 @@
 /* Identifier of the lag_model for a model that the user called `name`; free in <math.h> and in the emitted file. */
 const char *model_id(Arena *a, const char *name);
 
-/* Appends one file: a lag_model called NAME (a C identifier), and a lag_scene NAME_scene for each scene. */
-void emit_model(const ProgramSet *u, const char *name, StrBuf *out);
+/* Appends one file: a lag_model called NAME (a C identifier), and a lag_scene NAME_scene for each scene. alone: of the
+ * runtime's headers it includes lag_model.h only. */
+void emit_model(const ProgramSet *u, const char *name, int alone, StrBuf *out);
 
 /* Appends only the function that computes the accelerations. */
 void emit_accel(const ProgramSet *u, StrBuf *out);

@@ -30,6 +30,11 @@ static const char *const macros =
   "#endif\n"
   "#ifndef LAG_C\n"
   "#define LAG_C(x) (sizeof(LAG_REAL) > sizeof(double) ? (LAG_REAL)x##L : (LAG_REAL)x)\n"
+  "#endif\n"
+  "#ifdef LAG_COMPLEX /* has no order */\n"
+  "#define LAG_POSITIVE(d) LAG_PIVOT((d) != LAG_C(0.0))\n"
+  "#elif !defined(LAG_POSITIVE) /* NaN does not pass: a program around a header gets a status */\n"
+  "#define LAG_POSITIVE(d) LAG_PIVOT((d) > LAG_C(0.0))\n"
   "#endif\n";
 
 /* cbrt and hypot of float and long double, once in a program text: libc++ has them for every standard. */
@@ -357,26 +362,29 @@ static const char *comparison_of_unit(const ProgramSet *u) {
   return NULL;
 }
 
-static void scalar_macros(const Header *h) {
+/* What scalars lack: an order, or functions in C++98. */
+static void for_scalars(const Header *h) {
   const char *why = comparison_of_unit(h->u), *m = h->upper;
   if (why) sb_printf(h->out, "#ifdef %s_COMPLEX\n#error \"%s_REAL cannot be complex: the model has %s\"\n#endif\n\n", m, m, why);
-  csupport_expand(macros, m, h->lower, h->out);
   if (h->u->constraints.of.n || unit_calls(h->u, "cbrt") || unit_calls(h->u, "hypot")) sb_puts(h->out, overloads);
   if (header_has_method(h, "taylor")) header_taylor_overloads(h);
+}
+
+static int solves_dense(const Header *h) {
+  const ProgramSet *u = h->u;
+  return prog_solves_dense(u->accel) || prog_solves_dense(h->scene->observe_plain) ||
+         (u->taylor && prog_solves_dense(u->taylor->first));
 }
 
 void header_implementation(const Header *h) {
   static const char *const e[] = {"e", NULL}, *const out[] = {"out", NULL}, *const g[] = {"g", NULL};
   sb_puts(h->out, "#if " FAST_MATH "\n#error \"this header needs NaN and exact sums: compile it without -ffast-math, -Ofast and /fp:fast\"\n#endif\n#include <math.h>\n\n");
-  math_lanes(h->upper, h->lower, h->out);
-  scalar_macros(h);
-  csupport_logic(h->upper, h->out);
-  sb_putc(h->out, '\n');
-  math_functions(h->u, h->upper, h->lower, h->out);
-  sb_puts(h->out, "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n");
-  if (prog_solves_dense(h->u->accel) || prog_solves_dense(h->scene->observe_plain) || (h->u->taylor && prog_solves_dense(h->u->taylor->first))) csupport_solver(h->upper, h->lower, h->out);
-  math_kkt_solver(h->u, h->upper, h->lower, h->out);
-  csupport_splines(h->u->inputs, h->upper, h->lower, h->out);
+  MathText math = {h->u, h->upper, h->lower, solves_dense(h)};
+  for_scalars(h);
+  sb_puts(h->out, "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
+  math_lanes(&math, h->out);
+  csupport_expand(macros, h->upper, h->lower, h->out);
+  math_front(&math, h->out);
   defaults(h);
   param(h);
   header_section(h, "failures");
@@ -390,6 +398,8 @@ void header_implementation(const Header *h) {
   if (header_has(h, FN_OBSERVE)) header_state_function(h, h->scene->observe_plain, NULL, header_api(h, FN_OBSERVE), out, out, 1);
   if (header_has(h, FN_EVENTS)) header_state_function(h, h->u->event_values, NULL, header_api(h, FN_EVENTS), g, g, 1);
   act(h);
+  sb_putc(h->out, '\n');
+  math_bodies(&math, h->out);
   header_steps_define(h);
   header_dynamics_define(h);
   sb_puts(h->out, "\n#ifdef __cplusplus\n}\n#endif\n");

@@ -44,7 +44,9 @@ runtime/matlab    lag.h mex.h
 # FILE: further headers that it may include.
 besides='
 runtime/include/lag.h  lag_libraries.h lag_model.h
-runtime/include/lag_math.h  lag_sincos.h
+runtime/include/lag_math.h  lag_lanes.h lag_sincos.h
+runtime/include/lag_support.h  lag_lanes.h
+runtime/include/lag_kkt.h  lag_lanes.h
 '
 # The inside of a folder, shared by its own files only.
 private='analysis/measure_nodes.h sweep/run_chunks_impl.h syntax/ast_build.h syntax/parse_state.h syntax/token_filter.h syntax/scan.h syntax/token.h syntax/mistake_advice.h model/builder.h
@@ -152,16 +154,19 @@ else
   skip "the public headers are C++ too" "no C++ compiler"
 fi
 
-# ---- emitted code: a model needs lag_model.h and <math.h>; a header only <math.h> ----
+# ---- emitted code: a model needs lag_model.h, <math.h> and the headers of its functions; a header only <math.h> ----
 includes_of() {
   for m in models/*.lag; do
     one_of 4 && { [ "$1" != header ] || has_header "$m"; } || continue
-    "$LAGC" "$1" "$m" -o "$TMP/emitted" 2>/dev/null || echo "lagc $1 $m: exit status $?"
+    # shellcheck disable=SC2086 # some words
+    "$LAGC" $1 "$m" -o "$TMP/emitted" 2>/dev/null || echo "lagc $1 $m: exit status $?"
     sed -n 's/^[ \t]*#[ \t]*include[ \t]*//p' "$TMP/emitted" | grep -v -x -e "$2" | sed "s|^|lagc $1 $m includes |"
   done 2>&1
 }
 if [ -x "$LAGC" ] && ls models/*.lag >/dev/null 2>&1; then
-  empty "lagc emit: lag_model.h and <math.h>" "$(includes_of emit '"lag_model.h"\|<math.h>')"
+  empty "lagc emit: lag_model.h, <math.h> and headers of functions" \
+    "$(includes_of emit '"lag_model.h"\|<math.h>\|"lag_\(lanes\|math\|support\|kkt\).h"')"
+  empty "lagc emit --standalone: lag_model.h and <math.h>" "$(includes_of "emit --standalone" '"lag_model.h"\|<math.h>')"
   empty "lagc header: <math.h>" "$(includes_of header '<math.h>')"
 fi
 # A name is found by `find -name` and in a message of the compiler.

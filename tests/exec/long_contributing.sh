@@ -55,7 +55,7 @@ END
 behind src/self_check/jet.c 'strcmp(name, "atan") == 0' '  else if (strcmp(name, "asinh") == 0) area_sine(d, x);'
 behind src/self_check/tape_partial.c 'strcmp(name, "atan") == 0' \
   '  if (strcmp(name, "asinh") == 0) return quotient(t, da, tape_power(t, tape_op(t, TAPE_ADD, one, square(t, a), 0), num_ratio(1, 2)));'
-edit runtime/include/lag_math.h 's/LAG_LANES_1(atan)/LAG_LANES_1(atan) LAG_LANES_1(asinh)/'
+edit runtime/include/lag_lanes.h 's/one(atan)/one(atan) one(asinh)/'
 edit grammar/LANGUAGE.md 's/^| `sinh(x)`, `cosh(x)`, `tanh(x)` | hyperbolic functions |/&\
 | `asinh(x)` | the number whose sinh is x |/'
 edit tests/exec/self_check/functions.lag 's/atan(x\*y)/& + asinh(x - 2*y)/'

@@ -37,6 +37,28 @@ agrees() {
 }
 check "emitted C computes what its program says, to the last bit" agrees
 
+# ---- alone, with sines, a linear system under constraints, and curves: lag_model.h suffices, and the bits are the same
+alone='models/double_pendulum.lag models/cartesian_pendulum.lag tests/exec/models/tables.lag'
+bits_of() { # FOLDER OPTIONS...: of all functions at the same states
+  to=$1
+  shift
+  mkdir -p "$TMP/$to" && for m in $alone; do "$LAGC" emit "$@" "$m" -o "$TMP/$to/$(name_of "$m").c" || return 1; done
+  { echo '#include "lag_model.h"'
+    sed -n 's/^const lag_scene \(.*\) = {/extern const lag_scene \1;/p' "$TMP/$to"/*.c
+    echo 'extern const lag_scene *const all_scenes[]; const lag_scene *const all_scenes[] = {'
+    sed -n 's/^const lag_scene \(.*\) = {/  \&\1,/p' "$TMP/$to"/*.c
+    echo '  0};'; } >"$TMP/$to/scenes.c"
+  "$CC" -std=c11 -O1 -ffp-contract=off -Wall -Wextra -Werror -I"$headers" "$TMP/$to"/*.c $here/emit_eval.c -lm -o "$TMP/$to/eval" && "$TMP/$to/eval" >"$TMP/$to/bits"
+}
+emits_alone() {
+  mkdir -p "$TMP/one" && cp "$INC/lag_model.h" "$TMP/one" || return 1
+  headers=$INC bits_of with && headers=$TMP/one bits_of without --standalone && [ "$(wc -l <"$TMP/with/bits")" -gt 50 ] && diff "$TMP/with/bits" "$TMP/without/bits"
+}
+check "lagc emit --standalone: lag_model.h suffices, and the bits are the same" emits_alone
+for f in "$TMP"/with/double_pendulum.c "$TMP"/without/double_pendulum.c; do # by whose position a reader finds it
+  is "the model's functions come first: ${f#"$TMP"/}" derive "$(sed -n 's/^static [a-z]* \([a-z_]*\)(.*{$/\1/p' "$f" | head -n 1)"
+done
+
 empty "no dates and no paths in what is emitted" "$(grep -nE "20[0-9][0-9]-|$(pwd)|\.lag" "$TMP"/c/*.c "$TMP"/more/*.c "$TMP"/h/*.h)"
 
 # ---- errors leave nothing behind

@@ -1,0 +1,286 @@
+/* lag_lanes.h: arithmetic over LAG_REAL: selection, logic, checks of pivots, functions of the C library, bits of a
+ * double. LAG_REAL is double, or, with LAG_LANES defined as 4 or 8, the type of a vector with so many lanes (GCC and
+ * Clang; arrays of it are aligned to its size: aligned_alloc; -Wno-psabi silences GCC on how it passes them). Another
+ * scalar: -DLAG_REAL='long double' '-DLAG_FN(x)=x##l' '-DLAG_C(x)=x##L'. Includes only <math.h>.
+ *
+ * `lagc header` and `lagc emit --standalone` copy sections of this file, lag_math.h, lag_support.h and lag_kkt.h into
+ * what they write, from a line `---- NAME ----` to the next, a header with its prefix for LAG_ and lag_. */
+#ifndef LAG_LANES_H
+#define LAG_LANES_H
+
+#include <math.h>
+
+#ifndef LAG_REAL
+#ifdef LAG_LANES
+typedef double lag_lanes __attribute__((vector_size(8 * LAG_LANES)));
+#define LAG_REAL lag_lanes
+#else
+#define LAG_REAL double
+#endif
+#endif
+
+/* ---- lanes: front ---- */
+#ifdef LAG_LANES
+/* Selection, logic and functions of vectors of doubles. */
+#if !defined(__GNUC__) || (LAG_LANES != 4 && LAG_LANES != 8)
+#error "LAG_LANES must be 4 or 8, and the compiler GCC or Clang"
+#endif
+#define LAG_INLINE static __inline__ __attribute__((always_inline, unused))
+typedef long long lag_lanes_mask __attribute__((vector_size(8 * LAG_LANES)));
+typedef unsigned long long lag_lanes_word __attribute__((vector_size(8 * LAG_LANES)));
+
+LAG_INLINE LAG_REAL lag_lanes_all(double x);
+LAG_INLINE LAG_REAL lag_lanes_select(lag_lanes_mask c, LAG_REAL a, LAG_REAL b);
+LAG_INLINE int lag_lanes_bits(lag_lanes_mask c);
+LAG_INLINE int lag_lanes_any(lag_lanes_mask c);
+LAG_INLINE int lag_lanes_reach(lag_lanes_word w, int bit);
+LAG_INLINE LAG_REAL lag_lanes_fabs(LAG_REAL x);
+LAG_INLINE LAG_REAL lag_lanes_sqrt(LAG_REAL x);
+/* Functions without a vector form: one lane after the other. */
+#define LAG_LANES_EACH(one, two) \
+  one(tan) one(asin) one(acos) one(atan) one(sinh) one(cosh) one(tanh) one(cbrt) one(floor) \
+  two(pow) two(atan2) two(hypot)
+#define LAG_DECLARE_1(f) LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x);
+#define LAG_DECLARE_2(f) LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x, LAG_REAL y);
+LAG_LANES_EACH(LAG_DECLARE_1, LAG_DECLARE_2)
+
+#define LAG_MASK lag_lanes_mask
+#define LAG_LANE double
+#define LAG_FN(f) lag_lanes_##f
+#define LAG_C(x) lag_lanes_all(x)
+#define LAG_SELECT(c, a, b) lag_lanes_select(c, a, b)
+#define LAG_NOT(c) (~(c))
+#define LAG_AND(a, b) ((a) & (b))
+#define LAG_OR(a, b) ((a) | (b))
+#define LAG_ANY(c) lag_lanes_any(c)
+/* Checks of pivots. A lane with a singular matrix does not stop the others: its results are not finite, and its bit is set in the negative of
+ * the status; so for a lane whose matrix is not finite. */
+#if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
+#define LAG_PIVOTS int singular __attribute__((unused)) = 0
+#define LAG_PIVOT(c) singular |= lag_lanes_bits(~(c))
+#define LAG_POSITIVE(d) singular |= (unsigned char)__builtin_ia32_cmppd512_mask(d, LAG_C(0.0), 26 /* not greater, or unordered */, (unsigned char)-1, 4)
+#define LAG_PIVOTS_STATUS -singular
+#else
+#define LAG_PIVOTS LAG_MASK singular __attribute__((unused)) = {0}
+#define LAG_PIVOT(c) singular |= ~(c)
+#define LAG_POSITIVE(d) LAG_PIVOT((d) > LAG_C(0.0))
+#define LAG_PIVOTS_STATUS -lag_lanes_bits(singular)
+#endif
+#endif
+
+/* ---- scalar ---- */
+#ifndef LAG_NUMBER
+#define LAG_NUMBER(x) x /* of tables */
+#endif
+#ifndef LAG_FN
+#define LAG_FN(f) f
+#endif
+#ifndef LAG_C
+#define LAG_C(x) ((LAG_REAL)x)
+#endif
+
+/* ---- logic ---- */
+#ifndef LAG_SELECT
+#define LAG_SELECT(c, a, b) ((c) ? (LAG_REAL)(a) : (LAG_REAL)(b))
+#endif
+#ifndef LAG_NOT
+#define LAG_NOT(c) (!(c))
+#define LAG_AND(a, b) ((a) && (b))
+#define LAG_OR(a, b) ((a) || (b))
+#define LAG_ANY(c) (c)
+#define LAG_MASK int
+#define LAG_PIVOTS (void)0
+#define LAG_PIVOT(c) do { if (!(c)) return LAG_ESINGULAR; } while (0)
+#define LAG_PIVOTS_STATUS LAG_OK
+#endif
+#ifndef LAG_LANE
+#define LAG_LANE LAG_REAL
+#endif
+#if defined(__GNUC__)
+#define LAG_UNUSED __attribute__((unused)) /* a function that not every file calls */
+#else
+#define LAG_UNUSED
+#endif
+
+/* ---- positive ---- */
+/* Test of a positive pivot in a simulator, which finds and names the expression without a value. */
+#ifndef LAG_POSITIVE
+#define LAG_POSITIVE(d) LAG_PIVOT(!((d) <= LAG_C(0.0))) /* NaN passes: the caller finds its cause */
+#endif
+
+/* ---- own: front ---- */
+/* LAG_OWN: 1 where the functions below are used; for scalars other than double, and with LAG_LIBM or LAG_COMPLEX defined, those of the library
+ * are. */
+#define LAG_JOIN2(a, b) a##b
+#define LAG_JOIN(a, b) LAG_JOIN2(a, b)
+#define LAG_IS_float 0
+#define LAG_IS_double 1
+#define LAG_IS_long 0 && /* double */
+#if defined(LAG_LIBM) || defined(LAG_COMPLEX)
+#define LAG_OWN 0
+#elif defined(LAG_LANES) || LAG_JOIN(LAG_IS_, LAG_REAL)
+#define LAG_OWN 1
+#else
+#define LAG_OWN 0
+#endif
+
+#if LAG_OWN
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wlong-long" /* C++98 has none */
+#endif
+typedef long long lag_signed;
+typedef unsigned long long lag_bits;
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+#if !defined(LAG_LANES) && defined(__GNUC__)
+#define LAG_INLINE static __inline__ __attribute__((always_inline, unused))
+#elif !defined(LAG_LANES)
+#define LAG_INLINE static inline
+#endif
+#if (defined(__FMA__) || defined(FP_FAST_FMA) || defined(__ARM_FEATURE_FMA)) && !defined(LAG_NO_FMA)
+#define LAG_FMA 1
+#else
+#define LAG_FMA 0
+#endif
+LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c);
+#endif
+
+/* ---- libm: front ---- */
+#if defined(LAG_LANES) && !LAG_OWN
+LAG_DECLARE_1(sin) LAG_DECLARE_1(cos) LAG_DECLARE_1(exp) LAG_DECLARE_1(log)
+#endif
+
+/* ---- lanes ---- */
+#ifdef LAG_LANES
+LAG_INLINE LAG_REAL lag_lanes_all(double x) {
+  const LAG_REAL zero = {0};
+  return x - zero;
+}
+
+LAG_INLINE LAG_REAL lag_lanes_select(lag_lanes_mask c, LAG_REAL a, LAG_REAL b) {
+  return (LAG_REAL)((c & (lag_lanes_mask)a) | (~c & (lag_lanes_mask)b));
+}
+
+/* Bit k: whether the condition holds in lane k. */
+LAG_INLINE int lag_lanes_bits(lag_lanes_mask c) {
+#if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
+  return (unsigned char)__builtin_ia32_cvtq2mask512(c);
+#elif defined(__AVX__) && LAG_LANES == 4
+  return __builtin_ia32_movmskpd256((LAG_REAL)c);
+#else
+  int bits = 0;
+  for (int k = 0; k < LAG_LANES; k++) bits |= (int)(c[k] & 1) << k;
+  return bits;
+#endif
+}
+
+LAG_INLINE int lag_lanes_any(lag_lanes_mask c) {
+#if defined(__AVX512DQ__) && LAG_LANES == 8 && !defined(__clang__)
+  return __builtin_ia32_cvtq2mask512(c) != 0;
+#else
+  typedef long long half __attribute__((vector_size(4 * LAG_LANES)));
+  union { lag_lanes_mask all; half part[2]; } u = {c};
+  const half h = u.part[0] | u.part[1];
+  long long some = h[0] | h[1];
+  for (int k = 2; k < LAG_LANES/2; k++) some |= h[k];
+  return some != 0;
+#endif
+}
+
+/* Whether any lane is 2^bit or more. */
+LAG_INLINE int lag_lanes_reach(lag_lanes_word w, int bit) {
+#if defined(__AVX512F__) && LAG_LANES == 8 && !defined(__clang__)
+  const lag_lanes_mask no = {0}, all = no + (long long)(~0ULL << bit);
+  return __builtin_ia32_ptestmq512((lag_lanes_mask)w, all, (unsigned char)-1) != 0;
+#elif defined(__AVX__) && LAG_LANES == 4
+  const lag_lanes_mask no = {0}, all = no + (long long)(~0ULL << bit);
+  return !__builtin_ia32_ptestz256((lag_lanes_mask)w, all);
+#else
+  return lag_lanes_any((lag_lanes_mask)(w >> bit));
+#endif
+}
+
+LAG_INLINE LAG_REAL lag_lanes_fabs(LAG_REAL x) {
+  return (LAG_REAL)((lag_lanes_word)x & ~0ULL >> 1);
+}
+
+LAG_INLINE LAG_REAL lag_lanes_sqrt(LAG_REAL x) {
+#if defined(__AVX512F__) && LAG_LANES == 8 && !defined(__clang__)
+  return __builtin_ia32_sqrtpd512_mask(x, x, (char)-1, 4);
+#elif defined(__AVX512F__) && LAG_LANES == 8
+  return __builtin_ia32_sqrtpd512(x, 4);
+#elif defined(__AVX__) && LAG_LANES == 4
+  return __builtin_ia32_sqrtpd256(x);
+#else
+  for (int k = 0; k < LAG_LANES; k++) x[k] = sqrt(x[k]);
+  return x;
+#endif
+}
+
+#define LAG_LANES_1(f) \
+  LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x) { \
+    for (int k = 0; k < LAG_LANES; k++) x[k] = f(x[k]); \
+    return x; \
+  }
+#define LAG_LANES_2(f) \
+  LAG_INLINE LAG_REAL lag_lanes_##f(LAG_REAL x, LAG_REAL y) { \
+    for (int k = 0; k < LAG_LANES; k++) x[k] = f(x[k], y[k]); \
+    return x; \
+  }
+LAG_LANES_EACH(LAG_LANES_1, LAG_LANES_2)
+#endif
+
+/* ---- own ---- */
+#if LAG_OWN
+#define LAG_BITS(high, low) ((lag_bits)(high) << 32 | (low))
+#ifdef LAG_LANES
+typedef lag_lanes_word lag_word;
+LAG_INLINE lag_word lag_to_word(LAG_REAL x) { return (lag_word)x; }
+LAG_INLINE LAG_REAL lag_to_real(lag_word w) { return (LAG_REAL)w; }
+#define LAG_K(x) lag_lanes_all(x)
+#else
+typedef lag_bits lag_word;
+LAG_INLINE lag_word lag_to_word(double x) {
+  union { double x; lag_word w; } u;
+  u.x = x;
+  return u.w;
+}
+LAG_INLINE double lag_to_real(lag_word w) {
+  union { lag_word w; double x; } u;
+  u.w = w;
+  return u.x;
+}
+#define LAG_K(x) (x)
+#endif
+
+/* a*b + c, fused where the processor has an instruction for it. */
+LAG_INLINE LAG_REAL lag_mad(LAG_REAL a, LAG_REAL b, LAG_REAL c) {
+#if !LAG_FMA
+  return a*b + c;
+#elif !defined(LAG_LANES)
+  return fma(a, b, c);
+#elif LAG_LANES == 8 && defined(__AVX512F__)
+  return __builtin_ia32_vfmaddpd512_mask(a, b, c, (unsigned char)-1, 4);
+#elif LAG_LANES == 4 && defined(__FMA__)
+  return __builtin_ia32_vfmaddpd256(a, b, c);
+#elif defined(__FMA__)
+  typedef double half __attribute__((vector_size(32)));
+  union { LAG_REAL all; half part[2]; } x = {a}, y = {b}, z = {c};
+  for (int k = 0; k < 2; k++) z.part[k] = __builtin_ia32_vfmaddpd256(x.part[k], y.part[k], z.part[k]);
+  return z.all;
+#else
+  for (int k = 0; k < LAG_LANES; k++) a[k] = fma(a[k], b[k], c[k]);
+  return a;
+#endif
+}
+#endif
+
+/* ---- libm ---- */
+#if defined(LAG_LANES) && !LAG_OWN
+LAG_LANES_1(sin) LAG_LANES_1(cos) LAG_LANES_1(exp) LAG_LANES_1(log)
+#endif
+
+/* ---- end ---- */
+#endif
