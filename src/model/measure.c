@@ -29,8 +29,8 @@ typedef struct {
 
 typedef struct {
   Builder *b;
-  AstId first;
-  Part *part;      /* by node */
+  AstId first, last;
+  Part *part;      /* by node, of first to last */
   uint8_t *inside; /* 1: the node belongs to an operand that is read as a whole */
   uint8_t *whole;  /* 1: the node contains a value of the whole run, or an argument of the frame */
   const Frame *frame;
@@ -167,7 +167,8 @@ static int refuse_choice(MeasureReader *r, AstId id) {
 /* An operand of the language by its name in the runtime; it becomes an output where it has none. */
 static Part operand(MeasureReader *r, AstId id) {
   Builder *b = r->b;
-  Value v = r->whole[id - r->first] && !refuse_choice(r, id) ? (Value){0} : resolve(b, id, IN_OUTPUT, NULL);
+  int chooses = id <= r->last && r->whole[id - r->first]; /* at_time makes nodes behind the last */
+  Value v = chooses && !refuse_choice(r, id) ? (Value){0} : resolve(b, id, IN_OUTPUT, NULL);
   Part p = part_of(NULL, unit_si(v.dim, ""), 0);
   Span span = ast_expr(b->ast, id)->span;
   p.value.bare = v.bare;
@@ -481,7 +482,7 @@ static Part read_node(MeasureReader *r, AstId id) {
 
 static Part read_measure(Builder *b, AstId root, const Frame *frame, int command) {
   enum { WORDS = 2000, LONGEST = 5*WORDS }; /* a function of functions can double it fifty times */
-  MeasureReader r = {.b = b, .first = ast_expr(b->ast, root)->first, .frame = frame, .command = command};
+  MeasureReader r = {.b = b, .first = ast_expr(b->ast, root)->first, .last = root, .frame = frame, .command = command};
   uint32_t n = root - r.first + 1;
   r.part = ARENA_ARRAY(b->arena, Part, n);
   r.inside = ARENA_ARRAY(b->arena, uint8_t, n);
