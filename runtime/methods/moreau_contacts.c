@@ -155,9 +155,10 @@ static int set_law(MoreauContacts *w, lag_problem *pb, double t, double h, const
 /* Gaps, rates at both ends without contacts, what forces and curvature change them by, and matrices. */
 static int evaluate(MoreauContacts *w, lag_problem *pb, double t, double h, const double *y, const double *free) {
   const lag_constraints *of = pb->model->constraints;
-  int nq = pb->nq, rc = close(pb, t, -1);
+  int nq = pb->nq, rc = close(pb, t - h / 2, -1);
   for (int i = 0; i < nq; i++) w->test[i] = y[i] - h / 2 * y[nq + i];
   rc = rc ? rc : of->residuals(t - h / 2, w->test, y + nq, y + 2 * nq, pb->p, pb->u, w->c, w->bend, pb->work);
+  rc = rc ? rc : close(pb, t, -1);
   rc = rc ? rc : of->residuals(t, y, free, y + 2 * nq, pb->p, pb->u, w->c, w->r1, pb->work);
   rc = rc ? rc : of->residuals(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->c, w->r0, pb->work);
   rc = rc ? rc : of->matrices(t, y, y + nq, y + 2 * nq, pb->p, pb->u, w->jacobian, w->mass, pb->work);

@@ -86,6 +86,18 @@ static const Spline *quintic(Builder *b, const Input *in) {
   return s;
 }
 
+/* Warns of a formula with corners or jumps, where the rate has none. */
+static void warn_of_corners(Builder *b, const Input *in) {
+  ExprList l = expr_topo(b->g, &in->value, 1);
+  for (uint32_t i = 0; i < l.n; i++) {
+    ExprOp op = expr_op(b->g, l.at[i]);
+    if (op != EX_ABS && op != EX_SIGN && op != EX_FLOOR && op != EX_MIN && op != EX_MAX && op != EX_SELECT) continue;
+    diag_warning(b->diags, ast_expr(b->ast, in->text)->span, "the rate of `%s` is needed, and its formula may have corners or jumps: the motion lacks their impulses", in->name);
+    diag_help(b->diags, "smooth it: a position that jumps has no velocity, one with a corner no acceleration");
+    return;
+  }
+}
+
 void fill_input_rates(Builder *b) {
   Model *m = b->m;
   for (uint32_t i = 0; i < m->inputs.n; i++) {
@@ -93,6 +105,7 @@ void fill_input_rates(Builder *b) {
     if (!in->rate) continue;
     Input *rate = &m->inputs.at[in->rate];
     if (in->table) in->table = quintic(b, in);
+    if (in->value && in->text && !in->order) warn_of_corners(b, in);
     rate->table = in->table;
     rate->file = in->file;
     rate->value = in->value ? expr_diff(b->g, in->value, m->time) : 0;

@@ -237,6 +237,16 @@ scene s { start x = 0.1; span 2 }
 END
 sed -e '/^input/d' -e 's/x >= u/x >= 0.02*sin(30*t)/' "$dir/floor.lag" >"$dir/floor_by_hand.lag"
 near "a floor that shakes" 1e-9 "$(last "$dir/floor_by_hand.lag")" "$(last "$dir/floor.lag")"
+# A floor that accelerates: a body rides on it, in time steps of order 2 to rounding.
+cat >"$dir/lift.lag" <<'END'
+model lift
+coord x
+input u = t^2/2
+lagrangian = x'^2/2 - 9.81*x
+contact table: x >= u, restitution = 0
+scene s { span 1; method moreau(step = 0.1) }
+END
+near "a floor that lifts, in time steps" 1e-12 0.5 "$(last "$dir/lift.lag")"
 printf '0,0\n1,0\n1.000001,1\n2,1\n' >"$dir/data/steep.csv"
 check "lagc run shows the model's warnings" says 0 "warning: between its rows the curve goes from" "$LAGC" run "$m" push u="$dir/data/steep.csv" --quiet
 tap_end

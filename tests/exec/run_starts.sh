@@ -161,6 +161,19 @@ scene s { start a = 1, b = 0.34; span 1e-9 [s] }
 END
 open_first() { runs "$TMP/crank.lag" && near "$(value a)" 1 1e-3 && near "$(value b)" 0.34325 1e-3; }
 check "what the scene leaves open moves first" open_first
+# On a parabola: steps along it are damped, as it bends more than the request is far; a state of size 0 is one. Nearest: x - 1/2 + 2 x (x^2 + 1) = 0, by bisection; steps end within 1e-7 of it.
+model parabola <<'END'
+model parabola "A bead on a parabola"
+coord x [m], y [m]
+lagrangian = 1 [kg]*(x'^2 + y'^2)/2
+constraint c: y = x^2/(1 [m])
+scene both { start x = 0.5, y = -1; span 1e-9 [s] }
+scene below { start y = -1; span 1e-9 [s] }
+END
+bent() { runs "$TMP/parabola.lag" both && near "$(value x)" 0.1637400010366631 1e-6; }
+check "the nearest place of a parabola" bent
+vertex() { runs "$TMP/parabola.lag" below && near "$(value y)" 0 1e-12; }
+check "its vertex, from below" vertex
 # A coordinate that no constraint contains stays, whatever inertia couples it to those that move.
 model cart <<'END'
 model cart "A pendulum on a cart that a drive sets in motion"
