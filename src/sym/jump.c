@@ -119,13 +119,14 @@ static void select_terms(Search *s, const Sources *all, Expr x) {
 /* --- lines --- */
 
 /* Random line. Every second line starts at the origin, so that powers of 10 along it meet every length and time scale: the radius of an
- * atom, and of an orbit. */
+ * atom, and of an orbit. Of the others, every second one moves velocities and states alone: g(q) q' changes its sign with q' there, not with g. */
 static void draw_line(Search *s, uint32_t seed) {
   const Real wide = 4; /* past half a turn */
+  const unsigned kinds = seed % 4 == 3 ? 1u << SYM_VEL | 1u << SYM_STATE | 1u << SYM_RATE : varying_kinds;
   s->from_origin = seed % 2 == 0;
   for (uint32_t i = 0; i < s->symbols.n; i++) {
     SymId k = s->symbols.at[i];
-    int moves = (1u << expr_symbol(s->g, k)->kind & varying_kinds) != 0;
+    int moves = (1u << expr_symbol(s->g, k)->kind & kinds) != 0;
     s->base[k] = moves && s->from_origin ? 0 : sample_symbol(s->g, k, seed) * (moves ? wide : 1);
     s->direction[k] = moves ? sample_symbol(s->g, k, seed + 2 * LINES) : 0;
   }

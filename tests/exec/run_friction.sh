@@ -369,6 +369,24 @@ for v in 0.2 0.8 1.1; do
 done
 check "by time steps" run path --method moreau --step 1e-3
 check "to the step's error" near "$(final a)" 1.5304831026006622 1e-3
+# Static friction on a path whose slope, cos 2a, changes its sign: it holds 0.3 by 0.3/|cos 1.8|.
+model slope <<'END_OF'
+model slope
+coord a
+let x = sin(a)*cos(a)
+kinetic = a'^2/2
+force a = 0.3
+friction rub on x: 0.8, static = 2.5
+scene s { start a = 0.9; span 1; output a, rub every 0.5 }
+END_OF
+check "static friction on a path that turns" run slope -o "$TMP/slope.csv"
+check "holds" near "$(final a)" 0.9 1e-14
+check "by the load over the slope" near "$(tail -n 1 "$TMP/slope.csv" | cut -d, -f 3)" "$(calc '-0.3/cos(1.8)')" 1e-12
+for path in 'sin(3*a)' 'asin(a)' 'sqrt(4 - a^2)' 'hypot(cos(a), 0.5*sin(a))'; do
+  sed "s|^let x = .*|let x = $path|; /^force/d; s|^friction.*|friction rub on x: 2|; s|a = 0.9|a = 0.3, a' = 1|; s|span 1|span 3|" "$TMP/slope.lag" >"$TMP/turn.lag"
+  check "a stop on $path" run turn
+  check "for good" near "$(final "a'")" 0 1e-14
+done
 # A piston: one coordinate, through asin and its roots, and three with two constraints. Both stop in the third turn.
 model crank <<'END_OF'
 model crank
