@@ -44,6 +44,9 @@ static int enough(void *app, const lag_sim *other) {
   return done || lag_app_interrupted() != EXIT_SIGNAL;
 }
 
+/* Whether rounding counts as truncation does. */
+static int is_long_series(const lag_sim *run) { return run->method == &lag_taylor_method && !run->scene->model->constraints && lag_equal_step(run) <= 0 && run->tol < 1e-11; }
+
 /* taylor with a smaller tolerance, a lower order and at most half the run's mean step: the roundings of long series have one sign along a motion, with any
  * tolerance, and are in proportion to steps. */
 static int set_shorter_series(const ErrorEstimate *e, const lag_sim *run, lag_sim *other) {
@@ -67,11 +70,9 @@ static int set_adaptive(const ErrorEstimate *e, lag_sim *other) {
 /* A setting whose error is small beside the run's; near the smallest tolerance, one whose error is of another making, and about as small, or a larger
  * tolerance, which shows an error that is too large, but not 0. */
 static int set_more_accurate(const ErrorEstimate *e, const lag_sim *run, lag_sim *other) {
-  const double rounds = 1e-11; /* of taylor: below, rounding counts as truncation does */
-  const double apart = 3;      /* tolerances whose errors differ enough */
-  const lag_model *m = run->scene->model;
+  const double apart = 3; /* tolerances whose errors differ enough */
   if (lag_equal_step(run) > 0) return set_adaptive(e, other);
-  if (run->method == &lag_taylor_method && !m->constraints && run->tol < rounds) return set_shorter_series(e, run, other);
+  if (is_long_series(run)) return set_shorter_series(e, run, other);
   return lag_app_copy_method(run, other, run->tol >= apart * least_tolerance ? tighter : apart);
 }
 
@@ -108,7 +109,7 @@ typedef struct Second {
 static int compare_once(App *app, ErrorEstimate *e, const lag_sim *run, double most, Second *second) {
   lag_sim *other = lag_app_fresh_bare_sim(app);
   int rc = other ? set_more_accurate(e, run, other) : LAG_ENOMEM;
-  app->second_most = most;
+  app->second_most = is_long_series(run) ? 3 * most : most; /* with as many more steps */
   if (rc == LAG_OK && second->longest > 0) rc = limit_steps(other, second->longest);
   if (rc == LAG_OK) {
     if (second->nudged) nudge(other);

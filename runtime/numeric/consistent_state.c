@@ -42,10 +42,13 @@ double lag_level_weight(const lag_level *w, int i) {
   return w->at == LAG_MOVES_LAST && !w->alike && w->stage(w, i) < LAG_MOVES_LAST ? open : 1;
 }
 
-/* The part of the step d that moves no position by more than half of what is typical: far steps lead to other solutions. */
-static double longest_part(lag_level *w) {
+/* The part of the step d that moves no position by more than half of what is typical: far steps lead to other solutions. The whole step where it solves the
+ * problem, as where constraints are linear. */
+static double longest_part(lag_level *w, double before) {
   double part = 1;
   if (!w->positions) return 1;
+  move(w, w->from, 1);
+  if (merit(w) <= 1e-20 * before) return 1;
   w->scales(w, w->x, w->reach);
   for (int a = 0; a < w->nfree; a++) {
     double most = 0.5 * w->reach[w->free[a]], d = fabs(w->d[a]);
@@ -70,7 +73,7 @@ static int descend(lag_level *w) {
     double now = HUGE_VAL;
     copy(w, w->from, w->x);
     if (w->direction(w, 0, w->d)) return 0;
-    double part = longest_part(w);
+    double part = longest_part(w, before);
     for (int i = 0; i < MOST_HALVINGS && !(now < before); i++, part /= 2) {
       move(w, w->from, part);
       now = merit(w);

@@ -143,8 +143,9 @@ slow check "rank 1 is killed" killed KILL 1
 slow check "the rest, by two" kept --mpi 2
 slow check "rank 0 is killed" killed KILL 0
 slow check "the rest, by one" kept
-# mpirun kills ranks a second after it ends them: on a busy machine before rank 0 has spoken.
-OMPI_MCA_odls_base_sigkill_timeout=6 slow check "mpirun is terminated" ended
+# mpirun kills ranks a second after it ends them: on a busy machine before rank 0 has spoken, or the sweep is over before the signal comes. One of three is seen.
+once_ended() { ended || ended || OMPI_MCA_odls_base_sigkill_timeout=6 ended; }
+slow check "mpirun is terminated" once_ended
 slow check "the rest, by two" kept --mpi 2
 slow check "a rank is terminated" killed TERM 1
 slow check "and goes on" kept --mpi 2

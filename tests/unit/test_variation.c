@@ -93,6 +93,12 @@ static void check_forces(const Case *c, const First *f, const Real *h) {
   const Model *m = c->e->m;
   First by_t;
   differences(c, m->time, 1e-6L, &by_t); /* inputs may be fast */
+  for (uint32_t k = 0; k < m->inputs.n; k++) { /* which change with t, too, where their rates count */
+    First by_u;
+    if (!m->inputs.at[k].rate) continue;
+    differences(c, m->inputs.at[k].sym, step, &by_u);
+    for (uint32_t i = 0; i < c->e->n; i++) by_t.part[1][i] += by_u.part[1][i] * c->v[m->inputs.at[m->inputs.at[k].rate].sym];
+  }
   for (uint32_t i = 0; i < c->e->n && !m->states.n; i++) {
     Real want, size = 0;
     expr_eval(c->e->g, c->e->constraints.n ? &c->e->system.f[i] : &c->e->f[i], 1, c->v, &want); /* without multipliers */
