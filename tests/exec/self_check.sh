@@ -97,7 +97,7 @@ lower/lower.c|s/wanted > 0 || negative ? IR_ADD : IR_SUB/IR_ADD/
 model/rotation.c|s/num_int(2), turned\[k\]/num_int(1), turned[k]/
 ir/prog.c|s/prog_op(p, IR_SUB, x, ab)/prog_op(p, IR_ADD, x, ab)/
 ir/reassociate.c|s/x.minus ? prog_op(b->to, IR_SUB, y.slot, x.slot)/0 ? prog_op(b->to, IR_SUB, y.slot, x.slot)/
-model/resolve_time.c|s/seed\[m->time\] = expr_int(b->g, 1)/seed[m->time] = expr_int(b->g, 0)/
+model/input_rates.c|s/seed\[m->time\] = expr_int(m->g, 1)/seed[m->time] = expr_int(m->g, 0)/
 mech/lagrange.c|s/expr_sub(g, dLdq\[i\], convective\[i\])/expr_add(g, dLdq[i], convective[i])/
 lower/gram_schmidt.c|s/Slot f = op(y, IR_DIV, product(y, weighted, u), d)/Slot f = op(y, IR_DIV, d, product(y, weighted, u))/
 mech/lagrange.c|s/= expr_sub(g, Q\[d.at\[i\].index\]/= expr_add(g, Q[d.at[i].index]/
