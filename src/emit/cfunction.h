@@ -29,7 +29,7 @@ const char *shortest_double(Arena *a, double x);
 /* Section NAME of a text of the runtime: include/lag_math.h, lag_kkt.h, kernels/. */
 void embedded_section(const char *name, const char *prefix, const char *lower, StrBuf *out);
 
-/* What a file needs of the headers of runtime/include, with the prefix of its names. solver: of dense linear systems. */
+/* Needs of a file from the headers of runtime/include, with the prefix of its names. solver: of dense linear systems. */
 typedef struct {
   const ProgramSet *u;
   const char *prefix, *lower;
@@ -46,7 +46,7 @@ void math_front(const MathText *m, StrBuf *out);
 /* The functions themselves, which stand behind those of the model. */
 void math_bodies(const MathText *m, StrBuf *out);
 
-/* What precedes a model: the headers of the runtime, or, alone, all fronts. */
+/* Text before a model: includes of the runtime's headers, or, alone, all fronts. */
 void math_of_model(const MathText *m, int alone, StrBuf *out);
 
 /* lower_rough_power(x, p), for step sizes. */

@@ -362,7 +362,7 @@ static const char *comparison_of_unit(const ProgramSet *u) {
   return NULL;
 }
 
-/* What scalars lack: an order, or functions in C++98. */
+/* Limits of scalars: no order, or no functions in C++98. */
 static void for_scalars(const Header *h) {
   const char *why = comparison_of_unit(h->u), *m = h->upper;
   if (why) sb_printf(h->out, "#ifdef %s_COMPLEX\n#error \"%s_REAL cannot be complex: the model has %s\"\n#endif\n\n", m, m, why);

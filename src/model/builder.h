@@ -95,7 +95,7 @@ typedef struct {
   int order;
 } InputRate;
 
-/* What builds of the model have found; missing: the last one lacked some. */
+/* Rates that builds of the model have found to be needed; missing: the last one lacked some. */
 typedef struct {
   VEC(InputRate) of;
   int missing;
